@@ -1,0 +1,81 @@
+# Helpers that give every room of the house the same flags, include path and export set.
+include_guard(GLOBAL)
+include(GNUInstallDirs)
+
+# Flags that change the memory layout of Eigen types must be the same in every project that links
+# Lockstep, so they are public.
+add_library(lockstep_flags INTERFACE)
+target_include_directories(lockstep_flags INTERFACE
+  "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>"
+  "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/packages>"
+  "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>"
+  "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/lockstep>")
+target_compile_features(lockstep_flags INTERFACE cxx_std_17)
+if(LOCKSTEP_NATIVE)
+  target_compile_options(lockstep_flags INTERFACE -march=native)
+endif()
+if(LOCKSTEP_SANITIZE)
+  target_compile_options(lockstep_flags INTERFACE -fsanitize=address,undefined
+                         -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  target_link_options(lockstep_flags INTERFACE -fsanitize=address,undefined)
+endif()
+set(LOCKSTEP_WARNINGS -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
+install(TARGETS lockstep_flags EXPORT LockstepTargets)
+add_library(Lockstep::lockstep_flags ALIAS lockstep_flags)
+
+# lockstep_library(NAME SOURCES a.cpp... DEPENDS targets...): one static library per room. Headers
+# (*.hpp beside the CMakeLists.txt) are installed under include/lockstep/ROOM.
+function(lockstep_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  set(target lockstep_${name})
+  if(ARG_SOURCES)
+    add_library(${target} STATIC ${ARG_SOURCES})
+    target_link_libraries(${target} PUBLIC lockstep_flags ${ARG_DEPENDS})
+    target_compile_options(${target} PRIVATE ${LOCKSTEP_WARNINGS})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE lockstep_flags ${ARG_DEPENDS})
+  endif()
+  add_library(Lockstep::${target} ALIAS ${target})
+  install(TARGETS ${target} EXPORT LockstepTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  get_filename_component(room "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
+  install(DIRECTORY . DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lockstep/${room}
+          FILES_MATCHING PATTERN "*.hpp")
+endfunction()
+
+# lockstep_driver(NAME): drivers/NAME.cpp -> executable NAME.
+function(lockstep_driver name)
+  add_executable(${name} ${name}.cpp)
+  target_link_libraries(${name} PRIVATE Lockstep::lockstep_all)
+  target_compile_options(${name} PRIVATE ${LOCKSTEP_WARNINGS})
+  install(TARGETS ${name} DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# lockstep_test(NAME SOURCES ... DEPENDS ... [RANKS 1 2 4] [LABELS ...] [TIMEOUT s]): a googletest
+# executable with the MPI-aware main of tests/support, run once per rank count.
+function(lockstep_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;RANKS;LABELS" ${ARGN})
+  if(NOT ARG_RANKS)
+    set(ARG_RANKS 1)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(test_${name} ${ARG_SOURCES})
+  target_link_libraries(test_${name} PRIVATE lockstep_test_main ${ARG_DEPENDS})
+  target_compile_options(test_${name} PRIVATE ${LOCKSTEP_WARNINGS})
+  foreach(ranks IN LISTS ARG_RANKS)
+    if(ranks EQUAL 1)
+      add_test(NAME ${name} COMMAND test_${name})
+      set(test ${name})
+    else()
+      set(test ${name}.mpirun=${ranks})
+      add_test(NAME ${test} COMMAND ${MPIEXEC_EXECUTABLE} --oversubscribe -np ${ranks}
+                                    $<TARGET_FILE:test_${name}>)
+    endif()
+    set_tests_properties(${test} PROPERTIES
+      LABELS "${ARG_LABELS}" PROCESSORS ${ranks} TIMEOUT ${ARG_TIMEOUT}
+      ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1;OMP_NUM_THREADS=1")
+  endforeach()
+endfunction()
