@@ -1,0 +1,117 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/surface_mesh.hpp"
+
+namespace lockstep {
+
+/// What the framework knows of one solid's surface.
+struct SolidDescription {
+  std::string name;
+  bool closed = true;      ///< encloses a volume; false: a thin shell
+  bool prescribed = false; ///< kinematic or static: contributes velocities, not unknowns
+  int model = 0;           ///< index of its SolidModel in the SolidSystem
+  int simplex_begin = 0, simplex_end = 0;  ///< its range of simplices in the snapshot
+  int vertex_begin = 0, vertex_end = 0;    ///< its range of vertices in the snapshot
+};
+
+/// A point on the surface.
+template <int dim>
+struct SurfacePoint {
+  int simplex = -1;
+  Barycentric<dim> barycentric = Barycentric<dim>::Zero();
+  Point<dim> position = Point<dim>::Zero();
+  double fraction = 0;  ///< for hits of a segment: 0 at its start, 1 at its end; for closest points: distance [m]
+};
+
+/// Where a line of cell centres, parallel to `axis`, crosses the surface.
+template <int dim>
+struct Crossing {
+  double coordinate = 0;  ///< along the axis [m]
+  int simplex = -1;
+  Barycentric<dim> barycentric = Barycentric<dim>::Zero();
+  bool entering = false;  ///< the line enters the solid here when walked in the positive direction
+};
+
+/// All crossings of the lines through the centres of a box of lattice cells; the sparse product of
+/// `SurfaceSnapshot::cross_lattice`. Lines without crossings cost nothing.
+template <int dim>
+struct LatticeCrossings {
+  struct Line {
+    Index<dim> cell{};  ///< lattice coordinates of the line; the entry of `axis` is meaningless (0)
+    std::vector<Crossing<dim>> crossings;  ///< sorted by coordinate
+  };
+  std::array<std::vector<Line>, dim> lines;  ///< per axis, sorted lexicographically by `cell`
+};
+
+/// The cell-centre lattice of a Cartesian grid: the centre of cell c is lower + (c + 1/2) * spacing.
+template <int dim>
+struct Lattice {
+  Point<dim> lower = Point<dim>::Zero();  ///< [m]
+  double spacing = 1;                     ///< h [m]
+  Point<dim> center(const Index<dim>& cell) const {
+    Point<dim> x;
+    for (int a = 0; a < dim; ++a) x[a] = lower[a] + (cell[a] + 0.5) * spacing;
+    return x;
+  }
+};
+
+/// An immutable picture of all solids' surfaces at one instant, replicated on every rank, with the
+/// queries that everyone needs. Built once per geometry change; queries are const and thread-safe.
+/// Two snapshots of one step have the same simplices and differ in vertex positions only.
+template <int dim>
+class SurfaceSnapshot {
+ public:
+  SurfaceSnapshot(SurfaceMesh<dim> mesh, std::vector<SolidDescription> solids);
+  ~SurfaceSnapshot();
+  SurfaceSnapshot(SurfaceSnapshot&&) noexcept;
+
+  const SurfaceMesh<dim>& mesh() const;
+  const std::vector<SolidDescription>& solids() const;
+  int n_simplices() const { return static_cast<int>(mesh().simplices.size()); }
+  bool empty() const { return n_simplices() == 0; }
+  int solid_of(int simplex) const;
+  std::array<Point<dim>, dim> corners(int simplex) const;
+  Box<dim> bounds(int simplex) const;
+  Box<dim> bounds_of_solid(int solid) const;
+
+  /// First simplex that the segment a -> b meets (within `tolerance` [m] of its ends and of the
+  /// simplex' rim), or none. Touching counts as meeting.
+  std::optional<SurfacePoint<dim>> first_hit(const Point<dim>& a, const Point<dim>& b,
+                                             double tolerance = 0) const;
+  /// Closest surface point within `radius`, or none.
+  std::optional<SurfacePoint<dim>> closest(const Point<dim>& x, double radius) const;
+  /// Closest point of one solid (no radius).
+  SurfacePoint<dim> closest_on_solid(const Point<dim>& x, int solid) const;
+  /// Index of a closed solid that contains x, or -1. Consistent with `cross_lattice` (same watertight
+  /// half-open edge rule).
+  int inside(const Point<dim>& x) const;
+  /// Simplices whose bounding box touches `box`, in ascending order; replaces the content of `found`.
+  void touching(const Box<dim>& box, std::vector<int>& found) const;
+  /// True if any simplex' bounding box touches the box.
+  bool touches(const Box<dim>& box) const;
+
+  /// Crossings of all cell-centre lines of `lattice` within cells [begin, end) with the surface.
+  /// Watertight: a closed surface gives an even number of crossings on every whole line, because an
+  /// edge shared by two simplices is decided by one and the same floating-point expression and a
+  /// half-open rule. Costs O(area / h^(dim-1)).
+  LatticeCrossings<dim> cross_lattice(const Lattice<dim>& lattice, const Index<dim>& begin,
+                                      const Index<dim>& end) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// True if the surface, moving linearly from `before` to `after` (same simplices), sweeps over the
+/// fixed point x; returns the simplex and barycentric coordinates at the first passage. `candidates`
+/// limits the simplices that are looked at (those whose swept box holds x).
+template <int dim>
+std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
+                                            const SurfaceSnapshot<dim>& after, const Point<dim>& x,
+                                            const std::vector<int>& candidates);
+
+}  // namespace lockstep
