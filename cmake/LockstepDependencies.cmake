@@ -1,26 +1,40 @@
 # Imported targets of all libraries that Lockstep builds on. Used by the build itself and, installed
 # beside LockstepConfig.cmake, by out-of-tree projects.
-include_guard(GLOBAL)
+include_guard(DIRECTORY)
 
-find_package(MPI REQUIRED COMPONENTS CXX)
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(fmt REQUIRED)
-find_package(Boost REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(tinyobjloader REQUIRED)
-find_package(CLI11 REQUIRED)
+# lockstep_require(PACKAGE DEBIAN_PACKAGE arguments of find_package...): stops with the name of the
+# Debian package to install.
+macro(lockstep_require package debian_package)
+  find_package(${package} ${ARGN} QUIET)
+  if(NOT ${package}_FOUND)
+    message(FATAL_ERROR "Lockstep needs ${package} (${ARGN}), Debian package ${debian_package}. "
+                        "On Debian 12, tools/set-up installs all that Lockstep needs.")
+  endif()
+endmacro()
+
+lockstep_require(MPI libopenmpi-dev COMPONENTS CXX)
+lockstep_require(Eigen3 libeigen3-dev 3.4 NO_MODULE)
+lockstep_require(fmt libfmt-dev 9)
+lockstep_require(Boost libboost-dev 1.74)
+lockstep_require(nlohmann_json nlohmann-json3-dev)
+lockstep_require(tinyobjloader libtinyobjloader-dev)
+lockstep_require(CLI11 libcli11-dev)
 
 set(HDF5_PREFER_PARALLEL ON)
-find_package(HDF5 REQUIRED COMPONENTS C)
+lockstep_require(HDF5 libhdf5-openmpi-dev COMPONENTS C)
 if(NOT HDF5_IS_PARALLEL)
-  message(FATAL_ERROR "Lockstep needs the parallel HDF5 (Debian package libhdf5-openmpi-dev).")
+  message(FATAL_ERROR "Lockstep needs the parallel HDF5, Debian package libhdf5-openmpi-dev; the one "
+                      "found (version ${HDF5_VERSION}, ${HDF5_C_LIBRARIES}) is serial.")
 endif()
 
-find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
-find_library(METIS_LIBRARY metis REQUIRED)
+find_path(METIS_INCLUDE_DIR metis.h)
+find_library(METIS_LIBRARY metis)
+if(NOT METIS_INCLUDE_DIR OR NOT METIS_LIBRARY)
+  message(FATAL_ERROR "Lockstep needs METIS, Debian package libmetis-dev.")
+endif()
 
-find_package(Trilinos REQUIRED COMPONENTS
-             Teuchos Tpetra Thyra ThyraTpetraAdapters Belos Stratimikos Teko Ifpack2 Amesos2 MueLu)
+lockstep_require(Trilinos trilinos-all-dev COMPONENTS
+                 Teuchos Tpetra Thyra ThyraTpetraAdapters Belos Stratimikos Teko Ifpack2 Amesos2 MueLu)
 # Debian's exported targets name development symlinks (scotch) that no Trilinos package installs:
 # strip absolute link items that do not exist.
 foreach(target IN LISTS Trilinos_LIBRARIES)

@@ -13,6 +13,14 @@ target_include_directories(lockstep_flags INTERFACE
 target_compile_features(lockstep_flags INTERFACE cxx_std_17)
 if(LOCKSTEP_NATIVE)
   target_compile_options(lockstep_flags INTERFACE -march=native)
+  # What -march=native stands for here, on the command line so that ccache never hands out an object
+  # that was compiled for another processor.
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -march=native -Q --help=target
+                  OUTPUT_VARIABLE native_target ERROR_QUIET)
+  string(MD5 native_target "${native_target}")
+  string(SUBSTRING "${native_target}" 0 8 native_target)
+  target_compile_definitions(lockstep_flags INTERFACE
+                             "$<BUILD_INTERFACE:LOCKSTEP_PROCESSOR=processor_${native_target}>")
 endif()
 if(LOCKSTEP_SANITIZE)
   target_compile_options(lockstep_flags INTERFACE -fsanitize=address,undefined
@@ -38,19 +46,35 @@ function(lockstep_library name)
     target_link_libraries(${target} INTERFACE lockstep_flags ${ARG_DEPENDS})
   endif()
   add_library(Lockstep::${target} ALIAS ${target})
+  set_property(GLOBAL APPEND PROPERTY LOCKSTEP_LIBRARIES ${target})
   install(TARGETS ${target} EXPORT LockstepTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   get_filename_component(room "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
-  install(DIRECTORY . DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lockstep/${room}
+  install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/" DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lockstep/${room}
           FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
-# lockstep_driver(NAME): drivers/NAME.cpp -> executable NAME.
+# lockstep_all_libraries(): the target lockstep_all, which links every room registered so far.
+function(lockstep_all_libraries)
+  get_property(libraries GLOBAL PROPERTY LOCKSTEP_LIBRARIES)
+  add_library(lockstep_all INTERFACE)
+  target_link_libraries(lockstep_all INTERFACE ${libraries})
+  add_library(Lockstep::lockstep_all ALIAS lockstep_all)
+  install(TARGETS lockstep_all EXPORT LockstepTargets)
+endfunction()
+
+# lockstep_driver(NAME): drivers/NAME.cpp -> executable NAME; the target lockstep_drivers builds all.
+add_custom_target(lockstep_drivers)
 function(lockstep_driver name)
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE Lockstep::lockstep_all)
   target_compile_options(${name} PRIVATE ${LOCKSTEP_WARNINGS})
+  add_dependencies(lockstep_drivers ${name})
   install(TARGETS ${name} DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
+
+# Open MPI refuses root, and more ranks than cores, unless told.
+set(LOCKSTEP_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    OMPI_MCA_rmaps_base_oversubscribe=1 OMP_NUM_THREADS=1)
 
 # lockstep_test(NAME SOURCES ... DEPENDS ... [RANKS 1 2 4] [LABELS ...] [TIMEOUT s]): a googletest
 # executable with the MPI-aware main of tests/support, run once per rank count.
@@ -76,6 +100,6 @@ function(lockstep_test name)
     endif()
     set_tests_properties(${test} PROPERTIES
       LABELS "${ARG_LABELS}" PROCESSORS ${ranks} TIMEOUT ${ARG_TIMEOUT}
-      ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1;OMP_NUM_THREADS=1")
+      ENVIRONMENT "${LOCKSTEP_TEST_ENVIRONMENT}")
   endforeach()
 endfunction()

@@ -12,7 +12,9 @@ MPI_Comm raw_communicator(const Communicator& comm) {
   return mpi.is_null() ? MPI_COMM_SELF : *mpi->getRawMpiComm();
 }
 
-bool is_root(const Communicator& comm) { return comm->getRank() == 0; }
+bool is_root(const Communicator& comm) {
+  return comm->getRank() == 0;
+}
 
 namespace {
 template <typename T>
@@ -71,12 +73,23 @@ void throw_on_all(const Communicator& comm, const std::string& message, int exit
   const int mine = message.empty() ? comm->getSize() : comm->getRank();
   int first = mine;
   MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, mpi);
-  if (first == comm->getSize()) return;
+  if (first == comm->getSize())
+    return;
   int header[2] = {static_cast<int>(message.size()), exit_code};
   MPI_Bcast(header, 2, MPI_INT, first, mpi);
   std::string text = message;
   text.resize(header[0]);
   MPI_Bcast(text.data(), header[0], MPI_CHAR, first, mpi);
+  switch (static_cast<ExitCode>(header[1])) {
+    case ExitCode::bad_input:
+      throw InputError(text);
+    case ExitCode::solve_failed:
+      throw SolveError(text);
+    case ExitCode::output_failed:
+      throw OutputError(text);
+    case ExitCode::done:
+      break;
+  }
   throw Failure(static_cast<ExitCode>(header[1]), text);
 }
 

@@ -37,17 +37,20 @@ struct OutputError : Failure {
 /// Throws InputError unless `condition`; the arguments are an fmt format and its values. Always on.
 template <typename... Args>
 void check_input(bool condition, fmt::format_string<Args...> format, Args&&... args) {
-  if (!condition) throw InputError(fmt::format(format, std::forward<Args>(args)...));
+  if (!condition)
+    throw InputError(fmt::format(format, std::forward<Args>(args)...));
 }
 /// Throws SolveError unless `condition`. Always on.
 template <typename... Args>
 void check_solve(bool condition, fmt::format_string<Args...> format, Args&&... args) {
-  if (!condition) throw SolveError(fmt::format(format, std::forward<Args>(args)...));
+  if (!condition)
+    throw SolveError(fmt::format(format, std::forward<Args>(args)...));
 }
 /// Throws OutputError unless `condition`. Always on.
 template <typename... Args>
 void check_output(bool condition, fmt::format_string<Args...> format, Args&&... args) {
-  if (!condition) throw OutputError(fmt::format(format, std::forward<Args>(args)...));
+  if (!condition)
+    throw OutputError(fmt::format(format, std::forward<Args>(args)...));
 }
 
 [[noreturn]] void invariant_failed(const char* expression, const char* file, int line);
@@ -58,6 +61,7 @@ void check_output(bool condition, fmt::format_string<Args...> format, Args&&... 
 #ifdef NDEBUG
 #define LOCKSTEP_ASSERT(expression) static_cast<void>(0)
 #else
-#define LOCKSTEP_ASSERT(expression) \
-  ((expression) ? static_cast<void>(0) : ::lockstep::invariant_failed(#expression, __FILE__, __LINE__))
+#define LOCKSTEP_ASSERT(expression)    \
+  ((expression) ? static_cast<void>(0) \
+                : ::lockstep::invariant_failed(#expression, __FILE__, __LINE__))
 #endif

@@ -1,5 +1,5 @@
-// main() of every googletest executable: starts MPI and Tpetra, lets rank 0 report, and fails on all
-// ranks if any rank failed.
+// main() of every googletest executable: starts MPI and Tpetra, lets rank 0 report, and fails on
+// all ranks if any rank failed.
 #include <gtest/gtest.h>
 #include <mpi.h>
 
@@ -14,7 +14,9 @@ int main(int argc, char** argv) {
     auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
     struct FailuresOnly : ::testing::EmptyTestEventListener {
       void OnTestPartResult(const ::testing::TestPartResult& result) override {
-        if (result.failed()) std::fprintf(stderr, "%s:%d: %s\n", result.file_name(), result.line_number(), result.summary());
+        if (result.failed())
+          std::fprintf(stderr, "%s:%d: %s\n", result.file_name(), result.line_number(),
+                       result.summary());
       }
     };
     delete listeners.Release(listeners.default_result_printer());

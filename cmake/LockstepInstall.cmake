@@ -1,0 +1,17 @@
+# Installs what find_package(Lockstep) needs: the exported targets, the search for the libraries
+# underneath, the scenes and the template of an out-of-tree project.
+include(CMakePackageConfigHelpers)
+set(lockstep_cmake_directory "${CMAKE_INSTALL_LIBDIR}/cmake/Lockstep")
+
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/LockstepConfig.cmake.in"
+  "${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfig.cmake"
+  INSTALL_DESTINATION "${lockstep_cmake_directory}" PATH_VARS CMAKE_INSTALL_DATADIR)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfigVersion.cmake"
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfig.cmake"
+              "${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfigVersion.cmake"
+              "${CMAKE_CURRENT_LIST_DIR}/LockstepDependencies.cmake"
+        DESTINATION "${lockstep_cmake_directory}")
+install(EXPORT LockstepTargets NAMESPACE Lockstep:: DESTINATION "${lockstep_cmake_directory}")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/xml-params" "${PROJECT_SOURCE_DIR}/template"
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep")

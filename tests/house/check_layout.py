@@ -1,0 +1,91 @@
+"""Checks what the compiler does not: which floor a file may know, and what no file may mention.
+
+Usage: check_layout.py ROOT; prints one line a violation and fails if there is any.
+"""
+import re
+import sys
+from pathlib import Path
+
+CODE_FOLDERS = ["src", "packages", "drivers", "tests", "template"]
+TEXT_FOLDERS = CODE_FOLDERS + ["cmake", "docs", "tools", "xml-params", ".ci"]
+TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".sh", ".xml", ".json", ""}
+
+# The sibling packages that a package may include.
+SIBLINGS = {
+    "mac": {"grid"},
+    "cutcell": {"grid", "mac"},
+    "articulated": {"rigid", "deformable"},
+    "strategies": {"grid"},
+}
+HEAVY = re.compile(r"^(Stratimikos|Teko|MueLu|Belos)")
+INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
+# Split so that this file does not accuse itself.
+FORBIDDEN = {
+    "a path of one machine": re.compile(r"\.\./" r"shared|/" r"work/|/" r"tmp/|/" r"root/|/" r"home/\w"),
+    "an unfinished mark": re.compile(r"\b(TO" r"DO|FIX" r"ME|X" r"XX)\b"),
+}
+CONSOLE = re.compile(r"\bstd::(cout|cerr)\b")
+
+
+def source_files(root, suffixes, folders=CODE_FOLDERS):
+    """All files below the folders of the tree at root whose suffix is one of these."""
+    for folder in folders:
+        for path in sorted((Path(root) / folder).rglob("*")):
+            if path.is_file() and path.suffix in suffixes and "__pycache__" not in path.parts:
+                yield path
+
+
+def rooms(root, floor):
+    folder = Path(root) / floor
+    return {path.name for path in folder.iterdir() if path.is_dir()} if folder.is_dir() else set()
+
+
+def include_violation(parts, include, packages):
+    """Why a file at these path parts may not include this, or None."""
+    target = include.split("/")[0]
+    floor, room = parts[0], parts[1] if len(parts) > 2 else ""
+    if floor in ("src", "packages") and target == "drivers":
+        return "a library does not know the drivers"
+    if floor == "src" and (target in packages or target == "packages"):
+        return "src does not know the packages"
+    if floor == "packages" and target in packages and target != room and target not in SIBLINGS.get(room, set()):
+        return f"package {room} does not know package {target}"
+    heavy_at_home = parts[:2] in (("src", "linear"), ("packages", "strategies")) and parts[-1].endswith(".cpp")
+    if floor in ("src", "packages", "drivers") and HEAVY.match(include) and not heavy_at_home:
+        return "heavy Trilinos headers belong in .cpp files of src/linear and packages/strategies"
+    return None
+
+
+def code_violations(path, root, packages):
+    parts = path.relative_to(root).parts
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = INCLUDE.match(line)
+        reason = include_violation(parts, match.group(1), packages) if match else None
+        if reason:
+            yield f"{'/'.join(parts)}:{number}: {match.group(1)}: {reason}"
+        if parts[0] in ("src", "packages") and CONSOLE.search(line):
+            yield f"{'/'.join(parts)}:{number}: a library does not write to the console"
+
+
+def text_violations(path, root):
+    name = path.relative_to(root)
+    for number, line in enumerate(path.read_text(errors="replace").splitlines(), 1):
+        for what, pattern in FORBIDDEN.items():
+            if pattern.search(line):
+                yield f"{name}:{number}: {what}: {line.strip()[:80]}"
+
+
+def violations(root):
+    root = Path(root)
+    packages = rooms(root, "packages")
+    for path in source_files(root, {".cpp", ".hpp"}):
+        yield from code_violations(path, root, packages)
+    top = [path for path in sorted(root.iterdir()) if path.is_file() and path.suffix in TEXT_SUFFIXES]
+    for path in [*source_files(root, TEXT_SUFFIXES, TEXT_FOLDERS), *top]:
+        yield from text_violations(path, root)
+
+
+if __name__ == "__main__":
+    found = list(violations(sys.argv[1]))
+    print("\n".join(found))
+    sys.exit(1 if found else 0)

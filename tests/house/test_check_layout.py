@@ -1,0 +1,45 @@
+"""Each rule of check_layout.py must find a file that breaks it, and leave a proper tree alone."""
+import tempfile
+import unittest
+from pathlib import Path
+
+from check_layout import violations
+
+
+class Rules(unittest.TestCase):
+    def found(self, files):
+        with tempfile.TemporaryDirectory() as folder:
+            for room in ("packages/grid", "packages/mac", "packages/rigid"):
+                (Path(folder) / room).mkdir(parents=True)
+            for name, text in files.items():
+                path = Path(folder) / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+            return list(violations(folder))
+
+    def test_proper_tree(self):
+        self.assertEqual(self.found({
+            "src/linear/solve.cpp": '#include <Teko_Utilities.hpp>\n#include "base/errors.hpp"\n',
+            "packages/mac/fluid.cpp": '#include "grid/tiled_grid.hpp"\n#include "mac/fluid.hpp"\n',
+        }), [])
+
+    def test_includes_that_point_up(self):
+        for name, include in [("src/base/a.cpp", "grid/tiled_grid.hpp"), ("src/base/a.cpp", "packages/grid/a.hpp"),
+                              ("packages/grid/a.cpp", "drivers/simulate.hpp"), ("packages/grid/a.cpp", "mac/a.hpp"),
+                              ("packages/rigid/a.hpp", "grid/a.hpp")]:
+            with self.subTest(include=include):
+                self.assertEqual(len(self.found({name: f'#include "{include}"\n'})), 1)
+
+    def test_heavy_headers(self):
+        for name in ("src/linear/solve.hpp", "packages/grid/a.cpp", "src/base/a.cpp"):
+            with self.subTest(name=name):
+                self.assertEqual(len(self.found({name: "#include <MueLu_Level.hpp>\n"})), 1)
+
+    def test_words(self):
+        for text in ("see .." + "/shared/x", "/" + "tmp/x", "TO" + "DO", "std::" + "cout"):
+            with self.subTest(text=text):
+                self.assertEqual(len(self.found({"src/base/a.cpp": f"// {text}\n"})), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

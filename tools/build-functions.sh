@@ -1,0 +1,37 @@
+# Sourced by run and check: the environment of builds and runs, and one build step. Wants $root.
+
+# Objects are found again after the tree moved or was cloned anew. ccache hashes what -march=native
+# stands for on this processor, so a cache shared by different machines is safe.
+export CCACHE_BASEDIR=$root
+export CCACHE_NOHASHDIR=1
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-time_macros}
+
+# Open MPI refuses root, and more ranks than cores, unless told; Kokkos' threads would fight the ranks.
+if ((EUID == 0)); then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+export OMPI_MCA_rmaps_base_oversubscribe=1
+export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
+
+# build PRESET TARGET...: configures build/PRESET where needed and builds; silent when all is current.
+build() {
+  local preset=$1 directory=$root/build/$1 log=$root/build/configure-$1.log
+  shift
+  if [[ -f $directory/CMakeCache.txt ]] &&
+     ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$directory/CMakeCache.txt"; then
+    echo "The tree has moved: configuring build/$preset anew."
+    rm -rf "$directory"
+  fi
+  if [[ ! -f $directory/build.ninja ]]; then
+    echo "Configuring build/$preset ..."
+    mkdir -p "$root/build"
+    if ! (cd "$root" && cmake --preset "$preset") > "$log" 2>&1; then
+      cat "$log" >&2
+      return 1
+    fi
+  fi
+  if [[ $(ninja -C "$directory" -n "$@" 2>&1) != *"no work to do"* ]]; then
+    echo "Building build/$preset ..."
+    cmake --build "$directory" -j "$(nproc)" --target "$@"
+  fi
+}
