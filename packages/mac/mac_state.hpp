@@ -1,0 +1,34 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "geometry/surface_snapshot.hpp"
+#include "grid/tiled_grid.hpp"
+
+namespace lockstep {
+
+/// What fills a cell, judged at its centre.
+enum class CellState : char {
+  outside,  ///< beyond the domain
+  fluid,    ///< carries a pressure
+  solid,    ///< centre inside a closed solid
+  empty     ///< no fluid, p = 0
+};
+
+/// What a face velocity is.
+enum class FaceState : char {
+  inactive,    ///< no fluid on either side
+  free,        ///< changed by pressure: interior or open side
+  coupled,     ///< closed by the coupling: moves with the solids
+  prescribed   ///< wall or inflow
+};
+
+/// The frozen geometry of the fluid at one instant, on all stored cells (owned and ghost).
+template <int dim>
+struct MacState {
+  std::shared_ptr<const SurfaceSnapshot<dim>> surface;
+  std::vector<CellState> cells;
+  std::array<std::vector<FaceState>, dim> faces;  ///< of the lower face of each cell
+};
+
+}  // namespace lockstep

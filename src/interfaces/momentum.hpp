@@ -1,0 +1,33 @@
+#pragma once
+#include "base/types.hpp"
+
+namespace lockstep {
+
+/// Linear momentum or impulse [kg m/s] and angular momentum or impulse about the origin [kg m^2/s].
+template <int dim>
+struct Momentum {
+  Point<dim> linear = Point<dim>::Zero();
+  AngularVector<dim> angular = AngularVector<dim>::Zero();
+
+  /// Adds an impulse that acts at x.
+  void add(const Point<dim>& x, const Point<dim>& impulse) {
+    linear += impulse;
+    angular += cross<dim>(x, impulse);
+  }
+  /// Adds an impulse along one axis that acts at x.
+  void add(const Point<dim>& x, int axis, double impulse) { add(x, Point<dim>::Unit(axis) * impulse); }
+  Momentum& operator+=(const Momentum& other) {
+    linear += other.linear;
+    angular += other.angular;
+    return *this;
+  }
+  Momentum& operator-=(const Momentum& other) {
+    linear -= other.linear;
+    angular -= other.angular;
+    return *this;
+  }
+  friend Momentum operator+(Momentum a, const Momentum& b) { return a += b; }
+  friend Momentum operator-(Momentum a, const Momentum& b) { return a -= b; }
+};
+
+}  // namespace lockstep

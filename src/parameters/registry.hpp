@@ -1,0 +1,95 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "parameters/parameter_list.hpp"
+#include "parameters/suggestion.hpp"
+
+namespace lockstep {
+
+/// The plug-ins of one kind, chosen by name. Filled by explicit calls of `add` from the program that
+/// wants them; nothing registers itself. Arguments after the parameters are passed to every factory.
+template <typename Base, typename... Args>
+class Registry {
+ public:
+  using ValidParameters = std::function<ParameterList()>;
+  using Factory = std::function<std::unique_ptr<Base>(const ParameterList&, Args...)>;
+  struct Plugin {
+    std::string name;
+    std::string documentation;
+    ValidParameters valid_parameters;
+    Factory factory;
+  };
+
+  /// `kind` as it appears in messages: "fluid", "solid".
+  explicit Registry(std::string kind) : kind_(std::move(kind)) {}
+
+  /// Throws InputError if the name is taken.
+  void add(const std::string& name, const std::string& documentation,
+           ValidParameters valid_parameters, Factory factory) {
+    check_input(!find(name), "The {} \"{}\" is registered twice; give one of the two another name.",
+                kind_, name);
+    plugins_.push_back({name, documentation, std::move(valid_parameters), std::move(factory)});
+  }
+
+  /// Builds the plug-in from its (validated) list. Throws InputError for an unknown name.
+  std::unique_ptr<Base> create(const std::string& name, const ParameterList& list,
+                               Args... args) const {
+    return get(name).factory(list, std::forward<Args>(args)...);
+  }
+
+  /// The valid list of one plug-in. Throws InputError for an unknown name.
+  ParameterList valid_parameters(const std::string& name) const {
+    return get(name).valid_parameters();
+  }
+
+  /// For declare_typed_sublist and declare_named_sublists, whose "Type" is then the plug-in's name.
+  std::vector<TypedSchema> schemas() const {
+    std::vector<TypedSchema> result;
+    for (const Plugin& plugin : plugins_) {
+      result.push_back({plugin.name, plugin.documentation, plugin.valid_parameters()});
+    }
+    return result;
+  }
+
+  bool contains(const std::string& name) const { return find(name) != nullptr; }
+  const std::string& kind() const { return kind_; }
+  /// In order of registration.
+  auto begin() const { return plugins_.begin(); }
+  auto end() const { return plugins_.end(); }
+
+ private:
+  const Plugin* find(const std::string& name) const {
+    for (const Plugin& plugin : plugins_) {
+      if (plugin.name == name) return &plugin;
+    }
+    return nullptr;
+  }
+
+  const Plugin& get(const std::string& name) const {
+    if (const Plugin* plugin = find(name)) return *plugin;
+    throw InputError(unknown(name));
+  }
+
+  std::string unknown(const std::string& name) const {
+    std::vector<std::string> names;
+    std::string table;
+    for (const Plugin& plugin : plugins_) {
+      names.push_back(plugin.name);
+      table += fmt::format("\n  {}: {}", plugin.name, plugin.documentation);
+    }
+    const std::string nearest = nearest_name(name, names);
+    return fmt::format("There is no {} \"{}\".{}\nRegistered:{}", kind_, name,
+                       nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest),
+                       plugins_.empty() ? " none" : table);
+  }
+
+  std::string kind_;
+  std::vector<Plugin> plugins_;
+};
+
+}  // namespace lockstep
