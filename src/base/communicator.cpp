@@ -9,7 +9,7 @@ namespace lockstep {
 
 MPI_Comm raw_communicator(const Communicator& comm) {
   const auto mpi = Teuchos::rcp_dynamic_cast<const Teuchos::MpiComm<int>>(comm);
-  return mpi.is_null() ? MPI_COMM_SELF : *mpi->getRawMpiComm();
+  return mpi.is_null() ? MPI_COMM_SELF : static_cast<MPI_Comm>(*mpi->getRawMpiComm());
 }
 
 bool is_root(const Communicator& comm) {
