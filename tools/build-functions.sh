@@ -1,7 +1,8 @@
+# shellcheck shell=bash
+# shellcheck disable=SC2154  # root comes from the script that sources this
 # Sourced by run and check: the environment of builds and runs, and one build step. Wants $root.
 
-# Objects are found again after the tree moved or was cloned anew. ccache hashes what -march=native
-# stands for on this processor, so a cache shared by different machines is safe.
+# Objects are found again after the tree moved or was cloned anew.
 export CCACHE_BASEDIR=$root
 export CCACHE_NOHASHDIR=1
 export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-time_macros}
@@ -15,20 +16,23 @@ export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 
 # build PRESET TARGET...: configures build/PRESET where needed and builds; silent when all is current.
 build() {
-  local preset=$1 directory=$root/build/$1 log=$root/build/configure-$1.log
+  local preset=$1 directory=$root/build/$1 log=$root/build/configure-$1.log processor
   shift
+  # -march=native means something else on another processor (a build folder kept by a CI service).
+  processor=$(g++ -march=native -Q --help=target 2> /dev/null | md5sum)
   if [[ -f $directory/CMakeCache.txt ]] &&
      ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$directory/CMakeCache.txt"; then
     echo "The tree has moved: configuring build/$preset anew."
     rm -rf "$directory"
   fi
-  if [[ ! -f $directory/build.ninja ]]; then
+  if [[ ! -f $directory/build.ninja || $(cat "$directory/processor" 2> /dev/null) != "$processor" ]]; then
     echo "Configuring build/$preset ..."
     mkdir -p "$root/build"
     if ! (cd "$root" && cmake --preset "$preset") > "$log" 2>&1; then
       cat "$log" >&2
       return 1
     fi
+    echo "$processor" > "$directory/processor"
   fi
   if [[ $(ninja -C "$directory" -n "$@" 2>&1) != *"no work to do"* ]]; then
     echo "Building build/$preset ..."
