@@ -43,7 +43,8 @@ Index<dim> TileLattice<dim>::n_domain_tiles() const {
 template <int dim>
 GlobalIndex TileLattice<dim>::tile_number(const Index<dim>& tile) const {
   GlobalIndex number = 0;
-  for (int a = dim - 1; a >= 0; --a) number = number * n_tiles_[a] + tile[a];
+  for (int a = dim - 1; a >= 0; --a)
+    number = number * n_tiles_[a] + tile[a];
   return number;
 }
 
@@ -63,7 +64,8 @@ GlobalIndex TileLattice<dim>::neighbor_tile(const Index<dim>& tile, int axis, in
   neighbor[axis] += side == 0 ? -1 : 1;
   if (description_.periodic[axis])
     neighbor[axis] = (neighbor[axis] + n_tiles_[axis]) % n_tiles_[axis];
-  if (neighbor[axis] < 0 || neighbor[axis] >= n_tiles_[axis]) return no_index;
+  if (neighbor[axis] < 0 || neighbor[axis] >= n_tiles_[axis])
+    return no_index;
   return tile_number(neighbor);
 }
 
@@ -88,7 +90,8 @@ std::vector<TileSegment> TileLattice<dim>::segments(int axis, int begin, int end
     const int first = ((begin % n) + n) % n;
     const int last = first + end - begin;
     ranges.push_back({first, std::min(last, n)});
-    if (last > n) ranges.push_back({0, last - n});
+    if (last > n)
+      ranges.push_back({0, last - n});
   }
   std::vector<TileSegment> found;
   for (const auto& [first, last] : ranges) {
@@ -103,10 +106,32 @@ std::vector<TileSegment> TileLattice<dim>::segments(int axis, int begin, int end
 }
 
 template <int dim>
+std::vector<GlobalIndex> TileLattice<dim>::tiles_within(std::vector<GlobalIndex> tile_numbers,
+                                                        int width) const {
+  // A box is a product of intervals: widen along one axis after the other.
+  for (int a = 0; a < dim; ++a) {
+    std::vector<GlobalIndex> wider;
+    for (const GlobalIndex number : tile_numbers) {
+      Index<dim> tile = tile_coordinates(number);
+      const int begin = tile[a] * tile_width<dim>, end = begin + extent(tile)[a];
+      for (const TileSegment& segment : segments(a, begin - width, end + width)) {
+        tile[a] = segment.tile;
+        wider.push_back(tile_number(tile));
+      }
+    }
+    std::sort(wider.begin(), wider.end());
+    wider.erase(std::unique(wider.begin(), wider.end()), wider.end());
+    tile_numbers = std::move(wider);
+  }
+  return tile_numbers;
+}
+
+template <int dim>
 GlobalIndex morton_code(const Index<dim>& tile) {
   GlobalIndex code = 0;
   for (int bit = 19; bit >= 0; --bit)
-    for (int a = dim - 1; a >= 0; --a) code = (code << 1) | ((tile[a] >> bit) & 1);
+    for (int a = dim - 1; a >= 0; --a)
+      code = (code << 1) | ((tile[a] >> bit) & 1);
   return code;
 }
 

@@ -13,7 +13,7 @@ constexpr int tile_width = dim == 2 ? 16 : 8;
 template <int dim>
 constexpr int log_tile_width = dim == 2 ? 4 : 3;
 template <int dim>
-constexpr int log_tile_volume = dim * log_tile_width<dim>;
+constexpr int log_tile_volume = dim* log_tile_width<dim>;
 template <int dim>
 constexpr int tile_volume = 1 << log_tile_volume<dim>;
 
@@ -24,8 +24,8 @@ struct GridDescription {
   double spacing = 1;                     ///< h [m]
   Index<dim> n_cells{};                   ///< cells along each axis, at least 1
   std::array<bool, dim> periodic{};
-  /// Store the faces of the upper side of the axis (open and inflow sides): the lattice then has one
-  /// more layer of cells there, outside the domain. Not allowed on a periodic axis.
+  /// Store the faces of the upper side of the axis (open and inflow sides): the lattice then has
+  /// one more layer of cells there, outside the domain. Not allowed on a periodic axis.
   std::array<bool, dim> store_upper_face{};
 };
 
@@ -35,13 +35,13 @@ void check_grid_description(const GridDescription<dim>& description);
 
 /// The part of one tile that a range of lattice coordinates covers along one axis.
 struct TileSegment {
-  int tile = 0;                  ///< tile coordinate along the axis
-  int begin = 0, end = 0;        ///< cells within the tile
+  int tile = 0;            ///< tile coordinate along the axis
+  int begin = 0, end = 0;  ///< cells within the tile
 };
 
-/// The arithmetic of the lattice: the cells of the domain and the extra layers, cut into tiles. Knows
-/// nothing of which tiles exist or who owns them. A tile has a number (lexicographic, x fastest) that
-/// does not depend on the number of ranks.
+/// The arithmetic of the lattice: the cells of the domain and the extra layers, cut into tiles.
+/// Knows nothing of which tiles exist or who owns them. A tile has a number (lexicographic, x
+/// fastest) that does not depend on the number of ranks.
 template <int dim>
 class TileLattice {
  public:
@@ -67,8 +67,11 @@ class TileLattice {
   /// The tiles that the coordinates [begin, end) touch along an axis. Periodic axes wrap (each cell
   /// appears once), others are clipped to the lattice.
   std::vector<TileSegment> segments(int axis, int begin, int end) const;
-  /// Calls f(tile coordinates, begin, end) for the part of each tile within `width` cells (in the
-  /// maximum norm, periodic axes wrap) of the given tile, which itself is among them.
+  /// Numbers, ascending, of the tiles within `width` cells (in the maximum norm, periodic axes
+  /// wrap) of any of the given ones, which are among them.
+  std::vector<GlobalIndex> tiles_within(std::vector<GlobalIndex> tile_numbers, int width) const;
+  /// Calls f(tile coordinates, begin, end) for the part of each tile within `width` cells of the
+  /// given tile, which itself is among them.
   template <typename Function>
   void for_each_tile_within(const Index<dim>& tile, int width, const Function& f) const;
 

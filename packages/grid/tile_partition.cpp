@@ -27,13 +27,16 @@ TileGraph tile_graph(const TileLattice<dim>& lattice, const std::vector<GlobalIn
       for (int side = 0; side < 2; ++side) {
         const GlobalIndex other = lattice.neighbor_tile(tile, axis, side);
         // One and two tiles along a periodic axis would give loops and double edges.
-        if (other == no_index || other == number || other == previous) continue;
+        if (other == no_index || other == number || other == previous)
+          continue;
         const auto found = std::lower_bound(tiles.begin(), tiles.end(), other);
-        if (found == tiles.end() || *found != other) continue;
+        if (found == tiles.end() || *found != other)
+          continue;
         previous = other;
         int area = 1;
         for (int a = 0; a < dim; ++a)
-          if (a != axis) area *= size[a];
+          if (a != axis)
+            area *= size[a];
         graph.neighbors.push_back(static_cast<idx_t>(found - tiles.begin()));
         graph.cut_cells.push_back(area);
       }
@@ -46,7 +49,8 @@ TileGraph tile_graph(const TileLattice<dim>& lattice, const std::vector<GlobalIn
 GlobalIndex largest_load(const std::vector<int>& parts, const std::vector<GlobalIndex>& weights,
                          int n_parts) {
   std::vector<GlobalIndex> loads(n_parts, 0);
-  for (std::size_t i = 0; i < parts.size(); ++i) loads[parts[i]] += weights[i];
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    loads[parts[i]] += weights[i];
   return *std::max_element(loads.begin(), loads.end());
 }
 
@@ -107,7 +111,8 @@ std::vector<int> partition_tiles(const TileLattice<dim>& lattice,
                                  const std::vector<GlobalIndex>& weights, int n_parts) {
   const std::size_t n_tiles = tile_numbers.size();
   LOCKSTEP_ASSERT(weights.size() == n_tiles && n_parts >= 1);
-  if (n_parts == 1) return std::vector<int>(n_tiles, 0);
+  if (n_parts == 1)
+    return std::vector<int>(n_tiles, 0);
   if (n_tiles <= static_cast<std::size_t>(n_parts)) {
     std::vector<int> parts(n_tiles);
     std::iota(parts.begin(), parts.end(), 0);
@@ -116,12 +121,14 @@ std::vector<int> partition_tiles(const TileLattice<dim>& lattice,
   check_input(n_tiles < std::size_t{std::numeric_limits<idx_t>::max()} / (2 * dim),
               "The grid has {} tiles, more than METIS can number; use a coarser grid.", n_tiles);
   std::vector<GlobalIndex> work(weights);
-  for (GlobalIndex& w : work) w = std::max<GlobalIndex>(1, w);
+  for (GlobalIndex& w : work)
+    w = std::max<GlobalIndex>(1, w);
 
   std::vector<int> parts = partition_by_metis(lattice, tile_numbers, work, n_parts);
   const GlobalIndex load = largest_load(parts, work, n_parts);
   const GlobalIndex total = std::accumulate(work.begin(), work.end(), GlobalIndex{0});
-  if (10 * load * n_parts <= 11 * total) return parts;
+  if (10 * load * n_parts <= 11 * total)
+    return parts;
   std::vector<int> curve_parts = cut_morton_curve(lattice, tile_numbers, work, n_parts);
   return largest_load(curve_parts, work, n_parts) < load ? curve_parts : parts;
 }
