@@ -1,0 +1,38 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "grid/halo_exchange.hpp"
+#include "grid/wide_halo.hpp"
+
+namespace lockstep {
+
+/// Brings the samples that rays of many cells' length reach onto the rank that traces them: through
+/// the ghost tiles of the grid if they suffice, else through a wider grid, built when first needed.
+/// Keep one for the life of the grid; it must not outlive the grid.
+template <int dim>
+class RayHalo {
+ public:
+  explicit RayHalo(const TiledGrid<dim>& grid) : grid_(grid) {}
+
+  /// Collective, with the same `reach` on all ranks: from now on `fetch` serves samples within so
+  /// many cells of owned ones. May replace `sample_grid()`.
+  void require(int reach);
+  /// The grid whose cell ids fetched fields have. Ids of owned cells are those of the base grid.
+  const TiledGrid<dim>& sample_grid() const { return wide_ ? *wide_ : grid_; }
+  /// Collective: the field with all samples within reach; ghost values of `field` are not used.
+  /// Returns `field` itself where nothing has to be brought, else `storage`.
+  template <typename Value>
+  const std::vector<Value>& fetch(const std::vector<Value>& field,
+                                  std::vector<Value>& storage) const;
+
+ private:
+  const TiledGrid<dim>& grid_;
+  std::optional<HaloExchange<dim>> exchange_;  ///< on the base grid
+  int wide_tiles_ = 0;
+  std::unique_ptr<TiledGrid<dim>> wide_;
+  std::unique_ptr<WideHalo<dim>> wide_halo_;
+};
+
+}  // namespace lockstep
