@@ -67,7 +67,10 @@ struct PressureRegions {
 template <int dim>
 struct ViscousLink {
   int row = -1;             ///< local row of `ViscousSystem::stiffness`
+  Point<dim> center = Point<dim>::Zero();  ///< of the free velocity [m]
   int coupled_volume = -1;  ///< >= 0: the neighbour is this coupled control volume (index), W V_S
+  /// The neighbour is a coupled control volume of another rank, W V_S (`coupled_volume` is -1).
+  std::shared_ptr<const ControlVolume<dim>> remote_volume;
   SurfacePoint<dim> point;  ///< else: the link meets the surface here
   int direction = 0;
   double coefficient = 0;   ///< [kg/s]
@@ -137,6 +140,7 @@ class FluidDiscretization : public PlugIn {
 
   virtual double largest_cell_crossing_rate() const = 0;  ///< max sum_a |u_a|/h over u^n [1/s]
   virtual double spacing() const = 0;                     ///< h [m]
+  virtual Point<dim> gravity() const = 0;                 ///< uniform acceleration [m/s^2]
   virtual Momentum<dim> momentum() const = 0;             ///< of u* on free faces, global
   virtual double kinetic_energy() const = 0;              ///< of u* on free faces [J], global
   /// Impulse of walls and open sides through their own pressure [kg m/s], global.
