@@ -6,9 +6,9 @@
 namespace lockstep {
 
 /// Applies `--set "List/Sub list/Name=value"` to a document read but not yet validated. The type of
-/// the value comes from `valid`; in a list passed on unchecked from the entry that is there, or from
-/// the text. Throws InputError for unknown names (with a suggestion) and values not of that type;
-/// bounds and choices are left to `validate`, which then names the command line as the place.
+/// the value comes from `valid`; in a list passed on unchecked from the entry that is there, or
+/// from the text. Throws InputError for unknown names (with a suggestion) and values not of that
+/// type; bounds and choices are left to `validate`, which then names the command line as the place.
 void set_from_command_line(Document& document, const std::string& assignment,
                            const ParameterList& valid);
 

@@ -1,18 +1,24 @@
 #pragma once
 #include <Teuchos_Array.hpp>
 #include <Teuchos_ParameterList.hpp>
+#include <initializer_list>
 #include <string>
-#include <type_traits>
 #include <vector>
 
-/// Declaring parameters. A *valid list* (schema) is a ParameterList of all parameters a class knows,
-/// each with default, docstring (give the unit) and rule; `validate` holds a given list against it.
-/// Names must not contain '/' and defaults must be finite. A name is declared once.
+/// Declaring parameters. A *valid list* (schema) is a ParameterList of all parameters a class
+/// knows, each with default, docstring (give the unit) and rule; `validate` holds a given list
+/// against it. Names must not contain '/' and defaults must be finite. A name is declared once.
 namespace lockstep {
 
 using ParameterList = Teuchos::ParameterList;
+/// Converts from std::vector. It has no constructor from a braced list: {0.0, 1.0} would be size
+/// and value; use `make_array`.
 template <typename T>
 using ParameterArray = Teuchos::Array<T>;
+template <typename T>
+ParameterArray<T> make_array(std::initializer_list<T> values) {
+  return ParameterArray<T>(std::vector<T>(values));
+}
 
 /// One alternative of a list whose contents depend on its parameter "Type".
 struct TypedSchema {
@@ -34,6 +40,12 @@ void declare(ParameterList& list, const std::string& name, const ParameterArray<
 void declare(ParameterList& list, const std::string& name, const ParameterArray<int>& value,
              const std::string& doc);
 void declare(ParameterList& list, const std::string& name, const ParameterArray<std::string>& value,
+             const std::string& doc);
+void declare(ParameterList& list, const std::string& name, std::initializer_list<double> value,
+             const std::string& doc);
+void declare(ParameterList& list, const std::string& name, std::initializer_list<int> value,
+             const std::string& doc);
+void declare(ParameterList& list, const std::string& name, std::initializer_list<std::string> value,
              const std::string& doc);
 
 /// T is double, int, bool, std::string or a ParameterArray of double, int, std::string.
@@ -76,6 +88,10 @@ void set_length(ParameterList& list, const std::string& name, int n_components);
 void declare_vector(ParameterList& list, const std::string& name,
                     const ParameterArray<double>& value, int n_components, const std::string& doc);
 void declare_vector(ParameterList& list, const std::string& name, const ParameterArray<int>& value,
+                    int n_components, const std::string& doc);
+void declare_vector(ParameterList& list, const std::string& name,
+                    std::initializer_list<double> value, int n_components, const std::string& doc);
+void declare_vector(ParameterList& list, const std::string& name, std::initializer_list<int> value,
                     int n_components, const std::string& doc);
 /// T is double, int or std::string: the type of a component.
 template <typename T>

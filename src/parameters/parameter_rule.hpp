@@ -12,6 +12,14 @@ namespace lockstep {
 
 using ParameterEntry = Teuchos::ParameterEntry;
 
+/// The entries of a list in their order, which Teuchos' own pairs do not let a range-for take
+/// apart.
+struct NamedEntry {
+  const std::string& name;
+  const ParameterEntry& entry;
+};
+std::vector<NamedEntry> entries(const ParameterList& list);
+
 /// Teuchos' interface, reduced to what our rules need.
 class Rule : public Teuchos::ParameterEntryValidator {
  public:

@@ -11,8 +11,9 @@
 
 namespace lockstep {
 
-/// The plug-ins of one kind, chosen by name. Filled by explicit calls of `add` from the program that
-/// wants them; nothing registers itself. Arguments after the parameters are passed to every factory.
+/// The plug-ins of one kind, chosen by name. Filled by explicit calls of `add` from the program
+/// that wants them; nothing registers itself. Arguments after the parameters are passed to every
+/// factory.
 template <typename Base, typename... Args>
 class Registry {
  public:
@@ -65,13 +66,15 @@ class Registry {
  private:
   const Plugin* find(const std::string& name) const {
     for (const Plugin& plugin : plugins_) {
-      if (plugin.name == name) return &plugin;
+      if (plugin.name == name)
+        return &plugin;
     }
     return nullptr;
   }
 
   const Plugin& get(const std::string& name) const {
-    if (const Plugin* plugin = find(name)) return *plugin;
+    if (const Plugin* plugin = find(name))
+      return *plugin;
     throw InputError(unknown(name));
   }
 

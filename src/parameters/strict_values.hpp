@@ -5,8 +5,8 @@
 
 #include "parameters/parameter_rule.hpp"
 
-/// The values parameters may have, and their only way from and to text. Nothing is accepted in part:
-/// Teuchos reads "abc" as 0 and "1e3" as the integer 1.
+/// The values parameters may have, and their only way from and to text. Nothing is accepted in
+/// part: Teuchos reads "abc" as 0 and "1e3" as the integer 1.
 namespace lockstep {
 
 enum class ValueType { real, integer, boolean, text, reals, integers, texts, list, other };

@@ -1,0 +1,257 @@
+#include "parameters/strict_xml.hpp"
+
+#include <expat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "parameters/strict_values.hpp"
+#include "parameters/suggestion.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using Attributes = std::map<std::string, std::string>;
+
+/// Builds the list while expat reports the elements. A callback must not throw through expat: the
+/// first failure is kept and stops the parser.
+class Reader {
+ public:
+  explicit Reader(const std::string& name)
+      : parser_(XML_ParserCreate(nullptr), XML_ParserFree), document_{ParameterList(name), {}} {
+    document_.source.file = name;
+    XML_SetUserData(parser_.get(), this);
+    XML_SetElementHandler(parser_.get(), on_start, on_end);
+    XML_SetCharacterDataHandler(parser_.get(), on_text);
+    XML_SetStartDoctypeDeclHandler(parser_.get(), on_doctype);
+  }
+
+  Document read(const std::string& text) {
+    const std::string& file = document_.source.file;
+    check_input(!trimmed(text).empty(), "{} is empty; a parameter file holds one <ParameterList>.",
+                file);
+    const auto status = XML_Parse(parser_.get(), text.data(), static_cast<int>(text.size()), 1);
+    if (!failure_.empty())
+      throw InputError(failure_);
+    if (status != XML_STATUS_OK)
+      throw InputError(malformed());
+    return std::move(document_);
+  }
+
+ private:
+  struct OpenList {
+    ParameterList* list;
+    std::string path;
+    int line;
+  };
+
+  static Reader& self(void* data) { return *static_cast<Reader*>(data); }
+  static void on_start(void* data, const XML_Char* element, const XML_Char** attributes) {
+    self(data).guard([&] {
+      Attributes map;
+      for (; *attributes; attributes += 2)
+        map[attributes[0]] = attributes[1];
+      self(data).start(element, map);
+    });
+  }
+  static void on_end(void* data, const XML_Char* element) {
+    self(data).guard([&] { self(data).end(element); });
+  }
+  static void on_text(void* data, const XML_Char* text, int length) {
+    self(data).guard([&] {
+      const std::string word = trimmed(std::string(text, length));
+      check_input(word.empty(),
+                  "the text \"{}\" stands between the elements; only <ParameterList>, <Parameter> "
+                  "and comments may.",
+                  word);
+    });
+  }
+  static void on_doctype(void* data, const XML_Char*, const XML_Char*, const XML_Char*, int) {
+    self(data).guard([] { throw InputError("a parameter file has no <!DOCTYPE>; remove it."); });
+  }
+
+  template <typename Work>
+  void guard(Work work) {
+    if (!failure_.empty())
+      return;
+    try {
+      work();
+    } catch (const std::exception& error) {
+      failure_ = fmt::format("{}: {}", here(), error.what());
+      XML_StopParser(parser_.get(), XML_FALSE);
+    }
+  }
+
+  int line() const { return static_cast<int>(XML_GetCurrentLineNumber(parser_.get())); }
+  std::string here() const { return fmt::format("{}, line {}", document_.source.file, line()); }
+
+  std::string malformed() const {
+    const XML_Error code = XML_GetErrorCode(parser_.get());
+    std::string hint;
+    const bool unclosed = code == XML_ERROR_TAG_MISMATCH || code == XML_ERROR_NO_ELEMENTS;
+    if (unclosed && open_parameter_) {
+      hint = fmt::format(" The <Parameter> of line {} is not closed; end it with \"/>\".",
+                         parameter_line_);
+    } else if (unclosed && !open_.empty()) {
+      hint = fmt::format(" The <ParameterList> of line {} is not closed.", open_.back().line);
+    }
+    return fmt::format("{}: this is not well-formed XML ({}).{}", here(), XML_ErrorString(code),
+                       hint);
+  }
+
+  void start(const std::string& element, const Attributes& attributes) {
+    check_input(!open_parameter_, "a <Parameter> holds nothing; end it with \"/>\".");
+    if (element == "ParameterList") {
+      start_list(attributes);
+    } else if (open_.empty()) {
+      throw InputError(fmt::format("the file must hold one <ParameterList>, not <{}>.", element));
+    } else if (element == "Parameter") {
+      add_parameter(attributes);
+      open_parameter_ = true;
+      parameter_line_ = line();
+    } else {
+      const std::string nearest = nearest_name(element, {"Parameter", "ParameterList"});
+      throw InputError(fmt::format("{}, <{}> is not an element of a parameter file.{}",
+                                   in_list(open_.back().path), element,
+                                   nearest.empty() ? "" : " Did you mean <" + nearest + ">?"));
+    }
+  }
+
+  void end(const std::string& element) {
+    if (element == "Parameter") {
+      open_parameter_ = false;
+    } else {
+      open_.pop_back();
+    }
+  }
+
+  void start_list(const Attributes& attributes) {
+    check_attributes("ParameterList", attributes, {"name"}, {"docString", "id"});
+    if (open_.empty()) {
+      open_.push_back({&document_.list, "", line()});
+      return;
+    }
+    const std::string name = attributes.count("name") ? attributes.at("name") : "";
+    const std::string path = claim("ParameterList", name);
+    ParameterList& list = open_.back().list->sublist(name);
+    open_.push_back({&list, path, line()});
+  }
+
+  void add_parameter(const Attributes& attributes) {
+    const std::string name = attributes.count("name") ? attributes.at("name") : "";
+    check_attributes("Parameter", attributes, {"name", "type", "value"},
+                     {"docString", "id", "isDefault", "isUsed"});
+    const std::string& type_text = attributes.at("type");
+    const auto type = value_type(type_text);
+    const std::string list = in_list(open_.back().path);
+    check_input(type.has_value(), "{}, \"{}\" has the unknown type \"{}\"; types are {}.", list,
+                name, type_text, known_type_names());
+    claim("Parameter", name);
+    try {
+      ParameterEntry entry = parse_value(*type, attributes.at("value"));
+      if (attributes.count("docString"))
+        entry.setDocString(attributes.at("docString"));
+      open_.back().list->setEntry(name, entry);
+    } catch (const InputError& error) {
+      throw InputError(
+          fmt::format("{}, \"{}\" {} (type \"{}\").", list, name, error.what(), type_text));
+    }
+  }
+
+  void check_attributes(const std::string& element, const Attributes& attributes,
+                        const std::vector<std::string>& required,
+                        const std::vector<std::string>& others) const {
+    std::vector<std::string> known = required;
+    known.insert(known.end(), others.begin(), others.end());
+    const auto name = attributes.find("name");
+    const std::string which =
+        name == attributes.end() ? "" : fmt::format(" of \"{}\"", name->second);
+    for (const auto& [key, value] : attributes) {
+      if (std::find(known.begin(), known.end(), key) != known.end())
+        continue;
+      const std::string nearest = nearest_name(key, known);
+      throw InputError(fmt::format("\"{}\" is not an attribute of <{}>{}.{}", key, element, which,
+                                   nearest.empty() ? "" : " Did you mean \"" + nearest + "\"?"));
+    }
+    const bool root = open_.empty();
+    for (const std::string& key : required) {
+      check_input(root || attributes.count(key), "the <{}>{} has no attribute \"{}\".", element,
+                  which, key);
+    }
+  }
+
+  /// Takes the name in the open list and notes its line; gives its path.
+  std::string claim(const std::string& element, const std::string& name) {
+    const OpenList& open = open_.back();
+    check_input(!trimmed(name).empty(), "the <{}> has an empty name.", element);
+    const std::string path = join_path(open.path, name);
+    check_input(!open.list->isParameter(name),
+                "{}, \"{}\" is given twice, first in {}. Remove one of the two.",
+                in_list(open.path), name, document_.source.place(path));
+    document_.source.places[path] = here();
+    return path;
+  }
+
+  std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
+  Document document_;
+  std::vector<OpenList> open_;
+  bool open_parameter_ = false;
+  int parameter_line_ = 0;
+  std::string failure_;
+};
+
+/// All bytes of the file; `failure` says why not.
+std::string read_bytes(const std::string& file, std::string& failure) {
+  std::string why;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    why = "it is a folder";
+  } else {
+    errno = 0;
+    std::ifstream stream(file, std::ios::binary);
+    if (stream) {
+      std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+      if (text.size() < (std::size_t{1} << 30))
+        return text;
+      why = "it is larger than a parameter file can be";
+    } else {
+      why = std::strerror(errno);
+    }
+  }
+  failure =
+      fmt::format("Cannot read \"{}\": {}. Give the path of an XML parameter file.", file, why);
+  return "";
+}
+
+}  // namespace
+
+Document read_xml_string(const std::string& text, const std::string& name) {
+  return Reader(name).read(text);
+}
+
+Document read_xml(const std::string& file, const Communicator& comm) {
+  std::string text, failure;
+  if (is_root(comm))
+    text = read_bytes(file, failure);
+  try {
+    throw_on_all(comm, failure, static_cast<int>(ExitCode::bad_input));
+  } catch (const Failure& error) {
+    throw InputError(error.what());
+  }
+  const MPI_Comm mpi = raw_communicator(comm);
+  int size = static_cast<int>(text.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, mpi);
+  text.resize(size);
+  MPI_Bcast(text.data(), size, MPI_CHAR, 0, mpi);
+  return read_xml_string(text, file);
+}
+
+}  // namespace lockstep

@@ -1,0 +1,160 @@
+#include "parameters/validate.hpp"
+
+#include <vector>
+
+#include "base/errors.hpp"
+#include "parameters/strict_values.hpp"
+#include "parameters/suggestion.hpp"
+
+namespace lockstep {
+
+namespace {
+
+std::string description(const ParameterEntry& valid) {
+  if (valid.isList())
+    return "a list";
+  const std::string type = type_name(value_type(valid));
+  switch (value_rule(valid).presence) {
+    case Presence::required:
+      return type + ", required";
+    case Presence::optional:
+      return type + ", optional";
+    default:
+      return fmt::format("{}, default {}", type, quoted_value(valid));
+  }
+}
+
+/// Lists are validated in place, so that references into the given list stay alive.
+class Validator {
+ public:
+  explicit Validator(const Source& source) : source_(source) {}
+
+  void check_list(ParameterList& given, const ParameterList& valid, const std::string& path) const {
+    for (const auto& [name, entry] : entries(given)) {
+      const ParameterEntry* valid_entry = valid.getEntryPtr(name);
+      if (!valid_entry) {
+        throw InputError(unknown_name(source_.place(join_path(path, name)), path, name, valid));
+      }
+      check_entry(entry, *valid_entry, name, path);
+      given.getEntryPtr(name)->setDocString(valid_entry->docString());
+    }
+    for (const auto& [name, valid_entry] : entries(valid)) {
+      if (!given.isParameter(name))
+        fill_in(given, valid_entry, name, path);
+      if (given.isSublist(name))
+        check_sublist(given.sublist(name), valid_entry, name, path);
+    }
+  }
+
+ private:
+  std::string subject(const std::string& path, const std::string& name) const {
+    return fmt::format("{}: {}, \"{}\"", source_.place(join_path(path, name)), in_list(path), name);
+  }
+
+  void check_entry(const ParameterEntry& entry, const ParameterEntry& valid,
+                   const std::string& name, const std::string& path) const {
+    const ValueType type = value_type(entry), wanted = value_type(valid);
+    check_input(entry.isList() || !valid.isList(),
+                "{} must be a list, <ParameterList name=\"{}\">, not a parameter.",
+                subject(path, name), name);
+    check_input(!entry.isList() || valid.isList(), "{} must be a parameter ({}), not a list.",
+                subject(path, name), type_name(wanted));
+    check_input(type == wanted, "{} has type \"{}\", but needs \"{}\": write type=\"{}\"{}.",
+                subject(path, name), type_name(type), type_name(wanted), type_name(wanted),
+                type == ValueType::integer && wanted == ValueType::real
+                    ? fmt::format(" value=\"{}\"", value_text(entry))
+                    : "");
+    const std::string violation = value_rule(valid).violation(entry);
+    check_input(entry.isList() || violation.empty(), "{} {}{}", subject(path, name), violation,
+                violation.empty() || violation.back() == '?' ? "" : ".");
+  }
+
+  void fill_in(ParameterList& given, const ParameterEntry& valid, const std::string& name,
+               const std::string& path) const {
+    if (valid.isList()) {
+      if (list_rule(valid).form != ListForm::optional) {
+        given.sublist(name, false, valid.docString());
+      }
+      return;
+    }
+    const ValueRule& rule = value_rule(valid);
+    if (rule.presence == Presence::optional)
+      return;
+    const std::string allowed = rule.allowed();
+    check_input(rule.presence != Presence::required,
+                "{}: {}, the parameter \"{}\" ({}{}) is required: {}", source_.place(path),
+                in_list(path), name, type_name(value_type(valid)),
+                allowed.empty() ? "" : ", " + allowed, valid.docString());
+    ParameterEntry entry = valid;
+    entry.setValidator(Teuchos::null);
+    given.setEntry(name, entry);
+  }
+
+  void check_sublist(ParameterList& given, const ParameterEntry& valid, const std::string& name,
+                     const std::string& path) const {
+    const ListRule& rule = list_rule(valid);
+    const std::string here = join_path(path, name);
+    if (rule.form == ListForm::free)
+      return;
+    if (rule.form == ListForm::typed) {
+      check_list(given, chosen_schema(rule, given, source_, here), here);
+    } else if (holds_named_lists(rule)) {
+      check_elements(given, rule, here);
+    } else {
+      check_list(given, Teuchos::getValue<ParameterList>(valid), here);
+    }
+  }
+
+  void check_elements(ParameterList& given, const ListRule& rule, const std::string& path) const {
+    for (const auto& [name, entry] : entries(given)) {
+      check_input(entry.isList(),
+                  "{} is a parameter, but this list holds lists only: write "
+                  "<ParameterList name=\"{}\">.",
+                  subject(path, name), name);
+      ParameterList& element = given.sublist(name);
+      const std::string here = join_path(path, name);
+      check_list(element, chosen_schema(rule, element, source_, here), here);
+    }
+  }
+
+  const Source& source_;
+};
+
+}  // namespace
+
+std::string unknown_name(const std::string& place, const std::string& path, const std::string& name,
+                         const ParameterList& valid) {
+  std::vector<std::string> names;
+  for (const auto& [known, entry] : entries(valid))
+    names.push_back(known);
+  const std::string nearest = nearest_name(name, names);
+  const std::string suggestion = nearest.empty()
+                                     ? ""
+                                     : fmt::format(" Did you mean \"{}\" ({})?", nearest,
+                                                   description(*valid.getEntryPtr(nearest)));
+  return fmt::format("{}: {}, \"{}\" is not a parameter.{}\nValid here: {}.", place, in_list(path),
+                     name, suggestion, names.empty() ? "nothing" : quoted_list(names));
+}
+
+const ParameterList& chosen_schema(const ListRule& rule, const ParameterList& given,
+                                   const Source& source, const std::string& path) {
+  if (const TypedSchema* schema = rule.schema_for(given))
+    return schema->parameters;
+  ParameterList type;
+  if (given.isParameter("Type"))
+    type.setEntry("Type", given.getEntry("Type"));
+  validate(type, rule.type_declaration(), source, path);
+  throw InputError(
+      fmt::format("{}: {}, no \"Type\" is available.", source.place(path), in_list(path)));
+}
+
+void validate(ParameterList& given, const ParameterList& valid, const Source& source,
+              const std::string& path) {
+  Validator(source).check_list(given, valid, path);
+}
+
+void validate(Document& document, const ParameterList& valid) {
+  validate(document.list, valid, document.source);
+}
+
+}  // namespace lockstep
