@@ -5,9 +5,9 @@
 
 namespace lockstep {
 
-/// Reads a surface from an .obj (tinyobjloader), .stl (ASCII or binary, corners merged) or .off file.
-/// 2D: .obj or .off polylines ("l" records / two-vertex faces). Polygons are split into triangles.
-/// Throws InputError naming file, line or record, and what is wrong. Every rank reads.
+/// Reads a surface from an .obj (tinyobjloader), .stl (ASCII or binary, corners merged) or .off
+/// file. 2D: .obj or .off polylines ("l" records / two-vertex faces). Polygons are split into
+/// triangles. Throws InputError naming file, line or record, and what is wrong. Every rank reads.
 template <int dim>
 SurfaceMesh<dim> read_surface(const std::string& file);
 

@@ -35,8 +35,8 @@ Point<dim> area_vector(const std::array<Point<dim>, dim>& corners);
 /// surface of unit density; for a shell, of its surface of unit surface density.
 template <int dim>
 struct MassProperties {
-  double measure = 0;                                   ///< volume [m^dim] or surface [m^(dim-1)]
-  Point<dim> centroid = Point<dim>::Zero();             ///< [m]
+  double measure = 0;                        ///< volume [m^dim] or surface [m^(dim-1)]
+  Point<dim> centroid = Point<dim>::Zero();  ///< [m]
   /// Inertia tensor about the centroid for density one (2D: 1x1 polar moment).
   Eigen::Matrix<double, n_rotations<dim>, n_rotations<dim>> inertia =
       Eigen::Matrix<double, n_rotations<dim>, n_rotations<dim>>::Zero();

@@ -11,9 +11,12 @@ namespace lockstep {
 /// What the framework knows of one solid's surface.
 struct SolidDescription {
   std::string name;
-  bool closed = true;      ///< encloses a volume; false: a thin shell
-  bool prescribed = false; ///< kinematic or static: contributes velocities, not unknowns
-  int model = 0;           ///< index of its SolidModel in the SolidSystem
+  bool closed = true;       ///< encloses a volume; false: a thin shell
+  bool prescribed = false;  ///< kinematic or static: contributes velocities, not unknowns
+  bool rigid = true;        ///< all its velocity rows are those of one rigid motion
+  double density = 0;       ///< [kg/m^dim], of a shell [kg/m^(dim-1)]; for reports
+  int model = 0;            ///< index of its SolidModel in the SolidSystem
+  int index_in_model = 0;   ///< its place in that model's `solids()`
   int simplex_begin = 0, simplex_end = 0;  ///< its range of simplices in the snapshot
   int vertex_begin = 0, vertex_end = 0;    ///< its range of vertices in the snapshot
 };
@@ -24,7 +27,8 @@ struct SurfacePoint {
   int simplex = -1;
   Barycentric<dim> barycentric = Barycentric<dim>::Zero();
   Point<dim> position = Point<dim>::Zero();
-  double fraction = 0;  ///< for hits of a segment: 0 at its start, 1 at its end; for closest points: distance [m]
+  double fraction =
+      0;  ///< for hits of a segment: 0 at its start, 1 at its end; for closest points: distance [m]
 };
 
 /// Where a line of cell centres, parallel to `axis`, crosses the surface.
@@ -47,14 +51,16 @@ struct LatticeCrossings {
   std::array<std::vector<Line>, dim> lines;  ///< per axis, sorted lexicographically by `cell`
 };
 
-/// The cell-centre lattice of a Cartesian grid: the centre of cell c is lower + (c + 1/2) * spacing.
+/// The cell-centre lattice of a Cartesian grid: the centre of cell c is lower + (c + 1/2) *
+/// spacing.
 template <int dim>
 struct Lattice {
   Point<dim> lower = Point<dim>::Zero();  ///< [m]
   double spacing = 1;                     ///< h [m]
   Point<dim> center(const Index<dim>& cell) const {
     Point<dim> x;
-    for (int a = 0; a < dim; ++a) x[a] = lower[a] + (cell[a] + 0.5) * spacing;
+    for (int a = 0; a < dim; ++a)
+      x[a] = lower[a] + (cell[a] + 0.5) * spacing;
     return x;
   }
 };
@@ -79,25 +85,33 @@ class SurfaceSnapshot {
   Box<dim> bounds_of_solid(int solid) const;
 
   /// First simplex that the segment a -> b meets (within `tolerance` [m] of its ends and of the
-  /// simplex' rim), or none. Touching counts as meeting.
+  /// simplex' rim), or none. Touching counts as meeting, and so does running inside the plane of a
+  /// simplex. No segment slips through between two neighbouring simplices.
   std::optional<SurfacePoint<dim>> first_hit(const Point<dim>& a, const Point<dim>& b,
                                              double tolerance = 0) const;
   /// Closest surface point within `radius`, or none.
   std::optional<SurfacePoint<dim>> closest(const Point<dim>& x, double radius) const;
-  /// Closest point of one solid (no radius).
+  /// Closest point of one solid (no radius); simplex -1 if the solid has no simplices.
   SurfacePoint<dim> closest_on_solid(const Point<dim>& x, int solid) const;
-  /// Index of a closed solid that contains x, or -1. Consistent with `cross_lattice` (same watertight
-  /// half-open edge rule).
+  /// Lowest index of a closed solid that contains x, or -1. x is inside if an odd number of
+  /// crossings of its line along axis 0 have coordinate <= x[0]: a point exactly on an
+  /// axis-parallel face is inside at the lower face and outside at the upper one, along every axis.
+  /// Consistent with `cross_lattice` (same code decides).
   int inside(const Point<dim>& x) const;
-  /// Simplices whose bounding box touches `box`, in ascending order; replaces the content of `found`.
+  /// Simplices whose bounding box touches `box`, in ascending order; replaces the content of
+  /// `found`.
   void touching(const Box<dim>& box, std::vector<int>& found) const;
+  /// Solids (closed or not) whose bounding box touches `box`, in ascending order; replaces `found`.
+  void solids_touching(const Box<dim>& box, std::vector<int>& found) const;
   /// True if any simplex' bounding box touches the box.
   bool touches(const Box<dim>& box) const;
 
-  /// Crossings of all cell-centre lines of `lattice` within cells [begin, end) with the surface.
-  /// Watertight: a closed surface gives an even number of crossings on every whole line, because an
-  /// edge shared by two simplices is decided by one and the same floating-point expression and a
-  /// half-open rule. Costs O(area / h^(dim-1)).
+  /// Crossings of the cell-centre lines through the cells [begin, end) of `lattice` with the
+  /// surface. The lines are infinite: crossings outside [begin, end) along the line's own axis are
+  /// listed too, so that parities can be counted from the start. Watertight: a closed surface gives
+  /// an even number of crossings on every whole line, because an edge shared by two simplices is
+  /// decided by one and the same floating-point expression and a half-open rule. Costs O(area /
+  /// h^(dim-1)).
   LatticeCrossings<dim> cross_lattice(const Lattice<dim>& lattice, const Index<dim>& begin,
                                       const Index<dim>& end) const;
 
@@ -106,9 +120,12 @@ class SurfaceSnapshot {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// True if the surface, moving linearly from `before` to `after` (same simplices), sweeps over the
-/// fixed point x; returns the simplex and barycentric coordinates at the first passage. `candidates`
-/// limits the simplices that are looked at (those whose swept box holds x).
+/// First passage of the surface, whose vertices move linearly from `before` to `after` (same
+/// simplices), over the fixed point x, or none: the simplex, its barycentric coordinates and, as
+/// `fraction`, the time of the passage in (0, 1]. `candidates` limits the simplices that are looked
+/// at (those whose swept box holds x). Ties: a surface that starts on x does not sweep over it by
+/// leaving, one that ends on x does; touching x and turning back counts; sliding over x inside the
+/// surface's own plane does not.
 template <int dim>
 std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
                                             const SurfaceSnapshot<dim>& after, const Point<dim>& x,

@@ -1,0 +1,73 @@
+#include "geometry/mesh_files.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+
+#include "base/errors.hpp"
+#include "geometry/file_formats.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Lone vertices would become nodes without mass: they go, the order of the others stays.
+template <int dim>
+void drop_unused_vertices(SurfaceMesh<dim>& mesh) {
+  std::vector<int> number(mesh.vertices.size(), -1);
+  for (const auto& simplex : mesh.simplices)
+    for (const int v : simplex)
+      number[v] = 0;
+  std::vector<Point<dim>> used;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0)
+      continue;
+    number[v] = static_cast<int>(used.size());
+    used.push_back(mesh.vertices[v]);
+  }
+  mesh.vertices = std::move(used);
+  for (auto& simplex : mesh.simplices)
+    for (int& v : simplex)
+      v = number[v];
+}
+
+template <int dim>
+SurfaceMesh<dim> read_by_extension(const std::string& file, const std::string& extension) {
+  if (extension == ".obj")
+    return read_obj<dim>(file);
+  if (extension == ".off")
+    return read_off<dim>(file);
+  if constexpr (dim == 3) {
+    if (extension == ".stl")
+      return read_stl(file);
+  } else {
+    check_input(extension != ".stl",
+                "{}: an STL file holds triangles, but a 2D surface consists of segments; use .obj "
+                "or .off.",
+                file);
+  }
+  throw InputError(fmt::format(
+      "{}: unknown kind of surface file '{}'; use .obj, .off or (3D) .stl.", file, extension));
+}
+
+}  // namespace
+
+template <int dim>
+SurfaceMesh<dim> read_surface(const std::string& file) {
+  check_input(std::filesystem::is_regular_file(file) && std::ifstream(file).good(),
+              "{}: cannot open this surface file; check its path and permissions.", file);
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  SurfaceMesh<dim> mesh = read_by_extension<dim>(file, extension);
+  check_input(!mesh.simplices.empty(), "{}: the file holds no {}.", file,
+              dim == 2 ? "segments" : "triangles");
+  drop_unused_vertices(mesh);
+  return mesh;
+}
+
+template SurfaceMesh<2> read_surface<2>(const std::string&);
+template SurfaceMesh<3> read_surface<3>(const std::string&);
+
+}  // namespace lockstep

@@ -1,0 +1,83 @@
+#include <tiny_obj_loader.h>
+
+#include "geometry/file_formats.hpp"
+#include "geometry/text_lines.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// What tinyobjloader lets pass: coordinates that are no numbers, indices of no vertex.
+void check_records(const std::string& file) {
+  TextLines lines(file);
+  std::vector<std::string> words;
+  long n_vertices = 0;
+  std::vector<std::pair<long, std::string>> references;  // vertices may follow the faces
+  while (lines.next(words)) {
+    if (words[0] == "v") {
+      check_input(words.size() >= 4, "{}: a vertex needs three coordinates.", lines.where());
+      for (int k = 1; k <= 3; ++k)
+        lines.number(words[k]);
+      ++n_vertices;
+    } else if (words[0] == "f" || words[0] == "l") {
+      const std::size_t n_needed = words[0] == "f" ? 3 : 2;
+      check_input(words.size() > n_needed, "{}: a record '{}' needs at least {} vertices.",
+                  lines.where(), words[0], n_needed);
+      for (std::size_t k = 1; k < words.size(); ++k) {
+        const long v = lines.integer(words[k].substr(0, words[k].find('/')));
+        check_input(v > 0 || (v < 0 && v >= -n_vertices),
+                    "{}: vertex {} does not exist (vertices count from 1, or from -1 backwards).",
+                    lines.where(), v);
+        references.emplace_back(v, lines.where());
+      }
+    }
+  }
+  for (const auto& [v, where] : references)
+    check_input(v <= n_vertices, "{}: vertex {} does not exist; the file has {} vertices.", where,
+                v, n_vertices);
+}
+
+}  // namespace
+
+template <int dim>
+SurfaceMesh<dim> read_obj(const std::string& file) {
+  check_records(file);
+  tinyobj::attrib_t attributes;
+  std::vector<tinyobj::shape_t> shapes;
+  std::vector<tinyobj::material_t> materials;
+  std::string warning, error;
+  std::ifstream stream(file);
+  const bool done = tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream,
+                                     nullptr, true, false);
+  check_input(done && error.empty(), "{}: not a valid OBJ file: {}", file, error);
+
+  SurfaceMesh<dim> mesh;
+  for (std::size_t v = 0; 3 * v < attributes.vertices.size(); ++v) {
+    Point<dim> x;
+    for (int a = 0; a < dim; ++a)
+      x[a] = attributes.vertices[3 * v + a];
+    mesh.vertices.push_back(x);
+  }
+  for (const tinyobj::shape_t& shape : shapes) {
+    if constexpr (dim == 2) {
+      std::size_t begin = 0;
+      for (const int n : shape.lines.num_line_vertices) {
+        for (int k = 0; k + 1 < n; ++k)
+          mesh.simplices.push_back({shape.lines.indices[begin + k].vertex_index,
+                                    shape.lines.indices[begin + k + 1].vertex_index});
+        begin += n;
+      }
+    } else {
+      const auto& indices = shape.mesh.indices;
+      for (std::size_t k = 0; k + 2 < indices.size(); k += 3)
+        mesh.simplices.push_back(
+            {indices[k].vertex_index, indices[k + 1].vertex_index, indices[k + 2].vertex_index});
+    }
+  }
+  return mesh;
+}
+
+template SurfaceMesh<2> read_obj<2>(const std::string&);
+template SurfaceMesh<3> read_obj<3>(const std::string&);
+
+}  // namespace lockstep

@@ -1,0 +1,131 @@
+// Mesh checks, mass properties and generators against formulas.
+#include <gmock/gmock.h>
+
+#include "base/errors.hpp"
+#include "support.hpp"
+
+namespace lockstep {
+namespace {
+
+using ::testing::HasSubstr;
+
+template <typename Function>
+std::string message_of(Function f) {
+  try {
+    f();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+template <int dim>
+void expect_fine_and_closed(const SurfaceMesh<dim>& mesh, double spacing) {
+  EXPECT_TRUE(is_closed(mesh));
+  SurfaceMesh<dim> checked = mesh;
+  EXPECT_NO_THROW(check_surface(checked, true, "generated"));
+  EXPECT_EQ(checked.simplices, mesh.simplices);  // already outward
+  for (const auto& simplex : mesh.simplices)
+    for (int k = 0; k < dim; ++k)
+      EXPECT_LE((mesh.vertices[simplex[k]] - mesh.vertices[simplex[(k + 1) % dim]]).norm(),
+                spacing * (1 + 1e-9));
+}
+
+TEST(Generators, AreClosedOutwardAndFine) {
+  expect_fine_and_closed<2>(ball_surface<2>(1, 0.2), 0.2);
+  expect_fine_and_closed<2>(box_surface<2>({1, 2}, 0.3), 0.3);
+  expect_fine_and_closed<2>(cylinder_surface<2>(0.5, 2, 0.3), 0.3);
+  expect_fine_and_closed<2>(capsule_surface<2>(0.5, 2, 0.2), 0.2);
+  expect_fine_and_closed<3>(ball_surface<3>(1, 0.2), 0.2);
+  expect_fine_and_closed<3>(box_surface<3>({1, 2, 0.5}, 0.3), 0.3);
+  expect_fine_and_closed<3>(cylinder_surface<3>(0.5, 2, 0.2), 0.2);
+  expect_fine_and_closed<3>(capsule_surface<3>(0.5, 2, 0.2), 0.2);
+  expect_fine_and_closed<3>(torus_surface<3>(1, 0.3, 0.2), 0.2);
+  EXPECT_THROW(torus_surface<2>(1, 0.3, 0.2), InputError);
+  EXPECT_THROW(ball_surface<3>(-1, 0.2), InputError);
+  EXPECT_THROW(ball_surface<3>(1, 0), InputError);
+}
+
+TEST(Generators, OpenShells) {
+  EXPECT_NEAR(shell_properties(plate_surface<3>({9, 2, 3}, 0, 0.5)).measure, 6, 1e-12);
+  EXPECT_NEAR(shell_properties(plate_surface<2>({2, 9}, 1, 0.5)).measure, 2, 1e-12);
+  // A boat of 1 x 2 x 3 (y up): bottom 3, sides 2 (2 + 6).
+  const auto boat = open_box_surface<3>({1, 2, 3}, 0.5);
+  EXPECT_NEAR(shell_properties(boat).measure, 19, 1e-12);
+  EXPECT_FALSE(is_closed(boat));
+  for (const auto& x : plate_surface<3>({9, 2, 3}, 0, 0.5).vertices)
+    EXPECT_EQ(x[0], 0);
+  EXPECT_NEAR(shell_properties(open_box_surface<2>({1, 2}, 0.5)).measure, 5, 1e-12);
+}
+
+TEST(MassProperties, BoxIsExactWhereverItLies) {
+  const Point<3> shift(100, -20, 3);
+  const auto box = volume_properties(moved<3>(box_surface<3>({1, 2, 3}, 0.7), shift));
+  EXPECT_NEAR(box.measure, 6, 1e-11);
+  EXPECT_NEAR((box.centroid - shift).norm(), 0, 1e-11);
+  const Eigen::Matrix3d expected =
+      Point<3>(13, 10, 5).asDiagonal() * Eigen::Matrix3d::Identity() * 0.5;
+  EXPECT_NEAR((box.inertia - expected).norm(), 0, 1e-11);
+  const auto square = volume_properties(moved<2>(box_surface<2>({1, 2}, 5), {7, 8}));
+  EXPECT_NEAR(square.measure, 2, 1e-12);
+  EXPECT_NEAR((square.centroid - Point<2>(7, 8)).norm(), 0, 1e-12);
+  EXPECT_NEAR(square.inertia(0, 0), 2 * 5 / 12.0, 1e-12);
+}
+
+TEST(MassProperties, ThinBoxShell) {
+  // The shell of a unit cube: area 6; about x the sides give 4 (1/12 + 1/4) + 2/6.
+  const auto shell = shell_properties(box_surface<3>({1, 1, 1}, 0.6));
+  EXPECT_NEAR(shell.measure, 6, 1e-12);
+  EXPECT_NEAR(shell.inertia(0, 0), 2 * (1.0 / 6) + 4 * (1.0 / 12 + 1.0 / 4), 1e-12);
+  EXPECT_NEAR(shell.inertia(0, 1), 0, 1e-12);
+}
+
+TEST(MassProperties, RoundBodiesConverge) {
+  EXPECT_NEAR(volume_properties(ball_surface<3>(2, 0.5)).measure, 4 / 3.0 * pi * 8, 1e-11);
+  EXPECT_NEAR(volume_properties(ball_surface<2>(2, 0.5)).measure, pi * 4, 1e-12);
+  EXPECT_NEAR(volume_properties(cylinder_surface<3>(1, 2, 0.3)).measure, 2 * pi, 1e-12);
+  double ball[2], torus[2], capsule[2], area[2];
+  for (int i = 0; i < 2; ++i) {
+    const double spacing = i == 0 ? 0.2 : 0.1;
+    ball[i] = volume_properties(ball_surface<3>(1, spacing)).inertia(1, 1) - 8 * pi / 15;
+    torus[i] = volume_properties(torus_surface<3>(1, 0.4, spacing)).measure - 2 * pi * pi * 0.16;
+    capsule[i] = volume_properties(capsule_surface<3>(1, 1, spacing)).measure - 7 * pi / 3;
+    area[i] = shell_properties(ball_surface<3>(1, spacing)).measure - 4 * pi;
+  }
+  for (const auto& error : {ball, torus, capsule, area}) {
+    EXPECT_LT(std::abs(error[0]), 0.15);
+    EXPECT_NEAR(error[0] / error[1], 4, 1);  // second order
+  }
+}
+
+TEST(CheckSurface, TurnsInwardSurfacesAround) {
+  auto mesh = box_surface<3>({1, 1, 1}, 2);
+  for (auto& t : mesh.simplices)
+    std::swap(t[1], t[2]);
+  check_surface(mesh, true, "box");
+  EXPECT_NEAR(volume_properties(mesh).measure, 1, 1e-14);
+}
+
+TEST(CheckSurface, NamesTheDefect) {
+  auto open = box_surface<3>({1, 1, 1}, 2);
+  open.simplices.pop_back();
+  EXPECT_THAT(message_of([&] { check_surface(open, true, "hull"); }),
+              AllOf(HasSubstr("'hull'"), HasSubstr("shared by 1 simplices")));
+  EXPECT_NO_THROW(check_surface(open, false, "hull"));
+  auto twisted = box_surface<3>({1, 1, 1}, 2);
+  std::swap(twisted.simplices[3][0], twisted.simplices[3][1]);
+  EXPECT_THAT(message_of([&] { check_surface(twisted, true, "hull"); }),
+              HasSubstr("oriented against each other"));
+  auto flat = box_surface<2>({1, 1}, 2);
+  flat.simplices.push_back({1, 1});
+  EXPECT_THAT(message_of([&] { check_surface(flat, false, "hull"); }),
+              HasSubstr("simplex 4 is degenerate"));
+  flat.simplices.back() = {1, 9};
+  EXPECT_THAT(message_of([&] { check_surface(flat, false, "hull"); }), HasSubstr("vertex 9"));
+  flat.simplices.pop_back();
+  flat.vertices[2].x() = std::nan("");
+  EXPECT_THAT(message_of([&] { check_surface(flat, false, "hull"); }), HasSubstr("vertex 2"));
+}
+
+}  // namespace
+}  // namespace lockstep
