@@ -1,0 +1,141 @@
+"""Reads the frames of a run from its frames.xmf: names, times, geometry and where each array lies.
+
+Only the index is read at once; arrays are opened when asked for. Used by plot-frame and render.
+"""
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import h5py
+import numpy
+
+
+class FramesError(Exception):
+    """The run's folder lacks something; the message says what and where."""
+
+
+@dataclass
+class Array:
+    """A DataItem: a dataset in an HDF5 file, or numbers written in the XML itself."""
+    text: str
+    folder: Path
+    in_file: bool
+
+    def read(self, selection=()):
+        """The values, or only those of a selection such as (3, slice(None))."""
+        if not self.in_file:
+            return numpy.array(self.text.split(), dtype=float)[selection]
+        name, dataset = self.text.strip().rsplit(":", 1)
+        path = self.folder / name
+        try:
+            with h5py.File(path, "r") as file:
+                return file[dataset][selection]
+        except (OSError, KeyError) as error:
+            raise FramesError(f"{path}: cannot read '{dataset}' ({error}).") from error
+
+
+@dataclass
+class Grid:
+    """A fluid box (cell values in fields) or a solid's surface (simplices over vertices)."""
+    name: str
+    is_box: bool
+    dim: int
+    fields: dict = field(default_factory=dict)  # name -> (Array, "Cell" or "Node", is a vector)
+    origin: numpy.ndarray = None                # of a box, in x, y, z order
+    spacing: numpy.ndarray = None
+    n_cells: list = None                        # in x, y, z order; 1 along z in two dimensions
+    vertices: Array = None                      # of a surface
+    simplices: Array = None
+
+
+@dataclass
+class Frame:
+    time: float
+    grids: list
+
+    @property
+    def boxes(self):
+        return [grid for grid in self.grids if grid.is_box]
+
+    @property
+    def surfaces(self):
+        return [grid for grid in self.grids if not grid.is_box]
+
+
+def index_path(output_directory):
+    path = Path(output_directory) / "frames.xmf"
+    if not path.is_file():
+        raise FramesError(f"{output_directory} holds no frames.xmf: is it the output folder of a run?")
+    return path.resolve()
+
+
+def read_frames(output_directory):
+    """The frames of a run in the order of time."""
+    path = index_path(output_directory)
+    try:
+        tree = ElementTree.parse(path)
+    except ElementTree.ParseError as error:
+        raise FramesError(f"{path} is not proper XML: {error}.") from error
+    frames = []
+    for collection in tree.getroot().iter("Grid"):
+        if collection.get("CollectionType") == "Temporal":
+            frames += [_frame(element, path.parent) for element in collection.findall("Grid")]
+    if not frames:
+        raise FramesError(f"{path} lists no frame: the run wrote none yet.")
+    return sorted(frames, key=lambda frame: frame.time)
+
+
+def _frame(element, folder):
+    time = element.find("Time")
+    leaves = [grid for grid in element.iter("Grid") if grid.get("GridType", "Uniform") == "Uniform"]
+    return Frame(float(time.get("Value")) if time is not None else 0.0,
+                 [_grid(leaf, folder) for leaf in leaves])
+
+
+def _array(item, folder):
+    return Array(item.text, folder, item.get("Format", "XML") == "HDF")
+
+
+def _grid(element, folder):
+    topology, geometry = element.find("Topology"), element.find("Geometry")
+    kind = topology.get("TopologyType") or topology.get("Type")
+    items = geometry.findall("DataItem")
+    grid = Grid(element.get("Name"), "CoRectMesh" in kind, 2)
+    if grid.is_box:
+        # XDMF gives origin and spacing in the order of the array's indices: z first.
+        grid.origin, grid.spacing = (_array(item, folder).read()[::-1] for item in items)
+        nodes = [int(word) for word in topology.get("Dimensions").split()]
+        grid.n_cells = [max(n - 1, 1) for n in reversed(nodes)] + [1] * (3 - len(nodes))
+        grid.dim = 2 if grid.n_cells[2] == 1 else 3
+    else:
+        grid.dim = 3 if kind == "Triangle" else 2
+        grid.vertices = _array(items[0], folder)
+        grid.simplices = _array(topology.find("DataItem"), folder)
+    for attribute in element.findall("Attribute"):
+        grid.fields[attribute.get("Name")] = (_array(attribute.find("DataItem"), folder),
+                                              attribute.get("Center", "Node"),
+                                              attribute.get("AttributeType") == "Vector")
+    return grid
+
+
+def choose_frame(frames, number=None, time=None):
+    """The frame of that number (from 0, negative from the end), nearest to that time, or the last."""
+    if number is not None:
+        if not -len(frames) <= number < len(frames):
+            raise FramesError(f"There is no frame {number}: the run has frames 0 to {len(frames) - 1}.")
+        return number % len(frames)
+    if time is not None:
+        return min(range(len(frames)), key=lambda i: abs(frames[i].time - time))
+    return len(frames) - 1
+
+
+def choose_field(grid, name=None):
+    """The name of a field of a box: the one asked for, or the first of the most telling ones."""
+    if name is None:
+        told = [key for word in ("smoke", "velocity", "pressure") for key in grid.fields if word in key.lower()]
+        if not (told or grid.fields):
+            raise FramesError(f"Grid '{grid.name}' has no field.")
+        return told[0] if told else next(iter(grid.fields))
+    if name not in grid.fields:
+        raise FramesError(f"There is no field '{name}'; the run wrote: {', '.join(grid.fields)}.")
+    return name

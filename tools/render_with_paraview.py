@@ -1,0 +1,117 @@
+"""The part of tools/render that runs inside pvbatch; its one argument is a description in JSON."""
+import json
+import sys
+
+from paraview import simple
+
+simple._DisableFirstRenderCameraReset()
+
+SOLID_COLOURS = [(.80, .36, .25), (.30, .50, .72), (.87, .70, .30), (.45, .65, .42), (.58, .45, .68), (.55, .55, .55)]
+
+
+def open_grids(job, names):
+    """A reader of some of the grids of the run."""
+    # An absolute path: ParaView's readers lose relative ones.
+    reader = simple.XDMFReader(FileNames=[job["index"]])
+    reader.UpdatePipelineInformation()
+    # A grid that comes back in each frame is listed as name, name[1], ...
+    reader.GridStatus = [grid for grid in reader.GridStatus.Available if grid.split("[")[0] in names]
+    return reader
+
+
+def colour_range(job, source):
+    """Smallest and largest value of the field over the chosen times, so that colours do not flicker."""
+    low, high = float("inf"), -float("inf")
+    for time in job["times"]:
+        source.UpdatePipeline(time)
+        array = source.CellData.GetArray(job["field"])
+        a, b = array.GetRange(-1 if job["is_vector"] else 0)
+        low, high = min(low, a), max(high, b)
+    return (low, high) if high > low else (low, low + 1.0)
+
+
+def show_fluid(job, view):
+    fluid = open_grids(job, job["boxes"])
+    low, high = colour_range(job, fluid)
+    bounds = fluid.GetDataInformation().GetBounds()
+    shown, representation = fluid, "Surface"
+    if job["volume"]:
+        # Volumes are drawn from one image with values at its points.
+        shown = simple.ResampleToImage(Input=simple.CellDatatoPointData(Input=fluid))
+        shown.SamplingDimensions = [128, 128, 128]
+        representation = "Volume"
+    elif job["dim"] == 3:
+        centre = [0.5 * (bounds[2 * i] + bounds[2 * i + 1]) for i in range(3)]
+        if job["position"] is not None:
+            centre[job["axis"]] = job["position"]
+        shown = simple.Slice(Input=fluid, SliceType="Plane")
+        shown.SliceType.Origin = centre
+        shown.SliceType.Normal = [float(i == job["axis"]) for i in range(3)]
+    display = simple.Show(shown, view)
+    display.SetRepresentationType(representation)
+    display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the bar, without shading
+    where = "POINTS" if job["volume"] else "CELLS"
+    simple.ColorBy(display, (where, job["field"], "Magnitude") if job["is_vector"] else (where, job["field"]))
+    table = simple.GetColorTransferFunction(job["field"])
+    table.ApplyPreset("Viridis (matplotlib)", True)
+    table.RescaleTransferFunction(low, high)
+    opacity = simple.GetOpacityTransferFunction(job["field"])
+    opacity.Points = [low, 0.0, 0.5, 0.0, high, 0.6, 0.5, 0.0]
+    bar = simple.GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle = job["field"], "magnitude" if job["is_vector"] else ""
+    bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
+    display.SetScalarBarVisibility(view, True)
+    if job["dim"] == 3:
+        box = simple.Show(simple.Outline(Input=fluid), view)
+        box.AmbientColor = box.DiffuseColor = [0.4, 0.4, 0.4]
+    return bounds
+
+
+def show_solids(job, view):
+    bounds = None
+    for number, name in enumerate(job["surfaces"]):
+        solid = open_grids(job, [name])
+        solid.UpdatePipeline(job["times"][0])
+        display = simple.Show(solid, view)
+        display.SetRepresentationType("Surface")
+        display.ColorArrayName = ["POINTS", ""]  # ColorBy(display, None) fails on multiblock data
+        display.AmbientColor = display.DiffuseColor = SOLID_COLOURS[number % len(SOLID_COLOURS)]
+        display.LineWidth = 3
+        box = solid.GetDataInformation().GetBounds()
+        bounds = box if bounds is None else [pick(a, b) for pick, a, b in
+                                             zip((min, max) * 3, bounds, box)]
+    return bounds
+
+
+def place_camera(job, view, bounds):
+    centre = [0.5 * (bounds[2 * i] + bounds[2 * i + 1]) for i in range(3)]
+    view.CameraFocalPoint = centre
+    if job["dim"] == 2:
+        view.CameraParallelProjection = 1
+        direction, up = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
+    elif job["up"] == 2:
+        direction, up = (0.45, -1.0, 0.3), (0.0, 0.0, 1.0)
+    else:
+        direction, up = (0.45, 0.3, 1.0), (0.0, 1.0, 0.0)
+    view.CameraPosition = [c + d for c, d in zip(centre, direction)]
+    view.CameraViewUp = up
+    view.ResetCamera(*bounds)
+
+
+def main():
+    job = json.loads(sys.argv[1])
+    view = simple.CreateView("RenderView")
+    view.ViewSize = job["size"]
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1.0, 1.0, 1.0]
+    view.OrientationAxesVisibility = job["dim"] == 3
+    fluid_bounds = show_fluid(job, view) if job["field"] else None
+    solid_bounds = show_solids(job, view)
+    place_camera(job, view, fluid_bounds or solid_bounds)
+    for time, picture in zip(job["times"], job["pictures"]):
+        view.ViewTime = time
+        simple.Render(view)
+        simple.SaveScreenshot(picture, view, ImageResolution=job["size"])
+
+
+main()
