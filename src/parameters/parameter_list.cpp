@@ -1,6 +1,5 @@
 #include "parameters/parameter_list.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"

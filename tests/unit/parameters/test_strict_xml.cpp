@@ -16,6 +16,10 @@ struct BadValue {
   const char* complaint;
 };
 
+void PrintTo(const BadValue& bad, std::ostream* out) {
+  *out << bad.type << " " << bad.value;
+}
+
 class BadValues : public ::testing::TestWithParam<BadValue> {};
 
 TEST_P(BadValues, AreRefusedWithFileLineAndReason) {
