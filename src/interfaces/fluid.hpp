@@ -10,13 +10,16 @@
 
 namespace lockstep {
 
+struct BoxFrame;  // output/frames.hpp
+
 /// One side of a velocity control volume.
 template <int dim>
 struct PressureSide {
-  GlobalIndex unknown = no_index;  ///< id in `pressure_map`, or no_index: no pressure (solid, void, open side)
+  GlobalIndex unknown =
+      no_index;  ///< id in `pressure_map`, or no_index: no pressure (solid, void, open side)
   Point<dim> center = Point<dim>::Zero();  ///< where the pressure lives [m]
-  bool inside_solid = false;       ///< the point lies inside a closed solid
-  int solid = -1;                  ///< which one (index in the snapshot), or -1
+  bool inside_solid = false;               ///< the point lies inside a closed solid
+  int solid = -1;                          ///< which one (index in the snapshot), or -1
 };
 
 /// The control volume of one staggered velocity (a dual cell). Its momentum balance is
@@ -34,9 +37,9 @@ struct ControlVolume {
   GlobalIndex id = no_index;  ///< the fluid's own number; the same on any number of ranks
 };
 
-/// Decides how far a control volume is open to the fluid: 1 free, 0 closed (mixed, after the paper),
-/// between: the face fraction of a cut-cell coupling. Called for every control volume near a surface
-/// that has a fluid cell on at least one side.
+/// Decides how far a control volume is open to the fluid: 1 free, 0 closed (mixed, after the
+/// paper), between: the face fraction of a cut-cell coupling. Called for every control volume near
+/// a surface that has a fluid cell on at least one side.
 template <int dim>
 class OpenFractionRule {
  public:
@@ -57,23 +60,25 @@ struct MovingSurface {
 
 /// Connected components of the pressure unknowns through free faces (regions, design: null space).
 struct PressureRegions {
-  int n_regions = 0;                  ///< over all ranks
-  std::vector<int> of_unknown;        ///< region of each local pressure unknown
-  std::vector<char> has_dirichlet;    ///< per region: some face fixes the pressure level
+  int n_regions = 0;                ///< over all ranks
+  std::vector<int> of_unknown;      ///< region of each local pressure unknown
+  std::vector<char> has_dirichlet;  ///< per region: some face fixes the pressure level
 };
 
 /// A viscous bond from a free velocity to the solid: it pulls with
 /// coefficient * (u_row - v_solid) [N] on both, equal and opposite.
 template <int dim>
 struct ViscousLink {
-  int row = -1;             ///< local row of `ViscousSystem::stiffness`
+  int row = -1;                            ///< local row of `ViscousSystem::stiffness`
   Point<dim> center = Point<dim>::Zero();  ///< of the free velocity [m]
   int coupled_volume = -1;  ///< >= 0: the neighbour is this coupled control volume (index), W V_S
   /// The neighbour is a coupled control volume of another rank, W V_S (`coupled_volume` is -1).
   std::shared_ptr<const ControlVolume<dim>> remote_volume;
   SurfacePoint<dim> point;  ///< else: the link meets the surface here
   int direction = 0;
-  double coefficient = 0;   ///< [kg/s]
+  double coefficient = 0;  ///< [kg/s]
+  Point<dim> position =
+      Point<dim>::Zero();  ///< of the free velocity: where the link pulls on the fluid [m]
 };
 
 /// Implicit viscosity in variational form: (M + dt K) u = M u* over the free velocities, SPD.
@@ -104,10 +109,12 @@ class FluidDiscretization : public PlugIn {
   /// Control volumes with open_fraction < 1 and at least one pressure unknown, owned here. Local.
   virtual const std::vector<ControlVolume<dim>>& coupled_volumes() const = 0;
   virtual RCP<const Map> pressure_map() const = 0;
-  /// A = V G_f^T rho^-1 G_f over free faces [m^dim s / kg * 1/m^2]; symmetric positive semidefinite.
+  /// A = V G_f^T rho^-1 G_f over free faces [m^dim s / kg * 1/m^2]; symmetric positive
+  /// semidefinite.
   virtual RCP<const LinearOperator> pressure_block() const = 0;
   virtual const PressureRegions& regions() const = 0;
-  /// rhs = V G_f^T u* + V G_d^T u_d: minus the outflow of the free and the prescribed faces [m^dim/s].
+  /// rhs = V G_f^T u* + V G_d^T u_d: minus the outflow of the free and the prescribed faces
+  /// [m^dim/s].
   virtual void divergence(Vector& rhs) const = 0;
   /// u* -= rho^-1 G p̂ on free faces (F2, F4). p̂ = dt p [Pa s].
   virtual void project(const Vector& scaled_pressure) = 0;
@@ -118,21 +125,22 @@ class FluidDiscretization : public PlugIn {
   // The phases of a step.
 
   virtual void begin_prediction() = 0;  ///< u* := u^n
-  /// u* += dt f on all velocities outside solids; returns the impulse given to the free ones, global.
+  /// u* += dt f on all velocities outside solids; returns the impulse given to the free ones,
+  /// global.
   virtual Momentum<dim> add_forces(double time, double dt) = 0;
   /// The dt f that `add_forces` adds to each coupled control volume [m/s]. Local.
   virtual std::vector<double> coupled_force(double time, double dt) const = 0;
   /// Null if the fluid is inviscid: then no viscous solve exists.
   virtual std::unique_ptr<ViscousSystem<dim>> viscous_system() const { return nullptr; }
-  /// u* := solution on free velocities; returns the impulse of walls, open sides and the internal couple
-  /// of the scheme over dt, each computed from its own tractions, global.
+  /// u* := solution on free velocities; returns the impulse of walls, open sides and the internal
+  /// couple of the scheme over dt, each computed from its own tractions, global.
   virtual Momentum<dim> accept_viscous(const Vector& solution, double dt);
   virtual void adopt_advection_velocity() = 0;  ///< u_ADV := u* (end of F2)
-  /// F3: u* := u^n carried along u_ADV, and all scalars; rays stop at the moving surfaces and see only
-  /// samples on their own side. Called before `set_geometry` of the new surfaces.
+  /// F3: u* := u^n carried along u_ADV, and all scalars; rays stop at the moving surfaces and see
+  /// only samples on their own side. Called before `set_geometry` of the new surfaces.
   virtual void advect(double time, double dt, const MovingSurface<dim>& surface) = 0;
-  /// Gives values to samples that a surface swept over or uncovered, from visible neighbours. Called after
-  /// `set_geometry` of the new surfaces.
+  /// Gives values to samples that a surface swept over or uncovered, from visible neighbours.
+  /// Called after `set_geometry` of the new surfaces.
   virtual void revalidate(const MovingSurface<dim>& surface) = 0;
   virtual void accept() = 0;  ///< u^n := u* (end of the step)
 
@@ -145,12 +153,14 @@ class FluidDiscretization : public PlugIn {
   virtual double kinetic_energy() const = 0;              ///< of u* on free faces [J], global
   /// Impulse of walls and open sides through their own pressure [kg m/s], global.
   virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
-  virtual double fluid_volume() const = 0;                ///< of active cells [m^dim], global
+  virtual double fluid_volume() const = 0;  ///< of active cells [m^dim], global
 };
 
 template <int dim>
 Momentum<dim> FluidDiscretization<dim>::accept_viscous(const Vector&, double) {
   return {};
 }
+template <int dim>
+void FluidDiscretization<dim>::add_frame(std::vector<BoxFrame>&) const {}
 
 }  // namespace lockstep
