@@ -1,0 +1,205 @@
+#include "output/frames.hpp"
+
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "base/errors.hpp"
+#include "output/atomic_file.hpp"
+#include "output/xdmf.hpp"
+
+namespace lockstep {
+
+namespace fs = std::filesystem;
+
+namespace {
+Communicator serial_communicator() {
+  return Teuchos::rcp(new Teuchos::SerialComm<int>());
+}
+
+/// Vectors get three components, because ParaView knows no others.
+std::vector<double> padded(const std::vector<double>& values, int n_components) {
+  std::vector<double> result;
+  const std::size_t n = values.size() / n_components;
+  result.reserve(3 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      result.push_back(c < n_components ? values[i * n_components + c] : 0.0);
+    }
+  }
+  return result;
+}
+
+/// What a file system call could not do, as our kind of error.
+template <typename Action>
+std::string attempt(const Action& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+}  // namespace
+
+FrameWriter::FrameWriter(const Communicator& comm, const std::string& directory,
+                         const BoxStorage& storage)
+    : comm_(comm), directory_(directory), storage_(storage) {
+  check_input(storage.compression_level >= 0 && storage.compression_level <= 9,
+              "The compression level of frames is {}; it must lie between 0 and 9.",
+              storage.compression_level);
+}
+
+std::string FrameWriter::frame_path(const std::string& name) const {
+  return directory_ + "/frames/" + name + ".h5";
+}
+
+void FrameWriter::start() {
+  resume(-std::numeric_limits<double>::infinity());
+}
+
+void FrameWriter::resume(double time) {
+  std::string failure;
+  if (is_root(comm_)) {
+    failure = attempt([&] {
+      fs::create_directories(directory_ + "/frames");
+      std::vector<Entry> found = find_entries();
+      const auto kept_end = std::find_if(found.begin(), found.end(),
+                                         [&](const Entry& entry) { return entry.time > time; });
+      entries_.assign(found.begin(), kept_end);
+      write_index();
+      for (auto entry = kept_end; entry != found.end(); ++entry) {
+        fs::remove(frame_path(entry->name));
+      }
+    });
+  }
+  throw_on_all(comm_, failure, static_cast<int>(ExitCode::output_failed));
+  share_state();
+}
+
+std::vector<FrameWriter::Entry> FrameWriter::find_entries() const {
+  std::vector<Entry> found;
+  for (const fs::directory_entry& item : fs::directory_iterator(directory_ + "/frames")) {
+    const std::string name = item.path().stem();
+    if (item.path().extension() == ".part") {
+      fs::remove(item.path());
+    } else if (name.rfind("frame-", 0) == 0 && item.path().extension() == ".h5") {
+      const Hdf5File file = Hdf5File::open(serial_communicator(), item.path());
+      found.push_back({name, file.read_attribute<long long>("/", "step"),
+                       file.read_attribute<double>("/", "time"), file.read_text("xdmf")});
+    }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Entry& a, const Entry& b) { return a.time < b.time; });
+  return found;
+}
+
+void FrameWriter::write(long long step, double time, const std::vector<BoxFrame>& boxes,
+                        const std::vector<SurfaceFrame>& surfaces) {
+  const std::string name = fmt::format("frame-{:06}", n_frames_);
+  check_output(time > last_time_, "Frame at {} s is not later than the last one at {} s.", time,
+               last_time_);
+  Hdf5File file = Hdf5File::create(comm_, frame_path(name));
+  file.write_attribute<double>("/", "time", time);
+  file.write_attribute<long long>("/", "step", step);
+  const std::string relative = "frames/" + name + ".h5";
+  std::string grids;
+  for (const BoxFrame& box : boxes) {
+    write_box(file, box);
+    grids += xdmf::box_grid(box, relative, storage_.precision);
+  }
+  for (const SurfaceFrame& surface : surfaces) {
+    write_surface(file, surface);
+    grids += xdmf::surface_grid(surface, relative, storage_.precision);
+  }
+  const std::string xdmf_text = xdmf::frame(time, grids);
+  file.write_text("xdmf", xdmf_text);
+  file.close();
+  std::string failure;
+  if (is_root(comm_)) {
+    entries_.push_back({name, step, time, xdmf_text});
+    failure = attempt([&] { write_index(); });
+  }
+  throw_on_all(comm_, failure, static_cast<int>(ExitCode::output_failed));
+  share_state();
+}
+
+void FrameWriter::write_box(Hdf5File& file, const BoxFrame& box) const {
+  const std::string group = "/" + xdmf::stored_name(box.name);
+  file.create_group(group);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string letter(1, "xyz"[axis]);
+    file.write_attribute<double>(group, "origin_" + letter, box.origin[axis]);
+    file.write_attribute<double>(group, "spacing_" + letter, box.spacing[axis]);
+  }
+  std::size_t n_cells = 0;
+  for (const CellBlock& block : box.blocks) {
+    n_cells += std::size_t(block.size[0]) * block.size[1] * block.size[2];
+  }
+  for (const BoxField& field : box.fields) {
+    std::vector<double> values(n_cells * field.n_components);
+    double* next = values.data();
+    for (std::size_t i = 0; i < box.blocks.size(); ++i) {
+      const CellBlock& block = box.blocks[i];
+      field.fill(i, next);
+      next += std::size_t(block.size[0]) * block.size[1] * block.size[2] * field.n_components;
+    }
+    const std::string dataset = group + "/" + xdmf::stored_name(field.name);
+    file.write_box(dataset, box.n_cells, field.n_components, box.blocks, values, storage_);
+    file.write_attribute<std::string>(dataset, "unit", field.unit);
+  }
+}
+
+void FrameWriter::write_surface(Hdf5File& file, const SurfaceFrame& surface) const {
+  const std::string group = "/solids/" + xdmf::stored_name(surface.name);
+  file.create_group(group);
+  file.write_replicated(group + "/vertices", padded(surface.vertices, surface.dimension), 3);
+  file.write_attribute<std::string>(group + "/vertices", "unit", "m");
+  file.write_replicated(group + "/simplices", surface.simplices, surface.simplex_size);
+  for (const SurfaceField& field : surface.fields) {
+    const std::size_t n_entities = field.place == SurfaceField::Place::vertices
+                                       ? surface.vertices.size() / surface.dimension
+                                       : surface.simplices.size() / surface.simplex_size;
+    const bool fits = !is_root(comm_) || field.values.size() == n_entities * field.n_components;
+    throw_on_all(comm_,
+                 fits ? ""
+                      : fmt::format("Field '{}' of surface '{}' has {} values for {} places.",
+                                    field.name, surface.name, field.values.size(), n_entities),
+                 static_cast<int>(ExitCode::output_failed));
+    const std::string dataset = group + "/" + xdmf::stored_name(field.name);
+    const bool scalar = field.n_components == 1;
+    file.write_replicated(dataset, scalar ? field.values : padded(field.values, field.n_components),
+                          scalar ? 1 : 3, storage_.precision);
+    file.write_attribute<std::string>(dataset, "unit", field.unit);
+  }
+}
+
+void FrameWriter::write_index() const {
+  std::vector<double> times;
+  std::vector<long long> steps;
+  std::string grids;
+  Hdf5File index = Hdf5File::create(serial_communicator(), directory_ + "/frames.h5");
+  for (const Entry& entry : entries_) {
+    times.push_back(entry.time);
+    steps.push_back(entry.step);
+    grids += entry.xdmf;
+    index.link_external(entry.name, "frames/" + entry.name + ".h5", "/");
+  }
+  index.write_replicated("times", times);
+  index.write_attribute<std::string>("times", "unit", "s");
+  index.write_replicated("steps", steps);
+  index.close();
+  write_file_atomically(directory_ + "/frames.xmf", xdmf::document(grids));
+}
+
+void FrameWriter::share_state() {
+  double state[2] = {
+      static_cast<double>(entries_.size()),
+      entries_.empty() ? -std::numeric_limits<double>::infinity() : entries_.back().time};
+  MPI_Bcast(state, 2, MPI_DOUBLE, 0, raw_communicator(comm_));
+  n_frames_ = static_cast<int>(state[0]);
+  last_time_ = state[1];
+}
+
+}  // namespace lockstep

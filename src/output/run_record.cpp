@@ -1,0 +1,46 @@
+#include "output/run_record.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.hpp"
+#include "output/on_root.hpp"
+
+namespace lockstep {
+
+namespace fs = std::filesystem;
+
+void create_output_directory(const Communicator& comm, const std::string& directory) {
+  on_root(comm, [&] {
+    check_input(!directory.empty(), "The output folder has no name: give one with --output.");
+    std::error_code error;
+    check_input(!fs::exists(directory, error) || fs::is_directory(directory, error),
+                "The output folder '{}' is a file: choose another --output.", directory);
+    fs::create_directories(directory, error);
+    check_input(!error, "The output folder '{}' cannot be created: {}. Choose another --output.",
+                directory, error.message());
+    check_input(access(directory.c_str(), W_OK | X_OK) == 0,
+                "The output folder '{}' cannot be written to: {}. Choose another --output.",
+                directory, std::strerror(errno));
+  });
+}
+
+void record_input(const Communicator& comm, const std::string& directory,
+                  const std::string& input_path, const std::string& used_parameters) {
+  on_root(comm, [&] {
+    write_file_atomically(directory + "/input.xml", read_whole_file(input_path));
+    write_file_atomically(directory + "/used-parameters.xml", used_parameters);
+  });
+}
+
+void write_summary(const Communicator& comm, const std::string& directory,
+                   const nlohmann::ordered_json& summary) {
+  on_root(comm,
+          [&] { write_file_atomically(directory + "/summary.json", summary.dump(2) + "\n"); });
+}
+
+}  // namespace lockstep

@@ -1,0 +1,36 @@
+#include "output/signals.hpp"
+
+#include <signal.h>
+
+#include <csignal>
+
+namespace lockstep {
+
+namespace {
+volatile std::sig_atomic_t received_signal = 0;
+volatile std::sig_atomic_t n_received = 0;
+
+void note_signal(int signal_number) {
+  received_signal = signal_number;
+  n_received = n_received + 1;
+  if (n_received >= 3) {
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+  }
+}
+}  // namespace
+
+void install_signal_handlers() {
+  struct sigaction action {};
+  action.sa_handler = note_signal;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+}
+
+int stop_requested(const Communicator& comm) {
+  return static_cast<int>(max_all(comm, static_cast<GlobalIndex>(received_signal)));
+}
+
+}  // namespace lockstep
