@@ -8,7 +8,7 @@ namespace lockstep {
 template <int dim>
 ClippedSimplex<dim> clip_to_box(const std::array<Point<dim>, dim>& corners, const Box<dim>& box) {
   ClippedSimplex<dim> clipped;
-  ConvexPart<dim> part(corners);
+  ConvexPart<dim, true> part(corners);
   for (int a = 0; a < dim; ++a) {
     part.keep(a, box.min()[a], +1);
     part.keep(a, box.max()[a], -1);

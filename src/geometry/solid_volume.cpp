@@ -25,7 +25,7 @@ struct Flux {
   double area = 0, moment = 0;
 };
 template <int dim>
-Flux flux_through(const ConvexPart<dim>& part, int axis, double offset) {
+Flux flux_through(const ConvexPart<dim, false>& part, int axis, double offset) {
   Flux flux;
   for (int i = 1; i + dim - 2 < part.n_vertices(); ++i) {
     std::array<Point<dim>, dim> points;
@@ -45,7 +45,7 @@ Flux flux_through(const ConvexPart<dim>& part, int axis, double offset) {
 /// +-height at its exit and stays constant beyond.
 template <int dim>
 double column_flux(const std::array<Point<dim>, dim>& corners, const Column<dim>& column) {
-  ConvexPart<dim> part(corners);
+  ConvexPart<dim, false> part(corners);
   for (int a = 0; a < dim; ++a) {
     if (a == column.axis)
       continue;
@@ -55,7 +55,7 @@ double column_flux(const std::array<Point<dim>, dim>& corners, const Column<dim>
   part.keep(column.axis, column.root(), column.side);
   if (part.n_vertices() < dim)
     return 0;
-  ConvexPart<dim> within = part;
+  ConvexPart<dim, false> within = part;
   within.keep(column.axis, column.exit(), -column.side);
   // A part in the exit plane itself belongs to one of the two halves only.
   bool any_beyond = false;

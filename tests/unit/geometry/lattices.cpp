@@ -141,8 +141,9 @@ double clipped_sum(const std::array<Point<dim>, dim>& corners, double h, Point<d
     const auto part = clip_to_box<dim>(corners, {lower, lower + Point<dim>::Constant(h)});
     sum += part.measure;
     moment += part.measure * part.centroid;
-    if (part.measure > 0)
+    if (part.measure > 0) {
       EXPECT_NEAR(part.barycentric.sum(), 1, 1e-14);
+    }
   }
   return sum;
 }
