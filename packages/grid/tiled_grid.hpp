@@ -18,6 +18,16 @@ using CellField = std::vector<double>;
 template <int dim>
 using FaceField = std::array<CellField, dim>;
 
+/// The cells of one tile along x, ids begin .. begin + n - 1, and what lies around them:
+/// neighbors[0] and [1] are the single cells before the first and after the last; for the other
+/// axes neighbors[2 * axis + side] is the first cell of the neighbouring row, whose ids run along
+/// with the row's. -1 where there is nothing.
+template <int dim>
+struct CellRow {
+  int begin = 0, n = 0;
+  std::array<int, 2 * dim> neighbors{};
+};
+
 /// A sparse Cartesian grid in tiles, distributed over the ranks. A rank stores whole tiles: first
 /// those it owns, along the Morton curve, then ghost tiles (copies of other ranks' tiles within
 /// reach), grouped by owner. The id of a cell is `tile * tile_volume + offset` (offset x fastest),
@@ -120,6 +130,9 @@ class TiledGrid {
   /// domain, and with `store_upper_face` of the layer above.
   template <typename Function>
   void for_each_owned_face(int axis, const Function& f) const;
+  /// Calls f(row) for the rows of owned cells of the domain: the fastest way to apply a stencil.
+  template <typename Function>
+  void for_each_owned_row(const Function& f) const;
   /// Calls f(cell, neighbors) for the owned cells of the domain; neighbors[2 * axis + side] is
   /// neighbor(cell, axis, side). Faster than asking for each.
   template <typename Function>
@@ -154,8 +167,6 @@ class TiledGrid {
   static void for_each_offset(const Index<dim>& extent, const Function& f);
   template <typename Function>
   void for_each_cell_of_tiles(int begin, int end, const Function& f) const;
-  template <typename Function>
-  void visit_row_with_neighbors(const Tile& tile, int row, const Function& f) const;
 
   TileLattice<dim> lattice_;
   Communicator comm_;

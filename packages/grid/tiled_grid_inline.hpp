@@ -176,48 +176,43 @@ inline void TiledGrid<dim>::for_each_owned_face(int axis, const Function& f) con
 
 template <int dim>
 template <typename Function>
-inline void TiledGrid<dim>::visit_row_with_neighbors(const Tile& tile, int row,
-                                                     const Function& f) const {
-  const auto visit_asking = [&](int x) {
-    std::array<int, 2 * dim> neighbors{};
-    for (int i = 0; i < 2 * dim; ++i)
-      neighbors[i] = neighbor(row + x, i / 2, i % 2);
-    f(row + x, neighbors);
-  };
-  // Within the row, what a neighbour across it adds to the cell id is the same for all cells.
-  std::array<int, 2 * dim> shift{-1, 1};
-  bool complete = true;
-  for (int i = 2; i < 2 * dim; ++i) {
-    const int other = neighbor(row, i / 2, i % 2);
-    complete = complete && other >= 0;
-    shift[i] = other - row;
+inline void TiledGrid<dim>::for_each_owned_row(const Function& f) const {
+  for (int t = 0; t < n_owned_tiles_; ++t) {
+    Index<dim> rows = tiles_[t].domain_extent;
+    const int n = rows[0];
+    if (n == 0)
+      continue;
+    rows[0] = 1;
+    const int first = t << log_tile_volume<dim>;
+    for_each_offset(rows, [&](int offset) {
+      CellRow<dim> row;
+      row.begin = first + offset;
+      row.n = n;
+      row.neighbors[0] = neighbor(row.begin, 0, 0);
+      row.neighbors[1] = neighbor(row.begin + n - 1, 0, 1);
+      for (int i = 2; i < 2 * dim; ++i)
+        row.neighbors[i] = neighbor(row.begin, i / 2, i % 2);
+      f(row);
+    });
   }
-  const int n = tile.domain_extent[0];
-  const int begin = complete ? 1 : n, end = complete ? n - 1 : n;
-  for (int x = 0; x < std::min(begin, n); ++x)
-    visit_asking(x);
-  for (int x = begin; x < end; ++x) {
-    std::array<int, 2 * dim> neighbors{};
-    for (int i = 0; i < 2 * dim; ++i)
-      neighbors[i] = row + x + shift[i];
-    f(row + x, neighbors);
-  }
-  for (int x = std::max(begin, end); x < n; ++x)
-    visit_asking(x);
 }
 
 template <int dim>
 template <typename Function>
 inline void TiledGrid<dim>::for_each_owned_cell_with_neighbors(const Function& f) const {
-  for (int t = 0; t < n_owned_tiles_; ++t) {
-    const Tile& tile = tiles_[t];
-    Index<dim> rows = tile.domain_extent;
-    if (rows[0] == 0)
-      continue;
-    rows[0] = 1;
-    const int first = t << log_tile_volume<dim>;
-    for_each_offset(rows, [&](int offset) { visit_row_with_neighbors(tile, first + offset, f); });
-  }
+  for_each_owned_row([&](const CellRow<dim>& row) {
+    std::array<int, 2 * dim> step{};
+    for (int i = 2; i < 2 * dim; ++i)
+      step[i] = row.neighbors[i] >= 0 ? 1 : 0;
+    for (int x = 0; x < row.n; ++x) {
+      std::array<int, 2 * dim> neighbors{};
+      neighbors[0] = x > 0 ? row.begin + x - 1 : row.neighbors[0];
+      neighbors[1] = x < row.n - 1 ? row.begin + x + 1 : row.neighbors[1];
+      for (int i = 2; i < 2 * dim; ++i)
+        neighbors[i] = row.neighbors[i] + step[i] * x;
+      f(row.begin + x, neighbors);
+    }
+  });
 }
 
 }  // namespace lockstep

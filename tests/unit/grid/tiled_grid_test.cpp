@@ -84,6 +84,14 @@ TEST(TiledGrid, IsConsistentOnAPeriodicSquare) {
   expect_sound(TiledGrid<2>(square(5, true), world()));
 }
 
+TEST(TiledGrid, ReachCrossesAPartialTileOfAPeriodicAxis) {
+  // Below cell 0 lie the 15 cells of the last tile and then one cell, 63, of the tile before it.
+  GridDescription<2> description;
+  description.n_cells = {79, 1};
+  description.periodic = {true, false};
+  expect_sound(TiledGrid<2>(description, world()));
+}
+
 TEST(TiledGrid, NumbersAreLexicographicInTheLatticeWhateverTheRanks) {
   const TiledGrid<2> grid(channel_20x13(), world());
   for_each_stored_lattice_cell(grid, [&](int c) {
