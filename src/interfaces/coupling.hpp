@@ -9,11 +9,13 @@ class SolidSystem;
 
 /// How fluid and solids exchange momentum: from the fluid's coupled control volumes and the solids'
 /// velocity rows it makes B^T, the added mass and momentum, and hands velocities back. Its
-/// `open_fraction` decides which control volumes it takes. Geometry is frozen between two `assemble`.
+/// `open_fraction` decides which control volumes it takes. Geometry is frozen between two
+/// `assemble`.
 template <int dim>
 class Coupling : public PlugIn, public OpenFractionRule<dim> {
  public:
-  /// Computes everything that depends on the geometry only. Collective.
+  /// Computes everything that depends on the geometry only; `surface` must outlive the next call.
+  /// Collective.
   virtual void assemble(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
                         const SurfaceSnapshot<dim>& surface) = 0;
 
@@ -23,34 +25,48 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
 
   /// Velocity of prescribed solids, evaluated at each coupled volume's share of them.
   enum class Motion { present, effective };
-  /// Fixes the prescribed velocities W_k V_k used below: at the present time, or the effective ones (F2).
+  /// Fixes the prescribed velocities W_k V_k used below: at the present time, or the effective ones
+  /// (F2).
   virtual void set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) = 0;
 
   /// rhs += V G_c^T W_k V_k: what prescribed solids push into row 1 [m^dim/s]. Collective.
   virtual void add_prescribed_divergence(Vector& rhs) const = 0;
-  /// rhs += W_d^T M_F (u - W_k V_k): fluid momentum lumped on the solids, row 2 [kg m/s]. Collective.
-  virtual void add_lumped_momentum(const std::vector<double>& coupled_velocity, Vector& rhs) const = 0;
+  /// rhs += W_d^T M_F (u - W_k V_k): fluid momentum lumped on the solids, row 2 [kg m/s] (with
+  /// diagonal lumping each solid carries its own share and W_k V_k stays out). Collective.
+  virtual void add_lumped_momentum(const std::vector<double>& coupled_velocity,
+                                   Vector& rhs) const = 0;
   /// W_d V_S + W_k V_k for each coupled volume [m/s]. Collective.
   virtual std::vector<double> velocity(const Vector& solid_velocity) const = 0;
   /// The same with every solid's effective velocity (F2); no unknowns. Collective.
   virtual std::vector<double> effective_velocity(const SolidSystem<dim>& solids) const = 0;
-  /// V G_c^T u_c: minus the outflow through coupled volumes of given velocity [m^dim/s]. Collective.
+  /// V G_c^T u_c: minus the outflow through coupled volumes of given velocity [m^dim/s].
+  /// Collective.
   virtual void add_divergence(const std::vector<double>& coupled_velocity, Vector& rhs) const = 0;
 
   /// M_F per coupled volume, after volume subtraction and balancing [kg]. Local.
   virtual const std::vector<double>& fluid_mass() const = 0;
-  /// Share of each coupled volume that prescribed solids hold, 0..1. Local.
-  virtual const std::vector<double>& prescribed_share() const = 0;
-  /// Buoyant impulse per dt on solids whose displaced volume the grid does not see right, as generalized
-  /// force for a given fluid acceleration field g [m/s^2]; external in the ledger. Collective.
+  /// Buoyant impulse per dt on solids whose displaced volume the grid does not see right, as
+  /// generalized force for a given fluid acceleration field g [m/s^2]; external in the ledger.
+  /// Collective.
   virtual void add_unseen_buoyancy(const Point<dim>& gravity, double dt, Vector& rhs) const = 0;
 
-  /// Row of the dynamic solids (ids of SolidSystem's map) and the prescribed velocity at a viscous link.
+  /// Impulse that prescribed solids gave to the fluid of their share of the coupled volumes in a
+  /// solve, face by face: mass times velocity change plus area times pressure jump. Global.
+  /// Collective.
+  virtual Momentum<dim> prescribed_impulse(const std::vector<double>& velocity_before,
+                                           const std::vector<double>& velocity_after,
+                                           const Vector& scaled_pressure) const = 0;
+
+  /// Row of the dynamic solids (ids of SolidSystem's map) and the prescribed velocity at a viscous
+  /// link.
   struct LinkRow {
     std::vector<GlobalIndex> dofs;
     std::vector<double> weights;
-    double prescribed = 0;  ///< [m/s]
+    double prescribed = 0;                     ///< velocity that prescribed solids contribute [m/s]
+    double prescribed_share = 0;               ///< their part of the link, 0..1
+    Point<dim> position = Point<dim>::Zero();  ///< where the link pulls on the solid [m]
   };
+  /// `assemble` and the surface it was given must still be valid. Local.
   virtual void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
                         LinkRow& row) const = 0;
 };

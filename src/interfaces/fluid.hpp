@@ -69,8 +69,7 @@ struct PressureRegions {
 /// coefficient * (u_row - v_solid) [N] on both, equal and opposite.
 template <int dim>
 struct ViscousLink {
-  int row = -1;                            ///< local row of `ViscousSystem::stiffness`
-  Point<dim> center = Point<dim>::Zero();  ///< of the free velocity [m]
+  int row = -1;             ///< local row of `ViscousSystem::stiffness`
   int coupled_volume = -1;  ///< >= 0: the neighbour is this coupled control volume (index), W V_S
   /// The neighbour is a coupled control volume of another rank, W V_S (`coupled_volume` is -1).
   std::shared_ptr<const ControlVolume<dim>> remote_volume;
@@ -154,11 +153,20 @@ class FluidDiscretization : public PlugIn {
   /// Impulse of walls and open sides through their own pressure [kg m/s], global.
   virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
   virtual double fluid_volume() const = 0;  ///< of active cells [m^dim], global
+  /// p̂ of the last accepted step on the present unknowns, 0 where there was none: the initial guess
+  /// of the solves. Default: zero.
+  virtual RCP<Vector> last_scaled_pressure() const;
+  /// Adds its cell-centred fields to a frame. Default: none.
+  virtual void add_frame(std::vector<BoxFrame>& boxes) const;
 };
 
 template <int dim>
 Momentum<dim> FluidDiscretization<dim>::accept_viscous(const Vector&, double) {
   return {};
+}
+template <int dim>
+RCP<Vector> FluidDiscretization<dim>::last_scaled_pressure() const {
+  return make_vector(pressure_map());
 }
 template <int dim>
 void FluidDiscretization<dim>::add_frame(std::vector<BoxFrame>&) const {}

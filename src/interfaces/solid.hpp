@@ -11,8 +11,8 @@ namespace lockstep {
 /// dim rows over generalized velocities: v(x) = sum_k coefficient_k V_{dof_k}.
 template <int dim>
 struct VelocityRow {
-  std::vector<GlobalIndex> dofs;          ///< ids in `SolidModel::dof_map`
-  std::vector<Point<dim>> coefficients;   ///< one column (a vector of space) per dof
+  std::vector<GlobalIndex> dofs;         ///< ids in `SolidModel::dof_map`
+  std::vector<Point<dim>> coefficients;  ///< one column (a vector of space) per dof
   void clear() {
     dofs.clear();
     coefficients.clear();
@@ -23,16 +23,16 @@ struct VelocityRow {
 template <int dim>
 struct SolidState {
   std::string name;
-  Point<dim> center_of_mass = Point<dim>::Zero();                   ///< [m]
-  Point<dim> velocity = Point<dim>::Zero();                         ///< of the centre of mass [m/s]
-  AngularVector<dim> angular_velocity = AngularVector<dim>::Zero(); ///< [rad/s]
-  double mass = 0;                                                  ///< [kg]; 0 if prescribed
-  double volume = 0;                                                ///< [m^dim]; 0 for shells
-  double kinetic_energy = 0, elastic_energy = 0;                    ///< [J]
+  Point<dim> center_of_mass = Point<dim>::Zero();  ///< [m]
+  Point<dim> velocity = Point<dim>::Zero();        ///< of the centre of mass [m/s]
+  AngularVector<dim> angular_velocity = AngularVector<dim>::Zero();  ///< [rad/s]
+  double mass = 0;                                                   ///< [kg]; 0 if prescribed
+  double volume = 0;                                                 ///< [m^dim]; 0 for shells
+  double kinetic_energy = 0, elastic_energy = 0;                     ///< [J]
 };
 
-/// All solids of one kind (all rigid bodies, all deformables, ...): their unknowns, mass, forces and
-/// surfaces. Knows nothing of the fluid and nothing of other models.
+/// All solids of one kind (all rigid bodies, all deformables, ...): their unknowns, mass, forces
+/// and surfaces. Knows nothing of the fluid and nothing of other models.
 ///
 /// Generalized velocities V_S live on `dof_map` (one-to-one; ranks may be empty, SolidSystem pads).
 /// Prescribed (kinematic, static) solids have surfaces but no dofs.
@@ -40,19 +40,24 @@ template <int dim>
 class SolidModel : public PlugIn {
  public:
   // Surface. Local, replicated on all ranks.
-  virtual const std::vector<SolidDescription>& solids() const = 0;  ///< ranges count from 0 in this model
-  virtual const SurfaceMesh<dim>& surface() const = 0;              ///< at the present positions
+  virtual const std::vector<SolidDescription>& solids()
+      const = 0;                                        ///< ranges count from 0 in this model
+  virtual const SurfaceMesh<dim>& surface() const = 0;  ///< at the present positions
 
-  /// The rows that move a point of the surface (Section 8): for a rigid body those of the given x, so
-  /// that rigid motions of a voxel surface are discretely divergence-free; for a deformable body the
-  /// barycentric weights of the simplex' vertices. Empty for prescribed solids. Replaces `row`. Local.
+  /// The rows that move a point of the surface (Section 8): for a rigid body those of the given x,
+  /// so that rigid motions of a voxel surface are discretely divergence-free; for a deformable body
+  /// the barycentric weights of the simplex' vertices. Empty for prescribed solids. Replaces `row`.
+  /// Local.
   virtual void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                             VelocityRow<dim>& row) const = 0;
-  /// Velocity [m/s] of a prescribed solid's surface at the present time; zero for dynamic ones. Local.
-  virtual Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const = 0;
+  /// Velocity [m/s] of a prescribed solid's surface at the present time; zero for dynamic ones.
+  /// Local.
+  virtual Point<dim> prescribed_velocity(const SurfacePoint<dim>& point,
+                                         const Point<dim>& x) const = 0;
   /// Displacement of the last `move` over its dt [m/s] at x^n (F2): for a rigid motion the twist
   /// log(relative pose)/dt at x; for nodes (x^{n+1} - x^n)/dt. Prescribed solids included. Local.
-  virtual Point<dim> effective_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const = 0;
+  virtual Point<dim> effective_velocity(const SurfacePoint<dim>& point,
+                                        const Point<dim>& x) const = 0;
 
   // Operators with the geometry frozen.
   virtual RCP<const Map> dof_map() const = 0;
@@ -62,18 +67,20 @@ class SolidModel : public PlugIn {
   virtual RCP<const LinearOperator> implicit_force(double dt) const;
   /// momentum = M_S V_S* = M_S V^n + dt (explicit forces, gravity included) [kg m/s]. Collective.
   virtual void explicit_momentum(double time, double dt, Vector& momentum) const = 0;
-  /// Total of the external impulses (gravity, loads) inside explicit_momentum, for the ledger. Global.
+  /// Total of the external impulses (gravity, loads) inside explicit_momentum, for the ledger.
+  /// Global.
   virtual Momentum<dim> external_impulse(double time, double dt) const = 0;
   /// Dofs held at zero velocity (ids in dof_map, those of this rank). Local.
   virtual std::vector<GlobalIndex> locked_dofs() const { return {}; }
-  /// Columns: the dof vectors of the dim unit translations and the rotations about the origin. The
-  /// momentum of a generalized momentum q is rigid_modes^T q.
-  virtual RCP<const MultiVector> rigid_modes() const = 0;
+  /// Linear and angular momentum (about the origin) of each solid for a generalized momentum q on
+  /// dof_map; zero for prescribed ones. Every rank gets all. Collective.
+  virtual std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const = 0;
 
   // State.
   virtual RCP<const Vector> velocity() const = 0;         ///< V_S
   virtual void set_velocity(const Vector& velocity) = 0;  ///< V_S := velocity (end of S2, contact)
-  /// x := x + dt * velocity from the stored positions (S1), and prescribed solids to time + dt. Collective.
+  /// x := x + dt * velocity from the stored positions (S1), and prescribed solids to time + dt.
+  /// Collective.
   virtual void move(const Vector& velocity, double time, double dt) = 0;
   virtual std::vector<SolidState<dim>> states() const = 0;  ///< one per solid, on every rank
   /// Largest stable step of explicitly integrated forces [s]. Default: none.

@@ -12,12 +12,14 @@ namespace lockstep {
 ///   [  A    -B ] [ p̂   ]   [  pressure rhs ]
 ///   [ -B^T  -C ] [ V_S ] = [ -solid rhs    ]
 ///
-/// with A = V G_f^T rho^-1 G_f, B = V G_c^T W, C = M̃_S - dt D (SPD). The solid block may be absent (no
-/// dynamic solids): then `solid_block` and `coupling_transposed` are null and the system is A p̂ = rhs.
+/// with A = V G_f^T rho^-1 G_f, B = V G_c^T W, C = M̃_S - dt D (SPD). The solid block may be absent
+/// (no dynamic solids): then `solid_block` and `coupling_transposed` are null and the system is A p̂
+/// = rhs.
 struct BlockSystem {
   RCP<const LinearOperator> pressure_block;  ///< A
-  RCP<const CrsMatrix> coupling_transposed;  ///< B^T, solid dofs x pressure unknowns. B is never stored.
-  RCP<const LinearOperator> solid_block;     ///< C
+  RCP<const CrsMatrix>
+      coupling_transposed;  ///< B^T, solid dofs x pressure unknowns. B is never stored.
+  RCP<const LinearOperator> solid_block;  ///< C
   /// Orthonormal basis of the null space over (p̂, V_S = 0); empty for a regular system.
   std::vector<RCP<const Vector>> null_space;
   /// Null vectors of A alone (regions without a Dirichlet face), for preconditioners. Orthonormal.
@@ -36,10 +38,10 @@ struct BlockVector {
   RCP<Vector> solid;
 };
 
-/// What a solve has to reach: each block's residual, scaled to that block's own right-hand side (or to
-/// the largest term of its rows, if that is larger), at most `tolerance`.
+/// What a solve has to reach: each block's residual, scaled to that block's own right-hand side (or
+/// to the largest term of its rows, if that is larger), at most `tolerance`.
 struct SolveRequest {
-  std::string name;         ///< "S1", "F2", "S2": for messages
+  std::string name;  ///< "S1", "F2", "S2": for messages
   double tolerance = 1e-8;
 };
 
@@ -54,14 +56,16 @@ struct SolveReport {
 /// A way to solve Eq. 16.
 class SolverStrategy : public PlugIn {
  public:
-  /// Builds or reuses what depends on the operators (preconditioners, factorisations), judged by the
-  /// stamps. Throws SolveError with a sentence if the system is outside the strategy's domain. Collective.
+  /// Builds or reuses what depends on the operators (preconditioners, factorisations), judged by
+  /// the stamps. Throws SolveError with a sentence if the system is outside the strategy's domain.
+  /// Collective.
   virtual void prepare(const BlockSystem& system) = 0;
-  /// Solves for `solution`, whose content is the initial guess (an exact one is fine). Throws SolveError
-  /// with the numbers if the request is not reached. Systems without solid take a preconditioned CG.
-  /// Right-hand sides must be compatible with the null space (the caller projects). Collective.
-  virtual SolveReport solve(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
-                            const SolveRequest& request) = 0;
+  /// Solves for `solution`, whose content is the initial guess (an exact one is fine). Throws
+  /// SolveError with the numbers if the request is not reached. Systems without solid take a
+  /// preconditioned CG. Right-hand sides must be compatible with the null space (the caller
+  /// projects). Collective.
+  virtual SolveReport solve(const BlockSystem& system, const BlockVector& rhs,
+                            BlockVector& solution, const SolveRequest& request) = 0;
 };
 
 }  // namespace lockstep

@@ -1,0 +1,274 @@
+#include "mixedface/lumping.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/solid_volume.hpp"
+
+namespace lockstep {
+
+template <int dim>
+std::vector<double> fluid_masses(const std::vector<ControlVolume<dim>>& volumes,
+                                 const SurfaceSnapshot<dim>& surface, bool whole_cell) {
+  std::vector<double> masses(volumes.size());
+  for (std::size_t f = 0; f < volumes.size(); ++f) {
+    const double whole = volumes[f].box.volume();
+    const double solid = whole_cell ? 0 : solid_volume_in_box<dim>(surface, volumes[f].box);
+    masses[f] = volumes[f].density * std::max(0., whole - solid);
+  }
+  return masses;
+}
+
+namespace {
+
+/// Per solid and axis: normal matrix of (1, t), lumped mass and moments, displaced mass and
+/// moments, and whether every column of the solid closes (lower and upper face areas cancel).
+template <int dim>
+struct AxisBalance {
+  using Small = Eigen::Matrix<double, dim, dim>;
+  using Values = Eigen::Matrix<double, dim, 1>;
+  Small normal = Small::Zero();
+  Values displaced = Values::Zero();
+  double open_area = 0, area = 0;
+};
+
+/// (1, transverse coordinates relative to the solid's centre).
+template <int dim>
+Eigen::Matrix<double, dim, 1> moments_of(const Point<dim>& arm, int axis) {
+  Eigen::Matrix<double, dim, 1> m;
+  m[0] = 1;
+  for (int k = 1; k < dim; ++k)
+    m[k] = arm[(axis + k) % dim];
+  return m;
+}
+
+template <int dim>
+using SolidBalance = std::array<AxisBalance<dim>, dim>;
+
+template <int dim>
+std::vector<SolidBalance<dim>> accumulate(const std::vector<ControlVolume<dim>>& volumes,
+                                          const std::vector<std::vector<SurfaceShare<dim>>>& shares,
+                                          const std::vector<Point<dim>>& centers,
+                                          const std::vector<double>& masses,
+                                          const Communicator& comm) {
+  std::vector<SolidBalance<dim>> balances(centers.size());
+  for (std::size_t f = 0; f < volumes.size(); ++f) {
+    const ControlVolume<dim>& volume = volumes[f];
+    const int a = volume.direction;
+    for (const SurfaceShare<dim>& share : shares[f]) {
+      const Point<dim> arm = volume.center - centers[share.solid];
+      const auto m = moments_of<dim>(arm, a);
+      AxisBalance<dim>& balance = balances[share.solid][a];
+      balance.normal += share.weight * masses[f] * m * m.transpose();
+      // The discrete pressure p = x_a pushes with area (x_upper - x_lower) on the pair of cells.
+      for (int side = 0; side < 2; ++side) {
+        if (volume.sides[side].unknown == no_index)
+          continue;
+        const double sign = side == 0 ? -1 : 1;
+        const double height = volume.sides[side].center[a] - centers[share.solid][a];
+        balance.displaced += share.weight * volume.area * sign * height * m;
+        balance.open_area += share.weight * volume.area * sign;
+      }
+      balance.area += share.weight * volume.area;
+    }
+  }
+  std::vector<double> flat;
+  const int stride = dim * dim + dim + 2;
+  flat.reserve(balances.size() * dim * stride);
+  for (const auto& solid : balances) {
+    for (const auto& axis : solid) {
+      flat.insert(flat.end(), axis.normal.data(), axis.normal.data() + dim * dim);
+      flat.insert(flat.end(), axis.displaced.data(), axis.displaced.data() + dim);
+      flat.push_back(axis.open_area);
+      flat.push_back(axis.area);
+    }
+  }
+  if (!flat.empty())
+    sum_all(comm, flat.data(), static_cast<int>(flat.size()));
+  const double* value = flat.data();
+  for (auto& solid : balances) {
+    for (auto& axis : solid) {
+      std::copy(value, value + dim * dim, axis.normal.data());
+      std::copy(value + dim * dim, value + dim * dim + dim, axis.displaced.data());
+      axis.open_area = value[dim * dim + dim];
+      axis.area = value[dim * dim + dim + 1];
+      value += stride;
+    }
+  }
+  return balances;
+}
+
+template <int dim>
+SurfaceMesh<dim> surface_of(const SurfaceSnapshot<dim>& surface, const SolidDescription& solid) {
+  SurfaceMesh<dim> mesh;
+  mesh.vertices.assign(surface.mesh().vertices.begin() + solid.vertex_begin,
+                       surface.mesh().vertices.begin() + solid.vertex_end);
+  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+    auto simplex = surface.mesh().simplices[s];
+    for (int& vertex : simplex)
+      vertex -= solid.vertex_begin;
+    mesh.simplices.push_back(simplex);
+  }
+  return mesh;
+}
+
+/// True if `factor` keeps the masses of all faces of this solid and axis positive, on all ranks.
+template <int dim>
+bool stays_positive(const std::vector<ControlVolume<dim>>& volumes,
+                    const std::vector<std::vector<SurfaceShare<dim>>>& shares, int solid, int axis,
+                    const Point<dim>& center, const Eigen::Matrix<double, dim, 1>& factor,
+                    const std::vector<double>& masses, const Communicator& comm) {
+  double smallest = 1;
+  for (std::size_t f = 0; f < volumes.size(); ++f) {
+    if (volumes[f].direction != axis || masses[f] <= 0)
+      continue;
+    for (const SurfaceShare<dim>& share : shares[f]) {
+      if (share.solid != solid)
+        continue;
+      smallest =
+          std::min(smallest, 1 + factor.dot(moments_of<dim>(volumes[f].center - center, axis)));
+    }
+  }
+  return min_all(comm, smallest) > 0;
+}
+
+template <int dim>
+void scale_masses(const std::vector<ControlVolume<dim>>& volumes,
+                  const std::vector<std::vector<SurfaceShare<dim>>>& shares, int solid, int axis,
+                  const Point<dim>& center, const Eigen::Matrix<double, dim, 1>& factor,
+                  const std::vector<double>& original, std::vector<double>& masses) {
+  for (std::size_t f = 0; f < volumes.size(); ++f) {
+    if (volumes[f].direction != axis)
+      continue;
+    for (const SurfaceShare<dim>& share : shares[f]) {
+      if (share.solid != solid)
+        continue;
+      masses[f] += share.weight * original[f] *
+                   factor.dot(moments_of<dim>(volumes[f].center - center, axis));
+    }
+  }
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<UnseenMass<dim>> balance_masses(
+    const std::vector<ControlVolume<dim>>& volumes,
+    const std::vector<std::vector<SurfaceShare<dim>>>& shares, const SurfaceSnapshot<dim>& surface,
+    double density, const Communicator& comm, std::vector<double>& masses) {
+  const auto& solids = surface.solids();
+  std::vector<Point<dim>> centers(solids.size(), Point<dim>::Zero());
+  std::vector<double> solid_volumes(solids.size(), 0);
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    if (!solids[s].closed || solids[s].prescribed)
+      continue;
+    const MassProperties<dim> properties =
+        volume_properties<dim>(surface_of<dim>(surface, solids[s]));
+    centers[s] = properties.centroid;
+    solid_volumes[s] = properties.measure;
+  }
+  const auto balances = accumulate<dim>(volumes, shares, centers, masses, comm);
+  const std::vector<double> original = masses;
+  std::vector<UnseenMass<dim>> unseen;
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    if (!solids[s].closed || solids[s].prescribed)
+      continue;
+    UnseenMass<dim> left;
+    left.solid = static_cast<int>(s);
+    left.center = centers[s];
+    bool any_left = false;
+    for (int a = 0; a < dim; ++a) {
+      const AxisBalance<dim>& balance = balances[s][a];
+      // A column that ends at a wall has no lift of its own to balance.
+      if (std::abs(balance.open_area) > 1e-9 * balance.area)
+        continue;
+      using Values = Eigen::Matrix<double, dim, 1>;
+      Values excess = balance.normal.col(0) - density * balance.displaced;  // lumped minus wanted
+      excess[0] += density * solid_volumes[s];
+      const Values factor = balance.normal.completeOrthogonalDecomposition().solve(-excess);
+      const double unsolved = (balance.normal * factor + excess).norm();
+      const bool solvable = unsolved <= 1e-9 * (excess.norm() + 1e-300) &&
+                            stays_positive<dim>(volumes, shares, static_cast<int>(s), a, centers[s],
+                                                factor, original, comm);
+      if (solvable) {
+        scale_masses<dim>(volumes, shares, static_cast<int>(s), a, centers[s], factor, original,
+                          masses);
+      } else {
+        any_left = true;
+        left.mass[a] = excess[0];
+        for (int k = 1; k < dim; ++k)
+          left.moment(a, (a + k) % dim) = excess[k];
+      }
+    }
+    if (any_left)
+      unseen.push_back(left);
+  }
+  return unseen;
+}
+
+template <int dim>
+std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& volumes,
+                                         const std::vector<std::vector<SurfaceShare<dim>>>& shares,
+                                         const SolidSystem<dim>& solids,
+                                         const std::vector<double>& masses, Lumping lumping) {
+  std::vector<Triplet> triplets;
+  VelocityRow<dim> scratch;
+  struct Entries {
+    double weight;
+    bool rigid;
+    std::vector<GlobalIndex> dofs;
+    std::vector<double> values;
+  };
+  std::vector<Entries> rows;
+  for (std::size_t f = 0; f < volumes.size(); ++f) {
+    rows.clear();
+    for (const SurfaceShare<dim>& share : shares[f]) {
+      Entries row{share.weight, solids.solids()[share.solid].rigid, {}, {}};
+      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch,
+                        row.dofs, row.values);
+      if (!row.dofs.empty())
+        rows.push_back(std::move(row));
+    }
+    for (const Entries& row : rows) {
+      for (std::size_t i = 0; i < row.dofs.size(); ++i) {
+        if (lumping == Lumping::consistent) {
+          for (const Entries& other : rows) {
+            for (std::size_t j = 0; j < other.dofs.size(); ++j) {
+              triplets.push_back(
+                  {row.dofs[i], other.dofs[j],
+                   masses[f] * row.weight * row.values[i] * other.weight * other.values[j]});
+            }
+          }
+        } else if (row.rigid) {
+          for (std::size_t j = 0; j < row.dofs.size(); ++j) {
+            triplets.push_back(
+                {row.dofs[i], row.dofs[j], masses[f] * row.weight * row.values[i] * row.values[j]});
+          }
+        } else {
+          triplets.push_back({row.dofs[i], row.dofs[i], masses[f] * row.weight * row.values[i]});
+        }
+      }
+    }
+  }
+  return triplets;
+}
+
+template std::vector<double> fluid_masses<2>(const std::vector<ControlVolume<2>>&,
+                                             const SurfaceSnapshot<2>&, bool);
+template std::vector<double> fluid_masses<3>(const std::vector<ControlVolume<3>>&,
+                                             const SurfaceSnapshot<3>&, bool);
+template std::vector<UnseenMass<2>> balance_masses<2>(
+    const std::vector<ControlVolume<2>>&, const std::vector<std::vector<SurfaceShare<2>>>&,
+    const SurfaceSnapshot<2>&, double, const Communicator&, std::vector<double>&);
+template std::vector<UnseenMass<3>> balance_masses<3>(
+    const std::vector<ControlVolume<3>>&, const std::vector<std::vector<SurfaceShare<3>>>&,
+    const SurfaceSnapshot<3>&, double, const Communicator&, std::vector<double>&);
+template std::vector<Triplet> added_mass_triplets<2>(
+    const std::vector<ControlVolume<2>>&, const std::vector<std::vector<SurfaceShare<2>>>&,
+    const SolidSystem<2>&, const std::vector<double>&, Lumping);
+template std::vector<Triplet> added_mass_triplets<3>(
+    const std::vector<ControlVolume<3>>&, const std::vector<std::vector<SurfaceShare<3>>>&,
+    const SolidSystem<3>&, const std::vector<double>&, Lumping);
+
+}  // namespace lockstep

@@ -1,0 +1,309 @@
+#include "mixedface/mixed_face_coupling.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+#include "geometry/clipping.hpp"
+
+namespace lockstep {
+namespace {
+
+template <int dim>
+bool cuts(const SurfaceSnapshot<dim>& surface, const Box<dim>& box) {
+  std::vector<int> touching;
+  surface.touching(box, touching);
+  return std::any_of(touching.begin(), touching.end(), [&](int simplex) {
+    return clip_to_box<dim>(surface.corners(simplex), box).measure > 0;
+  });
+}
+
+RCP<Import> import_of(std::vector<GlobalIndex> wanted, const RCP<const Map>& owner) {
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  const auto map = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                               Teuchos::arrayViewFromVector(wanted), 0, owner->getComm()));
+  return rcp(new Import(owner, map));
+}
+
+/// rhs += the overlapping values, summed over ranks.
+void add_overlap(const Vector& overlap, const Import& import, Vector& rhs) {
+  Vector sum(rhs.getMap());
+  sum.doExport(overlap, import, Tpetra::ADD);
+  rhs.update(1, sum, 1);
+}
+
+}  // namespace
+
+template <int dim>
+double MixedFaceCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool blocked,
+                                             const SurfaceSnapshot<dim>& surface) const {
+  if (blocked || volume.sides[0].inside_solid != volume.sides[1].inside_solid)
+    return 0;
+  if (options_.rule == MixedRule::every_cut_cell && cuts<dim>(surface, volume.box))
+    return 0;
+  return 1;
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
+                                      const SolidSystem<dim>& solids,
+                                      const SurfaceSnapshot<dim>& surface) {
+  surface_ = &surface;
+  volumes_ = fluid.coupled_volumes();
+  shares_ = surface_shares<dim>(volumes_, surface);
+  masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass);
+  prescribed_share_.assign(volumes_.size(), 0);
+  prescribed_velocity_.assign(volumes_.size(), 0);
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (const SurfaceShare<dim>& share : shares_[f]) {
+      if (surface.solids()[share.solid].prescribed)
+        prescribed_share_[f] += share.weight;
+    }
+  }
+  std::vector<GlobalIndex> unknowns;
+  for (const ControlVolume<dim>& volume : volumes_) {
+    for (const auto& side : volume.sides) {
+      if (side.unknown != no_index)
+        unknowns.push_back(side.unknown);
+    }
+  }
+  pressure_import_ = import_of(std::move(unknowns), fluid.pressure_map());
+
+  unseen_.clear();
+  if (!solids.has_unknowns()) {
+    coupling_transposed_ = Teuchos::null;
+    added_mass_ = Teuchos::null;
+    return;
+  }
+  if (options_.balance) {
+    double density = volumes_.empty() ? 0 : volumes_.front().density;
+    density = max_all(solids.comm(), density);
+    unseen_ = balance_masses<dim>(volumes_, shares_, surface, density, solids.comm(), masses_);
+  }
+  weights_ = coupling_weights<dim>(volumes_, shares_, solids);
+  solid_import_ = import_of(weights_.dofs, solids.map());
+  assemble_unseen(solids, surface);
+  assemble_blocks(solids);
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
+  std::vector<Triplet> coupling;
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k) {
+      const GlobalIndex dof = weights_.dofs[weights_.columns[k]];
+      for (int side = 0; side < 2; ++side) {
+        // B = V G_c^T W with G^T = -div: outflow counts negative on the lower cell, positive above.
+        const double area = side == 0 ? -volumes_[f].area : volumes_[f].area;
+        const GlobalIndex unknown = volumes_[f].sides[side].unknown;
+        if (unknown != no_index)
+          coupling.push_back({dof, unknown, area * weights_.values[k]});
+      }
+    }
+  }
+  coupling_transposed_ =
+      assemble_triplets(std::move(coupling), solids.map(), pressure_import_->getSourceMap());
+  added_mass_ = assemble_triplets(
+      added_mass_triplets<dim>(volumes_, shares_, solids, masses_, options_.lumping), solids.map(),
+      solids.map());
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::assemble_unseen(const SolidSystem<dim>& solids,
+                                             const SurfaceSnapshot<dim>& surface) {
+  unseen_rows_.clear();
+  for (const UnseenMass<dim>& left : unseen_) {
+    const SolidDescription& solid = surface.solids()[left.solid];
+    for (int a = 0; a < dim; ++a) {
+      VelocityRow<dim> row;
+      if (left.mass[a] != 0 || left.moment.row(a).norm() != 0) {
+        // The force acts where its torque is right; a vanishing force has no such place.
+        Point<dim> x = left.center;
+        if (left.mass[a] != 0)
+          x += left.moment.row(a).transpose() / left.mass[a];
+        SurfacePoint<dim> point;
+        point.simplex = solid.simplex_begin;
+        point.barycentric.setConstant(1. / dim);
+        point.position = left.center;
+        solids.velocity_row(point, x, row);
+      }
+      unseen_rows_.push_back(std::move(row));
+    }
+  }
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity, double dt,
+                                                 Vector& rhs) const {
+  const RCP<const Map> map = rhs.getMap();
+  for (std::size_t s = 0; s < unseen_.size(); ++s) {
+    for (int a = 0; a < dim; ++a) {
+      const double impulse = -gravity[a] * dt * unseen_[s].mass[a];
+      const VelocityRow<dim>& row = unseen_rows_[s * dim + a];
+      for (std::size_t k = 0; k < row.dofs.size(); ++k) {
+        if (map->isNodeGlobalElement(row.dofs[k])) {
+          rhs.sumIntoGlobalValue(row.dofs[k], impulse * row.coefficients[k][a]);
+        }
+      }
+    }
+  }
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) {
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    prescribed_velocity_[f] = 0;
+    if (prescribed_share_[f] == 0)
+      continue;
+    for (const SurfaceShare<dim>& share : shares_[f]) {
+      if (!solids.solids()[share.solid].prescribed)
+        continue;
+      const Point<dim> v = motion == Motion::present
+                               ? solids.prescribed_velocity(share.point, volumes_[f].center)
+                               : solids.effective_velocity(share.point, volumes_[f].center);
+      prescribed_velocity_[f] += share.weight * v[volumes_[f].direction];
+    }
+  }
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::add_divergence(const std::vector<double>& coupled_velocity,
+                                            Vector& rhs) const {
+  Vector overlap(pressure_import_->getTargetMap());
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (int side = 0; side < 2; ++side) {
+      if (volumes_[f].sides[side].unknown == no_index)
+        continue;
+      const double area = side == 0 ? -volumes_[f].area : volumes_[f].area;
+      overlap.sumIntoGlobalValue(volumes_[f].sides[side].unknown, area * coupled_velocity[f]);
+    }
+  }
+  add_overlap(overlap, *pressure_import_, rhs);
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::add_prescribed_divergence(Vector& rhs) const {
+  add_divergence(prescribed_velocity_, rhs);
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::add_lumped_momentum(const std::vector<double>& coupled_velocity,
+                                                 Vector& rhs) const {
+  // Diagonally lumped fluid moves with its own solid; consistently lumped fluid with the mixed
+  // velocity.
+  const double mixed = options_.lumping == Lumping::consistent ? 1 : 0;
+  Vector overlap(solid_import_->getTargetMap());
+  {
+    const auto values = overlap.getDataNonConst();
+    for (std::size_t f = 0; f < volumes_.size(); ++f) {
+      const double momentum = masses_[f] * (coupled_velocity[f] - mixed * prescribed_velocity_[f]);
+      for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k) {
+        values[weights_.columns[k]] += weights_.values[k] * momentum;
+      }
+    }
+  }
+  add_overlap(overlap, *solid_import_, rhs);
+}
+
+template <int dim>
+std::vector<double> MixedFaceCoupling<dim>::velocity(const Vector& solid_velocity) const {
+  std::vector<double> result = prescribed_velocity_;
+  if (coupling_transposed_.is_null())
+    return result;
+  Vector overlap(solid_import_->getTargetMap());
+  overlap.doImport(solid_velocity, *solid_import_, Tpetra::INSERT);
+  const auto values = overlap.getData();
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k) {
+      result[f] += weights_.values[k] * values[weights_.columns[k]];
+    }
+  }
+  return result;
+}
+
+template <int dim>
+std::vector<double> MixedFaceCoupling<dim>::effective_velocity(
+    const SolidSystem<dim>& solids) const {
+  std::vector<double> result(volumes_.size(), 0);
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (const SurfaceShare<dim>& share : shares_[f]) {
+      const Point<dim> v = solids.effective_velocity(share.point, volumes_[f].center);
+      result[f] += share.weight * v[volumes_[f].direction];
+    }
+  }
+  return result;
+}
+
+template <int dim>
+Momentum<dim> MixedFaceCoupling<dim>::prescribed_impulse(const std::vector<double>& velocity_before,
+                                                         const std::vector<double>& velocity_after,
+                                                         const Vector& scaled_pressure) const {
+  Vector beside(pressure_import_->getTargetMap());
+  beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
+  const auto pressure = beside.getData();
+  Momentum<dim> impulse;
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    if (prescribed_share_[f] == 0)
+      continue;
+    double jump = 0;
+    for (int side = 0; side < 2; ++side) {
+      const GlobalIndex unknown = volumes_[f].sides[side].unknown;
+      if (unknown == no_index)
+        continue;
+      jump += (side == 0 ? -1 : 1) * pressure[beside.getMap()->getLocalElement(unknown)];
+    }
+    const double share = prescribed_share_[f];
+    const double after = options_.lumping == Lumping::consistent ? share * velocity_after[f]
+                                                                 : prescribed_velocity_[f];
+    impulse.add(
+        volumes_[f].center, volumes_[f].direction,
+        masses_[f] * (after - share * velocity_before[f]) + share * volumes_[f].area * jump);
+  }
+  return sum_over_ranks<dim>(impulse, pressure_import_->getSourceMap()->getComm());
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& shares,
+                                       const Point<dim>& x, int direction,
+                                       const SolidSystem<dim>& solids, LinkRow& row) const {
+  VelocityRow<dim> scratch;
+  std::vector<GlobalIndex> dofs;
+  std::vector<double> values;
+  for (const SurfaceShare<dim>& share : shares) {
+    if (solids.solids()[share.solid].prescribed) {
+      row.prescribed += share.weight * solids.prescribed_velocity(share.point, x)[direction];
+      row.prescribed_share += share.weight;
+      continue;
+    }
+    directed_row<dim>(solids, share.point, x, direction, scratch, dofs, values);
+    for (std::size_t k = 0; k < dofs.size(); ++k) {
+      row.dofs.push_back(dofs[k]);
+      row.weights.push_back(share.weight * values[k]);
+    }
+  }
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
+                                      LinkRow& row) const {
+  row = LinkRow();
+  if (link.coupled_volume >= 0) {
+    row.position = volumes_[link.coupled_volume].center;
+    share_row(shares_[link.coupled_volume], row.position, link.direction, solids, row);
+  } else if (link.remote_volume) {
+    row.position = link.remote_volume->center;
+    share_row(surface_shares<dim>({*link.remote_volume}, *surface_).front(), row.position,
+              link.direction, solids, row);
+  } else {
+    row.position = link.point.position;
+    share_row({{1, link.point, surface_->solid_of(link.point.simplex)}}, row.position,
+              link.direction, solids, row);
+  }
+}
+
+template class MixedFaceCoupling<2>;
+template class MixedFaceCoupling<3>;
+
+}  // namespace lockstep

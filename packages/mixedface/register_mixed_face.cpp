@@ -1,0 +1,56 @@
+#include "mixedface/register_mixed_face.hpp"
+
+#include "mixedface/mixed_face_coupling.hpp"
+
+namespace lockstep {
+namespace {
+
+ParameterList valid_parameters() {
+  ParameterList list;
+  declare_choice(
+      list, "Mixed Rule", "voxel", {"voxel", "every cut cell"},
+      "Which dual cells move with the solid. 'voxel': those whose two cell centres the surface "
+      "separates. 'every cut cell': all that the surface touches (much more added mass).");
+  declare_choice(
+      list, "Lumping", "diagonal", {"diagonal", "consistent"},
+      "How fluid mass is lumped on the solid: 'diagonal' row sums for nodes (the paper's choice; "
+      "rigid bodies always carry their full block), 'consistent' W^T M_F W.");
+  declare_choice(
+      list, "Fluid Mass", "fluid part", {"fluid part", "whole cell"},
+      "Fluid mass of a mixed dual cell: density times the part outside the solids, or times the "
+      "whole dual cell.");
+  declare(list, "Balance Masses", true,
+          "Correct the lumped masses of every closed body, axis by axis, so that a neutrally "
+          "buoyant one rests "
+          "exactly.");
+  return list;
+}
+
+MixedFaceOptions options_from(const ParameterList& list) {
+  MixedFaceOptions options;
+  if (list.get<std::string>("Mixed Rule") == "every cut cell") {
+    options.rule = MixedRule::every_cut_cell;
+  }
+  if (list.get<std::string>("Lumping") == "consistent")
+    options.lumping = Lumping::consistent;
+  options.whole_cell_mass = list.get<std::string>("Fluid Mass") == "whole cell";
+  options.balance = list.get<bool>("Balance Masses");
+  return options;
+}
+
+}  // namespace
+
+template <int dim>
+void register_mixed_face(Registry<Coupling<dim>>& couplings) {
+  couplings.add(
+      "mixed face",
+      "The paper's coupling: mixed dual cells move with the solid, their fluid is lumped on it.",
+      valid_parameters, [](const ParameterList& list) {
+        return std::make_unique<MixedFaceCoupling<dim>>(options_from(list));
+      });
+}
+
+template void register_mixed_face<2>(Registry<Coupling<2>>&);
+template void register_mixed_face<3>(Registry<Coupling<3>>&);
+
+}  // namespace lockstep

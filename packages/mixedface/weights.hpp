@@ -1,0 +1,47 @@
+#pragma once
+#include <vector>
+
+#include "coupling/solid_system.hpp"
+#include "interfaces/fluid.hpp"
+
+namespace lockstep {
+
+/// How much of a mixed face follows one surface point; the shares of a face sum to one.
+template <int dim>
+struct SurfaceShare {
+  double weight = 0;
+  SurfacePoint<dim> point;
+  int solid = -1;
+};
+
+/// The shares of every coupled control volume (Section 5): each simplex is clipped to the dual
+/// cell, thickened by `tolerance` (relative to its width), and weighs by its clipped area; a volume
+/// that clips nothing takes the closest simplex. The simplices of one rigid solid are merged to one
+/// share, because their rows are the same.
+template <int dim>
+std::vector<std::vector<SurfaceShare<dim>>> surface_shares(
+    const std::vector<ControlVolume<dim>>& volumes, const SurfaceSnapshot<dim>& surface,
+    double tolerance = 0.01);
+
+/// W restricted to dynamic solids, by rows of coupled control volumes: row f holds
+/// sum_s w_s (velocity row of s at R_f) . e_direction. Columns are local indices into `dofs`.
+struct CouplingWeights {
+  std::vector<GlobalIndex> dofs;  ///< ids of the solid map that this rank's rows touch, ascending
+  std::vector<int> row_begin;     ///< size n_rows + 1
+  std::vector<int> columns;
+  std::vector<double> values;
+  int n_rows() const { return static_cast<int>(row_begin.size()) - 1; }
+};
+
+/// The entries of one share of one row, before weighting: used for lumping share by share.
+template <int dim>
+void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point,
+                  const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
+                  std::vector<GlobalIndex>& dofs, std::vector<double>& values);
+
+template <int dim>
+CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
+                                 const std::vector<std::vector<SurfaceShare<dim>>>& shares,
+                                 const SolidSystem<dim>& solids);
+
+}  // namespace lockstep

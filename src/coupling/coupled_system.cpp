@@ -1,0 +1,124 @@
+#include "coupling/coupled_system.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "coupling/null_space.hpp"
+
+namespace lockstep {
+
+template <int dim>
+CoupledSystem<dim>::CoupledSystem(FluidDiscretization<dim>& fluid, SolidSystem<dim>& solids,
+                                  Coupling<dim>& coupling)
+    : fluid_(fluid), solids_(solids), coupling_(coupling) {
+  for (int m = 0; m < solids.n_models(); ++m) {
+    solid_depends_on_dt_ = solid_depends_on_dt_ || !solids.model(m).implicit_force(1).is_null();
+  }
+}
+
+template <int dim>
+void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>>& surface) {
+  surface_ = surface;
+  fluid_.set_geometry(surface, coupling_);
+  coupling_.assemble(fluid_, solids_, *surface);
+  unlocked_transposed_ = coupling_.coupling_transposed();
+  RCP<const CrsMatrix> transposed = unlocked_transposed_;
+  if (!transposed.is_null() && solids_.has_locks()) {
+    const auto masked = rcp(new CrsMatrix(*transposed, Teuchos::Copy));
+    masked->leftScale(*solids_.free_mask());
+    transposed = masked;
+  }
+  const NullSpace null_space = find_null_space(fluid_.regions(), fluid_.pressure_map(), transposed);
+
+  ++blocks_.geometry_stamp;
+  ++blocks_.solid_stamp;
+  blocks_.pressure_block = fluid_.pressure_block();
+  blocks_.coupling_transposed = transposed;
+  blocks_.solid_block = Teuchos::null;
+  blocks_.null_space = null_space.coupled;
+  blocks_.pressure_null_space = null_space.pressure;
+  block_dt_ = -1;
+
+  pressure_only_ = blocks_;
+  pressure_only_.coupling_transposed = Teuchos::null;
+  pressure_only_.null_space = null_space.pressure;
+}
+
+template <int dim>
+const BlockSystem& CoupledSystem<dim>::blocks(double dt, bool with_solid) {
+  if (!with_solid || !solids_.has_unknowns())
+    return pressure_only_;
+  if (blocks_.solid_block.is_null() || (solid_depends_on_dt_ && dt != block_dt_)) {
+    blocks_.solid_block = solids_.solid_block(coupling_.added_mass(), dt);
+    ++blocks_.solid_stamp;
+    block_dt_ = dt;
+  }
+  return blocks_;
+}
+
+template <int dim>
+RCP<Vector> CoupledSystem<dim>::lumped_momentum(const Vector& momentum) const {
+  const auto rhs = rcp(new Vector(momentum, Teuchos::Copy));
+  coupling_.add_lumped_momentum(fluid_.coupled_velocity(), *rhs);
+  return rhs;
+}
+
+template <int dim>
+BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum,
+                                                double& incompatibility) const {
+  BlockVector rhs;
+  rhs.pressure = make_vector(fluid_.pressure_map());
+  fluid_.divergence(*rhs.pressure);
+  coupling_.add_prescribed_divergence(*rhs.pressure);
+  const bool with_solid = solids_.has_unknowns();
+  incompatibility =
+      project_out(with_solid ? blocks_.null_space : pressure_only_.null_space, *rhs.pressure);
+  if (with_solid) {
+    const RCP<const Vector> full = lumped_momentum(momentum);
+    rhs.solid = make_vector(solids_.map());
+    rhs.solid->elementWiseMultiply(1, *solids_.free_mask(), *full, 0);
+  }
+  return rhs;
+}
+
+template <int dim>
+RCP<Vector> CoupledSystem<dim>::lock_reaction(double dt, const Vector& momentum,
+                                              const BlockVector& solution) const {
+  const auto reaction = make_vector(solids_.map());
+  if (!solids_.has_locks())
+    return reaction;
+  const RCP<const Vector> rhs = lumped_momentum(momentum);
+  apply(*solids_.unlocked_block(coupling_.added_mass(), dt), *solution.solid, *reaction);
+  unlocked_transposed_->apply(*solution.pressure, *reaction, Teuchos::NO_TRANS, 1, 1);
+  reaction->update(-1, *rhs, 1);
+  Vector free_part(solids_.map());
+  free_part.elementWiseMultiply(1, *solids_.free_mask(), *reaction, 0);
+  reaction->update(-1, free_part, 1);
+  return reaction;
+}
+
+template <int dim>
+Momentum<dim> CoupledSystem<dim>::lumped_fluid_momentum(
+    const std::vector<double>& coupled_velocity) const {
+  const auto& volumes = fluid_.coupled_volumes();
+  Momentum<dim> momentum;
+  for (std::size_t f = 0; f < volumes.size(); ++f) {
+    momentum.add(volumes[f].center, volumes[f].direction,
+                 coupling_.fluid_mass()[f] * coupled_velocity[f]);
+  }
+  return sum_over_ranks<dim>(momentum, solids_.comm());
+}
+
+template <int dim>
+double CoupledSystem<dim>::lumped_fluid_energy(const std::vector<double>& coupled_velocity) const {
+  double energy = 0;
+  for (std::size_t f = 0; f < coupled_velocity.size(); ++f) {
+    energy += 0.5 * coupling_.fluid_mass()[f] * coupled_velocity[f] * coupled_velocity[f];
+  }
+  return sum_all(solids_.comm(), energy);
+}
+
+template class CoupledSystem<2>;
+template class CoupledSystem<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,287 @@
+#include "coupling/solid_system.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "coupling/stacked_operator.hpp"
+#include "linear/triplet_matrix.hpp"
+
+namespace lockstep {
+
+template <int dim>
+SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> models,
+                              const Communicator& comm)
+    : comm_(comm), models_(std::move(models)) {
+  int n_simplices = 0, n_vertices = 0;
+  std::vector<GlobalIndex> ids;
+  for (int m = 0; m < n_models(); ++m) {
+    simplex_begin_.push_back(n_simplices);
+    int index = 0;
+    for (SolidDescription solid : model(m).solids()) {
+      solid.model = m;
+      solid.index_in_model = index++;
+      solid.simplex_begin += n_simplices;
+      solid.simplex_end += n_simplices;
+      solid.vertex_begin += n_vertices;
+      solid.vertex_end += n_vertices;
+      solids_.push_back(solid);
+    }
+    n_simplices += static_cast<int>(model(m).surface().simplices.size());
+    n_vertices += static_cast<int>(model(m).surface().vertices.size());
+    id_begin_.push_back(n_unknowns_);
+    local_begin_.push_back(static_cast<int>(ids.size()));
+    const RCP<const Map> map = model(m).dof_map();
+    for (GlobalIndex id : map->getNodeElementList())
+      ids.push_back(n_unknowns_ + id);
+    n_unknowns_ += static_cast<GlobalIndex>(map->getGlobalNumElements());
+  }
+  n_padding_ = ids.empty() ? 1 : 0;
+  const GlobalIndex first = n_unknowns_ + exclusive_sum(comm, GlobalIndex(n_padding_));
+  for (int i = 0; i < n_padding_; ++i)
+    ids.push_back(first + i);
+  map_ = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                     Teuchos::arrayViewFromVector(ids), 0, comm));
+  free_mask_ = rcp(new Vector(map_));
+  free_mask_->putScalar(1);
+  for (int i = 0; i < n_padding_; ++i)
+    free_mask_->replaceGlobalValue(first + i, 0.);
+  GlobalIndex n_locked = 0;
+  for (int m = 0; m < n_models(); ++m) {
+    for (GlobalIndex id : model(m).locked_dofs()) {
+      free_mask_->replaceGlobalValue(id_begin_[m] + id, 0.);
+      ++n_locked;
+    }
+  }
+  has_locks_ = sum_all(comm, n_locked) > 0;
+}
+
+template <int dim>
+std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot() const {
+  SurfaceMesh<dim> all;
+  for (const auto& solid_model : models_) {
+    const SurfaceMesh<dim>& mesh = solid_model->surface();
+    const int shift = static_cast<int>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (auto simplex : mesh.simplices) {
+      for (int& vertex : simplex)
+        vertex += shift;
+      all.simplices.push_back(simplex);
+    }
+  }
+  return std::make_shared<const SurfaceSnapshot<dim>>(std::move(all), solids_);
+}
+
+template <int dim>
+std::vector<SolidState<dim>> SolidSystem<dim>::states() const {
+  std::vector<SolidState<dim>> all;
+  for (const auto& solid_model : models_) {
+    for (const SolidState<dim>& state : solid_model->states())
+      all.push_back(state);
+  }
+  return all;
+}
+
+template <int dim>
+std::pair<int, SurfacePoint<dim>> SolidSystem<dim>::in_model(const SurfacePoint<dim>& point) const {
+  const auto next = std::upper_bound(simplex_begin_.begin(), simplex_begin_.end(), point.simplex);
+  const int m = static_cast<int>(next - simplex_begin_.begin()) - 1;
+  SurfacePoint<dim> local = point;
+  local.simplex -= simplex_begin_[m];
+  return {m, local};
+}
+
+template <int dim>
+void SolidSystem<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
+                                    VelocityRow<dim>& row) const {
+  const auto [m, local] = in_model(point);
+  model(m).velocity_row(local, x, row);
+  for (GlobalIndex& id : row.dofs)
+    id += id_begin_[m];
+}
+
+template <int dim>
+Point<dim> SolidSystem<dim>::prescribed_velocity(const SurfacePoint<dim>& point,
+                                                 const Point<dim>& x) const {
+  const auto [m, local] = in_model(point);
+  return model(m).prescribed_velocity(local, x);
+}
+
+template <int dim>
+Point<dim> SolidSystem<dim>::effective_velocity(const SurfacePoint<dim>& point,
+                                                const Point<dim>& x) const {
+  const auto [m, local] = in_model(point);
+  return model(m).effective_velocity(local, x);
+}
+
+namespace {
+void add_rows(const CrsMatrix& matrix, GlobalIndex shift, double factor,
+              std::vector<Triplet>& triplets) {
+  Teuchos::ArrayView<const int> columns;
+  Teuchos::ArrayView<const double> values;
+  for (int row = 0; row < static_cast<int>(matrix.getNodeNumRows()); ++row) {
+    matrix.getLocalRowView(row, columns, values);
+    for (int k = 0; k < columns.size(); ++k) {
+      triplets.push_back({matrix.getRowMap()->getGlobalElement(row) + shift,
+                          matrix.getColMap()->getGlobalElement(columns[k]) + shift,
+                          factor * values[k]});
+    }
+  }
+}
+
+/// mask K mask + (1 - mask), in place.
+void eliminate_masked(CrsMatrix& matrix, const Vector& mask) {
+  matrix.leftScale(mask);
+  matrix.rightScale(mask);
+  matrix.resumeFill();
+  const auto keep = mask.getData();
+  for (int row = 0; row < keep.size(); ++row) {
+    if (keep[row] != 0)
+      continue;
+    const GlobalIndex id = matrix.getRowMap()->getGlobalElement(row);
+    const double one = 1;
+    matrix.replaceGlobalValues(id, Teuchos::arrayView(&id, 1), Teuchos::arrayView(&one, 1));
+  }
+  matrix.fillComplete();
+}
+}  // namespace
+
+template <int dim>
+RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& added, double dt,
+                                                  bool eliminate) const {
+  std::vector<StackedOperator::Part> parts;
+  bool all_assembled = true;
+  for (int m = 0; m < n_models(); ++m) {
+    if (model(m).dof_map()->getGlobalNumElements() == 0)
+      continue;
+    parts.push_back(
+        {model(m).mass(), model(m).implicit_force(dt), model(m).dof_map(), local_begin_[m]});
+    all_assembled = all_assembled && !assembled(parts.back().mass).is_null() &&
+                    (parts.back().implicit_force.is_null() ||
+                     !assembled(parts.back().implicit_force).is_null());
+  }
+  if (!all_assembled) {
+    return as_thyra(
+        rcp(new StackedOperator(parts, dt, added, eliminate ? free_mask_ : Teuchos::null, map_)));
+  }
+  std::vector<Triplet> triplets;
+  std::size_t part = 0;
+  for (int m = 0; m < n_models(); ++m) {
+    if (model(m).dof_map()->getGlobalNumElements() == 0)
+      continue;
+    add_rows(*assembled(parts[part].mass), id_begin_[m], 1, triplets);
+    if (!parts[part].implicit_force.is_null()) {
+      add_rows(*assembled(parts[part].implicit_force), id_begin_[m], -dt, triplets);
+    }
+    ++part;
+  }
+  if (!added.is_null())
+    add_rows(*added, 0, 1, triplets);
+  // Padding rows must exist in the pattern; their value is set by the elimination.
+  const int n_local = static_cast<int>(map_->getNodeNumElements());
+  for (int i = 0; i < n_padding_; ++i) {
+    const GlobalIndex id = map_->getGlobalElement(n_local - 1 - i);
+    triplets.push_back({id, id, 1});
+  }
+  const RCP<CrsMatrix> matrix = assemble_triplets(std::move(triplets), map_, map_);
+  if (eliminate && has_locks_)
+    eliminate_masked(*matrix, *free_mask_);
+  return as_operator(matrix);
+}
+
+template <int dim>
+RCP<const LinearOperator> SolidSystem<dim>::solid_block(const RCP<const CrsMatrix>& added,
+                                                        double dt) const {
+  return block(added, dt, true);
+}
+
+template <int dim>
+RCP<const LinearOperator> SolidSystem<dim>::unlocked_block(const RCP<const CrsMatrix>& added,
+                                                           double dt) const {
+  return block(added, dt, false);
+}
+
+template <int dim>
+RCP<const LinearOperator> SolidSystem<dim>::mass() const {
+  return block(Teuchos::null, 0, false);
+}
+
+template <int dim>
+RCP<const Vector> SolidSystem<dim>::part(const Vector& stacked, int m) const {
+  return stacked.offsetView(model(m).dof_map(), local_begin_[m])->getVector(0);
+}
+
+template <int dim>
+RCP<Vector> SolidSystem<dim>::part(Vector& stacked, int m) const {
+  return stacked.offsetViewNonConst(model(m).dof_map(), local_begin_[m])->getVectorNonConst(0);
+}
+
+template <int dim>
+RCP<Vector> SolidSystem<dim>::velocity() const {
+  const auto stacked = rcp(new Vector(map_));
+  for (int m = 0; m < n_models(); ++m)
+    part(*stacked, m)->update(1, *model(m).velocity(), 0);
+  return stacked;
+}
+
+template <int dim>
+void SolidSystem<dim>::set_velocity(const Vector& velocity) {
+  for (int m = 0; m < n_models(); ++m)
+    model(m).set_velocity(*part(velocity, m));
+}
+
+template <int dim>
+RCP<Vector> SolidSystem<dim>::explicit_momentum(double time, double dt) const {
+  const auto stacked = rcp(new Vector(map_));
+  for (int m = 0; m < n_models(); ++m)
+    model(m).explicit_momentum(time, dt, *part(*stacked, m));
+  return stacked;
+}
+
+template <int dim>
+Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
+  Momentum<dim> total;
+  for (const auto& solid_model : models_)
+    total += solid_model->external_impulse(time, dt);
+  return total;
+}
+
+template <int dim>
+void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
+  for (int m = 0; m < n_models(); ++m)
+    model(m).move(*part(velocity, m), time, dt);
+}
+
+template <int dim>
+std::vector<Momentum<dim>> SolidSystem<dim>::momentum_of_each(
+    const Vector& generalized_momentum) const {
+  std::vector<Momentum<dim>> all;
+  for (int m = 0; m < n_models(); ++m) {
+    for (const auto& momentum : model(m).momentum_of_each(*part(generalized_momentum, m))) {
+      all.push_back(momentum);
+    }
+  }
+  return all;
+}
+
+template <int dim>
+Momentum<dim> SolidSystem<dim>::momentum(const Vector& generalized_momentum) const {
+  Momentum<dim> total;
+  for (const auto& momentum : momentum_of_each(generalized_momentum))
+    total += momentum;
+  return total;
+}
+
+template <int dim>
+double SolidSystem<dim>::largest_stable_step() const {
+  double dt = 1e300;
+  for (const auto& solid_model : models_)
+    dt = std::min(dt, solid_model->largest_stable_step());
+  return dt;
+}
+
+template class SolidSystem<2>;
+template class SolidSystem<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,82 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "interfaces/solid.hpp"
+
+namespace lockstep {
+
+/// The stack of all solids: one surface, one space of generalized velocities. The models' dofs
+/// follow one another; every rank owns at least one row, if need be an inert padding dof (unit
+/// mass, never coupled), because empty ranks break Thyra's block vectors.
+template <int dim>
+class SolidSystem {
+ public:
+  /// Collective.
+  SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> models, const Communicator& comm);
+
+  int n_models() const { return static_cast<int>(models_.size()); }
+  SolidModel<dim>& model(int m) { return *models_[m]; }
+  const SolidModel<dim>& model(int m) const { return *models_[m]; }
+  /// Any unknowns at all, on any rank?
+  bool has_unknowns() const { return n_unknowns_ > 0; }
+  bool empty() const { return solids_.empty(); }
+  GlobalIndex n_unknowns() const { return n_unknowns_; }  ///< without padding
+  RCP<const Map> map() const { return map_; }             ///< never null
+  const Communicator& comm() const { return comm_; }
+
+  /// The surfaces at the present positions. Solids are numbered over all models.
+  std::shared_ptr<const SurfaceSnapshot<dim>> snapshot() const;
+  const std::vector<SolidDescription>& solids() const { return solids_; }
+  std::vector<SolidState<dim>> states() const;
+
+  /// Rows of a surface point of a snapshot, with ids of `map`. Local.
+  void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
+                    VelocityRow<dim>& row) const;
+  Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const;
+  Point<dim> effective_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const;
+
+  /// M_S + added - dt D with unit rows for padding and, symmetrically eliminated, for locked dofs.
+  /// Assembled if all models are, else matrix-free. `added` may be null. Collective.
+  RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// The same without eliminating locked dofs: for their reactions.
+  RCP<const LinearOperator> unlocked_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// M_S alone, locked dofs included.
+  RCP<const LinearOperator> mass() const;
+  /// 1 for free dofs, 0 for locked and padding ones.
+  RCP<const Vector> free_mask() const { return free_mask_; }
+  bool has_locks() const { return has_locks_; }
+
+  /// Stacked vectors. Collective.
+  RCP<Vector> velocity() const;
+  void set_velocity(const Vector& velocity);
+  RCP<Vector> explicit_momentum(double time, double dt) const;
+  Momentum<dim> external_impulse(double time, double dt) const;
+  void move(const Vector& velocity, double time, double dt);
+  /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.
+  /// Collective.
+  std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;
+  Momentum<dim> momentum(const Vector& generalized_momentum) const;
+  double largest_stable_step() const;
+
+ private:
+  std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;
+  RCP<const Vector> part(const Vector& stacked, int m) const;
+  RCP<Vector> part(Vector& stacked, int m) const;
+  RCP<const LinearOperator> block(const RCP<const CrsMatrix>& added, double dt,
+                                  bool eliminate) const;
+
+  Communicator comm_;
+  std::vector<std::unique_ptr<SolidModel<dim>>> models_;
+  std::vector<SolidDescription> solids_;
+  std::vector<int> simplex_begin_;  ///< of each model in the snapshot
+  RCP<const Map> map_;
+  std::vector<GlobalIndex> id_begin_;  ///< of each model in the map
+  std::vector<int> local_begin_;       ///< of each model among this rank's rows
+  GlobalIndex n_unknowns_ = 0;
+  int n_padding_ = 0;  ///< local
+  RCP<Vector> free_mask_;
+  bool has_locks_ = false;
+};
+
+}  // namespace lockstep

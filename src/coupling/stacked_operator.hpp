@@ -1,0 +1,44 @@
+#pragma once
+#include <Tpetra_Operator.hpp>
+#include <vector>
+
+#include "linear/types.hpp"
+
+namespace lockstep {
+
+/// The solid block when a model gives no assembled matrix: mask (blockdiag(mass_m - dt D_m) +
+/// added) mask
+/// + (1 - mask), applied without forming anything. The parts' local rows follow one another in the
+/// map.
+class StackedOperator : public Tpetra::Operator<double, int, GlobalIndex> {
+ public:
+  struct Part {
+    RCP<const LinearOperator> mass;
+    RCP<const LinearOperator> implicit_force;  ///< D, or null
+    RCP<const Map> map;
+    int local_begin = 0;
+  };
+  /// `added` and `mask` may be null (nothing added, nothing eliminated).
+  StackedOperator(std::vector<Part> parts, double dt, RCP<const CrsMatrix> added,
+                  RCP<const Vector> mask, RCP<const Map> map);
+
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+  bool hasTransposeApply() const override { return true; }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, double alpha,
+             double beta) const override;
+
+ private:
+  void apply_to(const Vector& x, Vector& y) const;
+
+  std::vector<Part> parts_;
+  double dt_;
+  RCP<const CrsMatrix> added_;
+  RCP<const Vector> mask_;
+  RCP<const Map> map_;
+};
+
+/// Thyra view of a Tpetra operator.
+RCP<const LinearOperator> as_thyra(const RCP<const Tpetra::Operator<double, int, GlobalIndex>>& op);
+
+}  // namespace lockstep

@@ -1,0 +1,264 @@
+#include "coupling/viscous_solve.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "linear/triplet_matrix.hpp"
+
+namespace lockstep {
+namespace {
+
+/// A pair of vectors: free velocities and solid dofs (null without unknowns).
+struct Pair {
+  RCP<Vector> fluid, solid;
+  double dot(const Pair& other) const {
+    return fluid->dot(*other.fluid) + (solid.is_null() ? 0 : solid->dot(*other.solid));
+  }
+  /// this = alpha x + beta this
+  void update(double alpha, const Pair& x, double beta) {
+    fluid->update(alpha, *x.fluid, beta);
+    if (!solid.is_null())
+      solid->update(alpha, *x.solid, beta);
+  }
+  Pair same_shape() const {
+    return {rcp(new Vector(fluid->getMap())),
+            solid.is_null() ? RCP<Vector>() : rcp(new Vector(solid->getMap()))};
+  }
+  Pair scaled_by(const Pair& weights) const {
+    Pair result = same_shape();
+    result.fluid->elementWiseMultiply(1, *weights.fluid, *fluid, 0);
+    if (!solid.is_null())
+      result.solid->elementWiseMultiply(1, *weights.solid, *solid, 0);
+    return result;
+  }
+};
+
+/// All links of this rank: link l pulls with c_l (u_row(l) - (L V)_l - prescribed_l) on fluid and
+/// solid.
+template <int dim>
+struct Links {
+  const std::vector<ViscousLink<dim>>& list;
+  RCP<const Map> map;            ///< links
+  RCP<const CrsMatrix> rows;     ///< L: links x solid dofs; null without unknowns
+  RCP<const CrsMatrix> squares;  ///< entries squared, for the diagonal
+  std::vector<typename Coupling<dim>::LinkRow> ends;  ///< dofs and weights emptied once assembled
+
+  /// Pulls [N] for fluid velocities u and solid velocities V (null: none), prescribed velocities in
+  /// or out.
+  RCP<Vector> pull(const Vector& u, const RCP<const Vector>& solid, bool prescribed) const {
+    const auto result = rcp(new Vector(map));
+    if (!rows.is_null() && !solid.is_null())
+      rows->apply(*solid, *result);
+    const auto values = result->getDataNonConst();
+    const auto velocity = u.getData();
+    for (std::size_t l = 0; l < list.size(); ++l) {
+      const double end = values[l] + (prescribed ? ends[l].prescribed : 0);
+      values[l] = list[l].coefficient * (velocity[list[l].row] - end);
+    }
+    return result;
+  }
+};
+
+template <int dim>
+Links<dim> make_links(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
+                      const Coupling<dim>& coupling) {
+  Links<dim> links{system.links,
+                   make_map(static_cast<int>(system.links.size()), solids.comm()),
+                   Teuchos::null,
+                   Teuchos::null,
+                   {}};
+  std::vector<Triplet> rows, squares;
+  links.ends.resize(system.links.size());
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    auto& end = links.ends[l];
+    coupling.link_row(system.links[l], solids, end);
+    const GlobalIndex id = links.map->getGlobalElement(static_cast<int>(l));
+    for (std::size_t i = 0; i < end.dofs.size(); ++i) {
+      rows.push_back({id, end.dofs[i], end.weights[i]});
+      squares.push_back({id, end.dofs[i], end.weights[i] * end.weights[i]});
+    }
+    end.dofs.clear();
+    end.weights.clear();
+  }
+  if (solids.has_unknowns()) {
+    links.rows = assemble_triplets(std::move(rows), links.map, solids.map());
+    links.squares = assemble_triplets(std::move(squares), links.map, solids.map());
+  }
+  return links;
+}
+
+template <int dim>
+struct ViscousOperator {
+  const ViscousSystem<dim>& system;
+  const Links<dim>& links;
+  const RCP<const LinearOperator>& solid_block;
+  const RCP<const Vector>& free_mask;
+  double dt;
+
+  RCP<Vector> masked(const Vector& v) const {
+    const auto result = rcp(new Vector(v.getMap()));
+    result->elementWiseMultiply(1, *free_mask, v, 0);
+    return result;
+  }
+  /// y = operator x; locked and padding rows see only their own C. K_ff holds the links' diagonal
+  /// already.
+  void apply_to(const Pair& x, Pair& y) const {
+    y.fluid->elementWiseMultiply(1, *system.mass, *x.fluid, 0);
+    system.stiffness->apply(*x.fluid, *y.fluid, Teuchos::NO_TRANS, dt, 1);
+    if (x.solid.is_null())
+      return;
+    const RCP<const Vector> solid = masked(*x.solid);
+    Vector end_velocity(links.map);
+    links.rows->apply(*solid, end_velocity);
+    {
+      const auto values = end_velocity.getData();
+      const auto result = y.fluid->getDataNonConst();
+      for (std::size_t l = 0; l < links.list.size(); ++l) {
+        result[links.list[l].row] -= dt * links.list[l].coefficient * values[l];
+      }
+    }
+    Vector drag(x.solid->getMap());
+    links.rows->apply(*links.pull(*x.fluid, solid, false), drag, Teuchos::TRANS, -dt, 0);
+    lockstep::apply(*solid_block, *x.solid, *y.solid);
+    y.solid->update(1, *masked(drag), 1);
+  }
+};
+
+/// 1 / diagonal of the viscous operator (ones for a matrix-free C: few outliers, CG deals with
+/// them).
+template <int dim>
+Pair inverse_diagonal(const ViscousOperator<dim>& op, const Pair& shape) {
+  Pair inverse = shape.same_shape();
+  Vector diagonal(op.system.map);
+  op.system.stiffness->getLocalDiagCopy(diagonal);
+  diagonal.update(1, *op.system.mass, op.dt);
+  inverse.fluid->reciprocal(diagonal);
+  if (inverse.solid.is_null())
+    return inverse;
+  inverse.solid->putScalar(1);
+  const RCP<const CrsMatrix> matrix = assembled(op.solid_block);
+  if (!matrix.is_null()) {
+    Vector solid(inverse.solid->getMap()), drag(inverse.solid->getMap()), strength(op.links.map);
+    for (std::size_t l = 0; l < op.links.list.size(); ++l) {
+      strength.replaceLocalValue(static_cast<int>(l), op.links.list[l].coefficient);
+    }
+    op.links.squares->apply(strength, drag, Teuchos::TRANS);
+    matrix->getLocalDiagCopy(solid);
+    solid.update(op.dt, *op.masked(drag), 1);
+    inverse.solid->reciprocal(solid);
+  }
+  return inverse;
+}
+
+template <int dim>
+int conjugate_gradients(const ViscousOperator<dim>& op, const Pair& inverse, const Pair& rhs,
+                        Pair& x, double tolerance) {
+  const int most = 2000;
+  Pair residual = rhs.same_shape(), direction, image = rhs.same_shape();
+  op.apply_to(x, residual);
+  residual.update(1, rhs, -1);
+  const double scale = std::sqrt(rhs.dot(rhs.scaled_by(inverse)));
+  if (scale == 0)
+    return 0;
+  Pair z = residual.scaled_by(inverse);
+  double rz = residual.dot(z);
+  direction = z;
+  direction.fluid = rcp(new Vector(*z.fluid, Teuchos::Copy));
+  if (!z.solid.is_null())
+    direction.solid = rcp(new Vector(*z.solid, Teuchos::Copy));
+  for (int iteration = 0; iteration < most; ++iteration) {
+    if (std::sqrt(rz) <= tolerance * scale)
+      return iteration;
+    op.apply_to(direction, image);
+    const double step = rz / direction.dot(image);
+    x.update(step, direction, 1);
+    residual.update(-step, image, 1);
+    z = residual.scaled_by(inverse);
+    const double next = residual.dot(z);
+    direction.update(1, z, next / rz);
+    rz = next;
+  }
+  check_solve(
+      false,
+      "The viscous solve did not converge: {} CG iterations reached a relative residual of {:.2e}, "
+      "asked was {:.1e}. Reduce the time step or the viscosity.",
+      most, std::sqrt(rz) / scale, tolerance);
+  return most;
+}
+
+/// What prescribed solids give the fluid through their links, and the couple of links whose two
+/// ends lie apart across their direction. This rank's part.
+template <int dim>
+Momentum<dim> link_impulse(const Links<dim>& links, const Vector& pull, double dt) {
+  Momentum<dim> impulse;
+  const auto values = pull.getData();
+  for (std::size_t l = 0; l < links.list.size(); ++l) {
+    const auto& link = links.list[l];
+    const auto& end = links.ends[l];
+    const Point<dim> on_fluid = -dt * values[l] * Point<dim>::Unit(link.direction);
+    impulse.add(link.position, end.prescribed_share * on_fluid);
+    impulse.angular +=
+        (1 - end.prescribed_share) * cross<dim>(link.position - end.position, on_fluid);
+  }
+  return impulse;
+}
+
+}  // namespace
+
+template <int dim>
+ViscousResult<dim> solve_viscous(FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
+                                 const Coupling<dim>& coupling,
+                                 const RCP<const LinearOperator>& solid_block,
+                                 const RCP<const Vector>& lumped_momentum, double dt,
+                                 double tolerance) {
+  const std::unique_ptr<ViscousSystem<dim>> system = fluid.viscous_system();
+  const Links<dim> links = make_links<dim>(*system, solids, coupling);
+  const RCP<const Vector> mask = solids.free_mask();
+  const ViscousOperator<dim> op{*system, links, solid_block, mask, dt};
+
+  // The pull of prescribed solids on resting fluid, on the right-hand side.
+  const RCP<const Vector> prescribed =
+      links.pull(*rcp(new Vector(system->map)), Teuchos::null, true);
+  Pair rhs{rcp(new Vector(system->map)), RCP<Vector>()};
+  rhs.fluid->elementWiseMultiply(1, *system->mass, *system->velocity, 0);
+  rhs.fluid->update(dt, *system->wall_force, 1);
+  {
+    const auto values = prescribed->getData();
+    const auto result = rhs.fluid->getDataNonConst();
+    for (std::size_t l = 0; l < links.list.size(); ++l)
+      result[links.list[l].row] -= dt * values[l];
+  }
+  Pair x{rcp(new Vector(*system->velocity, Teuchos::Copy)), RCP<Vector>()};
+  if (solids.has_unknowns()) {
+    Vector pulled(*lumped_momentum, Teuchos::Copy);
+    links.rows->apply(*prescribed, pulled, Teuchos::TRANS, dt, 1);
+    rhs.solid = op.masked(pulled);
+    x.solid = op.masked(*solids.velocity());
+  }
+  ViscousResult<dim> result;
+  result.iterations =
+      conjugate_gradients<dim>(op, inverse_diagonal<dim>(op, rhs), rhs, x, tolerance);
+
+  RCP<const Vector> solid_velocity;
+  if (solids.has_unknowns()) solid_velocity = op.masked(*x.solid);
+  const RCP<const Vector> pull = links.pull(*x.fluid, solid_velocity, true);
+  if (solids.has_unknowns()) {
+    result.solid_impulse = rcp(new Vector(solids.map()));
+    links.rows->apply(*pull, *result.solid_impulse, Teuchos::TRANS, dt, 0);
+  }
+  result.boundary_impulse = fluid.accept_viscous(*x.fluid, dt);
+  result.boundary_impulse +=
+      sum_over_ranks<dim>(link_impulse<dim>(links, *pull, dt), solids.comm());
+  return result;
+}
+
+template ViscousResult<2> solve_viscous<2>(FluidDiscretization<2>&, const SolidSystem<2>&,
+                                           const Coupling<2>&, const RCP<const LinearOperator>&,
+                                           const RCP<const Vector>&, double, double);
+template ViscousResult<3> solve_viscous<3>(FluidDiscretization<3>&, const SolidSystem<3>&,
+                                           const Coupling<3>&, const RCP<const LinearOperator>&,
+                                           const RCP<const Vector>&, double, double);
+
+}  // namespace lockstep

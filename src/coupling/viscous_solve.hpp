@@ -1,0 +1,29 @@
+#pragma once
+#include "coupling/solid_system.hpp"
+#include "interfaces/coupling.hpp"
+
+namespace lockstep {
+
+/// What the coupled viscous solve hands on.
+template <int dim>
+struct ViscousResult {
+  RCP<Vector> solid_impulse;  ///< j_nu = -dt (K_sf u + K_ss V_S) [kg m/s] on the solid map; null
+                              ///< without unknowns
+  Momentum<dim> boundary_impulse;  ///< walls and prescribed solids on the fluid, global
+  int iterations = 0;
+};
+
+/// Implicit viscosity over dt, coupled to the solids (design, section 5): CG on
+///   [ M_f + dt K_ff   dt K_fs              ] [ u   ]   [ M_f u*                          ]
+///   [ dt K_sf         M̃_S - dt D + dt K_ss ] [ V_S ] = [ M_S V_S* + W^T M_F u*_F        ]
+/// The fluid keeps u; of the solid only its viscous impulse is used, so that its own forces are not
+/// applied twice. `lumped_momentum` is row 2 and `solid_block` is C; both null without unknowns.
+/// Throws SolveError if CG does not reach `tolerance`. Collective.
+template <int dim>
+ViscousResult<dim> solve_viscous(FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
+                                 const Coupling<dim>& coupling,
+                                 const RCP<const LinearOperator>& solid_block,
+                                 const RCP<const Vector>& lumped_momentum, double dt,
+                                 double tolerance);
+
+}  // namespace lockstep
