@@ -1,0 +1,48 @@
+#include "strategies/direct.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "base/errors.hpp"
+#include "linear/gathered_direct.hpp"
+
+namespace lockstep {
+
+ParameterList Direct::valid_parameters() {
+  ParameterList list = common_strategy_parameters();
+  declare_positive(list, "Maximum Unknowns", 300000,
+                   "Larger systems are refused, for the factorisation lives on one rank");
+  return list;
+}
+
+Direct::Direct(const ParameterList& given)
+    : RefinedStrategy(with_defaults(given, valid_parameters())),
+      maximum_unknowns_(with_defaults(given, valid_parameters()).get<int>("Maximum Unknowns")) {}
+
+void Direct::build(const BlockSystem& system, bool, bool) {
+  const auto n_pressure = system.pressure_block->domain()->dim();
+  check_solve(n_pressure <= maximum_unknowns_,
+              "The strategy direct refuses the {}: its {} pressure unknowns are more than the "
+              "\"Maximum Unknowns\" {}. Choose an iterative strategy.",
+              system.name, n_pressure, maximum_unknowns_);
+  merged_ = merge(system);
+  inverse_ = gathered_direct(merged_.matrix, system.name);
+}
+
+int Direct::correct(const BlockSystem& system, const CorrectionRequest& request,
+                    Vector& correction) {
+  BlockVector rhs, solution;
+  rhs.pressure = rcp(new Vector(*request.residual, Teuchos::Copy));
+  solution.pressure = make_vector(correction.getMap());
+  if (system.has_solid()) {
+    rhs.solid = make_vector(system.coupling_transposed->getRangeMap());
+    solution.solid = make_vector(rhs.solid->getMap());
+  }
+  Vector merged_solution(merged_.matrix->getRowMap());
+  apply(*inverse_, *to_merged(merged_, rhs), merged_solution);
+  from_merged(merged_, merged_solution, solution);
+  correction.update(1, *solution.pressure, 0);
+  return 1;
+}
+
+}  // namespace lockstep

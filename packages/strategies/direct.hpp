@@ -1,0 +1,26 @@
+#pragma once
+#include "linear/merge.hpp"
+#include "strategies/refined_strategy.hpp"
+#include "strategies/strategy_parameters.hpp"
+
+namespace lockstep {
+
+/// The oracle: KLU2 on the merged matrix, gathered on rank 0, with iterative refinement. For tests
+/// and small systems; null vectors are bordered. Without a solid block the same on A.
+class Direct : public RefinedStrategy {
+ public:
+  explicit Direct(const ParameterList& list);
+  static ParameterList valid_parameters();
+  std::string name() const override { return "direct"; }
+
+ private:
+  void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) override;
+  int correct(const BlockSystem& system, const CorrectionRequest& request,
+              Vector& correction) override;
+
+  int maximum_unknowns_;
+  MergedSystem merged_;
+  RCP<const LinearOperator> inverse_;
+};
+
+}  // namespace lockstep

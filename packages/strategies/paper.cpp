@@ -1,0 +1,82 @@
+#include "strategies/paper.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "linear/preconditioner.hpp"
+#include "linear/symmetry_check.hpp"
+#include "linear/thyra_vectors.hpp"
+#include "strategies/belos_minres.hpp"
+#include "strategies/pressure_cg.hpp"
+#include "strategies/pressure_inverse.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// RILUK(0) of a symmetric matrix is its incomplete Cholesky factorisation without fill.
+ParameterList default_pressure_inverse() {
+  ParameterList list;
+  list.set("Type", "Ifpack2");
+  list.set("Prec Type", "RILUK");
+  list.set("Overlap", 0);
+  list.sublist("Ifpack2 Settings").set("fact: iluk level-of-fill", 0);
+  return list;
+}
+
+ParameterList default_solid_inverse() {
+  ParameterList list;
+  list.set("Type", "Exact");
+  return list;
+}
+
+}  // namespace
+
+ParameterList Paper::valid_parameters() {
+  ParameterList list = common_strategy_parameters();
+  declare_inverse(list, "Pressure Inverse",
+                  "Approximate inverse of the pressure block A. Default: Ifpack2's RILUK(0), which "
+                  "is the paper's incomplete Cholesky.");
+  declare_inverse(list, "Solid Inverse",
+                  "Approximate inverse of the solid block C. Default: Exact.");
+  return list;
+}
+
+Paper::Paper(const ParameterList& given)
+    : RefinedStrategy(with_defaults(given, valid_parameters())),
+      pressure_list_(inverse_list(given, "Pressure Inverse", default_pressure_inverse())),
+      solid_list_(inverse_list(given, "Solid Inverse", default_solid_inverse())) {}
+
+void Paper::build(const BlockSystem& system, bool geometry_changed, bool solid_changed) {
+  const std::string pressure_name = "pressure block of the " + system.name;
+  const std::string solid_name = "solid block of the " + system.name;
+  if (system.has_solid())
+    check_no_empty_rank(system, "The strategy paper");
+  if (geometry_changed) {
+    pressure_inverse_ = pressure_inverse(system, pressure_list_);
+    if (check_symmetry())
+      check_symmetric_positive(*pressure_inverse_, pressure_name);
+  }
+  if (solid_changed) {
+    solid_preconditioner_ =
+        solid_list_.get<std::string>("Type") == "Exact"
+            ? solid_inverse()
+            : preconditioner_from_list(system.solid_block, solid_list_, solid_name);
+    if (check_symmetry())
+      check_symmetric_positive(*solid_preconditioner_, solid_name);
+  }
+}
+
+int Paper::correct(const BlockSystem& system, const CorrectionRequest& request,
+                   Vector& correction) {
+  if (!system.has_solid())
+    return pressure_cg(
+        system, *pressure_inverse_, *request.residual,
+        {request.name, request.target, request.maximum_iterations, system.null_space}, correction);
+  return belos_minres(system, *request.residual,
+                      {request.name, request.target, request.pressure_scale, request.solid_scale,
+                       request.maximum_iterations},
+                      pressure_inverse_, solid_preconditioner_, correction);
+}
+
+}  // namespace lockstep

@@ -1,0 +1,120 @@
+#include "strategies/pressure_inverse.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Export.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "linear/matrix_rows.hpp"
+#include "linear/preconditioner.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// The diagonal of B diag(C)^-1 B^T, on the rows of A; zero without an assembled C.
+RCP<Vector> added_mass_diagonal(const BlockSystem& system, const RCP<const Map>& map) {
+  const auto result = make_vector(map);
+  const auto solid = assembled(system.solid_block);
+  if (solid.is_null())
+    return result;
+  const CrsMatrix& coupling = *system.coupling_transposed;
+  const auto mass = diagonal_of(*solid);
+  const auto masses = mass->getData();
+  Vector on_columns(coupling.getColMap());
+  {
+    const auto sums = on_columns.getDataNonConst();
+    for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
+      if (masses[row] > 0)
+        sums[coupling.getColMap()->getLocalElement(column)] += value * value / masses[row];
+    });
+  }
+  const auto importer = coupling.getGraph()->getImporter();
+  if (importer.is_null())
+    result->update(1, on_columns, 0);
+  else
+    result->doExport(on_columns, *importer, Tpetra::ADD);
+  return result;
+}
+
+/// Local rows to pin: of each null vector of A the row of lowest id in its support.
+std::vector<int> pinned_rows(const BlockSystem& system, const RCP<const Map>& map) {
+  std::vector<int> rows;
+  for (const auto& null_vector : system.pressure_null_space) {
+    const auto values = null_vector->getData();
+    const double floor = 1e-8 * null_vector->normInf();
+    GlobalIndex lowest = std::numeric_limits<GlobalIndex>::max();
+    for (int row = 0; row < static_cast<int>(values.size()); ++row) {
+      if (std::abs(values[row]) > floor)
+        lowest = std::min(lowest, map->getGlobalElement(row));
+    }
+    const GlobalIndex pinned = -max_all(map->getComm(), -lowest);
+    if (map->isNodeGlobalElement(pinned))
+      rows.push_back(map->getLocalElement(pinned));
+  }
+  return rows;
+}
+
+/// The values to add to the diagonal of A before it is inverted approximately.
+std::vector<double> diagonal_shift(const BlockSystem& system, const CrsMatrix& a, bool pin) {
+  const auto map = a.getRowMap();
+  const auto diagonal = diagonal_of(a);
+  const double largest = diagonal->normInf();
+  const auto values = diagonal->getData();
+  std::vector<double> shift(values.size(), 0.0);
+  const auto is_empty = [&](std::size_t row) { return !(values[row] > 1e-14 * largest); };
+  GlobalIndex n_empty = 0;
+  for (std::size_t row = 0; row < shift.size(); ++row) {
+    n_empty += is_empty(row);
+  }
+  if (sum_all(map->getComm(), n_empty) > 0) {
+    const auto added = added_mass_diagonal(system, map);
+    const auto added_values = added->getData();
+    for (std::size_t row = 0; row < shift.size(); ++row) {
+      if (is_empty(row))
+        shift[row] = added_values[row] > 0 ? added_values[row] : largest;
+    }
+  }
+  if (pin) {
+    for (const int row : pinned_rows(system, map)) {
+      if (shift[row] == 0)
+        shift[row] = values[row];
+    }
+  }
+  return shift;
+}
+
+RCP<const CrsMatrix> shifted(const RCP<const CrsMatrix>& a, const std::vector<double>& shift) {
+  GlobalIndex n_shifted = 0;
+  for (const double value : shift) {
+    n_shifted += value != 0;
+  }
+  if (sum_all(a->getRowMap()->getComm(), n_shifted) == 0)
+    return a;
+  auto rows = rows_of(*a);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (shift[row] != 0)
+      rows[row].push_back({a->getRowMap()->getGlobalElement(static_cast<int>(row)), shift[row]});
+  }
+  return matrix_from_rows(a->getRowMap(), rows);
+}
+
+}  // namespace
+
+RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
+                                           const Teuchos::ParameterList& list) {
+  auto op = system.pressure_block;
+  if (const auto a = assembled(op); !a.is_null()) {
+    const std::string type = list.isType<std::string>("Type") ? list.get<std::string>("Type") : "";
+    const bool factors = type == "Ifpack2" || type == "Direct";
+    const auto regular = shifted(a, diagonal_shift(system, *a, factors));
+    if (regular != a)
+      op = as_operator(regular);
+  }
+  return preconditioner_from_list(op, list, "pressure block of the " + system.name);
+}
+
+}  // namespace lockstep

@@ -1,0 +1,167 @@
+#include "strategies/refined_strategy.hpp"
+
+#include <Teuchos_Time.hpp>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "linear/exact_inverse.hpp"
+#include "linear/matrix_rows.hpp"
+#include "linear/null_space.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// The corrections aim below the tolerance, so that back-substitution and round-off fit in between.
+constexpr double safety = 0.5;
+/// A correction that gains less than this factor is no progress; two of them in a row end the
+/// solve.
+constexpr double least_progress = 0.5;
+
+struct Refinement {
+  int n_corrections = 0, n_stalls = 0, n_iterations = 0;
+  double initial_pressure = 0, initial_solid = 0;
+};
+
+std::string what_to_try(const Refinement& done, int maximum_iterations) {
+  if (done.n_iterations >= maximum_iterations)
+    return fmt::format(
+        "\"Maximum Iterations\" is {}: raise it, or choose a stronger \"Pressure Inverse\"",
+        maximum_iterations);
+  return "The corrections make no progress: the tolerance is below what round-off allows, the null "
+         "vectors are incomplete, or a preconditioner is not symmetric (set \"Check Preconditioner "
+         "Symmetry\")";
+}
+
+[[noreturn]] void give_up(const std::string& name, const BlockResidual& residual,
+                          const Refinement& done, double tolerance, int maximum_iterations) {
+  throw SolveError(fmt::format(
+      "{} did not converge in {} iterations: pressure residual {:.2e} (initially {:.2e}), solid "
+      "residual {:.2e} (initially {:.2e}), required {:.2e} of each block's scale. {}.",
+      name, done.n_iterations, residual.relative_pressure(), done.initial_pressure,
+      residual.relative_solid(), done.initial_solid, tolerance,
+      what_to_try(done, maximum_iterations)));
+}
+
+void check_finite(const std::string& name, const BlockResidual& residual) {
+  check_solve(std::isfinite(residual.norm()),
+              "{}: the residual is not finite. Some block, right-hand side or initial guess holds "
+              "infinities or NaN.",
+              name);
+}
+
+/// Null components of the residual cannot be solved away: small ones are round-off and ignored.
+void check_compatible(const std::string& name, double removed, const BlockResidual& residual,
+                      double tolerance) {
+  check_solve(removed <= tolerance * residual.pressure_scale,
+              "{}: the right-hand side is not compatible with the null space of the system (part "
+              "{:.2e} of it, allowed {:.2e}). Project it first: fluid in a closed region cannot "
+              "change its volume.",
+              name, removed / residual.pressure_scale, tolerance);
+}
+
+}  // namespace
+
+bool RefinedStrategy::geometry_matches(const BlockSystem& system) const {
+  return is_prepared_ && prepared_.geometry_stamp == system.geometry_stamp &&
+         prepared_.system_name == system.name && prepared_.has_solid == system.has_solid() &&
+         prepared_.pressure_map->isSameAs(*domain_map(*system.pressure_block));
+}
+
+void RefinedStrategy::prepare(const BlockSystem& system) {
+  const double start = Teuchos::Time::wallTime();
+  const bool geometry_changed = !geometry_matches(system);
+  const bool solid_changed =
+      system.has_solid() && (geometry_changed || prepared_.solid_stamp != system.solid_stamp ||
+                             !prepared_.solid_map->isSameAs(*domain_map(*system.solid_block)));
+  if (!geometry_changed && !solid_changed) {
+    ++n_reuses_;
+    return;
+  }
+  is_prepared_ = false;
+  if (!system.has_solid())
+    solid_inverse_ = Teuchos::null;
+  else if (solid_changed)
+    solid_inverse_ = exact_inverse(system.solid_block, "solid block of the " + system.name);
+  build(system, geometry_changed, solid_changed);
+  prepared_ = {system.name,
+               system.has_solid(),
+               system.geometry_stamp,
+               system.solid_stamp,
+               domain_map(*system.pressure_block),
+               system.has_solid() ? domain_map(*system.solid_block) : Teuchos::null};
+  is_prepared_ = true;
+  ++n_builds_;
+  setup_seconds_ += Teuchos::Time::wallTime() - start;
+}
+
+void RefinedStrategy::back_substitute(const BlockSystem& system, const BlockVector& rhs,
+                                      BlockVector& solution) const {
+  if (!system.has_solid())
+    return;
+  Vector right(*rhs.solid, Teuchos::Copy);
+  system.coupling_transposed->apply(*solution.pressure, right, Teuchos::NO_TRANS, -1, 1);
+  apply(*solid_inverse_, right, *solution.solid);
+}
+
+SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector& rhs,
+                                   BlockVector& solution, const SolveRequest& request) {
+  if (!geometry_matches(system) ||
+      (system.has_solid() && prepared_.solid_stamp != system.solid_stamp))
+    prepare(system);
+  const double start = Teuchos::Time::wallTime();
+  const std::string name =
+      fmt::format("Solve {} of the {} by {}", request.name, system.name, this->name());
+  Vector correction(rhs.pressure->getMap());
+  Refinement done;
+  BlockResidual residual;
+  double previous = 0;
+  project_out(system.null_space, *solution.pressure);
+  while (true) {
+    back_substitute(system, rhs, solution);
+    residual = block_residual(system, rhs, solution);
+    check_finite(name, residual);
+    const double removed = project_out(system.null_space, *residual.vector.pressure);
+    if (done.n_corrections == 0) {
+      done.initial_pressure = residual.relative_pressure();
+      done.initial_solid = residual.relative_solid();
+    }
+    if (residual.relative_pressure() <= request.tolerance)
+      break;
+    const double solvable = residual.vector.pressure->norm2();
+    const double target = request.tolerance * residual.pressure_scale;
+    if (solvable <= target || done.n_stalls > 1)
+      check_compatible(name, removed, residual, request.tolerance);
+    if (done.n_corrections > 0 && solvable > least_progress * previous)
+      ++done.n_stalls;
+    else
+      done.n_stalls = 0;
+    if (done.n_stalls > 1 || done.n_iterations >= maximum_iterations_)
+      give_up(name, residual, done, request.tolerance, maximum_iterations_);
+    previous = solvable;
+    done.n_iterations += correct(
+        system,
+        {name, residual.vector.pressure.get(), solvable, safety * target, residual.pressure_scale,
+         residual.solid_scale, maximum_iterations_ - done.n_iterations},
+        correction);
+    project_out(system.null_space, correction);
+    solution.pressure->update(1, correction, 1);
+    ++done.n_corrections;
+  }
+  if (residual.relative_solid() > request.tolerance)
+    give_up(name, residual, done, request.tolerance, maximum_iterations_);
+
+  SolveReport report;
+  report.iterations = done.n_iterations;
+  report.pressure_residual = residual.relative_pressure();
+  report.solid_residual = residual.relative_solid();
+  report.solve_seconds = Teuchos::Time::wallTime() - start;
+  report.setup_seconds = std::exchange(setup_seconds_, 0);
+  report.preconditioner_builds = std::exchange(n_builds_, 0);
+  report.preconditioner_reuses = std::exchange(n_reuses_, 0);
+  return report;
+}
+
+}  // namespace lockstep

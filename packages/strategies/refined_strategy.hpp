@@ -1,0 +1,71 @@
+#pragma once
+#include <Teuchos_ParameterList.hpp>
+#include <string>
+
+#include "interfaces/strategy.hpp"
+#include "linear/block_residual.hpp"
+
+namespace lockstep {
+
+/// What every strategy here has in common: the caching of what depends on the operators, and a loop
+/// of iterative refinement that judges convergence by the true residual of each block.
+///
+/// V_S is always back-substituted from row 2, V_S = C^-1 (solid rhs - B^T p̂), so that momentum is
+/// exact; what is left of an error sits in row 1, the divergence, and a correction solves Eq. 16
+/// with right-hand side (r_1, 0). The initial guess of V_S is therefore ignored.
+class RefinedStrategy : public SolverStrategy {
+ public:
+  /// Reuses what was built last for a system of the same name, stamps and maps. Collective.
+  void prepare(const BlockSystem& system) final;
+  SolveReport solve(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
+                    const SolveRequest& request) final;
+
+ protected:
+  /// Reads the parameters common to all strategies, which must all be there.
+  explicit RefinedStrategy(const Teuchos::ParameterList& list)
+      : maximum_iterations_(list.get<int>("Maximum Iterations")),
+        check_symmetry_(list.get<bool>("Check Preconditioner Symmetry")) {}
+
+  struct CorrectionRequest {
+    std::string name;        ///< for messages
+    const Vector* residual;  ///< r_1, free of null vectors
+    double residual_norm;    ///< |r_1|
+    double target;           ///< what |r_1| should become
+    double pressure_scale;   ///< what the residuals of the blocks are measured against
+    double solid_scale;
+    int maximum_iterations;
+  };
+
+  /// Builds what depends on the operators. `geometry_changed` and `solid_changed` say what is new.
+  virtual void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) = 0;
+  /// An approximate solution p̂ of Eq. 16 with right-hand side (r_1, 0), written to `correction`;
+  /// returns the number of iterations. The same without a solid block: A p̂ = r_1.
+  virtual int correct(const BlockSystem& system, const CorrectionRequest& request,
+                      Vector& correction) = 0;
+
+  /// C^-1 to round-off; null without a solid block.
+  const RCP<const LinearOperator>& solid_inverse() const { return solid_inverse_; }
+  bool check_symmetry() const { return check_symmetry_; }
+
+ private:
+  struct Prepared {
+    std::string system_name;
+    bool has_solid = false;
+    long geometry_stamp = 0, solid_stamp = 0;
+    RCP<const Map> pressure_map, solid_map;
+  };
+
+  void back_substitute(const BlockSystem& system, const BlockVector& rhs,
+                       BlockVector& solution) const;
+  bool geometry_matches(const BlockSystem& system) const;
+
+  int maximum_iterations_;
+  bool check_symmetry_;
+  bool is_prepared_ = false;
+  Prepared prepared_;
+  RCP<const LinearOperator> solid_inverse_;
+  double setup_seconds_ = 0;
+  int n_builds_ = 0, n_reuses_ = 0;
+};
+
+}  // namespace lockstep

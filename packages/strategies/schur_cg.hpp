@@ -1,0 +1,27 @@
+#pragma once
+#include "strategies/refined_strategy.hpp"
+#include "strategies/strategy_parameters.hpp"
+
+namespace lockstep {
+
+/// Eliminates V_S: conjugate gradients on the Schur complement S = A + B C^-1 B^T, never assembled,
+/// preconditioned by an approximate inverse of A. The fastest of the three while C^-1 is cheap
+/// (rigid bodies, small deformables). Right on ranks that own no row of a block.
+class SchurCg : public RefinedStrategy {
+ public:
+  /// `list` as valid_parameters() describes it; what it leaves out takes its default. Throws
+  /// InputError for a bad sublist.
+  explicit SchurCg(const ParameterList& list);
+  static ParameterList valid_parameters();
+  std::string name() const override { return "schur-cg"; }
+
+ private:
+  void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) override;
+  int correct(const BlockSystem& system, const CorrectionRequest& request,
+              Vector& correction) override;
+
+  ParameterList pressure_list_;
+  RCP<const LinearOperator> pressure_inverse_;
+};
+
+}  // namespace lockstep

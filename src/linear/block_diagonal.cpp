@@ -1,0 +1,191 @@
+#include "linear/block_diagonal.hpp"
+
+#include <Eigen/Cholesky>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/errors.hpp"
+#include "linear/matrix_rows.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using Row = std::vector<Entry>;
+using Component = std::set<GlobalIndex>;  // sorted, so that all ranks invert it in the same order
+
+/// The rows this rank knows: its own, and those of other ranks that its components reach.
+class KnownRows {
+ public:
+  explicit KnownRows(const RCP<const CrsMatrix>& matrix) : matrix_(matrix) {
+    add(*matrix, matrix->getRowMap()->getNodeElementList());
+  }
+
+  /// Fetches rows from the ranks that own them. Collective.
+  void fetch(const std::vector<GlobalIndex>& ids) {
+    const auto wanted =
+        rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                    Teuchos::arrayViewFromVector(ids), 0, matrix_->getRowMap()->getComm()));
+    CrsMatrix fetched(wanted, 0);
+    fetched.doImport(*matrix_, Import(matrix_->getRowMap(), wanted), Tpetra::INSERT);
+    fetched.fillComplete(matrix_->getDomainMap(), matrix_->getRangeMap());
+    add(fetched, wanted->getNodeElementList());
+  }
+
+  /// The row, or null if it has not been fetched.
+  const Row* find(GlobalIndex id) const {
+    const auto found = rows_.find(id);
+    return found == rows_.end() ? nullptr : &found->second;
+  }
+
+  /// The rows connected to `seed` as far as they are known, at most `limit` + 1 of them; those
+  /// still missing are added to `missing`.
+  Component component(GlobalIndex seed, int limit, Component& missing) const {
+    Component members{seed};
+    std::vector<GlobalIndex> stack{seed};
+    Component unknown;
+    while (!stack.empty() && static_cast<int>(members.size()) <= limit) {
+      const GlobalIndex id = stack.back();
+      stack.pop_back();
+      const Row* row = find(id);
+      if (row == nullptr) {
+        unknown.insert(id);
+        continue;
+      }
+      for (const Entry& entry : *row) {
+        if (static_cast<int>(members.size()) <= limit && members.insert(entry.column).second)
+          stack.push_back(entry.column);
+      }
+    }
+    if (static_cast<int>(members.size()) <= limit)
+      missing.insert(unknown.begin(), unknown.end());
+    return members;
+  }
+
+ private:
+  void add(const CrsMatrix& matrix, const Teuchos::ArrayView<const GlobalIndex>& ids) {
+    for (const GlobalIndex id : ids) {
+      rows_[id];
+    }
+    for_each_entry(matrix, [&](int row, GlobalIndex column, double value) {
+      if (value != 0)
+        rows_[ids[row]].push_back({column, value});
+    });
+  }
+
+  RCP<const CrsMatrix> matrix_;
+  std::map<GlobalIndex, Row> rows_;
+};
+
+/// The components of this rank's rows; fetches what is missing. Collective.
+std::vector<Component> find_components(KnownRows& rows, const Map& map, int limit) {
+  while (true) {
+    std::vector<Component> components;
+    Component missing, done;
+    for (const GlobalIndex id : map.getNodeElementList()) {
+      if (done.count(id) > 0)
+        continue;
+      components.push_back(rows.component(id, limit, missing));
+      if (static_cast<int>(components.back().size()) <= limit)
+        done.insert(components.back().begin(), components.back().end());
+    }
+    if (max_all(map.getComm(), static_cast<GlobalIndex>(missing.size())) == 0)
+      return components;
+    rows.fetch({missing.begin(), missing.end()});
+  }
+}
+
+Eigen::MatrixXd dense(const KnownRows& rows, const std::vector<GlobalIndex>& ids) {
+  const auto n = static_cast<Eigen::Index>(ids.size());
+  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (const Entry& entry : *rows.find(ids[i])) {
+      const auto position = std::lower_bound(ids.begin(), ids.end(), entry.column) - ids.begin();
+      block(i, position) += entry.value;
+    }
+  }
+  return block;
+}
+
+/// Inverse by Cholesky of the block scaled to a unit diagonal, so that kg and kg m^2 may differ by
+/// any factor. An empty matrix if it is not positive definite.
+Eigen::MatrixXd inverse_spd(const Eigen::MatrixXd& block) {
+  if (!(block.diagonal().minCoeff() > 0))
+    return {};
+  const Eigen::VectorXd scale = block.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * block * scale.asDiagonal());
+  if (factor.info() != Eigen::Success)
+    return {};
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(block.rows(), block.cols());
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * factor.solve(identity) * scale.asDiagonal();
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+std::string not_positive(const std::string& name, GlobalIndex row) {
+  return fmt::format(
+      "The {} is not positive definite at row {}: masses must be positive and D negative "
+      "semidefinite.",
+      name, row);
+}
+
+}  // namespace
+
+BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, int largest_block,
+                                            const std::string& name) {
+  const auto map = matrix->getRowMap();
+  KnownRows rows(matrix);
+  std::vector<Row> inverse_rows(map->getNodeNumElements());
+  std::string failure;
+  bool exact = true;
+  for (const Component& component : find_components(rows, *map, largest_block)) {
+    std::vector<GlobalIndex> ids(component.begin(), component.end());
+    if (static_cast<int>(ids.size()) > largest_block) {
+      exact = false;
+      continue;
+    }
+    const Eigen::MatrixXd inverse = inverse_spd(dense(rows, ids));
+    if (inverse.size() == 0) {
+      failure = not_positive(name, ids.front());
+      continue;
+    }
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const int row = map->getLocalElement(ids[i]);
+      for (std::size_t j = 0; row >= 0 && j < ids.size(); ++j) {
+        inverse_rows[row].push_back({ids[j], inverse(i, j)});
+      }
+    }
+  }
+  const auto diagonal = diagonal_of(*matrix);
+  const auto values = diagonal->getData();
+  for (std::size_t row = 0; row < inverse_rows.size(); ++row) {
+    const GlobalIndex id = map->getGlobalElement(static_cast<int>(row));
+    if (!inverse_rows[row].empty())
+      continue;
+    if (!(values[row] > 0))
+      failure = not_positive(name, id);
+    inverse_rows[row].push_back({id, 1 / values[row]});
+  }
+  throw_on_all(map->getComm(), failure, static_cast<int>(ExitCode::solve_failed));
+  return {matrix_from_rows(map, inverse_rows), min_all(map->getComm(), exact ? 1.0 : 0.0) > 0};
+}
+
+RCP<const CrsMatrix> jacobi_inverse(const CrsMatrix& matrix, const std::string& name) {
+  const auto map = matrix.getRowMap();
+  const auto diagonal = diagonal_of(matrix);
+  const auto values = diagonal->getData();
+  std::string failure;
+  std::vector<Row> rows(map->getNodeNumElements());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const GlobalIndex id = map->getGlobalElement(static_cast<int>(row));
+    if (!(values[row] > 0))
+      failure = not_positive(name, id);
+    rows[row].push_back({id, 1 / values[row]});
+  }
+  throw_on_all(map->getComm(), failure, static_cast<int>(ExitCode::solve_failed));
+  return matrix_from_rows(map, rows);
+}
+
+}  // namespace lockstep

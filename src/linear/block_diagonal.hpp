@@ -1,0 +1,24 @@
+#pragma once
+#include <string>
+
+#include "linear/types.hpp"
+
+namespace lockstep {
+
+struct BlockDiagonalInverse {
+  RCP<const CrsMatrix> inverse;
+  /// Whether it is the exact inverse: no block was larger than the limit.
+  bool exact = false;
+};
+
+/// The inverse of a symmetric positive definite matrix that falls apart into small dense blocks (6
+/// x 6 of a rigid body): blocks are the connected components of the nonzeros, wherever their rows
+/// live. Components of more than `largest_block` rows are replaced by their diagonal. Throws
+/// SolveError if a block is not positive definite; `name` is for messages. Collective.
+BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, int largest_block,
+                                            const std::string& name);
+
+/// The inverse of the diagonal. Throws SolveError if an entry is not positive. Collective.
+RCP<const CrsMatrix> jacobi_inverse(const CrsMatrix& matrix, const std::string& name);
+
+}  // namespace lockstep

@@ -1,0 +1,40 @@
+#include "linear/block_residual.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+namespace lockstep {
+
+BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
+                             const BlockVector& solution) {
+  BlockResidual result;
+  const auto add_row = [](Vector& residual, const Vector& term, double sign, double& scale) {
+    residual.update(sign, term, 1);
+    scale = std::max(scale, term.norm2());
+  };
+  auto& r1 = result.vector.pressure;
+  r1 = rcp(new Vector(*rhs.pressure, Teuchos::Copy));
+  result.pressure_scale = r1->norm2();
+  Vector term(r1->getMap());
+  apply(*system.pressure_block, *solution.pressure, term);
+  add_row(*r1, term, -1, result.pressure_scale);
+  if (system.has_solid()) {
+    system.coupling_transposed->apply(*solution.solid, term, Teuchos::TRANS);
+    add_row(*r1, term, 1, result.pressure_scale);
+
+    auto& r2 = result.vector.solid;
+    r2 = make_vector(rhs.solid->getMap());
+    Vector solid_term(r2->getMap());
+    add_row(*r2, *rhs.solid, -1, result.solid_scale);
+    system.coupling_transposed->apply(*solution.pressure, solid_term);
+    add_row(*r2, solid_term, 1, result.solid_scale);
+    apply(*system.solid_block, *solution.solid, solid_term);
+    add_row(*r2, solid_term, 1, result.solid_scale);
+    result.solid = r2->norm2();
+  }
+  result.pressure = r1->norm2();
+  return result;
+}
+
+}  // namespace lockstep

@@ -1,0 +1,23 @@
+#pragma once
+#include "interfaces/strategy.hpp"
+
+namespace lockstep {
+
+/// Residuals of Eq. 16, and what they are measured against: per block the largest norm of the
+/// right-hand side and of the terms of its rows.
+struct BlockResidual {
+  BlockVector vector;              ///< (rhs_1 - A p̂ + B V_S, -solid rhs + B^T p̂ + C V_S)
+  double pressure = 0, solid = 0;  ///< 2-norms
+  double pressure_scale = 0, solid_scale = 0;  ///< same units
+
+  /// 0 where everything vanishes.
+  double relative_pressure() const { return pressure > 0 ? pressure / pressure_scale : 0; }
+  double relative_solid() const { return solid > 0 ? solid / solid_scale : 0; }
+  double norm() const { return pressure + solid; }
+};
+
+/// Collective.
+BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
+                             const BlockVector& solution);
+
+}  // namespace lockstep

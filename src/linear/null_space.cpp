@@ -1,0 +1,18 @@
+#include "linear/null_space.hpp"
+
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+namespace lockstep {
+
+double project_out(const std::vector<RCP<const Vector>>& basis, Vector& x) {
+  double removed = 0;
+  for (const auto& direction : basis) {
+    const double component = direction->dot(x);
+    x.update(-component, *direction, 1);
+    removed += component * component;
+  }
+  return std::sqrt(removed);
+}
+
+}  // namespace lockstep

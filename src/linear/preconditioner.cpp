@@ -1,0 +1,122 @@
+#include "linear/preconditioner.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <algorithm>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "linear/block_diagonal.hpp"
+#include "linear/exact_inverse.hpp"
+#include "linear/gathered_direct.hpp"
+#include "linear/solver_list.hpp"
+#include "linear/stratimikos.hpp"
+#include "parameters/suggestion.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using Teuchos::ParameterList;
+
+const std::vector<std::string> types = {
+    "Ifpack2", "MueLu", "Direct", "Block Diagonal", "Jacobi", "Conjugate Gradients", "Exact"};
+
+bool is_package(const std::string& type) {
+  return type == "Ifpack2" || type == "MueLu";
+}
+
+std::string type_of(const ParameterList& list, const std::string& where) {
+  check_input(list.isType<std::string>("Type"),
+              "{}: the parameter \"Type\" (string) is missing; it is one of {}.", where,
+              fmt::join(types, ", "));
+  return list.get<std::string>("Type");
+}
+
+ParameterList default_muelu() {
+  ParameterList list;
+  list.set("verbosity", "none");
+  list.set("multigrid algorithm", "sa");
+  list.set("smoother: type", "CHEBYSHEV");
+  list.sublist("smoother: params").set("chebyshev: degree", 2);
+  list.set("coarse: max size", 100);
+  list.set("coarse: type", "RELAXATION");
+  ParameterList& coarse = list.sublist("coarse: params");
+  coarse.set("relaxation: type", "Symmetric Gauss-Seidel");
+  coarse.set("relaxation: sweeps", 8);
+  return list;
+}
+
+ParameterList without_type(const ParameterList& list) {
+  ParameterList rest(list);
+  rest.remove("Type");
+  return rest;
+}
+
+/// The value of an optional parameter of our own lists, which the caller has checked.
+template <typename T>
+T value_or(const ParameterList& list, const std::string& name, T standard) {
+  return list.isParameter(name) ? list.get<T>(name) : standard;
+}
+
+void check_own(const ParameterList& list, const std::string& type, const std::string& where) {
+  for (const auto& entry : list) {
+    const std::string& name = entry.first;
+    const bool is_int = entry.second.isType<int>(), is_double = entry.second.isType<double>();
+    const bool fits = name == "Type" ||
+                      (type == "Block Diagonal" && name == "Largest Block" && is_int) ||
+                      (type == "Conjugate Gradients" && name == "Tolerance" && is_double) ||
+                      (type == "Conjugate Gradients" && name == "Maximum Iterations" && is_int);
+    check_input(fits, "{}: \"{}\" is not a parameter of type \"{}\", or not of the right type. {}",
+                where, name, type,
+                type == "Block Diagonal" ? "It takes \"Largest Block\" (int)."
+                : type == "Conjugate Gradients"
+                    ? "It takes \"Tolerance\" (double) and \"Maximum Iterations\" (int)."
+                    : "It takes none.");
+  }
+}
+
+}  // namespace
+
+void check_preconditioner_list(const ParameterList& list, const std::string& where) {
+  const std::string type = type_of(list, where);
+  const std::string nearest = nearest_name(type, types);
+  check_input(std::find(types.begin(), types.end(), type) != types.end(),
+              "{}: there is no inverse of type \"{}\".{} There are: {}.", where, type,
+              nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest),
+              fmt::join(types, ", "));
+  if (is_package(type) && list.numParams() > 1)
+    check_package_list(type, without_type(list), where);
+  else
+    check_own(list, type, where);
+}
+
+RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperator>& op,
+                                                   const ParameterList& list,
+                                                   const std::string& name) {
+  check_preconditioner_list(list, "the inverse of the " + name);
+  const std::string type = type_of(list, name);
+  if (type == "Exact")
+    return exact_inverse(op, name);
+  if (type == "Conjugate Gradients")
+    return conjugate_gradient_inverse(op, value_or(list, "Tolerance", 1e-10),
+                                      value_or(list, "Maximum Iterations", 1000), name);
+  const auto matrix = assembled(op);
+  check_solve(
+      !matrix.is_null(),
+      "The inverse \"{}\" of the {} needs an assembled matrix, but the block is matrix-free. "
+      "Use \"Conjugate Gradients\", or a discretization that assembles it.",
+      type, name);
+  if (type == "Direct")
+    return gathered_direct(matrix, name);
+  if (type == "Jacobi")
+    return as_operator(jacobi_inverse(*matrix, name));
+  if (type == "Block Diagonal")
+    return as_operator(
+        block_diagonal_inverse(matrix, value_or(list, "Largest Block", 24), name).inverse);
+  ParameterList package = without_type(list);
+  if (type == "MueLu" && package.numParams() == 0)
+    package = default_muelu();
+  return stratimikos_preconditioner(op, type, package, name);
+}
+
+}  // namespace lockstep
