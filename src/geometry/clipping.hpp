@@ -14,7 +14,9 @@ struct ClippedSimplex {
   Point<dim> centroid = Point<dim>::Zero();
 };
 
-/// Exact Sutherland-Hodgman clipping of a segment or triangle to an axis-parallel box.
+/// Exact Sutherland-Hodgman clipping of a segment or triangle to an axis-parallel box. The box is
+/// closed: a simplex that lies in a side shared by two boxes is counted by both. Degenerate
+/// simplices have measure zero.
 template <int dim>
 ClippedSimplex<dim> clip_to_box(const std::array<Point<dim>, dim>& corners, const Box<dim>& box);
 

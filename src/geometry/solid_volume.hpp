@@ -3,9 +3,11 @@
 
 namespace lockstep {
 
-/// Volume [m^dim] of the closed solids inside `box`, by exact clipping: the flux of the vector
-/// field (x - c) e_axis through the clipped surface plus the wetted part of the box sides.
-/// Overlapping solids are not counted twice beyond the box volume. Zero for shells.
+/// Volume [m^dim] of the closed solids inside `box`, exact for their polyhedra: the flux of a
+/// vector field through the surface that is clipped to the box and to the column between it and the
+/// nearest side of the solid's bounds. Costs O(simplices that touch the column); meant for boxes
+/// near the surface. Overlapping solids are counted each, but never beyond the box volume. Zero for
+/// shells.
 template <int dim>
 double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box);
 

@@ -313,6 +313,9 @@ LatticeCrossings<dim> SurfaceSnapshot<dim>::cross_lattice(const Lattice<dim>& la
                                                           const Index<dim>& begin,
                                                           const Index<dim>& end) const {
   LatticeCrossings<dim> result;
+  for (int a = 0; a < dim; ++a)
+    if (begin[a] >= end[a])
+      return result;
   std::vector<int> candidates;
   std::vector<std::pair<Index<dim>, Crossing<dim>>> found;
   for (int axis = 0; axis < dim; ++axis) {

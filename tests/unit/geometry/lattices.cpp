@@ -231,6 +231,7 @@ TEST(SolidVolume, HalfCutBoxes) {
   EXPECT_NEAR(in_box({-2, -2, -2}, {2, 2, 2}), 1, 1e-14);           // all of it
   EXPECT_EQ(in_box({.5, 0, 0}, {.7, .2, .2}), 0);                   // touching from outside
   EXPECT_NEAR(in_box({.3, 0, 0}, {.5, .2, .2}), 0.008, 1e-15);      // touching from inside
+  EXPECT_NEAR(in_box({.3, 0, 0}, {.5, .7, .2}), 0.02, 1e-15);       // the same, cut across
   EXPECT_EQ(in_box({3, 0, 0}, {4, 1, 1}), 0);
   const auto shell = snapshot<3>({box_surface<3>({1, 1, 1}, 0.4)}, false);
   EXPECT_EQ(solid_volume_in_box<3>(shell, {Point<3>(0, 0, 0), Point<3>(1, 1, 1)}), 0);
