@@ -23,6 +23,10 @@ struct TransportSide {
   std::function<Point<dim>(const Point<dim>&)> velocity;  ///< of the inflow, at a point of the side
 };
 
+/// A scalar on each side of the domain: [axis][0 lower, 1 upper].
+template <int dim>
+using SideValues = std::array<std::array<double, 2>, dim>;
+
 /// What transport sees of the world at t^n. The referenced objects must outlive the Transport.
 template <int dim>
 struct TransportSetting {
@@ -63,10 +67,10 @@ class Transport {
   /// Collective: `result` = u carried over dt. Prescribed and inactive faces keep their u. Ghost
   /// values of u are not used, those of `result` not set. `result` may not be `u`.
   void advect_faces(AdvectionScheme scheme, const FaceField<dim>& u, FaceField<dim>& result);
-  /// Collective: the same for a cell-centred scalar that has `inflow_value` on all inflow sides.
-  /// Cells without fluid keep their s.
-  void advect_scalar(AdvectionScheme scheme, const CellField& s, double inflow_value,
-                     CellField& result);
+  /// Collective: the same for a cell-centred scalar, given what it is on inflow sides. Cells
+  /// without fluid keep their s.
+  void advect_scalar(AdvectionScheme scheme, const CellField& s,
+                     const SideValues<dim>& inflow_values, CellField& result);
 
   /// What the calls so far could not give a value. Faces after `advect_faces`, cells after
   /// `advect_scalar` (the same for every scalar).

@@ -1,0 +1,122 @@
+#include "mac/nearby_surface.hpp"
+
+#include <cmath>
+
+#include "geometry/simplex_queries.hpp"
+
+namespace lockstep {
+
+template <int dim>
+NearbySurface<dim>::NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid)
+    : snapshot_(snapshot && !snapshot->empty() ? std::move(snapshot) : nullptr),
+      lower_(grid.lower()),
+      tolerance_(1e-6 * grid.spacing()) {
+  for (int a = 0; a < dim; ++a)
+    period_[a] = grid.description().periodic[a] ? grid.n_cells()[a] * grid.spacing() : 0;
+}
+
+template <int dim>
+template <typename Function>
+bool NearbySurface<dim>::any_image(const Box<dim>& box, const Function& f) const {
+  Index<dim> first{}, count{};
+  int n_images = 1;
+  for (int a = 0; a < dim; ++a) {
+    int last = 0;
+    if (period_[a] > 0) {
+      first[a] = std::min(0, static_cast<int>(std::floor((box.min()[a] - lower_[a]) / period_[a])));
+      last = std::max(0, static_cast<int>(std::floor((box.max()[a] - lower_[a]) / period_[a])));
+    }
+    count[a] = last - first[a] + 1;
+    n_images *= count[a];
+  }
+  for (int i = 0; i < n_images; ++i) {
+    Point<dim> shift;
+    for (int a = 0, rest = i; a < dim; ++a) {
+      shift[a] = (first[a] + rest % count[a]) * period_[a];
+      rest /= count[a];
+    }
+    if (f(shift))
+      return true;
+  }
+  return false;
+}
+
+template <int dim>
+bool NearbySurface<dim>::touches(const Box<dim>& box) const {
+  if (empty())
+    return false;
+  return any_image(box, [&](const Point<dim>& shift) {
+    return snapshot_->touches(Box<dim>(box.min() - shift, box.max() - shift));
+  });
+}
+
+template <int dim>
+std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>& a,
+                                                               const Point<dim>& b) const {
+  std::optional<SurfacePoint<dim>> first;
+  if (empty())
+    return first;
+  Box<dim> box(a);
+  box.extend(b);
+  any_image(box, [&](const Point<dim>& shift) {
+    const auto hit = snapshot_->first_hit(a - shift, b - shift, tolerance_);
+    if (hit && (!first || hit->fraction < first->fraction))
+      first = hit;
+    return false;
+  });
+  return first;
+}
+
+template <int dim>
+void NearbySurface<dim>::gather(const Box<dim>& box) {
+  near_.clear();
+  if (empty())
+    return;
+  const Box<dim> wide = widened<dim>(box, tolerance_);
+  any_image(wide, [&](const Point<dim>& shift) {
+    snapshot_->touching(Box<dim>(wide.min() - shift, wide.max() - shift), found_);
+    for (const int s : found_) {
+      Near near{s, snapshot_->corners(s), Box<dim>(), shift};
+      for (Point<dim>& corner : near.corners) {
+        corner += shift;
+        near.bounds.extend(corner);
+      }
+      near.bounds = widened<dim>(near.bounds, 2 * tolerance_);
+      near_.push_back(near);
+    }
+    return false;
+  });
+}
+
+template <int dim>
+std::optional<SurfacePoint<dim>> NearbySurface<dim>::near_hit(const Point<dim>& a,
+                                                              const Point<dim>& b) const {
+  std::optional<SurfacePoint<dim>> first;
+  if (near_.empty())
+    return first;
+  Box<dim> box(a);
+  box.extend(b);
+  // A segment shorter than the tolerance has no direction to speak of.
+  const bool is_point = (b - a).norm() <= tolerance_;
+  for (const Near& near : near_) {
+    if (!near.bounds.intersects(box))
+      continue;
+    if (is_point) {
+      const auto closest = closest_on_simplex<dim>(near.corners, a);
+      if (closest.distance <= 2 * tolerance_)
+        return SurfacePoint<dim>{near.simplex, closest.barycentric, closest.position - near.shift,
+                                 0};
+      continue;
+    }
+    const auto hit = hit_simplex<dim>(near.corners, a, b, tolerance_);
+    if (hit && (!first || hit->fraction < first->fraction))
+      first = SurfacePoint<dim>{near.simplex, hit->barycentric, hit->position - near.shift,
+                                hit->fraction};
+  }
+  return first;
+}
+
+template class NearbySurface<2>;
+template class NearbySurface<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,64 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "geometry/surface_snapshot.hpp"
+#include "grid/tiled_grid.hpp"
+
+namespace lockstep {
+
+/// A snapshot asked many times about one place: its simplices near there are gathered once. Sight
+/// lines may leave a periodic domain: they then meet what lies at the other end. Touching counts as
+/// meeting, within `tolerance()`, so that nothing is ever seen through a surface by round-off.
+template <int dim>
+class NearbySurface {
+ public:
+  using Snapshot = std::shared_ptr<const SurfaceSnapshot<dim>>;
+
+  /// The snapshot may be null: no surface.
+  NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid);
+
+  bool empty() const { return !snapshot_; }
+  const SurfaceSnapshot<dim>& snapshot() const { return *snapshot_; }
+  double tolerance() const { return tolerance_; }  ///< [m], a millionth of h
+
+  /// True if the box of a simplex touches this box [m].
+  bool touches(const Box<dim>& box) const;
+  /// First surface point on the segment a -> b of any length; its position is the real one, not
+  /// that of a periodic image.
+  std::optional<SurfacePoint<dim>> first_hit(const Point<dim>& a, const Point<dim>& b) const;
+
+  /// Remembers the simplices that touch the box [m]; replaces what was gathered before.
+  void gather(const Box<dim>& box);
+  bool nothing_near() const { return near_.empty(); }
+  /// First of the gathered simplices that the segment, inside the box, meets.
+  std::optional<SurfacePoint<dim>> near_hit(const Point<dim>& a, const Point<dim>& b) const;
+
+ private:
+  struct Near {
+    int simplex;
+    std::array<Point<dim>, dim> corners;  ///< of the image
+    Box<dim> bounds;                      ///< of the image, widened by the tolerance
+    Point<dim> shift;                     ///< from the real place to the image
+  };
+  /// Calls f(shift) for each period by which the surface may have to be moved to touch the box,
+  /// until f returns true.
+  template <typename Function>
+  bool any_image(const Box<dim>& box, const Function& f) const;
+
+  Snapshot snapshot_;
+  Point<dim> lower_, period_;  ///< period 0: not periodic
+  double tolerance_;
+  std::vector<Near> near_;
+  std::vector<int> found_;
+};
+
+/// The box widened by a distance on all sides.
+template <int dim>
+Box<dim> widened(const Box<dim>& box, double distance) {
+  const Point<dim> margin = Point<dim>::Constant(distance);
+  return {box.min() - margin, box.max() + margin};
+}
+
+}  // namespace lockstep

@@ -1,0 +1,119 @@
+#pragma once
+#include <algorithm>
+#include <array>
+
+#include "mac/sample_lattice.hpp"
+
+namespace lockstep {
+
+/// A ray from a sample, cut at the sides of the domain. Lattice units.
+template <int dim>
+struct Ray {
+  Point<dim> middle = Point<dim>::Zero();  ///< where the midpoint rule looked
+  Point<dim> end = Point<dim>::Zero();
+  bool complete = true;  ///< all samples on the way are stored here
+  bool clipped = false;  ///< it would have left the domain
+  int inflow_axis = -1;  ///< it left through the inflow side of this axis
+  int inflow_side = 0;
+};
+
+/// Follows the advection velocity over one step with the midpoint rule, away from surfaces.
+template <int dim>
+class RayTracer {
+ public:
+  /// `velocity` on the sample grid [m/s]; `cells_per_velocity` = dt / h.
+  RayTracer(const SampleLattice<dim>& lattice, const std::array<std::array<bool, 2>, dim>& inflow,
+            const std::array<const double*, dim>& velocity, double cells_per_velocity)
+      : lattice_(lattice),
+        inflow_(inflow),
+        velocity_(velocity),
+        cells_per_velocity_(cells_per_velocity) {}
+
+  /// From x against the flow (direction -1) or with it (+1). Unchecked as in SampleLattice: for the
+  /// whole ray.
+  template <bool checked>
+  Ray<dim> trace(const Point<dim>& x, double direction) const;
+  /// Cuts the segment x -> end at the domain: at an inflow side where it leaves, elsewhere it
+  /// slides.
+  void clip(const Point<dim>& x, Ray<dim>& ray) const;
+
+  const std::array<const double*, dim>& velocity() const { return velocity_; }
+  double cells_per_velocity() const { return cells_per_velocity_; }
+
+ private:
+  template <bool checked>
+  bool displacement(const Point<dim>& x, Point<dim>& d) const;
+  /// Moves x into the domain along the axes that are not periodic; true if it was outside.
+  bool clamp(Point<dim>& x) const;
+
+  const SampleLattice<dim>& lattice_;
+  std::array<std::array<bool, 2>, dim> inflow_;
+  std::array<const double*, dim> velocity_;
+  double cells_per_velocity_;
+};
+
+template <int dim>
+template <bool checked>
+bool RayTracer<dim>::displacement(const Point<dim>& x, Point<dim>& d) const {
+  const auto stencils = lattice_.template locate_faces<checked>(x);
+  for (int a = 0; a < dim; ++a) {
+    if (checked && !stencils[a].complete())
+      return false;
+    d[a] = interpolate<dim, checked>(stencils[a], velocity_[a]) * cells_per_velocity_;
+  }
+  return true;
+}
+
+template <int dim>
+template <bool checked>
+Ray<dim> RayTracer<dim>::trace(const Point<dim>& x, double direction) const {
+  Ray<dim> ray;
+  Point<dim> d;
+  ray.complete = displacement<checked>(x, d);
+  if (checked && !ray.complete)
+    return ray;
+  ray.middle = x + 0.5 * direction * d;
+  if constexpr (checked)
+    clamp(ray.middle);
+  ray.complete = displacement<checked>(ray.middle, d);
+  ray.end = x + direction * d;
+  if constexpr (checked)
+    clip(x, ray);
+  return ray;
+}
+
+template <int dim>
+bool RayTracer<dim>::clamp(Point<dim>& x) const {
+  bool outside = false;
+  for (int a = 0; a < dim; ++a) {
+    if (lattice_.periodic(a) || (x[a] >= 0 && x[a] <= lattice_.n_cells()[a]))
+      continue;
+    x[a] = std::clamp<double>(x[a], 0, lattice_.n_cells()[a]);
+    outside = true;
+  }
+  return outside;
+}
+
+template <int dim>
+void RayTracer<dim>::clip(const Point<dim>& x, Ray<dim>& ray) const {
+  double fraction = 1;
+  for (int a = 0; a < dim; ++a) {
+    const double n = lattice_.n_cells()[a];
+    if (lattice_.periodic(a) || (ray.end[a] >= 0 && ray.end[a] <= n))
+      continue;
+    const int side = ray.end[a] < 0 ? 0 : 1;
+    if (!inflow_[a][side])
+      continue;
+    const double leaves = (side * n - x[a]) / (ray.end[a] - x[a]);
+    if (leaves >= fraction)
+      continue;
+    fraction = leaves;
+    ray.inflow_axis = a;
+    ray.inflow_side = side;
+  }
+  if (ray.inflow_axis >= 0)
+    ray.end = x + fraction * (ray.end - x);
+  ray.clipped = clamp(ray.end) || ray.inflow_axis >= 0;
+}
+
+}  // namespace lockstep

@@ -1,0 +1,193 @@
+#pragma once
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "grid/tiled_grid.hpp"
+
+namespace lockstep {
+
+/// Which samples of the staggered grid: the faces normal to an axis (0 .. dim-1), or cell centres.
+using SampleKind = int;
+constexpr SampleKind cell_centers = -1;
+
+/// Where a sample lies in its cell, in cells from the cell's lower corner.
+template <int dim>
+Point<dim> sample_offset(SampleKind kind) {
+  Point<dim> offset = Point<dim>::Constant(0.5);
+  if (kind != cell_centers)
+    offset[kind] = 0;
+  return offset;
+}
+
+/// The 2^dim samples around a point and the weight of the upper ones along each axis.
+template <int dim>
+struct Stencil {
+  /// Ids below 0 have no storage: `wall_sample` is a velocity that is zero, any other is missing.
+  static constexpr int wall_sample = std::numeric_limits<int>::min();
+
+  std::array<int, 1 << dim> id;  ///< bit a of the position: upper along axis a
+  std::array<double, dim> weight;
+
+  bool complete() const {
+    for (const int i : id)
+      if (i < 0 && i != wall_sample)
+        return false;
+    return true;
+  }
+};
+
+/// One of the samples around a point, for those who look at them one by one.
+template <int dim>
+struct StencilCorner {
+  int id = 0;
+  double weight = 0;
+  Point<dim> position = Point<dim>::Zero();  ///< lattice units, not wrapped
+};
+
+/// Multilinear interpolation; exact for constants. `Checked` stencils may hold wall samples.
+template <int dim, bool checked>
+double interpolate(const Stencil<dim>& stencil, const double* field) {
+  std::array<double, 1 << dim> value;
+  for (int k = 0; k < 1 << dim; ++k)
+    value[k] = checked && stencil.id[k] < 0 ? 0.0 : field[stencil.id[k]];
+  for (int a = 0; a < dim; ++a)
+    for (int k = 0; k < 1 << (dim - 1 - a); ++k)
+      value[k] = value[2 * k] + stencil.weight[a] * (value[2 * k + 1] - value[2 * k]);
+  return value[0];
+}
+
+/// Finds the samples around a point. Works in lattice units: x = (position - lower) / h, so that a
+/// cell spans [i, i + 1]. Copies what it needs of the grid: the ids of stored tiles, in a table
+/// over their bounding box.
+template <int dim>
+class SampleLattice {
+ public:
+  explicit SampleLattice(const TiledGrid<dim>& grid);
+
+  /// Samples around x. Unchecked: x lies at least one cell inside the domain and all tiles within a
+  /// cell of it are stored. Checked: periodic axes wrap, others stop at their last sample.
+  template <bool checked>
+  Stencil<dim> locate(SampleKind kind, const Point<dim>& x) const;
+  /// The same for all components of a velocity.
+  template <bool checked>
+  std::array<Stencil<dim>, dim> locate_faces(const Point<dim>& x) const;
+  /// The samples around x with their weights and places.
+  std::array<StencilCorner<dim>, (1 << dim)> corners(SampleKind kind, const Point<dim>& x) const;
+
+  const Index<dim>& n_cells() const { return n_cells_; }
+  bool periodic(int axis) const { return periodic_[axis]; }
+  /// True if all tiles that the coordinates [begin, end) touch are stored here and inside the
+  /// domain.
+  bool stores(const Index<dim>& begin, const Index<dim>& end) const;
+
+ private:
+  /// The two samples around x along one axis.
+  struct Pair {
+    std::array<int, 2> tile;    ///< share of the place in the tile table
+    std::array<int, 2> offset;  ///< share of the offset in the tile
+    std::array<bool, 2> at_wall{};
+    double weight;
+  };
+  template <bool checked>
+  Pair find_pair(int axis, bool on_faces, double x) const;
+  template <bool checked>
+  Stencil<dim> combine(const std::array<const Pair*, dim>& pairs) const;
+  /// Sample coordinate after wrapping and clamping.
+  int resolve(int axis, bool on_faces, int i) const;
+
+  Index<dim> n_cells_;
+  std::array<bool, dim> periodic_;
+  std::array<bool, dim> virtual_wall_;  ///< the upper side's faces are not stored: zero velocity
+  Index<dim> table_lower_{}, table_size_{}, table_stride_{};  ///< one ring of -1 around the tiles
+  std::vector<int> table_;
+};
+
+template <int dim>
+int SampleLattice<dim>::resolve(int axis, bool on_faces, int i) const {
+  const int n = n_cells_[axis];
+  if (periodic_[axis]) {
+    if (i >= 0 && i < n)
+      return i;
+    i %= n;
+    return i < 0 ? i + n : i;
+  }
+  return std::clamp(i, 0, on_faces ? n : n - 1);
+}
+
+template <int dim>
+template <bool checked>
+typename SampleLattice<dim>::Pair SampleLattice<dim>::find_pair(int axis, bool on_faces,
+                                                                double x) const {
+  constexpr int log_width = log_tile_width<dim>;
+  const double t = on_faces ? x : x - 0.5;
+  const double floor_t = std::floor(t);
+  Pair pair;
+  pair.weight = t - floor_t;
+  for (int k = 0; k < 2; ++k) {
+    int i = static_cast<int>(floor_t) + k;
+    if constexpr (checked) {
+      i = resolve(axis, on_faces, i);
+      pair.at_wall[k] = on_faces && virtual_wall_[axis] && i == n_cells_[axis];
+    }
+    int tile = (i >> log_width) - table_lower_[axis];
+    if constexpr (checked)
+      tile = std::clamp(tile, 0, table_size_[axis] - 1);
+    pair.tile[k] = tile * table_stride_[axis];
+    pair.offset[k] = (i & (tile_width<dim> - 1)) << (log_width * axis);
+  }
+  return pair;
+}
+
+template <int dim>
+template <bool checked>
+Stencil<dim> SampleLattice<dim>::combine(const std::array<const Pair*, dim>& pairs) const {
+  Stencil<dim> stencil;
+  for (int k = 0; k < 1 << dim; ++k) {
+    int tile = 0, offset = 0;
+    bool at_wall = false;
+    for (int a = 0; a < dim; ++a) {
+      const int upper = (k >> a) & 1;
+      tile += pairs[a]->tile[upper];
+      offset += pairs[a]->offset[upper];
+      if constexpr (checked)
+        at_wall |= pairs[a]->at_wall[upper];
+    }
+    stencil.id[k] = at_wall ? Stencil<dim>::wall_sample : table_[tile] * tile_volume<dim> + offset;
+  }
+  for (int a = 0; a < dim; ++a)
+    stencil.weight[a] = pairs[a]->weight;
+  return stencil;
+}
+
+template <int dim>
+template <bool checked>
+Stencil<dim> SampleLattice<dim>::locate(SampleKind kind, const Point<dim>& x) const {
+  std::array<Pair, dim> pairs;
+  std::array<const Pair*, dim> chosen;
+  for (int a = 0; a < dim; ++a) {
+    pairs[a] = find_pair<checked>(a, a == kind, x[a]);
+    chosen[a] = &pairs[a];
+  }
+  return combine<checked>(chosen);
+}
+
+template <int dim>
+template <bool checked>
+std::array<Stencil<dim>, dim> SampleLattice<dim>::locate_faces(const Point<dim>& x) const {
+  std::array<Pair, dim> on_faces, at_centers;
+  for (int a = 0; a < dim; ++a) {
+    on_faces[a] = find_pair<checked>(a, true, x[a]);
+    at_centers[a] = find_pair<checked>(a, false, x[a]);
+  }
+  std::array<Stencil<dim>, dim> stencils;
+  for (int kind = 0; kind < dim; ++kind) {
+    std::array<const Pair*, dim> chosen;
+    for (int a = 0; a < dim; ++a)
+      chosen[a] = a == kind ? &on_faces[a] : &at_centers[a];
+    stencils[kind] = combine<checked>(chosen);
+  }
+  return stencils;
+}
+
+}  // namespace lockstep

@@ -1,0 +1,174 @@
+#include "mac/surface_transport.hpp"
+
+#include <algorithm>
+
+#include "geometry/simplex_queries.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Rays up to this length look at the simplices gathered around their start alone [cells].
+constexpr double short_ray = 1.5;
+/// How far before a surface a ray stops [cells].
+constexpr double stand_off = 1e-3;
+
+}  // namespace
+
+template <int dim>
+SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
+                                        const SampleLattice<dim>& lattice,
+                                        const RayTracer<dim>& tracer,
+                                        const UsableSamples<dim>& usable,
+                                        const MovingSurface<dim>& surface,
+                                        double largest_displacement)
+    : lattice_(lattice),
+      tracer_(tracer),
+      surface_(surface),
+      interpolation_(grid, lattice, usable, surface),
+      reach_(largest_displacement) {
+  if (interpolation_.nearby().empty())
+    return;
+  const SurfaceSnapshot<dim>& before = *surface.before;
+  const SurfaceSnapshot<dim>& after = surface.after ? *surface.after : before;
+  const auto& from = before.mesh().vertices;
+  const auto& to = after.mesh().vertices;
+  for (std::size_t v = 0; v < from.size(); ++v)
+    surface_displacement_ =
+        std::max(surface_displacement_, (to[v] - from[v]).norm() / grid.spacing());
+  swept_.resize(before.n_simplices());
+  for (int s = 0; s < before.n_simplices(); ++s) {
+    swept_[s] = before.bounds(s);
+    swept_[s].extend(after.bounds(s));
+    swept_[s] = widened<dim>(swept_[s], 2 * interpolation_.nearby().tolerance());
+  }
+}
+
+template <int dim>
+bool SurfaceTransport<dim>::is_near(const Box<dim>& box) const {
+  if (interpolation_.nearby().empty())
+    return false;
+  return interpolation_.nearby().touches(
+      interpolation_.physical(widened<dim>(box, reach_ + 2 + surface_displacement_)));
+}
+
+template <int dim>
+void SurfaceTransport<dim>::enter(const Box<dim>& box) {
+  around_.clear();
+  if (interpolation_.nearby().empty())
+    return;
+  const Box<dim> wide = interpolation_.physical(widened<dim>(box, surface_displacement_ + 0.01));
+  const Box<dim> exact = interpolation_.physical(box);
+  surface_.before->touching(wide, candidates_);
+  for (const int s : candidates_)
+    if (swept_[s].intersects(exact))
+      around_.push_back(s);
+}
+
+template <int dim>
+bool SurfaceTransport<dim>::swept(const Point<dim>& x) const {
+  if (around_.empty())
+    return false;
+  const Point<dim> position = interpolation_.physical(x);
+  candidates_.clear();
+  for (const int s : around_)
+    if (swept_[s].contains(position))
+      candidates_.push_back(s);
+  if (candidates_.empty())
+    return false;
+  const SurfaceSnapshot<dim>& before = *surface_.before;
+  const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
+  const double tolerance = interpolation_.nearby().tolerance();
+  for (const int s : candidates_)
+    if (closest_on_simplex<dim>(before.corners(s), position).distance <= tolerance ||
+        closest_on_simplex<dim>(after.corners(s), position).distance <= tolerance)
+      return true;
+  return surface_displacement_ > 0 && swept_over<dim>(before, after, position, candidates_);
+}
+
+template <int dim>
+bool SurfaceTransport<dim>::inside(const Point<dim>& x) const {
+  return !interpolation_.nearby().empty() &&
+         surface_.before->inside(interpolation_.physical(x)) >= 0;
+}
+
+template <int dim>
+bool SurfaceTransport<dim>::clear(const Box<dim>& points, bool during_step) const {
+  const double margin = during_step ? 1 + surface_displacement_ : 1;
+  return !interpolation_.nearby().touches(interpolation_.physical(widened<dim>(points, margin)));
+}
+
+template <int dim>
+std::optional<SurfacePoint<dim>> SurfaceTransport<dim>::hit_on_way(const Point<dim>& x,
+                                                                   const Point<dim>& end) const {
+  const NearbySurface<dim>& nearby = interpolation_.nearby();
+  const Point<dim> a = interpolation_.physical(x), b = interpolation_.physical(end);
+  return (end - x).cwiseAbs().maxCoeff() <= short_ray ? nearby.near_hit(a, b)
+                                                      : nearby.first_hit(a, b);
+}
+
+template <int dim>
+Ray<dim> SurfaceTransport<dim>::trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit) {
+  interpolation_.look_around(x, short_ray);
+  const double scale = tracer_.cells_per_velocity();
+  Point<dim> displacement = scale * interpolation_.velocity_at(x, tracer_.velocity());
+  Ray<dim> half;
+  half.end = x - 0.5 * displacement;
+  tracer_.clip(x, half);
+  if (!hit_on_way(x, half.end)) {
+    const bool is_long = (half.end - x).cwiseAbs().maxCoeff() > short_ray;
+    if (is_long)
+      interpolation_.look_around(half.end);
+    displacement = scale * interpolation_.velocity_at(half.end, tracer_.velocity());
+    if (is_long)
+      interpolation_.look_around(x, short_ray);
+  }
+  Ray<dim> ray;
+  ray.middle = half.end;
+  ray.end = x - displacement;
+  tracer_.clip(x, ray);
+  hit = hit_on_way(x, ray.end);
+  if (hit) {
+    const double length = hit->fraction * (ray.end - x).norm();
+    const double stop = std::max(length - stand_off, 0.5 * length);
+    if (length > 0)
+      ray.end = x + (hit->fraction * stop / length) * (ray.end - x);
+    else
+      ray.end = x;
+    ray.inflow_axis = -1;
+  }
+  return ray;
+}
+
+template <int dim>
+std::optional<double> SurfaceTransport<dim>::look_up(const CarriedField<dim>& field,
+                                                     const Point<dim>& x) {
+  return field.kind == cell_centers ? interpolation_.scalar(x, field.values)
+                                    : interpolation_.velocity(field.kind, x, field.values);
+}
+
+template <int dim>
+std::optional<double> SurfaceTransport<dim>::carry(const CarriedField<dim>& field,
+                                                   const Point<dim>& x) {
+  std::optional<SurfacePoint<dim>> hit;
+  const Ray<dim> ray = trace(x, hit);
+  if (ray.inflow_axis >= 0)
+    return field.inflow(ray);
+  const bool is_long = (ray.end - x).cwiseAbs().maxCoeff() > short_ray;
+  if (is_long)
+    interpolation_.look_around(ray.end);
+  auto value = look_up(field, ray.end);
+  if (value)
+    return value;
+  if (is_long)
+    interpolation_.look_around(x);
+  value = look_up(field, x);
+  if (!value && hit && field.kind != cell_centers)
+    value = surface_.velocity(*hit)[field.kind];
+  return value;
+}
+
+template class SurfaceTransport<2>;
+template class SurfaceTransport<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,61 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "mac/ray_tracer.hpp"
+#include "mac/visible_interpolation.hpp"
+
+namespace lockstep {
+
+/// One field being carried, on the sample grid.
+template <int dim>
+struct CarriedField {
+  SampleKind kind = cell_centers;
+  const double* values = nullptr;
+  /// Its value where a ray leaves through an inflow side.
+  std::function<double(const Ray<dim>&)> inflow;
+};
+
+/// Transport of single samples near surfaces. Points and boxes are in lattice units.
+template <int dim>
+class SurfaceTransport {
+ public:
+  /// `largest_displacement` of a ray along an axis, in cells. References must outlive this object.
+  SurfaceTransport(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
+                   const RayTracer<dim>& tracer, const UsableSamples<dim>& usable,
+                   const MovingSurface<dim>& surface, double largest_displacement);
+
+  /// True if a surface may come into the way of a ray from a sample in the box.
+  bool is_near(const Box<dim>& box) const;
+  /// Prepares the questions about samples in the box.
+  void enter(const Box<dim>& box);
+  /// The sample changes sides or has none: swept over, or on a surface at t^n or t^{n+1}.
+  bool swept(const Point<dim>& x) const;
+  /// Inside a closed solid at t^n: possible for the centre of a coupled face.
+  bool inside(const Point<dim>& x) const;
+  /// True if no surface touches the points and their surroundings of one cell, at t^n or, with
+  /// `during_step`, at any time of the step.
+  bool clear(const Box<dim>& points, bool during_step) const;
+  /// The value carried to the sample at x; none if it sees no valid sample.
+  std::optional<double> carry(const CarriedField<dim>& field, const Point<dim>& x);
+
+ private:
+  /// Where the fluid of x came from, as far as it can be seen; sets `hit` if a surface is in the
+  /// way.
+  Ray<dim> trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit);
+  std::optional<SurfacePoint<dim>> hit_on_way(const Point<dim>& x, const Point<dim>& end) const;
+  std::optional<double> look_up(const CarriedField<dim>& field, const Point<dim>& x);
+
+  const SampleLattice<dim>& lattice_;
+  const RayTracer<dim>& tracer_;
+  const MovingSurface<dim>& surface_;
+  VisibleInterpolation<dim> interpolation_;
+  double reach_;                     ///< largest displacement of a ray [cells]
+  double surface_displacement_ = 0;  ///< largest of a vertex over the step [cells]
+  std::vector<Box<dim>> swept_;      ///< box of each simplex over the step, a little widened [m]
+  std::vector<int> around_;          ///< simplices whose swept box touches the box entered
+  mutable std::vector<int> candidates_;
+};
+
+}  // namespace lockstep

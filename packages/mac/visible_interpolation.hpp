@@ -1,0 +1,61 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "interfaces/fluid.hpp"
+#include "mac/nearby_surface.hpp"
+#include "mac/sample_lattice.hpp"
+
+namespace lockstep {
+
+/// Which samples may be interpolated from, by id on the sample grid (0: not).
+template <int dim>
+struct UsableSamples {
+  std::array<const char*, dim> faces;
+  const char* cells = nullptr;
+};
+
+/// Interpolation near surfaces: only samples that are usable and visible from the point count.
+/// Points are in lattice units, fields on the sample grid.
+template <int dim>
+class VisibleInterpolation {
+ public:
+  /// All arguments must outlive this object. `velocity` is that of a surface point.
+  VisibleInterpolation(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
+                       const UsableSamples<dim>& usable, const MovingSurface<dim>& surface)
+      : grid_(grid),
+        lattice_(lattice),
+        usable_(usable),
+        surface_(surface),
+        nearby_(surface.before, grid) {}
+
+  /// Prepares interpolation at x and, to see far, at points within `radius` cells of it.
+  void look_around(const Point<dim>& x, double radius = 0);
+  /// A velocity component; samples hidden by the surface have the surface's velocity there. None if
+  /// nothing is visible and no surface is in sight either.
+  std::optional<double> velocity(int axis, const Point<dim>& x, const double* field) const;
+  /// A scalar from the visible samples alone, their weights scaled to sum to one; none if there are
+  /// no such samples.
+  std::optional<double> scalar(const Point<dim>& x, const double* field) const;
+  /// Where the fluid that is at x came from: the midpoint rule as far as it is in sight, its
+  /// displacement in cells backwards. Zero where the velocity is unknown.
+  Point<dim> velocity_at(const Point<dim>& x, const std::array<const double*, dim>& field) const;
+
+  const NearbySurface<dim>& nearby() const { return nearby_; }
+  Point<dim> physical(const Point<dim>& x) const { return grid_.lower() + grid_.spacing() * x; }
+  Box<dim> physical(const Box<dim>& box) const {
+    return {physical(Point<dim>(box.min())), physical(Point<dim>(box.max()))};
+  }
+  /// Velocity of the nearest surface point within three cells of x, or zero.
+  Point<dim> nearest_surface_velocity(const Point<dim>& x) const;
+
+ private:
+  const TiledGrid<dim>& grid_;
+  const SampleLattice<dim>& lattice_;
+  const UsableSamples<dim>& usable_;
+  const MovingSurface<dim>& surface_;
+  NearbySurface<dim> nearby_;
+};
+
+}  // namespace lockstep
