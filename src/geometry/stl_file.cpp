@@ -17,7 +17,6 @@ class CornerMerger {
     std::array<int, 3> triangle;
     for (int k = 0; k < 3; ++k) {
       const std::array<double, 3>& x = corners[k];
-      coordinate += 0.0;  // -0 becomes +0
       const auto [entry, is_new] = known_.emplace(x, static_cast<int>(mesh_.vertices.size()));
       if (is_new)
         mesh_.vertices.emplace_back(x[0], x[1], x[2]);
