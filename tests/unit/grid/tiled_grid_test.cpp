@@ -89,6 +89,8 @@ TEST(TiledGrid, ReachCrossesAPartialTileOfAPeriodicAxis) {
   GridDescription<2> description;
   description.n_cells = {79, 1};
   description.periodic = {true, false};
+  EXPECT_THAT(TileLattice<2>(description).tiles_within({0}, 16),
+              ::testing::ElementsAre(0, 1, 3, 4));
   expect_sound(TiledGrid<2>(description, world()));
 }
 
