@@ -67,6 +67,11 @@ class SolidModel : public PlugIn {
   virtual RCP<const LinearOperator> implicit_force(double dt) const;
   /// momentum = M_S V_S* = M_S V^n + dt (explicit forces, gravity included) [kg m/s]. Collective.
   virtual void explicit_momentum(double time, double dt, Vector& momentum) const = 0;
+  /// S1 only, dt the half step: added to `explicit_momentum` so that its V_S* is the velocity at
+  /// the midpoint of the free motion, where the inertia is that of the turned body; then the
+  /// positions are second order in time. Never part of S2: momentum stays exact. Default: nothing.
+  /// Collective.
+  virtual void add_midpoint_correction(double, Vector&) const {}
   /// Total of the external impulses (gravity, loads) inside explicit_momentum, for the ledger.
   /// Global.
   virtual Momentum<dim> external_impulse(double time, double dt) const = 0;
