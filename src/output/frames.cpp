@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "output/on_root.hpp"
 #include "output/xdmf.hpp"
 
 namespace lockstep {
@@ -16,6 +17,14 @@ namespace fs = std::filesystem;
 namespace {
 Communicator serial_communicator() {
   return Teuchos::rcp(new Teuchos::SerialComm<int>());
+}
+
+std::string frame_name(long long number) {
+  return fmt::format("frame-{:06}", number);
+}
+/// Relative to the output folder.
+std::string frame_file(long long number) {
+  return "frames/" + frame_name(number) + ".h5";
 }
 
 /// Vectors get three components, because ParaView knows no others.
@@ -31,16 +40,6 @@ std::vector<double> padded(const std::vector<double>& values, int n_components) 
   return result;
 }
 
-/// What a file system call could not do, as our kind of error.
-template <typename Action>
-std::string attempt(const Action& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
 }  // namespace
 
 FrameWriter::FrameWriter(const Communicator& comm, const std::string& directory,
@@ -51,44 +50,58 @@ FrameWriter::FrameWriter(const Communicator& comm, const std::string& directory,
               storage.compression_level);
 }
 
-std::string FrameWriter::frame_path(const std::string& name) const {
-  return directory_ + "/frames/" + name + ".h5";
+std::string FrameWriter::frame_path(long long number) const {
+  return directory_ + "/" + frame_file(number);
 }
 
 void FrameWriter::start() {
-  resume(-std::numeric_limits<double>::infinity());
+  on_root(comm_, [&] {
+    fs::create_directories(directory_ + "/frames");
+    entries_.clear();
+    write_index();
+    for (const fs::path& file : frame_files()) {
+      fs::remove(file);
+    }
+  });
+  share_state();
 }
 
 void FrameWriter::resume(double time) {
-  std::string failure;
-  if (is_root(comm_)) {
-    failure = attempt([&] {
-      fs::create_directories(directory_ + "/frames");
-      std::vector<Entry> found = find_entries();
-      const auto kept_end = std::find_if(found.begin(), found.end(),
-                                         [&](const Entry& entry) { return entry.time > time; });
-      entries_.assign(found.begin(), kept_end);
-      write_index();
-      for (auto entry = kept_end; entry != found.end(); ++entry) {
-        fs::remove(frame_path(entry->name));
-      }
-    });
-  }
-  throw_on_all(comm_, failure, static_cast<int>(ExitCode::output_failed));
+  on_root(comm_, [&] {
+    fs::create_directories(directory_ + "/frames");
+    entries_ = find_entries();
+    const auto later = std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const Entry& entry) { return entry.time > time; });
+    const std::vector<Entry> dropped(later, entries_.end());
+    entries_.erase(later, entries_.end());
+    write_index();
+    for (const Entry& entry : dropped) {
+      fs::remove(frame_path(entry.number));
+    }
+  });
   share_state();
+}
+
+std::vector<fs::path> FrameWriter::frame_files() const {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& item : fs::directory_iterator(directory_ + "/frames")) {
+    const std::string name = item.path().filename();
+    if (item.path().extension() == ".part") {
+      fs::remove(item.path());
+    } else if (name.rfind("frame-", 0) == 0 && item.path().extension() == ".h5") {
+      files.push_back(item.path());
+    }
+  }
+  return files;
 }
 
 std::vector<FrameWriter::Entry> FrameWriter::find_entries() const {
   std::vector<Entry> found;
-  for (const fs::directory_entry& item : fs::directory_iterator(directory_ + "/frames")) {
-    const std::string name = item.path().stem();
-    if (item.path().extension() == ".part") {
-      fs::remove(item.path());
-    } else if (name.rfind("frame-", 0) == 0 && item.path().extension() == ".h5") {
-      const Hdf5File file = Hdf5File::open(serial_communicator(), item.path());
-      found.push_back({name, file.read_attribute<long long>("/", "step"),
-                       file.read_attribute<double>("/", "time"), file.read_text("xdmf")});
-    }
+  for (const fs::path& path : frame_files()) {
+    const Hdf5File file = Hdf5File::open(serial_communicator(), path);
+    found.push_back({file.read_attribute<long long>("/", "number"),
+                     file.read_attribute<long long>("/", "step"),
+                     file.read_attribute<double>("/", "time"), file.read_text("xdmf")});
   }
   std::sort(found.begin(), found.end(),
             [](const Entry& a, const Entry& b) { return a.time < b.time; });
@@ -97,13 +110,13 @@ std::vector<FrameWriter::Entry> FrameWriter::find_entries() const {
 
 void FrameWriter::write(long long step, double time, const std::vector<BoxFrame>& boxes,
                         const std::vector<SurfaceFrame>& surfaces) {
-  const std::string name = fmt::format("frame-{:06}", n_frames_);
   check_output(time > last_time_, "Frame at {} s is not later than the last one at {} s.", time,
                last_time_);
-  Hdf5File file = Hdf5File::create(comm_, frame_path(name));
+  Hdf5File file = Hdf5File::create(comm_, frame_path(next_number_));
+  file.write_attribute<long long>("/", "number", next_number_);
   file.write_attribute<double>("/", "time", time);
   file.write_attribute<long long>("/", "step", step);
-  const std::string relative = "frames/" + name + ".h5";
+  const std::string relative = frame_file(next_number_);
   std::string grids;
   for (const BoxFrame& box : boxes) {
     write_box(file, box);
@@ -116,12 +129,10 @@ void FrameWriter::write(long long step, double time, const std::vector<BoxFrame>
   const std::string xdmf_text = xdmf::frame(time, grids);
   file.write_text("xdmf", xdmf_text);
   file.close();
-  std::string failure;
-  if (is_root(comm_)) {
-    entries_.push_back({name, step, time, xdmf_text});
-    failure = attempt([&] { write_index(); });
-  }
-  throw_on_all(comm_, failure, static_cast<int>(ExitCode::output_failed));
+  on_root(comm_, [&] {
+    entries_.push_back({next_number_, step, time, xdmf_text});
+    write_index();
+  });
   share_state();
 }
 
@@ -184,7 +195,7 @@ void FrameWriter::write_index() const {
     times.push_back(entry.time);
     steps.push_back(entry.step);
     grids += entry.xdmf;
-    index.link_external(entry.name, "frames/" + entry.name + ".h5", "/");
+    index.link_external(frame_name(entry.number), frame_file(entry.number), "/");
   }
   index.write_replicated("times", times);
   index.write_attribute<std::string>("times", "unit", "s");
@@ -194,12 +205,14 @@ void FrameWriter::write_index() const {
 }
 
 void FrameWriter::share_state() {
-  double state[2] = {
-      static_cast<double>(entries_.size()),
-      entries_.empty() ? -std::numeric_limits<double>::infinity() : entries_.back().time};
-  MPI_Bcast(state, 2, MPI_DOUBLE, 0, raw_communicator(comm_));
+  const bool empty = entries_.empty();
+  double state[3] = {static_cast<double>(entries_.size()),
+                     empty ? 0.0 : static_cast<double>(entries_.back().number + 1),
+                     empty ? -std::numeric_limits<double>::infinity() : entries_.back().time};
+  MPI_Bcast(state, 3, MPI_DOUBLE, 0, raw_communicator(comm_));
   n_frames_ = static_cast<int>(state[0]);
-  last_time_ = state[1];
+  next_number_ = static_cast<long long>(state[1]);
+  last_time_ = state[2];
 }
 
 }  // namespace lockstep

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -80,14 +81,15 @@ class FrameWriter {
 
  private:
   struct Entry {
-    std::string name;  // frame-000012
+    long long number;
     long long step;
     double time;
     std::string xdmf;
   };
-  std::string frame_path(const std::string& name) const;
+  std::string frame_path(long long number) const;
   void write_box(Hdf5File& file, const BoxFrame& box) const;
   void write_surface(Hdf5File& file, const SurfaceFrame& surface) const;
+  std::vector<std::filesystem::path> frame_files() const;
   std::vector<Entry> find_entries() const;
   void write_index() const;
   void share_state();
@@ -97,6 +99,7 @@ class FrameWriter {
   BoxStorage storage_;
   std::vector<Entry> entries_;  // rank 0 only
   int n_frames_ = 0;
+  long long next_number_ = 0;
   double last_time_ = 0;
 };
 

@@ -110,7 +110,9 @@ CellRange gather_range(const Communicator& comm, const std::array<int, 3>& n_cel
 
 template <typename T>
 GlobalIndex Hdf5File::reserve(const std::string& name, const std::vector<GlobalIndex>& extents) {
-  std::string failure;
+  const GlobalIndex n_bytes = n_elements(extents) * static_cast<GlobalIndex>(sizeof(T));
+  std::string failure = is_root(comm_) ? refusal_to_grow(n_bytes) : "";
+  agree(failure, fmt::format("create the dataset '{}'", name));
   long long offset = 0;
   if (is_root(comm_)) {
     const std::vector<hsize_t> shape(extents.begin(), extents.end());
@@ -158,6 +160,8 @@ void Hdf5File::write_values(const std::string& name, GlobalIndex offset, GlobalI
 template <typename T>
 void Hdf5File::write_compressed(const std::string& name, const std::vector<GlobalIndex>& extents,
                                 const std::vector<T>& values, int level) {
+  const GlobalIndex n_bytes = n_elements(extents) * static_cast<GlobalIndex>(sizeof(T));
+  agree(refusal_to_grow(n_bytes), fmt::format("create the dataset '{}'", name));
   constexpr hsize_t chunk_edge = 32;
   const std::vector<hsize_t> shape(extents.begin(), extents.end());
   std::vector<hsize_t> chunk(shape);

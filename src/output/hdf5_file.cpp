@@ -1,6 +1,7 @@
 #include "output/hdf5_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -123,16 +124,34 @@ Hdf5File::~Hdf5File() {
 }
 
 void Hdf5File::abandon() noexcept {
-  if (descriptor_ >= 0)
-    ::close(std::exchange(descriptor_, -1));
-  if (id_ < 0)
+  if (descriptor_ < 0)
     return;
-  // Closing writes what is still in memory. On a full disk that fails, and would fail again when
-  // the program ends; giving the space of the unfinished file back first lets it pass.
-  static_cast<void>(truncate(part_name(path_).c_str(), 0) == 0);
-  H5Fclose(std::exchange(id_, -1));
+  ::close(std::exchange(descriptor_, -1));
+  if (!is_root(comm_))
+    return;
+  // Closing writes what is still in memory, and HDF5 breaks if that fails. On a full disk, giving
+  // the space of the unfinished file back lets it pass; else the file stays open until the program
+  // ends.
+  const bool emptied = truncate(part_name(path_).c_str(), 0) == 0;
+  if (id_ >= 0 && emptied && H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0)
+    H5Fclose(id_);
+  id_ = -1;
   H5Eclear2(H5E_DEFAULT);
   discard_part(path_);
+}
+
+std::string Hdf5File::refusal_to_grow(GlobalIndex n_bytes) const {
+  // HDF5 cannot close a file whose end it was unable to reach (a limit of the file size), so this
+  // is tried first, with room for the structure. Nobody else writes at this moment.
+  constexpr GlobalIndex room_for_structure = 1 << 20;
+  struct stat status {};
+  hsize_t size = 0;
+  H5Fget_filesize(id_, &size);
+  const auto wanted = static_cast<off_t>(size) + n_bytes + room_for_structure;
+  const bool possible = fstat(descriptor_, &status) == 0 &&
+                        (status.st_size >= wanted || (ftruncate(descriptor_, wanted) == 0 &&
+                                                      ftruncate(descriptor_, status.st_size) == 0));
+  return possible ? "" : std::strerror(errno);
 }
 
 void Hdf5File::agree(const std::string& failure, const std::string& action) const {
@@ -153,12 +172,8 @@ void Hdf5File::close() {
   agree(fsync(descriptor_) == 0 ? "" : std::strerror(errno), "write it to its end");
   agree(try_on_root(comm_, [&] { return H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0; }),
         "write it to its end");
-  const std::string failure = try_on_root(comm_, [&] {
-    if (H5Fclose(id_) < 0)
-      return false;
-    id_ = -1;
-    return true;
-  });
+  const std::string failure =
+      try_on_root(comm_, [&] { return H5Fclose(std::exchange(id_, -1)) >= 0; });
   agree(failure, "close it");
   ::close(std::exchange(descriptor_, -1));
   on_root(comm_, [&] { commit_part(path_); });
@@ -262,6 +277,8 @@ T Hdf5File::read_attribute(const std::string& object, const std::string& name) c
 }
 
 void Hdf5File::write_text(const std::string& name, const std::string& text) {
+  const auto length = static_cast<GlobalIndex>(text.size());
+  agree(is_root(comm_) ? refusal_to_grow(length) : "", fmt::format("write the text '{}'", name));
   const std::string failure = try_on_root(comm_, [&] {
     const hdf5::Handle type = text_type(text.size());
     const hdf5::Handle space = hdf5::own_space(H5Screate(H5S_SCALAR));

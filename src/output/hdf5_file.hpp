@@ -103,6 +103,8 @@ class Hdf5File {
   void create_file();
   void open_file();
   void abandon() noexcept;
+  /// Rank 0: why the file cannot grow by this much, or "".
+  std::string refusal_to_grow(GlobalIndex n_bytes) const;
   /// Throws on all ranks if any of them failed; `action` completes "Cannot ... in file".
   void agree(const std::string& failure, const std::string& action) const;
   /// Creates a dataset and returns where in the file its values lie [bytes].
