@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "coupling/null_space.hpp"
+#include "linear/null_space.hpp"
 
 namespace lockstep {
 
@@ -71,8 +72,8 @@ BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum,
   fluid_.divergence(*rhs.pressure);
   coupling_.add_prescribed_divergence(*rhs.pressure);
   const bool with_solid = solids_.has_unknowns();
-  incompatibility =
-      project_out(with_solid ? blocks_.null_space : pressure_only_.null_space, *rhs.pressure);
+  incompatibility = relative_part_removed(
+      with_solid ? blocks_.null_space : pressure_only_.null_space, *rhs.pressure);
   if (with_solid) {
     const RCP<const Vector> full = lumped_momentum(momentum);
     rhs.solid = make_vector(solids_.map());

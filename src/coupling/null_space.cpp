@@ -106,17 +106,4 @@ NullSpace find_null_space(const PressureRegions& regions, const RCP<const Map>& 
   return null_space;
 }
 
-double project_out(const std::vector<RCP<const Vector>>& basis, Vector& v) {
-  if (basis.empty())
-    return 0;
-  const double before = v.norm2();
-  double removed = 0;
-  for (const RCP<const Vector>& n : basis) {
-    const double component = n->dot(v);
-    v.update(-component, *n, 1);
-    removed += component * component;
-  }
-  return before > 0 ? std::sqrt(removed) / before : 0;
-}
-
 }  // namespace lockstep

@@ -18,8 +18,4 @@ struct NullSpace {
 NullSpace find_null_space(const PressureRegions& regions, const RCP<const Map>& pressure_map,
                           const RCP<const CrsMatrix>& coupling_transposed);
 
-/// Removes the components along an orthonormal basis; returns the norm of what was removed over the
-/// norm of v before (0 for v = 0). Collective.
-double project_out(const std::vector<RCP<const Vector>>& basis, Vector& v);
-
 }  // namespace lockstep

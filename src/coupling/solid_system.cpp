@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "coupling/stacked_operator.hpp"
+#include "linear/exact_inverse.hpp"
 #include "linear/triplet_matrix.hpp"
 
 namespace lockstep {
@@ -208,6 +209,13 @@ RCP<const LinearOperator> SolidSystem<dim>::mass() const {
 }
 
 template <int dim>
+RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& generalized_momentum) const {
+  const auto velocity = make_vector(map_);
+  apply(*exact_inverse(mass(), "mass of the solids"), generalized_momentum, *velocity);
+  return velocity;
+}
+
+template <int dim>
 RCP<const Vector> SolidSystem<dim>::part(const Vector& stacked, int m) const {
   return stacked.offsetView(model(m).dof_map(), local_begin_[m])->getVector(0);
 }
@@ -237,6 +245,12 @@ RCP<Vector> SolidSystem<dim>::explicit_momentum(double time, double dt) const {
   for (int m = 0; m < n_models(); ++m)
     model(m).explicit_momentum(time, dt, *part(*stacked, m));
   return stacked;
+}
+
+template <int dim>
+void SolidSystem<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
+  for (int m = 0; m < n_models(); ++m)
+    model(m).add_midpoint_correction(dt, *part(momentum, m));
 }
 
 template <int dim>

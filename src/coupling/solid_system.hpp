@@ -41,6 +41,8 @@ class SolidSystem {
   RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
   /// The same without eliminating locked dofs: for their reactions.
   RCP<const LinearOperator> unlocked_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// M_S^-1 q: the velocities of a stacked generalized momentum. Collective.
+  RCP<Vector> velocity_of(const Vector& generalized_momentum) const;
   /// M_S alone, locked dofs included.
   RCP<const LinearOperator> mass() const;
   /// 1 for free dofs, 0 for locked and padding ones.
@@ -51,6 +53,7 @@ class SolidSystem {
   RCP<Vector> velocity() const;
   void set_velocity(const Vector& velocity);
   RCP<Vector> explicit_momentum(double time, double dt) const;
+  void add_midpoint_correction(double dt, Vector& momentum) const;
   Momentum<dim> external_impulse(double time, double dt) const;
   void move(const Vector& velocity, double time, double dt);
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.

@@ -208,29 +208,28 @@ Momentum<dim> link_impulse(const Links<dim>& links, const Vector& pull, double d
 }  // namespace
 
 template <int dim>
-ViscousResult<dim> solve_viscous(FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
-                                 const Coupling<dim>& coupling,
+ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscretization<dim>& fluid,
+                                 const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
                                  const RCP<const Vector>& lumped_momentum, double dt,
                                  double tolerance) {
-  const std::unique_ptr<ViscousSystem<dim>> system = fluid.viscous_system();
-  const Links<dim> links = make_links<dim>(*system, solids, coupling);
+  const Links<dim> links = make_links<dim>(system, solids, coupling);
   const RCP<const Vector> mask = solids.free_mask();
-  const ViscousOperator<dim> op{*system, links, solid_block, mask, dt};
+  const ViscousOperator<dim> op{system, links, solid_block, mask, dt};
 
   // The pull of prescribed solids on resting fluid, on the right-hand side.
   const RCP<const Vector> prescribed =
-      links.pull(*rcp(new Vector(system->map)), Teuchos::null, true);
-  Pair rhs{rcp(new Vector(system->map)), RCP<Vector>()};
-  rhs.fluid->elementWiseMultiply(1, *system->mass, *system->velocity, 0);
-  rhs.fluid->update(dt, *system->wall_force, 1);
+      links.pull(*rcp(new Vector(system.map)), Teuchos::null, true);
+  Pair rhs{rcp(new Vector(system.map)), RCP<Vector>()};
+  rhs.fluid->elementWiseMultiply(1, *system.mass, *system.velocity, 0);
+  rhs.fluid->update(dt, *system.wall_force, 1);
   {
     const auto values = prescribed->getData();
     const auto result = rhs.fluid->getDataNonConst();
     for (std::size_t l = 0; l < links.list.size(); ++l)
       result[links.list[l].row] -= dt * values[l];
   }
-  Pair x{rcp(new Vector(*system->velocity, Teuchos::Copy)), RCP<Vector>()};
+  Pair x{rcp(new Vector(*system.velocity, Teuchos::Copy)), RCP<Vector>()};
   if (solids.has_unknowns()) {
     Vector pulled(*lumped_momentum, Teuchos::Copy);
     links.rows->apply(*prescribed, pulled, Teuchos::TRANS, dt, 1);
@@ -242,7 +241,8 @@ ViscousResult<dim> solve_viscous(FluidDiscretization<dim>& fluid, const SolidSys
       conjugate_gradients<dim>(op, inverse_diagonal<dim>(op, rhs), rhs, x, tolerance);
 
   RCP<const Vector> solid_velocity;
-  if (solids.has_unknowns()) solid_velocity = op.masked(*x.solid);
+  if (solids.has_unknowns())
+    solid_velocity = op.masked(*x.solid);
   const RCP<const Vector> pull = links.pull(*x.fluid, solid_velocity, true);
   if (solids.has_unknowns()) {
     result.solid_impulse = rcp(new Vector(solids.map()));
@@ -254,11 +254,13 @@ ViscousResult<dim> solve_viscous(FluidDiscretization<dim>& fluid, const SolidSys
   return result;
 }
 
-template ViscousResult<2> solve_viscous<2>(FluidDiscretization<2>&, const SolidSystem<2>&,
-                                           const Coupling<2>&, const RCP<const LinearOperator>&,
+template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, FluidDiscretization<2>&,
+                                           const SolidSystem<2>&, const Coupling<2>&,
+                                           const RCP<const LinearOperator>&,
                                            const RCP<const Vector>&, double, double);
-template ViscousResult<3> solve_viscous<3>(FluidDiscretization<3>&, const SolidSystem<3>&,
-                                           const Coupling<3>&, const RCP<const LinearOperator>&,
+template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, FluidDiscretization<3>&,
+                                           const SolidSystem<3>&, const Coupling<3>&,
+                                           const RCP<const LinearOperator>&,
                                            const RCP<const Vector>&, double, double);
 
 }  // namespace lockstep

@@ -20,8 +20,8 @@ struct ViscousResult {
 /// applied twice. `lumped_momentum` is row 2 and `solid_block` is C; both null without unknowns.
 /// Throws SolveError if CG does not reach `tolerance`. Collective.
 template <int dim>
-ViscousResult<dim> solve_viscous(FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
-                                 const Coupling<dim>& coupling,
+ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscretization<dim>& fluid,
+                                 const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
                                  const RCP<const Vector>& lumped_momentum, double dt,
                                  double tolerance);

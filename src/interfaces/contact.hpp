@@ -17,15 +17,20 @@ struct ContactReport {
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global
 };
 
+/// In which part of the step contacts are resolved.
+enum class ContactPhase {
+  position,  ///< S1: V^{n+1/2} moves the positions; existing overlap is pushed out
+  velocity   ///< S2: V_S* before the coupled solve; only approach is stopped
+};
+
 /// Collisions, resting contact and friction across all solids and with the walls of the domain.
 template <int dim>
 class ContactModel : public PlugIn {
  public:
   /// Changes the stacked generalized velocities by contact impulses (equal and opposite between
   /// dynamic solids, through the solids' own mass M_S) so that moving by dt from the present
-  /// positions leaves no overlap. Called in S1 with V^{n+1/2} (it moves the positions) and in S2
-  /// with V_S* before the coupled solve. Collective.
-  virtual ContactReport<dim> resolve(const SolidSystem<dim>& solids, double dt,
+  /// positions leaves no overlap. Collective.
+  virtual ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
                                      Vector& velocity) = 0;
 };
 

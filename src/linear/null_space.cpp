@@ -15,4 +15,11 @@ double project_out(const std::vector<RCP<const Vector>>& basis, Vector& x) {
   return std::sqrt(removed);
 }
 
+double relative_part_removed(const std::vector<RCP<const Vector>>& basis, Vector& x) {
+  if (basis.empty())
+    return 0;
+  const double before = x.norm2();
+  return before > 0 ? project_out(basis, x) / before : 0;
+}
+
 }  // namespace lockstep

@@ -1,0 +1,59 @@
+#pragma once
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "interfaces/contact.hpp"
+#include "interfaces/coupling.hpp"
+#include "interfaces/strategy.hpp"
+#include "parameters/registry.hpp"
+
+namespace lockstep {
+
+/// The solids of one type as a scene names them, in the order of the file.
+using NamedLists = std::vector<std::pair<std::string, ParameterList>>;
+
+/// What a solid model may know of the scene around it.
+template <int dim>
+struct SolidSetting {
+  double grid_spacing = 1;                  ///< h of the fluid [m]
+  Point<dim> gravity = Point<dim>::Zero();  ///< [m/s^2]
+  double start_time = 0;                    ///< [s]
+  Communicator comm;
+};
+
+/// What a contact model may know of the scene around it.
+template <int dim>
+struct ContactSetting {
+  Box<dim> domain;  ///< [m]
+  std::array<std::array<bool, 2>, dim>
+      closed_sides{};       ///< [axis][lower, upper] is a wall for solids
+  double grid_spacing = 1;  ///< h [m]
+  Communicator comm;
+};
+
+template <int dim>
+using FluidRegistry = Registry<FluidDiscretization<dim>, const ParameterList&, const Communicator&>;
+/// One model holds all solids of its type; the list given to `create` is empty.
+template <int dim>
+using SolidRegistry = Registry<SolidModel<dim>, const NamedLists&, const SolidSetting<dim>&>;
+template <int dim>
+using CouplingRegistry = Registry<Coupling<dim>>;
+using StrategyRegistry = Registry<SolverStrategy>;
+template <int dim>
+using ContactRegistry = Registry<ContactModel<dim>, const ContactSetting<dim>&>;
+
+/// All plug-ins a program offers. Fill it (packages/registration.hpp adds the shipped ones, a
+/// driver its own), then hand it to `Scene` or `simulate`.
+template <int dim>
+struct Registries {
+  FluidRegistry<dim> fluids{"fluid"};
+  SolidRegistry<dim> solids{"solid"};
+  CouplingRegistry<dim> couplings{"coupling"};
+  StrategyRegistry strategies{"solver strategy"};
+  ContactRegistry<dim> contacts{"contact model"};
+  /// Schema of the "Domain" list.
+  std::function<ParameterList()> domain_parameters;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "output/history.hpp"
+#include "output/progress.hpp"
+#include "stepping/stepper.hpp"
+
+namespace lockstep {
+
+/// history.csv (a row a step) and bodies.csv (a row a step and solid), design section 8.
+template <int dim>
+class RunTables {
+ public:
+  RunTables(const Communicator& comm, const std::string& directory);
+  void start();
+  void resume(long long step);
+  /// Collective. `names` and states as the SolidSystem gives them.
+  void append(long long step, const StepReport<dim>& report,
+              const std::vector<SolidState<dim>>& states, double wall_seconds);
+
+ private:
+  HistoryTable history_, bodies_;
+};
+
+/// The numbers of the progress line.
+template <int dim>
+StepProgress progress_of(long long step, const StepReport<dim>& report, double wall_seconds);
+
+}  // namespace lockstep

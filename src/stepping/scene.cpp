@@ -1,0 +1,208 @@
+#include "stepping/scene.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+namespace {
+
+const char* const axis_names[] = {"x", "y", "z"};
+
+void declare_time(ParameterList& scene) {
+  ParameterList& time = declare_list(scene, "Time", "When to start, how far to step.");
+  declare(time, "Start", 0., "Start time [s].");
+  declare(time, "End", 1., "End time [s].");
+  declare_at_least(time, "Fixed Step", 0., 0., "Time step [s]; 0: chosen by the CFL number.");
+  declare_positive(
+      time, "CFL", 0.9,
+      "Cells that the fastest fluid crosses in a step (sum over the axes) [1]; any value is "
+      "stable.");
+  declare_positive(time, "Largest Step", 0.1, "Bound of the CFL-chosen step [s].");
+  declare_at_least(time, "Steps", 0, 0, "Stop after this many steps; 0: no limit.");
+}
+
+void declare_output(ParameterList& scene) {
+  ParameterList& output = declare_list(scene, "Output", "What is written.");
+  declare(output, "Frames", true, "Write frames.h5 and frames.xmf.");
+  declare_at_least(output, "Frame Interval", 0., 0.,
+                   "Simulated time between frames [s]; 0: every step.");
+  declare_at_least(output, "Checkpoint Interval", 0., 0.,
+                   "Simulated time between checkpoints [s]; 0: only at the end and when stopped.");
+  declare_at_least(output, "Keep Checkpoints", 2, 1, "How many checkpoints are kept.");
+  declare_choice(output, "Precision", "single", {"single", "double"}, "Of the fields in frames.");
+}
+
+void declare_solver(ParameterList& scene, const StrategyRegistry& strategies) {
+  ParameterList& solver =
+      declare_list(scene, "Solver", "How the S1, F2 and S2 systems are solved.");
+  declare(solver, "File", "",
+          "A solver file (xml-params/solvers), relative to the scene; what the scene itself says "
+          "wins.");
+  declare_positive(solver, "Tolerance", 1e-8,
+                   "Residual of each block, scaled to its own right-hand side [1].");
+  declare_positive(solver, "Viscous Tolerance", 1e-10, "Relative residual of the viscous CG [1].");
+  declare_typed_sublist(solver, "Strategy", "The solver strategy.", strategies.schemas(),
+                        "schur-cg");
+}
+
+template <int dim>
+Box<dim> domain_box(const ParameterList& domain) {
+  const auto& lower = domain.get<ParameterArray<double>>("Lower");
+  const auto& upper = domain.get<ParameterArray<double>>("Upper");
+  Box<dim> box;
+  for (int a = 0; a < dim; ++a) {
+    box.min()[a] = lower[a];
+    box.max()[a] = upper[a];
+  }
+  return box;
+}
+
+std::string side_type(const ParameterList& domain, int axis, int side) {
+  const std::string name = std::string(axis_names[axis]) + (side == 0 ? " lower" : " upper");
+  return domain.sublist("Sides").sublist(name).get<std::string>("Type");
+}
+
+/// Mesh files are given relative to the scene.
+void resolve_files(ParameterList& list, const std::string& scene_file) {
+  for (auto entry = list.begin(); entry != list.end(); ++entry) {
+    const std::string name = list.name(entry);
+    if (list.isSublist(name)) {
+      resolve_files(list.sublist(name), scene_file);
+    } else if (name == "File" && !list.get<std::string>(name).empty()) {
+      list.set(name, resolve_path(scene_file, list.get<std::string>(name)));
+    }
+  }
+}
+
+template <int dim>
+std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries,
+                                               const ParameterList& scene,
+                                               const std::string& scene_file,
+                                               const SolidSetting<dim>& setting) {
+  const ParameterList& solids = scene.sublist("Solids");
+  std::vector<std::unique_ptr<SolidModel<dim>>> models;
+  for (const auto& plugin : registries.solids) {
+    NamedLists lists;
+    for (auto entry = solids.begin(); entry != solids.end(); ++entry) {
+      const std::string name = solids.name(entry);
+      if (!solids.isSublist(name) || solids.sublist(name).get<std::string>("Type") != plugin.name) {
+        continue;
+      }
+      lists.emplace_back(name, solids.sublist(name));
+      resolve_files(lists.back().second, scene_file);
+    }
+    if (!lists.empty()) {
+      models.push_back(registries.solids.create(plugin.name, ParameterList(), lists, setting));
+    }
+  }
+  return std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm);
+}
+
+}  // namespace
+
+template <int dim>
+ParameterList scene_parameters(const Registries<dim>& registries) {
+  ParameterList scene("Scene");
+  declare_between(scene, "Dimension", dim, 2, 3, "2 or 3.");
+  declare(scene, "Title", "", "One line on what the scene shows.");
+  scene.sublist("Domain") = registries.domain_parameters();
+  declare_typed_sublist(scene, "Fluid", "The fluid.", registries.fluids.schemas(), "mac");
+  declare_named_sublists(scene, "Solids", "One sublist a body, under a name of its own.",
+                         registries.solids.schemas());
+  declare_typed_sublist(scene, "Coupling", "How fluid and solids exchange momentum.",
+                        registries.couplings.schemas(), "mixed face");
+  auto contacts = registries.contacts.schemas();
+  const std::string usual_contact = contacts.empty() ? "none" : contacts.front().type;
+  contacts.push_back(
+      {"none", "Solids pass through each other and through walls.", ParameterList()});
+  declare_typed_sublist(scene, "Contact", "Collisions and friction.", contacts, usual_contact);
+  declare_solver(scene, registries.strategies);
+  declare_time(scene);
+  declare_output(scene);
+  return scene;
+}
+
+int scene_dimension(const Document& document) {
+  check_input(document.list.isType<int>("Dimension"),
+              "{}: \"Dimension\" (int) is required; it is 2 or 3.", document.source.file);
+  const int dimension = document.list.get<int>("Dimension");
+  check_input(dimension == 2 || dimension == 3, "{}: \"Dimension\" is {}; it must be 2 or 3.",
+              document.source.place("Dimension"), dimension);
+  return dimension;
+}
+
+template <int dim>
+SceneOptions scene_options(const ParameterList& scene) {
+  SceneOptions options;
+  const ParameterList& time = scene.sublist("Time");
+  options.time.start = time.get<double>("Start");
+  options.time.end = time.get<double>("End");
+  options.time.fixed_step = time.get<double>("Fixed Step");
+  options.time.cfl = time.get<double>("CFL");
+  options.time.largest_step = time.get<double>("Largest Step");
+  options.time.most_steps = time.get<int>("Steps");
+  check_input(options.time.end > options.time.start,
+              "In \"Time\", \"End\" ({} s) must be later than \"Start\" ({} s).", options.time.end,
+              options.time.start);
+  const ParameterList& output = scene.sublist("Output");
+  options.output.frames = output.get<bool>("Frames");
+  options.output.frame_interval = output.get<double>("Frame Interval");
+  options.output.checkpoint_interval = output.get<double>("Checkpoint Interval");
+  options.output.keep_checkpoints = output.get<int>("Keep Checkpoints");
+  options.output.precision = output.get<std::string>("Precision");
+  const ParameterList& solver = scene.sublist("Solver");
+  options.stepper.tolerance = solver.get<double>("Tolerance");
+  options.stepper.viscous_tolerance = solver.get<double>("Viscous Tolerance");
+  const ParameterList& domain = scene.sublist("Domain");
+  options.stepper.length = domain_box<dim>(domain).sizes().maxCoeff();
+  for (int a = 0; a < dim; ++a) {
+    if (side_type(domain, a, 0) == "periodic")
+      options.stepper.audit_angular = false;
+  }
+  return options;
+}
+
+template <int dim>
+Components<dim> build_components(const Registries<dim>& registries, const ParameterList& scene,
+                                 const std::string& scene_file, const Communicator& comm) {
+  const auto type_of = [&scene](const char* list) {
+    return scene.sublist(list).get<std::string>("Type");
+  };
+  const ParameterList& domain = scene.sublist("Domain");
+  Components<dim> components;
+  components.fluid =
+      registries.fluids.create(type_of("Fluid"), scene.sublist("Fluid"), domain, comm);
+  const SolidSetting<dim> solid_setting{components.fluid->spacing(), components.fluid->gravity(),
+                                        scene.sublist("Time").get<double>("Start"), comm};
+  components.solids = build_solids<dim>(registries, scene, scene_file, solid_setting);
+  components.coupling = registries.couplings.create(type_of("Coupling"), scene.sublist("Coupling"));
+  const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");
+  components.strategy = registries.strategies.create(strategy.get<std::string>("Type"), strategy);
+  if (type_of("Contact") != "none") {
+    ContactSetting<dim> setting;
+    setting.domain = domain_box<dim>(domain);
+    setting.grid_spacing = components.fluid->spacing();
+    setting.comm = comm;
+    for (int a = 0; a < dim; ++a) {
+      for (int side = 0; side < 2; ++side) {
+        const std::string type = side_type(domain, a, side);
+        setting.closed_sides[a][side] = type == "wall" || type == "slip wall";
+      }
+    }
+    components.contact =
+        registries.contacts.create(type_of("Contact"), scene.sublist("Contact"), setting);
+  }
+  return components;
+}
+
+template ParameterList scene_parameters<2>(const Registries<2>&);
+template ParameterList scene_parameters<3>(const Registries<3>&);
+template SceneOptions scene_options<2>(const ParameterList&);
+template SceneOptions scene_options<3>(const ParameterList&);
+template Components<2> build_components<2>(const Registries<2>&, const ParameterList&,
+                                           const std::string&, const Communicator&);
+template Components<3> build_components<3>(const Registries<3>&, const ParameterList&,
+                                           const std::string&, const Communicator&);
+
+}  // namespace lockstep

@@ -1,0 +1,49 @@
+#pragma once
+#include <string>
+
+#include "parameters/source.hpp"
+#include "stepping/registries.hpp"
+#include "stepping/stepper.hpp"
+
+namespace lockstep {
+
+/// Schema of a whole scene file (design, section 9), put together from the registered plug-ins.
+template <int dim>
+ParameterList scene_parameters(const Registries<dim>& registries);
+
+/// When and how far to step.
+struct TimeOptions {
+  double start = 0, end = 1;         ///< [s]
+  double fixed_step = 0;             ///< [s]; 0: from the CFL number
+  double cfl = 1, largest_step = 1;  ///< [1], [s]
+  long long most_steps = 0;          ///< 0: no limit
+  double growth = 0;                 ///< a step is at most this times the one before; 0: no limit
+};
+
+struct OutputOptions {
+  bool frames = true;
+  double frame_interval = 0;       ///< [s]; 0: every step
+  double checkpoint_interval = 0;  ///< [s of simulated time]; 0: only when stopped and at the end
+  int keep_checkpoints = 2;
+  std::string precision = "single";
+};
+
+/// The parts of a scene that was read and validated.
+struct SceneOptions {
+  TimeOptions time;
+  OutputOptions output;
+  StepperOptions stepper;
+};
+
+/// Reads "Dimension" of a document that is not validated yet. Throws InputError if it is missing.
+int scene_dimension(const Document& document);
+
+template <int dim>
+SceneOptions scene_options(const ParameterList& scene);
+
+/// Builds the plug-ins of a validated scene. `scene_file` resolves relative mesh files. Collective.
+template <int dim>
+Components<dim> build_components(const Registries<dim>& registries, const ParameterList& scene,
+                                 const std::string& scene_file, const Communicator& comm);
+
+}  // namespace lockstep

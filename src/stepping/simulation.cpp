@@ -1,0 +1,341 @@
+#include "stepping/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "base/errors.hpp"
+#include "output/build_information.hpp"
+#include "output/checkpoint.hpp"
+#include "output/run_record.hpp"
+#include "output/signals.hpp"
+#include "parameters/write.hpp"
+
+namespace lockstep {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double median(std::vector<int> values) {
+  if (values.empty())
+    return 0;
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+nlohmann::ordered_json iteration_summary(const std::vector<int>& values) {
+  return {{"median", median(values)},
+          {"max", values.empty() ? 0 : *std::max_element(values.begin(), values.end())}};
+}
+
+template <int dim>
+std::vector<SurfaceFrame> surface_frames(const SolidSystem<dim>& solids,
+                                         const SurfaceSnapshot<dim>& surface) {
+  std::vector<SurfaceFrame> frames;
+  for (const SolidDescription& solid : surface.solids()) {
+    SurfaceFrame frame;
+    frame.name = solid.name;
+    frame.dimension = dim;
+    frame.simplex_size = dim;
+    SurfaceField velocity{"velocity", "m/s", dim, SurfaceField::Place::simplices, {}};
+    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
+      for (int a = 0; a < dim; ++a)
+        frame.vertices.push_back(surface.mesh().vertices[v][a]);
+    }
+    for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+      SurfacePoint<dim> middle;
+      middle.simplex = s;
+      middle.barycentric.setConstant(1. / dim);
+      for (int vertex : surface.mesh().simplices[s]) {
+        frame.simplices.push_back(vertex - solid.vertex_begin);
+        middle.position += surface.mesh().vertices[vertex] / dim;
+      }
+      const Point<dim> v = solids.effective_velocity(middle, middle.position);
+      velocity.values.insert(velocity.values.end(), v.data(), v.data() + dim);
+    }
+    frame.fields.push_back(std::move(velocity));
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+}  // namespace
+
+template <int dim>
+Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterList& scene,
+                            const RunOptions& options, const Communicator& comm, const Log& log)
+    : scene_(scene),
+      options_(options),
+      scene_options_(scene_options<dim>(scene)),
+      comm_(comm),
+      log_(log),
+      components_(build_components<dim>(registries, scene, options.scene_file, comm)),
+      tables_(comm, options.output_directory),
+      frames_(comm, options.output_directory,
+              {scene_options_.output.precision == "double" ? Precision::double_precision
+                                                           : Precision::single_precision,
+               0}) {
+  if (options.end_time)
+    scene_options_.time.end = *options.end_time;
+  if (options.steps)
+    scene_options_.time.most_steps = *options.steps;
+  ScopedPhase phase(timers_, "start");
+  stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
+                                            scene_options_.time.start, timers_);
+}
+
+template <int dim>
+double Simulation<dim>::next_step() const {
+  const TimeOptions& time = scene_options_.time;
+  double dt = time.fixed_step;
+  if (dt == 0) {
+    const double rate = components_.fluid->largest_cell_crossing_rate();
+    double solid_rate = 0;  // a resting fluid still has to resolve moving solids
+    for (const auto& state : components_.solids->states()) {
+      solid_rate = std::max(solid_rate, state.velocity.template lpNorm<1>());
+    }
+    solid_rate /= components_.fluid->spacing();
+    // The velocity that gravity adds within the step counts as well.
+    const double acceleration =
+        components_.fluid->gravity().template lpNorm<1>() / components_.fluid->spacing();
+    const double r = std::max(rate, solid_rate);
+    dt = time.largest_step;
+    if (r > 0 || acceleration > 0) {
+      dt = std::min(dt, 2 * time.cfl / (r + std::sqrt(r * r + 4 * acceleration * time.cfl)));
+    }
+  }
+  dt = std::min(dt, components_.solids->largest_stable_step());
+  const double left = time.end - stepper_->time();
+  if (dt >= left * (1 - 1e-9))
+    return left;
+  // Without a fixed step, the last two steps share what is left.
+  return time.fixed_step == 0 && left < 2 * dt ? left / 2 : dt;
+}
+
+template <int dim>
+bool Simulation<dim>::finished() const {
+  const TimeOptions& time = scene_options_.time;
+  const double tiny = 1e-12 * std::max(std::abs(time.end), time.end - time.start);
+  return stepper_->time() >= time.end - tiny || (time.most_steps > 0 && step_ >= time.most_steps);
+}
+
+template <int dim>
+double Simulation<dim>::fraction_done() const {
+  const TimeOptions& time = scene_options_.time;
+  const double by_time = (stepper_->time() - time.start) / (time.end - time.start);
+  const double by_steps = time.most_steps > 0 ? double(step_) / double(time.most_steps) : 0;
+  return std::max(by_time, by_steps);
+}
+
+template <int dim>
+void Simulation<dim>::begin_outputs() {
+  create_output_directory(comm_, options_.output_directory);
+  record_input(comm_, options_.output_directory, options_.scene_file, to_xml(scene_));
+  if (options_.restart_file.empty()) {
+    discard_checkpoints_after(comm_, options_.output_directory, -1);
+    tables_.start();
+    frames_.start();
+    if (scene_options_.output.frames)
+      write_frame();
+  } else {
+    load_checkpoint();
+    discard_checkpoints_after(comm_, options_.output_directory, step_);
+    tables_.resume(step_);
+    frames_.resume(stepper_->time());
+    last_frame_ = frames_.n_frames() > 0 ? frames_.last_time() : -1e300;
+  }
+  first_step_ = step_;
+  last_checkpoint_ = stepper_->time();
+}
+
+template <int dim>
+void Simulation<dim>::write_frame() {
+  ScopedPhase phase(timers_, "frames");
+  std::vector<BoxFrame> boxes;
+  components_.fluid->add_frame(boxes);
+  frames_.write(step_, stepper_->time(), boxes,
+                surface_frames<dim>(*components_.solids, *stepper_->system().surface()));
+  last_frame_ = stepper_->time();
+}
+
+template <int dim>
+void Simulation<dim>::write_checkpoint() {
+  ScopedPhase phase(timers_, "checkpoints");
+  CheckpointWriter checkpoint(comm_, options_.output_directory,
+                              {step_, stepper_->time(), to_xml(scene_)});
+  components_.fluid->save(checkpoint);
+  for (int m = 0; m < components_.solids->n_models(); ++m) {
+    components_.solids->model(m).save(checkpoint);
+  }
+  checkpoint.file().write_attribute("/", "last dt", last_dt_);
+  checkpoint.finish(scene_options_.output.keep_checkpoints);
+  last_checkpoint_ = stepper_->time();
+}
+
+template <int dim>
+void Simulation<dim>::load_checkpoint() {
+  const CheckpointReader checkpoint(comm_, options_.restart_file);
+  for (int m = 0; m < components_.solids->n_models(); ++m) {
+    components_.solids->model(m).load(checkpoint);
+  }
+  components_.fluid->load(checkpoint);
+  step_ = checkpoint.header().step;
+  last_dt_ = checkpoint.file().template read_attribute<double>("/", "last dt");
+  stepper_->set_time(checkpoint.header().time);
+  stepper_->refreeze();
+}
+
+template <int dim>
+void Simulation<dim>::count(const StepReport<dim>& report) {
+  s1_iterations_.push_back(report.s1.iterations);
+  f2_iterations_.push_back(report.f2.iterations);
+  s2_iterations_.push_back(report.s2.iterations);
+  largest_momentum_error_ = std::max(largest_momentum_error_, report.momentum_error);
+  largest_angular_error_ = std::max(largest_angular_error_, report.angular_momentum_error);
+  for (const SolveReport* solve : {&report.s1, &report.f2, &report.s2}) {
+    worst_residual_ = std::max({worst_residual_, solve->pressure_residual, solve->solid_residual});
+    preconditioner_builds_ += solve->preconditioner_builds;
+    preconditioner_reuses_ += solve->preconditioner_reuses;
+  }
+}
+
+template <int dim>
+nlohmann::ordered_json Simulation<dim>::summary(const std::string& status, double wall_seconds) {
+  const BuildInformation build = build_information();
+  const PeakMemory memory = peak_memory_mb(comm_);
+  nlohmann::ordered_json phases = nlohmann::ordered_json::array();
+  for (const PhaseTime& phase : timers_.report(comm_)) {
+    phases.push_back({{"name", phase.name},
+                      {"min_seconds", phase.min_seconds},
+                      {"mean_seconds", phase.mean_seconds},
+                      {"max_seconds", phase.max_seconds},
+                      {"calls", phase.calls}});
+  }
+  const RCP<const Map> pressure = components_.fluid->pressure_map();
+  return {{"status", status},
+          {"versions",
+           {{"lockstep", build.version},
+            {"git", build.git_hash},
+            {"build", build.build_type},
+            {"compiler", build.compiler},
+            {"trilinos", build.trilinos},
+            {"mpi", build.mpi},
+            {"hdf5", build.hdf5}}},
+          {"ranks", comm_->getSize()},
+          {"steps", step_ - first_step_},
+          {"step", step_},
+          {"time", stepper_->time()},
+          {"pressure_unknowns", static_cast<long long>(pressure->getGlobalNumElements())},
+          {"solid_unknowns", components_.solids->n_unknowns()},
+          {"iterations",
+           {{"s1", iteration_summary(s1_iterations_)},
+            {"f2", iteration_summary(f2_iterations_)},
+            {"s2", iteration_summary(s2_iterations_)}}},
+          {"largest_momentum_error", largest_momentum_error_},
+          {"largest_angular_momentum_error", largest_angular_error_},
+          {"worst_residual", worst_residual_},
+          {"preconditioner_builds", preconditioner_builds_},
+          {"preconditioner_reuses", preconditioner_reuses_},
+          {"wall_seconds", wall_seconds},
+          {"peak_memory_mb", memory.all_ranks_mb},
+          {"peak_memory_largest_rank_mb", memory.largest_rank_mb},
+          {"phases", phases}};
+}
+
+template <int dim>
+int Simulation<dim>::run() {
+  const auto start = Clock::now();
+  begin_outputs();
+  install_signal_handlers();
+  int signal = 0;
+  while (!finished() && signal == 0) {
+    const auto step_start = Clock::now();
+    const double dt = next_step();
+    StepReport<dim> report;
+    {
+      ScopedPhase phase(timers_, "step");
+      report = stepper_->advance(dt);
+    }
+    ++step_;
+    last_dt_ = dt;
+    count(report);
+    const double step_seconds = seconds_since(step_start);
+    tables_.append(step_, report, components_.solids->states(), step_seconds);
+    StepProgress progress = progress_of<dim>(step_, report, step_seconds);
+    progress.remaining_seconds = remaining_seconds(seconds_since(start), fraction_done());
+    log_.normal("{}", progress_line(progress));
+    const OutputOptions& output = scene_options_.output;
+    const double slack = 1e-9 * std::max(dt, output.frame_interval);
+    if (output.frames &&
+        (finished() || stepper_->time() >= last_frame_ + output.frame_interval - slack)) {
+      write_frame();
+    }
+    if (output.checkpoint_interval > 0 &&
+        stepper_->time() >= last_checkpoint_ + output.checkpoint_interval - slack) {
+      write_checkpoint();
+    }
+    signal = stop_requested(comm_);
+  }
+  write_checkpoint();
+  const double wall_seconds = seconds_since(start);
+  write_summary(comm_, options_.output_directory,
+                summary(signal == 0 ? "done" : "stopped by a signal", wall_seconds));
+  log_.normal("{}", timing_table(timers_.report(comm_)));
+  if (signal != 0) {
+    log_.normal("Stopped by signal {} after step {}; the checkpoint in {} continues the run.",
+                signal, step_, options_.output_directory);
+    return 128 + signal;
+  }
+  return 0;
+}
+
+template <int dim>
+std::string Simulation<dim>::explain() {
+  const auto& fluid = *components_.fluid;
+  const auto& solids = *components_.solids;
+  const PeakMemory memory = peak_memory_mb(comm_);
+  std::string text;
+  const auto line = [&text](const std::string& what, const std::string& value) {
+    text += fmt::format("{:<22} {}\n", what, value);
+  };
+  line("dimension", std::to_string(dim));
+  line("ranks", std::to_string(comm_->getSize()));
+  line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(), fluid.spacing(),
+                            fluid.pressure_map()->getGlobalNumElements()));
+  line("viscous solve",
+       components_.fluid->viscous_system() ? "on (viscosity > 0)" : "off (inviscid)");
+  int n_prescribed = 0, n_shells = 0;
+  for (const auto& solid : solids.solids()) {
+    n_prescribed += solid.prescribed ? 1 : 0;
+    n_shells += solid.closed ? 0 : 1;
+  }
+  line("solids", fmt::format("{} ({} prescribed, {} thin shells), {} unknowns",
+                             solids.solids().size(), n_prescribed, n_shells, solids.n_unknowns()));
+  const GlobalIndex n_coupled =
+      sum_all(comm_, static_cast<GlobalIndex>(fluid.coupled_volumes().size()));
+  line("coupling", fmt::format("{}, {} mixed faces", components_.coupling->name(), n_coupled));
+  line("S1, S2", solids.has_unknowns()
+                     ? "coupled solves of Eq. 16 by " + components_.strategy->name()
+                     : "no dynamic solids: one Poisson CG per step, no S1");
+  line("F2", solids.empty() ? "not needed: no solids"
+                            : "Poisson solve with the solids' effective velocity");
+  line("contact", components_.contact ? components_.contact->name() : "none");
+  line("pressure regions", fmt::format("{}, null space of dimension {}", fluid.regions().n_regions,
+                                       stepper_->system().null_space().size()));
+  line("memory so far",
+       fmt::format(
+           "{:.0f} MB over all ranks, {:.0f} bytes a cell", memory.all_ranks_mb,
+           1e6 * memory.all_ranks_mb / double(fluid.pressure_map()->getGlobalNumElements())));
+  return text;
+}
+
+template class Simulation<2>;
+template class Simulation<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,63 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "output/frames.hpp"
+#include "stepping/run_tables.hpp"
+#include "stepping/scene.hpp"
+
+namespace lockstep {
+
+/// Where a run writes and how it starts.
+struct RunOptions {
+  std::string scene_file;
+  std::string output_directory;
+  std::string restart_file;        ///< empty: from the scene's start
+  std::string command_line;        ///< for the banner
+  std::optional<long long> steps;  ///< --steps and --end-time override the scene
+  std::optional<double> end_time;
+};
+
+/// A run of one scene: builds it, steps it, writes tables, frames, checkpoints and the summary.
+template <int dim>
+class Simulation {
+ public:
+  /// `scene` is validated. Collective; throws InputError for what only building reveals.
+  Simulation(const Registries<dim>& registries, const ParameterList& scene,
+             const RunOptions& options, const Communicator& comm, const Log& log);
+
+  /// What is active, why, and what it costs in memory; for --explain and --validate.
+  std::string explain();
+  /// Runs to the end or to a signal; returns the exit code (0, or 128 + signal). Collective.
+  int run();
+
+ private:
+  double next_step() const;
+  bool finished() const;
+  void begin_outputs();
+  void write_frame();
+  void write_checkpoint();
+  void load_checkpoint();
+  double fraction_done() const;
+  nlohmann::ordered_json summary(const std::string& status, double wall_seconds);
+  void count(const StepReport<dim>& report);
+
+  ParameterList scene_;
+  RunOptions options_;
+  SceneOptions scene_options_;
+  Communicator comm_;
+  const Log& log_;
+  PhaseTimers timers_;
+  Components<dim> components_;
+  std::unique_ptr<Stepper<dim>> stepper_;
+  RunTables<dim> tables_;
+  FrameWriter frames_;
+  long long step_ = 0, first_step_ = 0;
+  double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
+  std::vector<int> s1_iterations_, f2_iterations_, s2_iterations_;
+  double largest_momentum_error_ = 0, largest_angular_error_ = 0, worst_residual_ = 0;
+  int preconditioner_builds_ = 0, preconditioner_reuses_ = 0;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,340 @@
+#include "stepping/stepper.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "linear/null_space.hpp"
+
+namespace lockstep {
+
+template <int dim>
+Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options, double start_time,
+                      PhaseTimers& timers)
+    : components_(components),
+      options_(options),
+      timers_(timers),
+      system_(*components.fluid, *components.solids, *components.coupling),
+      time_(start_time) {
+  refreeze();
+}
+
+template <int dim>
+void Stepper<dim>::refreeze() {
+  system_.freeze(components_.solids->snapshot());
+  components_.fluid->begin_prediction();
+  last_momentum_ = total_momentum();
+}
+
+/// A mixed face that no fluid cell sees holds solid velocity, not stale fluid: W V_S^n, before
+/// forces.
+template <int dim>
+void Stepper<dim>::reset_unseen_faces() {
+  const auto& volumes = components_.fluid->coupled_volumes();
+  GlobalIndex unseen = 0;
+  for (const auto& volume : volumes)
+    unseen += volume.seen_by_fluid ? 0 : 1;
+  if (sum_all(components_.solids->comm(), unseen) == 0)
+    return;
+  components_.coupling->set_prescribed_motion(*components_.solids, Coupling<dim>::Motion::present);
+  const std::vector<double> solid = components_.coupling->velocity(*components_.solids->velocity());
+  std::vector<double> velocity = components_.fluid->coupled_velocity();
+  for (std::size_t f = 0; f < volumes.size(); ++f) {
+    if (!volumes[f].seen_by_fluid)
+      velocity[f] = solid[f];
+  }
+  components_.fluid->set_coupled_velocity(velocity);
+}
+
+/// F1 and the forces of F3: explicit forces and implicit viscosity on u*.
+template <int dim>
+void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* ledger,
+                                  StepReport<dim>& report) {
+  auto& fluid = *components_.fluid;
+  auto& solids = *components_.solids;
+  {
+    ScopedPhase phase(timers_, "forces");
+    Momentum<dim> impulse = fluid.add_forces(time, dt);
+    if (ledger) {
+      const auto increment = fluid.coupled_force(time, dt);
+      impulse += system_.lumped_fluid_momentum(increment);
+      ledger->add("body forces", impulse);
+    }
+  }
+  viscous_impulse_ = Teuchos::null;
+  ScopedPhase phase(timers_, "viscosity");
+  const std::unique_ptr<ViscousSystem<dim>> viscous = fluid.viscous_system();
+  if (!viscous)
+    return;
+  RCP<const LinearOperator> block;
+  RCP<const Vector> row;
+  if (coupled()) {
+    block = system_.blocks(dt).solid_block;
+    const RCP<Vector> momentum = solids.explicit_momentum(time, dt);
+    row = system_.lumped_momentum(*momentum);
+  }
+  const ViscousResult<dim> result = solve_viscous<dim>(
+      *viscous, fluid, solids, *components_.coupling, block, row, dt, options_.viscous_tolerance);
+  viscous_impulse_ = result.solid_impulse;
+  report.viscous_iterations += result.iterations;
+  if (ledger)
+    ledger->add("viscous boundaries", result.boundary_impulse);
+}
+
+/// M_S V_S*: explicit forces, buoyancy the grid does not see, contact, viscous drag.
+template <int dim>
+RCP<Vector> Stepper<dim>::solid_momentum(double time, double dt, MomentumLedger<dim>* ledger,
+                                         StepReport<dim>& report) {
+  auto& solids = *components_.solids;
+  const RCP<Vector> momentum = solids.explicit_momentum(time, dt);
+  if (!ledger)  // S1
+    solids.add_midpoint_correction(dt, *momentum);
+  if (ledger)
+    ledger->add("solid forces", solids.external_impulse(time, dt));
+  const auto buoyancy = make_vector(solids.map());
+  components_.coupling->add_unseen_buoyancy(components_.fluid->gravity(), dt, *buoyancy);
+  momentum->update(1, *buoyancy, 1);
+  if (ledger)
+    ledger->add("unseen buoyancy", solids.momentum(*buoyancy));
+  if (ledger && components_.contact) {
+    ScopedPhase phase(timers_, "contact");
+    report.contact_velocity = contact_momentum(dt, *momentum);
+    ledger->add("contact", report.contact_velocity.external_impulse);
+  }
+  if (!viscous_impulse_.is_null())
+    momentum->update(1, *viscous_impulse_, 1);
+  return momentum;
+}
+
+/// Contact acts on V_S* = M_S^-1 momentum; its impulses go into the momentum.
+template <int dim>
+ContactReport<dim> Stepper<dim>::contact_momentum(double dt, Vector& momentum) {
+  auto& solids = *components_.solids;
+  const RCP<Vector> velocity = solids.velocity_of(momentum);
+  Vector change(*velocity, Teuchos::Copy);
+  const ContactReport<dim> report =
+      components_.contact->resolve(solids, ContactPhase::velocity, dt, *velocity);
+  if (report.n_contacts > 0) {
+    change.update(1, *velocity, -1);
+    apply(*solids.mass(), change, momentum, 1, 1);
+  }
+  return report;
+}
+
+template <int dim>
+typename Stepper<dim>::CoupledSolution Stepper<dim>::solve(double dt, const RCP<Vector>& momentum,
+                                                           const char* name, SolveReport& report,
+                                                           double& incompatibility) {
+  components_.coupling->set_prescribed_motion(*components_.solids, Coupling<dim>::Motion::present);
+  CoupledSolution solution;
+  solution.momentum = momentum;
+  solution.coupled_before = components_.fluid->coupled_velocity();
+  {
+    ScopedPhase phase(timers_, "right-hand side");
+    solution.rhs = system_.right_hand_side(*momentum, incompatibility);
+  }
+  const BlockSystem& blocks = system_.blocks(dt);
+  solution.unknowns.pressure = components_.fluid->last_scaled_pressure();
+  project_out(blocks.null_space, *solution.unknowns.pressure);
+  if (coupled())
+    solution.unknowns.solid = components_.solids->velocity();
+  {
+    ScopedPhase phase(timers_, "preconditioner");
+    components_.strategy->prepare(blocks);
+  }
+  ScopedPhase phase(timers_, "iterations");
+  report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns,
+                                       {name, options_.tolerance});
+  return solution;
+}
+
+/// Contact acts on V^{n+1/2}, then all solids go to their positions at t^{n+1}.
+template <int dim>
+void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
+  auto& solids = *components_.solids;
+  RCP<Vector> half_velocity = make_vector(solids.map());
+  if (coupled()) {
+    ScopedPhase phase(timers_, "S1");
+    const RCP<Vector> momentum = solid_momentum(time_, dt / 2, nullptr, report);
+    half_velocity =
+        solve(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
+  }
+  ScopedPhase phase(timers_, "solid motion");
+  if (components_.contact && coupled()) {
+    report.contact_position =
+        components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);
+  }
+  solids.move(*half_velocity, time_, dt);
+}
+
+/// F2: u_ADV from u^n with the effective solid velocity as Neumann data.
+template <int dim>
+void Stepper<dim>::make_advection_velocity(StepReport<dim>& report) {
+  auto& fluid = *components_.fluid;
+  auto& coupling = *components_.coupling;
+  fluid.begin_prediction();
+  if (components_.solids->empty() && !first_step_) {
+    fluid.adopt_advection_velocity();  // u^n is divergence-free already
+    return;
+  }
+  ScopedPhase phase(timers_, "F2");
+  const std::vector<double> effective = coupling.effective_velocity(*components_.solids);
+  fluid.set_coupled_velocity(effective);
+  BlockVector rhs{make_vector(fluid.pressure_map()), Teuchos::null}, solution;
+  fluid.divergence(*rhs.pressure);
+  coupling.add_divergence(effective, *rhs.pressure);
+  const BlockSystem& blocks = system_.blocks(0, false);
+  report.incompatibility_f2 = relative_part_removed(blocks.null_space, *rhs.pressure);
+  solution.pressure = make_vector(fluid.pressure_map());
+  components_.strategy->prepare(blocks);
+  report.f2 = components_.strategy->solve(blocks, rhs, solution, {"F2", options_.tolerance});
+  fluid.project(*solution.pressure);
+  fluid.adopt_advection_velocity();
+}
+
+/// Fluid (u*), lumped fluid and solids (M_S V_S^n).
+template <int dim>
+Momentum<dim> Stepper<dim>::total_momentum() const {
+  Momentum<dim> total = components_.fluid->momentum();
+  total += system_.lumped_fluid_momentum(components_.fluid->coupled_velocity());
+  if (coupled())
+    total += components_.solids->momentum(*components_.solids->explicit_momentum(time_, 0));
+  return total;
+}
+
+template <int dim>
+double Stepper<dim>::largest_divergence(const BlockSystem& blocks, const BlockVector& rhs,
+                                        const BlockVector& solution) const {
+  Vector residual(*rhs.pressure, Teuchos::Copy);
+  apply(*blocks.pressure_block, *solution.pressure, residual, -1, 1);
+  if (blocks.has_solid()) {
+    blocks.coupling_transposed->apply(*solution.solid, residual, Teuchos::TRANS, 1, 1);
+  }
+  return residual.normInf() / std::pow(components_.fluid->spacing(), dim);
+}
+
+/// F4 and the end of the audit.
+template <int dim>
+void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport<dim>& report) {
+  auto& fluid = *components_.fluid;
+  auto& solids = *components_.solids;
+  const BlockVector& unknowns = solution.unknowns;
+  report.max_divergence = largest_divergence(system_.blocks(dt), solution.rhs, unknowns);
+  ledger_solve(solution, dt, report);
+  fluid.project(*unknowns.pressure);
+  RCP<Vector> velocity = unknowns.solid;
+  if (velocity.is_null())
+    velocity = make_vector(solids.map());
+  const std::vector<double> coupled_after = components_.coupling->velocity(*velocity);
+  fluid.set_coupled_velocity(coupled_after);
+  fluid.accept();
+
+  report.fluid_momentum = fluid.momentum() + system_.lumped_fluid_momentum(coupled_after);
+  report.fluid_kinetic_energy = fluid.kinetic_energy() + system_.lumped_fluid_energy(coupled_after);
+  report.fluid_volume = fluid.fluid_volume();
+  if (coupled()) {
+    solids.set_velocity(*velocity);
+    const auto after = make_vector(solids.map());
+    apply(*solids.mass(), *velocity, *after);
+    report.solid_momentum = solids.momentum(*after);
+  }
+  report.ledger.close(report.fluid_momentum + report.solid_momentum);
+  last_momentum_ = report.ledger.after();
+  report.momentum_error = report.ledger.linear_error();
+  if (options_.audit_angular) {
+    report.angular_momentum_error = report.ledger.angular_error(options_.length);
+  }
+  for (const auto& state : solids.states()) {
+    report.solid_kinetic_energy += state.kinetic_energy;
+    report.elastic_energy += state.elastic_energy;
+  }
+}
+
+/// The impulses of the S2 solve, each from its own pressure, and what the fluid gave to every
+/// solid.
+template <int dim>
+void Stepper<dim>::ledger_solve(const CoupledSolution& solution, double dt,
+                                StepReport<dim>& report) {
+  auto& solids = *components_.solids;
+  const BlockVector& unknowns = solution.unknowns;
+  const Momentum<dim> walls = components_.fluid->boundary_pressure_impulse(*unknowns.pressure);
+  report.ledger.add("walls", walls);
+  report.boundary_impulse = walls + report.ledger.impulse_of("viscous boundaries");
+  RCP<Vector> velocity = unknowns.solid;
+  if (velocity.is_null())
+    velocity = make_vector(solids.map());
+  const std::vector<double> coupled_after = components_.coupling->velocity(*velocity);
+  report.ledger.add("prescribed solids",
+                    components_.coupling->prescribed_impulse(solution.coupled_before, coupled_after,
+                                                             *unknowns.pressure));
+  report.hydrodynamic_impulse.assign(solids.solids().size(), {});
+  if (!coupled())
+    return;
+  const RCP<const Vector> reaction = system_.lock_reaction(dt, *solution.momentum, unknowns);
+  report.ledger.add("locks", solids.momentum(*reaction));
+  const RCP<Vector> gained = make_vector(solids.map());
+  apply(*solids.mass(), *unknowns.solid, *gained);
+  gained->update(-1, *solution.momentum, -1, *reaction, 1);
+  if (!viscous_impulse_.is_null())
+    gained->update(1, *viscous_impulse_, 1);
+  report.hydrodynamic_impulse = solids.momentum_of_each(*gained);
+}
+
+template <int dim>
+StepReport<dim> Stepper<dim>::advance(double dt) {
+  auto& fluid = *components_.fluid;
+  auto& solids = *components_.solids;
+  StepReport<dim> report;
+  report.dt = dt;
+  report.time = time_ + dt;
+  report.cfl = dt * fluid.largest_cell_crossing_rate();
+  const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
+
+  if (coupled()) {  // F1 serves S1 only
+    ScopedPhase phase(timers_, "F1");
+    fluid.begin_prediction();
+    reset_unseen_faces();
+    predict_forces(time_, dt / 2, nullptr, report);
+  }
+  move_solids(dt, report);  // S1
+  const auto after = solids.empty() ? before : solids.snapshot();
+  make_advection_velocity(report);  // F2
+  {
+    ScopedPhase phase(timers_, "F3 advection");
+    const MovingSurface<dim> moving{before, after, [&solids](const SurfacePoint<dim>& point) {
+                                      return solids.effective_velocity(point, point.position);
+                                    }};
+    fluid.advect(time_, dt, moving);
+    {
+      ScopedPhase geometry(timers_, "geometry");
+      if (!solids.empty())
+        system_.freeze(after);
+    }
+    fluid.revalidate(moving);
+    reset_unseen_faces();
+    report.ledger.open(total_momentum());
+    report.transport_change = report.ledger.before() - last_momentum_;
+  }
+  {
+    ScopedPhase phase(timers_, "F3 forces");
+    predict_forces(time_, dt, &report.ledger, report);
+  }
+  {
+    ScopedPhase phase(timers_, "S2");
+    RCP<Vector> momentum = make_vector(solids.map());
+    if (coupled())
+      momentum = solid_momentum(time_, dt, &report.ledger, report);
+    const CoupledSolution solution =
+        solve(dt, momentum, "S2", report.s2, report.incompatibility_s2);
+    finish(solution, dt, report);
+  }
+  time_ += dt;
+  first_step_ = false;
+  return report;
+}
+
+template class Stepper<2>;
+template class Stepper<3>;
+
+}  // namespace lockstep
