@@ -1,0 +1,136 @@
+// Runs one scene.
+//
+//   simulate xml-params/scenes/buoyant-spheres.xml --output run
+//   mpirun -n 2 simulate scene.xml --set "Time/End=0.5" --set "Fluid/Density=1000"
+//   simulate scene.xml --restart run/checkpoint-000120.h5 --output run
+//   simulate scene.xml --validate | --explain        simulate --parameters | --list-plugins
+//
+// Exit codes: 0 done, 2 bad input, 3 a solve failed, 4 input or output failed, 130/143 stopped by a
+// signal after a checkpoint.
+#include <CLI/CLI.hpp>
+#include <Tpetra_Core.hpp>
+#include <iostream>
+
+#include "output/build_information.hpp"
+#include "parameters/command_line.hpp"
+#include "parameters/reference.hpp"
+#include "parameters/strict_xml.hpp"
+#include "parameters/validate.hpp"
+#include "parameters/write.hpp"
+#include "shipped/shipped_plug_ins.hpp"
+#include "stepping/scene_file.hpp"
+#include "stepping/simulation.hpp"
+
+using namespace lockstep;
+
+namespace {
+
+struct Arguments {
+  RunOptions run;
+  std::vector<std::string> settings;
+  bool validate = false, explain = false, parameters = false, list_plugins = false;
+  std::string format = "text";
+  bool quiet = false;
+};
+
+template <int dim>
+int simulate(Document document, const Arguments& arguments, const Communicator& comm) {
+  // 3. The plug-ins, and what a scene may say about them.
+  const Registries<dim> registries = shipped_plug_ins<dim>();
+  const ParameterList valid = scene_parameters<dim>(registries);
+
+  // 4. The solver file, the command line, then the strict check of everything.
+  complete_scene(document, arguments.settings, valid, comm);
+
+  // 5. Build. Nothing has been written so far.
+  const Log log(comm, std::cout, arguments.quiet ? LogLevel::quiet : LogLevel::normal);
+  if (!arguments.validate && !arguments.explain) {
+    log.normal("{}", banner(comm, arguments.run.command_line));
+    for (const std::string& line : differences_from_default(document.list, valid)) {
+      log.normal("  {}", line);
+    }
+  }
+  Simulation<dim> simulation(registries, document.list, arguments.run, comm, log);
+  if (arguments.validate || arguments.explain) {
+    log.normal("{}: valid.\n{}", arguments.run.scene_file, simulation.explain());
+    return 0;
+  }
+
+  // 6. Run.
+  return simulation.run();
+}
+
+void print_reference(const Arguments& arguments) {
+  const ParameterList valid = scene_parameters<3>(shipped_plug_ins<3>());
+  std::cout << (arguments.format == "markdown" ? reference_markdown("Parameters of a scene", valid)
+                                               : reference_text(valid));
+}
+
+void print_plug_ins() {
+  const Registries<3> registries = shipped_plug_ins<3>();
+  const auto print = [](const auto& registry) {
+    for (const auto& plugin : registry) {
+      std::cout << registry.kind() << ": " << plugin.name << "\n    " << plugin.documentation
+                << "\n";
+    }
+  };
+  print(registries.fluids);
+  print(registries.solids);
+  print(registries.couplings);
+  print(registries.contacts);
+  print(registries.strategies);
+}
+
+int run(int argc, char** argv, const Communicator& comm) {
+  // 1. The command line.
+  Arguments arguments;
+  CLI::App app("Runs a scene: fluid coupled to solids, from an XML file.");
+  app.set_version_flag("--version", "lockstep " + build_information().version + " (" +
+                                        build_information().git_hash + ")");
+  app.add_option("scene", arguments.run.scene_file, "scene file (xml-params/scenes)");
+  app.add_option("--output", arguments.run.output_directory, "output folder; default: output");
+  app.add_option("--set", arguments.settings, "\"List/Sub list/Name=value\"; may be repeated")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--steps", arguments.run.steps, "stop after this many steps");
+  app.add_option("--end-time", arguments.run.end_time, "stop at this time [s]");
+  app.add_option("--restart", arguments.run.restart_file, "continue from this checkpoint");
+  app.add_flag("--validate", arguments.validate, "check the scene and build it, without running");
+  app.add_flag("--explain", arguments.explain, "print what is active, why, and its cost");
+  app.add_flag("--parameters", arguments.parameters, "print all parameters with documentation");
+  app.add_option("--format", arguments.format, "of --parameters: text or markdown")
+      ->check(CLI::IsMember({"text", "markdown"}));
+  app.add_flag("--list-plugins", arguments.list_plugins, "print all plug-ins");
+  app.add_flag("--quiet", arguments.quiet, "print warnings and errors only");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0)
+      return is_root(comm) ? app.exit(error) : 0;
+    throw InputError(std::string(error.what()) + " (see simulate --help).");
+  }
+  if (arguments.run.output_directory.empty())
+    arguments.run.output_directory = "output";
+  for (int i = 0; i < argc; ++i)
+    arguments.run.command_line += std::string(i ? " " : "") + argv[i];
+  if (arguments.parameters || arguments.list_plugins) {
+    if (is_root(comm))
+      arguments.parameters ? print_reference(arguments) : print_plug_ins();
+    return 0;
+  }
+  check_input(!arguments.run.scene_file.empty(),
+              "Which scene? Name a file, for example xml-params/scenes/buoyant-spheres.xml.");
+
+  // 2. The scene file, read strictly.
+  Document document = read_xml(arguments.run.scene_file, comm);
+  return scene_dimension(document) == 2 ? simulate<2>(std::move(document), arguments, comm)
+                                        : simulate<3>(std::move(document), arguments, comm);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Tpetra::ScopeGuard scope(&argc, &argv);
+  const Communicator comm = Tpetra::getDefaultComm();
+  return run_and_report(comm, [&] { return run(argc, argv, comm); });
+}

@@ -1,0 +1,27 @@
+#include "shipped/shipped_plug_ins.hpp"
+
+#include "contact/register_contact.hpp"
+#include "mac/boundary.hpp"
+#include "mac/register_mac.hpp"
+#include "mixedface/register_mixed_face.hpp"
+#include "rigid/register_rigid.hpp"
+#include "strategies/register_strategies.hpp"
+
+namespace lockstep {
+
+template <int dim>
+Registries<dim> shipped_plug_ins() {
+  Registries<dim> registries;
+  registries.domain_parameters = domain_parameters<dim>;
+  register_mac<dim>(registries.fluids);
+  register_rigid<dim>(registries.solids);
+  register_mixed_face<dim>(registries.couplings);
+  register_contact<dim>(registries.contacts);
+  register_strategies(registries.strategies);
+  return registries;
+}
+
+template Registries<2> shipped_plug_ins<2>();
+template Registries<3> shipped_plug_ins<3>();
+
+}  // namespace lockstep

@@ -1,0 +1,83 @@
+#include "stepping/scene_file.hpp"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+
+#include "base/errors.hpp"
+#include "parameters/command_line.hpp"
+#include "parameters/strict_xml.hpp"
+#include "parameters/validate.hpp"
+
+namespace lockstep {
+namespace {
+
+const std::string solver_file_setting = "Solver/File=";
+
+std::string named_solver_file(const Document& document) {
+  if (!document.list.isSublist("Solver"))
+    return "";
+  const ParameterList& solver = document.list.sublist("Solver");
+  return solver.isType<std::string>("File") ? solver.get<std::string>("File") : "";
+}
+
+}  // namespace
+
+void complete_scene(Document& document, const std::vector<std::string>& settings,
+                    const ParameterList& valid, const Communicator& comm) {
+  // The file must be known before the other settings, whose types it may fix.
+  for (const std::string& setting : settings) {
+    if (setting.rfind(solver_file_setting, 0) == 0)
+      set_from_command_line(document, setting, valid);
+  }
+  const std::string file = named_solver_file(document);
+  if (!file.empty()) {
+    merge(document, "Solver", read_xml(resolve_path(document.source.file, file), comm));
+  }
+  for (const std::string& setting : settings) {
+    if (setting.rfind(solver_file_setting, 0) != 0)
+      set_from_command_line(document, setting, valid);
+  }
+  validate(document, valid);
+}
+
+int run_and_report(const Communicator& comm, const std::function<int()>& body) {
+  std::string message;
+  int code = 0;
+  try {
+    return body();
+  } catch (const Failure& failure) {
+    message = failure.what();
+    code = static_cast<int>(failure.exit_code());
+  } catch (const std::exception& error) {
+    message = std::string("Unexpected failure: ") + error.what();
+    code = static_cast<int>(ExitCode::solve_failed);
+  }
+  // Failures are raised on all ranks alike; if this one is alone, the others cannot be reached any
+  // more.
+  if (is_root(comm))
+    std::fprintf(stderr, "lockstep: %s\n", message.c_str());
+  if (comm->getSize() == 1)
+    return code;
+  MPI_Request request;
+  int all_here = 0, mine = 1, sum = 0;
+  MPI_Iallreduce(&mine, &sum, 1, MPI_INT, MPI_SUM, raw_communicator(comm), &request);
+  for (int wait = 0; wait < 50 && !all_here; ++wait) {
+    MPI_Test(&request, &all_here, MPI_STATUS_IGNORE);
+    if (!all_here) {
+      struct timespec pause = {0, 20000000};
+      nanosleep(&pause, nullptr);
+    }
+  }
+  if (!all_here) {
+    if (!is_root(comm)) {
+      std::fprintf(stderr, "lockstep: rank %d: %s\n", comm->getRank(), message.c_str());
+    }
+    MPI_Abort(raw_communicator(comm), code);
+  }
+  return code;
+}
+
+}  // namespace lockstep
