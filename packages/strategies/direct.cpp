@@ -1,5 +1,6 @@
 #include "strategies/direct.hpp"
 
+#include <Thyra_VectorSpaceBase.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 

@@ -61,7 +61,10 @@ RCP<Thyra::LinearOpWithSolveBase<double>> linear_op_with_solve(const RCP<const L
     builder->setParameterList(Teuchos::parameterList(list));
     const auto factory = builder->createLinearSolveStrategy("");
     factory->setVerbLevel(Teuchos::VERB_NONE);
-    return Thyra::linearOpWithSolve<double>(*factory, op);
+    auto solver = Thyra::linearOpWithSolve<double>(*factory, op);
+    // The solver refers to sublists that only the builder owns.
+    Teuchos::set_extra_data(builder, "builder", Teuchos::inOutArg(solver));
+    return solver;
   } catch (const Failure&) {
     throw;
   } catch (const std::exception& error) {

@@ -1,8 +1,8 @@
 #include "linear/types.hpp"
 
 #include <Thyra_TpetraLinearOp.hpp>
+#include <Thyra_TpetraMultiVector.hpp>
 #include <Thyra_TpetraThyraWrappers.hpp>
-#include <Thyra_TpetraVector.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
@@ -28,9 +28,11 @@ void apply_as(const LinearOperator& op, bool transposed, const Vector& x, Vector
   }
   const auto domain = transposed ? op.range() : op.domain();
   const auto range = transposed ? op.domain() : op.range();
-  const auto x_thyra =
-      Thyra::createConstVector<double, int, GlobalIndex>(Teuchos::rcpFromRef(x), domain);
-  const auto y_thyra = Thyra::createVector<double, int, GlobalIndex>(Teuchos::rcpFromRef(y), range);
+  // Multivectors of one column, for MueLu's operator takes no Thyra vectors.
+  const auto x_thyra = Thyra::createConstMultiVector<double, int, GlobalIndex>(
+      Teuchos::rcp_implicit_cast<const MultiVector>(Teuchos::rcpFromRef(x)), domain);
+  const auto y_thyra = Thyra::createMultiVector<double, int, GlobalIndex>(
+      Teuchos::rcp_implicit_cast<MultiVector>(Teuchos::rcpFromRef(y)), range);
   op.apply(transposed ? Thyra::TRANS : Thyra::NOTRANS, *x_thyra, y_thyra.ptr(), alpha, beta);
 }
 

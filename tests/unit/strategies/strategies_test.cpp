@@ -1,0 +1,223 @@
+// Every strategy on small coupled systems, against the direct one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+#include <limits>
+
+#include "base/errors.hpp"
+#include "strategies/register_strategies.hpp"
+#include "unit/linear/saddle_problem.hpp"
+
+namespace lockstep::test {
+
+namespace {
+
+using ::testing::HasSubstr;
+
+Communicator world() {
+  return Tpetra::getDefaultComm();
+}
+
+std::unique_ptr<SolverStrategy> make(const std::string& name,
+                                     const ParameterList& list = ParameterList()) {
+  StrategyRegistry registry("solver strategy");
+  register_strategies(registry);
+  return registry.create(name, list);
+}
+
+/// A list whose pressure inverse has this type.
+ParameterList with_inverse(const std::string& type) {
+  ParameterList list;
+  list.sublist("Pressure Inverse").set("Type", type);
+  return list;
+}
+
+struct Solved {
+  BlockVector solution;
+  SolveReport report;
+};
+
+Solved solve(SolverStrategy& strategy, const SaddleProblem& problem, double tolerance = 1e-10) {
+  Solved result{problem.zero(), {}};
+  strategy.prepare(problem.system);
+  result.report =
+      strategy.solve(problem.system, problem.random_rhs(), result.solution, {"test", tolerance});
+  return result;
+}
+
+template <typename Action>
+std::string solve_error(Action action) {
+  try {
+    action();
+  } catch (const SolveError& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+SaddleOptions tank(bool open_top, bool elastic_wall, double plate_mass) {
+  SaddleOptions options;
+  options.open_top = open_top;
+  options.elastic_wall = elastic_wall;
+  options.plate_mass = plate_mass;
+  return options;
+}
+
+class EveryStrategy : public ::testing::TestWithParam<std::string> {};
+
+}  // namespace
+
+TEST_P(EveryStrategy, AgreesWithDirect) {
+  // Open; closed, singular; closed by a piston, where A alone is singular; light and heavy plates.
+  for (const SaddleOptions& options :
+       {tank(true, false, 50), tank(false, false, 50), tank(false, true, 50), tank(true, false, 1),
+        tank(true, true, 1e5)}) {
+    SCOPED_TRACE(fmt::format("open {} piston {} mass {}", options.open_top, options.elastic_wall,
+                             options.plate_mass));
+    const SaddleProblem problem(world(), options);
+    const Solved expected = solve(*make("direct"), problem, 1e-12);
+    EXPECT_LE(expected.report.iterations, 3);
+    const Solved found = solve(*make(GetParam()), problem);
+    EXPECT_LT(relative_difference(*expected.solution.pressure, *found.solution.pressure), 1e-7);
+    EXPECT_LT(relative_difference(*expected.solution.solid, *found.solution.solid), 1e-7);
+    EXPECT_LE(found.report.pressure_residual, 1e-10);
+    EXPECT_LE(found.report.solid_residual, 1e-13);
+  }
+}
+
+TEST_P(EveryStrategy, SolvesFluidAlone) {
+  for (const bool open_top : {true, false}) {
+    SaddleOptions options = tank(open_top, false, 1);
+    options.with_solid = false;
+    const SaddleProblem problem(world(), options);
+    const Solved expected = solve(*make("direct"), problem, 1e-12);
+    const Solved found = solve(*make(GetParam()), problem);
+    EXPECT_LT(relative_difference(*expected.solution.pressure, *found.solution.pressure), 1e-7);
+  }
+}
+
+TEST_P(EveryStrategy, TakesExactAndWarmGuesses) {
+  const SaddleProblem problem(world(), {});
+  const auto strategy = make(GetParam());
+  Solved cold = solve(*strategy, problem, 1e-10);
+  BlockVector guess = cold.solution;
+  const SolveReport exact =
+      strategy->solve(problem.system, problem.random_rhs(), guess, {"test", 1e-9});
+  EXPECT_EQ(exact.iterations, 0);
+  EXPECT_LE(exact.pressure_residual, 1e-9);
+
+  guess.pressure->scale(1 + 1e-4);
+  const SolveReport warm =
+      strategy->solve(problem.system, problem.random_rhs(), guess, {"test", 1e-10});
+  if (GetParam() != "direct") {
+    EXPECT_LT(warm.iterations, cold.report.iterations);
+  }
+  EXPECT_LE(warm.pressure_residual, 1e-10);
+
+  // Nothing to do at all: zero right-hand side, zero guess.
+  BlockVector zero = problem.zero();
+  const SolveReport idle = strategy->solve(problem.system, problem.zero(), zero, {"test", 1e-10});
+  EXPECT_EQ(idle.iterations, 0);
+  EXPECT_EQ(zero.pressure->normInf() + zero.solid->normInf(), 0);
+}
+
+TEST_P(EveryStrategy, JudgesABlockWithoutRightHandSideByItsTerms) {
+  const SaddleProblem problem(world(), {});
+  const auto strategy = make(GetParam());
+  BlockVector rhs = problem.random_rhs(), solution = problem.zero();
+  rhs.pressure->putScalar(0);
+  const SolveReport report = strategy->solve(problem.system, rhs, solution, {"test", 1e-10});
+  EXPECT_LE(report.pressure_residual, 1e-10);
+  EXPECT_GT(solution.pressure->normInf(), 0);
+}
+
+TEST_P(EveryStrategy, RefusesAnIncompatibleRightHandSide) {
+  const SaddleProblem problem(world(), tank(false, false, 50));
+  BlockVector rhs = problem.random_rhs(), solution = problem.zero();
+  rhs.pressure->update(1e-3, *problem.system.null_space.front(), 1);
+  EXPECT_THAT(solve_error([&] {
+                make(GetParam())->solve(problem.system, rhs, solution, {"test", 1e-10});
+              }),
+              HasSubstr("not compatible with the null space"));
+}
+
+TEST_P(EveryStrategy, RefusesANotANumber) {
+  const SaddleProblem problem(world(), {});
+  BlockVector rhs = problem.random_rhs(), solution = problem.zero();
+  rhs.pressure->putScalar(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(solve_error([&] {
+                make(GetParam())->solve(problem.system, rhs, solution, {"test", 1e-10});
+              }),
+              HasSubstr("not finite"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Strategies, EveryStrategy,
+                         ::testing::Values("paper", "schur-cg", "direct"));
+
+TEST(Strategies, PreparedPartsAreReusedByStamp) {
+  SaddleProblem problem(world(), {});
+  const auto strategy = make("schur-cg");
+  EXPECT_EQ(solve(*strategy, problem).report.preconditioner_builds, 1);
+  const SolveReport again = solve(*strategy, problem).report;
+  EXPECT_EQ(again.preconditioner_builds, 0);
+  EXPECT_EQ(again.preconditioner_reuses, 1);
+  ++problem.system.solid_stamp;
+  EXPECT_EQ(solve(*strategy, problem).report.preconditioner_builds, 1);
+}
+
+TEST(Strategies, IterationsDoNotDependOnTheNumberOfRanks) {
+  // Counts measured on one rank; the runs on 2 and 4 ranks must find them again.
+  const SaddleProblem problem(world(), {});
+  EXPECT_NEAR(solve(*make("schur-cg"), problem, 1e-8).report.iterations, 16, 2);
+  EXPECT_NEAR(solve(*make("schur-cg", with_inverse("Jacobi")), problem, 1e-8).report.iterations, 83,
+              2);
+  EXPECT_NEAR(solve(*make("paper", with_inverse("Jacobi")), problem, 1e-8).report.iterations, 115,
+              2);
+}
+
+TEST(Strategies, NonConvergenceCarriesTheNumbers) {
+  const SaddleProblem problem(world(), {});
+  for (const std::string name : {"schur-cg", "paper"}) {
+    ParameterList list = with_inverse("Jacobi");
+    list.set("Maximum Iterations", 3);
+    const std::string message = solve_error([&] { solve(*make(name, list), problem, 1e-8); });
+    EXPECT_THAT(message, HasSubstr("Solve test of the coupled system by " + name));
+    EXPECT_THAT(message, HasSubstr("did not converge in 3 iterations: pressure residual"));
+    EXPECT_THAT(message, HasSubstr("required 1.00e-08"));
+    EXPECT_THAT(message, HasSubstr("\"Maximum Iterations\" is 3"));
+  }
+}
+
+TEST(Strategies, UnsymmetricPreconditionerIsCaughtOnRequest) {
+  const SaddleProblem problem(world(), {});
+  ParameterList list = with_inverse("Ifpack2");
+  list.set("Check Preconditioner Symmetry", true);
+  ParameterList& inverse = list.sublist("Pressure Inverse");
+  inverse.set("Prec Type", "RELAXATION");
+  inverse.sublist("Ifpack2 Settings").set("relaxation: type", "Gauss-Seidel");
+  EXPECT_THAT(solve_error([&] { make("paper", list)->prepare(problem.system); }),
+              HasSubstr("is not symmetric"));
+}
+
+TEST(Strategies, EmptyRanks) {
+  if (world()->getSize() < 2)
+    GTEST_SKIP() << "needs a second rank";
+  SaddleOptions options;
+  options.n_empty_ranks = 1;
+  const SaddleProblem problem(world(), options);
+  const SaddleProblem everywhere(world(), {});
+  const Solved found = solve(*make("schur-cg", with_inverse("Jacobi")), problem);
+  const Solved expected = solve(*make("direct"), everywhere);
+  EXPECT_LT(relative_difference(*expected.solution.solid, *found.solution.solid), 1e-7);
+  EXPECT_THAT(solve_error([&] { make("paper")->prepare(problem.system); }),
+              HasSubstr("owns no pressure unknown"));
+}
+
+TEST(Strategies, MisspeltInverseIsAnInputError) {
+  ParameterList list = with_inverse("MueLu");
+  list.sublist("Pressure Inverse").set("smother: type", "CHEBYSHEV");
+  EXPECT_THROW(make("schur-cg", list), InputError);
+}
+
+}  // namespace lockstep::test
