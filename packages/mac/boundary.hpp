@@ -1,0 +1,65 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "grid/tile_lattice.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+enum class SideType {
+  wall,       ///< closed, the fluid sticks to it
+  slip_wall,  ///< closed, without friction
+  open,       ///< p = 0 at the face
+  inflow,     ///< prescribed velocity
+  periodic
+};
+
+/// One side of the domain.
+template <int dim>
+struct BoundarySide {
+  SideType type = SideType::wall;
+  Point<dim> velocity = Point<dim>::Zero();  ///< of the wall (tangential only) or the inflow [m/s]
+  double ramp_time = 0;    ///< the velocity grows linearly from 0 during this time [s]; 0: at once
+  double smoke = 0;        ///< carried by the inflow [1]
+  double temperature = 0;  ///< carried by the inflow [K]
+
+  bool closed() const { return type == SideType::wall || type == SideType::slip_wall; }
+  bool prescribed() const { return closed() || type == SideType::inflow; }
+  Point<dim> velocity_at(double time) const {
+    return ramp_time > time ? Point<dim>(velocity * (std::max(time, 0.0) / ramp_time)) : velocity;
+  }
+};
+
+/// The sides of the domain: [axis][0 lower, 1 upper].
+template <int dim>
+struct Boundary {
+  std::array<std::array<BoundarySide<dim>, 2>, dim> sides;
+
+  const BoundarySide<dim>& side(int axis, int end) const { return sides[axis][end]; }
+  bool periodic(int axis) const { return sides[axis][0].type == SideType::periodic; }
+};
+
+/// The cells and sides of a scene's "Domain" list.
+template <int dim>
+struct DomainDescription {
+  GridDescription<dim> grid;
+  Boundary<dim> boundary;
+};
+
+/// Schema of the "Domain" list.
+template <int dim>
+ParameterList domain_parameters();
+/// Throws InputError if the cells are not cubes, if only one side of an axis is periodic, or if a
+/// wall moves through itself.
+template <int dim>
+DomainDescription<dim> read_domain(const ParameterList& list);
+
+/// Storage that the sides ask of the grid: faces at the upper end of open and inflow sides.
+template <int dim>
+void set_grid_flags(const Boundary<dim>& boundary, GridDescription<dim>& grid);
+
+}  // namespace lockstep

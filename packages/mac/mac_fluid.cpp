@@ -1,0 +1,259 @@
+#include "mac/mac_fluid.hpp"
+
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "mac/initial_state.hpp"
+
+namespace lockstep {
+
+template <int dim>
+MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
+                        const Communicator& comm)
+    : domain_(read_domain<dim>(domain), comm),
+      parameters_(read_mac_parameters<dim>(fluid)),
+      scalars_(domain_, fluid),
+      ray_halo_(domain_.grid),
+      velocity_(initial_velocity<dim>(domain_.grid, fluid.sublist("Initial State"))) {
+  domain_.halo.fill(velocity_);
+  prediction_ = velocity_;
+}
+
+template <int dim>
+void MacFluid<dim>::set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) {
+  const bool unchanged = !pressure_block_.is_null() && !geometry_.state.surface &&
+                         (!surface || surface->empty());
+  if (unchanged)
+    return;
+  viscosity_.reset();
+  geometry_ = make_geometry(domain_, parameters_.density, surface, rule);
+  pressure_block_ = as_operator(pressure_matrix(domain_, geometry_, parameters_.density));
+  regions_ = find_regions(domain_, geometry_);
+  if (parameters_.viscosity.viscosity > 0)
+    viscosity_ = std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.density,
+                                                  parameters_.viscosity);
+  set_prescribed(velocity_);
+  set_prescribed(prediction_);
+}
+
+template <int dim>
+void MacFluid<dim>::set_prescribed(FaceField<dim>& velocity) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  for (int axis = 0; axis < dim; ++axis) {
+    if (domain_.boundary.periodic(axis))
+      continue;
+    grid.for_each_owned_face(axis, [&](int cell) {
+      if (geometry_.state.faces[axis][cell] != FaceState::prescribed)
+        return;
+      const int end = geometry_.state.cells[cell] == CellState::outside ? 1 : 0;
+      velocity[axis][cell] = domain_.boundary.side(axis, end).velocity_at(time_)[axis];
+    });
+  }
+  domain_.halo.fill(velocity);
+}
+
+template <int dim>
+void MacFluid<dim>::divergence(Vector& rhs) const {
+  outflow_deficit<dim>(domain_, geometry_, prediction_, rhs);
+}
+
+template <int dim>
+void MacFluid<dim>::project(const Vector& scaled_pressure) {
+  scaled_pressure_ = pressure_field(domain_, geometry_, scaled_pressure);
+  subtract_gradient<dim>(domain_, geometry_, parameters_.density, scaled_pressure_, prediction_);
+  domain_.halo.fill(prediction_);
+}
+
+template <int dim>
+std::vector<double> MacFluid<dim>::coupled_velocity() const {
+  std::vector<double> result;
+  result.reserve(geometry_.coupled.size());
+  for (const auto& [axis, cell] : geometry_.coupled)
+    result.push_back(prediction_[axis][cell]);
+  return result;
+}
+
+template <int dim>
+void MacFluid<dim>::set_coupled_velocity(const std::vector<double>& velocity) {
+  LOCKSTEP_ASSERT(velocity.size() == geometry_.coupled.size());
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const auto [axis, cell] = geometry_.coupled[i];
+    if (geometry_.state.faces[axis][cell] == FaceState::coupled)
+      prediction_[axis][cell] = velocity[i];
+  }
+  domain_.halo.fill(prediction_);
+}
+
+template <int dim>
+void MacFluid<dim>::begin_prediction() {
+  prediction_ = velocity_;
+}
+
+template <int dim>
+Momentum<dim> MacFluid<dim>::push_sources(double time) {
+  if (!scalars_.sources_push(time))
+    return {};
+  const Momentum<dim> before = momentum();
+  scalars_.push(geometry_, time, prediction_);
+  return momentum() - before;
+}
+
+template <int dim>
+Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
+  time_ = time + dt;
+  last_step_ = dt;
+  set_prescribed(prediction_);
+  Momentum<dim> impulse = push_sources(time);
+  const ForceField<dim> force(domain_, geometry_, parameters_.forces, scalars_);
+  Momentum<dim> mine;
+  for (int axis = 0; axis < dim; ++axis)
+    domain_.grid.for_each_owned_face(axis, [&](int cell) {
+      if (!moves(axis, cell))
+        return;
+      const double change = dt * force(axis, cell);
+      prediction_[axis][cell] += change;
+      if (geometry_.state.faces[axis][cell] == FaceState::free && change != 0)
+        mine.add(domain_.grid.face_center(axis, cell), axis, face_mass(axis, cell) * change);
+    });
+  domain_.halo.fill(prediction_);
+  return impulse + sum_over_ranks(mine, domain_.grid.comm());
+}
+
+template <int dim>
+std::vector<double> MacFluid<dim>::coupled_force(double, double dt) const {
+  const ForceField<dim> force(domain_, geometry_, parameters_.forces, scalars_);
+  std::vector<double> result;
+  result.reserve(geometry_.coupled.size());
+  for (const auto& [axis, cell] : geometry_.coupled)
+    result.push_back(dt * force(axis, cell));
+  return result;
+}
+
+template <int dim>
+std::unique_ptr<ViscousSystem<dim>> MacFluid<dim>::viscous_system() const {
+  return viscosity_ ? viscosity_->system(prediction_, time_) : nullptr;
+}
+
+template <int dim>
+Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, double dt) {
+  viscosity_->store(solution, prediction_);
+  domain_.halo.fill(prediction_);
+  return viscosity_->impulse(prediction_, time_, dt);
+}
+
+template <int dim>
+void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
+  TransportSetting<dim> setting{domain_.grid, geometry_.state, surface, advection_, ray_halo_, {},
+                                dt};
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end) {
+      const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
+      TransportSide<dim>& seen = setting.sides[axis][end];
+      seen.inflow = side.type == SideType::inflow;
+      const Point<dim> velocity = side.velocity_at(time);
+      seen.velocity = [velocity](const Point<dim>&) { return velocity; };
+    }
+  Transport<dim> transport(setting);
+  transport.advect_faces(parameters_.advection, velocity_, prediction_);
+  domain_.halo.fill(prediction_);
+  for (Scalar& scalar : scalars_.all()) {
+    SideValues<dim> inflow;
+    std::copy(scalar.inflow.begin(), scalar.inflow.end(), inflow.begin());
+    CellField carried(scalar.values.size(), 0.0);
+    transport.advect_scalar(parameters_.advection, scalar.values, inflow, carried);
+    scalar.values.swap(carried);
+  }
+  invalid_ = transport.invalid();
+  scalars_.feed(geometry_, time, dt);
+  for (Scalar& scalar : scalars_.all())
+    domain_.halo.fill(scalar.values);
+}
+
+template <int dim>
+void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
+  if (!geometry_.state.surface)
+    return;
+  revalidate_faces<dim>(domain_.grid, domain_.halo, geometry_.state, surface, invalid_, prediction_);
+  for (Scalar& scalar : scalars_.all())
+    revalidate_scalar(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
+                      scalar.ambient, scalar.values);
+  invalid_ = {};
+}
+
+template <int dim>
+double MacFluid<dim>::face_mass(int axis, int cell) const {
+  const double open = geometry_.open_fraction(axis, cell);
+  if (open == 0)
+    return 0;
+  const FaceCells face = cells_of_face(domain_.grid, geometry_.state.cells, axis, cell);
+  return parameters_.density * domain_.cell_volume() * open * (face.at_side() ? 0.5 : 1);
+}
+
+template <int dim>
+Momentum<dim> MacFluid<dim>::momentum() const {
+  Momentum<dim> mine;
+  for (int axis = 0; axis < dim; ++axis)
+    domain_.grid.for_each_owned_face(axis, [&](int cell) {
+      const double mass = face_mass(axis, cell);
+      if (mass > 0)
+        mine.add(domain_.grid.face_center(axis, cell), axis, mass * prediction_[axis][cell]);
+    });
+  return sum_over_ranks(mine, domain_.grid.comm());
+}
+
+template <int dim>
+double MacFluid<dim>::kinetic_energy() const {
+  double mine = 0;
+  for (int axis = 0; axis < dim; ++axis)
+    domain_.grid.for_each_owned_face(axis, [&](int cell) {
+      const double u = prediction_[axis][cell];
+      mine += 0.5 * face_mass(axis, cell) * u * u;
+    });
+  return sum_all(domain_.grid.comm(), mine);
+}
+
+template <int dim>
+double MacFluid<dim>::largest_cell_crossing_rate() const {
+  double largest = 0;
+  const auto speed = [&](int axis, int face) {
+    const bool still =
+        face < 0 || geometry_.state.faces[axis][face] == FaceState::inactive;
+    return still ? 0.0 : std::abs(velocity_[axis][face]);
+  };
+  domain_.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    if (geometry_.state.cells[cell] != CellState::fluid)
+      return;
+    double sum = 0;
+    for (int axis = 0; axis < dim; ++axis)
+      sum += std::max(speed(axis, cell), speed(axis, neighbors[2 * axis + 1]));
+    largest = std::max(largest, sum);
+  });
+  return max_all(domain_.grid.comm(), largest) / spacing();
+}
+
+template <int dim>
+Momentum<dim> MacFluid<dim>::boundary_pressure_impulse(const Vector& scaled_pressure) const {
+  return side_pressure_impulse(domain_, geometry_, scaled_pressure);
+}
+
+template <int dim>
+double MacFluid<dim>::fluid_volume() const {
+  return static_cast<double>(geometry_.pressure_map->getGlobalNumElements()) *
+         domain_.cell_volume();
+}
+
+template <int dim>
+void MacFluid<dim>::set_prediction(
+    const std::function<Point<dim>(const Point<dim>&)>& velocity) {
+  for (int axis = 0; axis < dim; ++axis)
+    domain_.grid.for_each_owned_face(axis, [&](int cell) {
+      if (geometry_.state.faces[axis][cell] == FaceState::free)
+        prediction_[axis][cell] = velocity(domain_.grid.face_center(axis, cell))[axis];
+    });
+  domain_.halo.fill(prediction_);
+}
+
+template class MacFluid<2>;
+template class MacFluid<3>;
+
+}  // namespace lockstep

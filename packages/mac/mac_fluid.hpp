@@ -1,0 +1,115 @@
+#pragma once
+#include <memory>
+
+#include "interfaces/fluid.hpp"
+#include "mac/forces.hpp"
+#include "mac/pressure_system.hpp"
+#include "mac/ray_halo.hpp"
+#include "mac/revalidation.hpp"
+#include "mac/scalars.hpp"
+#include "mac/transport.hpp"
+#include "mac/viscosity.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// The numbers of a fluid, read once.
+template <int dim>
+struct MacParameters {
+  double density = 1000;  ///< [kg/m^3]
+  ViscosityParameters viscosity;
+  ForceParameters<dim> forces;
+  AdvectionScheme advection = AdvectionScheme::semi_lagrangian;
+};
+
+/// Schema of the "Fluid" list, without "Type".
+template <int dim>
+ParameterList mac_parameters();
+template <int dim>
+MacParameters<dim> read_mac_parameters(const ParameterList& fluid);
+
+/// A single-phase fluid on a staggered Cartesian grid of tiles. Every cell whose centre is not inside a
+/// closed solid is fluid. Momentum of free faces counts M = rho V alpha, half of it at open sides. With
+/// periodic sides, angular momentum is not conserved: a torque has no common origin there.
+///
+/// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
+template <int dim>
+class MacFluid : public FluidDiscretization<dim> {
+ public:
+  using typename FluidDiscretization<dim>::Surface;
+
+  /// Collective. Validated lists "Fluid" and "Domain" of a scene.
+  MacFluid(const ParameterList& fluid, const ParameterList& domain, const Communicator& comm);
+
+  std::string name() const override { return "mac"; }
+  void save(CheckpointWriter& checkpoint) const override;
+  void load(const CheckpointReader& checkpoint) override;
+
+  void set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) override;
+  const std::vector<ControlVolume<dim>>& coupled_volumes() const override {
+    return geometry_.volumes;
+  }
+  RCP<const Map> pressure_map() const override { return geometry_.pressure_map; }
+  RCP<const LinearOperator> pressure_block() const override { return pressure_block_; }
+  const PressureRegions& regions() const override { return regions_; }
+  void divergence(Vector& rhs) const override;
+  void project(const Vector& scaled_pressure) override;
+  std::vector<double> coupled_velocity() const override;
+  /// Partly open volumes keep their own velocity.
+  void set_coupled_velocity(const std::vector<double>& velocity) override;
+
+  void begin_prediction() override;
+  Momentum<dim> add_forces(double time, double dt) override;
+  std::vector<double> coupled_force(double time, double dt) const override;
+  std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
+  Momentum<dim> accept_viscous(const Vector& solution, double dt) override;
+  void adopt_advection_velocity() override { advection_ = prediction_; }
+  void advect(double time, double dt, const MovingSurface<dim>& surface) override;
+  void revalidate(const MovingSurface<dim>& surface) override;
+  void accept() override { velocity_ = prediction_; }
+
+  double largest_cell_crossing_rate() const override;
+  double spacing() const override { return domain_.spacing(); }
+  Point<dim> gravity() const override { return parameters_.forces.gravity; }
+  Momentum<dim> momentum() const override;
+  double kinetic_energy() const override;
+  Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
+  double fluid_volume() const override;
+  void add_frame(std::vector<BoxFrame>& boxes) const override;
+
+  const MacDomain<dim>& domain() const { return domain_; }
+  const MacGeometry<dim>& geometry() const { return geometry_; }
+  /// u* on stored faces.
+  const FaceField<dim>& prediction() const { return prediction_; }
+  const Scalars<dim>& scalars() const { return scalars_; }
+  /// Sets u* on owned faces that are free to f(face centre). Collective.
+  void set_prediction(const std::function<Point<dim>(const Point<dim>&)>& velocity);
+
+ private:
+  bool moves(int axis, int cell) const {
+    const FaceState state = geometry_.state.faces[axis][cell];
+    return state == FaceState::free || state == FaceState::coupled;
+  }
+  void set_prescribed(FaceField<dim>& velocity) const;
+  /// Fluid mass that a free face carries [kg]; 0 for others.
+  double face_mass(int axis, int cell) const;
+  Momentum<dim> push_sources(double time);
+
+  MacDomain<dim> domain_;
+  MacParameters<dim> parameters_;
+  Scalars<dim> scalars_;
+  RayHalo<dim> ray_halo_;
+
+  MacGeometry<dim> geometry_;
+  RCP<const LinearOperator> pressure_block_;
+  PressureRegions regions_;
+  std::unique_ptr<Viscosity<dim>> viscosity_;
+
+  FaceField<dim> velocity_, prediction_, advection_;
+  CellField scaled_pressure_;  ///< of the last projection
+  InvalidSamples<dim> invalid_;
+  double time_ = 0;       ///< of walls and inflows
+  double last_step_ = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures
+};
+
+}  // namespace lockstep

@@ -1,0 +1,180 @@
+#include "mac/mac_geometry.hpp"
+
+#include <Tpetra_Map.hpp>
+
+#include "mac/surface_marks.hpp"
+
+namespace lockstep {
+
+namespace {
+template <int dim>
+void number_pressures(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const auto& cells = geometry.state.cells;
+  int n = 0;
+  grid.for_each_owned_cell([&](int cell) { n += cells[cell] == CellState::fluid; });
+  geometry.pressure_map = make_map(n, grid.comm());
+  geometry.unknown.assign(grid.n_stored_cells(), no_index);
+  GlobalIndex next = n == 0 ? 0 : geometry.pressure_map->getMinGlobalIndex();
+  grid.for_each_owned_cell([&](int cell) {
+    if (cells[cell] == CellState::fluid)
+      geometry.unknown[cell] = next++;
+  });
+  domain.halo.fill(geometry.unknown);
+}
+
+template <int dim>
+PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
+                                const Point<dim>& center) {
+  PressureSide<dim> side;
+  side.center = center;
+  if (cell < 0)
+    return side;
+  side.unknown = geometry.unknown[cell];
+  if (geometry.state.cells[cell] == CellState::solid) {
+    side.inside_solid = true;
+    side.solid = geometry.state.surface->inside(center);
+  }
+  return side;
+}
+
+template <int dim>
+bool sees(const SurfaceSnapshot<dim>& surface, const ControlVolume<dim>& volume) {
+  for (const PressureSide<dim>& side : volume.sides)
+    if (side.unknown != no_index && !surface.first_hit(side.center, volume.center))
+      return true;
+  return false;
+}
+
+/// Free, coupled, prescribed or inactive, where no surface is near.
+template <int dim>
+FaceState state_far_from_surfaces(const MacDomain<dim>& domain,
+                                  const std::vector<CellState>& cells, int axis,
+                                  const FaceCells& face) {
+  const bool lower_fluid = face.lower >= 0 && cells[face.lower] == CellState::fluid;
+  const bool upper_fluid = face.upper >= 0 && cells[face.upper] == CellState::fluid;
+  if (!lower_fluid && !upper_fluid)
+    return FaceState::inactive;
+  if (face.at_side() && domain.boundary.side(axis, face.lower < 0 ? 0 : 1).prescribed())
+    return FaceState::prescribed;
+  return FaceState::free;
+}
+
+template <int dim>
+bool in_solid(const std::vector<CellState>& cells, int cell) {
+  return cell >= 0 && cells[cell] == CellState::solid;
+}
+
+/// Asks the rule about a face near the surface that would be free otherwise.
+template <int dim>
+void ask_rule(const MacDomain<dim>& domain, double density, const OpenFractionRule<dim>& rule,
+              int axis, int cell, const FaceCells& face, bool crossed, MacGeometry<dim>& geometry) {
+  const auto& cells = geometry.state.cells;
+  const bool leads_into_solid = in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper);
+  const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
+  ControlVolume<dim> volume = control_volume(domain, geometry, density, axis, cell);
+  const bool blocked = crossed || leads_into_solid;
+  volume.open_fraction = rule.open_fraction(volume, blocked, surface);
+  // An open face between fluid and solid would be a silent leak, whatever the rule says.
+  if (leads_into_solid)
+    volume.open_fraction = 0;
+  if (volume.open_fraction >= 1)
+    return;
+  if (volume.open_fraction > 0) {
+    if (geometry.partial[axis].empty())
+      geometry.partial[axis].assign(domain.grid.n_stored_cells(), 1.0);
+    geometry.partial[axis][cell] = volume.open_fraction;
+  } else {
+    geometry.state.faces[axis][cell] = FaceState::coupled;
+  }
+  volume.seen_by_fluid = sees(surface, volume);
+  geometry.coupled.push_back({axis, cell});
+  geometry.volumes.push_back(volume);
+}
+
+/// Partly open faces on any rank give every rank the array, for the exchange.
+template <int dim>
+void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
+  if (!geometry.state.surface)
+    return;
+  for (int axis = 0; axis < dim; ++axis) {
+    CellField& partial = geometry.partial[axis];
+    if (max_all(domain.grid.comm(), partial.empty() ? 0.0 : 1.0) == 0)
+      continue;
+    if (partial.empty())
+      partial.assign(domain.grid.n_stored_cells(), 1.0);
+    domain.halo.fill(partial);
+  }
+}
+}  // namespace
+
+template <int dim>
+ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                  double density, int axis, int cell) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const FaceCells face = cells_of_face(grid, geometry.state.cells, axis, cell);
+  const double half = 0.5 * grid.spacing();
+  ControlVolume<dim> volume;
+  volume.direction = axis;
+  volume.center = grid.face_center(axis, cell);
+  volume.density = density;
+  volume.area = domain.face_area();
+  volume.id = dim * grid.global_id(cell) + axis;
+  const Point<dim> step = Point<dim>::Unit(axis) * half;
+  const Point<dim> lower = face.lower < 0 ? volume.center : Point<dim>(volume.center - step);
+  const Point<dim> upper = face.upper < 0 ? volume.center : Point<dim>(volume.center + step);
+  volume.sides = {pressure_side(geometry, face.lower, lower),
+                  pressure_side(geometry, face.upper, upper)};
+  Point<dim> across = Point<dim>::Constant(half);
+  across[axis] = 0;
+  volume.box = Box<dim>(lower - across, upper + across);
+  return volume;
+}
+
+template <int dim>
+MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
+                               const std::shared_ptr<const SurfaceSnapshot<dim>>& surface,
+                               const OpenFractionRule<dim>& rule) {
+  const TiledGrid<dim>& grid = domain.grid;
+  MacGeometry<dim> geometry;
+  MacState<dim>& state = geometry.state;
+  state.cells.assign(grid.n_stored_cells(), CellState::outside);
+  grid.for_each_stored_cell([&](int cell) { state.cells[cell] = CellState::fluid; });
+  SurfaceMarks<dim> marks;
+  if (surface && !surface->empty()) {
+    state.surface = surface;
+    marks = mark_surface(domain, *surface, state.cells);
+    geometry.near = std::move(marks.near);
+  }
+  number_pressures(domain, geometry);
+  for (int axis = 0; axis < dim; ++axis) {
+    state.faces[axis].assign(grid.n_stored_cells(), FaceState::inactive);
+    grid.for_each_owned_face(axis, [&](int cell) {
+      const FaceCells face = cells_of_face(grid, state.cells, axis, cell);
+      FaceState& result = state.faces[axis][cell];
+      result = state_far_from_surfaces(domain, state.cells, axis, face);
+      if (result == FaceState::free && geometry.near_surface(cell))
+        ask_rule(domain, density, rule, axis, cell, face, (marks.blocked[cell] >> axis & 1) != 0,
+                 geometry);
+    });
+    if (grid.comm()->getSize() > 1)
+      fill_flags(domain.full_halo, state.faces[axis]);
+  }
+  share_open_fractions(domain, geometry);
+  return geometry;
+}
+
+template struct MacGeometry<2>;
+template struct MacGeometry<3>;
+template ControlVolume<2> control_volume<2>(const MacDomain<2>&, const MacGeometry<2>&, double, int,
+                                            int);
+template ControlVolume<3> control_volume<3>(const MacDomain<3>&, const MacGeometry<3>&, double, int,
+                                            int);
+template MacGeometry<2> make_geometry<2>(const MacDomain<2>&, double,
+                                         const std::shared_ptr<const SurfaceSnapshot<2>>&,
+                                         const OpenFractionRule<2>&);
+template MacGeometry<3> make_geometry<3>(const MacDomain<3>&, double,
+                                         const std::shared_ptr<const SurfaceSnapshot<3>>&,
+                                         const OpenFractionRule<3>&);
+
+}  // namespace lockstep

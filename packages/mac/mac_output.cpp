@@ -1,0 +1,166 @@
+#include <Tpetra_Vector.hpp>
+
+#include "mac/mac_fluid.hpp"
+#include "output/checkpoint.hpp"
+#include "output/frames.hpp"
+
+namespace lockstep {
+
+namespace {
+/// One block for the cells of each owned tile that lie in the domain.
+template <int dim>
+std::vector<CellBlock> tile_blocks(const TiledGrid<dim>& grid, std::vector<int>& tiles) {
+  std::vector<CellBlock> blocks;
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    CellBlock block{{0, 0, 0}, {1, 1, 1}};
+    bool empty = false;
+    for (int a = 0; a < dim; ++a) {
+      block.lower[a] = grid.tile_begin(tile)[a];
+      block.size[a] = grid.tile_domain_extent(tile)[a];
+      empty = empty || block.size[a] <= 0;
+    }
+    if (empty)
+      continue;
+    blocks.push_back(block);
+    tiles.push_back(tile);
+  }
+  return blocks;
+}
+
+/// Calls f(cell) for the cells of a block, x fastest.
+template <int dim, typename Function>
+void for_each_cell_of_tile(const TiledGrid<dim>& grid, int tile, const Function& f) {
+  const Index<dim> extent = grid.tile_domain_extent(tile);
+  const int depth = dim == 3 ? extent[dim - 1] : 1;
+  constexpr int width = tile_width<dim>;
+  for (int z = 0; z < depth; ++z)
+    for (int y = 0; y < extent[1]; ++y)
+      for (int x = 0; x < extent[0]; ++x)
+        f((tile << log_tile_volume<dim>)+(z * width + y) * width + x);
+}
+
+template <int dim>
+BoxField scalar_field(const TiledGrid<dim>& grid, const std::vector<int>& tiles, std::string name,
+                      std::string unit, std::function<double(int)> value) {
+  return {std::move(name), std::move(unit), 1,
+          [&grid, tiles, value = std::move(value)](std::size_t block, double* values) {
+            for_each_cell_of_tile(grid, tiles[block],
+                                  [&](int cell) { *values++ = value(cell); });
+          }};
+}
+
+/// The numbers of the owned lattice cells, in which all fields are saved.
+template <int dim>
+std::vector<int> saved_cells(const TiledGrid<dim>& grid) {
+  std::vector<int> cells;
+  for (int cell = 0; cell < grid.n_owned_cells(); ++cell)
+    if (grid.in_lattice(cell))
+      cells.push_back(cell);
+  return cells;
+}
+
+template <int dim>
+std::vector<GlobalIndex> numbers_of(const TiledGrid<dim>& grid, const std::vector<int>& cells) {
+  std::vector<GlobalIndex> ids;
+  ids.reserve(cells.size());
+  for (const int cell : cells)
+    ids.push_back(grid.global_id(cell));
+  return ids;
+}
+}  // namespace
+
+template <int dim>
+void MacFluid<dim>::add_frame(std::vector<BoxFrame>& boxes) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  BoxFrame box;
+  box.dimension = dim;
+  for (int a = 0; a < dim; ++a) {
+    box.origin[a] = grid.lower()[a];
+    box.spacing[a] = grid.spacing();
+    box.n_cells[a] = grid.n_cells()[a];
+  }
+  std::vector<int> tiles;
+  box.blocks = tile_blocks(grid, tiles);
+  const auto& cells = geometry_.state.cells;
+  box.fields.push_back(
+      {"velocity", "m/s", dim, [this, &grid, &cells, tiles](std::size_t block, double* values) {
+         for_each_cell_of_tile(grid, tiles[block], [&](int cell) {
+           for (int axis = 0; axis < dim; ++axis) {
+             const int above = grid.neighbor(cell, axis, 1);
+             const double upper = above < 0 ? 0 : prediction_[axis][above];
+             const bool fluid = cells[cell] == CellState::fluid;
+             *values++ = fluid ? 0.5 * (prediction_[axis][cell] + upper) : 0;
+           }
+         });
+       }});
+  const double per_step = last_step_ > 0 ? 1 / last_step_ : 0;
+  box.fields.push_back(
+      scalar_field(grid, tiles, "pressure", "Pa", [this, &cells, per_step](int cell) {
+        const bool known = cells[cell] == CellState::fluid && !scaled_pressure_.empty();
+        return known ? scaled_pressure_[cell] * per_step : 0;
+      }));
+  for (const Scalar& scalar : scalars_.all())
+    box.fields.push_back(
+        scalar_field(grid, tiles, scalar.name, scalar.unit, [&scalar, &cells](int cell) {
+          return cells[cell] == CellState::fluid ? scalar.values[cell] : 0;
+        }));
+  box.fields.push_back(scalar_field(grid, tiles, "fluid", "1", [&cells](int cell) {
+    return cells[cell] == CellState::fluid ? 1.0 : 0.0;
+  }));
+  boxes.push_back(std::move(box));
+}
+
+template <int dim>
+void MacFluid<dim>::save(CheckpointWriter& checkpoint) const {
+  const std::vector<int> cells = saved_cells(domain_.grid);
+  const std::vector<GlobalIndex> ids = numbers_of(domain_.grid, cells);
+  std::vector<double> values(cells.size() * dim);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (int axis = 0; axis < dim; ++axis)
+      values[i * dim + axis] = velocity_[axis][cells[i]];
+  checkpoint.write_distributed("fluid/velocity", ids, values, dim);
+  values.resize(cells.size());
+  for (const Scalar& scalar : scalars_.all()) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      values[i] = scalar.values[cells[i]];
+    checkpoint.write_distributed("fluid/" + scalar.name, ids, values);
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    values[i] = scaled_pressure_.empty() ? 0 : scaled_pressure_[cells[i]];
+  checkpoint.write_distributed("fluid/scaled_pressure", ids, values);
+  checkpoint.file().write_attribute("fluid", "boundary_time", time_);
+  checkpoint.file().write_attribute("fluid", "last_step", last_step_);
+}
+
+template <int dim>
+void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
+  const std::vector<int> cells = saved_cells(domain_.grid);
+  const std::vector<GlobalIndex> ids = numbers_of(domain_.grid, cells);
+  const auto velocity = checkpoint.read_distributed<double>("fluid/velocity", ids);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (int axis = 0; axis < dim; ++axis)
+      velocity_[axis][cells[i]] = velocity[i * dim + axis];
+  domain_.halo.fill(velocity_);
+  prediction_ = velocity_;
+  for (Scalar& scalar : scalars_.all()) {
+    const auto values = checkpoint.read_distributed<double>("fluid/" + scalar.name, ids);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      scalar.values[cells[i]] = values[i];
+    domain_.halo.fill(scalar.values);
+  }
+  const auto pressure = checkpoint.read_distributed<double>("fluid/scaled_pressure", ids);
+  scaled_pressure_.assign(domain_.grid.n_stored_cells(), 0.0);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    scaled_pressure_[cells[i]] = pressure[i];
+  time_ = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
+  last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
+}
+
+template void MacFluid<2>::add_frame(std::vector<BoxFrame>&) const;
+template void MacFluid<3>::add_frame(std::vector<BoxFrame>&) const;
+template void MacFluid<2>::save(CheckpointWriter&) const;
+template void MacFluid<3>::save(CheckpointWriter&) const;
+template void MacFluid<2>::load(const CheckpointReader&);
+template void MacFluid<3>::load(const CheckpointReader&);
+
+}  // namespace lockstep

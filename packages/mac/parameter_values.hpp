@@ -1,0 +1,22 @@
+#pragma once
+#include "base/types.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+template <typename T>
+ParameterArray<T> filled_array(int n, T value) {
+  return ParameterArray<T>(n, value);
+}
+
+/// A vector of a validated list.
+template <int dim>
+Point<dim> point_value(const ParameterList& list, const std::string& name) {
+  const auto& values = list.get<ParameterArray<double>>(name);
+  Point<dim> x;
+  for (int a = 0; a < dim; ++a)
+    x[a] = values[a];
+  return x;
+}
+
+}  // namespace lockstep

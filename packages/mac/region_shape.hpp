@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+
+#include "base/types.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// A part of space that a scene names: a box or a ball.
+template <int dim>
+struct RegionShape {
+  bool ball = false;
+  Point<dim> lower = Point<dim>::Zero(), upper = Point<dim>::Zero();  ///< box [m]
+  Point<dim> center = Point<dim>::Zero();                             ///< ball [m]
+  double radius = 0;                                                  ///< [m]
+
+  bool contains(const Point<dim>& x) const {
+    if (ball)
+      return (x - center).squaredNorm() <= radius * radius;
+    return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
+  }
+};
+
+/// Declares "Shape" and the sizes of box and ball in `list`.
+template <int dim>
+void declare_shape(ParameterList& list);
+template <int dim>
+RegionShape<dim> read_shape(const ParameterList& list);
+
+}  // namespace lockstep

@@ -1,0 +1,22 @@
+#include "mac/register_mac.hpp"
+
+#include "mac/mac_fluid.hpp"
+
+namespace lockstep {
+
+template <int dim>
+void register_mac(
+    Registry<FluidDiscretization<dim>, const ParameterList&, const Communicator&>& fluids) {
+  fluids.add(
+      "mac", "Incompressible fluid on a staggered Cartesian grid of tiles.", mac_parameters<dim>,
+      [](const ParameterList& list, const ParameterList& domain, const Communicator& comm) {
+        return std::make_unique<MacFluid<dim>>(list, domain, comm);
+      });
+}
+
+template void register_mac<2>(
+    Registry<FluidDiscretization<2>, const ParameterList&, const Communicator&>&);
+template void register_mac<3>(
+    Registry<FluidDiscretization<3>, const ParameterList&, const Communicator&>&);
+
+}  // namespace lockstep

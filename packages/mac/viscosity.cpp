@@ -1,0 +1,85 @@
+#include "mac/viscosity.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "mac/viscous_links.hpp"
+
+namespace lockstep {
+
+template <int dim>
+Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                          double density, const ViscosityParameters& parameters)
+    : domain_(domain), geometry_(geometry), viscosity_(parameters.viscosity) {
+  ViscousLinks<dim> found = find_viscous_links(domain, geometry, density, parameters);
+  map_ = found.map;
+  faces_ = std::move(found.faces);
+  stiffness_ = found.stiffness;
+  mass_ = found.mass;
+  links_ = std::move(found.links);
+  sides_ = std::move(found.sides);
+}
+
+template <int dim>
+std::unique_ptr<ViscousSystem<dim>> Viscosity<dim>::system(const FaceField<dim>& velocity,
+                                                           double time) const {
+  auto result = std::make_unique<ViscousSystem<dim>>();
+  result->map = map_;
+  result->stiffness = stiffness_;
+  result->mass = mass_;
+  result->velocity = make_vector(map_);
+  result->wall_force = make_vector(map_);
+  result->links = links_;
+  const auto values = result->velocity->getDataNonConst();
+  for (std::size_t row = 0; row < faces_.size(); ++row)
+    values[row] = velocity[faces_[row].axis][faces_[row].cell];
+  const auto forces = result->wall_force->getDataNonConst();
+  for (const SideLink& side : sides_)
+    forces[side.row] += side.coefficient * side_velocity(side, time);
+  return result;
+}
+
+template <int dim>
+double Viscosity<dim>::side_velocity(const SideLink& side, double time) const {
+  const int axis = faces_[side.row].axis;
+  return domain_.boundary.side(side.axis, side.end).velocity_at(time)[axis];
+}
+
+template <int dim>
+void Viscosity<dim>::store(const Vector& solution, FaceField<dim>& velocity) const {
+  const auto values = solution.getData();
+  for (std::size_t row = 0; row < faces_.size(); ++row)
+    velocity[faces_[row].axis][faces_[row].cell] = values[row];
+}
+
+template <int dim>
+Momentum<dim> Viscosity<dim>::impulse(const FaceField<dim>& velocity, double time,
+                                      double dt) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  Momentum<dim> result;
+  for (const SideLink& side : sides_) {
+    const auto [axis, cell] = faces_[side.row];
+    const double pull = side.coefficient * (side_velocity(side, time) - velocity[axis][cell]);
+    result.add(grid.face_center(axis, cell), axis, dt * pull);
+  }
+  // The link of a face with its upper neighbour across its direction: +J here, -J there, at distance h.
+  const double h = grid.spacing();
+  for (const FaceId& face : faces_)
+    for (int across = 0; across < dim; ++across) {
+      const double coefficient =
+          across == face.axis ? 0 : joined_coefficient(domain_, geometry_, face, across, 1, viscosity_);
+      if (coefficient == 0)
+        continue;
+      const int other = grid.neighbor(face.cell, across, 1);
+      const auto& u = velocity[face.axis];
+      const double impulse = dt * coefficient * (u[other] - u[face.cell]);
+      result.angular += cross<dim>(Point<dim>::Unit(across) * -h,
+                                   Point<dim>::Unit(face.axis) * impulse);
+    }
+  return sum_over_ranks(result, grid.comm());
+}
+
+template class Viscosity<2>;
+template class Viscosity<3>;
+
+}  // namespace lockstep

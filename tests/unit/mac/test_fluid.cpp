@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "mac/register_mac.hpp"
+#include "mac_cases.hpp"
+#include "output/frames.hpp"
+
+namespace lockstep::test {
+namespace {
+
+template <int dim>
+void project(MacFluid<dim>& fluid) {
+  Vector rhs(fluid.pressure_map()), solution(fluid.pressure_map());
+  fluid.divergence(rhs);
+  const auto matrix = assembled(fluid.pressure_block());
+  conjugate_gradients([&](const Vector& x, Vector& y) { matrix->apply(x, y); }, rhs, solution,
+                      1e-12);
+  fluid.project(solution);
+}
+
+template <int dim>
+MovingSurface<dim> no_surface() {
+  return {nullptr, nullptr, [](const SurfacePoint<dim>&) { return Point<dim>(Point<dim>::Zero()); }};
+}
+
+TEST(Fluid, BuoyancyByHand) {
+  Case<2> scene({4, 4}, 0.5);
+  scene.fluid.set("Density", 2.0).set("Thermal Expansion", 0.01);
+  scene.fluid.set("Reference Temperature", 300.0).set("Smoke Weight", 0.5);
+  scene.fluid.set("Gravity", numbers({0.0, -10.0}));
+  scene.fluid.sublist("Temperature").set("Ambient", 310.0);
+  scene.fluid.sublist("Smoke").set("Ambient", 0.4);
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  const Momentum<2> impulse = fluid->add_forces(0.0, 0.1);
+  // 12 inner y faces of mass 0.5; acceleration -10 (1 - 0.01 * 10 + 0.5 * 0.4) = -11.
+  EXPECT_NEAR(impulse.linear[1], 12 * 0.5 * 0.1 * -11, 1e-12);
+  EXPECT_NEAR(impulse.linear[0], 0, 1e-15);
+  // About the origin: the faces stand at mean x = 1.
+  EXPECT_NEAR(impulse.angular[0], impulse.linear[1], 1e-12);
+}
+
+TEST(Fluid, AVortexAtRestInTheMeanStaysOneInAStep) {
+  Case<2> scene({32, 32}, 1.0 / 32);
+  scene.all_periodic();
+  scene.fluid.set("Density", 1.0);
+  scene.fluid.sublist("Initial State").set("Type", "taylor green");
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  const double energy = fluid->kinetic_energy();
+  for (int step = 0; step < 4; ++step) {
+    const double dt = 0.5 / fluid->largest_cell_crossing_rate();
+    fluid->begin_prediction();
+    project(*fluid);
+    fluid->adopt_advection_velocity();
+    fluid->advect(0, dt, no_surface<2>());
+    fluid->add_forces(0, dt);
+    project(*fluid);
+    Vector rhs(fluid->pressure_map());
+    fluid->divergence(rhs);
+    EXPECT_LT(rhs.normInf() * 32 * 32, 1e-9);
+    fluid->accept();
+  }
+  fluid->begin_prediction();
+  EXPECT_NEAR(fluid->kinetic_energy() / energy, 1, 0.005);
+}
+
+TEST(Fluid, AChannelFillsFromTheInflow) {
+  Case<3> scene({16, 8, 8}, 0.125);
+  scene.side("x lower", "inflow", Point<3>(1, 0, 0)).side("x upper", "open");
+  for (const char* const side : {"y lower", "y upper", "z lower", "z upper"})
+    scene.side(side, "slip wall");
+  scene.domain.sublist("Sides").sublist("x lower").set("Ramp Time", 1.0);
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<3>());
+  for (const double end : {0.5, 2.0}) {
+    fluid->begin_prediction();
+    fluid->add_forces(end - 0.1, 0.1);
+    project(*fluid);
+    fluid->accept();
+    const double speed = std::min(end, 1.0);
+    EXPECT_NEAR(fluid->largest_cell_crossing_rate(), speed / 0.125, 1e-7);
+    // 1000 kg/m^3 on 2 m^3 less the half cell at the inflow.
+    EXPECT_NEAR(fluid->momentum().linear[0], 1000 * speed * (2 - 0.0625), 1e-5);
+  }
+}
+
+TEST(Fluid, SourcesFeedSmokeAndAFrameShowsIt) {
+  Case<2> scene({20, 12}, 0.1);
+  scene.fluid.sublist("Smoke");
+  ParameterList& source = scene.fluid.sublist("Sources").sublist("Vent");
+  source.set("Shape", "box").set("Smoke Rate", 2.0);
+  source.set("Lower", numbers({0.5, 0.0})).set("Upper", numbers({1.0, 0.3}));
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  fluid->adopt_advection_velocity();
+  fluid->advect(0, 0.25, no_surface<2>());
+  std::vector<BoxFrame> frames;
+  fluid->add_frame(frames);
+  ASSERT_EQ(frames.size(), 1u);
+  double smoke = 0, cells = 0;
+  for (const BoxField& field : frames[0].fields) {
+    for (std::size_t b = 0; b < frames[0].blocks.size(); ++b) {
+      const auto& size = frames[0].blocks[b].size;
+      std::vector<double> values(static_cast<std::size_t>(size[0]) * size[1] * field.n_components);
+      field.fill(b, values.data());
+      for (const double value : values) {
+        smoke += field.name == "smoke" ? value : 0;
+        cells += field.name == "fluid" ? value : 0;
+      }
+    }
+  }
+  EXPECT_NEAR(sum_all(world(), smoke), 5 * 3 * 0.5, 1e-13);
+  EXPECT_EQ(sum_all(world(), cells), 240);
+}
+
+void expect_refused(Case<2>& scene, const std::string& part) {
+  try {
+    scene.make();
+    FAIL() << "accepted; expected: " << part;
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+TEST(Fluid, RefusesDomainsThatCannotBe) {
+  Case<2> oblong({10, 10}, 0.1);
+  oblong.domain.set("Upper", numbers({1.0, 2.0}));
+  expect_refused(oblong, "cells must be as long along every axis");
+  Case<2> half({10, 10}, 0.1);
+  half.side("x lower", "periodic");
+  expect_refused(half, "only one of \"x lower\" and \"x upper\" is periodic");
+  Case<2> piston({10, 10}, 0.1);
+  piston.side("x lower", "wall", Point<2>(1, 0));
+  expect_refused(piston, "a wall cannot move along x");
+  Case<2> vent({10, 10}, 0.1);
+  vent.fluid.sublist("Sources").sublist("Vent").set("Shape", "ball").set("Smoke", 1.0);
+  expect_refused(vent, "feeds smoke, but the fluid carries none");
+}
+
+TEST(Fluid, IsRegistered) {
+  Registry<FluidDiscretization<2>, const ParameterList&, const Communicator&> fluids("fluid");
+  register_mac<2>(fluids);
+  Case<2> scene({8, 8}, 0.125);
+  scene.make();
+  const auto fluid = fluids.create("mac", scene.fluid, scene.domain, world());
+  EXPECT_EQ(fluid->name(), "mac");
+  EXPECT_DOUBLE_EQ(fluid->spacing(), 0.125);
+}
+
+}  // namespace
+}  // namespace lockstep::test

@@ -1,0 +1,170 @@
+#include <gtest/gtest.h>
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <cmath>
+
+#include "mac_cases.hpp"
+
+namespace lockstep::test {
+namespace {
+
+/// (M + dt K) x, every solid at rest.
+struct ViscousOperator {
+  const CrsMatrix& stiffness;
+  const Vector& mass;
+  double dt;
+  void operator()(const Vector& x, Vector& y) const {
+    stiffness.apply(x, y);
+    y.elementWiseMultiply(1, mass, x, dt);
+  }
+};
+
+template <int dim>
+void viscous_step(MacFluid<dim>& fluid, double dt, Momentum<dim>& impulse) {
+  const auto system = fluid.viscous_system();
+  Vector rhs(system->map), solution(system->map);
+  rhs.elementWiseMultiply(1, *system->mass, *system->velocity, 0);
+  rhs.update(dt, *system->wall_force, 1);
+  conjugate_gradients(ViscousOperator{*system->stiffness, *system->mass, dt}, rhs, solution, 1e-14);
+  impulse = fluid.accept_viscous(solution, dt);
+}
+
+TEST(Viscosity, TaylorGreenDecaysAtItsRate) {
+  const int n = 32;
+  const double h = 1.0 / n, dt = 0.01, viscosity = 0.2, density = 2, k = 2 * M_PI;
+  Case<2> scene({n, n}, h);
+  scene.all_periodic();
+  scene.fluid.set("Density", density);
+  scene.fluid.set("Viscosity", viscosity);
+  scene.fluid.sublist("Initial State").set("Type", "taylor green");
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  const double before = fluid->kinetic_energy();
+  EXPECT_NEAR(before, 0.25 * density, 1e-12);
+  Momentum<2> impulse;
+  viscous_step(*fluid, dt, impulse);
+  // Backward Euler of the discrete eigenvalue 2 (2 - 2 cos kh)/h^2, which is 2 k^2 to second order.
+  const double eigenvalue = 2 * (2 - 2 * std::cos(k * h)) / (h * h);
+  const double factor = 1 / (1 + dt * viscosity / density * eigenvalue);
+  EXPECT_NEAR(fluid->kinetic_energy() / before, factor * factor, 1e-11);
+  EXPECT_NEAR(eigenvalue / (2 * k * k), 1, 0.005);
+  EXPECT_LT(impulse.linear.norm(), 1e-12);
+}
+
+TEST(Viscosity, InviscidFluidHasNoSystem) {
+  Case<2> scene({8, 8}, 0.1);
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  EXPECT_EQ(fluid->viscous_system(), nullptr);
+}
+
+/// What the fluid loses to the solids, at rest, in a step.
+template <int dim>
+Momentum<dim> impulse_of_links(const MacFluid<dim>& fluid, const ViscousSystem<dim>& system,
+                               double dt) {
+  const auto now = fluid.viscous_system();
+  const auto u = now->velocity->getData();
+  Momentum<dim> sum;
+  for (const ViscousLink<dim>& link : system.links)
+    sum.add(link.position, link.direction, -dt * link.coefficient * u[link.row]);
+  return sum_over_ranks(sum, world());
+}
+
+template <int dim>
+void expect_closed_ledger(const std::string& x_type) {
+  Index<dim> cells;
+  cells.fill(20);
+  Case<dim> scene(cells, 0.05);
+  scene.fluid.set("Density", 1.5);
+  scene.fluid.set("Viscosity", 0.7);
+  scene.side("x lower", x_type, x_type == "inflow" ? Point<dim>(Point<dim>::Unit(0)) : Point<dim>::Zero());
+  scene.side("x upper", "open").side("y upper", "wall", Point<dim>::Unit(0)).side("y lower", "slip wall");
+  const auto fluid = scene.make();
+  Solids<dim> solids;
+  solids.add(ball_surface<dim>(0.17, 0.05), Point<dim>::Constant(0.62), true);
+  solids.add(plate_surface<dim>(Point<dim>::Constant(0.45), 1, 0.05), Point<dim>::Constant(0.31), false);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
+  fluid->begin_prediction();
+  fluid->set_prediction(wavy_velocity<dim>);
+  const double dt = 0.02;
+  const Momentum<dim> before = fluid->momentum();
+  const auto system = fluid->viscous_system();
+  Momentum<dim> given;
+  viscous_step(*fluid, dt, given);
+  given += impulse_of_links(*fluid, *system, dt);
+  const Momentum<dim> gained = fluid->momentum() - before;
+  EXPECT_GT(given.linear.norm(), 1e-3);
+  EXPECT_LT((gained.linear - given.linear).norm(), 1e-12 * before.linear.norm() + 1e-12);
+  EXPECT_LT((gained.angular - given.angular).norm(), 1e-12 * before.angular.norm() + 1e-12);
+
+  // K is symmetric and positive; of a constant it is what sides and links pull.
+  Vector x(system->map), y(system->map), kx(system->map), ky(system->map);
+  const auto fill = [](Vector& v, double phase) {
+    const auto values = v.getDataNonConst();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(values.size()); ++i)
+      values[i] = std::sin(phase * (1.0 + static_cast<double>(v.getMap()->getGlobalElement(static_cast<int>(i)))));
+  };
+  fill(x, 0.7);
+  fill(y, 1.3);
+  system->stiffness->apply(x, kx);
+  system->stiffness->apply(y, ky);
+  EXPECT_NEAR(y.dot(kx), x.dot(ky), 1e-12 * x.dot(kx));
+  EXPECT_GT(x.dot(kx), 0);
+}
+TEST(Viscosity, LedgerCloses2D) {
+  expect_closed_ledger<2>("wall");
+  expect_closed_ledger<2>("inflow");
+}
+TEST(Viscosity, LedgerCloses3D) { expect_closed_ledger<3>("inflow"); }
+
+TEST(Viscosity, LinksEndOnAPlate) {
+  // A plate at y = 1.8 h above the second row of x velocities (at 1.5 h).
+  Case<2> scene({8, 4}, 1.0);
+  scene.all_periodic();
+  scene.side("y lower", "slip wall").side("y upper", "slip wall");
+  scene.fluid.set("Viscosity", 3.0);
+  const auto fluid = scene.make();
+  Solids<2> solids;
+  solids.add(plate_surface<2>(Point<2>(20, 0), 1, 1.0), Point<2>(4, 1.8), false);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  const auto system = fluid->viscous_system();
+  int below = 0, above = 0, coupled = 0;
+  for (const ViscousLink<2>& link : system->links) {
+    if (link.direction == 1) {
+      // The y velocities beside the coupled ones at y = 2 h.
+      EXPECT_TRUE(link.coupled_volume >= 0 || link.remote_volume);
+      EXPECT_DOUBLE_EQ(link.coefficient, 3.0);
+      ++coupled;
+      continue;
+    }
+    EXPECT_NEAR(link.point.position[1], 1.8, 1e-12);
+    EXPECT_NEAR(link.point.position[0], link.position[0], 1e-12);
+    // mu area / distance, at 0.3 h and 0.7 h.
+    EXPECT_NEAR(link.coefficient, 3.0 / (link.position[1] < 1.8 ? 0.3 : 0.7), 1e-12);
+    ++(link.position[1] < 1.8 ? below : above);
+  }
+  EXPECT_EQ(sum_all(world(), GlobalIndex(below)), 8);
+  EXPECT_EQ(sum_all(world(), GlobalIndex(above)), 8);
+  EXPECT_EQ(sum_all(world(), GlobalIndex(coupled)), 16);
+}
+
+TEST(Viscosity, CouetteFlowIsLinear) {
+  // The lid moves; after a step many diffusion times long the flow is u = y.
+  Case<2> scene({4, 8}, 0.125);
+  scene.side("x lower", "periodic").side("x upper", "periodic");
+  scene.side("y upper", "wall", Point<2>(1, 0));
+  scene.fluid.set("Viscosity", 1.0).set("Density", 1.0);
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  Momentum<2> impulse;
+  viscous_step(*fluid, 1e9, impulse);
+  const auto& grid = fluid->domain().grid;
+  grid.for_each_owned_face(0, [&](int cell) {
+    EXPECT_NEAR(fluid->prediction()[0][cell], grid.face_center(0, cell)[1], 1e-6);
+  });
+}
+
+}  // namespace
+}  // namespace lockstep::test
