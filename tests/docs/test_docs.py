@@ -1,0 +1,71 @@
+"""What can be checked of the documentation without reading it. Usage: test_docs.py ROOT
+
+- links between pages lead to files, and to headings that exist
+- code quoted from a file stands in it literally; a quotation begins with a comment line that names
+  the file: <!-- from: template/driver.cpp -->
+- paths of the tree in backticks exist, and in `file.cpp: function` the file has that word
+"""
+import re
+import sys
+import unittest
+from pathlib import Path
+
+ROOT = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path(__file__).resolve().parents[2]
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+QUOTE = re.compile(r"<!-- from: (\S+) -->\n```\w*\n(.*?)```", re.DOTALL)
+PATH = re.compile(r"`((?:src|packages|drivers|tests|docs|tools|template|cmake|xml-params)/[\w./*-]+)(?:: ([\w:~]+))?[^`]*`")
+
+
+def pages():
+    return [ROOT / "README.md", ROOT / "template" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def headings(page):
+    """The anchors that GitHub and others make of headings."""
+    found = re.findall(r"^#+ (.+)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in found}
+
+
+def squeezed(text):
+    """Without indentation: a quotation may stand further left than in its file."""
+    return "\n".join(line.strip() for line in text.strip().splitlines())
+
+
+class Docs(unittest.TestCase):
+    def test_links(self):
+        for page in pages():
+            for target in LINK.findall(page.read_text()):
+                if re.match(r"https?:|mailto:", target):
+                    continue
+                name, _, anchor = target.partition("#")
+                path = (page.parent / name).resolve() if name else page
+                with self.subTest(page=page.name, link=target):
+                    self.assertTrue(path.exists())
+                    if anchor and path.suffix == ".md":
+                        self.assertIn(anchor, headings(path))
+
+    def test_quotations(self):
+        n_quotations = 0
+        for page in pages():
+            for name, code in QUOTE.findall(page.read_text()):
+                n_quotations += 1
+                with self.subTest(page=page.name, file=name):
+                    text = squeezed((ROOT / name).read_text())
+                    for part in re.split(r"^\s*(?://|#|<!--) \.\.\..*$", code, flags=re.MULTILINE):
+                        self.assertIn(squeezed(part), text)
+        self.assertGreater(n_quotations, 0)
+
+    def test_paths(self):
+        for page in pages():
+            for name, word in PATH.findall(page.read_text()):
+                with self.subTest(page=page.name, path=name):
+                    found = sorted(ROOT.glob(name.rstrip("/")))
+                    self.assertTrue(found)
+                    if word:
+                        last = word.split("::")[-1]
+                        self.assertTrue(any(re.search(rf"\b{re.escape(last)}\b", file.read_text()) for file in found),
+                                        f"no {last} in {name}")
+
+
+if __name__ == "__main__":
+    unittest.main()

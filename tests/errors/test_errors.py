@@ -1,0 +1,213 @@
+"""Bad input: each case ends with exit code 2, its own message, and nothing written."""
+import concurrent.futures
+import os
+import tempfile
+import unittest
+from pathlib import Path
+
+from program import SCENE, SIMULATE, simulate
+
+TETRAHEDRON = """v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+"""
+
+
+class Case:
+    """What differs from the good scene, and what the message must say."""
+
+    def __init__(self, name, expected, change=(), sets=(), arguments=(), files=(), scene=None):
+        self.name, self.expected = name, [expected] if isinstance(expected, str) else expected
+        self.arguments = [*arguments]
+        for assignment in sets:
+            self.arguments += ["--set", assignment]
+        self.files = dict(files)
+        self.scene = scene if scene is not None else SCENE
+        for old, new in [change] if change else []:
+            assert self.scene.count(old) == 1, f"{name}: {old!r} must occur once"
+            self.scene = self.scene.replace(old, new)
+
+
+def value(name, type_name, text):
+    return f'<Parameter name="{name}" type="{type_name}" value="{text}"/>'
+
+
+SHAPE = value("Shape", "string", "ball")
+RADIUS = value("Radius", "double", "0.3")
+GEOMETRY = f"{SHAPE}\n        {RADIUS}"
+DENSITY = value("Density", "double", "500")
+FLUID_DENSITY = value("Density", "double", "1000")
+DIMENSION = value("Dimension", "int", "2")
+CELLS = value("Cells", "Array(int)", "{12, 24}")
+SIDE = value("Type", "string", "wall")
+END = value("End", "double", "0.5")
+BODY_TYPE = value("Type", "string", "rigid body")
+POSITION = value("Position", "Array(double)", "{0.5, 0.5}")
+SCENE_3D = (SCENE.replace(DIMENSION, value("Dimension", "int", "3"))
+            .replace("{1, 2}", "{1, 2, 1}").replace("{12, 24}", "{6, 12, 6}")
+            .replace("{0, -9.8}", "{0, -9.8, 0}").replace("{0.5, 0.5}", "{0.3, 0.3, 0.3}"))
+
+
+def mesh(text, name="body.obj"):
+    """A 3D scene whose body is read from a file."""
+    return {"scene": SCENE_3D, "files": [(name, text)] if text is not None else [],
+            "change": (GEOMETRY, value("Shape", "string", "file") + value("File", "string", name))}
+
+
+CASES = [
+    # The command line.
+    Case("no such option", "--ouput", arguments=["--ouput", "here"]),
+    Case("number of steps", "--steps", arguments=["--steps", "many"]),
+    Case("--set without value", "--set \"Time/End\"", sets=["Time/End"]),
+    Case("--set of a list that is not there", ["--set", "\"Tim\"", "Did you mean \"Time\"?"], sets=["Tim/End=1"]),
+    Case("--set of an unknown name", ["\"Ned\"", "Did you mean \"End\""], sets=["Time/Ned=1"]),
+    Case("--set of a wrong type", ["--set \"Time/End=soon\"", "not a number"], sets=["Time/End=soon"]),
+    Case("--set out of bounds", ["--set", "greater than 0"], sets=["Time/CFL=-1"]),
+    Case("--set of a whole list", "is a list", sets=["Time=1"]),
+    Case("a restart from nothing", ["none.h5", "does not exist"], arguments=["--restart", "none.h5"]),
+    Case("a restart from another file", ["scene.xml", "is not a checkpoint"], arguments=["--restart", "scene.xml"]),
+    Case("an end before the start", "must be later", arguments=["--end-time", "-1"]),
+    Case("an output folder that is a file", "scene.xml", arguments=["--output", "scene.xml"]),
+
+    # The file as XML.
+    Case("not closed", ["scene.xml, line", "not well-formed"], change=("</ParameterList>\n</ParameterList>\n", "")),
+    Case("empty", "is empty", scene=""),
+    Case("another element", ["<Parametr>", "Did you mean <Parameter>?"],
+         change=(END, '<Parametr name="End" type="double" value="0.5"/>')),
+    Case("another attribute", ["\"vale\"", "Did you mean \"value\"?"],
+         change=(END, '<Parameter name="End" type="double" vale="0.5"/>')),
+    Case("a name twice", ["\"End\" is given twice", "line"], change=(END, END + "\n" + END)),
+    Case("text between elements", "stands between the elements", change=(END, END + " later")),
+    Case("an unknown type", "unknown type \"float\"", change=(END, value("End", "float", "0.5"))),
+
+    # Values.
+    Case("not a number", ["line", "\"End\" is \"abc\", which is not a number"],
+         change=(END, value("End", "double", "abc"))),
+    Case("not an integer", "\"1e3\", which is not an integer", change=(END, END + value("Steps", "int", "1e3"))),
+    Case("nan", "must be finite", change=(END, value("End", "double", "nan"))),
+    Case("infinity", "must be finite", change=(END, value("End", "double", "inf"))),
+    Case("a decimal comma", "the decimal mark is a point", change=(END, value("End", "double", "0,5"))),
+    Case("a broken array", "component 2", change=(CELLS, value("Cells", "Array(int)", "{12, x}"))),
+    Case("a wrong type", ["\"End\"", "has type \"int\", but needs \"double\""],
+         change=(END, value("End", "int", "1"))),
+    Case("too few components", ["\"Cells\"", "needs 2"], change=(CELLS, value("Cells", "Array(int)", "{12}"))),
+    Case("not a bool", "a bool is true or false", change=(END, END + value("x", "bool", "maybe"))),
+    Case("out of bounds", ["\"Density\" is -1", "greater than 0"],
+         change=(FLUID_DENSITY, value("Density", "double", "-1"))),
+
+    # Names.
+    Case("a misspelt parameter", ["line", "in \"Fluid\"", "Did you mean \"Density\""],
+         change=(FLUID_DENSITY, value("Densty", "double", "1000"))),
+    Case("a misspelt list", "Did you mean \"Fluid\"",
+         change=('<ParameterList name="Fluid">', '<ParameterList name="Fliud">')),
+    Case("an unknown plug-in", ["\"Type\" is \"rigid boby\"", "did you mean \"rigid body\""],
+         change=(BODY_TYPE, value("Type", "string", "rigid boby"))),
+    Case("an unknown fluid", "\"lattice boltzmann\"", sets=["Fluid/Type=lattice boltzmann"]),
+    Case("an unknown strategy", ["\"schur\"", "one of"], sets=["Solver/Strategy/Type=schur"]),
+    Case("a solver file that is not there", ["none.xml", "Cannot read"], sets=["Solver/File=none.xml"]),
+    Case("no plug-in", "\"Type\"", change=(BODY_TYPE, "")),
+    Case("no dimension", ["\"Dimension\"", "required"], change=(DIMENSION, "")),
+    Case("one dimension", ["\"Dimension\" is 1", "2 or 3"], change=(DIMENSION, value("Dimension", "int", "1"))),
+
+    # The domain.
+    Case("cells that are not squares", "the cells must be as long along every axis", sets=["Domain/Cells={12, 12}"]),
+    Case("no cells", "at least 1", sets=["Domain/Cells={0, 24}"]),
+    Case("corners the wrong way round", "above the lower one", sets=["Domain/Upper={-1, 2}"]),
+    Case("one periodic side", "only one of \"x lower\" and \"x upper\" is periodic",
+         change=(SIDE, value("Type", "string", "periodic"))),
+    Case("an unknown side", ["\"weir\"", "one of"], change=(SIDE, value("Type", "string", "weir"))),
+    Case("a wall that leaves", "would leave the domain",
+         change=(SIDE, SIDE + value("Velocity", "Array(double)", "{1, 0}"))),
+    Case("an inward-blowing open side", "has no meaning on a side of type \"open\"",
+         change=(SIDE, value("Type", "string", "open") + value("Velocity", "Array(double)", "{1, 0}"))),
+    Case("an end before the start of the file", "must be later", change=(END, value("End", "double", "-1"))),
+
+    # The fluid.
+    Case("warm fluid without temperature", "has no temperature", sets=["Fluid/Thermal Expansion=0.1"]),
+    Case("heavy smoke without smoke", "carries no smoke", sets=["Fluid/Smoke Weight=0.1"]),
+
+    # The bodies.
+    Case("a body without mass", ["\"Ball\"", "no mass"], change=(DENSITY, "")),
+    Case("a body with two masses", "leave out one", change=(DENSITY, DENSITY + value("Mass", "double", "1"))),
+    Case("a volume with a surface density", "has no \"Surface Density\"",
+         change=(DENSITY, value("Surface Density", "double", "1"))),
+    Case("a negative radius", ["\"Radius\" is -0.3", "greater than 0"],
+         change=(RADIUS, value("Radius", "double", "-0.3"))),
+    Case("a ball without radius", "needs \"Radius\"", change=(RADIUS, "")),
+    Case("a ball with a length", "has no \"Length\"", change=(RADIUS, RADIUS + value("Length", "double", "1"))),
+    Case("a shape nobody knows", "did you mean \"ball\"", change=(SHAPE, value("Shape", "string", "bal"))),
+    Case("a locked dof that is not there", ["\"z\"", "one of"],
+         change=(POSITION, POSITION + value("Locked", "Array(string)", "{z}"))),
+    Case("a locked dof that moves", "starts with a velocity",
+         change=(POSITION, POSITION + value("Locked", "Array(string)", "{x}") +
+                 value("Velocity", "Array(double)", "{1, 0}"))),
+
+    # Meshes.
+    Case("no mesh", ["body.obj", "cannot open"], **mesh(None)),
+    Case("an open mesh", ["\"Ball\"", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
+    Case("a mesh turned inside out", "should enclose a volume",
+         **mesh("\n".join(line if line[0] == "v" else "f " + " ".join(reversed(line.split()[1:]))
+                          for line in TETRAHEDRON.splitlines()) + "\n")),
+    Case("a vertex that is not there", ["line 5", "vertex 9 does not exist"],
+         **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 9"))),
+    Case("a mesh without faces", "no triangles", **mesh(TETRAHEDRON.split("f", 1)[0])),
+    Case("an unknown kind of file", "body.ply", **mesh(TETRAHEDRON, "body.ply")),
+    Case("a mesh that is no mesh", "OFF", **mesh("solid", "body.off")),
+]
+
+
+def run(case):
+    """Why the program did not behave as the case wants; empty if it did."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in case.files.items():
+            (Path(folder) / name).write_text(text)
+        before = {*case.files, "scene.xml"}
+        arguments = [str(Path(folder) / a) if a in ("scene.xml", "none.h5") else a for a in case.arguments]
+        result = simulate(folder, *arguments, scene=case.scene)
+        failures = []
+        if result.returncode != 2:
+            failures.append(f"exit code {result.returncode} instead of 2")
+        failures += [f"no {text!r} in the message" for text in case.expected if text not in result.stderr]
+        if result.stderr.count("lockstep: ") != 1:
+            failures.append("the message must come once")
+        created = {path.name for path in Path(folder).iterdir()} - before
+        if created:
+            failures.append(f"{sorted(created)} was written")
+        if failures:
+            failures.append(f"\n{result.stderr}")
+        return f"{case.name}: {'; '.join(failures)}" if failures else ""
+
+
+class BadInput(unittest.TestCase):
+    maxDiff = None
+
+    def test_good_scene(self):
+        for scene in (SCENE, SCENE_3D):
+            with tempfile.TemporaryDirectory() as folder:
+                result = simulate(folder, "--validate", scene=scene)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertFalse((Path(folder) / "output").exists(), "--validate must not write")
+
+    def test_cases(self):
+        self.assertGreaterEqual(len(CASES), 30)
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            failures = [failure for failure in pool.map(run, CASES) if failure]
+        self.assertFalse(failures, "\n".join(failures))
+
+    def test_two_ranks_say_it_once(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = simulate(folder, scene=SCENE.replace(DENSITY, ""), ranks=2)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertEqual(result.stderr.count("has no mass"), 1, result.stderr)
+            self.assertFalse((Path(folder) / "output").exists())
+
+
+if __name__ == "__main__":
+    if not Path(SIMULATE).exists():
+        raise SystemExit(f"{SIMULATE} is missing; set LOCKSTEP_SIMULATE to the program to test.")
+    unittest.main()
