@@ -1,0 +1,133 @@
+#include "rigid/body_geometry.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "geometry/generators.hpp"
+#include "geometry/mesh_files.hpp"
+#include "rigid/list_values.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// A shape and the parameters that only some shapes have.
+struct ShapeSizes {
+  std::string shape;
+  std::vector<std::string> needed;
+};
+
+const std::vector<ShapeSizes>& shapes() {
+  static const std::vector<ShapeSizes> all{{"ball", {"Radius"}},
+                                           {"box", {"Size"}},
+                                           {"cylinder", {"Radius", "Length"}},
+                                           {"capsule", {"Radius", "Length"}},
+                                           {"torus", {"Radius", "Tube Radius"}},
+                                           {"open box", {"Size"}},
+                                           {"plate", {"Size", "Normal"}},
+                                           {"file", {"File", "Scale"}}};
+  return all;
+}
+
+void check_sizes(const ParameterList& list, const std::string& shape, const std::string& name) {
+  const auto found = std::find_if(shapes().begin(), shapes().end(),
+                                  [&](const ShapeSizes& sizes) { return sizes.shape == shape; });
+  const auto& needed = found->needed;
+  for (const char* size : {"Radius", "Length", "Tube Radius", "Size", "Normal", "File", "Scale"}) {
+    const bool given = list.isParameter(size);
+    const bool wanted = std::find(needed.begin(), needed.end(), size) != needed.end();
+    check_input(given || !wanted || std::string(size) == "Scale",
+                "In \"{}/Geometry\", the shape \"{}\" needs \"{}\".", name, shape, size);
+    check_input(!given || wanted,
+                "In \"{}/Geometry\", the shape \"{}\" has no \"{}\"; leave it out.", name, shape,
+                size);
+  }
+}
+
+template <int dim>
+SurfaceMesh<dim> make_surface(const ParameterList& list, const std::string& shape, double spacing) {
+  const auto size = [&] { return vector_value<dim>(list, "Size"); };
+  const auto number = [&](const char* parameter) { return list.get<double>(parameter); };
+  if (shape == "ball")
+    return ball_surface<dim>(number("Radius"), spacing);
+  if (shape == "box")
+    return box_surface<dim>(size(), spacing);
+  if (shape == "cylinder")
+    return cylinder_surface<dim>(number("Radius"), number("Length"), spacing);
+  if (shape == "capsule")
+    return capsule_surface<dim>(number("Radius"), number("Length"), spacing);
+  if (shape == "torus")
+    return torus_surface<dim>(number("Radius"), number("Tube Radius"), spacing);
+  if (shape == "open box")
+    return open_box_surface<dim>(size(), spacing);
+  if (shape == "plate")
+    return plate_surface<dim>(size(), list.get<std::string>("Normal")[0] - 'x', spacing);
+  SurfaceMesh<dim> mesh = read_surface<dim>(list.get<std::string>("File"));
+  const double scale = list.isParameter("Scale") ? number("Scale") : 1;
+  for (auto& vertex : mesh.vertices)
+    vertex *= scale;
+  return mesh;
+}
+
+}  // namespace
+
+template <int dim>
+void declare_geometry(ParameterList& body) {
+  ParameterList& list =
+      declare_list(body, "Geometry",
+                   "The surface, in coordinates of the body: shapes are centred at their origin.");
+  std::vector<std::string> names, axes{"x", "y", "z"};
+  axes.resize(dim);
+  for (const auto& shape : shapes()) {
+    if (dim == 3 || shape.shape != "torus")
+      names.push_back(shape.shape);
+  }
+  declare_required_choice(list, "Shape", names,
+                          "ball, box, capsule, cylinder, torus: volumes. open box (no lid on top, "
+                          "y is up), plate: thin "
+                          "shells. file: what the file holds.");
+  declare_optional<double>(list, "Radius",
+                           "Of ball, capsule and cylinder, of the torus' centre line [m].");
+  declare_optional<double>(list, "Length",
+                           "Of a cylinder (along z; in 2D it is a box, along y), of a capsule "
+                           "between the centres of its caps [m].");
+  declare_optional<double>(list, "Tube Radius", "Of the section of a torus [m].");
+  declare_optional<ParameterArray<double>>(
+      list, "Size", "Edges of box and open box, extent of a plate (along \"Normal\" ignored) [m].");
+  set_length(list, "Size", dim);
+  declare_optional<std::string>(list, "Normal", "Axis that a plate is normal to.");
+  set_choices(list, "Normal", axes);
+  declare_optional<std::string>(
+      list, "File", "Surface mesh: .obj, .off or (3D) .stl; relative to the folder of the scene.");
+  declare_optional<double>(list, "Scale", "Factor on the coordinates of the file [1]; default 1.");
+  for (const char* size : {"Radius", "Length", "Tube Radius", "Scale"})
+    set_positive(list, size);
+  declare_optional<double>(list, "Surface Spacing",
+                           "Longest edge of a generated surface [m]; default 0.7 grid cells.");
+  set_positive(list, "Surface Spacing");
+  declare(list, "Thin Shell", false,
+          "Take a closed surface as a thin shell with fluid on both sides.");
+}
+
+template <int dim>
+BodyGeometry<dim> make_body_geometry(const ParameterList& geometry, double grid_spacing,
+                                     const std::string& name) {
+  const auto& shape = geometry.get<std::string>("Shape");
+  check_sizes(geometry, shape, name);
+  const double spacing = geometry.isParameter("Surface Spacing")
+                             ? geometry.get<double>("Surface Spacing")
+                             : 0.7 * grid_spacing;
+  const bool open = shape == "open box" || shape == "plate";
+  BodyGeometry<dim> body;
+  body.surface = make_surface<dim>(geometry, shape, spacing);
+  body.closed = !open && !geometry.get<bool>("Thin Shell");
+  check_surface(body.surface, body.closed, name);
+  return body;
+}
+
+template void declare_geometry<2>(ParameterList&);
+template void declare_geometry<3>(ParameterList&);
+template BodyGeometry<2> make_body_geometry<2>(const ParameterList&, double, const std::string&);
+template BodyGeometry<3> make_body_geometry<3>(const ParameterList&, double, const std::string&);
+
+}  // namespace lockstep

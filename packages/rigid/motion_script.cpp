@@ -1,0 +1,194 @@
+#include "rigid/motion_script.hpp"
+
+#include <boost/math/interpolators/cubic_hermite.hpp>
+#include <cmath>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "rigid/list_values.hpp"
+
+namespace lockstep {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+template <int dim>
+std::vector<TypedSchema> motion_schemas() {
+  ParameterList nothing, sinusoid, table;
+  declare_vector(sinusoid, "Amplitude", ParameterArray<double>(dim, 0.0), dim,
+                 "Largest displacement of the reference point from \"Position\" [m].");
+  declare_rotation<dim>(sinusoid, "Angular Amplitude",
+                        dim == 2 ? "Largest angle from the initial orientation [rad]."
+                                 : "Largest rotation vector from the initial orientation [rad].");
+  declare_required_positive(sinusoid, "Frequency", "Oscillations per second [1/s].");
+  declare(sinusoid, "Phase", 0.0,
+          "The motion is amplitude times sin(2 pi frequency time + phase) [rad].");
+  declare_required<ParameterArray<double>>(table, "Times", "Ascending times [s], two or more.");
+  declare_optional<ParameterArray<double>>(
+      table, "Displacements",
+      "Displacement of the reference point from \"Position\" [m]: a point for each time, one after "
+      "another. Absent: none.");
+  declare_optional<ParameterArray<double>>(
+      table, "Angles", "Rotation from the initial orientation for each time [rad]. Absent: none.");
+  if (dim == 3)
+    declare_vector(table, "Axis", {0.0, 0.0, 1.0}, 3, "Axis of the angles [1].");
+  return {{"dynamic", "Moved by its momentum, the fluid, gravity and contacts.", nothing},
+          {"static", "Never moves.", nothing},
+          {"constant velocity",
+           "Keeps \"Velocity\" and \"Angular Velocity\"; \"Position\" is that of time 0.", nothing},
+          {"sinusoid", "Swings about \"Position\" and the initial orientation.", sinusoid},
+          {"table",
+           "Follows a table through a monotone cubic interpolation with continuous velocity; at "
+           "rest before and after it.",
+           table}};
+}
+
+template <int dim>
+MotionScript<dim> uniform_motion(const Point<dim>& velocity, const AngularVector<dim>& angular) {
+  return [velocity, angular](double time) {
+    return ScriptedMotion<dim>{time * velocity, time * angular, velocity, angular};
+  };
+}
+
+template <int dim>
+MotionScript<dim> sinusoid(const ParameterList& list) {
+  const Point<dim> amplitude = vector_value<dim>(list, "Amplitude");
+  const AngularVector<dim> turn = rotation_value<dim>(list, "Angular Amplitude");
+  const double rate = 2 * pi * list.get<double>("Frequency");
+  const double phase = list.get<double>("Phase");
+  return [=](double time) {
+    const double sine = std::sin(rate * time + phase);
+    const double derivative = rate * std::cos(rate * time + phase);
+    return ScriptedMotion<dim>{sine * amplitude, sine * turn, derivative * amplitude,
+                               derivative * turn};
+  };
+}
+
+/// Slopes at which the cubic between two points never leaves their interval (Fritsch and Butland).
+std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y) {
+  const std::size_t n = x.size();
+  std::vector<double> slopes(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
+    const double left = (y[i] - y[i - 1]) / before, right = (y[i + 1] - y[i]) / after;
+    if (left * right > 0) {
+      const double a = 2 * after + before, b = after + 2 * before;
+      slopes[i] = (a + b) / (a / left + b / right);
+    }
+  }
+  slopes.front() = (y[1] - y[0]) / (x[1] - x[0]);
+  slopes.back() = (y[n - 1] - y[n - 2]) / (x[n - 1] - x[n - 2]);
+  return slopes;
+}
+
+/// One coordinate of a table: constant outside it.
+class TableColumn {
+ public:
+  TableColumn(const std::vector<double>& times, const std::vector<double>& values)
+      : first_(times.front()),
+        last_(times.back()),
+        curve_(std::vector<double>(times), std::vector<double>(values),
+               monotone_slopes(times, values)) {}
+
+  double value(double time) const { return curve_(std::min(std::max(time, first_), last_)); }
+  double slope(double time) const { return time < first_ || time > last_ ? 0 : curve_.prime(time); }
+
+ private:
+  double first_, last_;
+  boost::math::interpolators::cubic_hermite<std::vector<double>> curve_;
+};
+
+/// Columns of the rows "name" of a table; empty if it is absent.
+std::vector<TableColumn> read_columns(const ParameterList& list, const std::string& column,
+                                      const std::vector<double>& times, int n_components,
+                                      const std::string& name) {
+  std::vector<TableColumn> columns;
+  if (!list.isParameter(column))
+    return columns;
+  const auto& rows = list.get<ParameterArray<double>>(column);
+  const std::size_t wanted = times.size() * static_cast<std::size_t>(n_components);
+  check_input(static_cast<std::size_t>(rows.size()) == wanted,
+              "In \"{}/Motion\", \"{}\" has {} numbers, but {} times need {}.", name, column,
+              rows.size(), times.size(), wanted);
+  for (int c = 0; c < n_components; ++c) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < times.size(); ++i)
+      values.push_back(rows[i * n_components + c]);
+    columns.emplace_back(times, values);
+  }
+  return columns;
+}
+
+template <int dim>
+AngularVector<dim> table_axis(const ParameterList& list, const std::string& name) {
+  if constexpr (dim == 2) {
+    return AngularVector<2>(1.0);
+  } else {
+    const Point<3> axis = vector_value<3>(list, "Axis");
+    check_input(axis.norm() > 0, "In \"{}/Motion\", \"Axis\" must not be zero.", name);
+    return axis.normalized();
+  }
+}
+
+template <int dim>
+MotionScript<dim> table(const ParameterList& list, const std::string& name) {
+  const std::vector<double> times = list.get<ParameterArray<double>>("Times").toVector();
+  check_input(times.size() >= 2, "In \"{}/Motion\", \"Times\" needs two or more times.", name);
+  for (std::size_t i = 1; i < times.size(); ++i)
+    check_input(times[i] > times[i - 1],
+                "In \"{}/Motion\", \"Times\" must ascend, but {} follows {}.", name, times[i],
+                times[i - 1]);
+  const auto displacements = read_columns(list, "Displacements", times, dim, name);
+  const auto angles = read_columns(list, "Angles", times, 1, name);
+  const AngularVector<dim> axis = table_axis<dim>(list, name);
+  return [=](double time) {
+    ScriptedMotion<dim> motion;
+    for (std::size_t a = 0; a < displacements.size(); ++a) {
+      motion.displacement[a] = displacements[a].value(time);
+      motion.velocity[a] = displacements[a].slope(time);
+    }
+    if (!angles.empty()) {
+      motion.turn = angles[0].value(time) * axis;
+      motion.angular_velocity = angles[0].slope(time) * axis;
+    }
+    return motion;
+  };
+}
+
+}  // namespace
+
+template <int dim>
+void declare_motion(ParameterList& body) {
+  declare_typed_sublist(body, "Motion", "Whether the body is moved by forces or by a script.",
+                        motion_schemas<dim>(), "dynamic");
+}
+
+template <int dim>
+MotionScript<dim> read_motion(const ParameterList& body, const std::string& name) {
+  const ParameterList& list = body.sublist("Motion");
+  const auto& type = list.get<std::string>("Type");
+  if (type == "dynamic")
+    return {};
+  const Point<dim> velocity = vector_value<dim>(body, "Velocity");
+  const AngularVector<dim> angular = rotation_value<dim>(body, "Angular Velocity");
+  if (type == "constant velocity")
+    return uniform_motion<dim>(velocity, angular);
+  check_input(
+      velocity.norm() == 0 && angular.norm() == 0,
+      "The solid \"{}\" has a velocity, but its motion is \"{}\"; leave out \"Velocity\" and "
+      "\"Angular Velocity\", or choose another motion.",
+      name, type);
+  if (type == "sinusoid")
+    return sinusoid<dim>(list);
+  if (type == "table")
+    return table<dim>(list, name);
+  return uniform_motion<dim>(velocity, angular);  // static: both are zero
+}
+
+template void declare_motion<2>(ParameterList&);
+template void declare_motion<3>(ParameterList&);
+template MotionScript<2> read_motion<2>(const ParameterList&, const std::string&);
+template MotionScript<3> read_motion<3>(const ParameterList&, const std::string&);
+
+}  // namespace lockstep

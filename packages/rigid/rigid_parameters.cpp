@@ -1,0 +1,191 @@
+#include "rigid/rigid_parameters.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "rigid/body_geometry.hpp"
+#include "rigid/list_values.hpp"
+
+namespace lockstep {
+
+namespace {
+
+template <int dim>
+std::vector<std::string> dof_names() {
+  if (dim == 2)
+    return {"x", "y", "rotation"};
+  return {"x", "y", "z", "rotation x", "rotation y", "rotation z"};
+}
+
+template <int dim>
+void declare_mass(ParameterList& list) {
+  declare_optional<double>(list, "Density",
+                           "Of a volume [kg/m^3] (2D: [kg/m^2]). A dynamic body needs one of "
+                           "density and mass.");
+  declare_optional<double>(list, "Surface Density",
+                           "Of a thin shell [kg/m^2] (2D: [kg/m]), instead of \"Density\".");
+  declare_optional<double>(list, "Mass", "Mass [kg] (2D: per unit depth), spread evenly.");
+  for (const char* name : {"Density", "Surface Density", "Mass"})
+    set_positive(list, name);
+}
+
+template <int dim>
+void declare_pose(ParameterList& list) {
+  declare_vector(list, "Position", ParameterArray<double>(dim, 0.0), dim,
+                 "Where the origin of the body's coordinates lies at time 0 [m].");
+  if constexpr (dim == 2) {
+    declare(list, "Orientation", 0.0,
+            "Angle by which the body is turned about that origin at time 0 [rad].");
+  } else {
+    declare_optional<ParameterArray<double>>(
+        list, "Orientation",
+        "Unit quaternion (w, x, y, z) that turns the body about that origin at time 0 [1]; default "
+        "(1, 0, 0, 0). Instead: \"Rotation Axis\" and \"Rotation Angle\".");
+    set_length(list, "Orientation", 4);
+    declare_vector(list, "Rotation Axis", {0.0, 0.0, 1.0}, 3,
+                   "Axis of \"Rotation Angle\", of any length [1].");
+    declare(list, "Rotation Angle", 0.0, "Turn about \"Rotation Axis\" at time 0 [rad].");
+  }
+  declare_vector(list, "Velocity", ParameterArray<double>(dim, 0.0), dim,
+                 "Of the reference point (centre of mass, or pivot) at time 0 [m/s].");
+  declare_rotation<dim>(list, "Angular Velocity", "At time 0 [rad/s].");
+  declare_optional<ParameterArray<double>>(list, "Pivot",
+                                           "Reference point, in coordinates of the body [m]: what "
+                                           "locked translations hold (a hinge) and "
+                                           "scripts turn about. Default: the centre of mass.");
+  set_length(list, "Pivot", dim);
+}
+
+template <int dim>
+Orientation<dim> read_orientation(const ParameterList& list, const std::string& name) {
+  if constexpr (dim == 2) {
+    return Orientation<2>(list.get<double>("Orientation"));
+  } else {
+    const Point<3> axis = vector_value<3>(list, "Rotation Axis");
+    const double angle = list.get<double>("Rotation Angle");
+    check_input(axis.norm() > 0, "The \"Rotation Axis\" of the solid \"{}\" must not be zero.",
+                name);
+    if (!list.isParameter("Orientation"))
+      return rotation_of<3>(angle * axis.normalized());
+    check_input(angle == 0,
+                "The solid \"{}\" has both \"Orientation\" and \"Rotation Angle\"; leave out one.",
+                name);
+    const auto q = vector_value<4>(list, "Orientation");
+    check_input(std::abs(q.norm() - 1) < 1e-3,
+                "The \"Orientation\" of the solid \"{}\" must be a quaternion of length 1, but its "
+                "length is {}.",
+                name, q.norm());
+    return Orientation<3>(q[0], q[1], q[2], q[3]).normalized();
+  }
+}
+
+/// Density per unit of measure (volume or surface); 0 for a prescribed body that names none.
+template <int dim>
+double read_density(const ParameterList& list, const RigidBodyConstants<dim>& body,
+                    double measure) {
+  const std::string wanted = body.closed ? "Density" : "Surface Density";
+  const std::string other = body.closed ? "Surface Density" : "Density";
+  check_input(!list.isParameter(other),
+              "The solid \"{}\" is a {}, so it has no \"{}\"; give \"{}\" or \"Mass\".", body.name,
+              body.closed ? "volume" : "thin shell", other, wanted);
+  const bool by_density = list.isParameter(wanted), by_mass = list.isParameter("Mass");
+  check_input(!(by_density && by_mass),
+              "The solid \"{}\" has both \"{}\" and \"Mass\"; leave out one.", body.name, wanted);
+  check_input(by_density || by_mass || body.script,
+              "The solid \"{}\" has no mass; give \"{}\" or \"Mass\".", body.name, wanted);
+  if (by_mass)
+    return list.get<double>("Mass") / measure;
+  return by_density ? list.get<double>(wanted) : 0;
+}
+
+/// Mass, inertia and centre of mass; then the body's coordinates move to its reference point, whose
+/// old coordinates are returned.
+template <int dim>
+Point<dim> set_mass(RigidBodyConstants<dim>& body, const ParameterList& list) {
+  const MassProperties<dim> properties =
+      body.closed ? volume_properties(body.surface) : shell_properties(body.surface);
+  body.density = read_density(list, body, properties.measure);
+  body.volume = body.closed ? properties.measure : 0;
+  if (!body.script) {
+    body.mass = body.density * properties.measure;
+    body.inertia = body.density * properties.inertia;
+  }
+  Point<dim> reference = properties.centroid;
+  if (list.isParameter("Pivot"))
+    reference = vector_value<dim>(list, "Pivot");
+  body.center_of_mass = properties.centroid - reference;
+  for (auto& vertex : body.surface.vertices)
+    vertex -= reference;
+  return reference;
+}
+
+template <int dim>
+void set_locks(RigidBodyConstants<dim>& body, const ParameterList& list,
+               const RigidVector<dim>& velocity) {
+  const auto names = dof_names<dim>();
+  for (const auto& name : list.get<ParameterArray<std::string>>("Locked")) {
+    const auto k = std::find(names.begin(), names.end(), name) - names.begin();
+    check_input(!body.script,
+                "The solid \"{}\" follows a script, so nothing of it can be locked; leave out "
+                "\"Locked\", or make its motion \"dynamic\".",
+                body.name);
+    check_input(
+        velocity[k] == 0,
+        "The solid \"{}\" has \"{}\" locked, but starts with a velocity of {} there; set it "
+        "to zero.",
+        body.name, name, velocity[k]);
+    body.locked[k] = true;
+  }
+}
+
+}  // namespace
+
+template <int dim>
+ParameterList rigid_body_parameters() {
+  ParameterList list("rigid body");
+  declare_geometry<dim>(list);
+  declare_mass<dim>(list);
+  declare_pose<dim>(list);
+  declare(list, "Locked", ParameterArray<std::string>(),
+          "Motions held at zero, along and about the axes of space.");
+  set_choices(list, "Locked", dof_names<dim>());
+  declare_motion<dim>(list);
+  declare_between(list, "Restitution", 0.0, 0.0, 1.0,
+                  "Speed after over speed before a collision [1].");
+  declare_at_least(list, "Friction", 0.0, 0.0, "Coulomb's coefficient of contacts [1].");
+  return list;
+}
+
+template <int dim>
+RigidBody<dim> read_rigid_body(const std::string& name, const ParameterList& list,
+                               double grid_spacing) {
+  RigidBody<dim> body;
+  body.name = name;
+  body.script = read_motion<dim>(list, name);
+  BodyGeometry<dim> geometry =
+      make_body_geometry<dim>(list.sublist("Geometry"), grid_spacing, name);
+  body.surface = std::move(geometry.surface);
+  body.closed = geometry.closed;
+  body.restitution = list.get<double>("Restitution");
+  body.friction = list.get<double>("Friction");
+  const Point<dim> reference = set_mass(body, list);
+  RigidVector<dim> velocity;
+  velocity << vector_value<dim>(list, "Velocity"), rotation_value<dim>(list, "Angular Velocity");
+  set_locks(body, list, velocity);
+  body.pose.orientation = read_orientation<dim>(list, name);
+  body.pose.position = vector_value<dim>(list, "Position") + body.pose.orientation * reference;
+  body.initial_pose = body.pose;
+  if (body.dynamic())
+    set_velocity(body, velocity);
+  else
+    follow_script(body, 0);
+  body.last_move.origin = body.pose.position;
+  return body;
+}
+
+template ParameterList rigid_body_parameters<2>();
+template ParameterList rigid_body_parameters<3>();
+template RigidBody<2> read_rigid_body<2>(const std::string&, const ParameterList&, double);
+template RigidBody<3> read_rigid_body<3>(const std::string&, const ParameterList&, double);
+
+}  // namespace lockstep
