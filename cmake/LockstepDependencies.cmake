@@ -20,6 +20,8 @@ lockstep_require(nlohmann_json nlohmann-json3-dev)
 lockstep_require(tinyobjloader libtinyobjloader-dev)
 lockstep_require(CLI11 libcli11-dev)
 lockstep_require(EXPAT libexpat1-dev)
+lockstep_require(muparser libmuparser-dev)
+lockstep_require(Threads g++)
 
 set(HDF5_PREFER_PARALLEL ON)
 lockstep_require(HDF5 libhdf5-openmpi-dev COMPONENTS C)

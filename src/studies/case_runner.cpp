@@ -1,0 +1,139 @@
+#include "studies/case_runner.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
+#include "base/errors.hpp"
+#include "output/atomic_file.hpp"
+#include "studies/child_process.hpp"
+
+namespace lockstep {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t longest_message = 1500;
+
+/// What identifies the executable: its version, and when and how large it was built.
+std::string executable_key(const std::string& simulate) {
+  std::error_code error;
+  const auto size = fs::file_size(simulate, error);
+  const auto time = fs::last_write_time(simulate, error);
+  check_input(!error, "Cannot find the program '{}'; build it, or name it with --simulate.",
+              simulate);
+  return fmt::format("{}\n{} bytes, {}\n", simulate, size, time.time_since_epoch().count());
+}
+
+std::string case_key(const StudyCase& study_case, const std::string& common) {
+  std::string key = fmt::format("{} ranks\n", study_case.ranks);
+  for (const std::string& assignment : study_case.assignments)
+    key += assignment + "\n";
+  return key + common;
+}
+
+bool is_finished(const std::string& directory, const std::string& key) {
+  for (const char* file : {"case.txt", "summary.json", "used-parameters.xml", "history.csv"}) {
+    if (!fs::exists(fs::path(directory) / file))
+      return false;
+  }
+  return read_whole_file(directory + "/case.txt") == key;
+}
+
+std::vector<std::string> command_of(const Study& study, const StudyCase& study_case,
+                                    const std::string& simulate, const std::string& directory) {
+  std::vector<std::string> command;
+  if (study_case.ranks > 1)
+    command = {"mpirun", "--oversubscribe", "-n", std::to_string(study_case.ranks)};
+  command.insert(command.end(), {simulate, study.scene_file, "--output", directory});
+  for (const std::string& assignment : study_case.assignments)
+    command.insert(command.end(), {"--set", assignment});
+  return command;
+}
+
+/// The child's own words, without what mpirun adds below its line of dashes.
+std::string complaint(const std::string& error_file) {
+  std::string text = fs::exists(error_file) ? read_whole_file(error_file) : "";
+  text = text.substr(0, text.find("-----"));
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0)
+    text.pop_back();
+  if (text.size() > longest_message)
+    text = "... " + text.substr(text.size() - longest_message);
+  return text.empty() ? "it said nothing" : text;
+}
+
+CaseOutcome run_case(const Study& study, const StudyCase& study_case, const RunnerOptions& options,
+                     const std::string& common_key) {
+  CaseOutcome outcome;
+  outcome.directory = fmt::format("{}/runs/{}", options.output_directory, study_case.directory);
+  const std::string key = case_key(study_case, common_key);
+  if (!options.fresh && is_finished(outcome.directory, key)) {
+    outcome.done = outcome.reused = true;
+    return outcome;
+  }
+  std::error_code error;
+  fs::remove_all(outcome.directory, error);
+  fs::create_directories(outcome.directory, error);
+  check_output(!error, "Cannot create the folder '{}': {}.", outcome.directory, error.message());
+  const std::string errors = outcome.directory + "/errors.txt";
+  outcome.exit_code = run_child(command_of(study, study_case, options.simulate, outcome.directory),
+                                outcome.directory + "/log.txt", errors)
+                          .exit_code;
+  outcome.done = outcome.exit_code == 0;
+  if (outcome.done) {
+    // Only the last state matters, and ladders are long.
+    for (const auto& file : fs::directory_iterator(outcome.directory)) {
+      if (file.path().filename().string().rfind("checkpoint-", 0) == 0)
+        fs::remove(file.path(), error);
+    }
+    write_file_atomically(outcome.directory + "/case.txt", key);
+  } else {
+    outcome.message = complaint(errors);
+  }
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<CaseOutcome> run_cases(
+    const Study& study, const std::vector<StudyCase>& cases, const RunnerOptions& options,
+    const std::function<void(std::size_t, const CaseOutcome&)>& report) {
+  const std::string key = executable_key(options.simulate) + read_whole_file(study.scene_file);
+  std::vector<CaseOutcome> outcomes(cases.size());
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> stop{false};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < cases.size() && !stop; i = next++) {
+      try {
+        outcomes[i] = run_case(study, cases[i], options, key);
+        const std::lock_guard<std::mutex> lock(mutex);
+        report(i, outcomes[i]);
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        failure = std::current_exception();
+        stop = true;
+      }
+      // Bad input fails everywhere; a signal is meant for all.
+      if (outcomes[i].exit_code == static_cast<int>(ExitCode::bad_input) ||
+          outcomes[i].exit_code > 128)
+        stop = true;
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int t = 1; t < options.n_jobs; ++t)
+    threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads)
+    thread.join();
+  if (failure)
+    std::rethrow_exception(failure);
+  return outcomes;
+}
+
+}  // namespace lockstep

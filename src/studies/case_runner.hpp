@@ -1,0 +1,33 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "studies/study_cases.hpp"
+
+namespace lockstep {
+
+struct RunnerOptions {
+  std::string simulate;          ///< the executable
+  std::string output_directory;  ///< runs go to its folder "runs"
+  int n_jobs = 1;                ///< cases at a time
+  bool fresh = false;            ///< do not re-use runs
+};
+
+/// How a case went.
+struct CaseOutcome {
+  bool done = false;  ///< false also for cases not started after bad input
+  bool reused = false;
+  int exit_code = 0;
+  std::string directory;  ///< of its output
+  std::string message;    ///< what the child complained about
+};
+
+/// Runs every case that has no finished run of the same scene, assignments, ranks and executable. A
+/// failed case does not stop the others, unless its input was bad: then no further one is started.
+/// `report` is called after each case with its number and outcome, by one thread at a time.
+std::vector<CaseOutcome> run_cases(
+    const Study& study, const std::vector<StudyCase>& cases, const RunnerOptions& options,
+    const std::function<void(std::size_t, const CaseOutcome&)>& report);
+
+}  // namespace lockstep

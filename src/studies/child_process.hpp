@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace lockstep {
+
+/// How a child ended: its exit code, or 128 + the signal that ended it.
+struct ChildResult {
+  int exit_code = 0;
+  double wall_seconds = 0;
+};
+
+/// Runs a program (found through PATH unless its name has a '/') and waits for it. What it prints
+/// goes to the two files; its environment is ours plus what Open MPI needs to start as root and on
+/// more ranks than cores, and one thread a rank. Throws OutputError if it cannot be started.
+ChildResult run_child(const std::vector<std::string>& command, const std::string& output_file,
+                      const std::string& error_file);
+
+}  // namespace lockstep

@@ -1,0 +1,30 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "parameters/parameter_list.hpp"
+#include "studies/expression.hpp"
+
+namespace lockstep {
+
+/// The numbers a finished run left behind.
+struct RunResults {
+  std::string directory;
+  /// One a step: history.csv and, as BODY.column, bodies.csv.
+  std::vector<Variables> rows;
+  Variables summary;     ///< "summary.name", "summary.iterations.s1.median", ...
+  ParameterList scene;   ///< used-parameters.xml
+  double spacing = 0;    ///< h [m]
+  double n_cells = 0;    ///< of the whole box
+  double mean_step = 0;  ///< [s]
+};
+
+/// Reads the folder of a run. Throws OutputError for files that are missing or torn.
+RunResults read_run(const std::string& directory);
+
+/// Value of a number in the scene: "Fluid/Density", "Fluid/Gravity[1]". Throws InputError if there
+/// is none.
+double scene_number(const ParameterList& scene, const std::string& path);
+
+}  // namespace lockstep

@@ -1,0 +1,198 @@
+#include "studies/study.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "output/atomic_file.hpp"
+#include "parameters/strict_values.hpp"
+#include "parameters/strict_xml.hpp"
+#include "parameters/validate.hpp"
+
+namespace lockstep {
+
+namespace {
+
+const char* const assignments_doc =
+    "Changes of the scene, \"List/Name=value\", separated by ';'. What stands in [ ] is a formula "
+    "of the constants: \"Domain/Cells={[n], [n]}\".";
+const char* const constants_doc =
+    "Numbers, or formulas of those before, under names of their own. A series may replace those of "
+    "the study; all are evaluated anew for each case.";
+
+ParameterList series_parameters() {
+  ParameterList series;
+  declare_free_sublist(series, "Constants", constants_doc);
+  declare(series, "Set", "", assignments_doc);
+  declare_optional<ParameterArray<double>>(series, "Values",
+                                           "Ladder of this series, instead of the study's.");
+  declare_positive(series, "Ranks", 1, "MPI ranks to run on.");
+  return series;
+}
+
+void declare_reference(ParameterList& list) {
+  declare(
+      list, "Reference", "",
+      "What the value is compared with: a formula of the constants and parameters, or \"self\": "
+      "the value at the last rung of the series. Empty: no error is reported.");
+  declare(list, "Relative", true, "Divide the error by the size of the reference, unless it is 0.");
+}
+
+std::vector<TypedSchema> quantity_types() {
+  ParameterList table, field;
+  declare_required<std::string>(
+      table, "Expression",
+      "Formula of the columns of history.csv, of bodies.csv as BODY.column, of summary.json as "
+      "summary.name, of constants, parameters and h, dt, cells, ranks.");
+  declare_choice(table, "Over", "last", {"last", "first", "max", "min", "mean", "rms"},
+                 "How the rows of a run become one number; every row counts the same.");
+  declare(table, "From Time", -1e300, "Rows before this time do not count [s].");
+  declare_reference(table);
+  declare_required<std::string>(field, "Field", "Field of the last frame, such as \"velocity\".");
+  declare_at_least(field, "Component", 0, 0, "Component of a vector: 0, 1, 2.");
+  declare_required<std::string>(field, "Exact", "Formula of x, y, z, t, constants and parameters.");
+  declare_choice(field, "Norm", "L2", {"L1", "L2", "max"},
+                 "Of the difference, per unit volume: mean of |e|, root of the mean of e^2, max "
+                 "|e|. It is value and error at once.");
+  return {{"table", "From the tables of a run.", table},
+          {"field", "Difference of a cell-centred field to an exact solution.", field}};
+}
+
+Formulas read_formulas(const ParameterList& list, const std::string& where) {
+  Formulas formulas;
+  for (const auto& [name, entry] : entries(list)) {
+    check_input(variable_name(name) == name,
+                "{}: \"{}\" cannot be used in formulas; write it with letters, digits and _.",
+                where, name);
+    formulas.emplace_back(name, value_text(entry));
+  }
+  return formulas;
+}
+
+std::vector<std::string> read_assignments(const std::string& text, const std::string& where) {
+  std::vector<std::string> assignments;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(';', begin), text.size());
+    const std::string assignment = trimmed(text.substr(begin, end - begin));
+    begin = end + 1;
+    if (assignment.empty())
+      continue;
+    check_input(assignment.find('=') != std::string::npos,
+                "{}: \"{}\" is no assignment; write \"List/Name=value\".", where, assignment);
+    assignments.push_back(assignment);
+  }
+  return assignments;
+}
+
+Series read_series(const ParameterList& list, const std::string& name, const std::string& file) {
+  Series series;
+  const std::string where = fmt::format("{}, series \"{}\"", file, name);
+  series.name = name;
+  series.constants = read_formulas(list.sublist("Constants"), where);
+  series.assignments = read_assignments(list.get<std::string>("Set"), where);
+  if (list.isParameter("Values"))
+    series.values = list.get<ParameterArray<double>>("Values").toVector();
+  series.ranks = list.get<int>("Ranks");
+  return series;
+}
+
+template <typename Value>
+Value choice(const std::string& text, const std::vector<std::pair<const char*, Value>>& values) {
+  return std::find_if(values.begin(), values.end(),
+                      [&](const auto& value) { return text == value.first; })
+      ->second;
+}
+
+Quantity read_quantity(const ParameterList& list, const std::string& name) {
+  using Over = Quantity::Over;
+  using Norm = Quantity::Norm;
+  Quantity quantity;
+  quantity.name = name;
+  quantity.is_field = list.get<std::string>("Type") == "field";
+  if (quantity.is_field) {
+    quantity.expression = list.get<std::string>("Exact");
+    quantity.field = list.get<std::string>("Field");
+    quantity.component = list.get<int>("Component");
+    quantity.norm = choice<Norm>(list.get<std::string>("Norm"),
+                                 {{"L1", Norm::l1}, {"L2", Norm::l2}, {"max", Norm::max}});
+    quantity.reference = "0";
+    return quantity;
+  }
+  quantity.expression = list.get<std::string>("Expression");
+  quantity.over = choice<Over>(list.get<std::string>("Over"), {{"last", Over::last},
+                                                               {"first", Over::first},
+                                                               {"max", Over::max},
+                                                               {"min", Over::min},
+                                                               {"mean", Over::mean},
+                                                               {"rms", Over::rms}});
+  quantity.from_time = list.get<double>("From Time");
+  quantity.reference = list.get<std::string>("Reference");
+  quantity.relative = list.get<bool>("Relative");
+  return quantity;
+}
+
+}  // namespace
+
+ParameterList study_parameters() {
+  ParameterList study("Study");
+  declare(study, "Title", "", "One line on what the study shows.");
+  declare_required<std::string>(study, "Scene", "The scene that is varied, relative to this file.");
+  declare_free_sublist(study, "Constants", constants_doc);
+  declare_free_sublist(study, "Parameters",
+                       "Parameters of the scene for use in formulas of the quantities: a name of "
+                       "their own, and the path as string, \"Fluid/Density\" or, for a component, "
+                       "\"Fluid/Gravity[1]\".");
+  declare(study, "Set", "", assignments_doc);
+  ParameterList& ladder = declare_list(study, "Ladder", "What varies along each series.");
+  declare(ladder, "Name", "n",
+          "Name of the constant that takes the values. \"ranks\" also sets the MPI ranks.");
+  declare_required<ParameterArray<double>>(ladder, "Values", "One rung each, the finest last.");
+  declare_at_least(ladder, "Usual Rungs", 0, 0,
+                   "How many rungs are run unless --rungs says otherwise; 0: all.");
+  declare(ladder, "Abscissa", "h",
+          "Formula of what errors are plotted against and orders are taken in, of constants, h, "
+          "dt, cells, ranks.");
+  declare_named_sublists(study, "Series", "The lines of the plot; without any there is one.",
+                         series_parameters());
+  ParameterList& samples = declare_list(
+      study, "Samples",
+      "Each case is run several times with other offsets, and values are averaged. offset_x, "
+      "offset_y, offset_z in [-1/2, 1/2) are the additive sequence with the powers of the inverse "
+      "plastic number, the same on every machine; sample is 0, 1, ...");
+  declare_positive(samples, "Number", 1, "How many.");
+  declare(samples, "Set", "", assignments_doc);
+  declare_named_sublists(study, "Quantities", "What is measured, one sublist each.",
+                         quantity_types(), "table");
+  return study;
+}
+
+Study read_study(const std::string& file) {
+  Document document = read_xml_string(read_whole_file(file), file);
+  validate(document, study_parameters());
+  const ParameterList& list = document.list;
+  const ParameterList& ladder = list.sublist("Ladder");
+  Study study;
+  study.title = list.get<std::string>("Title");
+  study.scene_file = resolve_path(file, list.get<std::string>("Scene"));
+  study.constants = read_formulas(list.sublist("Constants"), file);
+  for (const auto& [name, entry] : entries(list.sublist("Parameters")))
+    study.parameters.emplace_back(name, value_text(entry));
+  study.assignments = read_assignments(list.get<std::string>("Set"), file);
+  study.ladder_name = ladder.get<std::string>("Name");
+  study.ladder_values = ladder.get<ParameterArray<double>>("Values").toVector();
+  study.usual_rungs = ladder.get<int>("Usual Rungs");
+  study.abscissa = ladder.get<std::string>("Abscissa");
+  for (const auto& [name, entry] : entries(list.sublist("Series")))
+    study.series.push_back(read_series(Teuchos::getValue<ParameterList>(entry), name, file));
+  if (study.series.empty())
+    study.series.push_back({"all", {}, {}, {}, 1});
+  study.n_samples = list.sublist("Samples").get<int>("Number");
+  study.sample_assignments =
+      read_assignments(list.sublist("Samples").get<std::string>("Set"), file);
+  for (const auto& [name, entry] : entries(list.sublist("Quantities")))
+    study.quantities.push_back(read_quantity(Teuchos::getValue<ParameterList>(entry), name));
+  check_input(!study.quantities.empty(), "{}: the study measures nothing; name a quantity.", file);
+  check_input(!study.ladder_values.empty(), "{}: the ladder has no \"Values\".", file);
+  return study;
+}
+
+}  // namespace lockstep

@@ -1,0 +1,63 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "parameters/source.hpp"
+#include "studies/expression.hpp"
+
+namespace lockstep {
+
+/// Names with a formula each, in the order of the file; later ones may use earlier ones.
+using Formulas = std::vector<std::pair<std::string, std::string>>;
+
+/// One line of a plot: the same assignments for every rung of the ladder.
+struct Series {
+  std::string name;
+  Formulas constants;
+  std::vector<std::string> assignments;  ///< "Path=value" with [formulas]
+  std::vector<double> values;            ///< of this series' own ladder; empty: the study's
+  int ranks = 1;
+};
+
+/// One column of results, and what it is compared with.
+struct Quantity {
+  enum class Over { last, first, max, min, mean, rms };
+  enum class Norm { l1, l2, max };
+  std::string name;
+  bool is_field = false;
+  std::string expression;  ///< over the columns of history and bodies, or exact value of the field
+  Over over = Over::last;  ///< how the rows of a run become one number
+  double from_time = 0;    ///< rows before it do not count [s]
+  std::string field;       ///< dataset of the last frame
+  int component = 0;
+  Norm norm = Norm::l2;
+  std::string reference;  ///< a formula, "self" or empty
+  bool relative = true;   ///< error over |reference|
+};
+
+/// A study file: which scene is run with which changes, and what is measured.
+struct Study {
+  std::string title;
+  std::string scene_file;
+  Formulas constants;
+  Formulas parameters;  ///< name -> path in the scene, read back from used-parameters.xml
+  std::vector<std::string> assignments;
+  std::string ladder_name;
+  std::vector<double> ladder_values;
+  int usual_rungs = 0;  ///< 0: all
+  std::string abscissa;
+  std::vector<Series> series;
+  int n_samples = 1;
+  std::vector<std::string> sample_assignments;
+  std::vector<Quantity> quantities;
+};
+
+/// Schema of a study file.
+ParameterList study_parameters();
+
+/// Reads and validates a study file. Throws InputError. Not collective, and needs no MPI.
+Study read_study(const std::string& file);
+
+}  // namespace lockstep

@@ -1,0 +1,181 @@
+#include "studies/study_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "parameters/strict_values.hpp"
+#include "studies/measure.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// The finished samples of one rung of one series.
+struct Rung {
+  const StudyCase* first = nullptr;
+  std::vector<RunResults> runs;
+  std::vector<Variables> variables;
+};
+
+std::vector<Rung> read_rungs(const Study& study, int series, const std::vector<StudyCase>& cases,
+                             const std::vector<CaseOutcome>& outcomes) {
+  std::vector<Rung> rungs;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (cases[i].series != series || !outcomes[i].done)
+      continue;
+    if (rungs.empty() || rungs.back().first->rung != cases[i].rung) {
+      rungs.emplace_back();
+      rungs.back().first = &cases[i];
+    }
+    rungs.back().runs.push_back(read_run(outcomes[i].directory));
+    rungs.back().variables.push_back(run_variables(study, cases[i], rungs.back().runs.back()));
+  }
+  return rungs;
+}
+
+double summary_number(const RunResults& run, const std::string& name) {
+  const auto found = run.summary.find("summary." + name);
+  return found == run.summary.end() ? 0 : found->second;
+}
+
+void add_cost(StudyRow& row, const Rung& rung) {
+  const auto n = static_cast<double>(rung.runs.size());
+  for (const RunResults& run : rung.runs) {
+    const double seconds = summary_number(run, "wall_seconds");
+    row.wall_seconds += seconds / n;
+    row.core_seconds += seconds * row.ranks / n;
+    row.iterations_median += std::max(summary_number(run, "iterations.s1.median"),
+                                      summary_number(run, "iterations.s2.median")) /
+                             n;
+    row.iterations_max = std::max({row.iterations_max, summary_number(run, "iterations.s1.max"),
+                                   summary_number(run, "iterations.s2.max")});
+    row.peak_memory_mb = std::max(row.peak_memory_mb, summary_number(run, "peak_memory_mb"));
+  }
+}
+
+StudyRow make_row(const Study& study, const Quantity& quantity, const Rung& rung) {
+  StudyRow row;
+  row.series = study.series[rung.first->series].name;
+  row.quantity = quantity.name;
+  row.cells = rung.runs.front().n_cells;
+  row.spacing = rung.runs.front().spacing;
+  row.mean_step = rung.runs.front().mean_step;
+  row.ranks = rung.first->ranks;
+  row.ladder = rung.first->constants.at(study.ladder_name);
+  row.abscissa = evaluate(study.abscissa, rung.variables.front(), "\"Ladder/Abscissa\"");
+  row.n_samples = static_cast<int>(rung.runs.size());
+  std::vector<double> values;
+  for (std::size_t k = 0; k < rung.runs.size(); ++k)
+    values.push_back(measure(quantity, rung.runs[k], rung.variables[k]));
+  for (const double value : values)
+    row.value += value / row.n_samples;
+  for (const double value : values)
+    row.spread += (value - row.value) * (value - row.value);
+  row.spread = row.n_samples > 1 ? std::sqrt(row.spread / (row.n_samples - 1)) : 0;
+  add_cost(row, rung);
+  return row;
+}
+
+void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
+                const std::vector<Rung>& rungs) {
+  if (quantity.reference.empty() || rows.empty())
+    return;
+  const bool self = trimmed(quantity.reference) == "self";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    StudyRow& row = rows[r];
+    if (self && r + 1 == rows.size())
+      break;
+    row.reference = self ? rows.back().value
+                         : evaluate(quantity.reference, rungs[r].variables.front(),
+                                    fmt::format("Reference of \"{}\"", quantity.name));
+    const double scale = quantity.relative && *row.reference != 0 ? std::abs(*row.reference) : 1.0;
+    row.error = std::abs(row.value - *row.reference) / scale;
+    const StudyRow* before = r > 0 ? &rows[r - 1] : nullptr;
+    const bool ordered = before != nullptr && *before->error > 0 && *row.error > 0 &&
+                         before->abscissa > 0 && row.abscissa > 0 &&
+                         before->abscissa != row.abscissa;
+    if (ordered)
+      row.order = std::log(*before->error / *row.error) / std::log(before->abscissa / row.abscissa);
+  }
+}
+
+std::string text(const std::optional<double>& number) {
+  return number ? number_text(*number) : "";
+}
+
+std::string short_text(const std::optional<double>& number, int digits) {
+  return number ? fmt::format("{:.{}g}", *number, digits) : "";
+}
+
+/// Inside a CSV field: no commas or line breaks.
+std::string plain(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ',' || c == '\n' || c == '"'; }, ';');
+  return name;
+}
+
+}  // namespace
+
+std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCase>& cases,
+                                  const std::vector<CaseOutcome>& outcomes) {
+  std::vector<StudyRow> table;
+  for (int s = 0; s < static_cast<int>(study.series.size()); ++s) {
+    const std::vector<Rung> rungs = read_rungs(study, s, cases, outcomes);
+    for (const Quantity& quantity : study.quantities) {
+      std::vector<StudyRow> rows;
+      for (const Rung& rung : rungs)
+        rows.push_back(make_row(study, quantity, rung));
+      add_errors(rows, quantity, rungs);
+      table.insert(table.end(), rows.begin(), rows.end());
+    }
+  }
+  return table;
+}
+
+std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
+  std::string csv = fmt::format(
+      "# title: {}\n# abscissa: {}\n# ladder: {}\n"
+      "# cells: of the whole box; h [m], dt [s]: mean of a run; error: relative to the reference "
+      "unless that is 0\n"
+      "# wall_seconds, core_seconds [s]: of one run; spread: standard deviation over the samples\n"
+      "series,cells,h,dt,ranks,quantity,value,reference,error,order,wall_seconds,core_seconds,"
+      "iterations_median,iterations_max,peak_memory_mb,spread,samples,abscissa\n",
+      study.title, study.abscissa, study.ladder_name);
+  for (const StudyRow& row : rows) {
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", plain(row.series),
+                       row.cells, number_text(row.spacing), number_text(row.mean_step), row.ranks,
+                       plain(row.quantity), number_text(row.value), text(row.reference),
+                       text(row.error), text(row.order), row.wall_seconds, row.core_seconds,
+                       row.iterations_median, row.iterations_max, row.peak_memory_mb,
+                       number_text(row.spread), row.n_samples, number_text(row.abscissa));
+  }
+  return csv;
+}
+
+std::string table_markdown(const Study& study, const std::vector<StudyRow>& rows) {
+  std::string page = study.title.empty() ? "" : fmt::format("{}\n\n", study.title);
+  for (const Quantity& quantity : study.quantities) {
+    page += fmt::format(
+        "**{}**\n\n"
+        "| series | {} | cells | h | dt | ranks | value | spread | reference | error | order | "
+        "core seconds | iterations (median, max) | memory [MB] |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        quantity.name, study.ladder_name);
+    for (const StudyRow& row : rows) {
+      if (row.quantity != quantity.name)
+        continue;
+      const std::string spread = row.n_samples > 1 ? fmt::format("{:.2g}", row.spread) : "";
+      page += fmt::format(
+          "| {} | {:.6g} | {:.0f} | {:.4g} | {:.4g} | {} | {:.7g} | {} | {} | {} | {} | {:.2g} | "
+          "{:.3g}, {:.0f} | {:.0f} |\n",
+          row.series, row.ladder, row.cells, row.spacing, row.mean_step, row.ranks, row.value,
+          spread, short_text(row.reference, 7), short_text(row.error, 3), short_text(row.order, 3),
+          row.core_seconds, row.iterations_median, row.iterations_max, row.peak_memory_mb);
+    }
+    page += "\n";
+  }
+  return page;
+}
+
+}  // namespace lockstep

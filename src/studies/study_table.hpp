@@ -1,0 +1,35 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/case_runner.hpp"
+
+namespace lockstep {
+
+/// One quantity at one rung of one series: the mean over the samples.
+struct StudyRow {
+  std::string series, quantity;
+  double cells = 0, spacing = 0, mean_step = 0;
+  int ranks = 1;
+  double ladder = 0, abscissa = 0;
+  double value = 0;
+  std::optional<double> reference, error, order;
+  double wall_seconds = 0, core_seconds = 0;  ///< mean of a run
+  double iterations_median = 0;  ///< of the coupled solves: the larger of S1's and S2's, mean
+  double iterations_max = 0;     ///< largest of all
+  double peak_memory_mb = 0;     ///< largest, all ranks of a run together
+  double spread = 0;             ///< standard deviation over the samples
+  int n_samples = 1;
+};
+
+/// Measures the cases that are done: series by series, quantity by quantity, rung by rung.
+std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCase>& cases,
+                                  const std::vector<CaseOutcome>& outcomes);
+
+/// With a commented header that tools/plot-study reads. Numbers that do not exist are left empty.
+std::string table_csv(const Study& study, const std::vector<StudyRow>& rows);
+/// For people: fewer digits, one table a quantity.
+std::string table_markdown(const Study& study, const std::vector<StudyRow>& rows);
+
+}  // namespace lockstep
