@@ -30,6 +30,7 @@ struct Arguments {
   std::vector<std::string> settings;
   bool validate = false, explain = false, parameters = false, list_plugins = false;
   std::string format = "text";
+  int dimension = 3;  // of --parameters
   bool quiet = false;
 };
 
@@ -61,9 +62,13 @@ int simulate(Document document, const Arguments& arguments, const Communicator& 
 }
 
 void print_reference(const Arguments& arguments) {
-  const ParameterList valid = scene_parameters<3>(shipped_plug_ins<3>());
-  std::cout << (arguments.format == "markdown" ? reference_markdown("Parameters of a scene", valid)
-                                               : reference_text(valid));
+  const ParameterList valid = arguments.dimension == 2 ? scene_parameters<2>(shipped_plug_ins<2>())
+                                                       : scene_parameters<3>(shipped_plug_ins<3>());
+  std::cout << (arguments.format == "markdown"
+                    ? reference_markdown(fmt::format("Parameters of a scene in {} dimensions",
+                                                     arguments.dimension),
+                                         valid)
+                    : reference_text(valid));
 }
 
 void print_plug_ins() {
@@ -100,6 +105,8 @@ int run(int argc, char** argv, const Communicator& comm) {
   app.add_flag("--parameters", arguments.parameters, "print all parameters with documentation");
   app.add_option("--format", arguments.format, "of --parameters: text or markdown")
       ->check(CLI::IsMember({"text", "markdown"}));
+  app.add_option("--dimension", arguments.dimension, "of --parameters: 2 or 3")
+      ->check(CLI::IsMember({2, 3}));
   app.add_flag("--list-plugins", arguments.list_plugins, "print all plug-ins");
   app.add_flag("--quiet", arguments.quiet, "print warnings and errors only");
   try {
