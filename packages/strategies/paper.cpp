@@ -70,9 +70,10 @@ void Paper::build(const BlockSystem& system, bool geometry_changed, bool solid_c
 int Paper::correct(const BlockSystem& system, const CorrectionRequest& request,
                    Vector& correction) {
   if (!system.has_solid())
-    return pressure_cg(
-        system, *pressure_inverse_, *request.residual,
-        {request.name, request.target, request.maximum_iterations, system.null_space}, correction);
+    return pressure_cg(system, *pressure_inverse_, *request.residual,
+                       {request.name, request.target, request.maximum_iterations, system.null_space,
+                        request.update_target},
+                       correction);
   return belos_minres(system, *request.residual,
                       {request.name, request.target, request.pressure_scale, request.solid_scale,
                        request.maximum_iterations},

@@ -119,6 +119,12 @@ SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector&
   BlockResidual residual;
   double previous = 0;
   project_out(system.null_space, *solution.pressure);
+  const auto update_target = [&](const Vector& x) {
+    BlockVector corrected{rcp(new Vector(*solution.pressure, Teuchos::Copy)), solution.solid};
+    corrected.pressure->update(1, x, 1);
+    back_substitute(system, rhs, corrected);
+    return safety * request.tolerance * block_residual(system, rhs, corrected).pressure_scale;
+  };
   while (true) {
     back_substitute(system, rhs, solution);
     residual = block_residual(system, rhs, solution);
@@ -144,7 +150,7 @@ SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector&
     done.n_iterations += correct(
         system,
         {name, residual.vector.pressure.get(), solvable, safety * target, residual.pressure_scale,
-         residual.solid_scale, maximum_iterations_ - done.n_iterations},
+         residual.solid_scale, maximum_iterations_ - done.n_iterations, update_target},
         correction);
     project_out(system.null_space, correction);
     solution.pressure->update(1, correction, 1);

@@ -1,5 +1,6 @@
 #pragma once
 #include <Teuchos_ParameterList.hpp>
+#include <functional>
 #include <string>
 
 #include "interfaces/strategy.hpp"
@@ -34,6 +35,8 @@ class RefinedStrategy : public SolverStrategy {
     double pressure_scale;   ///< what the residuals of the blocks are measured against
     double solid_scale;
     int maximum_iterations;
+    /// `target` for the solution that this correction would give: the scales move with it.
+    std::function<double(const Vector& correction)> update_target;
   };
 
   /// Builds what depends on the operators. `geometry_changed` and `solid_changed` say what is new.

@@ -43,7 +43,7 @@ void SchurCg::build(const BlockSystem& system, bool geometry_changed, bool) {
 int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request,
                      Vector& correction) {
   const ConjugateGradientsRequest cg{request.name, request.target, request.maximum_iterations,
-                                     system.null_space};
+                                     system.null_space, request.update_target};
   if (!system.has_solid())
     return pressure_cg(system, *pressure_inverse_, *request.residual, cg, correction);
   const CrsMatrix& coupling = *system.coupling_transposed;

@@ -1,6 +1,7 @@
 #include "linear/conjugate_gradients.hpp"
 
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -38,7 +39,8 @@ int conjugate_gradients(const Action& op, const Action& preconditioner, const Ve
   double r_norm = r.norm2();
   double r_dot_z = 0;
   int iteration = 0;
-  while (r_norm > request.target && iteration < request.maximum_iterations) {
+  double target = request.target;
+  while (r_norm > target && iteration < request.maximum_iterations) {
     preconditioner(r, z);
     project_out(request.null_space, z);
     const double previous = r_dot_z;
@@ -58,6 +60,8 @@ int conjugate_gradients(const Action& op, const Action& preconditioner, const Ve
         request.name, curvature, iteration, r_norm);
     r_norm = std::sqrt(sum_all(comm, advance(r_dot_z / curvature, d, q, x, r)));
     ++iteration;
+    if (r_norm <= target && request.update_target)
+      target = std::min(target, request.update_target(x));
   }
   return iteration;
 }

@@ -16,6 +16,9 @@ struct ConjugateGradientsRequest {
   int maximum_iterations = 0;
   /// Null vectors of the operator, orthonormal: kept out of every preconditioned residual.
   std::vector<RCP<const Vector>> null_space;
+  /// Asked when the target is reached: the target for this x, if it depends on x. The iteration
+  /// goes on if the new one is not reached yet. Collective.
+  std::function<double(const Vector& x)> update_target = {};
 };
 
 /// Preconditioned conjugate gradients on a symmetric positive (semi)definite operator, from a zero

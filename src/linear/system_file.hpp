@@ -1,0 +1,24 @@
+#pragma once
+#include <string>
+
+#include "interfaces/strategy.hpp"
+
+namespace lockstep {
+
+/// A system with its right-hand side, as read from a file.
+struct StoredSystem {
+  BlockSystem system;
+  BlockVector rhs;
+};
+
+/// Writes A, B^T, C, the null spaces and the right-hand side to an HDF5 file that any number of
+/// ranks can read: entries (row, column, value) with global numbers. Throws InputError if A or C is
+/// not assembled, OutputError if the file cannot be written. Collective.
+void write_system(const std::string& path, const BlockSystem& system, const BlockVector& rhs);
+
+/// Reads it, rows spread evenly over the ranks. Where there are fewer solid unknowns than ranks,
+/// unknowns that no other sees are added, so that every rank owns one. Throws OutputError for files
+/// of another kind. Collective.
+StoredSystem read_system(const std::string& path, const Communicator& comm);
+
+}  // namespace lockstep
