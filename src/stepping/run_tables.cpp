@@ -1,5 +1,7 @@
 #include "stepping/run_tables.hpp"
 
+#include <algorithm>
+
 namespace lockstep {
 namespace {
 
@@ -26,6 +28,12 @@ template <typename Values>
 void append_values(std::vector<HistoryValue>& row, const Values& values) {
   for (int a = 0; a < values.size(); ++a)
     row.push_back(double(values[a]));
+}
+
+/// One after another; a braced list of variants makes GCC 12 warn of uninitialised strings.
+template <typename... Values>
+void append_each(std::vector<HistoryValue>& row, const Values&... values) {
+  (row.emplace_back(values), ...);
 }
 
 template <int dim>
@@ -101,16 +109,12 @@ void RunTables<dim>::resume(long long step) {
 template <int dim>
 void RunTables<dim>::append(long long step, const StepReport<dim>& report,
                             const std::vector<SolidState<dim>>& states, double wall_seconds) {
-  std::vector<HistoryValue> row = {step,
-                                   report.time,
-                                   report.dt,
-                                   report.cfl,
-                                   static_cast<long long>(report.s1.iterations),
-                                   static_cast<long long>(report.f2.iterations),
-                                   static_cast<long long>(report.s2.iterations),
-                                   static_cast<long long>(report.viscous_iterations),
-                                   report.max_divergence,
-                                   report.fluid_volume};
+  std::vector<HistoryValue> row;
+  append_each(
+      row, step, report.time, report.dt, report.cfl, static_cast<long long>(report.s1.iterations),
+      static_cast<long long>(report.f2.iterations), static_cast<long long>(report.s2.iterations),
+      static_cast<long long>(report.viscous_iterations), report.max_divergence,
+      report.fluid_volume);
   append_values(row, report.fluid_momentum.linear);
   append_values(row, report.solid_momentum.linear);
   append_values(row, report.boundary_impulse.linear);
@@ -118,28 +122,20 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
   const auto residual = [](const SolveReport& solve) {
     return std::max(solve.pressure_residual, solve.solid_residual);
   };
-  const std::vector<HistoryValue> rest = {
-      report.momentum_error,
-      report.angular_momentum_error,
-      report.fluid_kinetic_energy,
-      report.solid_kinetic_energy,
-      report.elastic_energy,
-      residual(report.s1),
-      residual(report.f2),
-      residual(report.s2),
-      report.incompatibility_s2,
-      report.incompatibility_f2,
-      static_cast<long long>(report.contact_position.n_contacts),
-      report.contact_position.deepest_overlap,
-      wall_seconds};
-  row.insert(row.end(), rest.begin(), rest.end());
+  append_each(row, report.momentum_error, report.angular_momentum_error,
+              report.fluid_kinetic_energy, report.solid_kinetic_energy, report.elastic_energy,
+              residual(report.s1), residual(report.f2), residual(report.s2),
+              report.incompatibility_s2, report.incompatibility_f2,
+              static_cast<long long>(report.contact_position.n_contacts),
+              report.contact_position.deepest_overlap, wall_seconds);
   history_.append_row(row);
 
   std::vector<std::vector<HistoryValue>> rows;
   for (std::size_t s = 0; s < states.size(); ++s) {
     const SolidState<dim>& state = states[s];
     const Momentum<dim>& impulse = report.hydrodynamic_impulse[s];
-    std::vector<HistoryValue> body = {step, report.time, state.name};
+    std::vector<HistoryValue> body;
+    append_each(body, step, report.time, state.name);
     append_values(body, state.center_of_mass);
     append_values(body, state.velocity);
     append_values(body, state.angular_velocity);
