@@ -1,0 +1,64 @@
+#pragma once
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "contact/gauss_seidel_contact.hpp"
+
+namespace lockstep {
+
+/// One resolution of contacts: candidates from the search, of which those that would be violated
+/// become active, a few for every pair of solids, until none is left violated. Local, the same on
+/// all ranks.
+template <int dim>
+class ContactProblem {
+ public:
+  /// `before`: V_S at the beginning of the step, `velocity`: the one to change; both by id.
+  ContactProblem(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
+                 const std::vector<HalfSpace>& walls, const GaussSeidelOptions& options,
+                 double spacing, ContactPhase phase, double dt);
+
+  /// Finds the candidates; false if there are none to act on.
+  bool prepare(const std::vector<double>& before, const std::vector<double>& velocity);
+  /// Solves; returns the number of sweeps.
+  int solve(ImpulseSolver<dim>& solver);
+
+  double deepest_overlap() const;
+
+ private:
+  struct Candidate {
+    Contact<dim> contact;
+    double target = 0;  ///< least normal velocity [m/s]
+    bool active = false;
+  };
+  using Pair = std::pair<int, int>;
+
+  ContactReach reach(double speed) const;
+  void add_candidates(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
+  double target(const Contact<dim>& contact, double normal_velocity, double before) const;
+  double normal_velocity(const SolidMotion<dim>& motion, const Contact<dim>& contact) const;
+  double friction(const Contact<dim>& contact) const;
+  double restitution(const Contact<dim>& contact) const;
+  void activate(Candidate& candidate, ImpulseSolver<dim>& solver) const;
+  /// Activates up to `most` candidates of every pair, the most violated first, then those farthest
+  /// from the others; returns how many.
+  int activate_violated(const SolidMotion<dim>& motion, int most, double tolerance,
+                        ImpulseSolver<dim>& solver);
+  /// Looks again if the solution moves solids farther than the search had looked.
+  void extend_search(const std::vector<double>& velocity);
+
+  const SolidSystem<dim>& system_;
+  const ContactShapes<dim>& shapes_;
+  const std::vector<HalfSpace>& walls_;
+  const GaussSeidelOptions& options_;
+  double spacing_;
+  ContactPhase phase_;
+  double dt_;
+  std::vector<double> before_;
+  std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed
+  std::vector<Candidate> candidates_;
+  std::map<Pair, std::vector<int>> pairs_;  ///< candidates of each pair
+  double scale_ = 0;                        ///< largest violation at the start [m/s]
+};
+
+}  // namespace lockstep

@@ -1,0 +1,45 @@
+#pragma once
+#include <vector>
+
+#include "contact/solid_motion.hpp"
+
+namespace lockstep {
+
+/// Two surface points that touch or may touch within the step.
+template <int dim>
+struct Contact {
+  int solid = -1;                          ///< the one that `normal` points to
+  int other = -1;                          ///< a solid, or ~side for a wall (see `HalfSpace`)
+  SurfacePoint<dim> point;                 ///< on `solid`
+  SurfacePoint<dim> other_point;           ///< on `other`; meaningless for a wall
+  Point<dim> x = Point<dim>::Zero();       ///< where the impulse acts on both [m]
+  Point<dim> normal = Point<dim>::Zero();  ///< unit, out of `other`
+  double gap = 0;                          ///< along the normal, negative in an overlap [m]
+};
+
+/// A wall of the domain; solids stay where sign * (x[axis] - coordinate) >= 0.
+struct HalfSpace {
+  int side = 0;  ///< 2 axis + (0 lower, 1 upper)
+  int axis = 0;
+  double sign = 1, coordinate = 0;
+};
+
+/// How far the search for contacts looks.
+struct ContactReach {
+  double near = 0;            ///< gaps up to this are contacts whatever the motion [m]
+  double depth = 0;           ///< deepest overlap that is recognised [m]
+  double half_thickness = 0;  ///< of thin shells [m]
+  double dt = 0;              ///< of the motion that is followed [s]
+  bool swept = true;          ///< also what the motion over dt meets beyond `near`
+};
+
+/// All contacts of solids with each other and with walls: vertices against surfaces both ways,
+/// sharp edges against sharp edges, and what fast vertices meet on their way. Two prescribed solids
+/// have none. Shells are two-sided, of finite thickness. Local; the same on all ranks.
+template <int dim>
+std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
+                                        const SolidMotion<dim>& motion,
+                                        const std::vector<HalfSpace>& walls,
+                                        const ContactReach& reach);
+
+}  // namespace lockstep

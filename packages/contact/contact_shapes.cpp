@@ -1,0 +1,157 @@
+#include "contact/contact_shapes.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "geometry/simplex_queries.hpp"
+
+namespace lockstep {
+
+namespace {
+
+constexpr double smooth_cosine = 0.87;  // edges that bend by less than 30 degrees are smooth
+
+template <int dim>
+std::array<Point<dim>, dim> corners_of(const SurfaceMesh<dim>& mesh, int simplex) {
+  std::array<Point<dim>, dim> corners;
+  for (int k = 0; k < dim; ++k)
+    corners[k] = mesh.vertices[mesh.simplices[simplex][k]];
+  return corners;
+}
+
+std::vector<SharpEdge> find_sharp_edges(const SurfaceMesh<3>& mesh, const SolidDescription& solid) {
+  std::map<std::array<int, 2>, SharpEdge> edges;
+  for (int simplex = solid.simplex_begin; simplex < solid.simplex_end; ++simplex) {
+    for (int k = 0; k < 3; ++k) {
+      std::array<int, 2> ends{mesh.simplices[simplex][k], mesh.simplices[simplex][(k + 1) % 3]};
+      std::sort(ends.begin(), ends.end());
+      SharpEdge& edge = edges[ends];
+      edge.vertices = ends;
+      edge.simplices[edge.simplices[0] < 0 ? 0 : 1] = simplex;
+    }
+  }
+  std::vector<SharpEdge> sharp;
+  for (const auto& [ends, edge] : edges) {
+    if (edge.simplices[1] >= 0) {
+      const Point<3> one = area_vector<3>(corners_of(mesh, edge.simplices[0])).normalized();
+      const Point<3> other = area_vector<3>(corners_of(mesh, edge.simplices[1])).normalized();
+      if (one.dot(other) > smooth_cosine)
+        continue;
+    }
+    sharp.push_back(edge);
+  }
+  return sharp;
+}
+
+template <int dim>
+SurfaceMesh<dim> all_surfaces(const SolidSystem<dim>& system) {
+  SurfaceMesh<dim> all;
+  for (int m = 0; m < system.n_models(); ++m) {
+    const SurfaceMesh<dim>& mesh = system.model(m).surface();
+    const int shift = static_cast<int>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (auto simplex : mesh.simplices) {
+      for (int& vertex : simplex)
+        vertex += shift;
+      all.simplices.push_back(simplex);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+template <int dim>
+ContactTopology<dim>::ContactTopology(const SurfaceMesh<dim>& mesh,
+                                      const std::vector<SolidDescription>& solids)
+    : simplices_(mesh.simplices), begin_(mesh.vertices.size() + 1, 0) {
+  for (const auto& simplex : simplices_) {
+    for (int vertex : simplex)
+      ++begin_[vertex + 1];
+  }
+  for (std::size_t v = 1; v < begin_.size(); ++v)
+    begin_[v] += begin_[v - 1];
+  around_.resize(begin_.back());
+  std::vector<int> next = begin_;
+  for (int s = 0; s < static_cast<int>(simplices_.size()); ++s) {
+    for (int vertex : simplices_[s])
+      around_[next[vertex]++] = s;
+  }
+  sharp_edges_.resize(solids.size());
+  if constexpr (dim == 3) {
+    for (std::size_t i = 0; i < solids.size(); ++i)
+      sharp_edges_[i] = find_sharp_edges(mesh, solids[i]);
+  }
+}
+
+template <int dim>
+ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopology<dim>& topology)
+    : solids_(system.solids()), topology_(&topology), mesh_(all_surfaces(system)) {
+  if (!topology.belongs_to(mesh_))
+    topology = ContactTopology<dim>(mesh_, solids_);
+  solid_bounds_.resize(solids_.size());
+  bounds_.resize(mesh_.simplices.size());
+  for (int i = 0; i < n_solids(); ++i) {
+    for (int s = solids_[i].simplex_begin; s < solids_[i].simplex_end; ++s) {
+      for (int vertex : mesh_.simplices[s])
+        bounds_[s].extend(mesh_.vertices[vertex]);
+      solid_bounds_[i].extend(bounds_[s]);
+    }
+  }
+}
+
+template <int dim>
+std::array<Point<dim>, dim> ContactShapes<dim>::corners(int simplex) const {
+  return corners_of(mesh_, simplex);
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::normal(int simplex) const {
+  return area_vector<dim>(corners(simplex)).normalized();
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::vertex_normal(int vertex) const {
+  Point<dim> sum = Point<dim>::Zero();
+  for (const int* s = topology_->begin(vertex); s != topology_->end(vertex); ++s)
+    sum += area_vector<dim>(corners(*s));
+  return sum.normalized();
+}
+
+template <int dim>
+SurfacePoint<dim> ContactShapes<dim>::at_vertex(int vertex) const {
+  SurfacePoint<dim> point;
+  point.position = mesh_.vertices[vertex];
+  if (topology_->begin(vertex) == topology_->end(vertex))
+    return point;
+  point.simplex = *topology_->begin(vertex);
+  const auto& simplex = mesh_.simplices[point.simplex];
+  point.barycentric[std::find(simplex.begin(), simplex.end(), vertex) - simplex.begin()] = 1;
+  return point;
+}
+
+template <int dim>
+bool ContactShapes<dim>::inside(int solid, const Point<dim>& x, double radius) const {
+  double nearest = radius, alignment = 0;
+  for (int s = solids_[solid].simplex_begin; s < solids_[solid].simplex_end; ++s) {
+    if (bounds_[s].squaredExteriorDistance(x) > nearest * nearest)
+      continue;
+    const auto closest = closest_on_simplex<dim>(corners(s), x);
+    const double tie = 1e-9 * radius;
+    if (closest.distance > nearest + tie)
+      continue;
+    // Among the simplices that share the closest point, the one that faces x decides.
+    const double facing = normal(s).dot(x - closest.position);
+    if (closest.distance < nearest - tie || std::abs(facing) > std::abs(alignment))
+      alignment = facing;
+    nearest = std::min(nearest, closest.distance);
+  }
+  return alignment < 0;
+}
+
+template class ContactTopology<2>;
+template class ContactTopology<3>;
+template class ContactShapes<2>;
+template class ContactShapes<3>;
+
+}  // namespace lockstep

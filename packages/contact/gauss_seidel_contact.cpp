@@ -1,0 +1,102 @@
+#include "contact/gauss_seidel_contact.hpp"
+
+#include <Tpetra_Vector.hpp>
+
+#include "contact/contact_problem.hpp"
+#include "linear/exact_inverse.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// What the locks of dofs gave to the solids while contact acted: what M_S dV has in locked rows
+/// beyond the contact's own impulse. Collective.
+template <int dim>
+Momentum<dim> lock_impulse(const SolidSystem<dim>& solids, const Vector& change,
+                           const Vector& impulse) {
+  const RCP<Vector> reaction = make_vector(solids.map());
+  reaction->update(-1, impulse, 0);
+  apply(*solids.mass(), change, *reaction, 1, 1);
+  const auto free = solids.free_mask()->getData();
+  {
+    const auto values = reaction->getDataNonConst();
+    for (int row = 0; row < values.size(); ++row) {
+      if (free[row] != 0)
+        values[row] = 0;
+    }
+  }
+  return solids.momentum(*reaction);
+}
+
+/// M_S^-1 of an impulse on the free dofs. Collective.
+template <int dim>
+RCP<Vector> velocity_change(const SolidSystem<dim>& solids, const Vector& impulse) {
+  Vector free_impulse(solids.map());
+  free_impulse.elementWiseMultiply(1, *solids.free_mask(), impulse, 0);
+  const RCP<Vector> change = make_vector(solids.map());
+  apply(*exact_inverse(solids.solid_block(Teuchos::null, 0), "mass of the solids"), free_impulse,
+        *change);
+  return change;
+}
+
+}  // namespace
+
+template <int dim>
+GaussSeidelContact<dim>::GaussSeidelContact(const GaussSeidelOptions& options,
+                                            std::vector<HalfSpace> walls, double grid_spacing)
+    : options_(options), walls_(std::move(walls)), spacing_(grid_spacing) {}
+
+template <int dim>
+ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& solids,
+                                                    ContactPhase phase, double dt,
+                                                    Vector& velocity) {
+  ContactReport<dim> report;
+  if (!solids.has_unknowns())
+    return report;
+  const ContactShapes<dim> shapes(solids, topology_);
+  ContactProblem<dim> problem(solids, shapes, walls_, options_, spacing_, phase, dt);
+  const std::vector<double> given = replicated(solids, velocity);
+  const bool acts = problem.prepare(replicated(solids, *solids.velocity()), given);
+  report.deepest_overlap = problem.deepest_overlap();
+  if (!acts)
+    return report;
+  const InverseMass inverse_mass = replicated_inverse_mass(solids);
+  ImpulseSolver<dim> solver(solids, inverse_mass, given);
+  report.iterations = problem.solve(solver);
+  report.n_contacts = solver.n_contacts();
+  report.external_impulse = solver.external_impulse();
+
+  RCP<Vector> change = distributed(solids, solver.velocity());
+  change->update(-1, *distributed(solids, given), 1);
+  const RCP<const Vector> impulse = distributed(solids, solver.generalized_impulse());
+  if (!inverse_mass.exact)
+    change = velocity_change(solids, *impulse);
+  if (solids.has_locks())
+    report.external_impulse += lock_impulse(solids, *change, *impulse);
+  velocity.update(1, *change, 1);
+  return report;
+}
+
+template <int dim>
+std::vector<HalfSpace> walls_of(const Box<dim>& domain,
+                                const std::array<std::array<bool, 2>, dim>& closed_sides) {
+  std::vector<HalfSpace> walls;
+  for (int axis = 0; axis < dim; ++axis) {
+    for (int upper = 0; upper < 2; ++upper) {
+      if (closed_sides[axis][upper]) {
+        walls.push_back({2 * axis + upper, axis, upper == 1 ? -1.0 : 1.0,
+                         upper == 1 ? domain.max()[axis] : domain.min()[axis]});
+      }
+    }
+  }
+  return walls;
+}
+
+template class GaussSeidelContact<2>;
+template class GaussSeidelContact<3>;
+template std::vector<HalfSpace> walls_of<2>(const Box<2>&,
+                                            const std::array<std::array<bool, 2>, 2>&);
+template std::vector<HalfSpace> walls_of<3>(const Box<3>&,
+                                            const std::array<std::array<bool, 2>, 3>&);
+
+}  // namespace lockstep

@@ -1,0 +1,55 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "contact/contact_search.hpp"
+#include "contact/impulse_solver.hpp"
+#include "interfaces/contact.hpp"
+
+namespace lockstep {
+
+/// Lengths are in units of the grid spacing h.
+struct GaussSeidelOptions {
+  int sweeps = 200;              ///< of projected Gauss-Seidel for one set of contacts
+  double tolerance = 1e-4;       ///< change of velocities over the largest one wanted [1]
+  double margin = 0.1;           ///< gaps that are watched whatever the motion [h]
+  double slop = 0.05;            ///< overlap that is left alone [h]
+  double shell_thickness = 0.1;  ///< [h]
+  double deepest = 0.5;          ///< overlap that is recognised [h]
+  double push_rate = 0.2;        ///< part of an overlap that one step removes [1]
+  double bounce_speed = 1e-3;    ///< no restitution below this speed of approach [m/s]
+  std::optional<double> wall_friction, wall_restitution;  ///< default: those of the solid
+};
+
+/// Speculative contacts solved by projected Gauss-Seidel through M_S. A contact with gap g must
+/// have v_n >= -g / dt after the resolution. In the position phase overlaps are pushed out, and
+/// whatever a vertex meets during dt is a contact; in the velocity phase only contacts that touch
+/// count, and restitution acts there.
+///
+/// Surfaces and velocities of all solids are replicated and every rank solves the same problem:
+/// results do not depend on the number of ranks; the work, O(solids and their vertices), does not
+/// shrink with it either.
+template <int dim>
+class GaussSeidelContact : public ContactModel<dim> {
+ public:
+  /// Walls: see `walls_of`. `grid_spacing` h [m].
+  GaussSeidelContact(const GaussSeidelOptions& options, std::vector<HalfSpace> walls,
+                     double grid_spacing);
+
+  std::string name() const override { return "gauss seidel"; }
+  ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
+                             Vector& velocity) override;
+
+ private:
+  GaussSeidelOptions options_;
+  std::vector<HalfSpace> walls_;
+  double spacing_;
+  ContactTopology<dim> topology_;
+};
+
+/// Half spaces of the closed sides of a domain: [axis][lower, upper].
+template <int dim>
+std::vector<HalfSpace> walls_of(const Box<dim>& domain,
+                                const std::array<std::array<bool, 2>, dim>& closed_sides);
+
+}  // namespace lockstep

@@ -1,0 +1,181 @@
+#include "contact/impulse_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace lockstep {
+
+namespace {
+template <int dim>
+Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
+  Eigen::Matrix<double, dim, dim - 1> tangents;
+  if constexpr (dim == 2) {
+    tangents.col(0) = Point<2>(-normal.y(), normal.x());
+  } else {
+    tangents.col(0) = normal.unitOrthogonal();
+    tangents.col(1) = normal.cross(tangents.col(0));
+  }
+  return tangents;
+}
+}  // namespace
+
+template <int dim>
+ImpulseSolver<dim>::ImpulseSolver(const SolidSystem<dim>& system, const InverseMass& inverse_mass,
+                                  std::vector<double> velocity)
+    : system_(system), inverse_mass_(inverse_mass), velocity_(std::move(velocity)) {}
+
+template <int dim>
+void ImpulseSolver<dim>::add_side(Row& row, bool prescribed, const SurfacePoint<dim>& point,
+                                  double sign) {
+  if (prescribed) {
+    row.prescribed += sign * system_.prescribed_velocity(point, row.contact.x);
+    return;
+  }
+  VelocityRow<dim> velocity_row;
+  system_.velocity_row(point, row.contact.x, velocity_row);
+  for (std::size_t k = 0; k < velocity_row.dofs.size(); ++k) {
+    jacobian_.push_back(
+        {static_cast<int>(velocity_row.dofs[k]), sign * velocity_row.coefficients[k]});
+  }
+}
+
+template <int dim>
+void ImpulseSolver<dim>::add_response(Row& row) {
+  std::map<int, Point<dim>> response;
+  for (int k = row.begin; k < row.end; ++k) {
+    for (const auto& [dof, value] : inverse_mass_.rows[jacobian_[k].dof]) {
+      const auto place = response.try_emplace(dof, Point<dim>::Zero()).first;
+      place->second += value * jacobian_[k].coefficient;
+    }
+  }
+  row.response_begin = static_cast<int>(response_.size());
+  for (const auto& [dof, coefficient] : response)
+    response_.push_back({dof, coefficient});
+  row.response_end = static_cast<int>(response_.size());
+  Eigen::Matrix<double, dim, dim> compliance = Eigen::Matrix<double, dim, dim>::Zero();
+  for (int k = row.begin; k < row.end; ++k) {
+    const auto found = response.find(jacobian_[k].dof);
+    if (found != response.end())
+      compliance += jacobian_[k].coefficient * found->second.transpose();
+  }
+  row.normal_response = row.contact.normal.dot(compliance * row.contact.normal);
+  row.tangents = tangents_of<dim>(row.contact.normal);
+  auto tangent = (row.tangents.transpose() * compliance * row.tangents).eval();
+  // Directions that locks hold get no impulse to speak of.
+  tangent.diagonal().array() += 1e-12 * compliance.trace();
+  row.tangent_inverse = tangent.inverse();
+}
+
+template <int dim>
+void ImpulseSolver<dim>::add(const Contact<dim>& contact, double target, double friction) {
+  const auto& solids = system_.solids();
+  Row row;
+  row.contact = contact;
+  row.target = target;
+  row.friction = friction;
+  row.tangent_impulse.setZero();
+  row.solid_prescribed = solids[contact.solid].prescribed;
+  row.other_prescribed = contact.other < 0 || solids[contact.other].prescribed;
+  row.begin = static_cast<int>(jacobian_.size());
+  add_side(row, row.solid_prescribed, contact.point, 1);
+  if (contact.other >= 0)
+    add_side(row, row.other_prescribed, contact.other_point, -1);
+  row.end = static_cast<int>(jacobian_.size());
+  add_response(row);
+  rows_.push_back(row);
+}
+
+template <int dim>
+Point<dim> ImpulseSolver<dim>::relative_velocity(const Row& row) const {
+  Point<dim> velocity = row.prescribed;
+  for (int k = row.begin; k < row.end; ++k)
+    velocity += velocity_[jacobian_[k].dof] * jacobian_[k].coefficient;
+  return velocity;
+}
+
+template <int dim>
+void ImpulseSolver<dim>::push(const Row& row, const Point<dim>& impulse) {
+  for (int k = row.response_begin; k < row.response_end; ++k)
+    velocity_[response_[k].dof] += response_[k].coefficient.dot(impulse);
+}
+
+template <int dim>
+double ImpulseSolver<dim>::relax_normal(Row& row) {
+  const Point<dim>& normal = row.contact.normal;
+  const double wanted = row.target - normal.dot(relative_velocity(row));
+  const double total = std::max(0.0, row.normal_impulse + wanted / row.normal_response);
+  const double change = total - row.normal_impulse;
+  row.normal_impulse = total;
+  if (change != 0)
+    push(row, change * normal);
+  return std::abs(change) * row.normal_response;
+}
+
+template <int dim>
+double ImpulseSolver<dim>::relax_friction(Row& row) {
+  if (row.friction == 0)
+    return 0;
+  const auto slip = (row.tangents.transpose() * relative_velocity(row)).eval();
+  auto total = (row.tangent_impulse - row.tangent_inverse * slip).eval();
+  const double largest = row.friction * row.normal_impulse, size = total.norm();
+  if (size > largest)
+    total *= largest / size;
+  const auto change = (total - row.tangent_impulse).eval();
+  row.tangent_impulse = total;
+  if (change.norm() == 0)
+    return 0;
+  push(row, row.tangents * change);
+  return change.norm() * row.normal_response;
+}
+
+template <int dim>
+int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance) {
+  for (int sweep = 1; sweep <= maximum_sweeps; ++sweep) {
+    double change = 0;
+    for (Row& row : rows_) {
+      if (!(row.normal_response > 0))
+        continue;
+      change = std::max(change, relax_normal(row));
+      change = std::max(change, relax_friction(row));
+    }
+    if (change <= tolerance)
+      return sweep;
+  }
+  return maximum_sweeps;
+}
+
+template <int dim>
+Point<dim> ImpulseSolver<dim>::impulse(const Row& row) const {
+  return row.normal_impulse * row.contact.normal + row.tangents * row.tangent_impulse;
+}
+
+template <int dim>
+std::vector<double> ImpulseSolver<dim>::generalized_impulse() const {
+  std::vector<double> total(velocity_.size());
+  for (const Row& row : rows_) {
+    const Point<dim> pushed = impulse(row);
+    for (int k = row.begin; k < row.end; ++k)
+      total[jacobian_[k].dof] += jacobian_[k].coefficient.dot(pushed);
+  }
+  return total;
+}
+
+template <int dim>
+Momentum<dim> ImpulseSolver<dim>::external_impulse() const {
+  Momentum<dim> total;
+  for (const Row& row : rows_) {
+    if (row.solid_prescribed)
+      total.add(row.contact.x, -impulse(row));
+    if (row.other_prescribed)
+      total.add(row.contact.x, impulse(row));
+  }
+  return total;
+}
+
+template class ImpulseSolver<2>;
+template class ImpulseSolver<3>;
+
+}  // namespace lockstep

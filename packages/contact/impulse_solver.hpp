@@ -1,0 +1,65 @@
+#pragma once
+#include <vector>
+
+#include "contact/contact_search.hpp"
+#include "contact/inverse_mass.hpp"
+
+namespace lockstep {
+
+/// Projected Gauss-Seidel for contact impulses: normal ones that only push, so that the normal
+/// velocity reaches a target, and Coulomb friction inside its disc. Every impulse acts at one point
+/// on both solids with opposite signs. Local, the same on all ranks.
+template <int dim>
+class ImpulseSolver {
+ public:
+  ImpulseSolver(const SolidSystem<dim>& system, const InverseMass& inverse_mass,
+                std::vector<double> velocity);
+
+  /// Target: least normal velocity of `contact.solid` relative to the other [m/s].
+  void add(const Contact<dim>& contact, double target, double friction);
+  /// Sweeps until no velocity at a contact changes by more than `tolerance` [m/s]; returns the
+  /// number of sweeps.
+  int iterate(int maximum_sweeps, double tolerance);
+
+  int n_contacts() const { return static_cast<int>(rows_.size()); }
+  const std::vector<double>& velocity() const { return velocity_; }
+  /// J^T impulses, by id.
+  std::vector<double> generalized_impulse() const;
+  /// What walls and prescribed solids gave to the others.
+  Momentum<dim> external_impulse() const;
+
+ private:
+  struct Entry {
+    int dof;
+    Point<dim> coefficient;
+  };
+  using Tangents = Eigen::Matrix<double, dim, dim - 1>;
+  struct Row {
+    Contact<dim> contact;
+    int begin = 0, end = 0;                    ///< in `jacobian_`
+    int response_begin = 0, response_end = 0;  ///< in `response_`: M^-1 J^T
+    Point<dim> prescribed = Point<dim>::Zero();
+    double target = 0, friction = 0, normal_response = 0;
+    bool solid_prescribed = false, other_prescribed = false;
+    Tangents tangents;
+    Eigen::Matrix<double, dim - 1, dim - 1> tangent_inverse;
+    double normal_impulse = 0;
+    Eigen::Matrix<double, dim - 1, 1> tangent_impulse;
+  };
+
+  void add_side(Row& row, bool prescribed, const SurfacePoint<dim>& point, double sign);
+  void add_response(Row& row);
+  Point<dim> relative_velocity(const Row& row) const;
+  void push(const Row& row, const Point<dim>& impulse);
+  double relax_normal(Row& row);
+  double relax_friction(Row& row);
+  Point<dim> impulse(const Row& row) const;
+
+  const SolidSystem<dim>& system_;
+  const InverseMass& inverse_mass_;
+  std::vector<double> velocity_;
+  std::vector<Row> rows_;
+  std::vector<Entry> jacobian_, response_;
+};
+
+}  // namespace lockstep

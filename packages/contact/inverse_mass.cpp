@@ -1,0 +1,118 @@
+#include "contact/inverse_mass.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "base/errors.hpp"
+#include "linear/block_diagonal.hpp"
+
+namespace lockstep {
+
+namespace {
+
+constexpr int largest_block = 24;
+
+/// Row, column, value of this rank's nonzeros.
+std::vector<double> triplets_of(const CrsMatrix& matrix) {
+  std::vector<double> triplets;
+  Teuchos::ArrayView<const int> columns;
+  Teuchos::ArrayView<const double> values;
+  for (int row = 0; row < static_cast<int>(matrix.getNodeNumRows()); ++row) {
+    matrix.getLocalRowView(row, columns, values);
+    for (int k = 0; k < columns.size(); ++k) {
+      triplets.push_back(static_cast<double>(matrix.getRowMap()->getGlobalElement(row)));
+      triplets.push_back(static_cast<double>(matrix.getColMap()->getGlobalElement(columns[k])));
+      triplets.push_back(values[k]);
+    }
+  }
+  return triplets;
+}
+
+std::vector<double> lumped_triplets(const LinearOperator& mass, const RCP<const Map>& map) {
+  Vector ones(map), sums(map);
+  ones.putScalar(1);
+  apply(mass, ones, sums);
+  std::vector<double> triplets;
+  const auto values = sums.getData();
+  std::string failure;
+  for (int row = 0; row < values.size(); ++row) {
+    const GlobalIndex id = map->getGlobalElement(row);
+    if (!(values[row] > 0))
+      failure = fmt::format(
+          "Contact needs lumped masses, but row {} of the matrix-free mass of the solids sums to "
+          "{}; let the solid model assemble its mass.",
+          id, values[row]);
+    triplets.insert(triplets.end(), {double(id), double(id), 1 / values[row]});
+  }
+  throw_on_all(map->getComm(), failure, static_cast<int>(ExitCode::solve_failed));
+  return triplets;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<double> replicated(const SolidSystem<dim>& system, const Vector& stacked) {
+  std::vector<double> mine;
+  const auto values = stacked.getData();
+  for (int row = 0; row < values.size(); ++row) {
+    mine.push_back(static_cast<double>(system.map()->getGlobalElement(row)));
+    mine.push_back(values[row]);
+  }
+  const std::vector<double> all = gather_all(system.comm(), mine);
+  std::vector<double> result(system.n_unknowns());
+  for (std::size_t k = 0; k + 1 < all.size(); k += 2) {
+    if (all[k] < static_cast<double>(result.size()))
+      result[static_cast<std::size_t>(all[k])] = all[k + 1];
+  }
+  return result;
+}
+
+template <int dim>
+RCP<Vector> distributed(const SolidSystem<dim>& system, const std::vector<double>& values) {
+  const RCP<Vector> vector = make_vector(system.map());
+  const auto data = vector->getDataNonConst();
+  for (int row = 0; row < data.size(); ++row) {
+    const GlobalIndex id = system.map()->getGlobalElement(row);
+    if (id < static_cast<GlobalIndex>(values.size()))
+      data[row] = values[id];
+  }
+  return vector;
+}
+
+template <int dim>
+InverseMass replicated_inverse_mass(const SolidSystem<dim>& system) {
+  const RCP<const LinearOperator> mass = system.solid_block(Teuchos::null, 0);
+  const auto matrix = assembled(mass);
+  InverseMass result;
+  std::vector<double> triplets;
+  if (matrix.is_null()) {
+    result.exact = false;
+    triplets = lumped_triplets(*mass, system.map());
+  } else {
+    const auto blocks = block_diagonal_inverse(matrix, largest_block, "mass of the solids");
+    result.exact = blocks.exact;
+    triplets = triplets_of(*blocks.inverse);
+  }
+  const std::vector<double> all = gather_all(system.comm(), triplets);
+  const std::vector<double> free = replicated(system, *system.free_mask());
+  const auto n = static_cast<double>(free.size());
+  result.rows.resize(free.size());
+  for (std::size_t k = 0; k + 2 < all.size(); k += 3) {
+    if (all[k] >= n || all[k + 1] >= n)
+      continue;
+    const auto row = static_cast<std::size_t>(all[k]);
+    const auto column = static_cast<std::size_t>(all[k + 1]);
+    if (free[row] != 0 && free[column] != 0)
+      result.rows[row].push_back({static_cast<int>(column), all[k + 2]});
+  }
+  return result;
+}
+
+template InverseMass replicated_inverse_mass<2>(const SolidSystem<2>&);
+template InverseMass replicated_inverse_mass<3>(const SolidSystem<3>&);
+template std::vector<double> replicated<2>(const SolidSystem<2>&, const Vector&);
+template std::vector<double> replicated<3>(const SolidSystem<3>&, const Vector&);
+template RCP<Vector> distributed<2>(const SolidSystem<2>&, const std::vector<double>&);
+template RCP<Vector> distributed<3>(const SolidSystem<3>&, const std::vector<double>&);
+
+}  // namespace lockstep

@@ -1,0 +1,80 @@
+#include "contact/register_contact.hpp"
+
+#include "contact/gauss_seidel_contact.hpp"
+
+namespace lockstep {
+
+ParameterList contact_parameters() {
+  const GaussSeidelOptions usual;
+  ParameterList list;
+  declare_positive(list, "Iterations", usual.sweeps,
+                   "Sweeps of projected Gauss-Seidel over one set of contacts, at most.");
+  declare_positive(list, "Tolerance", usual.tolerance,
+                   "Sweeps end when velocities at contacts change by less than this part of the "
+                   "largest change that contact asks for [1].");
+  declare_positive(list, "Margin", usual.margin,
+                   "Gap below which surfaces are watched whatever their motion [cells]. Faster "
+                   "motion is followed along its path.");
+  declare_positive(list, "Slop", usual.slop,
+                   "Overlap that is left alone, and gap up to which solids count as touching "
+                   "[cells].");
+  declare_positive(list, "Shell Thickness", usual.shell_thickness,
+                   "Thickness of thin shells for contact [cells].");
+  declare_positive(list, "Deepest Overlap", usual.deepest,
+                   "How deep inside a solid a vertex is still recognised [cells].");
+  declare_between(list, "Push Out Rate", usual.push_rate, 0.0, 1.0,
+                  "Part of an overlap beyond the slop that one step removes [1].");
+  declare_at_least(list, "Bounce Speed", usual.bounce_speed, 0.0,
+                   "No restitution below this speed of approach [m/s].");
+  declare_optional<double>(list, "Wall Friction",
+                           "Coulomb's coefficient of the domain's walls [1]; without it that of "
+                           "the solid counts. Two solids, or a solid and a wall, have the "
+                           "geometric mean of their coefficients.");
+  declare_optional<double>(list, "Wall Restitution",
+                           "Restitution of the domain's walls [1]; without it that of the solid "
+                           "counts. Pairs have the geometric mean.");
+  set_at_least(list, "Wall Friction", 0);
+  set_between(list, "Wall Restitution", 0, 1);
+  return list;
+}
+
+namespace {
+
+std::optional<double> optional_value(const ParameterList& list, const std::string& name) {
+  return list.isParameter(name) ? std::optional<double>(list.get<double>(name)) : std::nullopt;
+}
+
+GaussSeidelOptions options_from(const ParameterList& list) {
+  GaussSeidelOptions options;
+  options.sweeps = list.get<int>("Iterations");
+  options.tolerance = list.get<double>("Tolerance");
+  options.margin = list.get<double>("Margin");
+  options.slop = list.get<double>("Slop");
+  options.shell_thickness = list.get<double>("Shell Thickness");
+  options.deepest = list.get<double>("Deepest Overlap");
+  options.push_rate = list.get<double>("Push Out Rate");
+  options.bounce_speed = list.get<double>("Bounce Speed");
+  options.wall_friction = optional_value(list, "Wall Friction");
+  options.wall_restitution = optional_value(list, "Wall Restitution");
+  return options;
+}
+
+}  // namespace
+
+template <int dim>
+void register_contact(ContactRegistry<dim>& contacts) {
+  contacts.add("gauss seidel",
+               "Collisions, resting contact and Coulomb friction between solids and with walls, by "
+               "projected Gauss-Seidel on velocities.",
+               contact_parameters,
+               [](const ParameterList& list, const ContactSetting<dim>& setting) {
+                 return std::make_unique<GaussSeidelContact<dim>>(
+                     options_from(list), walls_of<dim>(setting.domain, setting.closed_sides),
+                     setting.grid_spacing);
+               });
+}
+
+template void register_contact<2>(ContactRegistry<2>&);
+template void register_contact<3>(ContactRegistry<3>&);
+
+}  // namespace lockstep

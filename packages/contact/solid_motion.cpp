@@ -1,0 +1,89 @@
+#include "contact/solid_motion.hpp"
+
+namespace lockstep {
+
+template <int dim>
+Point<dim> point_velocity(const SolidSystem<dim>& system, bool prescribed,
+                          const SurfacePoint<dim>& point, const Point<dim>& x,
+                          const std::vector<double>& velocity) {
+  if (prescribed)
+    return system.prescribed_velocity(point, x);
+  VelocityRow<dim> row;
+  system.velocity_row(point, x, row);
+  Point<dim> sum = Point<dim>::Zero();
+  for (std::size_t k = 0; k < row.dofs.size(); ++k)
+    sum += velocity[row.dofs[k]] * row.coefficients[k];
+  return sum;
+}
+
+template <int dim>
+SolidMotion<dim>::SolidMotion(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
+                              const std::vector<double>& velocity)
+    : shapes_(shapes), motions_(shapes.n_solids()) {
+  for (int i = 0; i < shapes.n_solids(); ++i) {
+    const SolidDescription& solid = shapes.solids()[i];
+    Motion& motion = motions_[i];
+    if (solid.simplex_begin == solid.simplex_end)
+      continue;
+    const Box<dim>& box = shapes.bounds_of_solid(i);
+    motion.rigid = solid.rigid;
+    if (!motion.rigid) {
+      vertex_velocities_.resize(shapes.mesh().vertices.size(), Point<dim>::Zero());
+      for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
+        const SurfacePoint<dim> point = shapes.at_vertex(v);
+        if (point.simplex < 0)
+          continue;
+        vertex_velocities_[v] =
+            point_velocity(system, solid.prescribed, point, point.position, velocity);
+        motion.range.extend(vertex_velocities_[v]);
+      }
+      continue;
+    }
+    SurfacePoint<dim> point;
+    point.simplex = solid.simplex_begin;
+    point.barycentric.fill(1.0 / dim);
+    motion.center = box.center();
+    const auto field = [&](const Point<dim>& x) {
+      return point_velocity(system, solid.prescribed, point, x, velocity);
+    };
+    motion.velocity = field(motion.center);
+    const double arm = box.diagonal().norm();
+    for (int a = 0; a < dim; ++a) {
+      motion.gradient.col(a) =
+          (field(motion.center + arm * Point<dim>::Unit(a)) - motion.velocity) / arm;
+    }
+    for (int corner = 0; corner < (1 << dim); ++corner) {
+      const Point<dim> x = box.corner(static_cast<typename Box<dim>::CornerType>(corner));
+      motion.range.extend(Point<dim>(motion.velocity + motion.gradient * (x - motion.center)));
+    }
+  }
+}
+
+template <int dim>
+Point<dim> SolidMotion<dim>::at(int solid, const SurfacePoint<dim>& point,
+                                const Point<dim>& x) const {
+  const Motion& motion = motions_[solid];
+  if (motion.rigid)
+    return motion.velocity + motion.gradient * (x - motion.center);
+  Point<dim> sum = Point<dim>::Zero();
+  for (int k = 0; k < dim; ++k)
+    sum += point.barycentric[k] * vertex_velocities_[shapes_.mesh().simplices[point.simplex][k]];
+  return sum;
+}
+
+template <int dim>
+Point<dim> SolidMotion<dim>::of_vertex(int solid, int vertex) const {
+  const Motion& motion = motions_[solid];
+  if (motion.rigid)
+    return motion.velocity + motion.gradient * (shapes_.mesh().vertices[vertex] - motion.center);
+  return vertex_velocities_[vertex];
+}
+
+template class SolidMotion<2>;
+template class SolidMotion<3>;
+template Point<2> point_velocity<2>(const SolidSystem<2>&, bool, const SurfacePoint<2>&,
+                                    const Point<2>&, const std::vector<double>&);
+template Point<3> point_velocity<3>(const SolidSystem<3>&, bool, const SurfacePoint<3>&,
+                                    const Point<3>&, const std::vector<double>&);
+
+}  // namespace lockstep

@@ -1,0 +1,44 @@
+#pragma once
+#include <vector>
+
+#include "contact/contact_shapes.hpp"
+
+namespace lockstep {
+
+/// The velocity of every surface point for given generalized velocities: one affine field for a
+/// rigid solid, vertex by vertex for others. Local, the same on all ranks.
+template <int dim>
+class SolidMotion {
+ public:
+  /// `velocity`: V_S by id of `SolidSystem::map`, without padding.
+  SolidMotion(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
+              const std::vector<double>& velocity);
+
+  /// Of a point of the solid [m/s]; for a rigid solid that of the given x. Wherever simplices carry
+  /// the motion, `point` says where.
+  Point<dim> at(int solid, const SurfacePoint<dim>& point, const Point<dim>& x) const;
+  /// Of a vertex [m/s].
+  Point<dim> of_vertex(int solid, int vertex) const;
+  /// Componentwise bounds of the velocity over the solid [m/s].
+  const Box<dim>& range(int solid) const { return motions_[solid].range; }
+
+ private:
+  struct Motion {
+    bool rigid = true;
+    Point<dim> center, velocity;
+    Eigen::Matrix<double, dim, dim> gradient;
+    Box<dim> range;
+  };
+
+  const ContactShapes<dim>& shapes_;
+  std::vector<Motion> motions_;
+  std::vector<Point<dim>> vertex_velocities_;  ///< filled where solids are not rigid
+};
+
+/// v(x) of a point of a dynamic or a prescribed solid. Local.
+template <int dim>
+Point<dim> point_velocity(const SolidSystem<dim>& system, bool prescribed,
+                          const SurfacePoint<dim>& point, const Point<dim>& x,
+                          const std::vector<double>& velocity);
+
+}  // namespace lockstep
