@@ -33,7 +33,7 @@ std::string case_key(const StudyCase& study_case, const std::string& common) {
   std::string key = fmt::format("{} ranks\n", study_case.ranks);
   for (const std::string& assignment : study_case.assignments)
     key += assignment + "\n";
-  return key + common;
+  return key + common + read_whole_file(study_case.scene_file);
 }
 
 bool is_finished(const std::string& directory, const std::string& key) {
@@ -44,12 +44,12 @@ bool is_finished(const std::string& directory, const std::string& key) {
   return read_whole_file(directory + "/case.txt") == key;
 }
 
-std::vector<std::string> command_of(const Study& study, const StudyCase& study_case,
-                                    const std::string& simulate, const std::string& directory) {
+std::vector<std::string> command_of(const StudyCase& study_case, const std::string& simulate,
+                                    const std::string& directory) {
   std::vector<std::string> command;
   if (study_case.ranks > 1)
     command = {"mpirun", "--oversubscribe", "-n", std::to_string(study_case.ranks)};
-  command.insert(command.end(), {simulate, study.scene_file, "--output", directory});
+  command.insert(command.end(), {simulate, study_case.scene_file, "--output", directory});
   for (const std::string& assignment : study_case.assignments)
     command.insert(command.end(), {"--set", assignment});
   return command;
@@ -66,7 +66,7 @@ std::string complaint(const std::string& error_file) {
   return text.empty() ? "it said nothing" : text;
 }
 
-CaseOutcome run_case(const Study& study, const StudyCase& study_case, const RunnerOptions& options,
+CaseOutcome run_case(const StudyCase& study_case, const RunnerOptions& options,
                      const std::string& common_key) {
   CaseOutcome outcome;
   outcome.directory = fmt::format("{}/runs/{}", options.output_directory, study_case.directory);
@@ -80,7 +80,7 @@ CaseOutcome run_case(const Study& study, const StudyCase& study_case, const Runn
   fs::create_directories(outcome.directory, error);
   check_output(!error, "Cannot create the folder '{}': {}.", outcome.directory, error.message());
   const std::string errors = outcome.directory + "/errors.txt";
-  outcome.exit_code = run_child(command_of(study, study_case, options.simulate, outcome.directory),
+  outcome.exit_code = run_child(command_of(study_case, options.simulate, outcome.directory),
                                 outcome.directory + "/log.txt", errors)
                           .exit_code;
   outcome.done = outcome.exit_code == 0;
@@ -100,9 +100,9 @@ CaseOutcome run_case(const Study& study, const StudyCase& study_case, const Runn
 }  // namespace
 
 std::vector<CaseOutcome> run_cases(
-    const Study& study, const std::vector<StudyCase>& cases, const RunnerOptions& options,
+    const std::vector<StudyCase>& cases, const RunnerOptions& options,
     const std::function<void(std::size_t, const CaseOutcome&)>& report) {
-  const std::string key = executable_key(options.simulate) + read_whole_file(study.scene_file);
+  const std::string key = executable_key(options.simulate);
   std::vector<CaseOutcome> outcomes(cases.size());
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};
@@ -111,7 +111,7 @@ std::vector<CaseOutcome> run_cases(
   const auto work = [&] {
     for (std::size_t i = next++; i < cases.size() && !stop; i = next++) {
       try {
-        outcomes[i] = run_case(study, cases[i], options, key);
+        outcomes[i] = run_case(cases[i], options, key);
         const std::lock_guard<std::mutex> lock(mutex);
         report(i, outcomes[i]);
       } catch (...) {

@@ -27,7 +27,7 @@ struct CaseOutcome {
 /// failed case does not stop the others, unless its input was bad: then no further one is started.
 /// `report` is called after each case with its number and outcome, by one thread at a time.
 std::vector<CaseOutcome> run_cases(
-    const Study& study, const std::vector<StudyCase>& cases, const RunnerOptions& options,
+    const std::vector<StudyCase>& cases, const RunnerOptions& options,
     const std::function<void(std::size_t, const CaseOutcome&)>& report);
 
 }  // namespace lockstep

@@ -16,11 +16,13 @@ const char* const assignments_doc =
     "Changes of the scene, \"List/Name=value\", separated by ';'. What stands in [ ] is a formula "
     "of the constants: \"Domain/Cells={[n], [n]}\".";
 const char* const constants_doc =
-    "Numbers, or formulas of those before, under names of their own. A series may replace those of "
-    "the study; all are evaluated anew for each case.";
+    "Numbers, or formulas of those before, under names of their own; all are evaluated anew for "
+    "each "
+    "case. A series may replace those of the study; its additional ones come before them.";
 
 ParameterList series_parameters() {
   ParameterList series;
+  declare_optional<std::string>(series, "Scene", "Another scene, relative to the study file.");
   declare_free_sublist(series, "Constants", constants_doc);
   declare(series, "Set", "", assignments_doc);
   declare_optional<ParameterArray<double>>(series, "Values",
@@ -83,10 +85,13 @@ std::vector<std::string> read_assignments(const std::string& text, const std::st
   return assignments;
 }
 
-Series read_series(const ParameterList& list, const std::string& name, const std::string& file) {
+Series read_series(const ParameterList& list, const std::string& name, const std::string& file,
+                   const std::string& scene) {
   Series series;
   const std::string where = fmt::format("{}, series \"{}\"", file, name);
   series.name = name;
+  series.scene_file =
+      resolve_path(file, list.isParameter("Scene") ? list.get<std::string>("Scene") : scene);
   series.constants = read_formulas(list.sublist("Constants"), where);
   series.assignments = read_assignments(list.get<std::string>("Set"), where);
   if (list.isParameter("Values"))
@@ -172,7 +177,7 @@ Study read_study(const std::string& file) {
   const ParameterList& ladder = list.sublist("Ladder");
   Study study;
   study.title = list.get<std::string>("Title");
-  study.scene_file = resolve_path(file, list.get<std::string>("Scene"));
+  const auto& scene = list.get<std::string>("Scene");
   study.constants = read_formulas(list.sublist("Constants"), file);
   for (const auto& [name, entry] : entries(list.sublist("Parameters")))
     study.parameters.emplace_back(name, value_text(entry));
@@ -182,9 +187,9 @@ Study read_study(const std::string& file) {
   study.usual_rungs = ladder.get<int>("Usual Rungs");
   study.abscissa = ladder.get<std::string>("Abscissa");
   for (const auto& [name, entry] : entries(list.sublist("Series")))
-    study.series.push_back(read_series(Teuchos::getValue<ParameterList>(entry), name, file));
+    study.series.push_back(read_series(Teuchos::getValue<ParameterList>(entry), name, file, scene));
   if (study.series.empty())
-    study.series.push_back({"all", {}, {}, {}, 1});
+    study.series.push_back({"all", resolve_path(file, scene), {}, {}, {}, 1});
   study.n_samples = list.sublist("Samples").get<int>("Number");
   study.sample_assignments =
       read_assignments(list.sublist("Samples").get<std::string>("Set"), file);

@@ -15,6 +15,7 @@ using Formulas = std::vector<std::pair<std::string, std::string>>;
 /// One line of a plot: the same assignments for every rung of the ladder.
 struct Series {
   std::string name;
+  std::string scene_file;
   Formulas constants;
   std::vector<std::string> assignments;  ///< "Path=value" with [formulas]
   std::vector<double> values;            ///< of this series' own ladder; empty: the study's
@@ -40,7 +41,6 @@ struct Quantity {
 /// A study file: which scene is run with which changes, and what is measured.
 struct Study {
   std::string title;
-  std::string scene_file;
   Formulas constants;
   Formulas parameters;  ///< name -> path in the scene, read back from used-parameters.xml
   std::vector<std::string> assignments;

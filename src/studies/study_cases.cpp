@@ -55,6 +55,7 @@ StudyCase make_case(const Study& study, int series_number, int rung, int sample,
   result.rung = rung;
   result.sample = sample;
   result.ranks = series.ranks;
+  result.scene_file = series.scene_file;
   Variables& constants = result.constants;
   constants[study.ladder_name] = value;
   if (study.ladder_name == "ranks") {

@@ -10,6 +10,7 @@ namespace lockstep {
 struct StudyCase {
   int series = 0, rung = 0, sample = 0;
   int ranks = 1;
+  std::string scene_file;
   Variables constants;                   ///< all that formulas may use before the run
   std::vector<std::string> assignments;  ///< for --set, formulas replaced
   std::string directory;                 ///< below DIR/runs: "voxel/n=32/sample-3"

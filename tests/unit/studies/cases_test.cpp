@@ -1,0 +1,80 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "base/errors.hpp"
+#include "studies/study_cases.hpp"
+
+namespace lockstep::test {
+
+namespace {
+
+Study two_series() {
+  Study study;
+  study.constants = {{"h", "1/n"}, {"density", "10"}};
+  study.assignments = {"Domain/Cells={[n], [n]}", "Solids/Ball/Density=[density]"};
+  study.ladder_name = "n";
+  study.ladder_values = {8, 16, 32};
+  study.usual_rungs = 2;
+  study.series = {{"light one", "scene.xml", {{"density", "1/2"}}, {"Time/Fixed Step=[h]"}, {}, 1},
+                  {"two ranks", "scene.xml", {}, {}, {64}, 2}};
+  study.n_samples = 2;
+  study.sample_assignments = {"Solids/Ball/Position={[h*offset_x], 0}"};
+  return study;
+}
+
+}  // namespace
+
+TEST(Cases, SeriesTimesRungsTimesSamples) {
+  const auto cases = study_cases(two_series(), {});
+  ASSERT_EQ(cases.size(), 2u * 2 + 1 * 2);  // the ladder of the second series has one rung
+  EXPECT_THAT(cases[0].assignments,
+              testing::ElementsAre("Domain/Cells={8, 8}", "Solids/Ball/Density=0.5",
+                                   "Time/Fixed Step=0.125", "Solids/Ball/Position={0, 0}"));
+  EXPECT_EQ(cases[0].directory, "light-one/n=8/sample-0");
+  EXPECT_EQ(cases[2].constants.at("h"), 1. / 16);
+  EXPECT_EQ(cases[4].ranks, 2);
+  EXPECT_EQ(cases[4].assignments[1], "Solids/Ball/Density=10");
+  EXPECT_EQ(cases[5].directory, "two-ranks/n=64/sample-1");
+}
+
+TEST(Cases, PartOfTheLadder) {
+  const auto all = study_cases(two_series(), parse_rungs("1:"));
+  EXPECT_EQ(all.size(), 2u * 3 + 2);
+  const auto last = study_cases(two_series(), parse_rungs("3"));
+  EXPECT_EQ(last.size(), 2u);
+  EXPECT_THROW(study_cases(two_series(), parse_rungs("7:9")), InputError);
+  for (const char* wrong : {"a:b", "0:2", "3:1", "1.5"})
+    EXPECT_THROW(parse_rungs(wrong), InputError) << wrong;
+}
+
+TEST(Cases, ALadderOfRanks) {
+  Study study = two_series();
+  study.series.resize(1);
+  study.ladder_name = "ranks";
+  study.constants = {{"n", "8"}, {"h", "1/n"}, {"density", "1"}};
+  study.ladder_values = {1, 4};
+  study.n_samples = 1;
+  const auto cases = study_cases(study, {});
+  ASSERT_EQ(cases.size(), 2u);
+  EXPECT_EQ(cases[1].ranks, 4);
+  EXPECT_EQ(cases[1].directory, "light-one/ranks=4");
+}
+
+TEST(Cases, EveryShippedStudyCanBeExpanded) {
+  int n_studies = 0;
+  for (const auto& file : std::filesystem::directory_iterator(STUDIES_DIRECTORY)) {
+    const std::string name = file.path().stem();
+    if (file.path().extension() != ".xml" || name.find("-scene") != std::string::npos)
+      continue;
+    ++n_studies;
+    const Study study = read_study(file.path());
+    for (const Series& series : study.series)
+      EXPECT_TRUE(std::filesystem::exists(series.scene_file)) << series.scene_file;
+    EXPECT_FALSE(study.title.empty()) << name;
+    EXPECT_GT(study_cases(study, {}).size(), 1u) << name;
+  }
+  EXPECT_GE(n_studies, 12);
+}
+
+}  // namespace lockstep::test

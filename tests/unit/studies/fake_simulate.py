@@ -1,0 +1,45 @@
+#!/usr/bin/python3
+"""Stands in for simulate: a 'scene' whose error is h^2 + offset, in the files a run leaves behind.
+
+Understands --output and the settings Domain/Cells, Solids/Ball/Position and Fake/Fail (an exit code).
+"""
+import json
+import os
+import sys
+from pathlib import Path
+
+arguments = sys.argv[2:]
+folder, settings = None, {}
+for flag, value in zip(arguments[::2], arguments[1::2]):
+    if flag == "--output":
+        folder = Path(value)
+    elif flag == "--set":
+        name, text = value.split("=", 1)
+        settings[name] = text
+    else:
+        sys.exit(2)
+if settings.get("Fake/Fail", "0") != "0":
+    print("S2 did not converge: residual 1.", file=sys.stderr)
+    sys.exit(int(settings["Fake/Fail"]))
+rank = int(os.environ.get("OMPI_COMM_WORLD_RANK", "0"))
+ranks = int(os.environ.get("OMPI_COMM_WORLD_SIZE", "1"))
+if rank != 0:
+    sys.exit(0)
+cells = [int(n) for n in settings["Domain/Cells"].strip("{}").split(",")]
+offset = float(settings.get("Solids/Ball/Position", "{0,0}").strip("{}").split(",")[0])
+h = 1 / cells[0]
+(folder / "history.csv").write_text(
+    "# a comment\nstep,time,dt\n1,0.1,0.1\n2,0.2,0.1\n3,0.4,0.2\n")
+(folder / "bodies.csv").write_text(
+    "step,time,name,vx\n" + "".join(f"{k},0,Ball 1,{k * (2 + h * h + offset)}\n" for k in (1, 2, 3)))
+(folder / "summary.json").write_text(json.dumps({
+    "wall_seconds": 2.0, "ranks": ranks, "peak_memory_mb": 10 * ranks,
+    "iterations": {"s1": {"median": 4, "max": 9}, "s2": {"median": 6, "max": 7}}}))
+(folder / "used-parameters.xml").write_text(f"""<ParameterList name="Scene">
+  <ParameterList name="Domain">
+    <Parameter name="Lower" type="Array(double)" value="{{0, 0}}"/>
+    <Parameter name="Upper" type="Array(double)" value="{{1, 1}}"/>
+    <Parameter name="Cells" type="Array(int)" value="{{{cells[0]}, {cells[1]}}}"/>
+  </ParameterList>
+</ParameterList>
+""")

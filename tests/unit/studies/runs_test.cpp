@@ -1,0 +1,157 @@
+// Whole studies on a stand-in for simulate whose result is 2 + h^2 + offset.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "base/errors.hpp"
+#include "output/atomic_file.hpp"
+#include "studies/study_table.hpp"
+
+namespace lockstep::test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class Runs : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    std::ofstream(folder_ + "/scene.xml") << "anything";
+    study_.ladder_name = "n";
+    study_.ladder_values = {4, 8, 16};
+    study_.abscissa = "h";
+    study_.assignments = {"Domain/Cells={[n], [n]}"};
+    study_.series = {{"all", folder_ + "/scene.xml", {}, {}, {}, 1}};
+    Quantity speed;
+    speed.name = "speed";
+    speed.expression = "Ball_1.vx / step";
+    speed.reference = "2";
+    study_.quantities = {speed};
+    options_.simulate = FAKE_SIMULATE;
+    options_.output_directory = folder_;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::vector<CaseOutcome> run() {
+    cases_ = study_cases(study_, {});
+    return run_cases(cases_, options_, [](std::size_t, const CaseOutcome&) {});
+  }
+  std::vector<StudyRow> table() {
+    const auto outcomes = run();
+    return study_table(study_, cases_, outcomes);
+  }
+
+  std::string folder_ = "studies-test-runs";
+  Study study_;
+  RunnerOptions options_;
+  std::vector<StudyCase> cases_;
+};
+
+}  // namespace
+
+TEST_F(Runs, ErrorsAndOrders) {
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_NEAR(rows[0].value, 2 + 1. / 16, 1e-14);
+  EXPECT_NEAR(*rows[0].error, 1. / 32, 1e-14);  // relative to 2
+  EXPECT_FALSE(rows[0].order);
+  EXPECT_NEAR(*rows[2].order, 2, 1e-10);
+  EXPECT_EQ(rows[2].cells, 256);
+  EXPECT_EQ(rows[2].spacing, 1. / 16);
+  EXPECT_NEAR(rows[2].mean_step, 0.4 / 3, 1e-15);
+  EXPECT_EQ(rows[2].iterations_median, 6);
+  EXPECT_EQ(rows[2].iterations_max, 9);
+  EXPECT_THAT(table_csv(study_, rows), testing::HasSubstr("\nall,256,0.0625,"));
+}
+
+TEST_F(Runs, SelfConvergenceAndReductions) {
+  study_.quantities[0].reference = "self";
+  study_.quantities[0].relative = false;
+  Quantity sum = study_.quantities[0];
+  sum.name = "mean after 0.15 s";
+  sum.expression = "dt";
+  sum.over = Quantity::Over::mean;
+  sum.from_time = 0.15;
+  sum.reference = "";
+  study_.quantities.push_back(sum);
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_NEAR(*rows[0].error, 1. / 16 - 1. / 256, 1e-14);
+  EXPECT_FALSE(rows[2].error);
+  EXPECT_NEAR(rows[3].value, 0.15, 1e-15);
+}
+
+TEST_F(Runs, MeanAndSpreadOverSamples) {
+  study_.ladder_values = {4};
+  study_.n_samples = 3;
+  study_.sample_assignments = {"Solids/Ball/Position={[sample - 1], 0}"};
+  study_.quantities[0].reference = "2 + h^2";
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_NEAR(*rows[0].error, 0, 1e-14);
+  EXPECT_NEAR(rows[0].spread, 1, 1e-14);  // of -1, 0, 1
+  EXPECT_EQ(rows[0].n_samples, 3);
+}
+
+TEST_F(Runs, FinishedRunsAreUsedAgainOnlyIfNothingChanged) {
+  EXPECT_FALSE(run()[0].reused);
+  EXPECT_TRUE(run()[0].reused);
+  std::ofstream(folder_ + "/scene.xml") << "something else";
+  EXPECT_FALSE(run()[0].reused);
+  study_.assignments.push_back("Fluid/Density=1");
+  EXPECT_FALSE(run()[0].reused);
+  EXPECT_TRUE(run()[2].reused);
+  options_.fresh = true;
+  EXPECT_FALSE(run()[0].reused);
+}
+
+TEST_F(Runs, AFailureLeavesTheRest) {
+  study_.assignments.push_back("Fake/Fail=[n == 8 ? 3 : 0]");
+  options_.n_jobs = 2;
+  const auto outcomes = run();
+  EXPECT_TRUE(outcomes[0].done);
+  EXPECT_EQ(outcomes[1].exit_code, 3);
+  EXPECT_EQ(outcomes[1].message, "S2 did not converge: residual 1.");
+  EXPECT_EQ(study_table(study_, cases_, outcomes).size(), 2u);
+  EXPECT_FALSE(run()[1].reused);
+}
+
+TEST_F(Runs, BadInputStopsTheLadder) {
+  study_.assignments.push_back("Fake/Fail=[n == 4 ? 2 : 0]");
+  const auto outcomes = run();
+  EXPECT_EQ(outcomes[0].exit_code, 2);
+  EXPECT_FALSE(outcomes[1].done);
+  EXPECT_EQ(outcomes[1].exit_code, 0);
+}
+
+TEST_F(Runs, AMissingProgramIsNamed) {
+  options_.simulate = folder_ + "/nothing";
+  EXPECT_THROW(run(), InputError);
+}
+
+TEST_F(Runs, SymbolsOfAStudyFileAreStrict) {
+  const std::string file = folder_ + "/study.xml";
+  std::ofstream(file) << R"xml(<ParameterList name="Study">
+  <Parameter name="Scene" type="string" value="scene.xml"/>
+  <ParameterList name="Ladder">
+    <Parameter name="Values" type="Array(double)" value="{4, 8}"/>
+  </ParameterList>
+  <ParameterList name="Quantities">
+    <ParameterList name="speed">
+      <Parameter name="Expresion" type="string" value="step"/>
+    </ParameterList>
+  </ParameterList>
+</ParameterList>)xml";
+  try {
+    read_study(file);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("Did you mean \"Expression\"?"));
+  }
+}
+
+}  // namespace lockstep::test
