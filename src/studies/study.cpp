@@ -161,8 +161,9 @@ ParameterList study_parameters() {
   ParameterList& samples = declare_list(
       study, "Samples",
       "Each case is run several times with other offsets, and values are averaged. offset_x, "
-      "offset_y, offset_z in [-1/2, 1/2) are the additive sequence with the powers of the inverse "
-      "plastic number, the same on every machine; sample is 0, 1, ...");
+      "offset_y, offset_z in [-1/2, 1/2) are additive sequences of irrational steps, the same on "
+      "every "
+      "machine; sample is 0, 1, ...");
   declare_positive(samples, "Number", 1, "How many.");
   declare(samples, "Set", "", assignments_doc);
   declare_named_sublists(study, "Quantities", "What is measured, one sublist each.",

@@ -82,8 +82,9 @@ StudyCase make_case(const Study& study, int series_number, int rung, int sample,
 }  // namespace
 
 double sample_offset(int sample, int axis) {
-  constexpr double plastic = 1.22074408460575947536;  // of three dimensions: x^4 = x + 1
-  const double position = sample * std::pow(plastic, -(axis + 1));
+  // Irrational steps: powers of the plastic number for the plane, the golden section across it.
+  constexpr double steps[] = {0.75487766624669276, 0.56984029099805327, 0.61803398874989485};
+  const double position = sample * steps[axis];
   return position - std::floor(position + 0.5);
 }
 

@@ -150,7 +150,7 @@ TEST_F(Runs, SymbolsOfAStudyFileAreStrict) {
     read_study(file);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("Did you mean \"Expression\"?"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("Did you mean \"Expression\""));
   }
 }
 

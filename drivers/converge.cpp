@@ -1,0 +1,167 @@
+// Runs a study: one scene along a ladder (grid, time step, ranks, any parameter), measured against
+// a reference.
+//
+//   converge xml-params/studies/added-mass-disc.xml --output results
+//   converge study.xml --rungs 1:4 --jobs 2        converge study.xml --list
+//   converge --parameters                          what a study file may say
+//
+// Writes DIR/table.csv, DIR/table.md and DIR/plot.png; the runs are kept in DIR/runs and used again
+// if neither scene, case nor program changed. Runs serially and starts `simulate`, which lies
+// beside it, through mpirun where a case asks for ranks.
+//
+// Exit codes: 0 done, 2 bad input, 4 output failed; that of the first failed run otherwise, after
+// the table of the others has been written.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+
+#include "base/errors.hpp"
+#include "output/atomic_file.hpp"
+#include "output/build_information.hpp"
+#include "parameters/reference.hpp"
+#include "studies/child_process.hpp"
+#include "studies/study_table.hpp"
+
+using namespace lockstep;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Arguments {
+  std::string study_file, rungs;
+  RunnerOptions runner;
+  bool list = false, parameters = false;
+  std::string format = "text";
+};
+
+/// The folder of this program.
+fs::path program_folder() {
+  return fs::read_symlink("/proc/self/exe").parent_path();
+}
+
+/// Writes the plot with tools/plot-study; that it cannot is worth a warning only.
+void plot(const std::string& directory) {
+  std::string script = LOCKSTEP_TOOLS_DIRECTORY "/plot-study";
+  const fs::path installed = program_folder().parent_path() / "share/lockstep/tools/plot-study";
+  if (!fs::exists(script))
+    script = installed;
+  const std::string errors = directory + "/plot-errors.txt";
+  const int exit_code = fs::exists(script)
+                            ? run_child({script, directory + "/table.csv", directory + "/plot.png"},
+                                        "/dev/null", errors)
+                                  .exit_code
+                            : 127;
+  if (exit_code != 0) {
+    std::cerr << fmt::format("Warning: no plot was made: {}\n", fs::exists(errors)
+                                                                    ? read_whole_file(errors)
+                                                                    : script + " does not exist.");
+  }
+  std::error_code ignored;
+  fs::remove(errors, ignored);
+}
+
+std::string outcome_line(const StudyCase& study_case, const CaseOutcome& outcome) {
+  const std::string how = outcome.reused ? "used again"
+                          : outcome.done ? "done"
+                                         : fmt::format("failed with exit code {}: {}",
+                                                       outcome.exit_code, outcome.message);
+  return fmt::format("{}: {}", study_case.directory, how);
+}
+
+int run_study(const Study& study, const Arguments& arguments) {
+  // 3. The cases.
+  const std::vector<StudyCase> cases =
+      study_cases(study, arguments.rungs.empty() ? RungRange() : parse_rungs(arguments.rungs));
+  if (arguments.list) {
+    for (const StudyCase& one : cases) {
+      std::cout << fmt::format("{} ({} ranks)\n", one.directory, one.ranks);
+      for (const std::string& assignment : one.assignments)
+        std::cout << "  " << assignment << "\n";
+    }
+    return 0;
+  }
+
+  // 4. Run them.
+  const std::string& directory = arguments.runner.output_directory;
+  fs::create_directories(directory);
+  std::size_t n_finished = 0;
+  const auto outcomes =
+      run_cases(cases, arguments.runner, [&](std::size_t i, const CaseOutcome& outcome) {
+        (outcome.done ? std::cout : std::cerr)
+            << fmt::format("[{}/{}] {}", ++n_finished, cases.size(),
+                           outcome_line(cases[i], outcome))
+            << std::endl;
+      });
+
+  // 5. Measure what is there.
+  const std::vector<StudyRow> table = study_table(study, cases, outcomes);
+  write_file_atomically(directory + "/table.csv", table_csv(study, table));
+  write_file_atomically(directory + "/table.md", table_markdown(study, table));
+  if (!table.empty())
+    plot(directory);
+  std::cout << fmt::format("{} of {} cases, {} rows in {}/table.md\n",
+                           std::count_if(outcomes.begin(), outcomes.end(),
+                                         [](const CaseOutcome& one) { return one.done; }),
+                           cases.size(), table.size(), directory);
+  for (const CaseOutcome& outcome : outcomes) {
+    if (outcome.exit_code != 0)
+      return outcome.exit_code;
+  }
+  return 0;
+}
+
+int run(int argc, char** argv) {
+  // 1. The command line.
+  Arguments arguments;
+  CLI::App app("Runs a study: a scene along a ladder of parameters, with tables and a plot.");
+  app.set_version_flag("--version", "lockstep " + build_information().version + " (" +
+                                        build_information().git_hash + ")");
+  app.add_option("study", arguments.study_file, "study file (xml-params/studies)");
+  app.add_option("--output", arguments.runner.output_directory,
+                 "output folder; default: the name of the study");
+  app.add_option("--rungs", arguments.rungs, "part of the ladder, counted from 1: first:last");
+  app.add_option("--jobs", arguments.runner.n_jobs, "cases at a time; times suffer")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--fresh", arguments.runner.fresh, "run everything again");
+  app.add_flag("--list", arguments.list, "print the cases without running them");
+  app.add_option("--simulate", arguments.runner.simulate, "program to run instead of simulate");
+  app.add_flag("--parameters", arguments.parameters, "print what a study file may say");
+  app.add_option("--format", arguments.format, "of --parameters: text or markdown")
+      ->check(CLI::IsMember({"text", "markdown"}));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0)
+      return app.exit(error);
+    throw InputError(std::string(error.what()) + " (see converge --help).");
+  }
+  if (arguments.parameters) {
+    std::cout << (arguments.format == "markdown"
+                      ? reference_markdown("Parameters of a study", study_parameters())
+                      : reference_text(study_parameters()));
+    return 0;
+  }
+  check_input(!arguments.study_file.empty(),
+              "Which study? Name a file, for example xml-params/studies/added-mass-disc.xml.");
+  if (arguments.runner.simulate.empty())
+    arguments.runner.simulate = program_folder() / "simulate";
+  if (arguments.runner.output_directory.empty())
+    arguments.runner.output_directory = fs::path(arguments.study_file).stem();
+
+  // 2. The study file, read strictly.
+  return run_study(read_study(arguments.study_file), arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Failure& failure) {
+    std::cerr << failure.what() << std::endl;
+    return static_cast<int>(failure.exit_code());
+  } catch (const fs::filesystem_error& error) {
+    std::cerr << error.what() << std::endl;
+    return static_cast<int>(ExitCode::output_failed);
+  }
+}

@@ -1,0 +1,206 @@
+// Compares solver strategies on one system that `simulate --dump-system` wrote.
+//
+//   solve tests/data/two-balls.h5 xml-params/solvers/*.xml --output results
+//   mpirun -n 2 solve system.h5 xml-params/solvers/paper.xml --tolerance 1e-10
+//
+// Prints one row a strategy and writes DIR/solvers.csv: iterations, seconds to set up and to solve,
+// the residual of each block, the largest difference to the strategy direct, memory.
+//
+// Exit codes: 0 done, 2 bad input, 3 a strategy failed (the others are in the table), 4 input or
+// output failed.
+#include <CLI/CLI.hpp>
+#include <Tpetra_Core.hpp>
+#include <Tpetra_Vector.hpp>
+#include <iostream>
+#include <optional>
+
+#include "base/errors.hpp"
+#include "linear/system_file.hpp"
+#include "output/on_root.hpp"
+#include "output/run_record.hpp"
+#include "parameters/strict_xml.hpp"
+#include "parameters/validate.hpp"
+#include "stepping/scene_file.hpp"
+#include "strategies/register_strategies.hpp"
+#include "studies/process_memory.hpp"
+
+using namespace lockstep;
+
+namespace {
+
+struct Arguments {
+  std::string system_file, output_directory;
+  std::vector<std::string> solver_files;
+  double tolerance = 0;  // 0: that of each file
+  int most_direct_unknowns = 100000;
+};
+
+/// What one strategy did.
+struct Row {
+  std::string file, strategy, failure;
+  SolveReport report;
+  std::optional<double> error;
+  double memory_mb = 0;
+};
+
+/// A solver file holds a strategy, or the list "Solver" of a scene with the strategy inside.
+ParameterList strategy_list(const std::string& file, const StrategyRegistry& strategies,
+                            double& tolerance, const Communicator& comm) {
+  Document document = read_xml(file, comm);
+  const bool nested = document.list.isSublist("Strategy");
+  if (nested && document.list.isType<double>("Tolerance"))
+    tolerance = document.list.get<double>("Tolerance");
+  Document strategy{ParameterList(), document.source};
+  strategy.list.sublist("Strategy") = nested ? document.list.sublist("Strategy") : document.list;
+  ParameterList valid;
+  declare_typed_sublist(valid, "Strategy", "The solver strategy.", strategies.schemas());
+  validate(strategy, valid);
+  const ParameterList& list = strategy.list.sublist("Strategy");
+  if (!nested && list.isType<double>("Tolerance"))
+    tolerance = list.get<double>("Tolerance");
+  return list;
+}
+
+BlockVector zero_like(const BlockVector& vector) {
+  return {make_vector(vector.pressure->getMap()),
+          vector.solid.is_null() ? Teuchos::null : make_vector(vector.solid->getMap())};
+}
+
+double relative_difference(const Vector& x, const Vector& exact) {
+  Vector difference(x, Teuchos::Copy);
+  difference.update(-1, exact, 1);
+  const double size = exact.norm2();
+  return size > 0 ? difference.norm2() / size : difference.norm2();
+}
+
+double error_against(const BlockVector& exact, const BlockVector& solution) {
+  const double pressure = relative_difference(*solution.pressure, *exact.pressure);
+  return exact.solid.is_null()
+             ? pressure
+             : std::max(pressure, relative_difference(*solution.solid, *exact.solid));
+}
+
+/// The solution to round-off, or nothing where the system is too large for it.
+std::optional<BlockVector> exact_solution(const StoredSystem& stored,
+                                          const StrategyRegistry& strategies, int most_unknowns) {
+  if (stored.rhs.pressure->getGlobalLength() > static_cast<std::size_t>(most_unknowns))
+    return std::nullopt;
+  const auto direct = strategies.create("direct", strategies.valid_parameters("direct"));
+  BlockVector solution = zero_like(stored.rhs);
+  direct->prepare(stored.system);
+  direct->solve(stored.system, stored.rhs, solution, {"reference", 1e-11});
+  return solution;
+}
+
+Row try_strategy(const std::string& file, const StoredSystem& stored,
+                 const std::optional<BlockVector>& exact, const StrategyRegistry& strategies,
+                 const Arguments& arguments, const Communicator& comm) {
+  Row row;
+  row.file = file;
+  double tolerance = 1e-8;
+  const ParameterList list = strategy_list(file, strategies, tolerance, comm);
+  row.strategy = list.get<std::string>("Type");
+  if (arguments.tolerance > 0)
+    tolerance = arguments.tolerance;
+  const double memory_before = restart_peak_memory();
+  try {
+    const auto strategy = strategies.create(row.strategy, list);
+    BlockVector solution = zero_like(stored.rhs);
+    strategy->prepare(stored.system);
+    row.report = strategy->solve(stored.system, stored.rhs, solution, {"S2", tolerance});
+    if (exact)
+      row.error = error_against(*exact, solution);
+  } catch (const SolveError& error) {
+    row.failure = error.what();
+  }
+  row.memory_mb = sum_all(comm, peak_memory_since_restart() - memory_before);
+  return row;
+}
+
+std::string csv(const std::vector<Row>& rows) {
+  std::string text =
+      "# setup, solve [s]; residuals: of each block over its scale; error: largest relative "
+      "difference of a block to the strategy direct\n"
+      "# memory [MB]: peak of all ranks while setting up and solving, less what was there before\n"
+      "file,strategy,iterations,setup_seconds,solve_seconds,pressure_residual,solid_residual,"
+      "error,memory_mb\n";
+  for (const Row& row : rows) {
+    if (row.failure.empty()) {
+      text += fmt::format("{},{},{},{},{},{},{},{},{}\n", row.file, row.strategy,
+                          row.report.iterations, row.report.setup_seconds, row.report.solve_seconds,
+                          row.report.pressure_residual, row.report.solid_residual,
+                          row.error ? fmt::format("{}", *row.error) : "", row.memory_mb);
+    }
+  }
+  return text;
+}
+
+std::string line(const Row& row) {
+  if (!row.failure.empty())
+    return fmt::format("{:<16} failed: {}", row.strategy, row.failure);
+  return fmt::format("{:<16} {:>10} {:>9.3f} {:>9.3f} {:>10.2e} {:>10.2e} {:>10} {:>8.1f}",
+                     row.strategy, row.report.iterations, row.report.setup_seconds,
+                     row.report.solve_seconds, row.report.pressure_residual,
+                     row.report.solid_residual, row.error ? fmt::format("{:.2e}", *row.error) : "-",
+                     row.memory_mb);
+}
+
+int run(int argc, char** argv, const Communicator& comm) {
+  // 1. The command line.
+  Arguments arguments;
+  CLI::App app("Compares solver strategies on a stored system.");
+  app.add_option("system", arguments.system_file, "file of simulate --dump-system")->required();
+  app.add_option("solvers", arguments.solver_files, "solver files (xml-params/solvers)")
+      ->required();
+  app.add_option("--output", arguments.output_directory, "folder for solvers.csv; default: none");
+  app.add_option("--tolerance", arguments.tolerance,
+                 "residual to reach; default: that of each solver file");
+  app.add_option("--direct-limit", arguments.most_direct_unknowns,
+                 "no error is computed for systems with more pressure unknowns");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0)
+      return is_root(comm) ? app.exit(error) : 0;
+    throw InputError(std::string(error.what()) + " (see solve --help).");
+  }
+
+  // 2. The strategies there are, the system, its exact solution.
+  StrategyRegistry strategies("solver strategy");
+  register_strategies(strategies);
+  const StoredSystem stored = read_system(arguments.system_file, comm);
+  const auto exact = exact_solution(stored, strategies, arguments.most_direct_unknowns);
+  const auto print = [&comm](const std::string& text) {
+    if (is_root(comm))
+      std::cout << text << std::endl;
+  };
+  print(fmt::format("{}: {} pressure unknowns, {} solid unknowns, {} null vectors, {} ranks",
+                    stored.system.name, stored.rhs.pressure->getGlobalLength(),
+                    stored.system.has_solid() ? stored.rhs.solid->getGlobalLength() : 0,
+                    stored.system.null_space.size(), comm->getSize()));
+  print(fmt::format("{:<16} {:>10} {:>9} {:>9} {:>10} {:>10} {:>10} {:>8}", "strategy",
+                    "iterations", "setup [s]", "solve [s]", "res. p", "res. V", "error", "MB"));
+
+  // 3. One after another, each from zero.
+  std::vector<Row> rows;
+  for (const std::string& file : arguments.solver_files) {
+    rows.push_back(try_strategy(file, stored, exact, strategies, arguments, comm));
+    print(line(rows.back()));
+  }
+  if (!arguments.output_directory.empty()) {
+    create_output_directory(comm, arguments.output_directory);
+    on_root(comm,
+            [&] { write_file_atomically(arguments.output_directory + "/solvers.csv", csv(rows)); });
+  }
+  const bool failed =
+      std::any_of(rows.begin(), rows.end(), [](const Row& row) { return !row.failure.empty(); });
+  return static_cast<int>(failed ? ExitCode::solve_failed : ExitCode::done);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Tpetra::ScopeGuard scope(&argc, &argv);
+  const Communicator comm = Tpetra::getDefaultComm();
+  return run_and_report(comm, [&] { return run(argc, argv, comm); });
+}
