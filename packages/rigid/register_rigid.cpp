@@ -11,7 +11,7 @@ void register_rigid(SolidRegistry<dim>& solids) {
              rigid_body_parameters<dim>,
              [](const ParameterList&, const NamedLists& bodies, const SolidSetting<dim>& setting) {
                return make_rigid_bodies<dim>(bodies, setting.grid_spacing, setting.gravity,
-                                             setting.comm);
+                                             setting.comm, setting.start_time);
              });
 }
 

@@ -10,8 +10,13 @@ namespace lockstep {
 
 template <int dim>
 RigidBodies<dim>::RigidBodies(std::vector<RigidBody<dim>> bodies, const Point<dim>& gravity,
-                              const Communicator& comm)
-    : comm_(comm), gravity_(gravity), bodies_(std::move(bodies)) {
+                              const Communicator& comm, double start_time)
+    : comm_(comm), gravity_(gravity), bodies_(std::move(bodies)), time_(start_time) {
+  for (RigidBody<dim>& body : bodies_) {
+    if (!body.dynamic())
+      follow_script(body, start_time);
+    body.last_move.origin = body.pose.position;
+  }
   describe();
   const long long n = static_cast<long long>(dynamic_.size());
   own_begin_ = static_cast<int>(n * comm->getRank() / comm->getSize());
@@ -246,22 +251,22 @@ std::vector<SolidState<dim>> RigidBodies<dim>::states() const {
 template <int dim>
 std::unique_ptr<RigidBodies<dim>> make_rigid_bodies(
     const std::vector<std::pair<std::string, ParameterList>>& bodies, double grid_spacing,
-    const Point<dim>& gravity, const Communicator& comm) {
+    const Point<dim>& gravity, const Communicator& comm, double start_time) {
   if (bodies.empty())
     return nullptr;
   std::vector<RigidBody<dim>> made;
   for (const auto& [name, list] : bodies)
     made.push_back(read_rigid_body<dim>(name, list, grid_spacing));
-  return std::make_unique<RigidBodies<dim>>(std::move(made), gravity, comm);
+  return std::make_unique<RigidBodies<dim>>(std::move(made), gravity, comm, start_time);
 }
 
 template class RigidBodies<2>;
 template class RigidBodies<3>;
 template std::unique_ptr<RigidBodies<2>> make_rigid_bodies<2>(
     const std::vector<std::pair<std::string, ParameterList>>&, double, const Point<2>&,
-    const Communicator&);
+    const Communicator&, double);
 template std::unique_ptr<RigidBodies<3>> make_rigid_bodies<3>(
     const std::vector<std::pair<std::string, ParameterList>>&, double, const Point<3>&,
-    const Communicator&);
+    const Communicator&, double);
 
 }  // namespace lockstep

@@ -21,9 +21,9 @@ namespace lockstep {
 template <int dim>
 class RigidBodies : public SolidModel<dim> {
  public:
-  /// gravity [m/s^2]. Collective.
+  /// gravity [m/s^2]; prescribed bodies are put where they are at `start_time` [s]. Collective.
   RigidBodies(std::vector<RigidBody<dim>> bodies, const Point<dim>& gravity,
-              const Communicator& comm);
+              const Communicator& comm, double start_time = 0);
 
   std::string name() const override { return "rigid body"; }
   const std::vector<RigidBody<dim>>& bodies() const { return bodies_; }
@@ -88,6 +88,6 @@ class RigidBodies : public SolidModel<dim> {
 template <int dim>
 std::unique_ptr<RigidBodies<dim>> make_rigid_bodies(
     const std::vector<std::pair<std::string, ParameterList>>& bodies, double grid_spacing,
-    const Point<dim>& gravity, const Communicator& comm);
+    const Point<dim>& gravity, const Communicator& comm, double start_time = 0);
 
 }  // namespace lockstep

@@ -32,27 +32,27 @@ void declare_mass(ParameterList& list) {
 template <int dim>
 void declare_pose(ParameterList& list) {
   declare_vector(list, "Position", ParameterArray<double>(dim, 0.0), dim,
-                 "Where the origin of the body's coordinates lies at time 0 [m].");
+                 "Where the origin of the body's coordinates lies at the start [m].");
   if constexpr (dim == 2) {
     declare(list, "Orientation", 0.0,
-            "Angle by which the body is turned about that origin at time 0 [rad].");
+            "Angle by which the body is turned about that origin at the start [rad].");
   } else {
     declare_optional<ParameterArray<double>>(
         list, "Orientation",
-        "Unit quaternion (w, x, y, z) that turns the body about that origin at time 0 [1]; default "
-        "(1, 0, 0, 0). Instead: \"Rotation Axis\" and \"Rotation Angle\".");
+        "Unit quaternion (w, x, y, z) that turns the body about that origin at the start [1]; "
+        "default (1, 0, 0, 0). Instead: \"Rotation Axis\" and \"Rotation Angle\".");
     set_length(list, "Orientation", 4);
     declare_vector(list, "Rotation Axis", {0.0, 0.0, 1.0}, 3,
                    "Axis of \"Rotation Angle\", of any length [1].");
-    declare(list, "Rotation Angle", 0.0, "Turn about \"Rotation Axis\" at time 0 [rad].");
+    declare(list, "Rotation Angle", 0.0, "Turn about \"Rotation Axis\" at the start [rad].");
   }
   declare_vector(list, "Velocity", ParameterArray<double>(dim, 0.0), dim,
-                 "Of the reference point (centre of mass, or pivot) at time 0 [m/s].");
-  declare_rotation<dim>(list, "Angular Velocity", "At time 0 [rad/s].");
-  declare_optional<ParameterArray<double>>(list, "Pivot",
-                                           "Reference point, in coordinates of the body [m]: what "
-                                           "locked translations hold (a hinge) and "
-                                           "scripts turn about. Default: the centre of mass.");
+                 "Of the reference point (centre of mass, or pivot) at the start [m/s].");
+  declare_rotation<dim>(list, "Angular Velocity", "At the start [rad/s].");
+  declare_optional<ParameterArray<double>>(
+      list, "Pivot",
+      "Reference point, in coordinates of the body [m]: what locked translations hold (a hinge) "
+      "and scripts turn about. Default: the centre of mass.");
   set_length(list, "Pivot", dim);
 }
 
@@ -179,7 +179,6 @@ RigidBody<dim> read_rigid_body(const std::string& name, const ParameterList& lis
     set_velocity(body, velocity);
   else
     follow_script(body, 0);
-  body.last_move.origin = body.pose.position;
   return body;
 }
 
