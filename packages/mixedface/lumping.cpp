@@ -213,6 +213,8 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
                                          const SolidSystem<dim>& solids,
                                          const std::vector<double>& masses, Lumping lumping) {
   std::vector<Triplet> triplets;
+  if (lumping == Lumping::paper_diagonal)
+    triplets = paper_diagonal_triplets<dim>(volumes, shares, solids, masses);
   VelocityRow<dim> scratch;
   struct Entries {
     double weight;
@@ -240,6 +242,8 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
                    masses[f] * row.weight * row.values[i] * other.weight * other.values[j]});
             }
           }
+        } else if (row.rigid && lumping == Lumping::paper_diagonal) {
+          continue;  // done body by body
         } else if (row.rigid) {
           for (std::size_t j = 0; j < row.dofs.size(); ++j) {
             triplets.push_back(

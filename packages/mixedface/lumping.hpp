@@ -8,8 +8,9 @@ namespace lockstep {
 
 /// How the fluid of mixed dual cells is lumped onto the solids.
 enum class Lumping {
-  diagonal,   ///< node dofs: row sums of W^T M_F; rigid bodies: their full block (the default)
-  consistent  ///< W^T M_F W (Section 5)
+  diagonal,       ///< node dofs: row sums of W^T M_F; rigid bodies: their full block (the default)
+  consistent,     ///< W^T M_F W (Section 5)
+  paper_diagonal  ///< as `diagonal`, but rigid bodies by Eqs. 22-24: loses momentum, for comparison
 };
 
 /// M_F [kg] of each coupled control volume: density times the dual cell minus the solids in it,
@@ -39,11 +40,22 @@ std::vector<UnseenMass<dim>> balance_masses(
     const std::vector<std::vector<SurfaceShare<dim>>>& shares, const SurfaceSnapshot<dim>& surface,
     double density, const Communicator& comm, std::vector<double>& masses);
 
-/// dM as triplets over the solid map.
+/// dM as triplets over the solid map. Collective.
 template <int dim>
 std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& volumes,
                                          const std::vector<std::vector<SurfaceShare<dim>>>& shares,
                                          const SolidSystem<dim>& solids,
                                          const std::vector<double>& masses, Lumping lumping);
+
+/// The rigid bodies' part of dM after Eqs. 22-24 taken literally: dM = T^T diag(M̄, Ī) T - M_S with
+/// the lumped mass M̄_i of each axis, the lumped centre X̄, whose component i comes from the faces of
+/// axis i alone, and T: (V, omega) -> (V + omega x (X̄ - X), omega) of Section 8. The cross terms
+/// that it leaves out make the momentum of fluid and body differ from what is conserved.
+/// Collective.
+template <int dim>
+std::vector<Triplet> paper_diagonal_triplets(
+    const std::vector<ControlVolume<dim>>& volumes,
+    const std::vector<std::vector<SurfaceShare<dim>>>& shares, const SolidSystem<dim>& solids,
+    const std::vector<double>& masses);
 
 }  // namespace lockstep

@@ -12,9 +12,10 @@ ParameterList valid_parameters() {
       "Which dual cells move with the solid. 'voxel': those whose two cell centres the surface "
       "separates. 'every cut cell': all that the surface touches (much more added mass).");
   declare_choice(
-      list, "Lumping", "diagonal", {"diagonal", "consistent"},
+      list, "Lumping", "diagonal", {"diagonal", "consistent", "paper diagonal"},
       "How fluid mass is lumped on the solid: 'diagonal' row sums for nodes (the paper's choice; "
-      "rigid bodies always carry their full block), 'consistent' W^T M_F W.");
+      "rigid bodies carry their full block), 'consistent' W^T M_F W, 'paper diagonal' the literal "
+      "Eqs. 22-24 for rigid bodies, which lose momentum: for comparison.");
   declare_choice(
       list, "Fluid Mass", "fluid part", {"fluid part", "whole cell"},
       "Fluid mass of a mixed dual cell: density times the part outside the solids, or times the "
@@ -33,6 +34,8 @@ MixedFaceOptions options_from(const ParameterList& list) {
   }
   if (list.get<std::string>("Lumping") == "consistent")
     options.lumping = Lumping::consistent;
+  else if (list.get<std::string>("Lumping") == "paper diagonal")
+    options.lumping = Lumping::paper_diagonal;
   options.whole_cell_mass = list.get<std::string>("Fluid Mass") == "whole cell";
   options.balance = list.get<bool>("Balance Masses");
   return options;

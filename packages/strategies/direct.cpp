@@ -20,14 +20,17 @@ Direct::Direct(const ParameterList& given)
     : RefinedStrategy(with_defaults(given, valid_parameters())),
       maximum_unknowns_(with_defaults(given, valid_parameters()).get<int>("Maximum Unknowns")) {}
 
-void Direct::build(const BlockSystem& system, bool, bool) {
+void Direct::build(const BlockSystem& system, bool geometry_changed, bool) {
   const auto n_pressure = system.pressure_block->domain()->dim();
   check_solve(n_pressure <= maximum_unknowns_,
               "The strategy direct refuses the {}: its {} pressure unknowns are more than the "
               "\"Maximum Unknowns\" {}. Choose an iterative strategy.",
               system.name, n_pressure, maximum_unknowns_);
-  merged_ = merge(system);
-  inverse_ = gathered_direct(merged_.matrix, system.name);
+  if (geometry_changed)
+    factors_ = {};
+  Factors& factors = factors_[system.has_solid()];
+  factors.merged = merge(system);
+  factors.inverse = gathered_direct(factors.merged.matrix, system.name);
 }
 
 int Direct::correct(const BlockSystem& system, const CorrectionRequest& request,
@@ -39,9 +42,10 @@ int Direct::correct(const BlockSystem& system, const CorrectionRequest& request,
     rhs.solid = make_vector(system.coupling_transposed->getRangeMap());
     solution.solid = make_vector(rhs.solid->getMap());
   }
-  Vector merged_solution(merged_.matrix->getRowMap());
-  apply(*inverse_, *to_merged(merged_, rhs), merged_solution);
-  from_merged(merged_, merged_solution, solution);
+  const auto& [merged, inverse] = factors_[system.has_solid()];
+  Vector merged_solution(merged.matrix->getRowMap());
+  apply(*inverse, *to_merged(merged, rhs), merged_solution);
+  from_merged(merged, merged_solution, solution);
   correction.update(1, *solution.pressure, 0);
   return 1;
 }

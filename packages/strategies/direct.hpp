@@ -18,9 +18,16 @@ class Direct : public RefinedStrategy {
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) override;
 
+  bool is_built_for(const BlockSystem& system) const override {
+    return !factors_[system.has_solid()].inverse.is_null();
+  }
+
+  struct Factors {
+    MergedSystem merged;
+    RCP<const LinearOperator> inverse;
+  };
   int maximum_unknowns_;
-  MergedSystem merged_;
-  RCP<const LinearOperator> inverse_;
+  std::array<Factors, 2> factors_;  ///< without and with the solid block
 };
 
 }  // namespace lockstep

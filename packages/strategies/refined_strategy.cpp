@@ -66,32 +66,37 @@ void check_compatible(const std::string& name, double removed, const BlockResidu
 
 bool RefinedStrategy::geometry_matches(const BlockSystem& system) const {
   return is_prepared_ && prepared_.geometry_stamp == system.geometry_stamp &&
-         prepared_.system_name == system.name && prepared_.has_solid == system.has_solid() &&
+         prepared_.system_name == system.name &&
          prepared_.pressure_map->isSameAs(*domain_map(*system.pressure_block));
+}
+
+bool RefinedStrategy::solid_matches(const BlockSystem& system) const {
+  return !system.has_solid() ||
+         (!solid_inverse_.is_null() && prepared_.solid_stamp == system.solid_stamp &&
+          prepared_.solid_map->isSameAs(*domain_map(*system.solid_block)));
 }
 
 void RefinedStrategy::prepare(const BlockSystem& system) {
   const double start = Teuchos::Time::wallTime();
   const bool geometry_changed = !geometry_matches(system);
-  const bool solid_changed =
-      system.has_solid() && (geometry_changed || prepared_.solid_stamp != system.solid_stamp ||
-                             !prepared_.solid_map->isSameAs(*domain_map(*system.solid_block)));
-  if (!geometry_changed && !solid_changed) {
+  const bool solid_changed = system.has_solid() && (geometry_changed || !solid_matches(system));
+  if (!geometry_changed && !solid_changed && is_built_for(system)) {
     ++n_reuses_;
     return;
   }
   is_prepared_ = false;
-  if (!system.has_solid())
+  if (geometry_changed)
     solid_inverse_ = Teuchos::null;
-  else if (solid_changed)
+  if (solid_changed)
     solid_inverse_ = exact_inverse(system.solid_block, "solid block of the " + system.name);
   build(system, geometry_changed, solid_changed);
-  prepared_ = {system.name,
-               system.has_solid(),
-               system.geometry_stamp,
-               system.solid_stamp,
-               domain_map(*system.pressure_block),
-               system.has_solid() ? domain_map(*system.solid_block) : Teuchos::null};
+  prepared_.system_name = system.name;
+  prepared_.geometry_stamp = system.geometry_stamp;
+  prepared_.pressure_map = domain_map(*system.pressure_block);
+  if (system.has_solid()) {
+    prepared_.solid_stamp = system.solid_stamp;
+    prepared_.solid_map = domain_map(*system.solid_block);
+  }
   is_prepared_ = true;
   ++n_builds_;
   setup_seconds_ += Teuchos::Time::wallTime() - start;
@@ -108,8 +113,7 @@ void RefinedStrategy::back_substitute(const BlockSystem& system, const BlockVect
 
 SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector& rhs,
                                    BlockVector& solution, const SolveRequest& request) {
-  if (!geometry_matches(system) ||
-      (system.has_solid() && prepared_.solid_stamp != system.solid_stamp))
+  if (!geometry_matches(system) || !solid_matches(system) || !is_built_for(system))
     prepare(system);
   const double start = Teuchos::Time::wallTime();
   const std::string name =

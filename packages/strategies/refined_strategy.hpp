@@ -16,7 +16,9 @@ namespace lockstep {
 /// with right-hand side (r_1, 0). The initial guess of V_S is therefore ignored.
 class RefinedStrategy : public SolverStrategy {
  public:
-  /// Reuses what was built last for a system of the same name, stamps and maps. Collective.
+  /// Reuses what was built last for a system of the same name, stamps and maps. What belongs to A
+  /// alone serves the system with and without its solid block (S1, F2 and S2 of one geometry).
+  /// Collective.
   void prepare(const BlockSystem& system) final;
   SolveReport solve(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
                     const SolveRequest& request) final;
@@ -41,6 +43,9 @@ class RefinedStrategy : public SolverStrategy {
 
   /// Builds what depends on the operators. `geometry_changed` and `solid_changed` say what is new.
   virtual void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) = 0;
+  /// False if, at unchanged operators, something is missing for this system (with or without
+  /// solid).
+  virtual bool is_built_for(const BlockSystem&) const { return true; }
   /// An approximate solution p̂ of Eq. 16 with right-hand side (r_1, 0), written to `correction`;
   /// returns the number of iterations. The same without a solid block: A p̂ = r_1.
   virtual int correct(const BlockSystem& system, const CorrectionRequest& request,
@@ -53,7 +58,6 @@ class RefinedStrategy : public SolverStrategy {
  private:
   struct Prepared {
     std::string system_name;
-    bool has_solid = false;
     long geometry_stamp = 0, solid_stamp = 0;
     RCP<const Map> pressure_map, solid_map;
   };
@@ -61,6 +65,7 @@ class RefinedStrategy : public SolverStrategy {
   void back_substitute(const BlockSystem& system, const BlockVector& rhs,
                        BlockVector& solution) const;
   bool geometry_matches(const BlockSystem& system) const;
+  bool solid_matches(const BlockSystem& system) const;
 
   int maximum_iterations_;
   bool check_symmetry_;
