@@ -85,6 +85,9 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
     scene_options_.time.end = *options.end_time;
   if (options.steps)
     scene_options_.time.most_steps = *options.steps;
+  check_input(scene_options_.time.end > scene_options_.time.start,
+              "--end-time {} s must be later than the start of the scene, {} s.",
+              scene_options_.time.end, scene_options_.time.start);
   ScopedPhase phase(timers_, "start");
   stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
                                             scene_options_.time.start, timers_);
@@ -135,6 +138,9 @@ double Simulation<dim>::fraction_done() const {
 
 template <int dim>
 void Simulation<dim>::begin_outputs() {
+  // A checkpoint that does not fit must not leave anything behind.
+  if (!options_.restart_file.empty())
+    load_checkpoint();
   create_output_directory(comm_, options_.output_directory);
   record_input(comm_, options_.output_directory, options_.scene_file, to_xml(scene_));
   if (options_.restart_file.empty()) {
@@ -144,7 +150,6 @@ void Simulation<dim>::begin_outputs() {
     if (scene_options_.output.frames)
       write_frame();
   } else {
-    load_checkpoint();
     discard_checkpoints_after(comm_, options_.output_directory, step_);
     tables_.resume(step_);
     frames_.resume(stepper_->time());

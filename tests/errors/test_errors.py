@@ -149,7 +149,7 @@ CASES = [
 
     # Meshes.
     Case("no mesh", ["body.obj", "cannot open"], **mesh(None)),
-    Case("an open mesh", ["\"Ball\"", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
+    Case("an open mesh", ["'Ball'", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
     Case("a mesh turned inside out", "should enclose a volume",
          **mesh("\n".join(line if line[0] == "v" else "f " + " ".join(reversed(line.split()[1:]))
                           for line in TETRAHEDRON.splitlines()) + "\n")),
