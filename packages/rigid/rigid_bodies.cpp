@@ -137,10 +137,10 @@ Point<dim> RigidBodies<dim>::effective_velocity(const SurfacePoint<dim>& point,
 }
 
 template <int dim>
-RigidVector<dim> RigidBodies<dim>::gravity_impulse(const RigidBody<dim>& body, double dt) const {
-  const Point<dim> impulse = dt * body.mass * gravity_;
+RigidVector<dim> RigidBodies<dim>::load_impulse(const RigidBody<dim>& body, double dt) const {
+  const Point<dim> impulse = dt * (body.mass * gravity_ + body.force);
   RigidVector<dim> generalized;
-  generalized << impulse, cross<dim>(body.arm(), impulse);
+  generalized << impulse, cross<dim>(body.arm(), impulse) + dt * body.torque;
   return generalized;
 }
 
@@ -148,7 +148,7 @@ template <int dim>
 void RigidBodies<dim>::explicit_momentum(double, double dt, Vector& momentum) const {
   const auto values = momentum.getDataNonConst();
   for_each_own([&](const RigidBody<dim>& body, int first_row) {
-    const RigidVector<dim> total = body.momentum + gravity_impulse(body, dt);
+    const RigidVector<dim> total = body.momentum + load_impulse(body, dt);
     std::copy(total.data(), total.data() + total.size(), values.begin() + first_row);
   });
 }
@@ -168,7 +168,8 @@ Momentum<dim> RigidBodies<dim>::external_impulse(double, double dt) const {
   Momentum<dim> total;
   for (const int b : dynamic_) {
     const RigidBody<dim>& body = bodies_[b];
-    total.add(body.pose.position + body.arm(), dt * body.mass * gravity_);
+    total.add(body.pose.position + body.arm(), dt * (body.mass * gravity_ + body.force));
+    total.angular += dt * body.torque;
   }
   return total;
 }

@@ -64,7 +64,8 @@ class RigidBodies : public SolidModel<dim> {
   /// Sets (or adds) f(body) in the rows of this rank.
   template <typename Function>
   void for_each_own(const Function& f) const;
-  RigidVector<dim> gravity_impulse(const RigidBody<dim>& body, double dt) const;
+  /// Of gravity and of the body's constant loads, about its reference point.
+  RigidVector<dim> load_impulse(const RigidBody<dim>& body, double dt) const;
   void describe();
   void update_surface();
   RCP<const LinearOperator> assemble_mass() const;

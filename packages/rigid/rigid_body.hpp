@@ -40,6 +40,8 @@ struct RigidBodyConstants {
   Point<dim> center_of_mass = Point<dim>::Zero();  ///< in body coordinates [m]
   Inertia<dim> inertia = Inertia<dim>::Zero();     ///< about it, in body axes [kg m^2]
   std::array<bool, n_rigid_dofs<dim>> locked{};    ///< dofs held at zero, in world axes
+  Point<dim> force = Point<dim>::Zero();           ///< constant load at the centre of mass [N]
+  AngularVector<dim> torque = AngularVector<dim>::Zero();  ///< constant load [N m]
   double restitution = 0, friction = 0;
   MotionScript<dim> script;     ///< empty: dynamic
   RigidPose<dim> initial_pose;  ///< of the script

@@ -150,6 +150,9 @@ ParameterList rigid_body_parameters() {
           "Motions held at zero, along and about the axes of space.");
   set_choices(list, "Locked", dof_names<dim>());
   declare_motion<dim>(list);
+  declare_vector(list, "Force", ParameterArray<double>(dim, 0.0), dim,
+                 "Constant load at the centre of mass, besides gravity [N] (2D: [N/m]).");
+  declare_rotation<dim>(list, "Torque", "Constant load, in axes of space [N m] (2D: [N]).");
   declare_between(list, "Restitution", 0.0, 0.0, 1.0,
                   "Speed after over speed before a collision [1].");
   declare_at_least(list, "Friction", 0.0, 0.0, "Coulomb's coefficient of contacts [1].");
@@ -166,6 +169,13 @@ RigidBody<dim> read_rigid_body(const std::string& name, const ParameterList& lis
       make_body_geometry<dim>(list.sublist("Geometry"), grid_spacing, name);
   body.surface = std::move(geometry.surface);
   body.closed = geometry.closed;
+  body.force = vector_value<dim>(list, "Force");
+  body.torque = rotation_value<dim>(list, "Torque");
+  check_input(
+      body.dynamic() || (body.force.norm() == 0 && body.torque.norm() == 0),
+      "The solid \"{}\" follows a script, so a \"Force\" or \"Torque\" cannot move it; leave "
+      "them out, or make its motion \"dynamic\".",
+      name);
   body.restitution = list.get<double>("Restitution");
   body.friction = list.get<double>("Friction");
   const Point<dim> reference = set_mass(body, list);

@@ -1,0 +1,89 @@
+#pragma once
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Teuchos_DefaultComm.hpp>
+#include <string>
+
+#include "parameters/strict_xml.hpp"
+#include "parameters/validate.hpp"
+#include "rigid/rigid_bodies.hpp"
+#include "rigid/rigid_parameters.hpp"
+
+namespace lockstep::test {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double grid_spacing = 0.1;
+
+inline Communicator world() {
+  return Teuchos::DefaultComm<int>::getComm();
+}
+
+/// <Parameter .../> of the type that the value has in a scene file.
+inline std::string number(const std::string& name, const std::string& value) {
+  return "<Parameter name=\"" + name + "\" type=\"double\" value=\"" + value + "\"/>";
+}
+inline std::string numbers(const std::string& name, const std::string& value) {
+  return "<Parameter name=\"" + name + "\" type=\"Array(double)\" value=\"{" + value + "}\"/>";
+}
+inline std::string text(const std::string& name, const std::string& value) {
+  return "<Parameter name=\"" + name + "\" type=\"string\" value=\"" + value + "\"/>";
+}
+inline std::string texts(const std::string& name, const std::string& value) {
+  return "<Parameter name=\"" + name + "\" type=\"Array(string)\" value=\"{" + value + "}\"/>";
+}
+inline std::string list(const std::string& name, const std::string& content) {
+  return "<ParameterList name=\"" + name + "\">" + content + "</ParameterList>";
+}
+inline std::string geometry(const std::string& shape, const std::string& content) {
+  return list("Geometry", text("Shape", shape) + content);
+}
+inline std::string motion(const std::string& type, const std::string& content = "") {
+  return list("Motion", text("Type", type) + content);
+}
+
+/// A body as a scene file has it.
+template <int dim>
+ParameterList body_list(const std::string& content) {
+  Document document =
+      read_xml_string("<ParameterList>" + content + "</ParameterList>", "scene.xml");
+  validate(document, rigid_body_parameters<dim>());
+  return document.list;
+}
+template <int dim>
+RigidBody<dim> body(const std::string& content, double spacing = grid_spacing) {
+  return read_rigid_body<dim>("body", body_list<dim>(content), spacing);
+}
+
+/// A model of bodies "0", "1", ...
+template <int dim>
+std::unique_ptr<RigidBodies<dim>> model(const std::vector<std::string>& contents,
+                                        const Point<dim>& gravity = Point<dim>::Zero()) {
+  std::vector<std::pair<std::string, ParameterList>> lists;
+  for (const auto& content : contents)
+    lists.emplace_back(std::to_string(lists.size()), body_list<dim>(content));
+  return make_rigid_bodies<dim>(lists, grid_spacing, gravity, world());
+}
+
+/// A step without fluid: S1 to t + dt/2, move, S2.
+template <int dim>
+void free_step(RigidBody<dim>& body, double time, double dt) {
+  const RigidVector<dim> half = body.momentum + midpoint_correction(body, dt / 2);
+  move(body, velocity_of(body, body.pose.orientation, half), time, dt);
+  set_velocity(body, velocity_of(body, body.pose.orientation, body.momentum));
+}
+
+/// Where the flow of a constant rigid field takes x in dt, by RK4.
+template <int dim>
+Point<dim> followed(const Twist<dim>& field, Point<dim> x, double dt) {
+  const int n_steps = 400;
+  const double step = dt / n_steps;
+  for (int i = 0; i < n_steps; ++i) {
+    const Point<dim> k1 = field.velocity(x), k2 = field.velocity(x + 0.5 * step * k1),
+                     k3 = field.velocity(x + 0.5 * step * k2), k4 = field.velocity(x + step * k3);
+    x += step / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  return x;
+}
+
+}  // namespace lockstep::test

@@ -1,0 +1,69 @@
+// What a scene may not say of a rigid body.
+#include "base/errors.hpp"
+#include "support.hpp"
+
+namespace lockstep {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+template <int dim>
+std::string error(const std::string& content) {
+  try {
+    body<dim>(content);
+  } catch (const InputError& failure) {
+    return failure.what();
+  }
+  return "no error";
+}
+
+const std::string disc = geometry("ball", number("Radius", "0.2"));
+
+TEST(RigidInput, Mass) {
+  EXPECT_THAT(error<2>(disc), HasSubstr("\"body\" has no mass"));
+  EXPECT_THAT(error<2>(disc + number("Density", "1") + number("Mass", "1")),
+              HasSubstr("both \"Density\" and \"Mass\""));
+  EXPECT_THAT(error<2>(disc + number("Surface Density", "1")),
+              HasSubstr("is a volume, so it has no \"Surface Density\""));
+  EXPECT_THAT(error<2>(disc + number("Density", "-1")), HasSubstr("Density"));
+  EXPECT_EQ(error<2>(disc + motion("static")), "no error");
+}
+
+TEST(RigidInput, Geometry) {
+  const std::string mass = number("Mass", "1");
+  EXPECT_THAT(error<2>(mass + geometry("ball", "")),
+              HasSubstr("the shape \"ball\" needs \"Radius\""));
+  EXPECT_THAT(error<2>(mass + geometry("box", numbers("Size", "1, 1") + number("Radius", "1"))),
+              HasSubstr("the shape \"box\" has no \"Radius\""));
+  EXPECT_THAT(error<2>(mass + geometry("torus", "")), HasSubstr("torus"));
+  EXPECT_THAT(error<3>(mass + geometry("file", text("File", "absent.obj"))),
+              HasSubstr("absent.obj"));
+}
+
+TEST(RigidInput, LocksAndMotions) {
+  const std::string ball = disc + number("Mass", "1");
+  EXPECT_THAT(error<2>(ball + texts("Locked", "z")), HasSubstr("rotation"));
+  EXPECT_THAT(error<2>(ball + texts("Locked", "y") + numbers("Velocity", "0, 2")),
+              HasSubstr("has \"y\" locked, but starts with a velocity of 2"));
+  EXPECT_THAT(error<2>(disc + motion("static") + texts("Locked", "y")),
+              HasSubstr("follows a script"));
+  EXPECT_THAT(error<2>(disc + motion("static") + numbers("Velocity", "0, 2")),
+              HasSubstr("but its motion is \"static\""));
+  EXPECT_THAT(error<2>(disc + motion("table", numbers("Times", "0, 0"))),
+              HasSubstr("must ascend, but 0 follows 0"));
+  EXPECT_THAT(error<2>(disc + motion("table", numbers("Times", "0, 1") +
+                                                  numbers("Displacements", "0, 1, 2"))),
+              HasSubstr("has 3 numbers, but 2 times need 4"));
+}
+
+TEST(RigidInput, Orientation) {
+  const std::string ball = disc + number("Mass", "1");
+  EXPECT_THAT(error<3>(ball + numbers("Orientation", "1, 1, 0, 0")), HasSubstr("length 1"));
+  EXPECT_THAT(error<3>(ball + numbers("Orientation", "1, 0, 0, 0") + number("Rotation Angle", "1")),
+              HasSubstr("leave out one"));
+  EXPECT_THAT(error<3>(ball + numbers("Rotation Axis", "0, 0, 0")), HasSubstr("must not be zero"));
+}
+
+}  // namespace
+}  // namespace lockstep
