@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "linear/block_residual.hpp"
+#include "linear/dumping_strategy.hpp"
 #include "linear/system_file.hpp"
 #include "output/hdf5_file.hpp"
 #include "unit/linear/saddle_problem.hpp"
@@ -63,6 +64,43 @@ TEST(SystemFile, ReadsBackTheSameSystem) {
       std::remove(file.c_str());
     comm->barrier();
   }
+}
+
+namespace {
+
+struct NoStrategy : SolverStrategy {
+  std::string name() const override { return "none"; }
+  void prepare(const BlockSystem&) override {}
+  SolveReport solve(const BlockSystem&, const BlockVector&, BlockVector&,
+                    const SolveRequest&) override {
+    return {};
+  }
+};
+
+}  // namespace
+
+TEST(SystemFile, OneSolveOfOneStepIsWritten) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  const SaddleProblem problem(comm, {});
+  const std::string file = "system-file-dump.h5";
+  DumpingStrategy strategy(std::make_unique<NoStrategy>(), parse_dump_request("2:S2", file));
+  double norm = 0;
+  for (int step = 1; step <= 3; ++step) {
+    for (const char* name : {"S1", "S2"}) {
+      BlockVector rhs = problem.random_rhs(), solution = problem.zero();
+      rhs.pressure->scale(step + (name[1] == '2' ? 10 : 0));
+      if (step == 2 && name[1] == '2')
+        norm = rhs.pressure->norm2();
+      strategy.solve(problem.system, rhs, solution, {name, 1e-8});
+    }
+  }
+  EXPECT_NEAR(read_system(file, comm).rhs.pressure->norm2(), norm, 1e-12 * norm);
+  for (const char* wrong : {"", "S2", "0:S2", "1:S3", "x:S1", "2 :S2"})
+    EXPECT_THROW(parse_dump_request(wrong, file), InputError) << wrong;
+  comm->barrier();
+  if (is_root(comm))
+    std::remove(file.c_str());
+  comm->barrier();
 }
 
 TEST(SystemFile, RefusesOtherFiles) {

@@ -1,0 +1,37 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "interfaces/strategy.hpp"
+
+namespace lockstep {
+
+/// Which system to write, and where.
+struct DumpRequest {
+  int step = 1;       ///< counted from the start of this run
+  std::string solve;  ///< "S1", "F2" or "S2"
+  std::string file;
+};
+
+/// Reads "12:S2". Throws InputError.
+DumpRequest parse_dump_request(const std::string& which, const std::string& file);
+
+/// Stands in front of another strategy, and writes one system with its right-hand side to a file
+/// (see system_file.hpp) before handing it on.
+class DumpingStrategy : public SolverStrategy {
+ public:
+  DumpingStrategy(std::unique_ptr<SolverStrategy> strategy, const DumpRequest& request);
+  std::string name() const override { return strategy_->name(); }
+  void save(CheckpointWriter& checkpoint) const override { strategy_->save(checkpoint); }
+  void load(const CheckpointReader& checkpoint) override { strategy_->load(checkpoint); }
+  void prepare(const BlockSystem& system) override { strategy_->prepare(system); }
+  SolveReport solve(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
+                    const SolveRequest& request) override;
+
+ private:
+  std::unique_ptr<SolverStrategy> strategy_;
+  DumpRequest request_;
+  int n_solves_ = 0;  ///< of that name so far: one a step
+};
+
+}  // namespace lockstep
