@@ -119,6 +119,21 @@ Point<dim> ContactShapes<dim>::vertex_normal(int vertex) const {
 }
 
 template <int dim>
+std::optional<Point<dim>> ContactShapes<dim>::smooth_normal(const SurfacePoint<dim>& point) const {
+  Point<dim> sum = Point<dim>::Zero();
+  for (int k = 0; k < dim; ++k) {
+    const int vertex = mesh_.simplices[point.simplex][k];
+    const Point<dim> around = vertex_normal(vertex);
+    for (const int* s = topology_->begin(vertex); s != topology_->end(vertex); ++s) {
+      if (normal(*s).dot(around) < smooth_cosine)
+        return {};
+    }
+    sum += point.barycentric[k] * around;
+  }
+  return sum.normalized();
+}
+
+template <int dim>
 SurfacePoint<dim> ContactShapes<dim>::at_vertex(int vertex) const {
   SurfacePoint<dim> point;
   point.position = mesh_.vertices[vertex];

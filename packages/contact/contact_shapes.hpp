@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "coupling/solid_system.hpp"
@@ -54,6 +55,8 @@ class ContactShapes {
   Point<dim> normal(int simplex) const;           ///< unit
   Point<dim> vertex_normal(int vertex) const;     ///< unit, weighted by area
   SurfacePoint<dim> at_vertex(int vertex) const;  ///< simplex -1 if no simplex has it
+  /// Normal of a smooth surface, interpolated between vertices; nothing beside a sharp edge.
+  std::optional<Point<dim>> smooth_normal(const SurfacePoint<dim>& point) const;
   /// True if x is on the inner side of the closest point of the solid within `radius`.
   bool inside(int solid, const Point<dim>& x, double radius) const;
 

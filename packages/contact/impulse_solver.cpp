@@ -66,6 +66,7 @@ void ImpulseSolver<dim>::add_response(Row& row) {
   auto tangent = (row.tangents.transpose() * compliance * row.tangents).eval();
   // Directions that locks hold get no impulse to speak of.
   tangent.diagonal().array() += 1e-12 * compliance.trace();
+  row.tangent_response = tangent.trace();
   row.tangent_inverse = tangent.inverse();
 }
 
@@ -119,16 +120,21 @@ double ImpulseSolver<dim>::relax_friction(Row& row) {
   if (row.friction == 0)
     return 0;
   const auto slip = (row.tangents.transpose() * relative_velocity(row)).eval();
+  const double largest = row.friction * row.normal_impulse;
   auto total = (row.tangent_impulse - row.tangent_inverse * slip).eval();
-  const double largest = row.friction * row.normal_impulse, size = total.norm();
-  if (size > largest)
-    total *= largest / size;
+  if (total.norm() > largest) {
+    // Sliding: a scalar step, whose fixed point is friction exactly against the slip.
+    total = row.tangent_impulse - slip / row.tangent_response;
+    const double size = total.norm();
+    if (size > largest)
+      total *= largest / size;
+  }
   const auto change = (total - row.tangent_impulse).eval();
   row.tangent_impulse = total;
   if (change.norm() == 0)
     return 0;
   push(row, row.tangents * change);
-  return change.norm() * row.normal_response;
+  return change.norm() * row.tangent_response;
 }
 
 template <int dim>

@@ -39,7 +39,8 @@ class ImpulseSolver {
     int begin = 0, end = 0;                    ///< in `jacobian_`
     int response_begin = 0, response_end = 0;  ///< in `response_`: M^-1 J^T
     Point<dim> prescribed = Point<dim>::Zero();
-    double target = 0, friction = 0, normal_response = 0;
+    double target = 0, friction = 0;
+    double normal_response = 0, tangent_response = 0;  ///< velocity per impulse [1/kg]
     bool solid_prescribed = false, other_prescribed = false;
     Tangents tangents;
     Eigen::Matrix<double, dim - 1, dim - 1> tangent_inverse;

@@ -149,6 +149,14 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
       candidate.normal = other_closed_ || face.dot(normal) < 0 ? face : Point<dim>(-face);
     }
     candidate.distance = other_closed_ ? side * point.distance : point.distance;
+    if (other_closed_) {
+      // Where two faces of a box are equally near, the one that faces the vertex is meant; and
+      // inside a solid the closest point lies straight below the vertex.
+      if (height < 0 && -height < 0.7 * point.distance)
+        continue;
+      if (!faces(normal, candidate.normal))
+        continue;
+    }
     if (point.distance <= near_ && candidate.distance >= 0 && point.barycentric.minCoeff() > 1e-6)
       inner_.push_back(candidate);
     if (point.distance > nearest + tie)
@@ -223,6 +231,11 @@ void VertexContacts<dim>::add(int vertex, const Hit& hit, const Point<dim>& x,
   contact.point = shapes_.at_vertex(vertex);
   contact.other_point = hit.point;
   contact.normal = hit.normal;
+  if (const auto smooth = shapes_.smooth_normal(hit.point)) {
+    const double cosine = smooth->dot(hit.normal);
+    if (std::abs(cosine) > same_direction)
+      contact.normal = cosine > 0 ? *smooth : Point<dim>(-*smooth);
+  }
   contact.gap = hit.distance - thickness_;
   contact.x = hit.distance > near_ ? x : Point<dim>(0.5 * (x + hit.point.position));
   contacts.push_back(contact);
