@@ -29,19 +29,17 @@ class RayTracer {
         velocity_(velocity),
         cells_per_velocity_(cells_per_velocity) {}
 
-  /// From x against the flow (direction -1) or with it (+1). Unchecked as in SampleLattice: for the
-  /// whole ray.
-  template <bool checked>
+  /// From x against the flow (direction -1) or with it (+1).
   Ray<dim> trace(const Point<dim>& x, double direction) const;
   /// Cuts the segment x -> end at the domain: at an inflow side where it leaves, elsewhere it
   /// slides.
   void clip(const Point<dim>& x, Ray<dim>& ray) const;
 
+  bool flows_in(int axis, int side) const { return inflow_[axis][side]; }
   const std::array<const double*, dim>& velocity() const { return velocity_; }
   double cells_per_velocity() const { return cells_per_velocity_; }
 
  private:
-  template <bool checked>
   bool displacement(const Point<dim>& x, Point<dim>& d) const;
   /// Moves x into the domain along the axes that are not periodic; true if it was outside.
   bool clamp(Point<dim>& x) const;
@@ -53,32 +51,28 @@ class RayTracer {
 };
 
 template <int dim>
-template <bool checked>
 bool RayTracer<dim>::displacement(const Point<dim>& x, Point<dim>& d) const {
-  const auto stencils = lattice_.template locate_faces<checked>(x);
+  const auto stencils = lattice_.locate_faces(x);
   for (int a = 0; a < dim; ++a) {
-    if (checked && !stencils[a].complete())
+    if (!stencils[a].complete())
       return false;
-    d[a] = interpolate<dim, checked>(stencils[a], velocity_[a]) * cells_per_velocity_;
+    d[a] = interpolate<dim>(stencils[a], velocity_[a]) * cells_per_velocity_;
   }
   return true;
 }
 
 template <int dim>
-template <bool checked>
 Ray<dim> RayTracer<dim>::trace(const Point<dim>& x, double direction) const {
   Ray<dim> ray;
   Point<dim> d;
-  ray.complete = displacement<checked>(x, d);
-  if (checked && !ray.complete)
+  ray.complete = displacement(x, d);
+  if (!ray.complete)
     return ray;
   ray.middle = x + 0.5 * direction * d;
-  if constexpr (checked)
-    clamp(ray.middle);
-  ray.complete = displacement<checked>(ray.middle, d);
+  clamp(ray.middle);
+  ray.complete = displacement(ray.middle, d);
   ray.end = x + direction * d;
-  if constexpr (checked)
-    clip(x, ray);
+  clip(x, ray);
   return ray;
 }
 

@@ -35,7 +35,7 @@ SampleLattice<dim>::SampleLattice(const TiledGrid<dim>& grid)
 template <int dim>
 std::array<StencilCorner<dim>, (1 << dim)> SampleLattice<dim>::corners(SampleKind kind,
                                                                        const Point<dim>& x) const {
-  const Stencil<dim> stencil = locate<true>(kind, x);
+  const Stencil<dim> stencil = locate(kind, x);
   const Point<dim> offset = sample_offset<dim>(kind);
   std::array<StencilCorner<dim>, (1 << dim)> result;
   for (int k = 0; k < 1 << dim; ++k) {
@@ -55,30 +55,42 @@ std::array<StencilCorner<dim>, (1 << dim)> SampleLattice<dim>::corners(SampleKin
 }
 
 template <int dim>
-bool SampleLattice<dim>::stores(const Index<dim>& begin, const Index<dim>& end) const {
+bool SampleLattice<dim>::find_block(SampleKind kind, const Index<dim>& begin, int width,
+                                    std::vector<int>& ids) const {
   constexpr int log_width = log_tile_width<dim>;
-  Index<dim> first, last;
-  int n = 1;
+  // Shares of each coordinate in the tile table and in the offset within the tile.
+  std::array<std::vector<int>, dim> tile, offset;
+  std::array<std::vector<char>, dim> at_wall;
+  int n_rows = 1;
   for (int a = 0; a < dim; ++a) {
-    if (begin[a] < 0 || end[a] > n_cells_[a])
-      return false;
-    first[a] = (begin[a] >> log_width) - table_lower_[a];
-    last[a] = ((end[a] - 1) >> log_width) - table_lower_[a];
-    if (first[a] < 0 || last[a] >= table_size_[a])
-      return false;
-    n *= last[a] - first[a] + 1;
-  }
-  for (int i = 0; i < n; ++i) {
-    int place = 0;
-    for (int a = 0, rest = i; a < dim; ++a) {
-      const int width = last[a] - first[a] + 1;
-      place += (first[a] + rest % width) * table_stride_[a];
-      rest /= width;
+    for (int k = 0; k < width; ++k) {
+      const int i = resolve(a, a == kind, begin[a] + k);
+      tile[a].push_back(table_share(a, i));
+      offset[a].push_back((i & (tile_width<dim> - 1)) << (log_width * a));
+      at_wall[a].push_back(a == kind && virtual_wall_[a] && i == n_cells_[a]);
     }
-    if (table_[place] < 0)
-      return false;
+    if (a > 0)
+      n_rows *= width;
   }
-  return true;
+  int* id = ids.data();
+  bool complete = true;
+  for (int row = 0; row < n_rows; ++row) {
+    int row_tile = 0, row_offset = 0;
+    bool row_at_wall = false;
+    for (int a = 1, rest = row; a < dim; ++a, rest /= width) {
+      row_tile += tile[a][rest % width];
+      row_offset += offset[a][rest % width];
+      row_at_wall = row_at_wall || at_wall[a][rest % width];
+    }
+    for (int i = 0; i < width; ++i) {
+      const int stored = table_[row_tile + tile[0][i]];
+      const bool wall = row_at_wall || at_wall[0][i];
+      complete = complete && (stored >= 0 || wall);
+      *id++ =
+          wall ? Stencil<dim>::wall_sample : stored * tile_volume<dim> + row_offset + offset[0][i];
+    }
+  }
+  return complete;
 }
 
 template class SampleLattice<2>;

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -45,12 +47,12 @@ struct StencilCorner {
   Point<dim> position = Point<dim>::Zero();  ///< lattice units, not wrapped
 };
 
-/// Multilinear interpolation; exact for constants. `Checked` stencils may hold wall samples.
-template <int dim, bool checked>
+/// Multilinear interpolation; exact for constants. The stencil is complete.
+template <int dim>
 double interpolate(const Stencil<dim>& stencil, const double* field) {
   std::array<double, 1 << dim> value;
   for (int k = 0; k < 1 << dim; ++k)
-    value[k] = checked && stencil.id[k] < 0 ? 0.0 : field[stencil.id[k]];
+    value[k] = stencil.id[k] < 0 ? 0.0 : field[stencil.id[k]];
   for (int a = 0; a < dim; ++a)
     for (int k = 0; k < 1 << (dim - 1 - a); ++k)
       value[k] = value[2 * k] + stencil.weight[a] * (value[2 * k + 1] - value[2 * k]);
@@ -65,21 +67,18 @@ class SampleLattice {
  public:
   explicit SampleLattice(const TiledGrid<dim>& grid);
 
-  /// Samples around x. Unchecked: x lies at least one cell inside the domain and all tiles within a
-  /// cell of it are stored. Checked: periodic axes wrap, others stop at their last sample.
-  template <bool checked>
+  /// Samples around x: periodic axes wrap, others stop at their last sample.
   Stencil<dim> locate(SampleKind kind, const Point<dim>& x) const;
   /// The same for all components of a velocity.
-  template <bool checked>
   std::array<Stencil<dim>, dim> locate_faces(const Point<dim>& x) const;
   /// The samples around x with their weights and places.
   std::array<StencilCorner<dim>, (1 << dim)> corners(SampleKind kind, const Point<dim>& x) const;
 
   const Index<dim>& n_cells() const { return n_cells_; }
   bool periodic(int axis) const { return periodic_[axis]; }
-  /// True if all tiles that the coordinates [begin, end) touch are stored here and inside the
-  /// domain.
-  bool stores(const Index<dim>& begin, const Index<dim>& end) const;
+  /// Ids, as in a stencil, of the samples of a cube of `width` cells that starts at `begin`, x
+  /// fastest. False if any is missing.
+  bool find_block(SampleKind kind, const Index<dim>& begin, int width, std::vector<int>& ids) const;
 
  private:
   /// The two samples around x along one axis.
@@ -89,12 +88,15 @@ class SampleLattice {
     std::array<bool, 2> at_wall{};
     double weight;
   };
-  template <bool checked>
   Pair find_pair(int axis, bool on_faces, double x) const;
-  template <bool checked>
   Stencil<dim> combine(const std::array<const Pair*, dim>& pairs) const;
   /// Sample coordinate after wrapping and clamping.
   int resolve(int axis, bool on_faces, int i) const;
+  /// Share of a sample coordinate in the place in the tile table.
+  int table_share(int axis, int i) const {
+    const int tile = (i >> log_tile_width<dim>)-table_lower_[axis];
+    return std::clamp(tile, 0, table_size_[axis] - 1) * table_stride_[axis];
+  }
 
   Index<dim> n_cells_;
   std::array<bool, dim> periodic_;
@@ -116,7 +118,6 @@ int SampleLattice<dim>::resolve(int axis, bool on_faces, int i) const {
 }
 
 template <int dim>
-template <bool checked>
 typename SampleLattice<dim>::Pair SampleLattice<dim>::find_pair(int axis, bool on_faces,
                                                                 double x) const {
   constexpr int log_width = log_tile_width<dim>;
@@ -126,21 +127,15 @@ typename SampleLattice<dim>::Pair SampleLattice<dim>::find_pair(int axis, bool o
   pair.weight = t - floor_t;
   for (int k = 0; k < 2; ++k) {
     int i = static_cast<int>(floor_t) + k;
-    if constexpr (checked) {
-      i = resolve(axis, on_faces, i);
-      pair.at_wall[k] = on_faces && virtual_wall_[axis] && i == n_cells_[axis];
-    }
-    int tile = (i >> log_width) - table_lower_[axis];
-    if constexpr (checked)
-      tile = std::clamp(tile, 0, table_size_[axis] - 1);
-    pair.tile[k] = tile * table_stride_[axis];
+    i = resolve(axis, on_faces, i);
+    pair.at_wall[k] = on_faces && virtual_wall_[axis] && i == n_cells_[axis];
+    pair.tile[k] = table_share(axis, i);
     pair.offset[k] = (i & (tile_width<dim> - 1)) << (log_width * axis);
   }
   return pair;
 }
 
 template <int dim>
-template <bool checked>
 Stencil<dim> SampleLattice<dim>::combine(const std::array<const Pair*, dim>& pairs) const {
   Stencil<dim> stencil;
   for (int k = 0; k < 1 << dim; ++k) {
@@ -150,8 +145,7 @@ Stencil<dim> SampleLattice<dim>::combine(const std::array<const Pair*, dim>& pai
       const int upper = (k >> a) & 1;
       tile += pairs[a]->tile[upper];
       offset += pairs[a]->offset[upper];
-      if constexpr (checked)
-        at_wall |= pairs[a]->at_wall[upper];
+      at_wall |= pairs[a]->at_wall[upper];
     }
     stencil.id[k] = at_wall ? Stencil<dim>::wall_sample : table_[tile] * tile_volume<dim> + offset;
   }
@@ -161,31 +155,29 @@ Stencil<dim> SampleLattice<dim>::combine(const std::array<const Pair*, dim>& pai
 }
 
 template <int dim>
-template <bool checked>
 Stencil<dim> SampleLattice<dim>::locate(SampleKind kind, const Point<dim>& x) const {
   std::array<Pair, dim> pairs;
   std::array<const Pair*, dim> chosen;
   for (int a = 0; a < dim; ++a) {
-    pairs[a] = find_pair<checked>(a, a == kind, x[a]);
+    pairs[a] = find_pair(a, a == kind, x[a]);
     chosen[a] = &pairs[a];
   }
-  return combine<checked>(chosen);
+  return combine(chosen);
 }
 
 template <int dim>
-template <bool checked>
 std::array<Stencil<dim>, dim> SampleLattice<dim>::locate_faces(const Point<dim>& x) const {
   std::array<Pair, dim> on_faces, at_centers;
   for (int a = 0; a < dim; ++a) {
-    on_faces[a] = find_pair<checked>(a, true, x[a]);
-    at_centers[a] = find_pair<checked>(a, false, x[a]);
+    on_faces[a] = find_pair(a, true, x[a]);
+    at_centers[a] = find_pair(a, false, x[a]);
   }
   std::array<Stencil<dim>, dim> stencils;
   for (int kind = 0; kind < dim; ++kind) {
     std::array<const Pair*, dim> chosen;
     for (int a = 0; a < dim; ++a)
       chosen[a] = a == kind ? &on_faces[a] : &at_centers[a];
-    stencils[kind] = combine<checked>(chosen);
+    stencils[kind] = combine(chosen);
   }
   return stencils;
 }

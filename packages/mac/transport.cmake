@@ -1,4 +1,4 @@
 # Sources of the advection along u_ADV and of the revalidation.
 set(TRANSPORT_SOURCES
-  nearby_surface.cpp ray_halo.cpp revalidation.cpp sample_lattice.cpp surface_transport.cpp
-  transport.cpp visible_interpolation.cpp)
+  field_carrier.cpp nearby_surface.cpp ray_halo.cpp revalidation.cpp sample_lattice.cpp surface_transport.cpp
+  tile_block.cpp transport.cpp visible_interpolation.cpp)
