@@ -30,10 +30,11 @@ BoundarySide<dim> read_side(const ParameterList& list, int axis, int end) {
   side.ramp_time = list.get<double>("Ramp Time");
   side.smoke = list.get<double>("Smoke");
   side.temperature = list.get<double>("Temperature");
-  check_input(!side.closed() || side.velocity[axis] == 0,
-              "In \"Domain/Sides/{}\", a wall cannot move along {} (velocity {} m/s): it would leave "
-              "the domain. Make it an inflow, or set that component to 0.",
-              side_name(axis, end), axis_names[axis], side.velocity[axis]);
+  check_input(
+      !side.closed() || side.velocity[axis] == 0,
+      "In \"Domain/Sides/{}\", a wall cannot move along {} (velocity {} m/s): it would leave "
+      "the domain. Make it an inflow, or set that component to 0.",
+      side_name(axis, end), axis_names[axis], side.velocity[axis]);
   check_input(side.type == SideType::wall || side.type == SideType::inflow ||
                   side.velocity == Point<dim>::Zero(),
               "In \"Domain/Sides/{}\", \"Velocity\" has no meaning on a side of type \"{}\"; it is "
@@ -90,24 +91,31 @@ DomainDescription<dim> read_domain(const ParameterList& list) {
   grid.spacing = (upper[0] - lower[0]) / cells[0];
   for (int a = 0; a < dim; ++a) {
     grid.n_cells[a] = cells[a];
-    check_input(upper[a] > lower[a],
-                "In \"Domain\", the upper corner must be above the lower one, but along {} they are "
-                "{} and {} m.",
-                axis_names[a], upper[a], lower[a]);
+    check_input(
+        upper[a] > lower[a],
+        "In \"Domain\", the upper corner must be above the lower one, but along {} they are "
+        "{} and {} m.",
+        axis_names[a], upper[a], lower[a]);
     const double h = (upper[a] - lower[a]) / cells[a];
-    check_input(std::abs(h - grid.spacing) <= 1e-9 * grid.spacing,
-                "In \"Domain\", the cells must be as long along every axis, but they are {} m along x "
-                "and {} m along {}; change \"Cells\" or the corners.",
-                grid.spacing, h, axis_names[a]);
+    check_input(
+        std::abs(h - grid.spacing) <= 1e-9 * grid.spacing,
+        "In \"Domain\", the cells must be as long along every axis, but they are {} m along x "
+        "and {} m along {}; change \"Cells\" or the corners.",
+        grid.spacing, h, axis_names[a]);
     for (int end = 0; end < 2; ++end)
       result.boundary.sides[a][end] =
           read_side<dim>(list.sublist("Sides").sublist(side_name(a, end)), a, end);
-    check_input((result.boundary.side(a, 0).type == SideType::periodic) ==
-                    (result.boundary.side(a, 1).type == SideType::periodic),
-                "In \"Domain/Sides\", only one of \"{}\" and \"{}\" is periodic; either both are or "
-                "none.",
-                side_name(a, 0), side_name(a, 1));
+    check_input(
+        (result.boundary.side(a, 0).type == SideType::periodic) ==
+            (result.boundary.side(a, 1).type == SideType::periodic),
+        "In \"Domain/Sides\", only one of \"{}\" and \"{}\" is periodic; either both are or "
+        "none.",
+        side_name(a, 0), side_name(a, 1));
   }
+  for (int a = 0; a < dim; ++a)
+    check_input(!result.boundary.periodic(a) || cells[a] >= 3,
+                "In \"Domain\", the periodic axis {} has {} cells, but needs 3 or more.",
+                axis_names[a], cells[a]);
   set_grid_flags(result.boundary, grid);
   return result;
 }

@@ -14,14 +14,18 @@ struct ForceParameters {
   double smoke_weight = 0;                  ///< relative excess density of smoke of density 1 [1]
 };
 
-/// f = g + f_body + (-beta (T - T0) + w s) g along `axis` at a face, temperature and smoke being the mean
-/// of the fluid cells beside it. Local; the halo of the scalars must be valid.
+/// f = g + f_body + (-beta (T - T0) + w s) g along `axis` at a face, temperature and smoke being
+/// the mean of the fluid cells beside it. Local; the halo of the scalars must be valid.
 template <int dim>
 class ForceField {
  public:
   ForceField(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
              const ForceParameters<dim>& parameters, const Scalars<dim>& scalars);
   double operator()(int axis, int cell) const;
+  /// True if the fluid feels nothing along `axis`, anywhere.
+  bool vanishes(int axis) const {
+    return parameters_.gravity[axis] == 0 && parameters_.body[axis] == 0;
+  }
 
  private:
   double mean(const CellField& field, int axis, int cell) const;

@@ -46,7 +46,8 @@ VelocityProfile<dim> rotation(const ParameterList& list) {
 template <int dim>
 void declare_initial_state(ParameterList& fluid) {
   ParameterList at_rest, uniform_list, vortex, rotation_list;
-  declare_vector(uniform_list, "Velocity", filled_array(dim, 0.0), dim, "Velocity everywhere [m/s].");
+  declare_vector(uniform_list, "Velocity", filled_array(dim, 0.0), dim,
+                 "Velocity everywhere [m/s].");
   declare(vortex, "Amplitude", 1.0, "Largest velocity U [m/s].");
   declare_positive(vortex, "Wavelength", 1.0, "Length of one period, 2 pi / k [m].");
   declare_vector(vortex, "Mean Velocity", filled_array(dim, 0.0), dim,
@@ -74,12 +75,13 @@ FaceField<dim> initial_velocity(const TiledGrid<dim>& grid, const ParameterList&
   const auto type = initial_state.get<std::string>("Type");
   if (type == "at rest")
     return velocity;
-  const VelocityProfile<dim> profile = type == "uniform"       ? uniform<dim>(initial_state)
+  const VelocityProfile<dim> profile = type == "uniform"        ? uniform<dim>(initial_state)
                                        : type == "taylor green" ? taylor_green<dim>(initial_state)
                                                                 : rotation<dim>(initial_state);
   for (int axis = 0; axis < dim; ++axis)
-    grid.for_each_owned_face(
-        axis, [&](int cell) { velocity[axis][cell] = profile(grid.face_center(axis, cell))[axis]; });
+    grid.for_each_owned_face(axis, [&](int cell) {
+      velocity[axis][cell] = profile(grid.face_center(axis, cell))[axis];
+    });
   return velocity;
 }
 

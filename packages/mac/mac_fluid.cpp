@@ -3,6 +3,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "mac/face_moments.hpp"
 #include "mac/initial_state.hpp"
 
 namespace lockstep {
@@ -21,8 +22,8 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
 
 template <int dim>
 void MacFluid<dim>::set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) {
-  const bool unchanged = !pressure_block_.is_null() && !geometry_.state.surface &&
-                         (!surface || surface->empty());
+  const bool unchanged =
+      !pressure_block_.is_null() && !geometry_.state.surface && (!surface || surface->empty());
   if (unchanged)
     return;
   viscosity_.reset();
@@ -38,16 +39,9 @@ void MacFluid<dim>::set_geometry(const Surface& surface, const OpenFractionRule<
 
 template <int dim>
 void MacFluid<dim>::set_prescribed(FaceField<dim>& velocity) const {
-  const TiledGrid<dim>& grid = domain_.grid;
-  for (int axis = 0; axis < dim; ++axis) {
-    if (domain_.boundary.periodic(axis))
-      continue;
-    grid.for_each_owned_face(axis, [&](int cell) {
-      if (geometry_.state.faces[axis][cell] != FaceState::prescribed)
-        return;
-      const int end = geometry_.state.cells[cell] == CellState::outside ? 1 : 0;
-      velocity[axis][cell] = domain_.boundary.side(axis, end).velocity_at(time_)[axis];
-    });
+  for (const auto& [axis, cell] : geometry_.prescribed) {
+    const int end = geometry_.state.cells[cell] == CellState::outside ? 1 : 0;
+    velocity[axis][cell] = domain_.boundary.side(axis, end).velocity_at(time_)[axis];
   }
   domain_.halo.fill(velocity);
 }
@@ -105,16 +99,24 @@ Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
   set_prescribed(prediction_);
   Momentum<dim> impulse = push_sources(time);
   const ForceField<dim> force(domain_, geometry_, parameters_.forces, scalars_);
+  const double full_mass = parameters_.density * domain_.cell_volume();
   Momentum<dim> mine;
-  for (int axis = 0; axis < dim; ++axis)
+  for (int axis = 0; axis < dim; ++axis) {
+    if (force.vanishes(axis))
+      continue;
+    FaceMoments<dim> moments(domain_.grid, axis);
     domain_.grid.for_each_owned_face(axis, [&](int cell) {
       if (!moves(axis, cell))
         return;
       const double change = dt * force(axis, cell);
       prediction_[axis][cell] += change;
-      if (geometry_.state.faces[axis][cell] == FaceState::free && change != 0)
-        mine.add(domain_.grid.face_center(axis, cell), axis, face_mass(axis, cell) * change);
+      moments.add(cell, full_mass * geometry_.open_fraction(axis, cell) * change);
     });
+    mine += moments.total();
+  }
+  for (const auto& [axis, cell] : geometry_.open_sides)
+    mine.add(domain_.grid.face_center(axis, cell), axis,
+             -0.5 * full_mass * geometry_.open_fraction(axis, cell) * dt * force(axis, cell));
   domain_.halo.fill(prediction_);
   return impulse + sum_over_ranks(mine, domain_.grid.comm());
 }
@@ -143,8 +145,8 @@ Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, double dt) {
 
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
-  TransportSetting<dim> setting{domain_.grid, geometry_.state, surface, advection_, ray_halo_, {},
-                                dt};
+  TransportSetting<dim> setting{
+      domain_.grid, geometry_.state, surface, advection_, ray_halo_, {}, dt};
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
@@ -173,7 +175,8 @@ template <int dim>
 void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
   if (!geometry_.state.surface)
     return;
-  revalidate_faces<dim>(domain_.grid, domain_.halo, geometry_.state, surface, invalid_, prediction_);
+  revalidate_faces<dim>(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
+                        prediction_);
   for (Scalar& scalar : scalars_.all())
     revalidate_scalar(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
                       scalar.ambient, scalar.values);
@@ -181,43 +184,43 @@ void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
 }
 
 template <int dim>
-double MacFluid<dim>::face_mass(int axis, int cell) const {
-  const double open = geometry_.open_fraction(axis, cell);
-  if (open == 0)
-    return 0;
-  const FaceCells face = cells_of_face(domain_.grid, geometry_.state.cells, axis, cell);
-  return parameters_.density * domain_.cell_volume() * open * (face.at_side() ? 0.5 : 1);
-}
-
-template <int dim>
 Momentum<dim> MacFluid<dim>::momentum() const {
+  const double full_mass = parameters_.density * domain_.cell_volume();
   Momentum<dim> mine;
-  for (int axis = 0; axis < dim; ++axis)
+  for (int axis = 0; axis < dim; ++axis) {
+    FaceMoments<dim> moments(domain_.grid, axis);
     domain_.grid.for_each_owned_face(axis, [&](int cell) {
-      const double mass = face_mass(axis, cell);
-      if (mass > 0)
-        mine.add(domain_.grid.face_center(axis, cell), axis, mass * prediction_[axis][cell]);
+      const double open = geometry_.open_fraction(axis, cell);
+      if (open > 0)
+        moments.add(cell, full_mass * open * prediction_[axis][cell]);
     });
+    mine += moments.total();
+  }
+  for (const auto& [axis, cell] : geometry_.open_sides)
+    mine.add(domain_.grid.face_center(axis, cell), axis,
+             -0.5 * full_mass * geometry_.open_fraction(axis, cell) * prediction_[axis][cell]);
   return sum_over_ranks(mine, domain_.grid.comm());
 }
 
 template <int dim>
 double MacFluid<dim>::kinetic_energy() const {
   double mine = 0;
+  const auto square = [&](int axis, int cell) {
+    const double u = prediction_[axis][cell];
+    return geometry_.open_fraction(axis, cell) * u * u;
+  };
   for (int axis = 0; axis < dim; ++axis)
-    domain_.grid.for_each_owned_face(axis, [&](int cell) {
-      const double u = prediction_[axis][cell];
-      mine += 0.5 * face_mass(axis, cell) * u * u;
-    });
-  return sum_all(domain_.grid.comm(), mine);
+    domain_.grid.for_each_owned_face(axis, [&](int cell) { mine += square(axis, cell); });
+  for (const auto& [axis, cell] : geometry_.open_sides)
+    mine -= 0.5 * square(axis, cell);
+  return 0.5 * parameters_.density * domain_.cell_volume() * sum_all(domain_.grid.comm(), mine);
 }
 
 template <int dim>
 double MacFluid<dim>::largest_cell_crossing_rate() const {
   double largest = 0;
   const auto speed = [&](int axis, int face) {
-    const bool still =
-        face < 0 || geometry_.state.faces[axis][face] == FaceState::inactive;
+    const bool still = face < 0 || geometry_.state.faces[axis][face] == FaceState::inactive;
     return still ? 0.0 : std::abs(velocity_[axis][face]);
   };
   domain_.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
@@ -243,8 +246,7 @@ double MacFluid<dim>::fluid_volume() const {
 }
 
 template <int dim>
-void MacFluid<dim>::set_prediction(
-    const std::function<Point<dim>(const Point<dim>&)>& velocity) {
+void MacFluid<dim>::set_prediction(const std::function<Point<dim>(const Point<dim>&)>& velocity) {
   for (int axis = 0; axis < dim; ++axis)
     domain_.grid.for_each_owned_face(axis, [&](int cell) {
       if (geometry_.state.faces[axis][cell] == FaceState::free)

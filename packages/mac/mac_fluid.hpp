@@ -28,9 +28,10 @@ ParameterList mac_parameters();
 template <int dim>
 MacParameters<dim> read_mac_parameters(const ParameterList& fluid);
 
-/// A single-phase fluid on a staggered Cartesian grid of tiles. Every cell whose centre is not inside a
-/// closed solid is fluid. Momentum of free faces counts M = rho V alpha, half of it at open sides. With
-/// periodic sides, angular momentum is not conserved: a torque has no common origin there.
+/// A single-phase fluid on a staggered Cartesian grid of tiles. Every cell whose centre is not
+/// inside a closed solid is fluid. Momentum of free faces counts M = rho V alpha, half of it at
+/// open sides. With periodic sides, angular momentum is not conserved: a torque has no common
+/// origin there.
 ///
 /// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
 template <int dim>
@@ -91,8 +92,6 @@ class MacFluid : public FluidDiscretization<dim> {
     return state == FaceState::free || state == FaceState::coupled;
   }
   void set_prescribed(FaceField<dim>& velocity) const;
-  /// Fluid mass that a free face carries [kg]; 0 for others.
-  double face_mass(int axis, int cell) const;
   Momentum<dim> push_sources(double time);
 
   MacDomain<dim> domain_;

@@ -48,9 +48,8 @@ bool sees(const SurfaceSnapshot<dim>& surface, const ControlVolume<dim>& volume)
 
 /// Free, coupled, prescribed or inactive, where no surface is near.
 template <int dim>
-FaceState state_far_from_surfaces(const MacDomain<dim>& domain,
-                                  const std::vector<CellState>& cells, int axis,
-                                  const FaceCells& face) {
+FaceState state_far_from_surfaces(const MacDomain<dim>& domain, const std::vector<CellState>& cells,
+                                  int axis, const FaceCells& face) {
   const bool lower_fluid = face.lower >= 0 && cells[face.lower] == CellState::fluid;
   const bool upper_fluid = face.upper >= 0 && cells[face.upper] == CellState::fluid;
   if (!lower_fluid && !upper_fluid)
@@ -70,7 +69,8 @@ template <int dim>
 void ask_rule(const MacDomain<dim>& domain, double density, const OpenFractionRule<dim>& rule,
               int axis, int cell, const FaceCells& face, bool crossed, MacGeometry<dim>& geometry) {
   const auto& cells = geometry.state.cells;
-  const bool leads_into_solid = in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper);
+  const bool leads_into_solid =
+      in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper);
   const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
   ControlVolume<dim> volume = control_volume(domain, geometry, density, axis, cell);
   const bool blocked = crossed || leads_into_solid;
@@ -156,6 +156,10 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       if (result == FaceState::free && geometry.near_surface(cell))
         ask_rule(domain, density, rule, axis, cell, face, (marks.blocked[cell] >> axis & 1) != 0,
                  geometry);
+      if (result == FaceState::prescribed)
+        geometry.prescribed.push_back({axis, cell});
+      if (result == FaceState::free && face.at_side())
+        geometry.open_sides.push_back({axis, cell});
     });
     if (grid.comm()->getSize() > 1)
       fill_flags(domain.full_halo, state.faces[axis]);

@@ -21,6 +21,8 @@ struct MacGeometry {
   /// Owned faces with open fraction < 1 and fluid on at least one side, and their control volumes.
   std::vector<FaceId> coupled;
   std::vector<ControlVolume<dim>> volumes;
+  std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows
+  std::vector<FaceId> open_sides;  ///< owned free faces of open sides
 
   /// The part of a face through which free fluid flows.
   double open_fraction(int axis, int cell) const {

@@ -44,8 +44,7 @@ BoxField scalar_field(const TiledGrid<dim>& grid, const std::vector<int>& tiles,
                       std::string unit, std::function<double(int)> value) {
   return {std::move(name), std::move(unit), 1,
           [&grid, tiles, value = std::move(value)](std::size_t block, double* values) {
-            for_each_cell_of_tile(grid, tiles[block],
-                                  [&](int cell) { *values++ = value(cell); });
+            for_each_cell_of_tile(grid, tiles[block], [&](int cell) { *values++ = value(cell); });
           }};
 }
 

@@ -29,8 +29,8 @@ class DisjointSets {
 
 /// What one rank knows of the components in its cells.
 struct LocalComponents {
-  std::vector<GlobalIndex> label;   ///< of each stored cell: lattice number of the component's first
-                                    ///< cell on its rank, or no_index
+  std::vector<GlobalIndex> label;  ///< of each stored cell: lattice number of the component's first
+                                   ///< cell on its rank, or no_index
   std::vector<GlobalIndex> labels;  ///< all labels here
   std::vector<GlobalIndex> fixed;   ///< labels whose pressure level is fixed
   std::vector<std::pair<GlobalIndex, GlobalIndex>> joined;  ///< across ranks

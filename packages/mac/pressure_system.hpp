@@ -3,8 +3,8 @@
 
 namespace lockstep {
 
-/// A = V G_f^T rho^-1 G_f over the open part of free faces: 2 dim + 1 points. A cell without free face
-/// has a row of one stored zero. Collective.
+/// A = V G_f^T rho^-1 G_f over the open part of free faces: 2 dim + 1 points. A cell without free
+/// face has a row of one stored zero. Collective.
 template <int dim>
 RCP<const CrsMatrix> pressure_matrix(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                      double density);
@@ -14,8 +14,8 @@ RCP<const CrsMatrix> pressure_matrix(const MacDomain<dim>& domain, const MacGeom
 template <int dim>
 PressureRegions find_regions(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
-/// rhs = minus the outflow of each fluid cell through free and prescribed faces [m^dim/s]. The halo of
-/// `velocity` must be valid.
+/// rhs = minus the outflow of each fluid cell through free and prescribed faces [m^dim/s]. The halo
+/// of `velocity` must be valid.
 template <int dim>
 void outflow_deficit(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                      const FaceField<dim>& velocity, Vector& rhs);
@@ -30,8 +30,8 @@ template <int dim>
 void subtract_gradient(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                        double density, const CellField& scaled_pressure, FaceField<dim>& velocity);
 
-/// Impulse of walls and inflows on the fluid through their pressure, which is that of the cell beside
-/// them; open sides have none (p = 0). Collective.
+/// Impulse of walls and inflows on the fluid through their pressure, which is that of the cell
+/// beside them; open sides have none (p = 0). Collective.
 template <int dim>
 Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                     const Vector& scaled_pressure);

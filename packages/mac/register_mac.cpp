@@ -7,11 +7,11 @@ namespace lockstep {
 template <int dim>
 void register_mac(
     Registry<FluidDiscretization<dim>, const ParameterList&, const Communicator&>& fluids) {
-  fluids.add(
-      "mac", "Incompressible fluid on a staggered Cartesian grid of tiles.", mac_parameters<dim>,
-      [](const ParameterList& list, const ParameterList& domain, const Communicator& comm) {
-        return std::make_unique<MacFluid<dim>>(list, domain, comm);
-      });
+  fluids.add("mac", "Incompressible fluid on a staggered Cartesian grid of tiles.",
+             mac_parameters<dim>,
+             [](const ParameterList& list, const ParameterList& domain, const Communicator& comm) {
+               return std::make_unique<MacFluid<dim>>(list, domain, comm);
+             });
 }
 
 template void register_mac<2>(

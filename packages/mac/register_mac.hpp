@@ -4,8 +4,8 @@
 
 namespace lockstep {
 
-/// Registers the fluid "mac". Arguments of the factory beside the "Fluid" list: the validated "Domain"
-/// list (see `domain_parameters`) and the communicator.
+/// Registers the fluid "mac". Arguments of the factory beside the "Fluid" list: the validated
+/// "Domain" list (see `domain_parameters`) and the communicator.
 template <int dim>
 void register_mac(
     Registry<FluidDiscretization<dim>, const ParameterList&, const Communicator&>& fluids);

@@ -66,7 +66,8 @@ ScalarSource<dim> read_source(const ParameterList& list) {
 
 template <int dim>
 void declare_scalars(ParameterList& fluid) {
-  declare_scalar<dim>(fluid, "Smoke", "[1]", "Density of smoke, which the fluid carries. Absent: none.");
+  declare_scalar<dim>(fluid, "Smoke", "[1]",
+                      "Density of smoke, which the fluid carries. Absent: none.");
   declare_scalar<dim>(fluid, "Temperature", "[K]",
                       "Temperature, which the fluid carries. Absent: none.");
   ParameterList source;
@@ -75,8 +76,8 @@ void declare_scalars(ParameterList& fluid) {
   declare_optional<double>(source, "Smoke Rate", "Smoke density added inside [1/s].");
   declare_optional<double>(source, "Temperature", "Temperature held inside [K].");
   declare_optional<double>(source, "Temperature Rate", "Heating inside [K/s].");
-  declare_optional<ParameterArray<double>>(source, "Velocity",
-                                           "Velocity given to the fluid inside at every step [m/s].");
+  declare_optional<ParameterArray<double>>(
+      source, "Velocity", "Velocity given to the fluid inside at every step [m/s].");
   set_length(source, "Velocity", dim);
   declare(source, "Begin Time", 0.0, "When the source starts [s].");
   declare(source, "End Time", 1e300, "When it stops [s].");
@@ -95,10 +96,11 @@ Scalars<dim>::Scalars(const MacDomain<dim>& domain, const ParameterList& fluid) 
     const std::string name = sources.name(it);
     sources_.push_back(read_source<dim>(sources.sublist(name)));
     for (const auto& feed : sources_.back().feeds)
-      check_input(find(feed.scalar) != nullptr,
-                  "The source \"{}\" in \"Fluid/Sources\" feeds {}, but the fluid carries none; add "
-                  "the list \"Fluid/{}\".",
-                  name, feed.scalar, feed.scalar == "smoke" ? "Smoke" : "Temperature");
+      check_input(
+          find(feed.scalar) != nullptr,
+          "The source \"{}\" in \"Fluid/Sources\" feeds {}, but the fluid carries none; add "
+          "the list \"Fluid/{}\".",
+          name, feed.scalar, feed.scalar == "smoke" ? "Smoke" : "Temperature");
   }
 }
 

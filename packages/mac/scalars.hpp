@@ -19,7 +19,7 @@ struct ScalarSource {
   };
   RegionShape<dim> shape;
   std::vector<Feed> feeds;
-  std::optional<Point<dim>> velocity;  ///< set inside [m/s]
+  std::optional<Point<dim>> velocity;       ///< set inside [m/s]
   double begin_time = 0, end_time = 1e300;  ///< [s]
 
   bool active(double time) const { return time >= begin_time && time < end_time; }
@@ -29,7 +29,7 @@ struct ScalarSource {
 struct Scalar {
   std::string name;  ///< "smoke", "temperature"
   std::string unit;
-  double ambient = 0;                            ///< where nothing else is known
+  double ambient = 0;                           ///< where nothing else is known
   std::vector<std::array<double, 2>> inflow{};  ///< [axis][end]
   CellField values{};
 };
@@ -45,7 +45,8 @@ class Scalars {
   const std::vector<Scalar>& all() const { return scalars_; }
   /// The values of a scalar, or null if the scene has none of that name.
   const CellField* find(const std::string& name) const;
-  /// Feeds the fluid cells inside the sources that are active at `time`, over dt. Sets owned cells. Local.
+  /// Feeds the fluid cells inside the sources that are active at `time`, over dt. Sets owned cells.
+  /// Local.
   void feed(const MacGeometry<dim>& geometry, double time, double dt);
   /// True if a source that is active at `time` sets the velocity.
   bool sources_push(double time) const;

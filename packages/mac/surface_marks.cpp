@@ -18,8 +18,8 @@ void stored_range(const TiledGrid<dim>& grid, Index<dim>& begin, Index<dim>& end
     }
 }
 
-/// The cell whose centre is the first at or above a coordinate: the crossing lies in the segment from
-/// the centre before to this one, its end included.
+/// The cell whose centre is the first at or above a coordinate: the crossing lies in the segment
+/// from the centre before to this one, its end included.
 int cell_above(double coordinate, double lower, double spacing) {
   const auto center = [&](int i) { return lower + (i + 0.5) * spacing; };
   const double estimate = std::ceil((coordinate - lower) / spacing - 0.5);

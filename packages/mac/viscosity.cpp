@@ -10,7 +10,7 @@ namespace lockstep {
 template <int dim>
 Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                           double density, const ViscosityParameters& parameters)
-    : domain_(domain), geometry_(geometry), viscosity_(parameters.viscosity) {
+    : domain_(domain) {
   ViscousLinks<dim> found = find_viscous_links(domain, geometry, density, parameters);
   map_ = found.map;
   faces_ = std::move(found.faces);
@@ -18,6 +18,7 @@ Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& 
   mass_ = found.mass;
   links_ = std::move(found.links);
   sides_ = std::move(found.sides);
+  couples_ = std::move(found.couples);
 }
 
 template <int dim>
@@ -62,20 +63,14 @@ Momentum<dim> Viscosity<dim>::impulse(const FaceField<dim>& velocity, double tim
     const double pull = side.coefficient * (side_velocity(side, time) - velocity[axis][cell]);
     result.add(grid.face_center(axis, cell), axis, dt * pull);
   }
-  // The link of a face with its upper neighbour across its direction: +J here, -J there, at distance h.
   const double h = grid.spacing();
-  for (const FaceId& face : faces_)
-    for (int across = 0; across < dim; ++across) {
-      const double coefficient =
-          across == face.axis ? 0 : joined_coefficient(domain_, geometry_, face, across, 1, viscosity_);
-      if (coefficient == 0)
-        continue;
-      const int other = grid.neighbor(face.cell, across, 1);
-      const auto& u = velocity[face.axis];
-      const double impulse = dt * coefficient * (u[other] - u[face.cell]);
-      result.angular += cross<dim>(Point<dim>::Unit(across) * -h,
-                                   Point<dim>::Unit(face.axis) * impulse);
-    }
+  for (const CoupleEnd& couple : couples_) {
+    const auto [axis, cell] = faces_[couple.row];
+    // +J here and -J at the upper neighbour: the arm between them is -h.
+    const double sum = dt * couple.coefficient * velocity[axis][cell];
+    result.angular +=
+        cross<dim>(Point<dim>::Unit(couple.across) * -h, Point<dim>::Unit(axis) * sum);
+  }
   return sum_over_ranks(result, grid.comm());
 }
 

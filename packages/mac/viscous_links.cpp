@@ -10,25 +10,14 @@
 namespace lockstep {
 
 namespace {
-/// mu area / h between a free face and its neighbour along `across` [kg/s]; the dual cell at an open
-/// side is only half as long, so it has half the area across.
-template <int dim>
-double full_coefficient(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                        const FaceId& face, int across, double viscosity) {
-  const bool half =
-      across != face.axis &&
-      cells_of_face(domain.grid, geometry.state.cells, face.axis, face.cell).at_side();
-  return viscosity * domain.face_area() / domain.spacing() * (half ? 0.5 : 1);
-}
-
 /// Where the link to the neighbour meets a surface first, if it does. Both ends ask about the same
-/// segment, so that they agree whether it is blocked. Links along the velocity's own axis run inside
-/// two unblocked segments, or end on a coupled face.
+/// segment, so that they agree whether it is blocked. Links along the velocity's own axis run
+/// inside two unblocked segments, or end on a coupled face.
 template <int dim>
 std::optional<SurfacePoint<dim>> surface_on_link(const MacDomain<dim>& domain,
                                                  const MacGeometry<dim>& geometry,
-                                                 const FaceId& face, int across, int end) {
-  const int other = domain.grid.neighbor(face.cell, across, end);
+                                                 const FaceId& face, int across, int end,
+                                                 int other) {
   const int lower_cell = end == 0 ? other : face.cell;
   if (across == face.axis || !geometry.near_surface(lower_cell))
     return std::nullopt;
@@ -61,13 +50,18 @@ class Builder {
     RowBuilder rows(result_.map, 2 * dim + 1);
     const int n = static_cast<int>(result_.faces.size());
     for (row_ = 0; row_ < n; ++row_) {
-      const FaceId face = result_.faces[row_];
-      diagonal_ = 0;
+      start_row(result_.faces[row_]);
+      // In the order of the ids within a tile.
+      for (int across = dim - 1; across >= 0; --across)
+        add_link(across, 0, rows);
+      const std::size_t middle = rows.add(ids_[face_.axis][face_.cell], 0);
       for (int across = 0; across < dim; ++across)
-        for (int end = 0; end < 2; ++end)
-          add_link(face, across, end, rows);
-      rows.add(ids_[face.axis][face.cell], diagonal_);
+        add_link(across, 1, rows);
+      rows.set(middle, diagonal_);
       rows.end_row();
+      for (int across = 0; across < dim; ++across)
+        if (balance_[across] != 0)
+          result_.couples.push_back({row_, across, balance_[across]});
     }
     result_.stiffness = rows.finish();
     return std::move(result_);
@@ -89,8 +83,8 @@ class Builder {
       const auto [axis, cell] = result_.faces[row];
       ids_[axis][cell] = result_.map->getMinGlobalIndex() + static_cast<GlobalIndex>(row);
       const bool half = cells_of_face(grid_, geometry_.state.cells, axis, cell).at_side();
-      mass[row] = density_ * domain_.cell_volume() * geometry_.open_fraction(axis, cell) *
-                  (half ? 0.5 : 1);
+      mass[row] =
+          density_ * domain_.cell_volume() * geometry_.open_fraction(axis, cell) * (half ? 0.5 : 1);
     }
     for (int axis = 0; axis < dim; ++axis)
       domain_.halo.fill(ids_[axis]);
@@ -109,51 +103,64 @@ class Builder {
     return std::make_pair(a.face.axis, a.face.cell) < std::make_pair(b.face.axis, b.face.cell);
   }
 
-  void add_link(const FaceId& face, int across, int end, RowBuilder& rows) {
-    const double coefficient =
-        full_coefficient(domain_, geometry_, face, across, parameters_.viscosity);
-    if (across == face.axis) {
-      const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, face.axis, face.cell);
-      const int between = end == 0 ? cells.lower : cells.upper;
+  void start_row(const FaceId& face) {
+    face_ = face;
+    cells_ = cells_of_face(grid_, geometry_.state.cells, face.axis, face.cell);
+    diagonal_ = 0;
+    balance_.fill(0);
+  }
+
+  /// mu area / h to the neighbour [kg/s]; the dual cell at an open side is only half as long, so it
+  /// has half the area across.
+  double full_coefficient(int across) const {
+    const double unit = parameters_.viscosity * domain_.face_area() / domain_.spacing();
+    return across != face_.axis && cells_.at_side() ? 0.5 * unit : unit;
+  }
+
+  void add_link(int across, int end, RowBuilder& rows) {
+    const double coefficient = full_coefficient(across);
+    if (across == face_.axis) {
+      const int between = end == 0 ? cells_.lower : cells_.upper;
       // Beyond an open side, and in a void, nothing pulls.
       if (between < 0 || geometry_.state.cells[between] != CellState::fluid)
         return;
     }
-    if (leaves_domain(face, across, end)) {
-      add_side_link(across, end, across == face.axis ? coefficient : 2 * coefficient);
+    const int other = grid_.neighbor(face_.cell, across, end);
+    const FaceState state =
+        other < 0 ? FaceState::inactive : geometry_.state.faces[face_.axis][other];
+    if (state == FaceState::inactive && beyond_domain(other)) {
+      add_side_link(across, end, across == face_.axis ? coefficient : 2 * coefficient);
       return;
     }
-    const int other = grid_.neighbor(face.cell, across, end);
-    if (const auto hit = surface_on_link(domain_, geometry_, face, across, end)) {
-      add_surface_link(face, *hit, coefficient);
+    if (const auto hit = surface_on_link(domain_, geometry_, face_, across, end, other)) {
+      add_surface_link(face_, *hit, coefficient);
       return;
     }
-    switch (geometry_.state.faces[face.axis][other]) {
+    switch (state) {
       case FaceState::free:
-        rows.add(ids_[face.axis][other], -coefficient);
+        rows.add(ids_[face_.axis][other], -coefficient);
         diagonal_ += coefficient;
+        if (across != face_.axis)
+          balance_[across] += end == 0 ? coefficient : -coefficient;
         break;
       case FaceState::coupled:
-        add_coupled_link(face, other, coefficient);
+        add_coupled_link(face_, other, coefficient);
         break;
       case FaceState::prescribed:  // only along the velocity's own axis
-        add_side_link(face.axis, end, coefficient);
+        add_side_link(face_.axis, end, coefficient);
         break;
       case FaceState::inactive:
-        add_hidden_link(face, across, end, other, coefficient);
+        add_hidden_link(face_, across, end, other, coefficient);
         break;
     }
   }
 
-  /// True if the neighbour lies beyond a side, or is the unstored upper face of the domain.
-  bool leaves_domain(const FaceId& face, int across, int end) const {
-    const int other = grid_.neighbor(face.cell, across, end);
-    if (other < 0)
+  /// No face, as above a closed side, or one between two cells of the layer above another side.
+  bool beyond_domain(int face) const {
+    if (face < 0)
       return true;
-    if (across == face.axis)
-      return false;
-    // The faces of a layer above a side across, which only stores faces of that other axis.
-    return grid_.coordinates(other)[across] >= grid_.n_cells()[across];
+    const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, face_.axis, face);
+    return cells.lower < 0 && cells.upper < 0;
   }
 
   void add_side_link(int axis, int end, double coefficient) {
@@ -196,8 +203,8 @@ class Builder {
     result_.links.push_back(link);
   }
 
-  /// The neighbour has no fluid, yet no surface was met on the way: the link ends on the nearest one if
-  /// the neighbour is inside a solid; a void does not pull.
+  /// The neighbour has no fluid, yet no surface was met on the way: the link ends on the nearest
+  /// one if the neighbour is inside a solid; a void does not pull.
   void add_hidden_link(const FaceId& face, int across, int end, int other, double coefficient) {
     const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, face.axis, other);
     const auto solid = [&](int cell) {
@@ -222,35 +229,25 @@ class Builder {
   ViscousLinks<dim> result_;
   std::array<std::vector<GlobalIndex>, dim> ids_;
   std::vector<Coupled> coupled_;
+  // Of the present row.
   int row_ = 0;
+  FaceId face_;
+  FaceCells cells_;
   double diagonal_ = 0;
+  std::array<double, dim>
+      balance_{};  ///< coefficients of lower minus upper joined neighbours across
 };
 }  // namespace
 
 template <int dim>
-ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain,
-                                     const MacGeometry<dim>& geometry, double density,
-                                     const ViscosityParameters& parameters) {
+ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                     double density, const ViscosityParameters& parameters) {
   return Builder<dim>(domain, geometry, density, parameters).build();
-}
-
-template <int dim>
-double joined_coefficient(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                          const FaceId& face, int across, int end, double viscosity) {
-  const int other = domain.grid.neighbor(face.cell, across, end);
-  if (other < 0 || geometry.state.faces[face.axis][other] != FaceState::free ||
-      surface_on_link(domain, geometry, face, across, end))
-    return 0;
-  return full_coefficient(domain, geometry, face, across, viscosity);
 }
 
 template ViscousLinks<2> find_viscous_links<2>(const MacDomain<2>&, const MacGeometry<2>&, double,
                                                const ViscosityParameters&);
 template ViscousLinks<3> find_viscous_links<3>(const MacDomain<3>&, const MacGeometry<3>&, double,
                                                const ViscosityParameters&);
-template double joined_coefficient<2>(const MacDomain<2>&, const MacGeometry<2>&, const FaceId&, int,
-                                      int, double);
-template double joined_coefficient<3>(const MacDomain<3>&, const MacGeometry<3>&, const FaceId&, int,
-                                      int, double);
 
 }  // namespace lockstep

@@ -15,6 +15,16 @@ struct SideLink {
   double coefficient = 0;  ///< [kg/s]
 };
 
+/// The end of a row of free velocities, side by side and joined by links: where the couple of those
+/// links does not cancel. The couple of a link between neighbours at distance h across their
+/// direction is h mu area / h (u_upper - u_lower), so that of a whole row is the difference of its
+/// ends.
+struct CoupleEnd {
+  int row = 0;             ///< local
+  int across = 0;          ///< axis along which the velocities stand side by side
+  double coefficient = 0;  ///< [kg/s], negative at the lower end
+};
+
 /// Everything that free velocities are viscously tied to.
 template <int dim>
 struct ViscousLinks {
@@ -24,18 +34,12 @@ struct ViscousLinks {
   RCP<Vector> mass;
   std::vector<ViscousLink<dim>> links;
   std::vector<SideLink> sides;
+  std::vector<CoupleEnd> couples;
 };
 
 /// Collective.
 template <int dim>
-ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain,
-                                     const MacGeometry<dim>& geometry, double density,
-                                     const ViscosityParameters& parameters);
-
-/// Coefficient of the link between a free face and the next one along `across`, or 0 if that is not a
-/// free one in sight [kg/s].
-template <int dim>
-double joined_coefficient(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                          const FaceId& face, int across, int end, double viscosity);
+ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                     double density, const ViscosityParameters& parameters);
 
 }  // namespace lockstep

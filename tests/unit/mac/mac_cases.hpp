@@ -43,7 +43,8 @@ struct Case {
     domain.set("Upper", upper);
     domain.set("Cells", ParameterArray<int>(cells.begin(), cells.end()));
   }
-  Case& side(const std::string& name, const std::string& type, const Point<dim>& velocity = Point<dim>::Zero()) {
+  Case& side(const std::string& name, const std::string& type,
+             const Point<dim>& velocity = Point<dim>::Zero()) {
     ParameterList& list = domain.sublist("Sides").sublist(name);
     list.set("Type", type);
     list.set("Velocity", ParameterArray<double>(velocity.data(), velocity.data() + dim));
@@ -52,7 +53,8 @@ struct Case {
   Case& all_periodic() {
     for (const char* const axis : {"x", "y", "z"})
       if (dim == 3 || axis[0] != 'z')
-        side(std::string(axis) + " lower", "periodic").side(std::string(axis) + " upper", "periodic");
+        side(std::string(axis) + " lower", "periodic")
+            .side(std::string(axis) + " upper", "periodic");
     return *this;
   }
   std::unique_ptr<MacFluid<dim>> make() {

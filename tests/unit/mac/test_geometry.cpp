@@ -68,7 +68,8 @@ TEST(Geometry, RegionsOfADividedBox) {
     solids.add(box_surface<2>(Point<2>(0.4, 0.4), 0.1), Point<2>(3, 1.2), false);
     fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
     const PressureRegions& regions = fluid->regions();
-    // Outside, and the fluid in the hollow box; the plate makes one more. Numbered from the lower left.
+    // Outside, and the fluid in the hollow box; the plate makes one more. Numbered from the lower
+    // left.
     ASSERT_EQ(regions.n_regions, divided ? 3 : 2);
     for (const char fixed : regions.has_dirichlet)
       EXPECT_FALSE(fixed);

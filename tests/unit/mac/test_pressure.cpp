@@ -67,9 +67,8 @@ void expect_symmetric_without_row_sums() {
   fluid->set_geometry(ball_and_plate<dim>(0.05), BlockedFaces<dim>());
   const auto matrix = assembled(fluid->pressure_block());
   const auto x = pressure_vector<dim>(*fluid, wavy<dim>);
-  const auto y = pressure_vector<dim>(*fluid, [](const Point<dim>& p) {
-    return wavy<dim>(Point<dim>(3 * p)) - 0.2;
-  });
+  const auto y = pressure_vector<dim>(
+      *fluid, [](const Point<dim>& p) { return wavy<dim>(Point<dim>(3 * p)) - 0.2; });
   Vector ax(x->getMap()), ay(x->getMap()), one(x->getMap()), a_one(x->getMap());
   one.putScalar(1);
   matrix->apply(*x, ax);
@@ -79,8 +78,12 @@ void expect_symmetric_without_row_sums() {
   EXPECT_GT(x->dot(ax), 0);
   EXPECT_LT(a_one.normInf(), 1e-15);
 }
-TEST(Pressure, SymmetricWithoutRowSums2D) { expect_symmetric_without_row_sums<2>(); }
-TEST(Pressure, SymmetricWithoutRowSums3D) { expect_symmetric_without_row_sums<3>(); }
+TEST(Pressure, SymmetricWithoutRowSums2D) {
+  expect_symmetric_without_row_sums<2>();
+}
+TEST(Pressure, SymmetricWithoutRowSums3D) {
+  expect_symmetric_without_row_sums<3>();
+}
 
 /// What the free faces gain and what the coupled ones would is what the sides give.
 template <int dim>
@@ -111,8 +114,12 @@ void expect_impulses_telescope() {
   EXPECT_LT((gained.angular - given.angular).norm(), 1e-13) << given.angular.transpose();
   EXPECT_GT(given.linear.norm(), 0.1);
 }
-TEST(Pressure, ImpulsesTelescope2D) { expect_impulses_telescope<2>(); }
-TEST(Pressure, ImpulsesTelescope3D) { expect_impulses_telescope<3>(); }
+TEST(Pressure, ImpulsesTelescope2D) {
+  expect_impulses_telescope<2>();
+}
+TEST(Pressure, ImpulsesTelescope3D) {
+  expect_impulses_telescope<3>();
+}
 
 /// Largest error of A p = V f for p = cos(pi x) cos(pi y), with x open: sin(pi x) cos(pi y).
 double poisson_error(int n, bool open) {
@@ -153,9 +160,8 @@ TEST(Pressure, DivergenceCountsInflowAndSkipsCoupledFaces) {
   fluid->begin_prediction();
   const auto rhs = make_vector(fluid->pressure_map());
   fluid->divergence(*rhs);
-  const auto expected = pressure_vector<2>(*fluid, [](const Point<2>& x) {
-    return x[0] < 0.25 ? 2 * 0.25 : 0.0;
-  });
+  const auto expected =
+      pressure_vector<2>(*fluid, [](const Point<2>& x) { return x[0] < 0.25 ? 2 * 0.25 : 0.0; });
   rhs->update(-1, *expected, 1);
   EXPECT_LT(rhs->normInf(), 1e-15);
   EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(fluid->coupled_volumes().size())), 4);

@@ -78,12 +78,16 @@ void expect_closed_ledger(const std::string& x_type) {
   Case<dim> scene(cells, 0.05);
   scene.fluid.set("Density", 1.5);
   scene.fluid.set("Viscosity", 0.7);
-  scene.side("x lower", x_type, x_type == "inflow" ? Point<dim>(Point<dim>::Unit(0)) : Point<dim>::Zero());
-  scene.side("x upper", "open").side("y upper", "wall", Point<dim>::Unit(0)).side("y lower", "slip wall");
+  scene.side("x lower", x_type,
+             x_type == "inflow" ? Point<dim>(Point<dim>::Unit(0)) : Point<dim>::Zero());
+  scene.side("x upper", "open")
+      .side("y upper", "wall", Point<dim>::Unit(0))
+      .side("y lower", "slip wall");
   const auto fluid = scene.make();
   Solids<dim> solids;
   solids.add(ball_surface<dim>(0.17, 0.05), Point<dim>::Constant(0.62), true);
-  solids.add(plate_surface<dim>(Point<dim>::Constant(0.45), 1, 0.05), Point<dim>::Constant(0.31), false);
+  solids.add(plate_surface<dim>(Point<dim>::Constant(0.45), 1, 0.05), Point<dim>::Constant(0.31),
+             false);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
   fluid->begin_prediction();
   fluid->set_prediction(wavy_velocity<dim>);
@@ -103,7 +107,8 @@ void expect_closed_ledger(const std::string& x_type) {
   const auto fill = [](Vector& v, double phase) {
     const auto values = v.getDataNonConst();
     for (std::size_t i = 0; i < static_cast<std::size_t>(values.size()); ++i)
-      values[i] = std::sin(phase * (1.0 + static_cast<double>(v.getMap()->getGlobalElement(static_cast<int>(i)))));
+      values[i] = std::sin(
+          phase * (1.0 + static_cast<double>(v.getMap()->getGlobalElement(static_cast<int>(i)))));
   };
   fill(x, 0.7);
   fill(y, 1.3);
@@ -116,7 +121,9 @@ TEST(Viscosity, LedgerCloses2D) {
   expect_closed_ledger<2>("wall");
   expect_closed_ledger<2>("inflow");
 }
-TEST(Viscosity, LedgerCloses3D) { expect_closed_ledger<3>("inflow"); }
+TEST(Viscosity, LedgerCloses3D) {
+  expect_closed_ledger<3>("inflow");
+}
 
 TEST(Viscosity, LinksEndOnAPlate) {
   // A plate at y = 1.8 h above the second row of x velocities (at 1.5 h).
