@@ -17,10 +17,10 @@ enum class CellState : char {
 
 /// What a face velocity is.
 enum class FaceState : char {
-  inactive,    ///< no fluid on either side
-  free,        ///< changed by pressure: interior or open side
-  coupled,     ///< closed by the coupling: moves with the solids
-  prescribed   ///< wall or inflow
+  inactive,   ///< no fluid on either side
+  free,       ///< changed by pressure: interior or open side
+  coupled,    ///< closed by the coupling: moves with the solids
+  prescribed  ///< wall or inflow
 };
 
 /// The frozen geometry of the fluid at one instant, on all stored cells (owned and ghost).
