@@ -59,6 +59,20 @@ void MacFluid<dim>::project(const Vector& scaled_pressure) {
 }
 
 template <int dim>
+RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
+  const RCP<Vector> guess = make_vector(geometry_.pressure_map);
+  if (accepted_pressure_.empty())
+    return guess;
+  const auto values = guess->getDataNonConst();
+  int row = 0;
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    if (geometry_.state.cells[cell] == CellState::fluid)
+      values[row++] = accepted_pressure_[cell];
+  });
+  return guess;
+}
+
+template <int dim>
 std::vector<double> MacFluid<dim>::coupled_velocity() const {
   std::vector<double> result;
   result.reserve(geometry_.coupled.size());

@@ -67,10 +67,15 @@ class MacFluid : public FluidDiscretization<dim> {
   void adopt_advection_velocity() override { advection_ = prediction_; }
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;
   void revalidate(const MovingSurface<dim>& surface) override;
-  void accept() override { velocity_ = prediction_; }
+  void accept() override {
+    velocity_ = prediction_;
+    accepted_pressure_ = scaled_pressure_;
+  }
 
   double largest_cell_crossing_rate() const override;
   double spacing() const override { return domain_.spacing(); }
+  double density(const Point<dim>&) const override { return parameters_.density; }
+  RCP<Vector> last_scaled_pressure() const override;
   Point<dim> gravity() const override { return parameters_.forces.gravity; }
   Momentum<dim> momentum() const override;
   double kinetic_energy() const override;
@@ -105,7 +110,8 @@ class MacFluid : public FluidDiscretization<dim> {
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
   FaceField<dim> velocity_, prediction_, advection_;
-  CellField scaled_pressure_;  ///< of the last projection
+  CellField scaled_pressure_;    ///< of the last projection
+  CellField accepted_pressure_;  ///< of the last accepted step
   InvalidSamples<dim> invalid_;
   double time_ = 0;       ///< of walls and inflows
   double last_step_ = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures

@@ -151,6 +151,7 @@ void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
   scaled_pressure_.assign(domain_.grid.n_stored_cells(), 0.0);
   for (std::size_t i = 0; i < cells.size(); ++i)
     scaled_pressure_[cells[i]] = pressure[i];
+  accepted_pressure_ = scaled_pressure_;
   time_ = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
 }

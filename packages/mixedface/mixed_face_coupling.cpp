@@ -80,6 +80,8 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   if (options_.balance) {
     double density = volumes_.empty() ? 0 : volumes_.front().density;
     density = max_all(solids.comm(), density);
+    if (density == 0)
+      density = fluid.density(surface.bounds_of_solid(0).center());
     unseen_ = balance_masses<dim>(volumes_, shares_, surface, density, solids.comm(), masses_);
   }
   weights_ = coupling_weights<dim>(volumes_, shares_, solids);

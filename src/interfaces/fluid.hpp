@@ -148,8 +148,11 @@ class FluidDiscretization : public PlugIn {
   virtual double largest_cell_crossing_rate() const = 0;  ///< max sum_a |u_a|/h over u^n [1/s]
   virtual double spacing() const = 0;                     ///< h [m]
   virtual Point<dim> gravity() const = 0;                 ///< uniform acceleration [m/s^2]
-  virtual Momentum<dim> momentum() const = 0;             ///< of u* on free faces, global
-  virtual double kinetic_energy() const = 0;              ///< of u* on free faces [J], global
+  /// Density of the fluid at x [kg/m^dim], for the buoyancy of bodies too small for the grid to
+  /// see. Default 0: such bodies feel none.
+  virtual double density(const Point<dim>&) const { return 0; }
+  virtual Momentum<dim> momentum() const = 0;  ///< of u* on free faces, global
+  virtual double kinetic_energy() const = 0;   ///< of u* on free faces [J], global
   /// Impulse of walls and open sides through their own pressure [kg m/s], global.
   virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
   virtual double fluid_volume() const = 0;  ///< of active cells [m^dim], global

@@ -19,7 +19,10 @@ double relative_part_removed(const std::vector<RCP<const Vector>>& basis, Vector
   if (basis.empty())
     return 0;
   const double before = x.norm2();
-  return before > 0 ? project_out(basis, x) / before : 0;
+  const double removed = project_out(basis, x);
+  // Where nearly all is removed, what is left still holds round-off of the first projection.
+  project_out(basis, x);
+  return before > 0 ? removed / before : 0;
 }
 
 }  // namespace lockstep

@@ -192,8 +192,7 @@ void Simulation<dim>::load_checkpoint() {
   components_.fluid->load(checkpoint);
   step_ = checkpoint.header().step;
   last_dt_ = checkpoint.file().template read_attribute<double>("/", "last dt");
-  stepper_->set_time(checkpoint.header().time);
-  stepper_->refreeze();
+  stepper_->resume(checkpoint.header().time, last_dt_);
 }
 
 template <int dim>

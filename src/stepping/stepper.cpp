@@ -17,11 +17,18 @@ Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options
       timers_(timers),
       system_(*components.fluid, *components.solids, *components.coupling),
       time_(start_time) {
-  refreeze();
+  freeze();
 }
 
 template <int dim>
-void Stepper<dim>::refreeze() {
+void Stepper<dim>::resume(double time, double last_dt) {
+  time_ = time;
+  last_dt_ = last_dt;
+  freeze();
+}
+
+template <int dim>
+void Stepper<dim>::freeze() {
   system_.freeze(components_.solids->snapshot());
   components_.fluid->begin_prediction();
   last_momentum_ = total_momentum();
@@ -136,6 +143,8 @@ typename Stepper<dim>::CoupledSolution Stepper<dim>::solve(double dt, const RCP<
   }
   const BlockSystem& blocks = system_.blocks(dt);
   solution.unknowns.pressure = components_.fluid->last_scaled_pressure();
+  if (last_dt_ > 0)
+    solution.unknowns.pressure->scale(dt / last_dt_);  // p̂ = dt p
   project_out(blocks.null_space, *solution.unknowns.pressure);
   if (coupled())
     solution.unknowns.solid = components_.solids->velocity();
@@ -174,7 +183,7 @@ void Stepper<dim>::make_advection_velocity(StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   auto& coupling = *components_.coupling;
   fluid.begin_prediction();
-  if (components_.solids->empty() && !first_step_) {
+  if (components_.solids->empty() && last_dt_ > 0) {
     fluid.adopt_advection_velocity();  // u^n is divergence-free already
     return;
   }
@@ -330,7 +339,7 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
     finish(solution, dt, report);
   }
   time_ += dt;
-  first_step_ = false;
+  last_dt_ = dt;
   return report;
 }
 

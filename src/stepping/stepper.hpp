@@ -61,12 +61,13 @@ class Stepper {
   /// Advances by dt. Throws SolveError if a solve fails. Collective.
   StepReport<dim> advance(double dt);
   double time() const { return time_; }
-  void set_time(double time) { time_ = time; }
-  /// For restart: freezes the geometry anew after fluid and solids were loaded. Collective.
-  void refreeze();
+  /// For restart, after fluid and solids were loaded: freezes the geometry anew. `last_dt` is that
+  /// of the last step taken. Collective.
+  void resume(double time, double last_dt);
   CoupledSystem<dim>& system() { return system_; }
 
  private:
+  void freeze();
   struct CoupledSolution {
     BlockVector unknowns;
     BlockVector rhs;
@@ -94,7 +95,7 @@ class Stepper {
   PhaseTimers& timers_;
   CoupledSystem<dim> system_;
   double time_;
-  bool first_step_ = true;
+  double last_dt_ = 0;           ///< 0 before the first step
   Momentum<dim> last_momentum_;  ///< at the end of the last step
   RCP<Vector> viscous_impulse_;  ///< j_nu of the present prediction, or null
 };
