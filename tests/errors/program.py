@@ -53,4 +53,4 @@ def simulate(folder, *arguments, scene=SCENE, ranks=1):
     """Runs to the end; stdout and stderr are kept apart."""
     (Path(folder) / "scene.xml").write_text(scene)
     return subprocess.run(command(folder, *arguments, ranks=ranks), stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True, timeout=120)
+                          stderr=subprocess.PIPE, text=True, timeout=600)
