@@ -195,14 +195,14 @@ int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
     const int most = round == 0 ? most_at_once<dim> : 2;
     if (activate_violated(motion, most, tolerance, solver) == 0)
       break;
-    sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
+    sweeps += solver.iterate(std::max(1, options_.sweeps / 8), options_.tolerance * scale_);
     if (phase_ == ContactPhase::position && searches < most_searches) {
       const std::size_t known = candidates_.size();
       extend_search(solver.velocity());
       searches += candidates_.size() > known ? 1 : 0;
     }
   }
-  return sweeps;
+  return sweeps + solver.iterate(options_.sweeps, options_.tolerance * scale_);
 }
 
 template <int dim>

@@ -10,7 +10,7 @@ namespace lockstep {
 
 /// Lengths are in units of the grid spacing h.
 struct GaussSeidelOptions {
-  int sweeps = 200;              ///< of projected Gauss-Seidel for one set of contacts
+  int sweeps = 200;              ///< of projected Gauss-Seidel over the final set of contacts
   double tolerance = 1e-4;       ///< change of velocities over the largest one wanted [1]
   double margin = 0.1;           ///< gaps that are watched whatever the motion [h]
   double slop = 0.05;            ///< overlap that is left alone [h]

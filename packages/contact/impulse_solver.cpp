@@ -66,7 +66,7 @@ void ImpulseSolver<dim>::add_response(Row& row) {
   auto tangent = (row.tangents.transpose() * compliance * row.tangents).eval();
   // Directions that locks hold get no impulse to speak of.
   tangent.diagonal().array() += 1e-12 * compliance.trace();
-  row.tangent_response = tangent.trace();
+  row.tangent_response = tangent.norm();
   row.tangent_inverse = tangent.inverse();
 }
 

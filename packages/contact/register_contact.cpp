@@ -8,7 +8,8 @@ ParameterList contact_parameters() {
   const GaussSeidelOptions usual;
   ParameterList list;
   declare_positive(list, "Iterations", usual.sweeps,
-                   "Sweeps of projected Gauss-Seidel over one set of contacts, at most.");
+                   "Sweeps of projected Gauss-Seidel over the final set of contacts, at most; an "
+                   "eighth of it while the set grows.");
   declare_positive(list, "Tolerance", usual.tolerance,
                    "Sweeps end when velocities at contacts change by less than this part of the "
                    "largest change that contact asks for [1].");
