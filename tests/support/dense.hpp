@@ -1,0 +1,18 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "linear/types.hpp"
+
+namespace lockstep::testing {
+
+/// A distributed vector by global id, on every rank; ids must be 0 .. n-1. Collective.
+Eigen::VectorXd dense(const Vector& vector);
+
+/// A small operator, assembled or not, column by column, on every rank. Collective.
+Eigen::MatrixXd dense(const LinearOperator& op);
+Eigen::MatrixXd dense(const RCP<const CrsMatrix>& matrix);
+
+/// The vector of these values on a map whose ids are 0 .. n-1.
+RCP<Vector> distributed(const Eigen::VectorXd& values, const RCP<const Map>& map);
+
+}  // namespace lockstep::testing
