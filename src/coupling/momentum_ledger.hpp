@@ -41,9 +41,12 @@ class MomentumLedger {
   const Momentum<dim>& before() const { return before_; }
   const Momentum<dim>& after() const { return after_; }
 
-  /// |P_after - P_before - sum J| / max(sum |J|, |P|); 0 if nothing moves.
-  double linear_error() const {
-    double scale = std::max(before_.linear.norm(), after_.linear.norm()), impulses = 0;
+  /// |P_after - P_before - sum J| / max(sum |J|, |P|); 0 if nothing moves. Where all momentum
+  /// cancels (a vortex, a spinning bar) neither is a scale: `momentum_scale` [kg m/s], a bound of
+  /// what moves regardless of direction, is the least that the defect is measured against.
+  double linear_error(double momentum_scale = 0) const {
+    double scale = std::max({before_.linear.norm(), after_.linear.norm(), momentum_scale});
+    double impulses = 0;
     for (const auto& entry : entries_)
       impulses += entry.second.linear.norm();
     scale = std::max(scale, impulses);
@@ -52,8 +55,9 @@ class MomentumLedger {
   }
   /// The same about the origin; `length` [m] turns linear into angular scales, so that a motion
   /// without rotation is judged against the size of the domain.
-  double angular_error(double length) const {
-    double scale = length * std::max(before_.linear.norm(), after_.linear.norm()), impulses = 0;
+  double angular_error(double length, double momentum_scale = 0) const {
+    double scale = length * std::max({before_.linear.norm(), after_.linear.norm(), momentum_scale});
+    double impulses = 0;
     for (const auto& entry : entries_) {
       impulses += std::max(entry.second.angular.norm(), length * entry.second.linear.norm());
     }

@@ -250,9 +250,12 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
   }
   report.ledger.close(report.fluid_momentum + report.solid_momentum);
   last_momentum_ = report.ledger.after();
-  report.momentum_error = report.ledger.linear_error();
+  // sum m |u| >= sum m u^2 / max |u|
+  const double fastest = fluid.largest_cell_crossing_rate() * fluid.spacing();
+  const double momentum_scale = fastest > 0 ? 2 * report.fluid_kinetic_energy / fastest : 0;
+  report.momentum_error = report.ledger.linear_error(momentum_scale);
   if (options_.audit_angular) {
-    report.angular_momentum_error = report.ledger.angular_error(options_.length);
+    report.angular_momentum_error = report.ledger.angular_error(options_.length, momentum_scale);
   }
   for (const auto& state : solids.states()) {
     report.solid_kinetic_energy += state.kinetic_energy;

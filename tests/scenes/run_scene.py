@@ -66,7 +66,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         command = [simulate, scene, "--output", folder, "--steps", str(N_STEPS),
                    "--set", "Domain/Cells={" + ", ".join(map(str, n_cells)) + "}",
-                   "--set", "Output/Frame Interval=0"]
+                   "--set", "Output/Frames=true", "--set", "Output/Frame Interval=0"]
         if ranks != "1":
             command = [mpiexec, "--oversubscribe", "-np", ranks, *command]
         result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
