@@ -151,10 +151,14 @@ std::unique_ptr<ViscousSystem<dim>> MacFluid<dim>::viscous_system() const {
 }
 
 template <int dim>
-Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, double dt) {
+Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector& velocity,
+                                            double dt) {
   viscosity_->store(solution, prediction_);
   domain_.halo.fill(prediction_);
-  return viscosity_->impulse(prediction_, time_, dt);
+  const Momentum<dim> impulse = viscosity_->impulse(prediction_, time_, dt);
+  viscosity_->store(velocity, prediction_);
+  domain_.halo.fill(prediction_);
+  return impulse;
 }
 
 template <int dim>

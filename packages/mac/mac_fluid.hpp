@@ -63,7 +63,7 @@ class MacFluid : public FluidDiscretization<dim> {
   Momentum<dim> add_forces(double time, double dt) override;
   std::vector<double> coupled_force(double time, double dt) const override;
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
-  Momentum<dim> accept_viscous(const Vector& solution, double dt) override;
+  Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
   void adopt_advection_velocity() override { advection_ = prediction_; }
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;
   void revalidate(const MovingSurface<dim>& surface) override;

@@ -248,7 +248,15 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
     result.solid_impulse = rcp(new Vector(solids.map()));
     links.rows->apply(*pull, *result.solid_impulse, Teuchos::TRANS, dt, 0);
   }
-  result.boundary_impulse = fluid.accept_viscous(*x.fluid, dt);
+  // u = u* + M^-1 (impulses of the solution): momentum is exact, the residual of CG shows in u
+  // alone.
+  Pair residual = rhs.same_shape();
+  op.apply_to(x, residual);
+  residual.update(1, rhs, -1);
+  Vector velocity(*x.fluid, Teuchos::Copy), mass_inverse(system.map);
+  mass_inverse.reciprocal(*system.mass);
+  velocity.elementWiseMultiply(1, mass_inverse, *residual.fluid, 1);
+  result.boundary_impulse = fluid.accept_viscous(*x.fluid, velocity, dt);
   result.boundary_impulse +=
       sum_over_ranks<dim>(link_impulse<dim>(links, *pull, dt), solids.comm());
   return result;

@@ -131,9 +131,11 @@ class FluidDiscretization : public PlugIn {
   virtual std::vector<double> coupled_force(double time, double dt) const = 0;
   /// Null if the fluid is inviscid: then no viscous solve exists.
   virtual std::unique_ptr<ViscousSystem<dim>> viscous_system() const { return nullptr; }
-  /// u* := solution on free velocities; returns the impulse of walls, open sides and the internal
-  /// couple of the scheme over dt, each computed from its own tractions, global.
-  virtual Momentum<dim> accept_viscous(const Vector& solution, double dt);
+  /// Returns the impulse of walls, open sides and the internal couple of the scheme over dt, each
+  /// computed from the tractions of `solution`, global; u* := `velocity` on free velocities, which
+  /// is u* plus exactly the impulses of `solution` (the two differ by the solver's residual over
+  /// M).
+  virtual Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt);
   virtual void adopt_advection_velocity() = 0;  ///< u_ADV := u* (end of F2)
   /// F3: u* := u^n carried along u_ADV, and all scalars; rays stop at the moving surfaces and see
   /// only samples on their own side. Called before `set_geometry` of the new surfaces.
@@ -164,7 +166,7 @@ class FluidDiscretization : public PlugIn {
 };
 
 template <int dim>
-Momentum<dim> FluidDiscretization<dim>::accept_viscous(const Vector&, double) {
+Momentum<dim> FluidDiscretization<dim>::accept_viscous(const Vector&, const Vector&, double) {
   return {};
 }
 template <int dim>

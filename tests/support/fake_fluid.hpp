@@ -58,7 +58,7 @@ class FakeFluid : public FluidDiscretization<dim> {
   Momentum<dim> add_forces(double time, double dt) override;
   std::vector<double> coupled_force(double time, double dt) const override;
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
-  Momentum<dim> accept_viscous(const Vector& solution, double dt) override;
+  Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
   void adopt_advection_velocity() override {}
   void advect(double, double, const MovingSurface<dim>&) override { predicted_ = velocity_; }
   void revalidate(const MovingSurface<dim>&) override {}

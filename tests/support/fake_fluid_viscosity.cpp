@@ -91,7 +91,8 @@ std::unique_ptr<ViscousSystem<dim>> FakeFluid<dim>::viscous_system() const {
 }
 
 template <int dim>
-Momentum<dim> FakeFluid<dim>::accept_viscous(const Vector& solution, double dt) {
+Momentum<dim> FakeFluid<dim>::accept_viscous(const Vector& solution, const Vector& velocity,
+                                             double dt) {
   const auto mine = solution.getData();
   replicate(FaceKind::free, std::vector<double>(mine.begin(), mine.end()));
   Momentum<dim> impulse;
@@ -112,6 +113,8 @@ Momentum<dim> FakeFluid<dim>::accept_viscous(const Vector& solution, double dt) 
       }
     });
   }
+  const auto accepted = velocity.getData();
+  replicate(FaceKind::free, std::vector<double>(accepted.begin(), accepted.end()));
   return impulse;
 }
 
@@ -119,7 +122,7 @@ template double FakeFluid<2>::bond() const;
 template double FakeFluid<3>::bond() const;
 template std::unique_ptr<ViscousSystem<2>> FakeFluid<2>::viscous_system() const;
 template std::unique_ptr<ViscousSystem<3>> FakeFluid<3>::viscous_system() const;
-template Momentum<2> FakeFluid<2>::accept_viscous(const Vector&, double);
-template Momentum<3> FakeFluid<3>::accept_viscous(const Vector&, double);
+template Momentum<2> FakeFluid<2>::accept_viscous(const Vector&, const Vector&, double);
+template Momentum<3> FakeFluid<3>::accept_viscous(const Vector&, const Vector&, double);
 
 }  // namespace lockstep::testing

@@ -26,7 +26,7 @@ void viscous_step(MacFluid<dim>& fluid, double dt, Momentum<dim>& impulse) {
   rhs.elementWiseMultiply(1, *system->mass, *system->velocity, 0);
   rhs.update(dt, *system->wall_force, 1);
   conjugate_gradients(ViscousOperator{*system->stiffness, *system->mass, dt}, rhs, solution, 1e-14);
-  impulse = fluid.accept_viscous(solution, dt);
+  impulse = fluid.accept_viscous(solution, solution, dt);
 }
 
 TEST(Viscosity, TaylorGreenDecaysAtItsRate) {
