@@ -1,6 +1,7 @@
 #include "mac/nearby_surface.hpp"
 
 #include <cmath>
+#include <numeric>
 
 #include "geometry/simplex_queries.hpp"
 
@@ -56,9 +57,7 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>&
   std::optional<SurfacePoint<dim>> first;
   if (empty())
     return first;
-  Box<dim> box(a);
-  box.extend(b);
-  any_image(box, [&](const Point<dim>& shift) {
+  any_image(span(a, b), [&](const Point<dim>& shift) {
     const auto hit = snapshot_->first_hit(a - shift, b - shift, tolerance_);
     if (hit && (!first || hit->fraction < first->fraction))
       first = hit;
@@ -70,6 +69,8 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>&
 template <int dim>
 void NearbySurface<dim>::gather(const Box<dim>& box) {
   near_.clear();
+  all_.clear();
+  focused_.clear();
   if (empty())
     return;
   const Box<dim> wide = widened<dim>(box, tolerance_);
@@ -86,19 +87,34 @@ void NearbySurface<dim>::gather(const Box<dim>& box) {
     }
     return false;
   });
+  all_.resize(near_.size());
+  std::iota(all_.begin(), all_.end(), 0);
+}
+
+template <int dim>
+void NearbySurface<dim>::focus(const Box<dim>& box) {
+  focused_.clear();
+  for (const int n : all_)
+    if (near_[n].bounds.intersects(box))
+      focused_.push_back(n);
 }
 
 template <int dim>
 std::optional<SurfacePoint<dim>> NearbySurface<dim>::near_hit(const Point<dim>& a,
                                                               const Point<dim>& b) const {
+  return hit_among(all_, a, b);
+}
+
+template <int dim>
+std::optional<SurfacePoint<dim>> NearbySurface<dim>::hit_among(const std::vector<int>& among,
+                                                               const Point<dim>& a,
+                                                               const Point<dim>& b) const {
   std::optional<SurfacePoint<dim>> first;
-  if (near_.empty())
-    return first;
-  Box<dim> box(a);
-  box.extend(b);
+  const Box<dim> box = span(a, b);
   // A segment shorter than the tolerance has no direction to speak of.
   const bool is_point = (b - a).norm() <= tolerance_;
-  for (const Near& near : near_) {
+  for (const int n : among) {
+    const Near& near = near_[n];
     if (!near.bounds.intersects(box))
       continue;
     if (is_point) {

@@ -34,6 +34,11 @@ class NearbySurface {
   bool nothing_near() const { return near_.empty(); }
   /// First of the gathered simplices that the segment, inside the box, meets.
   std::optional<SurfacePoint<dim>> near_hit(const Point<dim>& a, const Point<dim>& b) const;
+  /// Picks the gathered simplices that touch a smaller box, for many segments inside it.
+  void focus(const Box<dim>& box);
+  std::optional<SurfacePoint<dim>> focused_hit(const Point<dim>& a, const Point<dim>& b) const {
+    return focused_.empty() ? std::nullopt : hit_among(focused_, a, b);
+  }
 
  private:
   struct Near {
@@ -46,12 +51,18 @@ class NearbySurface {
   /// until f returns true.
   template <typename Function>
   bool any_image(const Box<dim>& box, const Function& f) const;
+  static Box<dim> span(const Point<dim>& a, const Point<dim>& b) {
+    return {a.cwiseMin(b), a.cwiseMax(b)};
+  }
+  /// `among`: places in `near_`.
+  std::optional<SurfacePoint<dim>> hit_among(const std::vector<int>& among, const Point<dim>& a,
+                                             const Point<dim>& b) const;
 
   Snapshot snapshot_;
   Point<dim> lower_, period_;  ///< period 0: not periodic
   double tolerance_;
   std::vector<Near> near_;
-  std::vector<int> found_;
+  std::vector<int> all_, focused_, found_;  ///< all_: 0, 1, 2, ...
 };
 
 /// The box widened by a distance on all sides.

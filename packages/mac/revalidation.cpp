@@ -29,10 +29,11 @@ class Fronts {
         surface_(surface),
         nearby_(after.surface, grid),
         kind_(kind),
-        valid_(invalid.size()) {
+        valid_(grid.n_stored_cells()) {
     const auto look_at = [&](int id) {
-      valid_[id] = in_fluid(id) && !invalid[id];
-      if (in_fluid(id) && invalid[id])
+      const bool has_no_value = !invalid.empty() && invalid[id];
+      valid_[id] = in_fluid(id) && !has_no_value;
+      if (in_fluid(id) && has_no_value)
         look_around(id);
     };
     if (kind == cell_centers)

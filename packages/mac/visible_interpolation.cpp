@@ -35,14 +35,25 @@ void VisibleInterpolation<dim>::look_around(const Point<dim>& x, double radius) 
 }
 
 template <int dim>
+std::array<StencilCorner<dim>, (1 << dim)> VisibleInterpolation<dim>::focus(SampleKind kind,
+                                                                            const Point<dim>& x) {
+  const auto corners = lattice_.corners(kind, x);
+  Box<dim> box(x);
+  for (const StencilCorner<dim>& corner : corners)
+    box.extend(corner.position);
+  nearby_.focus(physical(box));
+  return corners;
+}
+
+template <int dim>
 std::optional<double> VisibleInterpolation<dim>::velocity(int axis, const Point<dim>& x,
-                                                          const double* field) const {
+                                                          const double* field) {
   const Point<dim> eye = physical(x);
   Mean mean;
-  for (const StencilCorner<dim>& corner : lattice_.corners(axis, x)) {
+  for (const StencilCorner<dim>& corner : focus(axis, x)) {
     if (corner.weight == 0)
       continue;
-    if (const auto hit = nearby_.near_hit(eye, physical(corner.position)))
+    if (const auto hit = nearby_.focused_hit(eye, physical(corner.position)))
       mean.add(corner.weight, surface_.velocity(*hit)[axis]);
     else if (corner.id == Stencil<dim>::wall_sample)
       mean.add(corner.weight, 0);
@@ -53,20 +64,19 @@ std::optional<double> VisibleInterpolation<dim>::velocity(int axis, const Point<
 }
 
 template <int dim>
-std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x,
-                                                        const double* field) const {
+std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, const double* field) {
   const Point<dim> eye = physical(x);
   Mean mean;
-  for (const StencilCorner<dim>& corner : lattice_.corners(cell_centers, x))
+  for (const StencilCorner<dim>& corner : focus(cell_centers, x))
     if (corner.weight > 0 && corner.id >= 0 && usable_.cells[corner.id] &&
-        !nearby_.near_hit(eye, physical(corner.position)))
+        !nearby_.focused_hit(eye, physical(corner.position)))
       mean.add(corner.weight, field[corner.id]);
   return mean.value();
 }
 
 template <int dim>
-Point<dim> VisibleInterpolation<dim>::velocity_at(
-    const Point<dim>& x, const std::array<const double*, dim>& field) const {
+Point<dim> VisibleInterpolation<dim>::velocity_at(const Point<dim>& x,
+                                                  const std::array<const double*, dim>& field) {
   Point<dim> result;
   std::optional<Point<dim>> fallback;
   for (int a = 0; a < dim; ++a) {

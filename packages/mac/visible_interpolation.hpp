@@ -34,13 +34,12 @@ class VisibleInterpolation {
   void look_around(const Point<dim>& x, double radius = 0);
   /// A velocity component; samples hidden by the surface have the surface's velocity there. None if
   /// nothing is visible and no surface is in sight either.
-  std::optional<double> velocity(int axis, const Point<dim>& x, const double* field) const;
+  std::optional<double> velocity(int axis, const Point<dim>& x, const double* field);
   /// A scalar from the visible samples alone, their weights scaled to sum to one; none if there are
   /// no such samples.
-  std::optional<double> scalar(const Point<dim>& x, const double* field) const;
-  /// Where the fluid that is at x came from: the midpoint rule as far as it is in sight, its
-  /// displacement in cells backwards. Zero where the velocity is unknown.
-  Point<dim> velocity_at(const Point<dim>& x, const std::array<const double*, dim>& field) const;
+  std::optional<double> scalar(const Point<dim>& x, const double* field);
+  /// All components of a velocity; where nothing is in sight, that of the nearest surface.
+  Point<dim> velocity_at(const Point<dim>& x, const std::array<const double*, dim>& field);
 
   const NearbySurface<dim>& nearby() const { return nearby_; }
   Point<dim> physical(const Point<dim>& x) const { return grid_.lower() + grid_.spacing() * x; }
@@ -51,6 +50,9 @@ class VisibleInterpolation {
   Point<dim> nearest_surface_velocity(const Point<dim>& x) const;
 
  private:
+  /// The samples around x; simplices that could hide them are in focus.
+  std::array<StencilCorner<dim>, (1 << dim)> focus(SampleKind kind, const Point<dim>& x);
+
   const TiledGrid<dim>& grid_;
   const SampleLattice<dim>& lattice_;
   const UsableSamples<dim>& usable_;
