@@ -31,11 +31,8 @@ template <int dim>
 ContactReach ContactProblem<dim>::reach(double speed) const {
   ContactReach reach;
   reach.swept = phase_ == ContactPhase::position;
-  reach.near = spacing_ * options_.slop;
-  if (reach.swept) {
-    reach.near = std::max(reach.near, spacing_ * options_.margin) +
-                 std::min(dt_ * speed, 2 * options_.margin * spacing_);
-  }
+  reach.near = spacing_ * std::max(options_.slop, options_.margin) +
+               std::min(dt_ * speed, 2 * options_.margin * spacing_);
   reach.depth = spacing_ * options_.deepest;
   reach.half_thickness = 0.5 * options_.shell_thickness * spacing_;
   reach.dt = dt_;

@@ -23,8 +23,10 @@ struct GaussSeidelOptions {
 
 /// Speculative contacts solved by projected Gauss-Seidel through M_S. A contact with gap g must
 /// have v_n >= -g / dt after the resolution. In the position phase overlaps are pushed out, and
-/// whatever a vertex meets during dt is a contact; in the velocity phase only contacts that touch
-/// count, and restitution acts there.
+/// whatever a vertex meets during dt is a contact; in the velocity phase only what is near by
+/// counts (all near vertices of a face or a ball, or a fast one would be set spinning by the one
+/// that touches), and restitution acts there. Motion is linear within dt: solids that turn by more
+/// than about 0.3 rad a step overlap for a while.
 ///
 /// Surfaces and velocities of all solids are replicated and every rank solves the same problem:
 /// results do not depend on the number of ranks; the work, O(solids and their vertices), does not

@@ -18,7 +18,7 @@ TYPED_TEST_SUITE(Contacts, Dimensions);
 TYPED_TEST(Contacts, ABallDroppedOnTheFloorRestsWithoutDrift) {
   constexpr int dim = TypeParam::value;
   World<dim> world({rough(ball<dim>(4 * h, up<dim>(6 * h)), 0.3)}, up<dim>(-g), cube_walls<dim>());
-  world.run(1.5, 0.01);
+  world.run(3, 0.01);  // time to tip from a vertex onto a side
   const SolidState<dim> before = world.state(0);
   EXPECT_NEAR(before.center_of_mass[dim - 1], 4 * h, 0.15 * h);
   world.run(0.5, 0.01);
@@ -87,6 +87,19 @@ TYPED_TEST(Contacts, ABoxOnAnInclineSticksOrSlides) {
     EXPECT_NEAR(sliding.state(0).center_of_mass[0], acceleration * time * time / 2, 0.02 * h)
         << on_wall;
   }
+}
+
+/// Of a plate that lay with this side up at the start.
+template <int dim>
+Point<dim> plate_normal(const SolidSystem<dim>& solids, int plate) {
+  const auto surface = solids.snapshot();
+  const auto corners = surface->corners(surface->solids()[plate].simplex_begin);
+  const auto start = plate_surface<dim>(Point<dim>::Constant(20 * h), dim - 1, 0.7 * h);
+  std::array<Point<dim>, dim> start_corners;
+  for (int k = 0; k < dim; ++k)
+    start_corners[k] = start.vertices[start.simplices[0][k]];
+  const double side = area_vector<dim>(start_corners)[dim - 1] > 0 ? 1 : -1;
+  return side * area_vector<dim>(corners).normalized();
 }
 
 TYPED_TEST(Contacts, NoBallPassesAShell) {
@@ -171,6 +184,8 @@ TYPED_TEST(Contacts, OverlapIsPushedOutWithoutVelocity) {
 }
 
 TYPED_TEST(Contacts, AHundredBallsSettle) {
+  if (world_communicator()->getSize() > 1)
+    GTEST_SKIP() << "every rank would do the same";
   constexpr int dim = TypeParam::value;
   const double radius = 4 * h;
   std::vector<RigidBody<dim>> bodies;
@@ -191,17 +206,14 @@ TYPED_TEST(Contacts, AHundredBallsSettle) {
     deepest = std::max(deepest, world.position_report.deepest_overlap);
   }
   const double milliseconds = 1000 * (cpu_seconds() - start) / n_steps;
-  this->RecordProperty("milliseconds_per_step", std::to_string(milliseconds));
-  this->RecordProperty("deepest_overlap_over_h", std::to_string(deepest / h));
   EXPECT_LT(world.overlap(), 0.2 * h);
   double mean_speed = 0;
   for (const auto& state : world.solids->states())
     mean_speed += state.velocity.norm() / 100;
   EXPECT_LT(mean_speed, 0.5);
-  if (world_communicator()->getSize() == 1)
-    std::printf(
-        "%dD: %.1f ms a step, deepest overlap %.3f h, at the end %.3f h, mean speed %.3f m/s\n",
-        dim, milliseconds, deepest / h, world.overlap() / h, mean_speed);
+  std::printf(
+      "%dD: %.1f ms a step, deepest overlap %.3f h, at the end %.3f h, mean speed %.3f m/s\n", dim,
+      milliseconds, deepest / h, world.overlap() / h, mean_speed);
 }
 
 TEST(EdgeContacts, CrossedBoxesMeetAtTheirEdges) {
