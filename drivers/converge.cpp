@@ -84,6 +84,7 @@ int run_study(const Study& study, const Arguments& arguments) {
   // 4. Run them.
   const std::string& directory = arguments.runner.output_directory;
   fs::create_directories(directory);
+  forward_signals_to_children();
   std::size_t n_finished = 0;
   const auto outcomes =
       run_cases(cases, arguments.runner, [&](std::size_t i, const CaseOutcome& outcome) {

@@ -28,6 +28,7 @@ namespace {
 struct Arguments {
   RunOptions run;
   std::vector<std::string> settings;
+  std::vector<std::string> dump_system;  // which, file
   bool validate = false, explain = false, parameters = false, list_plugins = false;
   std::string format = "text";
   int dimension = 3;  // of --parameters
@@ -99,6 +100,9 @@ int run(int argc, char** argv, const Communicator& comm) {
       ->take_all();
   app.add_option("--steps", arguments.run.steps, "stop after this many steps");
   app.add_option("--end-time", arguments.run.end_time, "stop at this time [s]");
+  app.add_option("--dump-system", arguments.dump_system,
+                 "STEP:S1 (or F2, S2) FILE: write that system and its right-hand side, for solve")
+      ->expected(2);
   app.add_option("--restart", arguments.run.restart_file, "continue from this checkpoint");
   app.add_flag("--validate", arguments.validate, "check the scene and build it, without running");
   app.add_flag("--explain", arguments.explain, "print what is active, why, and its cost");
@@ -115,6 +119,10 @@ int run(int argc, char** argv, const Communicator& comm) {
     if (error.get_exit_code() == 0)
       return is_root(comm) ? app.exit(error) : 0;
     throw InputError(std::string(error.what()) + " (see simulate --help).");
+  }
+  if (!arguments.dump_system.empty()) {
+    arguments.run.dump_system =
+        parse_dump_request(arguments.dump_system[0], arguments.dump_system[1]);
   }
   if (arguments.run.output_directory.empty())
     arguments.run.output_directory = "output";

@@ -67,9 +67,27 @@ RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
   int row = 0;
   domain_.grid.for_each_owned_cell([&](int cell) {
     if (geometry_.state.cells[cell] == CellState::fluid)
-      values[row++] = accepted_pressure_[cell];
+      values[row++] = accepted_pressure_around(cell);
   });
   return guess;
+}
+
+template <int dim>
+double MacFluid<dim>::accepted_pressure_around(int cell) const {
+  if (accepted_cells_[cell] == CellState::fluid)
+    return accepted_pressure_[cell];
+  double sum = 0;
+  int n = 0;
+  for (int axis = 0; axis < dim; ++axis) {
+    for (int side = 0; side < 2; ++side) {
+      const int other = domain_.grid.neighbor(cell, axis, side);
+      if (other < 0 || accepted_cells_[other] != CellState::fluid)
+        continue;
+      sum += accepted_pressure_[other];
+      ++n;
+    }
+  }
+  return n > 0 ? sum / n : 0;
 }
 
 template <int dim>

@@ -62,6 +62,7 @@ class MacFluid : public FluidDiscretization<dim> {
   void begin_prediction() override;
   Momentum<dim> add_forces(double time, double dt) override;
   std::vector<double> coupled_force(double time, double dt) const override;
+  bool is_viscous() const override { return parameters_.viscosity.viscosity > 0; }
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
   Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
   void adopt_advection_velocity() override { advection_ = prediction_; }
@@ -70,6 +71,7 @@ class MacFluid : public FluidDiscretization<dim> {
   void accept() override {
     velocity_ = prediction_;
     accepted_pressure_ = scaled_pressure_;
+    accepted_cells_ = geometry_.state.cells;
   }
 
   double largest_cell_crossing_rate() const override;
@@ -92,6 +94,8 @@ class MacFluid : public FluidDiscretization<dim> {
   void set_prediction(const std::function<Point<dim>(const Point<dim>&)>& velocity);
 
  private:
+  /// p̂ of a cell that is fluid now: its own, or the mean of its neighbours if a solid was there.
+  double accepted_pressure_around(int cell) const;
   bool moves(int axis, int cell) const {
     const FaceState state = geometry_.state.faces[axis][cell];
     return state == FaceState::free || state == FaceState::coupled;
@@ -110,8 +114,9 @@ class MacFluid : public FluidDiscretization<dim> {
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
   FaceField<dim> velocity_, prediction_, advection_;
-  CellField scaled_pressure_;    ///< of the last projection
-  CellField accepted_pressure_;  ///< of the last accepted step
+  CellField scaled_pressure_;              ///< of the last projection
+  CellField accepted_pressure_;            ///< of the last accepted step
+  std::vector<CellState> accepted_cells_;  ///< which cells had one
   InvalidSamples<dim> invalid_;
   double time_ = 0;       ///< of walls and inflows
   double last_step_ = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures

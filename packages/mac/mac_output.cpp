@@ -127,6 +127,9 @@ void MacFluid<dim>::save(CheckpointWriter& checkpoint) const {
   for (std::size_t i = 0; i < cells.size(); ++i)
     values[i] = scaled_pressure_.empty() ? 0 : scaled_pressure_[cells[i]];
   checkpoint.write_distributed("fluid/scaled_pressure", ids, values);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    values[i] = accepted_cells_.empty() ? -1 : static_cast<double>(accepted_cells_[cells[i]]);
+  checkpoint.write_distributed("fluid/cells_with_pressure", ids, values);
   checkpoint.file().write_attribute("fluid", "boundary_time", time_);
   checkpoint.file().write_attribute("fluid", "last_step", last_step_);
 }
@@ -151,7 +154,13 @@ void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
   scaled_pressure_.assign(domain_.grid.n_stored_cells(), 0.0);
   for (std::size_t i = 0; i < cells.size(); ++i)
     scaled_pressure_[cells[i]] = pressure[i];
+  domain_.halo.fill(scaled_pressure_);
   accepted_pressure_ = scaled_pressure_;
+  const auto states = checkpoint.read_distributed<double>("fluid/cells_with_pressure", ids);
+  accepted_cells_.assign(domain_.grid.n_stored_cells(), CellState::outside);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    accepted_cells_[cells[i]] = static_cast<CellState>(static_cast<int>(std::max(states[i], 0.0)));
+  fill_flags<dim>(domain_.halo, accepted_cells_);
   time_ = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
 }

@@ -273,18 +273,24 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
   VelocityRow<dim> scratch;
   std::vector<GlobalIndex> dofs;
   std::vector<double> values;
+  Point<dim> pulled = Point<dim>::Zero();  // nodes are pulled where the surface is, not at x
+  double dynamic_share = 0;
   for (const SurfaceShare<dim>& share : shares) {
     if (solids.solids()[share.solid].prescribed) {
       row.prescribed += share.weight * solids.prescribed_velocity(share.point, x)[direction];
       row.prescribed_share += share.weight;
       continue;
     }
+    dynamic_share += share.weight;
+    pulled += share.weight * (solids.solids()[share.solid].rigid ? x : share.point.position);
     directed_row<dim>(solids, share.point, x, direction, scratch, dofs, values);
     for (std::size_t k = 0; k < dofs.size(); ++k) {
       row.dofs.push_back(dofs[k]);
       row.weights.push_back(share.weight * values[k]);
     }
   }
+  if (dynamic_share > 0)
+    row.position = pulled / dynamic_share;
 }
 
 template <int dim>

@@ -129,7 +129,8 @@ class FluidDiscretization : public PlugIn {
   virtual Momentum<dim> add_forces(double time, double dt) = 0;
   /// The dt f that `add_forces` adds to each coupled control volume [m/s]. Local.
   virtual std::vector<double> coupled_force(double time, double dt) const = 0;
-  /// Null if the fluid is inviscid: then no viscous solve exists.
+  /// False: no viscous solve exists, and the two functions below are never called. Local.
+  virtual bool is_viscous() const { return false; }
   virtual std::unique_ptr<ViscousSystem<dim>> viscous_system() const { return nullptr; }
   /// Returns the impulse of walls, open sides and the internal couple of the scheme over dt, each
   /// computed from the tractions of `solution`, global; u* := `velocity` on free velocities, which

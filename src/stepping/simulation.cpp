@@ -88,6 +88,10 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
   check_input(scene_options_.time.end > scene_options_.time.start,
               "--end-time {} s must be later than the start of the scene, {} s.",
               scene_options_.time.end, scene_options_.time.start);
+  if (options.dump_system) {
+    components_.strategy =
+        std::make_unique<DumpingStrategy>(std::move(components_.strategy), *options.dump_system);
+  }
   ScopedPhase phase(timers_, "start");
   stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
                                             scene_options_.time.start, timers_);
@@ -313,7 +317,7 @@ std::string Simulation<dim>::explain() {
   line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(), fluid.spacing(),
                             fluid.pressure_map()->getGlobalNumElements()));
   line("viscous solve",
-       components_.fluid->viscous_system() ? "on (viscosity > 0)" : "off (inviscid)");
+       components_.fluid->is_viscous() ? "on (viscosity > 0)" : "off (inviscid)");
   int n_prescribed = 0, n_shells = 0;
   for (const auto& solid : solids.solids()) {
     n_prescribed += solid.prescribed ? 1 : 0;

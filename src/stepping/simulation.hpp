@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "linear/dumping_strategy.hpp"
 #include "output/frames.hpp"
 #include "stepping/run_tables.hpp"
 #include "stepping/scene.hpp"
@@ -17,6 +18,7 @@ struct RunOptions {
   std::string command_line;        ///< for the banner
   std::optional<long long> steps;  ///< --steps and --end-time override the scene
   std::optional<double> end_time;
+  std::optional<DumpRequest> dump_system;  ///< write one system of the run to a file
 };
 
 /// A run of one scene: builds it, steps it, writes tables, frames, checkpoints and the summary.

@@ -70,10 +70,10 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
     }
   }
   viscous_impulse_ = Teuchos::null;
+  if (!fluid.is_viscous())
+    return;
   ScopedPhase phase(timers_, "viscosity");
   const std::unique_ptr<ViscousSystem<dim>> viscous = fluid.viscous_system();
-  if (!viscous)
-    return;
   RCP<const LinearOperator> block;
   RCP<const Vector> row;
   if (coupled()) {

@@ -1,10 +1,13 @@
 #include "studies/child_process.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -14,6 +17,39 @@
 namespace lockstep {
 
 namespace {
+
+/// Children that run now, for the signal handler; 0: a free place.
+std::array<std::atomic<pid_t>, 64> children{};
+
+extern "C" void forward_signal(int signal) {
+  for (const std::atomic<pid_t>& child : children) {
+    if (child > 0)
+      kill(child, signal);
+  }
+}
+
+/// Lists a child while it lives; one too many is not forwarded to.
+class ListedChild {
+ public:
+  explicit ListedChild(pid_t child) {
+    for (std::atomic<pid_t>& place : children) {
+      pid_t nobody = 0;
+      if (place.compare_exchange_strong(nobody, child)) {
+        place_ = &place;
+        break;
+      }
+    }
+  }
+  ~ListedChild() {
+    if (place_ != nullptr)
+      *place_ = 0;
+  }
+  ListedChild(const ListedChild&) = delete;
+  ListedChild& operator=(const ListedChild&) = delete;
+
+ private:
+  std::atomic<pid_t>* place_ = nullptr;
+};
 
 /// Redirections of a child; owns the object of the system.
 class FileActions {
@@ -69,6 +105,7 @@ ChildResult run_child(const std::vector<std::string>& command, const std::string
   const int failure = posix_spawnp(&child, arguments.front().c_str(), actions.get(), nullptr,
                                    pointers(arguments).data(), pointers(environment).data());
   check_output(failure == 0, "Cannot start '{}': {}.", command.front(), std::strerror(failure));
+  const ListedChild listed(child);
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     check_output(errno == EINTR, "Lost '{}' while waiting for it: {}.", command.front(),
@@ -76,6 +113,13 @@ ChildResult run_child(const std::vector<std::string>& command, const std::string
   }
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), seconds};
+}
+
+void forward_signals_to_children() {
+  struct sigaction action = {};
+  action.sa_handler = forward_signal;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
 }
 
 }  // namespace lockstep

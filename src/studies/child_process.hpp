@@ -16,4 +16,8 @@ struct ChildResult {
 ChildResult run_child(const std::vector<std::string>& command, const std::string& output_file,
                       const std::string& error_file);
 
+/// From now on SIGTERM and SIGINT are handed to the children that run, instead of ending this
+/// program: they end in their own way, and `run_child` reports it.
+void forward_signals_to_children();
+
 }  // namespace lockstep

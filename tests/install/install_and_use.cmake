@@ -18,14 +18,26 @@ run_step("Configuring the template" ${CMAKE_COMMAND} -S "${copy}" -B "${copy}/bu
          "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}")
 run_step("Building the template" ${CMAKE_COMMAND} --build "${copy}/build")
 
-run_step("The template's driver" "${copy}/build/driver")
+run_step("The template's driver" "${copy}/build/driver" "${copy}/minres-teko.xml")
 if(NOT output MATCHES "1 ranks")
   message(FATAL_ERROR "The template's driver wrote '${output}'.")
 endif()
-run_step("The template's driver on 2 ranks" ${MPIEXEC} -np 2 "${copy}/build/driver")
+run_step("The template's driver on 2 ranks" ${MPIEXEC} -np 2 "${copy}/build/driver"
+         "${copy}/minres-teko.xml")
 if(NOT output MATCHES "2 ranks")
   message(FATAL_ERROR "The template's driver wrote '${output}' on 2 ranks.")
 endif()
+
+# The same plug-ins in a scene: ten steps of 0.4 s, v = t F / (m + rho A L) = 4 * 50 / 1100 m/s.
+foreach(ranks 1 2)
+  run_step("The template's scene on ${ranks} ranks" ${MPIEXEC} -np ${ranks} "${copy}/build/simulate"
+           "${copy}/piston.xml" "${copy}/run-${ranks}")
+  file(STRINGS "${copy}/run-${ranks}/bodies.csv" rows)
+  list(GET rows -1 last)
+  if(NOT last MATCHES "0\\.181818181")
+    message(FATAL_ERROR "The piston of the template ended with '${last}' on ${ranks} ranks.")
+  endif()
+endforeach()
 
 # Nothing installed may point back to the trees it came from; the prefix itself lies in the build tree.
 file(GLOB_RECURSE installed "${prefix}/lib/*.cmake")

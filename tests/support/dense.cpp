@@ -8,16 +8,16 @@
 namespace lockstep::testing {
 namespace {
 
-template <typename Apply>
-Eigen::MatrixXd columns_of(const RCP<const Map>& domain, const RCP<const Map>& range, Apply apply) {
-  const int n = static_cast<int>(domain->getGlobalNumElements());
-  Eigen::MatrixXd result(static_cast<Eigen::Index>(range->getGlobalNumElements()), n);
-  for (int k = 0; k < n; ++k) {
-    const auto image = make_vector(range);
-    apply(*distributed(Eigen::VectorXd::Unit(n, k), domain), *image);
-    result.col(k) = dense(*image);
-  }
-  return result;
+/// Sums what every rank knows of a small matrix.
+Eigen::MatrixXd summed(Eigen::MatrixXd matrix, const RCP<const Map>& map) {
+  const Communicator comm = map->getComm();
+  sum_all(comm, matrix.data(), static_cast<int>(matrix.size()));
+  return matrix;
+}
+
+Eigen::MatrixXd zeros(const RCP<const Map>& range, const RCP<const Map>& domain) {
+  return Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(range->getGlobalNumElements()),
+                               static_cast<Eigen::Index>(domain->getGlobalNumElements()));
 }
 
 }  // namespace
@@ -34,14 +34,25 @@ Eigen::VectorXd dense(const Vector& vector) {
   return result;
 }
 
-Eigen::MatrixXd dense(const LinearOperator& op) {
-  const RCP<const Map> map = domain_map(op);
-  return columns_of(map, map, [&](const Vector& x, Vector& y) { apply(op, x, y); });
+Eigen::MatrixXd dense(const RCP<const LinearOperator>& op) {
+  if (!assembled(op).is_null())
+    return dense(assembled(op));
+  const RCP<const Map> map = domain_map(*op);
+  Eigen::MatrixXd result = zeros(map, map);
+  for (Eigen::Index k = 0; k < result.cols(); ++k) {
+    const auto image = make_vector(map);
+    apply(*op, *distributed(Eigen::VectorXd::Unit(result.cols(), k), map), *image);
+    result.col(k) = dense(*image);
+  }
+  return result;
 }
 
 Eigen::MatrixXd dense(const RCP<const CrsMatrix>& matrix) {
-  return columns_of(matrix->getDomainMap(), matrix->getRangeMap(),
-                    [&](const Vector& x, Vector& y) { matrix->apply(x, y); });
+  Eigen::MatrixXd result = zeros(matrix->getRangeMap(), matrix->getDomainMap());
+  for_each_entry(*matrix, [&](int row, GlobalIndex column, double value) {
+    result(matrix->getRowMap()->getGlobalElement(row), column) += value;
+  });
+  return summed(std::move(result), matrix->getRowMap());
 }
 
 RCP<Vector> distributed(const Eigen::VectorXd& values, const RCP<const Map>& map) {

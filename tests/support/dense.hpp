@@ -8,8 +8,8 @@ namespace lockstep::testing {
 /// A distributed vector by global id, on every rank; ids must be 0 .. n-1. Collective.
 Eigen::VectorXd dense(const Vector& vector);
 
-/// A small operator, assembled or not, column by column, on every rank. Collective.
-Eigen::MatrixXd dense(const LinearOperator& op);
+/// A small operator on every rank; column by column if it is matrix-free. Collective.
+Eigen::MatrixXd dense(const RCP<const LinearOperator>& op);
 Eigen::MatrixXd dense(const RCP<const CrsMatrix>& matrix);
 
 /// The vector of these values on a map whose ids are 0 .. n-1.

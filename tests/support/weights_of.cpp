@@ -17,22 +17,23 @@ GatheredFaces<dim> gathered_faces(CoupledCase<dim>& c) {
     result.volumes.push_back(face.volume);
   }
   const int n_rows = static_cast<int>(result.volumes.size());
-  const auto gather = [&](const std::vector<double>& mine) {
+  const auto in_rows = [&](const std::vector<double>& mine) {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(n_rows);
     for (std::size_t f = 0; f < mine.size(); ++f)
       all[row_of_face[c.fluid.coupled_volumes()[f].id]] = mine[f];
-    sum_all(c.solids.comm(), all.data(), n_rows);
     return all;
   };
-  result.masses = gather(c.coupling.fluid_mass());
+  result.masses = in_rows(c.coupling.fluid_mass());
+  sum_all(c.solids.comm(), result.masses.data(), n_rows);
   const int n_dofs = static_cast<int>(c.solids.n_unknowns());
   const int n_all = static_cast<int>(c.solids.map()->getGlobalNumElements());
-  const Eigen::VectorXd prescribed = gather(c.coupling.velocity(*make_vector(c.solids.map())));
+  const Eigen::VectorXd prescribed = in_rows(c.coupling.velocity(*make_vector(c.solids.map())));
   result.weights.resize(n_rows, n_dofs);
   for (int k = 0; k < n_dofs; ++k) {
     const auto unit = distributed(Eigen::VectorXd::Unit(n_all, k), c.solids.map());
-    result.weights.col(k) = gather(c.coupling.velocity(*unit)) - prescribed;
+    result.weights.col(k) = in_rows(c.coupling.velocity(*unit)) - prescribed;
   }
+  sum_all(c.solids.comm(), result.weights.data(), static_cast<int>(result.weights.size()));
   return result;
 }
 

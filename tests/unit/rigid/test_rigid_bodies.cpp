@@ -87,7 +87,8 @@ TEST(RigidBodies, GravityActsAtTheCentreOfMass) {
   const Point<2> gravity(0, -10);
   const auto bodies =
       model<2>({geometry("plate", numbers("Size", "2, 0") + text("Normal", "y")) +
-                number("Mass", "3") + numbers("Pivot", "-1, 0") + numbers("Position", "7, 2")},
+                number("Mass", "3") + numbers("Pivot", "-1, 0") + numbers("Position", "7, 2") +
+                numbers("Force", "4, 0") + number("Torque", "6")},
                gravity);
   const auto momentum = make_vector(bodies->dof_map());
   bodies->explicit_momentum(0, 0.5, *momentum);
@@ -176,6 +177,16 @@ TEST(RigidBodies, SystemStacksThemAndRanksAgree) {
     const double number = state.center_of_mass.sum() + state.angular_velocity.sum();
     EXPECT_EQ(min_all(world(), number), max_all(world(), number));
   }
+}
+
+TEST(RigidBodies, ScriptsStartAtTheStartTime) {
+  const std::string disc = geometry("ball", number("Radius", "0.2"));
+  const auto bodies = make_rigid_bodies<2>(
+      {{"disc", body_list<2>(disc + numbers("Position", "1, 0") + motion("constant velocity") +
+                             numbers("Velocity", "2, 0"))}},
+      grid_spacing, Point<2>(0, 0), world(), 0.5);
+  EXPECT_LE((bodies->bodies()[0].pose.position - Point<2>(2, 0)).norm(), 1e-15);
+  EXPECT_EQ(bodies->dof_map()->getGlobalNumElements(), 0u);
 }
 
 TEST(RigidBodies, CheckpointRestoresBitForBit) {

@@ -1,0 +1,167 @@
+// M_F and how it is lumped.
+#include <gtest/gtest.h>
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "geometry/solid_volume.hpp"
+#include "support/dense.hpp"
+#include "unit/mixedface/bodies.hpp"
+
+namespace lockstep::testing {
+
+TEST(FluidMass, DualCellMinusSolidByHand) {
+  FakeBox<2> box;
+  box.n_cells = {5, 4};
+  box.density = 3;
+  FakeBody<2> block;
+  block.surface = rectangle({1.25, 0.75}, {3.25, 2.75});  // cells 1..2 x 1..2 are inside
+  block.center = {2.25, 1.75};
+  MixedFaceOptions options;
+  options.balance = false;
+  CoupledCase<2> c(box, fake_solids<2>({{block}}), options);
+  const GatheredFaces<2> faces = gathered_faces(c);
+  ASSERT_EQ(faces.volumes.size(), 8u);
+  // Width times height of the solid in the dual cells of the faces at x = 1 and 3, then y = 1
+  // and 3.
+  const double solid[] = {0.25 * 1,    0.75 * 1, 0.25 * 0.75, 0.75 * 0.75,
+                          0.75 * 0.75, 1 * 0.75, 0.75 * 0.25, 1 * 0.25};
+  for (int f = 0; f < 8; ++f)
+    EXPECT_NEAR(faces.masses[f], 3 * (1 - solid[f]), 1e-13) << f;
+  options.whole_cell_mass = true;
+  CoupledCase<2> whole(box, fake_solids<2>({{block}}), options);
+  EXPECT_LT((gathered_faces(whole).masses.array() - 3).matrix().norm(), 1e-13);
+}
+
+TEST(Lumping, ConsistentIsTheExplicitProduct) {
+  FakeBody<2> sheet;
+  sheet.kind = FakeBody<2>::Kind::nodal;
+  sheet.closed = false;
+  sheet.surface = polyline({{0.2, 0.75}, {0.5, 0.82}, {0.9, 0.78}}, false);
+  MixedFaceOptions options;
+  options.lumping = Lumping::consistent;
+  // Both touch the faces between them.
+  CoupledCase<2> c(unit_tank<2>(10), fake_solids<2>({{ball<2>(0.24, {0.5, 0.51}), sheet}}),
+                   options);
+  const GatheredFaces<2> faces = gathered_faces(c);
+  const Eigen::MatrixXd expected =
+      faces.weights.transpose() * faces.masses.asDiagonal() * faces.weights;
+  const Eigen::MatrixXd added = dense(c.coupling.added_mass()).topLeftCorner(9, 9);
+  EXPECT_LT((added - expected).norm(), 1e-14);
+  EXPECT_GT(expected.topRightCorner(3, 6).norm(), 1e-3);  // shared rows tie the two
+}
+
+TEST(Lumping, DiagonalConservesEachAxisMass) {
+  CoupledCase<2> c(unit_tank<2>(10),
+                   fake_solids<2>({{ball<2>(0.24, {0.5, 0.51}, FakeBody<2>::Kind::nodal)}}));
+  const GatheredFaces<2> faces = gathered_faces(c);
+  const Eigen::MatrixXd added = dense(c.coupling.added_mass());
+  const int n = static_cast<int>(faces.weights.cols());
+  for (int a = 0; a < 2; ++a) {
+    double lumped = 0, fluid = 0;
+    for (int k = a; k < n; k += 2)
+      lumped += added(k, k);
+    for (std::size_t f = 0; f < faces.volumes.size(); ++f)
+      fluid += faces.volumes[f].direction == a ? faces.masses[static_cast<int>(f)] : 0;
+    EXPECT_NEAR(lumped, fluid, 1e-13);
+  }
+  Eigen::MatrixXd off_diagonal = added.topLeftCorner(n, n);
+  off_diagonal.diagonal().setZero();
+  EXPECT_EQ(off_diagonal.norm(), 0);
+}
+
+/// Sum over the faces of one axis of `value(volume, row)` times (1, transverse arms).
+template <int dim, typename Value>
+Point<dim> axis_moments(const GatheredFaces<dim>& faces, int axis, const Point<dim>& center,
+                        Value value) {
+  Point<dim> sum = Point<dim>::Zero();
+  for (std::size_t f = 0; f < faces.volumes.size(); ++f) {
+    if (faces.volumes[f].direction != axis)
+      continue;
+    const double v = value(faces.volumes[f], static_cast<int>(f));
+    Point<dim> arms = faces.volumes[f].center - center;
+    arms[axis] = 1;  // the zeroth moment in the place of the axis itself
+    sum += v * arms;
+  }
+  return sum;
+}
+
+template <int dim>
+void check_balance(int n_cells, double radius) {
+  const FakeBox<dim> tank = unit_tank<dim>(n_cells);
+  const double cell = std::pow(tank.spacing, dim);
+  for (int k = 0; k < (dim == 2 ? 8 : 3); ++k) {
+    const FakeBody<dim> body = ball<dim>(radius, shifted_center<dim>(k, tank.spacing));
+    const auto properties = volume_properties<dim>(body.surface);
+    MixedFaceOptions options;
+    CoupledCase<dim> balanced(tank, fake_solids<dim>({{body}}), options);
+    options.balance = false;
+    CoupledCase<dim> plain(tank, fake_solids<dim>({{body}}), options);
+    const GatheredFaces<dim> faces = gathered_faces(balanced), raw = gathered_faces(plain);
+    EXPECT_GT(faces.masses.minCoeff(), 0);
+    for (int axis = 0; axis < dim; ++axis) {
+      // V_disc: dual cells of the faces between and inside: area times the distance of the two
+      // pressure points that each column of the body keeps apart.
+      const Point<dim> displaced = axis_moments<dim>(
+          faces, axis, properties.centroid, [&](const ControlVolume<dim>& volume, int) {
+            double height = 0;
+            for (int side = 0; side < 2; ++side) {
+              if (volume.sides[side].unknown != no_index)
+                height += (side == 0 ? -1 : 1) * volume.sides[side].center[axis];
+            }
+            return volume.area * height;
+          });
+      EXPECT_NEAR(displaced[axis] / cell, std::round(displaced[axis] / cell), 1e-9);
+      Point<dim> wanted = tank.density * displaced;
+      wanted[axis] -= tank.density * properties.measure;
+      const auto mass_of = [](const GatheredFaces<dim>& of) {
+        return [&of](const ControlVolume<dim>&, int f) { return of.masses[f]; };
+      };
+      const Point<dim> lumped = axis_moments<dim>(faces, axis, properties.centroid, mass_of(faces));
+      EXPECT_LT((lumped - wanted).norm(), 1e-13);
+      const Point<dim> before = axis_moments<dim>(raw, axis, properties.centroid, mass_of(raw));
+      EXPECT_GT((before - wanted).norm(), 1e-6);  // there was something to balance
+    }
+  }
+}
+
+TEST(Balance, MassesMatchTheDiscreteLift2d) {
+  check_balance<2>(12, 0.26);
+}
+TEST(Balance, MassesMatchTheDiscreteLift3d) {
+  check_balance<3>(8, 0.3);
+}
+
+// A body the grid hardly sees gets its lift as an impulse. In resting fluid, p̂ = dt rho g . x and
+// u* = dt g, what the discrete pressure, the lumped fluid and the impulse give it is -rho V dt g.
+TEST(Balance, TinyBodyGetsItsExactBuoyantImpulse) {
+  const FakeBox<2> tank = unit_tank<2>(10);
+  const Point<2> gravity(0.3, -9.8);
+  const double dt = 0.1;
+  for (int k = 0; k < 8; ++k) {
+    FakeBody<2> body = ball<2>(0.04, shifted_center<2>(k, tank.spacing));
+    CoupledCase<2> c(tank, fake_solids<2>({{body}}));
+    const auto properties = volume_properties<2>(body.surface);
+    const auto impulse = make_vector(c.solids.map());
+    c.coupling.add_unseen_buoyancy(gravity, dt, *impulse);
+    const auto pressure = make_vector(c.fluid.pressure_map());
+    for (const auto& face : c.fluid.faces()) {
+      for (const auto& side : face.volume.sides) {
+        if (side.unknown != no_index && c.fluid.pressure_map()->isNodeGlobalElement(side.unknown))
+          pressure->replaceGlobalValue(side.unknown, dt * tank.density * gravity.dot(side.center));
+      }
+    }
+    if (!c.coupling.coupling_transposed().is_null())
+      c.coupling.coupling_transposed()->apply(*pressure, *impulse, Teuchos::NO_TRANS, -1, 1);
+    std::vector<double> falling;
+    for (const auto& volume : c.fluid.coupled_volumes())
+      falling.push_back(dt * gravity[volume.direction]);
+    c.coupling.add_lumped_momentum(falling, *impulse);
+    const Eigen::VectorXd total = dense(*impulse);
+    const Eigen::Vector2d lift = -dt * tank.density * properties.measure * gravity;
+    EXPECT_LT((total.head<2>() - lift).norm(), 1e-13) << k;
+    EXPECT_NEAR(total[2], 0, 1e-13) << k;
+  }
+}
+
+}  // namespace lockstep::testing
