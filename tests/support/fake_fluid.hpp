@@ -57,7 +57,7 @@ class FakeFluid : public FluidDiscretization<dim> {
   void begin_prediction() override { predicted_ = velocity_; }
   Momentum<dim> add_forces(double time, double dt) override;
   std::vector<double> coupled_force(double time, double dt) const override;
-  bool is_viscous() const override { return options_.viscosity > 0; }
+  bool is_viscous() const override { return box_.viscosity > 0; }
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
   Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
   void adopt_advection_velocity() override {}

@@ -1,0 +1,69 @@
+// The same two plug-ins under names of their own in scene files: simulate SCENE.xml OUTPUT_FOLDER
+#include <Tpetra_Core.hpp>
+#include <iostream>
+
+#include "column_fluid.hpp"
+#include "parameters/strict_xml.hpp"
+#include "piston.hpp"
+#include "shipped/shipped_plug_ins.hpp"
+#include "stepping/scene_file.hpp"
+#include "stepping/simulation.hpp"
+using namespace lockstep;
+
+ParameterList column_parameters() {
+  ParameterList list;
+  declare_positive(list, "Density", 1000., "Of the fluid [kg/m^2].");
+  declare(list, "Gravity", 0., "Along the channel [m/s^2].");
+  return list;
+}
+
+std::unique_ptr<ColumnFluid> make_column(const ParameterList& list, const ParameterList& domain,
+                                         const Communicator& comm) {
+  const auto& upper = domain.get<ParameterArray<double>>("Upper");
+  const int n_cells = domain.get<ParameterArray<int>>("Cells")[0];
+  return std::make_unique<ColumnFluid>(
+      ColumnFluid::Options{n_cells, upper[0], upper[1], list.get<double>("Density"),
+                           list.get<double>("Gravity")},
+      comm);
+}
+
+ParameterList piston_parameters() {
+  ParameterList list;
+  declare(list, "Position", 0.7, "Along the channel [m].");
+  declare_positive(list, "Width", 0.5, "Of the channel [m].");
+  declare_positive(list, "Mass", 100., "[kg/m].");
+  declare(list, "Force", 50., "Along the channel [N/m].");
+  return list;
+}
+
+std::unique_ptr<Piston> make_piston(const ParameterList&, const NamedLists& pistons,
+                                    const SolidSetting<2>& setting) {
+  check_input(pistons.size() == 1, "A channel takes one piston, not {}.", pistons.size());
+  const ParameterList& list = pistons[0].second;
+  return std::make_unique<Piston>(
+      Piston::Options{list.get<double>("Position"), list.get<double>("Width"),
+                      list.get<double>("Mass"), list.get<double>("Force")},
+      setting.comm);
+}
+
+int run(const std::string& scene_file, const std::string& output, const Communicator& comm) {
+  Registries<2> registries = shipped_plug_ins<2>();
+  registries.fluids.add("column", "A straight channel.", column_parameters, make_column);
+  registries.solids.add("piston", "A plate across a channel.", piston_parameters, make_piston);
+  Document scene = read_xml(scene_file, comm);
+  complete_scene(scene, {}, scene_parameters<2>(registries), comm);
+  RunOptions options;
+  options.scene_file = scene_file;
+  options.output_directory = output;
+  const Log log(comm, std::cout, LogLevel::normal);
+  return Simulation<2>(registries, scene.list, options, comm, log).run();
+}
+
+int main(int argc, char** argv) {
+  Tpetra::ScopeGuard scope(&argc, &argv);
+  const Communicator comm = Tpetra::getDefaultComm();
+  return run_and_report(comm, [&] {
+    check_input(argc == 3, "Usage: simulate SCENE.xml OUTPUT_FOLDER");
+    return run(argv[1], argv[2], comm);
+  });
+}
