@@ -87,8 +87,7 @@ TEST(RigidBodies, GravityActsAtTheCentreOfMass) {
   const Point<2> gravity(0, -10);
   const auto bodies =
       model<2>({geometry("plate", numbers("Size", "2, 0") + text("Normal", "y")) +
-                number("Mass", "3") + numbers("Pivot", "-1, 0") + numbers("Position", "7, 2") +
-                numbers("Force", "4, 0") + number("Torque", "6")},
+                number("Mass", "3") + numbers("Pivot", "-1, 0") + numbers("Position", "7, 2")},
                gravity);
   const auto momentum = make_vector(bodies->dof_map());
   bodies->explicit_momentum(0, 0.5, *momentum);
