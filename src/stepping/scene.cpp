@@ -106,7 +106,8 @@ ParameterList scene_parameters(const Registries<dim>& registries) {
   ParameterList scene("Scene");
   declare_between(scene, "Dimension", dim, 2, 3, "2 or 3.");
   declare(scene, "Title", "", "One line on what the scene shows.");
-  scene.sublist("Domain") = registries.domain_parameters();
+  declare_list(scene, "Domain", "The box that holds everything, its cells and its sides.") =
+      registries.domain_parameters();
   declare_typed_sublist(scene, "Fluid", "The fluid.", registries.fluids.schemas(), "mac");
   declare_named_sublists(scene, "Solids", "One sublist a body, under a name of its own.",
                          registries.solids.schemas());
