@@ -127,7 +127,9 @@ SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector&
     BlockVector corrected{rcp(new Vector(*solution.pressure, Teuchos::Copy)), solution.solid};
     corrected.pressure->update(1, x, 1);
     back_substitute(system, rhs, corrected);
-    return safety * request.tolerance * block_residual(system, rhs, corrected).pressure_scale;
+    return safety *
+           std::max(request.tolerance * block_residual(system, rhs, corrected).pressure_scale,
+                    request.negligible_pressure_residual);
   };
   while (true) {
     back_substitute(system, rhs, solution);
@@ -138,10 +140,12 @@ SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector&
       done.initial_pressure = residual.relative_pressure();
       done.initial_solid = residual.relative_solid();
     }
-    if (residual.relative_pressure() <= request.tolerance)
+    if (residual.relative_pressure() <= request.tolerance ||
+        residual.pressure <= request.negligible_pressure_residual)
       break;
     const double solvable = residual.vector.pressure->norm2();
-    const double target = request.tolerance * residual.pressure_scale;
+    const double target =
+        std::max(request.tolerance * residual.pressure_scale, request.negligible_pressure_residual);
     if (solvable <= target || done.n_stalls > 1)
       check_compatible(name, removed, residual, request.tolerance);
     if (done.n_corrections > 0 && solvable > least_progress * previous)

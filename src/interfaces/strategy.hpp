@@ -43,6 +43,10 @@ struct BlockVector {
 struct SolveRequest {
   std::string name;  ///< "S1", "F2", "S2": for messages
   double tolerance = 1e-8;
+  /// A 2-norm of the pressure rows' residual that is round-off of the velocities [m^dim/s]:
+  /// reached, the solve is done, even where every term of these rows vanishes and `tolerance` has
+  /// nothing to scale with.
+  double negligible_pressure_residual = 0;
 };
 
 struct SolveReport {

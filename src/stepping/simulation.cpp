@@ -316,8 +316,7 @@ std::string Simulation<dim>::explain() {
   line("ranks", std::to_string(comm_->getSize()));
   line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(), fluid.spacing(),
                             fluid.pressure_map()->getGlobalNumElements()));
-  line("viscous solve",
-       components_.fluid->is_viscous() ? "on (viscosity > 0)" : "off (inviscid)");
+  line("viscous solve", components_.fluid->is_viscous() ? "on (viscosity > 0)" : "off (inviscid)");
   int n_prescribed = 0, n_shells = 0;
   for (const auto& solid : solids.solids()) {
     n_prescribed += solid.prescribed ? 1 : 0;

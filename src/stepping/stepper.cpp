@@ -153,9 +153,18 @@ typename Stepper<dim>::CoupledSolution Stepper<dim>::solve(double dt, const RCP<
     components_.strategy->prepare(blocks);
   }
   ScopedPhase phase(timers_, "iterations");
-  report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns,
-                                       {name, options_.tolerance});
+  report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns, request(name, dt));
   return solution;
+}
+
+/// Residuals below the round-off of the fluxes, with the speed that gravity may add, are nothing.
+template <int dim>
+SolveRequest Stepper<dim>::request(const char* name, double dt) const {
+  const auto& fluid = *components_.fluid;
+  const double speed =
+      fluid.largest_cell_crossing_rate() * fluid.spacing() + dt * fluid.gravity().norm();
+  const double area = std::pow(fluid.spacing(), dim - 1);
+  return {name, options_.tolerance, 1e-15 * speed * area};
 }
 
 /// Contact acts on V^{n+1/2}, then all solids go to their positions at t^{n+1}.
@@ -197,7 +206,7 @@ void Stepper<dim>::make_advection_velocity(StepReport<dim>& report) {
   report.incompatibility_f2 = relative_part_removed(blocks.null_space, *rhs.pressure);
   solution.pressure = make_vector(fluid.pressure_map());
   components_.strategy->prepare(blocks);
-  report.f2 = components_.strategy->solve(blocks, rhs, solution, {"F2", options_.tolerance});
+  report.f2 = components_.strategy->solve(blocks, rhs, solution, request("F2", report.dt));
   fluid.project(*solution.pressure);
   fluid.adopt_advection_velocity();
 }

@@ -86,6 +86,7 @@ class Stepper {
   void finish(const CoupledSolution& solution, double dt, StepReport<dim>& report);
   ContactReport<dim> contact_momentum(double dt, Vector& momentum);
   void ledger_solve(const CoupledSolution& solution, double dt, StepReport<dim>& report);
+  SolveRequest request(const char* name, double dt) const;
   Momentum<dim> total_momentum() const;
   double largest_divergence(const BlockSystem& blocks, const BlockVector& rhs,
                             const BlockVector& solution) const;
