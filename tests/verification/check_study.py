@@ -27,7 +27,7 @@ def selected(rows, series, quantity):
 
 
 def check(rows, expectation):
-    series, quantity, column, which, relation, bound = [p.strip() for p in expectation.split("|")]
+    series, quantity, column, which, relation, bound = [p.strip() for p in expectation.split(" | ")]
     matched = selected(rows, series, quantity)
     if not matched:
         return [f"no row matches: {expectation}"]
