@@ -109,6 +109,17 @@ TEST(FreeMotion, AnUnheldPivotChangesNothing) {
                        (RigidVector<3>() << 0, 0, 0, 0.2, 1, -0.3).finished());
 }
 
+TEST(FreeMotion, AFlyingBodyKeepsMomentumAndSpinWhateverItsPivot) {
+  RigidBody<2> b = body<2>(geometry("box", numbers("Size", "1, 2")) + number("Mass", "2") +
+                           numbers("Pivot", "0.5, 0.3") + numbers("Velocity", "3, 1") +
+                           number("Angular Velocity", "1"));
+  const Point<2> flight = b.velocity_of_center();
+  for (int step = 0; step < 100; ++step)
+    free_step(b, 0, 0.05);
+  EXPECT_NEAR(b.angular_velocity()(0), 1, 1e-12);
+  EXPECT_LE((b.velocity_of_center() - flight).norm(), 1e-12);
+}
+
 TEST(FreeMotion, HingedPlateTurnsUniformly) {
   RigidBody<2> b = body<2>(geometry("plate", numbers("Size", "2, 0") + text("Normal", "y")) +
                            number("Mass", "3") + numbers("Pivot", "-1, 0") +
