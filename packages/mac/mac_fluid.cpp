@@ -15,6 +15,7 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
       parameters_(read_mac_parameters<dim>(fluid)),
       scalars_(domain_, fluid),
       ray_halo_(domain_.grid),
+      lattice_blocks_(lattice_blocks(domain_.grid)),
       velocity_(initial_velocity<dim>(domain_.grid, fluid.sublist("Initial State"))) {
   domain_.halo.fill(velocity_);
   prediction_ = velocity_;
@@ -28,7 +29,8 @@ void MacFluid<dim>::set_geometry(const Surface& surface, const OpenFractionRule<
     return;
   viscosity_.reset();
   geometry_ = make_geometry(domain_, parameters_.density, surface, rule);
-  pressure_block_ = as_operator(pressure_matrix(domain_, geometry_, parameters_.density));
+  pressure_block_ =
+      as_operator(pressure_operator(domain_, geometry_, parameters_.density, lattice_blocks_));
   regions_ = find_regions(domain_, geometry_);
   if (parameters_.viscosity.viscosity > 0)
     viscosity_ = std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.density,

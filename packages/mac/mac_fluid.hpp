@@ -3,6 +3,7 @@
 
 #include "interfaces/fluid.hpp"
 #include "mac/forces.hpp"
+#include "mac/pressure_operator.hpp"
 #include "mac/pressure_system.hpp"
 #include "mac/ray_halo.hpp"
 #include "mac/revalidation.hpp"
@@ -107,6 +108,7 @@ class MacFluid : public FluidDiscretization<dim> {
   MacParameters<dim> parameters_;
   Scalars<dim> scalars_;
   RayHalo<dim> ray_halo_;
+  std::shared_ptr<const LatticeBlocks> lattice_blocks_;
 
   MacGeometry<dim> geometry_;
   RCP<const LinearOperator> pressure_block_;

@@ -2,8 +2,6 @@
 
 #include <Tpetra_Vector.hpp>
 
-#include "mac/row_builder.hpp"
-
 namespace lockstep {
 
 namespace {
@@ -22,40 +20,6 @@ double flux_fraction(const MacGeometry<dim>& geometry, int axis, int face) {
   return geometry.open_fraction(axis, face);
 }
 }  // namespace
-
-template <int dim>
-RCP<const CrsMatrix> pressure_matrix(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     double density) {
-  const auto& cells = geometry.state.cells;
-  const double unit = domain.face_area() / (density * domain.spacing());
-  RowBuilder rows(geometry.pressure_map, 2 * dim + 1);
-  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
-    if (cells[cell] != CellState::fluid)
-      return;
-    double diagonal = 0;
-    const auto add_face = [&](int axis, int end) {
-      const int other = neighbors[2 * axis + end];
-      const int face = end == 0 ? cell : other;
-      const double open = face < 0 ? 0 : geometry.open_fraction(axis, face);
-      if (open == 0)
-        return;
-      const bool at_side = other < 0 || cells[other] == CellState::outside;
-      const double coefficient = open * unit * (at_side ? 2 : 1);
-      diagonal += coefficient;
-      if (!at_side && cells[other] == CellState::fluid)
-        rows.add(geometry.unknown[other], -coefficient);
-    };
-    // In the order of the ids within a tile.
-    for (int axis = dim - 1; axis >= 0; --axis)
-      add_face(axis, 0);
-    const std::size_t middle = rows.add(geometry.unknown[cell], 0);
-    for (int axis = 0; axis < dim; ++axis)
-      add_face(axis, 1);
-    rows.set(middle, diagonal);
-    rows.end_row();
-  });
-  return rows.finish();
-}
 
 template <int dim>
 void outflow_deficit(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
@@ -134,10 +98,6 @@ Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeome
   return sum_over_ranks(impulse, grid.comm());
 }
 
-template RCP<const CrsMatrix> pressure_matrix<2>(const MacDomain<2>&, const MacGeometry<2>&,
-                                                 double);
-template RCP<const CrsMatrix> pressure_matrix<3>(const MacDomain<3>&, const MacGeometry<3>&,
-                                                 double);
 template void outflow_deficit<2>(const MacDomain<2>&, const MacGeometry<2>&, const FaceField<2>&,
                                  Vector&);
 template void outflow_deficit<3>(const MacDomain<3>&, const MacGeometry<3>&, const FaceField<3>&,

@@ -3,12 +3,6 @@
 
 namespace lockstep {
 
-/// A = V G_f^T rho^-1 G_f over the open part of free faces: 2 dim + 1 points. A cell without free
-/// face has a row of one stored zero. Collective.
-template <int dim>
-RCP<const CrsMatrix> pressure_matrix(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     double density);
-
 /// Components of the fluid cells joined by open faces, numbered by their first cell in the lattice,
 /// so that the numbers do not depend on the ranks. Collective.
 template <int dim>

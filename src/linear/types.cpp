@@ -6,6 +6,8 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "linear/stencil_operator.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -55,7 +57,10 @@ RCP<const LinearOperator> as_operator(const RCP<const CrsMatrix>& matrix) {
 RCP<const CrsMatrix> assembled(const RCP<const LinearOperator>& op) {
   if (op.is_null())
     return Teuchos::null;
-  return Teuchos::rcp_dynamic_cast<const CrsMatrix>(wrapped(*op));
+  const auto inner = wrapped(*op);
+  if (const auto* stencil = dynamic_cast<const StencilOperator*>(inner.get()))
+    return stencil->assembled();
+  return Teuchos::rcp_dynamic_cast<const CrsMatrix>(inner);
 }
 
 void apply(const LinearOperator& op, const Vector& x, Vector& y, double alpha, double beta) {

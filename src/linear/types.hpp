@@ -29,7 +29,8 @@ RCP<Vector> make_vector(const RCP<const Map>& map);  ///< zero
 
 /// Thyra view of an assembled matrix (shared, not copied).
 RCP<const LinearOperator> as_operator(const RCP<const CrsMatrix>& matrix);
-/// The assembled matrix behind a Thyra operator, or null if there is none.
+/// The assembled matrix behind a Thyra operator, or null if there is none. A StencilOperator is
+/// assembled by this call (then collective).
 RCP<const CrsMatrix> assembled(const RCP<const LinearOperator>& op);
 
 /// y = alpha op x + beta y for vectors that live on the operator's range and domain. Collective.
