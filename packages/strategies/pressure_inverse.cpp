@@ -1,44 +1,19 @@
 #include "strategies/pressure_inverse.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
-#include <Tpetra_Export.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <limits>
 #include <vector>
 
 #include "base/errors.hpp"
+#include "linear/added_mass_diagonal.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/preconditioner.hpp"
 
 namespace lockstep {
 
 namespace {
-
-/// The diagonal of B diag(C)^-1 B^T, on the rows of A; zero without an assembled C.
-RCP<Vector> added_mass_diagonal(const BlockSystem& system, const RCP<const Map>& map) {
-  const auto result = make_vector(map);
-  const auto solid = assembled(system.solid_block);
-  if (solid.is_null())
-    return result;
-  const CrsMatrix& coupling = *system.coupling_transposed;
-  const auto mass = diagonal_of(*solid);
-  const auto masses = mass->getData();
-  Vector on_columns(coupling.getColMap());
-  {
-    const auto sums = on_columns.getDataNonConst();
-    for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
-      if (masses[row] > 0)
-        sums[coupling.getColMap()->getLocalElement(column)] += value * value / masses[row];
-    });
-  }
-  const auto importer = coupling.getGraph()->getImporter();
-  if (importer.is_null())
-    result->update(1, on_columns, 0);
-  else
-    result->doExport(on_columns, *importer, Tpetra::ADD);
-  return result;
-}
 
 /// Local rows to pin: of each null vector of A the row of lowest id in its support.
 std::vector<int> pinned_rows(const BlockSystem& system, const RCP<const Map>& map) {

@@ -1,0 +1,271 @@
+#include "multigrid/coarsening.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
+
+#include "multigrid/thin_walls.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using Cell = std::array<int, 3>;
+
+constexpr float face_factor = 0.5F;
+/// Couplings below this part of the regular one are what differences of sums leave.
+constexpr float round_off = 1e-5F;
+
+/// Adds pairs of a fine row to a coarse one; only entries of `owned` cells, if given.
+void add_pairs(const float* fine, const char* owned, int n, float factor, float* coarse) {
+  const int n_pairs = n / 2;
+  if (owned == nullptr) {
+    for (int i = 0; i < n_pairs; ++i)
+      coarse[i] += factor * (fine[2 * i] + fine[2 * i + 1]);
+    if (n % 2 != 0)
+      coarse[n_pairs] += factor * fine[n - 1];
+    return;
+  }
+  for (int i = 0; i < n; ++i) {
+    if (owned[i])
+      coarse[i / 2] += factor * fine[i];
+  }
+}
+
+void add_even(const float* fine, const char* owned, int n, float factor, float* coarse) {
+  for (int i = 0; i < n; i += 2) {
+    if (owned == nullptr || owned[i])
+      coarse[i / 2] += factor * fine[i];
+  }
+}
+
+/// One coarsening step, with the names that all its parts share.
+class Coarsening {
+ public:
+  Coarsening(const LayoutLevel& fine_level, const NaturalStencil& fine,
+             const LayoutLevel& coarse_level, float dirichlet_factor, NaturalStencil& coarse)
+      : fine_level_(fine_level),
+        f_(fine_level.grid),
+        c_(coarse_level.grid),
+        fine_(fine),
+        coarse_(coarse),
+        dirichlet_factor_(dirichlet_factor) {
+    for (int axis = 0; axis < 3; ++axis)
+      transfer_.offset[axis] = (f_.begin[axis] >> 1) - c_.begin[axis];
+  }
+
+  void sum_rows();
+  void move(const std::vector<char>& destinations);
+  Transfer take_transfer() { return std::move(transfer_); }
+
+ private:
+  Cell parent(const Cell& cell) const {
+    Cell result = cell;
+    for (int axis = 0; axis < f_.dimension; ++axis)
+      result[axis] = (cell[axis] >> 1) + transfer_.offset[axis];
+    return result;
+  }
+  Cell new_parent(const Cell& cell, char destination) const {
+    Cell result = parent(cell);
+    const auto step = destination::step(destination);
+    for (int axis = 0; axis < 3; ++axis)
+      result[axis] += step[axis];
+    return result;
+  }
+  bool is_stored(const Cell& coarse_cell) const {
+    for (int axis = 0; axis < f_.dimension; ++axis) {
+      if (coarse_cell[axis] < -1 || coarse_cell[axis] > c_.n[axis])
+        return false;
+    }
+    return true;
+  }
+  bool is_ghost(const Cell& coarse_cell) const {
+    for (int axis = 0; axis < f_.dimension; ++axis) {
+      if (coarse_cell[axis] < 0 || coarse_cell[axis] >= c_.n[axis])
+        return true;
+    }
+    return false;
+  }
+  std::ptrdiff_t natural(const Cell& coarse_cell) const {
+    return c_.natural(coarse_cell[0], coarse_cell[1], coarse_cell[2]);
+  }
+  bool is_owned(std::ptrdiff_t at) const {
+    return fine_level_.owned.empty() || fine_level_.owned[at];
+  }
+  bool in_box(const Cell& cell) const {
+    for (int axis = 0; axis < f_.dimension; ++axis) {
+      if (cell[axis] < 0 || cell[axis] >= f_.n[axis])
+        return false;
+    }
+    return true;
+  }
+  void add_face(const Cell& a, const Cell& b, float value);
+  void move_face(const Cell& upper, int axis, const std::vector<char>& destinations);
+  void move_cell(const Cell& cell, char destination);
+
+  const LayoutLevel& fine_level_;
+  const LevelGrid& f_;
+  const LevelGrid& c_;
+  const NaturalStencil& fine_;
+  NaturalStencil& coarse_;
+  float dirichlet_factor_;
+  Transfer transfer_;
+};
+
+void Coarsening::sum_rows() {
+  for (int k = 0; k < f_.n[2]; ++k) {
+    for (int j = 0; j < f_.n[1]; ++j) {
+      const std::ptrdiff_t row = f_.natural(0, j, k);
+      const std::ptrdiff_t to = natural(parent({0, j, k}));
+      const char* owned = fine_level_.owned.empty() ? nullptr : fine_level_.owned.data() + row;
+      const int n = f_.n[0];
+      add_pairs(fine_.dirichlet.data() + row, owned, n, dirichlet_factor_,
+                coarse_.dirichlet.data() + to);
+      add_even(fine_.lower[0].data() + row, owned, n, face_factor, coarse_.lower[0].data() + to);
+      if ((j & 1) == 0)
+        add_pairs(fine_.lower[1].data() + row, owned, n, face_factor, coarse_.lower[1].data() + to);
+      if (f_.dimension == 3 && (k & 1) == 0)
+        add_pairs(fine_.lower[2].data() + row, owned, n, face_factor, coarse_.lower[2].data() + to);
+    }
+  }
+}
+
+/// Adds to the face between two coarse cells; cells that are not neighbours have none, and their
+/// coupling is lost: the coarse problem may be too soft there, never too stiff.
+void Coarsening::add_face(const Cell& a, const Cell& b, float value) {
+  int axis = -1, distance = 0;
+  for (int d = 0; d < f_.dimension; ++d) {
+    distance += std::abs(a[d] - b[d]);
+    if (a[d] != b[d])
+      axis = d;
+  }
+  if (distance != 1)
+    return;
+  const Cell& upper = a[axis] > b[axis] ? a : b;
+  if (is_stored(upper))
+    coarse_.lower[axis][natural(upper)] += value;
+}
+
+/// Takes the lower face of `upper` from where `sum_rows` has put it to where its cells belong.
+void Coarsening::move_face(const Cell& upper, int axis, const std::vector<char>& destinations) {
+  Cell lower = upper;
+  --lower[axis];
+  const std::ptrdiff_t at = f_.natural(upper[0], upper[1], upper[2]);
+  const float value = face_factor * fine_.lower[axis][at];
+  if (value == 0)
+    return;
+  const char of_upper = destinations[at];
+  const char of_lower = destinations[at - f_.natural_stride[axis]];
+  add_face(parent(upper), parent(lower), -value);
+  if (of_upper != destination::none && of_lower != destination::none)
+    add_face(new_parent(upper, of_upper), new_parent(lower, of_lower), value);
+}
+
+void Coarsening::move_cell(const Cell& cell, char destination) {
+  const std::ptrdiff_t at = f_.natural(cell[0], cell[1], cell[2]);
+  const Cell from = parent(cell), to = new_parent(cell, destination);
+  const float dirichlet = dirichlet_factor_ * fine_.dirichlet[at];
+  coarse_.dirichlet[natural(from)] -= dirichlet;
+  const bool stays = destination != destination::none && is_stored(to);
+  if (stays)
+    coarse_.dirichlet[natural(to)] += dirichlet;
+  if (LevelGrid::colour(cell[0], cell[1], cell[2]) != 0)
+    return;
+  MovedCell moved;
+  moved.m = cell[0] >> 1;
+  moved.j = cell[1];
+  moved.k = cell[2];
+  moved.colour_from = LevelGrid::colour(from[0], from[1], from[2]);
+  moved.from = c_.slot_of_cell(from[0], from[1], from[2]);
+  if (stays) {
+    moved.colour_to = LevelGrid::colour(to[0], to[1], to[2]);
+    moved.to = c_.slot_of_cell(to[0], to[1], to[2]);
+    transfer_.leaves_rank = transfer_.leaves_rank || is_ghost(to);
+  }
+  transfer_.moved.push_back(moved);
+}
+
+void Coarsening::move(const std::vector<char>& destinations) {
+  const int ghost_planes = f_.dimension == 3 ? 1 : 0;
+  for (int k = -ghost_planes; k < f_.n[2] + ghost_planes; ++k) {
+    for (int j = -1; j <= f_.n[1]; ++j) {
+      for (int i = -1; i <= f_.n[0]; ++i) {
+        const std::ptrdiff_t at = f_.natural(i, j, k);
+        const char destination = destinations[at];
+        if (destination == destination::own)
+          continue;
+        const Cell cell{i, j, k};
+        const bool is_mine = in_box(cell) && is_owned(at);
+        if (is_mine)
+          move_cell(cell, destination);
+        for (int axis = 0; axis < f_.dimension; ++axis) {
+          if (is_mine)
+            move_face(cell, axis, destinations);
+          Cell upper = cell;
+          ++upper[axis];
+          const std::ptrdiff_t above = at + f_.natural_stride[axis];
+          if (in_box(upper) && is_owned(above) && destinations[above] == destination::own)
+            move_face(upper, axis, destinations);
+        }
+      }
+    }
+  }
+}
+
+void sort_by_slab(const LevelGrid& fine, Transfer& transfer) {
+  const auto slab = [&](const MovedCell& cell) { return fine.dimension == 3 ? cell.k : cell.j; };
+  std::stable_sort(transfer.moved.begin(), transfer.moved.end(),
+                   [&](const MovedCell& a, const MovedCell& b) { return slab(a) < slab(b); });
+  transfer.in_slab.assign(fine.n_slabs() + 1, transfer.moved.size());
+  for (std::size_t i = transfer.moved.size(); i-- > 0;)
+    transfer.in_slab[slab(transfer.moved[i])] = i;
+  for (int s = fine.n_slabs() - 1; s >= 0; --s)
+    transfer.in_slab[s] = std::min(transfer.in_slab[s], transfer.in_slab[s + 1]);
+}
+
+/// What ranks have added to each other's cells comes home; sums are cleaned of round-off.
+void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_all_ranks, bool moved,
+             NaturalStencil& coarse) {
+  std::vector<std::vector<float>*> arrays{&coarse.dirichlet};
+  for (int axis = 0; axis < level.grid.dimension; ++axis)
+    arrays.push_back(&coarse.lower[axis]);
+  for (std::vector<float>* values : arrays) {
+    if (from_all_ranks)
+      MPI_Allreduce(MPI_IN_PLACE, values->data(), static_cast<int>(values->size()), MPI_FLOAT,
+                    MPI_SUM, raw_communicator(blocks.comm));
+    if (!moved)
+      continue;
+    level.halo.sum_natural_to_owner(values->data());
+    float largest = 0;
+    for (const float value : *values)
+      largest = std::max(largest, value);
+    for (float& value : *values)
+      value = value < round_off * largest ? 0 : value;
+  }
+  for (int axis = 0; axis < level.grid.dimension; ++axis) {
+    if (blocks.periodic[axis] && level.grid.n[axis] == 1)
+      std::fill(coarse.lower[axis].begin(), coarse.lower[axis].end(), 0.0F);
+  }
+}
+
+}  // namespace
+
+Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
+                 const LayoutLevel& coarse_level, const LatticeBlocks& blocks,
+                 float dirichlet_factor, NaturalStencil& coarse) {
+  coarse.resize(coarse_level.grid);
+  Coarsening step(fine_level, fine, coarse_level, dirichlet_factor, coarse);
+  step.sum_rows();
+  const auto destinations = destinations_behind_thin_walls(fine_level, fine, blocks.comm);
+  if (!destinations.empty())
+    step.move(destinations);
+  const bool gathers = fine_level.grid.is_distributed && !coarse_level.grid.is_distributed;
+  collect(coarse_level, blocks, gathers, !destinations.empty(), coarse);
+  coarse.complete(coarse_level);
+  Transfer transfer = step.take_transfer();
+  sort_by_slab(fine_level.grid, transfer);
+  if (!destinations.empty())
+    transfer.leaves_rank = max_all(blocks.comm, transfer.leaves_rank ? 1.0 : 0.0) > 0;
+  return transfer;
+}
+
+}  // namespace lockstep

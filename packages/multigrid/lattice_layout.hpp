@@ -1,0 +1,45 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "linear/stencil_operator.hpp"
+#include "multigrid/level_grid.hpp"
+#include "multigrid/level_halo.hpp"
+
+namespace lockstep {
+
+/// One level's storage and exchange.
+struct LayoutLevel {
+  LevelGrid grid;
+  LevelHalo halo;
+  std::vector<char> owned;  ///< natural array of the box: this rank's cells; empty: all of them
+};
+
+/// The levels of a multigrid on a lattice: each halves the cells along every axis. Levels whose
+/// cells are smaller than the blocks are distributed like the blocks; coarser ones, with at most
+/// one cell a block, every rank holds whole. The coarsest is small enough for a dense inverse.
+/// Depends on the blocks only, not on what fills them. The same on any number of ranks.
+class LatticeLayout {
+ public:
+  /// Throws SolveError if `why_not` has a reason. Collective.
+  explicit LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks);
+
+  /// Why no multigrid can be built on this lattice, as a sentence; empty if one can.
+  static std::string why_not(const LatticeBlocks& blocks);
+
+  const LatticeBlocks& blocks() const { return *blocks_; }
+  const std::vector<LayoutLevel>& levels() const { return levels_; }
+  const LevelGrid& finest() const { return levels_.front().grid; }
+  /// Cells of the whole lattice on a level.
+  static std::array<int, 3> n_cells(const LatticeBlocks& blocks, int level);
+
+ private:
+  void mark_owned(int level);
+  LevelGrid make_grid(int level, bool is_distributed) const;
+
+  std::shared_ptr<const LatticeBlocks> blocks_;
+  std::vector<LayoutLevel> levels_;
+};
+
+}  // namespace lockstep

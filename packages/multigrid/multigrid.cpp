@@ -1,0 +1,389 @@
+#include "multigrid/multigrid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+
+namespace {
+
+constexpr int red = 0, black = 1;
+/// Relative shift of the coarsest diagonal: makes the inverse of a closed region finite.
+constexpr double coarsest_shift = 1e-5;
+
+/// A fixed-pressure point stays where it is while cells grow: delta_{l+1} = delta_l + h_l / 2, in
+/// units of the finest h, is its distance from the centre of the first cell on level l + 1.
+float dirichlet_factor(int level) {
+  double distance = 1;
+  for (int l = 0; l < level; ++l)
+    distance += 0.5 * (1 << l);
+  return static_cast<float>(distance / (distance + 0.5 * (1 << level)));
+}
+
+}  // namespace
+
+template <int dim>
+Multigrid<dim>::Multigrid(std::shared_ptr<const LatticeLayout> layout,
+                          const MultigridOptions& options)
+    : layout_(std::move(layout)), options_(options) {
+  std::size_t longest_row = 0, largest_coarse_slab = 0;
+  for (const LayoutLevel& level : layout_->levels()) {
+    stencils_.emplace_back(level);
+    Work work;
+    for (int colour = 0; colour < 2; ++colour) {
+      work.x[colour] = AlignedArray<float>(level.grid.n_slots);
+      work.b[colour] = AlignedArray<float>(level.grid.n_slots);
+    }
+    work_.push_back(std::move(work));
+    longest_row = std::max<std::size_t>(longest_row, level.grid.row_stride);
+    const std::size_t slab = (level.grid.n[0] + 1) / 2 * (dim == 3 ? (level.grid.n[1] + 1) / 2 : 1);
+    largest_coarse_slab = std::max(largest_coarse_slab, slab);
+  }
+  row_.resize(longest_row + 16);
+  coarse_rows_.resize(largest_coarse_slab);
+}
+
+template <int dim>
+std::size_t Multigrid<dim>::n_moved_cells() const {
+  std::size_t n = 0;
+  for (const Transfer& transfer : transfers_)
+    n += transfer.moved.size();
+  return n;
+}
+
+template <int dim>
+std::size_t Multigrid<dim>::bytes() const {
+  std::size_t n = 0;
+  for (std::size_t level = 0; level < stencils_.size(); ++level)
+    n += stencils_[level].bytes() + 4 * sizeof(float) * stencils_[level].grid().n_slots;
+  return n;
+}
+
+template <int dim>
+void Multigrid<dim>::copy_to_natural(const FaceCoefficients& coefficients,
+                                     NaturalStencil& natural) const {
+  const LevelGrid& grid = layout_->finest();
+  const LatticeBlocks& blocks = layout_->blocks();
+  natural.resize(grid);
+  const int width = blocks.width;
+  for (std::size_t block = 0; block < blocks.begins.size(); ++block) {
+    std::array<int, 3> n{1, 1, 1}, low{};
+    for (int axis = 0; axis < dim; ++axis) {
+      n[axis] = std::min(width, blocks.n_cells[axis] - blocks.begins[block][axis]);
+      low[axis] = blocks.begins[block][axis] - grid.begin[axis];
+    }
+    for (int k = 0; k < n[2]; ++k) {
+      for (int j = 0; j < n[1]; ++j) {
+        const std::size_t from =
+            block * blocks.block_volume() + static_cast<std::size_t>(width) * (j + width * k);
+        const std::ptrdiff_t to = grid.natural(low[0], low[1] + j, low[2] + k);
+        for (int axis = 0; axis < dim; ++axis)
+          std::copy_n(coefficients.lower[axis].data() + from, std::max(n[0], 0),
+                      natural.lower[axis].data() + to);
+        std::copy_n(coefficients.dirichlet.data() + from, std::max(n[0], 0),
+                    natural.dirichlet.data() + to);
+      }
+    }
+  }
+  natural.complete(layout_->levels().front());
+}
+
+template <int dim>
+void Multigrid<dim>::set(const FaceCoefficients& coefficients) {
+  LOCKSTEP_ASSERT(coefficients.blocks.get() == &layout_->blocks());
+  copy_to_natural(coefficients, fine_);
+  transfers_.clear();
+  float unit = 1;
+  for (int level = 0; level < n_levels(); ++level) {
+    stencils_[level].set(fine_, unit);
+    for (AlignedArray<float>& x : work_[level].x)
+      std::fill_n(x.data(), x.size(), 0.0F);
+    if (level + 1 == n_levels())
+      break;
+    transfers_.push_back(coarsen(layout_->levels()[level], fine_, layout_->levels()[level + 1],
+                                 layout_->blocks(), dirichlet_factor(level), coarse_));
+    std::swap(fine_, coarse_);
+    unit *= dim == 3 ? 2 : 1;
+  }
+  invert_coarsest(fine_);
+}
+
+template <int dim>
+void Multigrid<dim>::invert_coarsest(const NaturalStencil& stencil) {
+  const LevelGrid& grid = stencils_.back().grid();
+  std::vector<int> number(grid.n_natural, -1);
+  coarsest_slots_.clear();
+  std::vector<std::ptrdiff_t> at;
+  for (int k = 0; k < grid.n[2]; ++k) {
+    for (int j = 0; j < grid.n[1]; ++j) {
+      for (int i = 0; i < grid.n[0]; ++i) {
+        const std::ptrdiff_t cell = grid.natural(i, j, k);
+        if (!stencil.active[cell])
+          continue;
+        number[cell] = static_cast<int>(at.size());
+        at.push_back(cell);
+        coarsest_slots_.push_back(LevelGrid::colour(i, j, k) * grid.n_slots +
+                                  grid.slot_of_cell(i, j, k));
+      }
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(at.size());
+  // Through periodic sides the lower neighbour is a ghost: the cell at the other end.
+  std::vector<float> ids(grid.n_natural, -1);
+  for (Eigen::Index r = 0; r < n; ++r)
+    ids[at[r]] = static_cast<float>(r);
+  layout_->levels().back().halo.fill_natural(ids.data());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index r = 0; r < n; ++r) {
+    matrix(r, r) += stencil.diagonal[at[r]] * (1 + coarsest_shift);
+    for (int axis = 0; axis < dim; ++axis) {
+      const float face = stencil.lower[axis][at[r]];
+      const auto other = static_cast<Eigen::Index>(ids[at[r] - grid.natural_stride[axis]]);
+      if (face == 0 || other < 0)
+        continue;
+      matrix(r, other) -= face;
+      matrix(other, r) -= face;
+    }
+  }
+  if (n == 0)
+    return;
+  coarsest_inverse_ = matrix.llt().solve(Eigen::MatrixXd::Identity(n, n));
+  coarsest_inverse_ = 0.5 * (coarsest_inverse_ + coarsest_inverse_.transpose()).eval();
+  coarsest_rhs_.resize(n);
+  coarsest_solution_.resize(n);
+}
+
+template <int dim>
+void Multigrid<dim>::solve_coarsest() {
+  Work& work = work_.back();
+  const std::ptrdiff_t n_slots = stencils_.back().grid().n_slots;
+  const auto n = static_cast<Eigen::Index>(coarsest_slots_.size());
+  if (n == 0)
+    return;
+  for (Eigen::Index r = 0; r < n; ++r)
+    coarsest_rhs_[r] = work.b[coarsest_slots_[r] / n_slots][coarsest_slots_[r] % n_slots];
+  coarsest_solution_.noalias() = coarsest_inverse_ * coarsest_rhs_;
+  for (Eigen::Index r = 0; r < n; ++r)
+    work.x[coarsest_slots_[r] / n_slots][coarsest_slots_[r] % n_slots] =
+        static_cast<float>(coarsest_solution_[r]);
+  for (int colour = 0; colour < 2; ++colour)
+    layout_->levels().back().halo.fill(colour, work.x[colour].data());
+}
+
+template <int dim>
+template <typename Stage>
+void Multigrid<dim>::in_one_pass(int level, int n_stages, const Stage& stage) const {
+  const int n_slabs = stencils_[level].grid().n_slabs();
+  for (int front = 0; front < n_slabs + n_stages - 1; ++front) {
+    for (int s = 0; s < n_stages; ++s) {
+      const int slab = front - s;
+      if (slab >= 0 && slab < n_slabs)
+        stage(s, slab);
+    }
+  }
+}
+
+template <int dim>
+void Multigrid<dim>::relax_everywhere(int level, int colour) {
+  Work& work = work_[level];
+  const StencilLevel<dim>& stencil = stencils_[level];
+  for (int slab = 0; slab < stencil.grid().n_slabs(); ++slab)
+    stencil.relax(colour, slab, work.b[colour].data(), work.x[1 - colour].data(),
+                  work.x[colour].data());
+  layout_->levels()[level].halo.fill(colour, work.x[colour].data());
+}
+
+template <int dim>
+void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero) {
+  Work& work = work_[level];
+  const StencilLevel<dim>& stencil = stencils_[level];
+  const LevelGrid& coarse = stencils_[level + 1].grid();
+  const bool gathers = stencil.grid().is_distributed && !coarse.is_distributed;
+  if (gathers || transfers_[level].leaves_rank) {
+    for (AlignedArray<float>& b : work_[level + 1].b)
+      std::fill_n(b.data(), b.size(), 0.0F);
+  }
+  const int n_half_sweeps = 2 * options_.n_sweeps;
+  const auto smooth = [&](int s, int slab) {
+    const int colour = s % 2;
+    if (s == 0 && from_zero)
+      stencil.relax_from_zero(red, slab, work.b[red].data(), work.x[red].data());
+    else
+      stencil.relax(colour, slab, work.b[colour].data(), work.x[1 - colour].data(),
+                    work.x[colour].data());
+  };
+  if (!exchanges(level)) {
+    in_one_pass(level, n_half_sweeps + 1, [&](int s, int slab) {
+      if (s < n_half_sweeps)
+        smooth(s, slab);
+      else
+        restrict_slab(level, slab);
+    });
+  } else {
+    for (int s = 0; s < n_half_sweeps; ++s) {
+      for (int slab = 0; slab < stencil.grid().n_slabs(); ++slab)
+        smooth(s, slab);
+      layout_->levels()[level].halo.fill(s % 2, work.x[s % 2].data());
+    }
+    for (int slab = 0; slab < stencil.grid().n_slabs(); ++slab)
+      restrict_slab(level, slab);
+  }
+  restrict_moved(level);
+  if (gathers) {
+    for (AlignedArray<float>& b : work_[level + 1].b)
+      MPI_Allreduce(MPI_IN_PLACE, b.data(), static_cast<int>(b.size()), MPI_FLOAT, MPI_SUM,
+                    raw_communicator(layout_->blocks().comm));
+  }
+  if (transfers_[level].leaves_rank) {
+    for (int colour = 0; colour < 2; ++colour)
+      layout_->levels()[level + 1].halo.sum_to_owner(colour, work_[level + 1].b[colour].data());
+  }
+}
+
+/// Adds the red residual of a fine slab to the sums of the coarse slab; black ones are zero after
+/// the last half sweep. The last fine slab of a coarse one stores the sums.
+template <int dim>
+void Multigrid<dim>::restrict_slab(int level, int slab) {
+  Work& work = work_[level];
+  const StencilLevel<dim>& stencil = stencils_[level];
+  const LevelGrid& grid = stencil.grid();
+  const int n_coarse = (grid.n[0] + 1) / 2;
+  if (slab % 2 == 0)
+    std::fill(coarse_rows_.begin(), coarse_rows_.end(), 0.0F);
+  const auto rows = stencil.rows_of(slab);
+  for (int j = rows.j_begin; j < rows.j_end; ++j) {
+    stencil.residual(red, j, rows.k, work.b[red].data(), work.x[red].data(), work.x[black].data(),
+                     row_.data());
+    const auto range = stencil.range(j, rows.k);
+    float* sums = coarse_rows_.data() + (dim == 3 ? (j >> 1) * n_coarse : 0);
+    for (int m = range.first; m < range.last; ++m)
+      sums[m] += row_[m];
+  }
+  if (slab % 2 == 1 || slab + 1 == grid.n_slabs())
+    flush_coarse_rows(level, slab);
+}
+
+template <int dim>
+void Multigrid<dim>::flush_coarse_rows(int level, int fine_slab) {
+  const LevelGrid& fine = stencils_[level].grid();
+  const LevelGrid& coarse = stencils_[level + 1].grid();
+  const auto& offset = transfers_[level].offset;
+  const int n_coarse = (fine.n[0] + 1) / 2;
+  const int n_rows = dim == 3 ? (fine.n[1] + 1) / 2 : 1;
+  for (int r = 0; r < n_rows; ++r) {
+    const int j = offset[1] + (dim == 3 ? r : fine_slab >> 1);
+    const int k = dim == 3 ? offset[2] + (fine_slab >> 1) : 0;
+    const float* sums = coarse_rows_.data() + r * n_coarse;
+    for (int first = 0; first < 2; ++first) {
+      const int i = offset[0] + first;
+      float* b =
+          work_[level + 1].b[LevelGrid::colour(i, j, k)].data() + coarse.slot_of_cell(i, j, k);
+      const int n = (n_coarse - first + 1) / 2;
+      for (int m = 0; m < n; ++m)
+        b[m] = sums[2 * m + first];
+    }
+  }
+}
+
+template <int dim>
+void Multigrid<dim>::restrict_moved(int level) {
+  Work& work = work_[level];
+  Work& coarse = work_[level + 1];
+  for (const MovedCell& cell : transfers_[level].moved) {
+    const float residual = stencils_[level].residual_at(
+        red, cell.m, cell.j, cell.k, work.b[red].data(), work.x[red].data(), work.x[black].data());
+    coarse.b[cell.colour_from][cell.from] -= residual;
+    if (cell.to >= 0)
+      coarse.b[cell.colour_to][cell.to] += residual;
+  }
+}
+
+/// Adds the coarse correction to the red cells of a slab; black ones are about to be overwritten.
+template <int dim>
+void Multigrid<dim>::prolong_slab(int level, int slab) {
+  const StencilLevel<dim>& stencil = stencils_[level];
+  const LevelGrid& fine = stencil.grid();
+  const LevelGrid& coarse = stencils_[level + 1].grid();
+  const Transfer& transfer = transfers_[level];
+  const auto& offset = transfer.offset;
+  const Work& from = work_[level + 1];
+  float* x = work_[level].x[red].data();
+  const auto rows = stencil.rows_of(slab);
+  for (int j = rows.j_begin; j < rows.j_end; ++j) {
+    const auto range = stencil.range(j, rows.k);
+    if (range.last == 0)
+      continue;
+    const int coarse_j = (j >> 1) + offset[1];
+    const int coarse_k = dim == 3 ? (rows.k >> 1) + offset[2] : 0;
+    for (int first = 0; first < 2; ++first) {
+      const int i = offset[0] + first;
+      const float* source = from.x[LevelGrid::colour(i, coarse_j, coarse_k)].data() +
+                            coarse.slot_of_cell(i, coarse_j, coarse_k);
+      const int n = ((fine.n[0] + 1) / 2 - first + 1) / 2;
+      for (int m = 0; m < n; ++m)
+        row_[2 * m + first] = source[m];
+    }
+    float* to = x + fine.slot(0, j, rows.k);
+    const float* diagonal = stencil.diagonal(red).data() + fine.slot(0, j, rows.k);
+    for (int m = range.first; m < range.last; ++m)
+      to[m] += diagonal[m] > 0 ? row_[m] : 0;
+  }
+  for (std::size_t i = transfer.in_slab[slab]; i < transfer.in_slab[slab + 1]; ++i) {
+    const MovedCell& cell = transfer.moved[i];
+    float correction = -from.x[cell.colour_from][cell.from];
+    if (cell.to >= 0)
+      correction += from.x[cell.colour_to][cell.to];
+    x[fine.slot(cell.m, cell.j, cell.k)] += correction;
+  }
+}
+
+template <int dim>
+void Multigrid<dim>::prolong_and_smooth(int level) {
+  Work& work = work_[level];
+  const StencilLevel<dim>& stencil = stencils_[level];
+  const int n_half_sweeps = 2 * options_.n_sweeps;
+  const auto relax = [&](int s, int slab) {
+    const int colour = s % 2 == 0 ? black : red;
+    stencil.relax(colour, slab, work.b[colour].data(), work.x[1 - colour].data(),
+                  work.x[colour].data());
+  };
+  if (!exchanges(level)) {
+    in_one_pass(level, n_half_sweeps + 1, [&](int s, int slab) {
+      if (s == 0)
+        prolong_slab(level, slab);
+      else
+        relax(s - 1, slab);
+    });
+    return;
+  }
+  for (int slab = 0; slab < stencil.grid().n_slabs(); ++slab)
+    prolong_slab(level, slab);
+  layout_->levels()[level].halo.fill(red, work.x[red].data());
+  for (int s = 0; s < n_half_sweeps; ++s)
+    relax_everywhere(level, s % 2 == 0 ? black : red);
+}
+
+template <int dim>
+void Multigrid<dim>::cycle(int level, bool from_zero) {
+  if (level + 1 == n_levels()) {
+    solve_coarsest();
+    return;
+  }
+  smooth_and_restrict(level, from_zero);
+  cycle(level + 1, true);
+  if (options_.is_w_cycle && level + 2 < n_levels())
+    cycle(level + 1, false);
+  prolong_and_smooth(level);
+}
+
+template <int dim>
+void Multigrid<dim>::cycle() {
+  cycle(0, true);
+}
+
+template class Multigrid<2>;
+template class Multigrid<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,80 @@
+#pragma once
+#include <Eigen/Dense>
+#include <memory>
+#include <vector>
+
+#include "multigrid/coarsening.hpp"
+#include "multigrid/lattice_layout.hpp"
+#include "multigrid/stencil_level.hpp"
+
+namespace lockstep {
+
+struct MultigridOptions {
+  int n_sweeps = 2;        ///< red-black Gauss-Seidel sweeps before and after the coarse correction
+  bool is_w_cycle = true;  ///< visit each coarse level twice
+};
+
+/// One multigrid cycle for a stencil (coefficients over its unit) as an approximate inverse:
+/// symmetric positive definite up to round-off of single precision, in which it works.
+///
+/// Red-black Gauss-Seidel, red first before the coarse correction and last after it; piecewise
+/// constant transfer; coarse faces half the sum of their fine ones; a dense inverse on the coarsest
+/// level, slightly shifted, so that closed regions need no care. With one rank the half sweeps of a
+/// level follow each other through the slabs in one pass over memory; with several, ghosts are
+/// exchanged after each.
+template <int dim>
+class Multigrid {
+ public:
+  Multigrid(std::shared_ptr<const LatticeLayout> layout, const MultigridOptions& options);
+
+  /// Takes the coefficients of a geometry, whose blocks must be the layout's. Collective.
+  void set(const FaceCoefficients& coefficients);
+
+  /// solution := M rhs on the finest level, in single precision; `rhs` must be zero where there is
+  /// no unknown. Collective.
+  void cycle();
+  float* rhs(int colour) { return work_.front().b[colour].data(); }
+  const float* solution(int colour) const { return work_.front().x[colour].data(); }
+
+  const StencilLevel<dim>& finest() const { return stencils_.front(); }
+  int n_levels() const { return static_cast<int>(stencils_.size()); }
+  std::size_t n_moved_cells() const;
+  std::size_t bytes() const;
+
+ private:
+  struct Work {
+    std::array<AlignedArray<float>, 2> x, b;
+  };
+
+  void copy_to_natural(const FaceCoefficients& coefficients, NaturalStencil& natural) const;
+  void invert_coarsest(const NaturalStencil& stencil);
+  void solve_coarsest();
+  void cycle(int level, bool from_zero);
+  void smooth_and_restrict(int level, bool from_zero);
+  void prolong_and_smooth(int level);
+  void relax_everywhere(int level, int colour);
+  void restrict_slab(int level, int slab);
+  void flush_coarse_rows(int level, int fine_slab);
+  void restrict_moved(int level);
+  void prolong_slab(int level, int slab);
+  /// Calls stage(s, slab) for s < n_stages, each stage one slab behind the one before it.
+  template <typename Stage>
+  void in_one_pass(int level, int n_stages, const Stage& stage) const;
+  bool exchanges(int level) const { return !layout_->levels()[level].halo.empty(); }
+
+  std::shared_ptr<const LatticeLayout> layout_;
+  MultigridOptions options_;
+  std::vector<StencilLevel<dim>> stencils_;
+  std::vector<Transfer> transfers_;
+  std::vector<Work> work_;
+  std::vector<std::ptrdiff_t> coarsest_slots_;  ///< of its unknowns: colour * n_slots + slot
+  Eigen::MatrixXd coarsest_inverse_;
+  Eigen::VectorXd coarsest_rhs_, coarsest_solution_;
+  std::vector<float> row_, coarse_rows_;  ///< residual of a row; sums of a coarse slab, naturally
+  NaturalStencil fine_, coarse_;          ///< set-up only, kept for its memory
+};
+
+extern template class Multigrid<2>;
+extern template class Multigrid<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,348 @@
+#include "multigrid/pressure_layout.hpp"
+
+#include <Thyra_TpetraThyraWrappers.hpp>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "linear/added_mass_diagonal.hpp"
+#include "linear/matrix_rows.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using TpetraOperator = Tpetra::Operator<double, int, GlobalIndex>;
+
+RCP<const LinearOperator> as_thyra_operator(const RCP<const TpetraOperator>& op) {
+  return Thyra::createConstLinearOp<double, int, GlobalIndex>(op);
+}
+
+/// A symmetric operator on the layout's vectors that overwrites its result.
+class LayoutOperator : public TpetraOperator {
+ public:
+  explicit LayoutOperator(RCP<const Map> map) : map_(std::move(map)) {}
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+  bool hasTransposeApply() const override { return true; }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, double alpha,
+             double beta) const override {
+    for (std::size_t column = 0; column < x.getNumVectors(); ++column) {
+      const auto in = x.getData(column);
+      if (alpha == 1 && beta == 0) {
+        apply_to(in.getRawPtr(), y.getDataNonConst(column).getRawPtr());
+        continue;
+      }
+      Vector result(map_);
+      apply_to(in.getRawPtr(), result.getDataNonConst().getRawPtr());
+      y.getVectorNonConst(column)->update(alpha, result, beta);
+    }
+  }
+
+ private:
+  virtual void apply_to(const double* x, double* y) const = 0;
+  RCP<const Map> map_;
+};
+
+/// A in the layout.
+template <int dim>
+class LayoutStencil final : public LayoutOperator {
+ public:
+  LayoutStencil(const RCP<const Map>& map, const StencilLevel<dim>& level, const LevelHalo& halo,
+                double unit)
+      : LayoutOperator(map), level_(level), halo_(halo), unit_(unit) {
+    if (!halo.empty())
+      with_ghosts_.resize(2 * level.grid().n_slots);
+  }
+
+ private:
+  void apply_to(const double* x, double* y) const override {
+    const LevelGrid& grid = level_.grid();
+    if (!halo_.empty()) {
+      std::copy_n(x, with_ghosts_.size(), with_ghosts_.data());
+      for (int colour = 0; colour < 2; ++colour)
+        halo_.fill(colour, with_ghosts_.data() + colour * grid.n_slots);
+      x = with_ghosts_.data();
+    }
+    for (int slab = 0; slab < grid.n_slabs(); ++slab) {
+      const auto rows = level_.rows_of(slab);
+      for (int j = rows.j_begin; j < rows.j_end; ++j) {
+        for (int colour = 0; colour < 2; ++colour)
+          multiply_row(colour, j, rows.k, x, y);
+      }
+    }
+  }
+
+  void multiply_row(int colour, int j, int k, const double* x, double* y) const {
+    const LevelGrid& grid = level_.grid();
+    double* to = y + colour * grid.n_slots;
+    level_.multiply(colour, j, k, x + colour * grid.n_slots, x + (1 - colour) * grid.n_slots, to);
+    const auto range = level_.range(j, k);
+    double* row = to + grid.slot(0, j, k);
+    for (int m = range.first; m < range.last; ++m)
+      row[m] *= unit_;
+  }
+
+  const StencilLevel<dim>& level_;
+  const LevelHalo& halo_;
+  double unit_;
+  mutable std::vector<double> with_ghosts_;
+};
+
+/// A row of the layout that A leaves empty, and the inverse of what stands in for its diagonal.
+struct EmptyRow {
+  int entry = 0;
+  double inverse = 0;
+};
+
+/// One cycle as an approximate inverse of A.
+template <int dim>
+class LayoutInverse final : public LayoutOperator {
+ public:
+  LayoutInverse(const RCP<const Map>& map, Multigrid<dim>& multigrid, Communicator comm,
+                double unit, std::vector<EmptyRow> empty_rows)
+      : LayoutOperator(map),
+        multigrid_(multigrid),
+        comm_(std::move(comm)),
+        unit_(unit),
+        empty_rows_(std::move(empty_rows)) {}
+
+ private:
+  template <typename Function>
+  void for_each_row(const Function& f) const {
+    const StencilLevel<dim>& level = multigrid_.finest();
+    const LevelGrid& grid = level.grid();
+    for (int k = 0; k < grid.n[2]; ++k) {
+      for (int j = 0; j < grid.n[1]; ++j) {
+        const auto range = level.range(j, k);
+        for (int colour = 0; colour < 2; ++colour)
+          f(colour, grid.slot(range.first, j, k), range.last - range.first);
+      }
+    }
+  }
+
+  /// Single precision has a small range: x is taken in units of a power of 2 near its largest
+  /// value.
+  double scale_of(const double* x) const {
+    const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
+    double sum = 0;
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      const double* row = x + colour * n_slots + at;
+      double of_row = 0;
+      for (int m = 0; m < n; ++m)
+        of_row += row[m] * row[m];
+      sum += of_row;
+    });
+    sum = sum_all(comm_, sum);
+    check_solve(std::isfinite(sum), "The multigrid was given a residual that is not finite.");
+    return sum > 0 ? std::exp2(-std::round(0.5 * std::log2(sum))) : 1;
+  }
+
+  void apply_to(const double* x, double* y) const override {
+    const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
+    const double scale = scale_of(x);
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      const double* from = x + colour * n_slots + at;
+      float* to = multigrid_.rhs(colour) + at;
+      for (int m = 0; m < n; ++m)
+        to[m] = static_cast<float>(scale * from[m]);
+    });
+    multigrid_.cycle();
+    const double back = 1 / (scale * unit_);
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      const float* from = multigrid_.solution(colour) + at;
+      double* to = y + colour * n_slots + at;
+      for (int m = 0; m < n; ++m)
+        to[m] = back * from[m];
+    });
+    for (const EmptyRow& row : empty_rows_)
+      y[row.entry] = row.inverse * x[row.entry];
+  }
+
+  Multigrid<dim>& multigrid_;
+  Communicator comm_;
+  double unit_;
+  std::vector<EmptyRow> empty_rows_;
+};
+
+template <int dim>
+class PressureLayoutOf final : public PressureLayout {
+ public:
+  PressureLayoutOf(std::shared_ptr<const LatticeLayout> layout, const MultigridOptions& options)
+      : multigrid_(layout, options) {
+    layout_ = std::move(layout);
+    map_ = make_map(static_cast<int>(2 * layout_->finest().n_slots), layout_->blocks().comm);
+  }
+
+  void set(const BlockSystem& system) {
+    const FaceCoefficients& coefficients = *stencil_of(system.pressure_block);
+    multigrid_.set(coefficients);
+    number_rows(coefficients);
+    stencil_ = as_thyra_operator(rcp(new LayoutStencil<dim>(
+        map_, multigrid_.finest(), layout_->levels().front().halo, coefficients.unit)));
+    inverse_ = as_thyra_operator(rcp(new LayoutInverse<dim>(
+        map_, multigrid_, layout_->blocks().comm, coefficients.unit, empty_rows(system))));
+  }
+  const std::shared_ptr<const LatticeLayout>& layout() const { return layout_; }
+
+  RCP<const LinearOperator> pressure_block() const override { return stencil_; }
+  RCP<const LinearOperator> inverse() const override { return inverse_; }
+  std::size_t bytes() const override { return multigrid_.bytes(); }
+  MessageCount sent() const override {
+    MessageCount total;
+    for (const LayoutLevel& level : layout_->levels()) {
+      total.messages += level.halo.sent().messages;
+      total.bytes += level.halo.sent().bytes;
+    }
+    return total;
+  }
+
+ private:
+  void number_rows(const FaceCoefficients& coefficients);
+  std::vector<EmptyRow> empty_rows(const BlockSystem& system) const;
+
+  Multigrid<dim> multigrid_;
+  RCP<const LinearOperator> stencil_, inverse_;
+};
+
+template <int dim>
+void PressureLayoutOf<dim>::number_rows(const FaceCoefficients& coefficients) {
+  const LevelGrid& grid = layout_->finest();
+  const LatticeBlocks& blocks = layout_->blocks();
+  entry_of_row_.resize(coefficients.map->getNodeNumElements());
+  std::size_t cell = 0;
+  const int depth = dim == 3 ? blocks.width : 1;
+  for (const auto& begin : blocks.begins) {
+    for (int k = 0; k < depth; ++k) {
+      for (int j = 0; j < blocks.width; ++j) {
+        for (int i = 0; i < blocks.width; ++i, ++cell) {
+          const int row = coefficients.row[cell];
+          if (row < 0)
+            continue;
+          const int x = begin[0] + i - grid.begin[0], y = begin[1] + j - grid.begin[1],
+                    z = begin[2] + k - grid.begin[2];
+          entry_of_row_[row] = static_cast<int>(LevelGrid::colour(x, y, z) * grid.n_slots +
+                                                grid.slot_of_cell(x, y, z));
+        }
+      }
+    }
+  }
+}
+
+template <int dim>
+std::vector<EmptyRow> PressureLayoutOf<dim>::empty_rows(const BlockSystem& system) const {
+  const std::ptrdiff_t n_slots = layout_->finest().n_slots;
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(entry_of_row_.size()); ++row) {
+    const int entry = entry_of_row_[row];
+    if (multigrid_.finest().diagonal(static_cast<int>(entry / n_slots))[entry % n_slots] == 0)
+      rows.push_back(row);
+  }
+  std::vector<EmptyRow> result;
+  if (sum_all(layout_->blocks().comm, static_cast<GlobalIndex>(rows.size())) == 0)
+    return result;
+  const auto added = added_mass_diagonal(system, domain_map(*system.pressure_block));
+  const auto values = added->getData();
+  const double unit = stencil_of(system.pressure_block)->unit;
+  for (const int row : rows)
+    result.push_back({entry_of_row_[row], 1 / (values[row] > 0 ? values[row] : 2 * dim * unit)});
+  return result;
+}
+
+template <int dim>
+std::shared_ptr<PressureLayout> make_layout(const BlockSystem& system,
+                                            const MultigridOptions& options,
+                                            const std::shared_ptr<PressureLayout>& previous) {
+  const FaceCoefficients& coefficients = *stencil_of(system.pressure_block);
+  auto result = std::dynamic_pointer_cast<PressureLayoutOf<dim>>(previous);
+  if (!result || &result->layout()->blocks() != coefficients.blocks.get())
+    result = std::make_shared<PressureLayoutOf<dim>>(
+        std::make_shared<const LatticeLayout>(coefficients.blocks), options);
+  result->set(system);
+  return result;
+}
+
+RCP<const Vector> relaid(const PressureLayout& layout, const RCP<const Vector>& rows) {
+  const auto result = make_vector(layout.map());
+  layout.to_layout(*rows, *result);
+  return result;
+}
+
+std::vector<RCP<const Vector>> relaid(const PressureLayout& layout,
+                                      const std::vector<RCP<const Vector>>& vectors) {
+  std::vector<RCP<const Vector>> result;
+  for (const auto& vector : vectors)
+    result.push_back(relaid(layout, vector));
+  return result;
+}
+
+}  // namespace
+
+std::shared_ptr<PressureLayout> PressureLayout::make(const BlockSystem& system,
+                                                     const MultigridOptions& options,
+                                                     std::shared_ptr<PressureLayout> previous) {
+  const std::string reason = why_not(system);
+  check_solve(reason.empty(), "{}", reason);
+  const bool is_flat = stencil_of(system.pressure_block)->blocks->dimension == 2;
+  return is_flat ? make_layout<2>(system, options, previous)
+                 : make_layout<3>(system, options, previous);
+}
+
+std::string PressureLayout::why_not(const BlockSystem& system) {
+  const FaceCoefficients* coefficients = stencil_of(system.pressure_block);
+  if (coefficients == nullptr)
+    return fmt::format(
+        "The multigrid needs a pressure block that is a stencil on a lattice, and that of the {} "
+        "is not. Choose another \"Pressure Inverse\".",
+        system.name);
+  return LatticeLayout::why_not(*coefficients->blocks);
+}
+
+void PressureLayout::to_layout(const Vector& rows, Vector& layout) const {
+  layout.putScalar(0);
+  const auto from = rows.getData();
+  const auto to = layout.getDataNonConst();
+  for (std::size_t row = 0; row < entry_of_row_.size(); ++row)
+    to[entry_of_row_[row]] = from[row];
+}
+
+void PressureLayout::from_layout(const Vector& layout, Vector& rows) const {
+  const auto from = layout.getData();
+  const auto to = rows.getDataNonConst();
+  for (std::size_t row = 0; row < entry_of_row_.size(); ++row)
+    to[row] = from[entry_of_row_[row]];
+}
+
+BlockSystem PressureLayout::relaid(const BlockSystem& system) const {
+  BlockSystem result = system;
+  result.pressure_block = pressure_block();
+  result.null_space = lockstep::relaid(*this, system.null_space);
+  result.pressure_null_space = lockstep::relaid(*this, system.pressure_null_space);
+  if (!system.has_solid())
+    return result;
+  const CrsMatrix& coupling = *system.coupling_transposed;
+  Vector ids(coupling.getDomainMap());
+  {
+    const auto values = ids.getDataNonConst();
+    for (std::size_t row = 0; row < entry_of_row_.size(); ++row)
+      values[row] = static_cast<double>(map_->getGlobalElement(entry_of_row_[row]));
+  }
+  const auto importer = coupling.getGraph()->getImporter();
+  Vector column_ids(coupling.getColMap());
+  if (importer.is_null())
+    column_ids.update(1, ids, 0);
+  else
+    column_ids.doImport(ids, *importer, Tpetra::INSERT);
+  const auto new_ids = column_ids.getData();
+  std::vector<std::vector<Entry>> rows(coupling.getNodeNumRows());
+  for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
+    const int local = coupling.getColMap()->getLocalElement(column);
+    rows[row].push_back({static_cast<GlobalIndex>(new_ids[local]), value});
+  });
+  result.coupling_transposed =
+      matrix_from_rows(coupling.getRowMap(), rows, map_, coupling.getRangeMap());
+  return result;
+}
+
+}  // namespace lockstep

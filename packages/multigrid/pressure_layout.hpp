@@ -1,0 +1,45 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "interfaces/strategy.hpp"
+#include "multigrid/lattice_layout.hpp"
+#include "multigrid/multigrid.hpp"
+
+namespace lockstep {
+
+/// The pressure unknowns in the multigrid's own order: flat, split by colour, with zeros where
+/// there is no unknown. Krylov vectors live there during a solve, so that nothing is reordered
+/// between A and its inverse.
+class PressureLayout {
+ public:
+  /// For the stencil of a system, which must have one (see `why_not`); `previous`, if any, gives
+  /// its arrays and whatever else depends on the grid only. Collective.
+  static std::shared_ptr<PressureLayout> make(const BlockSystem& system,
+                                              const MultigridOptions& options,
+                                              std::shared_ptr<PressureLayout> previous);
+  /// Why there can be none for this system, as a sentence; empty if there can.
+  static std::string why_not(const BlockSystem& system);
+  virtual ~PressureLayout() = default;
+
+  /// The system with its pressures in this layout; other things shared. Collective.
+  BlockSystem relaid(const BlockSystem& system) const;
+  /// Reorders; the layout's other entries are set to zero.
+  void to_layout(const Vector& rows, Vector& layout) const;
+  void from_layout(const Vector& layout, Vector& rows) const;
+
+  const RCP<const Map>& map() const { return map_; }
+  virtual RCP<const LinearOperator> pressure_block() const = 0;
+  /// One cycle of the multigrid. A row that A leaves empty is divided by its entry in the diagonal
+  /// of B diag(C)^-1 B^T.
+  virtual RCP<const LinearOperator> inverse() const = 0;
+  virtual std::size_t bytes() const = 0;
+  virtual MessageCount sent() const = 0;
+
+ protected:
+  std::shared_ptr<const LatticeLayout> layout_;
+  RCP<const Map> map_;
+  std::vector<int> entry_of_row_;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,304 @@
+#include "multigrid/stencil_level.hpp"
+
+#include <algorithm>
+
+namespace lockstep {
+
+namespace {
+
+/// Rows of the other colour around a row, at the slots of the six (four) neighbours.
+template <typename Value>
+struct Neighbors {
+  const Value *left, *right, *front, *back, *below, *above;
+};
+
+template <int dim, typename Value>
+inline Value sum_across(const Neighbors<Value>& x, int m) {
+  Value sum = x.front[m] + x.back[m];
+  if constexpr (dim == 3)
+    sum += x.below[m] + x.above[m];
+  return sum;
+}
+
+template <int dim, typename Value>
+inline Value weighted_sum(const Neighbors<float>& face, const Neighbors<Value>& x, int m) {
+  Value sum = face.left[m] * x.left[m] + face.right[m] * x.right[m] + face.front[m] * x.front[m] +
+              face.back[m] * x.back[m];
+  if constexpr (dim == 3)
+    sum += face.below[m] * x.below[m] + face.above[m] * x.above[m];
+  return sum;
+}
+
+}  // namespace
+
+void NaturalStencil::resize(const LevelGrid& grid) {
+  for (int axis = 0; axis < grid.dimension; ++axis)
+    lower[axis].assign(grid.n_natural, 0);
+  dirichlet.assign(grid.n_natural, 0);
+  diagonal.assign(grid.n_natural, 0);
+  active.assign(grid.n_natural, 0);
+}
+
+void NaturalStencil::complete(const LayoutLevel& level) {
+  const LevelGrid& grid = level.grid;
+  for (int axis = 0; axis < grid.dimension; ++axis)
+    level.halo.fill_natural(lower[axis].data());
+  for (int k = 0; k < grid.n[2]; ++k) {
+    for (int j = 0; j < grid.n[1]; ++j) {
+      const std::ptrdiff_t row = grid.natural(0, j, k);
+      float* d = diagonal.data() + row;
+      const float* e = dirichlet.data() + row;
+      for (int i = 0; i < grid.n[0]; ++i)
+        d[i] = e[i];
+      for (int axis = 0; axis < grid.dimension; ++axis) {
+        const float* f = lower[axis].data() + row;
+        const std::ptrdiff_t next = grid.natural_stride[axis];
+        for (int i = 0; i < grid.n[0]; ++i)
+          d[i] += f[i] + f[i + next];
+      }
+      if (!level.owned.empty()) {
+        for (int i = 0; i < grid.n[0]; ++i)
+          d[i] = level.owned[row + i] ? d[i] : 0;
+      }
+      for (int i = 0; i < grid.n[0]; ++i)
+        active[row + i] = d[i] != 0;
+    }
+  }
+  level.halo.fill_natural(active.data());
+}
+
+template <int dim>
+StencilLevel<dim>::StencilLevel(const LayoutLevel& level)
+    : grid_(level.grid), rows_touch_(grid_.margin == 0 && grid_.row_stride * 2 == grid_.n[0]) {
+  for (int colour = 0; colour < 2; ++colour) {
+    diagonal_[colour] = AlignedArray<float>(grid_.n_slots);
+    inverse_[colour] = AlignedArray<float>(grid_.n_slots);
+  }
+  ranges_.resize((grid_.n[1] + 1) * static_cast<std::size_t>(grid_.n[2] + 1));
+}
+
+template <int dim>
+std::size_t StencilLevel<dim>::bytes() const {
+  std::size_t n = 4 * grid_.n_slots;
+  for (const auto& by_colour : faces_)
+    n += by_colour[0].size() + by_colour[1].size();
+  return n * sizeof(float);
+}
+
+template <int dim>
+void StencilLevel<dim>::set(const NaturalStencil& stencil, float unit) {
+  unit_ = unit;
+  set_diagonal(stencil);
+  find_irregular_rows(stencil);
+  copy_faces(stencil);
+}
+
+template <int dim>
+void StencilLevel<dim>::set_diagonal(const NaturalStencil& stencil) {
+  for (int k = 0; k < grid_.n[2]; ++k) {
+    for (int j = 0; j < grid_.n[1]; ++j) {
+      const float* d = stencil.diagonal.data() + grid_.natural(0, j, k);
+      Range& range = ranges_[row_index(j, k)];
+      int first = 0, last = grid_.n[0];
+      while (first < last && d[first] == 0)
+        ++first;
+      while (last > first && d[last - 1] == 0)
+        --last;
+      range = last > first ? Range{first / 2, (last + 1) / 2} : Range{};
+      for (int colour = 0; colour < 2; ++colour) {
+        const int shift = (j + k + colour) & 1;
+        const int n = (grid_.n[0] - shift + 1) / 2;
+        float* diagonal = diagonal_[colour].data() + grid_.slot(0, j, k);
+        float* inverse = inverse_[colour].data() + grid_.slot(0, j, k);
+        for (int m = 0; m < n; ++m) {
+          const float value = d[2 * m + shift];
+          diagonal[m] = value;
+          inverse[m] = value > 0 ? 1 / value : 0;
+        }
+      }
+    }
+  }
+}
+
+template <int dim>
+void StencilLevel<dim>::find_irregular_rows(const NaturalStencil& stencil) {
+  irregular_.assign(ranges_.size(), 0);
+  faces_at_.assign(ranges_.size(), -1);
+  std::ptrdiff_t size = 0;
+  const auto need = [&](int j, int k) {
+    std::ptrdiff_t& at = faces_at_[row_index(j, k)];
+    if (at < 0) {
+      at = size;
+      size += grid_.row_stride + 1;  // the slot after a full row stays zero
+    }
+  };
+  for (int k = 0; k < grid_.n[2]; ++k) {
+    for (int j = 0; j < grid_.n[1]; ++j) {
+      const Range& row = range(j, k);
+      if (row.last == 0 || !is_irregular(stencil, j, k))
+        continue;
+      irregular_[row_index(j, k)] = 1;
+      need(j, k);
+      need(j + 1, k);
+      if (dim == 3)
+        need(j, k + 1);
+    }
+  }
+  for (auto& by_colour : faces_) {
+    for (auto& values : by_colour)
+      values.assign(size == 0 ? 0 : size + 2 * grid_.row_stride, 0);
+  }
+}
+
+template <int dim>
+bool StencilLevel<dim>::is_irregular(const NaturalStencil& stencil, int j, int k) const {
+  const std::ptrdiff_t row = grid_.natural(0, j, k);
+  const float* d = stencil.diagonal.data() + row;
+  const char* active = stencil.active.data() + row;
+  int n_irregular = 0;
+  for (int axis = 0; axis < dim; ++axis) {
+    const float* face = stencil.lower[axis].data() + row;
+    const std::ptrdiff_t next = grid_.natural_stride[axis];
+    for (int i = 0; i < grid_.n[0]; ++i) {
+      const int below = (active[i - next] != 0) & (face[i] != unit_);
+      const int above = (active[i + next] != 0) & (face[i + next] != unit_);
+      n_irregular += (d[i] != 0) & (below | above);
+    }
+  }
+  return n_irregular > 0;
+}
+
+template <int dim>
+void StencilLevel<dim>::copy_faces(const NaturalStencil& stencil) {
+  const int k_end = dim == 3 ? grid_.n[2] + 1 : 1;
+  for (int k = 0; k < k_end; ++k) {
+    for (int j = 0; j <= grid_.n[1]; ++j) {
+      const std::ptrdiff_t at = faces_at_[row_index(j, k)];
+      if (at < 0)
+        continue;
+      for (int axis = 0; axis < dim; ++axis) {
+        const float* face = stencil.lower[axis].data() + grid_.natural(0, j, k);
+        for (int i = -grid_.margin; i < grid_.n[0] + grid_.margin; ++i) {
+          faces_[axis][LevelGrid::colour(i, j, k)][at + grid_.margin + (i >> 1)] = face[i];
+        }
+      }
+    }
+  }
+}
+
+template <int dim>
+template <typename Value, typename Kernel>
+inline void StencilLevel<dim>::with_sums(int colour, int j, int k, const Value* other,
+                                         const Kernel& kernel) const {
+  const int row = row_index(j, k);
+  const Range range = ranges_[row];
+  const int shift = (j + k + colour) & 1;
+  const Value* o = other + grid_.slot(0, j, k);
+  const Neighbors<Value> x{o - 1 + shift,          o + shift,
+                           o - grid_.row_stride,   o + grid_.row_stride,
+                           o - grid_.plane_stride, o + grid_.plane_stride};
+  if (irregular_[row]) {
+    const auto faces = [&](int axis, int of, int at_row) {
+      return faces_[axis][of].data() + faces_at_[at_row] + grid_.margin;
+    };
+    const Neighbors<float> f{faces(0, colour, row),
+                             faces(0, 1 - colour, row) + shift,
+                             faces(1, colour, row),
+                             faces(1, 1 - colour, row_index(j + 1, k)),
+                             dim == 3 ? faces(dim - 1, colour, row) : nullptr,
+                             dim == 3 ? faces(dim - 1, 1 - colour, row_index(j, k + 1)) : nullptr};
+    kernel(range.first, range.last, [f, x](int m) { return weighted_sum<dim>(f, x, m); });
+    return;
+  }
+  const float unit = unit_;
+  kernel(range.first, range.last,
+         [x, unit](int m) { return unit * (x.left[m] + x.right[m] + sum_across<dim>(x, m)); });
+  if (!rows_touch_)
+    return;
+  if (shift == 0 && range.first == 0)
+    kernel(0, 1, [x, unit](int m) { return unit * (x.right[m] + sum_across<dim>(x, m)); });
+  if (shift == 1 && 2 * range.last == grid_.n[0])
+    kernel(range.last - 1, range.last,
+           [x, unit](int m) { return unit * (x.left[m] + sum_across<dim>(x, m)); });
+}
+
+template <int dim>
+void StencilLevel<dim>::relax(int colour, int slab, const float* b, const float* other,
+                              float* x) const {
+  const Rows rows = rows_of(slab);
+  for (int j = rows.j_begin; j < rows.j_end; ++j) {
+    const std::ptrdiff_t at = grid_.slot(0, j, rows.k);
+    const float* b_row = b + at;
+    const float* inverse = inverse_[colour].data() + at;
+    float* x_row = x + at;
+    with_sums(colour, j, rows.k, other, [=](int first, int last, const auto& sum) {
+#pragma GCC ivdep
+      for (int m = first; m < last; ++m)
+        x_row[m] = inverse[m] * (b_row[m] + sum(m));
+    });
+  }
+}
+
+template <int dim>
+void StencilLevel<dim>::relax_from_zero(int colour, int slab, const float* b, float* x) const {
+  const Rows rows = rows_of(slab);
+  for (int j = rows.j_begin; j < rows.j_end; ++j) {
+    const std::ptrdiff_t at = grid_.slot(0, j, rows.k);
+    const float* b_row = b + at;
+    const float* inverse = inverse_[colour].data() + at;
+    float* x_row = x + at;
+    const Range r = range(j, rows.k);
+#pragma GCC ivdep
+    for (int m = r.first; m < r.last; ++m)
+      x_row[m] = inverse[m] * b_row[m];
+  }
+}
+
+template <int dim>
+void StencilLevel<dim>::residual(int colour, int j, int k, const float* b, const float* x,
+                                 const float* other, float* residual) const {
+  const std::ptrdiff_t at = grid_.slot(0, j, k);
+  const float* b_row = b + at;
+  const float* x_row = x + at;
+  const float* diagonal = diagonal_[colour].data() + at;
+  with_sums(colour, j, k, other, [=](int first, int last, const auto& sum) {
+#pragma GCC ivdep
+    for (int m = first; m < last; ++m) {
+      const float value = b_row[m] + sum(m) - diagonal[m] * x_row[m];
+      residual[m] = diagonal[m] > 0 ? value : 0;
+    }
+  });
+}
+
+template <int dim>
+float StencilLevel<dim>::residual_at(int colour, int m, int j, int k, const float* b,
+                                     const float* x, const float* other) const {
+  const std::ptrdiff_t at = grid_.slot(m, j, k);
+  float result = 0;
+  with_sums(colour, j, k, other, [&](int first, int last, const auto& sum) {
+    if (first <= m && m < last)
+      result = b[at] + sum(m) - diagonal_[colour][at] * x[at];
+  });
+  return result;
+}
+
+template <int dim>
+void StencilLevel<dim>::multiply(int colour, int j, int k, const double* p, const double* other,
+                                 double* result) const {
+  const std::ptrdiff_t at = grid_.slot(0, j, k);
+  const double* p_row = p + at;
+  const float* diagonal = diagonal_[colour].data() + at;
+  double* result_row = result + at;
+  with_sums(colour, j, k, other, [=](int first, int last, const auto& sum) {
+#pragma GCC ivdep
+    for (int m = first; m < last; ++m) {
+      const double value = diagonal[m] * p_row[m] - sum(m);
+      result_row[m] = diagonal[m] > 0 ? value : 0;
+    }
+  });
+}
+
+template class StencilLevel<2>;
+template class StencilLevel<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,90 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "multigrid/aligned_array.hpp"
+#include "multigrid/lattice_layout.hpp"
+
+namespace lockstep {
+
+/// The stencil of one level in natural arrays, ghosts included: what set-up works on.
+/// `lower[a]` couples a cell to its lower neighbour along a; 0 where there is no coupling.
+struct NaturalStencil {
+  std::array<std::vector<float>, 3> lower;
+  std::vector<float> dirichlet;
+  std::vector<float> diagonal;  ///< sum of an owned cell's faces and its Dirichlet part, else 0
+  std::vector<char> active;     ///< the cell is an unknown, here or, of ghosts, on its own rank
+
+  void resize(const LevelGrid& grid);
+  /// Fills `diagonal`, `active` and the ghosts of `lower` from the owned values. Collective.
+  void complete(const LayoutLevel& level);
+};
+
+/// One level of the stencil as the sweeps want it: the diagonal and its inverse by colour, and face
+/// coefficients for those rows only in which some coupling between unknowns is not the level's
+/// regular one (`unit`): elsewhere the sweeps need no coefficients at all, for values that are no
+/// unknowns are zero.
+template <int dim>
+class StencilLevel {
+ public:
+  /// `level` must outlive it.
+  explicit StencilLevel(const LayoutLevel& level);
+
+  void set(const NaturalStencil& stencil, float unit);
+
+  const LevelGrid& grid() const { return grid_; }
+  const AlignedArray<float>& diagonal(int colour) const { return diagonal_[colour]; }
+  /// Slots [first, last) of row (j, k) hold all its unknowns; empty rows are (0, 0).
+  struct Range {
+    int first = 0, last = 0;
+  };
+  const Range& range(int j, int k) const { return ranges_[row_index(j, k)]; }
+  std::size_t bytes() const;
+
+  /// x := D^-1 (b + N x_other) on one colour of a slab: a Gauss-Seidel half sweep.
+  void relax(int colour, int slab, const float* b, const float* other, float* x) const;
+  /// x := D^-1 b on one colour of a slab.
+  void relax_from_zero(int colour, int slab, const float* b, float* x) const;
+  /// residual := b - (A x) of one row, 0 where there is no unknown, in slots [first, last).
+  void residual(int colour, int j, int k, const float* b, const float* x, const float* other,
+                float* residual) const;
+  /// The same of one cell, in slot m of the row.
+  float residual_at(int colour, int m, int j, int k, const float* b, const float* x,
+                    const float* other) const;
+  /// result := A p of one row in double precision.
+  void multiply(int colour, int j, int k, const double* p, const double* other,
+                double* result) const;
+
+  /// The first and one beyond the last row (j) and plane (k) of a slab.
+  struct Rows {
+    int j_begin, j_end, k;
+  };
+  Rows rows_of(int slab) const {
+    return dim == 3 ? Rows{0, grid_.n[1], slab} : Rows{slab, slab + 1, 0};
+  }
+
+ private:
+  int row_index(int j, int k) const { return j + (grid_.n[1] + 1) * k; }
+  void set_diagonal(const NaturalStencil& stencil);
+  void find_irregular_rows(const NaturalStencil& stencil);
+  bool is_irregular(const NaturalStencil& stencil, int j, int k) const;
+  void copy_faces(const NaturalStencil& stencil);
+  /// Calls kernel(first, last, sum) so that sum(m) is the sum over the cell's neighbours, each
+  /// times its coefficient; some slots may be visited twice (then with the right sum last).
+  template <typename Value, typename Kernel>
+  void with_sums(int colour, int j, int k, const Value* other, const Kernel& kernel) const;
+
+  const LevelGrid& grid_;
+  bool rows_touch_;  ///< the last slot of a row is a cell, and the first of the next follows it
+  float unit_ = 1;
+  std::array<AlignedArray<float>, 2> diagonal_, inverse_;
+  std::vector<Range> ranges_;
+  std::vector<std::ptrdiff_t> faces_at_;  ///< by row: where its faces begin, or -1
+  std::vector<char> irregular_;           ///< by row
+  std::array<std::array<std::vector<float>, 2>, dim> faces_;  ///< [axis][colour]
+};
+
+extern template class StencilLevel<2>;
+extern template class StencilLevel<3>;
+
+}  // namespace lockstep
