@@ -37,8 +37,10 @@ bool find_beside(const LatticeBlocks& blocks, const Cell& begin, int axis, int s
 }
 
 /// Ranks of blocks by number, -1 for blocks that nobody has.
-std::map<GlobalIndex, int> owners_of(const LatticeBlocks& blocks,
-                                     const std::vector<GlobalIndex>& wanted) {
+std::map<GlobalIndex, int> owners_of(const LatticeBlocks& blocks, std::vector<GlobalIndex> wanted) {
+  // Tpetra answers a repeated question once only.
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::vector<GlobalIndex> mine;
   for (const Cell& begin : blocks.begins) {
     if (holds_cells(blocks, begin))

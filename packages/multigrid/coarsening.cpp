@@ -47,6 +47,7 @@ class Coarsening {
         f_(fine_level.grid),
         c_(coarse_level.grid),
         fine_(fine),
+        coarse_owned_(coarse_level.owned),
         coarse_(coarse),
         dirichlet_factor_(dirichlet_factor) {
     for (int axis = 0; axis < 3; ++axis)
@@ -78,12 +79,13 @@ class Coarsening {
     }
     return true;
   }
+  /// Beyond the box, or inside it and another rank's.
   bool is_ghost(const Cell& coarse_cell) const {
     for (int axis = 0; axis < f_.dimension; ++axis) {
       if (coarse_cell[axis] < 0 || coarse_cell[axis] >= c_.n[axis])
         return true;
     }
-    return false;
+    return !coarse_owned_.empty() && !coarse_owned_[natural(coarse_cell)];
   }
   std::ptrdiff_t natural(const Cell& coarse_cell) const {
     return c_.natural(coarse_cell[0], coarse_cell[1], coarse_cell[2]);
@@ -106,6 +108,7 @@ class Coarsening {
   const LevelGrid& f_;
   const LevelGrid& c_;
   const NaturalStencil& fine_;
+  const std::vector<char>& coarse_owned_;
   NaturalStencil& coarse_;
   float dirichlet_factor_;
   Transfer transfer_;

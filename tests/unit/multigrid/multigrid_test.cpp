@@ -1,0 +1,208 @@
+#include <gtest/gtest.h>
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "../mac/mac_cases.hpp"
+#include "linear/conjugate_gradients.hpp"
+#include "linear/null_space.hpp"
+#include "linear/symmetry_check.hpp"
+#include "multigrid/pressure_layout.hpp"
+
+namespace lockstep::test {
+namespace {
+
+/// A fluid with its pressure block as a system without solid.
+template <int dim>
+struct Problem {
+  std::unique_ptr<MacFluid<dim>> fluid;
+  BlockSystem system;
+
+  Problem(Case<dim>& scene, const std::shared_ptr<const SurfaceSnapshot<dim>>& surface)
+      : fluid(scene.make()) {
+    fluid->set_geometry(surface, BlockedFaces<dim>());
+    system.pressure_block = fluid->pressure_block();
+    const PressureRegions& regions = fluid->regions();
+    for (int region = 0; region < regions.n_regions; ++region) {
+      if (regions.has_dirichlet[region])
+        continue;
+      const auto indicator = make_vector(fluid->pressure_map());
+      for (std::size_t row = 0; row < regions.of_unknown.size(); ++row) {
+        if (regions.of_unknown[row] == region)
+          indicator->replaceLocalValue(static_cast<int>(row), 1.0);
+      }
+      indicator->scale(1 / indicator->norm2());
+      system.pressure_null_space.push_back(indicator);
+    }
+    system.null_space = system.pressure_null_space;
+  }
+};
+
+/// A right-hand side in the range of A with smooth and rough parts.
+template <int dim>
+RCP<Vector> right_hand_side(const Problem<dim>& problem) {
+  const auto rhs = pressure_vector<dim>(*problem.fluid, [](const Point<dim>& x) {
+    return wavy<dim>(x) + 0.3 * std::sin(1e3 * x[0] + 3e3 * x[1]) +
+           0.1 * std::cos(2e3 * x[dim - 1]);
+  });
+  project_out(problem.system.null_space, *rhs);
+  return rhs;
+}
+
+struct Solved {
+  int n_iterations = 0;
+  double true_residual = 0;  ///< |b - A p| / |b|, A without the layout
+};
+
+template <int dim>
+Solved solve(const Problem<dim>& problem, const MultigridOptions& options = {}) {
+  const auto layout = PressureLayout::make(problem.system, options, nullptr);
+  const BlockSystem relaid = layout->relaid(problem.system);
+  const auto rhs = right_hand_side(problem);
+  Vector b(layout->map()), x(layout->map());
+  layout->to_layout(*rhs, b);
+  ConjugateGradientsRequest request{"test", 1e-8 * rhs->norm2(), 100, {}};
+  Solved result;
+  result.n_iterations = conjugate_gradients(
+      [&](const Vector& u, Vector& v) { apply(*relaid.pressure_block, u, v); },
+      [&](const Vector& u, Vector& v) { apply(*layout->inverse(), u, v); }, b, x, request);
+  Vector p(rhs->getMap()), residual(*rhs, Teuchos::Copy);
+  layout->from_layout(x, p);
+  apply(*problem.system.pressure_block, p, residual, -1, 1);
+  result.true_residual = residual.norm2() / rhs->norm2();
+  return result;
+}
+
+template <int dim>
+Index<dim> cube(int n) {
+  Index<dim> cells;
+  cells.fill(n);
+  return cells;
+}
+
+template <int dim>
+std::shared_ptr<const SurfaceSnapshot<dim>> ball(double h) {
+  Solids<dim> solids;
+  const Point<dim> center = Point<dim>::Constant(0.43);
+  solids.add(ball_surface<dim>(0.15, h), center, true);
+  return solids.snapshot();
+}
+
+/// A plate along a plane of cell faces of odd number, so that it cuts coarse cells of the first
+/// level, with a gap around it.
+template <int dim>
+std::shared_ptr<const SurfaceSnapshot<dim>> plate(double h, double where) {
+  Solids<dim> solids;
+  Point<dim> size = Point<dim>::Constant(0.7);
+  Point<dim> center = Point<dim>::Constant(0.5);
+  center[0] = where;
+  solids.add(plate_surface<dim>(size, 0, h), center, false);
+  return solids.snapshot();
+}
+
+template <int dim>
+void expect_matvec_of_the_layout(int n) {
+  Case<dim> scene(cube<dim>(n), 1.0 / n);
+  scene.side(dim == 2 ? "y upper" : "z upper", "open");
+  const Problem<dim> problem(scene, plate<dim>(1.0 / n, 0.43));
+  const auto layout = PressureLayout::make(problem.system, {}, nullptr);
+  const auto x = right_hand_side(problem);
+  Vector in(layout->map()), out(layout->map()), ax(x->getMap()), by_matrix(x->getMap());
+  layout->to_layout(*x, in);
+  apply(*layout->pressure_block(), in, out);
+  layout->from_layout(out, ax);
+  const auto matrix = assembled(problem.system.pressure_block);
+  matrix->apply(*x, by_matrix);
+  const double scale = by_matrix.normInf();
+  EXPECT_NEAR(out.norm2(), by_matrix.norm2(), 1e-13 * by_matrix.norm2());
+  ax.update(-1, by_matrix, 1);
+  EXPECT_LT(ax.normInf(), 1e-14 * scale);
+}
+
+TEST(Multigrid, TheLayoutHasTheSameOperator2D) {
+  expect_matvec_of_the_layout<2>(64);
+}
+TEST(Multigrid, TheLayoutHasTheSameOperator3D) {
+  expect_matvec_of_the_layout<3>(20);
+}
+TEST(Multigrid, RowsThatFillTheirStorage) {
+  expect_matvec_of_the_layout<3>(32);
+}
+
+template <int dim>
+void expect_few_iterations(const Problem<dim>& problem, int at_most) {
+  const Solved solved = solve(problem);
+  EXPECT_LE(solved.n_iterations, at_most);
+  EXPECT_LT(solved.true_residual, 2e-8);
+  testing::Test::RecordProperty("iterations", solved.n_iterations);
+}
+
+TEST(Multigrid, ClosedBoxWithABall3D) {
+  Case<3> scene(cube<3>(32), 1.0 / 32);
+  expect_few_iterations(Problem<3>(scene, ball<3>(1.0 / 32)), 8);
+}
+
+TEST(Multigrid, OpenTop3D) {
+  Case<3> scene(cube<3>(32), 1.0 / 32);
+  scene.side("z upper", "open");
+  expect_few_iterations(Problem<3>(scene, ball<3>(1.0 / 32)), 8);
+}
+
+TEST(Multigrid, ClosedBoxWithABall2D) {
+  Case<2> scene(cube<2>(64), 1.0 / 64);
+  expect_few_iterations(Problem<2>(scene, ball<2>(1.0 / 64)), 9);
+}
+
+TEST(Multigrid, PeriodicSides) {
+  Case<2> flat(cube<2>(64), 1.0 / 64);
+  flat.all_periodic();
+  expect_few_iterations(Problem<2>(flat, ball<2>(1.0 / 64)), 9);
+  Case<3> scene(cube<3>(16), 1.0 / 16);
+  scene.all_periodic();
+  expect_few_iterations(Problem<3>(scene, nullptr), 8);
+}
+
+TEST(Multigrid, OddSizes) {
+  Case<3> scene({27, 34, 21}, 1.0 / 32);
+  scene.side("x lower", "open");
+  expect_few_iterations(Problem<3>(scene, ball<3>(1.0 / 32)), 12);
+}
+
+/// Without moving the cells behind the plate this takes twice as many.
+TEST(Multigrid, APlateOnOddFaces) {
+  Case<3> scene(cube<3>(32), 1.0 / 32);
+  expect_few_iterations(Problem<3>(scene, plate<3>(1.0 / 32, 13.1 / 32)), 12);
+  Case<2> flat(cube<2>(64), 1.0 / 64);
+  expect_few_iterations(Problem<2>(flat, plate<2>(1.0 / 64, 27.1 / 64)), 12);
+}
+
+TEST(Multigrid, IsSymmetricAndPositive) {
+  Case<3> scene(cube<3>(24), 1.0 / 24);
+  for (const auto& surface : {ball<3>(1.0 / 24), plate<3>(1.0 / 24, 11.1 / 24)}) {
+    const Problem<3> problem(scene, surface);
+    const auto layout = PressureLayout::make(problem.system, {}, nullptr);
+    const auto u = right_hand_side(problem);
+    Vector v(u->getMap());
+    pseudo_random(v, 3);
+    Vector lu(layout->map()), lv(layout->map()), mu(layout->map()), mv(layout->map());
+    project_out(problem.system.null_space, v);
+    layout->to_layout(*u, lu);
+    layout->to_layout(v, lv);
+    apply(*layout->inverse(), lu, mu);
+    apply(*layout->inverse(), lv, mv);
+    EXPECT_GT(lu.dot(mu), 0);
+    EXPECT_GT(lv.dot(mv), 0);
+    EXPECT_NEAR(lu.dot(mv), lv.dot(mu), 1e-6 * std::sqrt(lu.dot(mu) * lv.dot(mv)));
+  }
+}
+
+TEST(Multigrid, RefusesWhatItCannotHalve) {
+  Case<2> scene({40, 40}, 1.0 / 40);
+  scene.all_periodic();
+  const Problem<2> problem(scene, nullptr);
+  EXPECT_NE(PressureLayout::why_not(problem.system).find("multiple of 16"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lockstep::test
