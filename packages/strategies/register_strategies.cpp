@@ -1,8 +1,8 @@
 #include "strategies/register_strategies.hpp"
 
-#include "strategies/direct.hpp"
-#include "strategies/paper.hpp"
-#include "strategies/schur_cg.hpp"
+#include "strategies/direct/direct.hpp"
+#include "strategies/paper/paper.hpp"
+#include "strategies/schur_cg/schur_cg.hpp"
 
 namespace lockstep {
 

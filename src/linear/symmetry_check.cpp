@@ -40,10 +40,10 @@ double symmetry_defect(const LinearOperator& op) {
   return Probe(op).defect();
 }
 
-void check_symmetric_positive(const LinearOperator& op, const std::string& name) {
+void check_symmetric_positive(const LinearOperator& op, const std::string& name, double tolerance) {
   const Probe probe(op);
   const double defect = probe.defect();
-  check_solve(defect < 1e-8,
+  check_solve(defect < tolerance,
               "The preconditioner of the {} is not symmetric: |u.Mv - v.Mu| / (|u||Mv|) = {:.1e}. "
               "Choose a symmetric smoother (Chebyshev, symmetric Gauss-Seidel) and a coarse solver "
               "that is right on several ranks.",

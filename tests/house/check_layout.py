@@ -15,7 +15,7 @@ SIBLINGS = {
     "mac": {"grid"},
     "cutcell": {"grid", "mac"},
     "articulated": {"rigid", "deformable"},
-    "strategies": {"grid"},
+    "strategies": {"multigrid"},
 }
 HEAVY = re.compile(r"^(Stratimikos|Teko|MueLu|Belos)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')

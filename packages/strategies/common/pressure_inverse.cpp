@@ -1,4 +1,4 @@
-#include "strategies/pressure_inverse.hpp"
+#include "strategies/common/pressure_inverse.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -10,6 +10,8 @@
 #include "linear/added_mass_diagonal.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/preconditioner.hpp"
+#include "multigrid/pressure_layout.hpp"
+#include "strategies/common/strategy_parameters.hpp"
 
 namespace lockstep {
 
@@ -79,11 +81,78 @@ RCP<const CrsMatrix> shifted(const RCP<const CrsMatrix>& a, const std::vector<do
 
 }  // namespace
 
+namespace {
+
+const std::string list_name = "Pressure Inverse";
+
+std::string type_of(const Teuchos::ParameterList& list) {
+  return list.isType<std::string>("Type") ? list.get<std::string>("Type") : "";
+}
+
+void check_multigrid_list(const Teuchos::ParameterList& list) {
+  for (const auto& entry : list) {
+    const std::string& key = entry.first;
+    const bool fits = key == "Type" ||
+                      (key == "Sweeps" && entry.second.isType<int>() && list.get<int>(key) > 0) ||
+                      (key == "Cycle" && entry.second.isType<std::string>() &&
+                       (list.get<std::string>(key) == "V" || list.get<std::string>(key) == "W"));
+    check_input(
+        fits,
+        "\"{}\": \"{}\" is not a parameter of type \"Multigrid\", or has a value that it "
+        "cannot have. It takes \"Sweeps\" (int, at least 1) and \"Cycle\" (string, V or W).",
+        list_name, key);
+  }
+}
+
+}  // namespace
+
+void declare_pressure_inverse(Teuchos::ParameterList& list, const std::string& doc) {
+  declare_inverse(list, list_name,
+                  doc +
+                      " \"Type\" may also be Automatic (Multigrid where the fluid allows it, else "
+                      "MueLu) or Multigrid (\"Sweeps\", 2; \"Cycle\", W).");
+}
+
+Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
+                                             const std::string& standard_type) {
+  Teuchos::ParameterList standard;
+  standard.set("Type", standard_type);
+  if (!list.isSublist(list_name) || list.sublist(list_name).numParams() == 0)
+    return standard;
+  const Teuchos::ParameterList& given = list.sublist(list_name);
+  const std::string type = type_of(given);
+  if (type != "Multigrid" && type != "Automatic")
+    return inverse_list(list, list_name, standard);
+  if (type == "Multigrid")
+    check_multigrid_list(given);
+  else
+    check_input(given.numParams() == 1, "\"{}\": type \"Automatic\" takes no other parameters.",
+                list_name);
+  return given;
+}
+
+bool is_multigrid(const Teuchos::ParameterList& list, const BlockSystem& system) {
+  const std::string type = type_of(list);
+  return type == "Multigrid" || (type == "Automatic" && PressureLayout::why_not(system).empty());
+}
+
+MultigridOptions multigrid_options(const Teuchos::ParameterList& list) {
+  MultigridOptions options;
+  if (list.isParameter("Sweeps"))
+    options.n_sweeps = list.get<int>("Sweeps");
+  if (list.isParameter("Cycle"))
+    options.is_w_cycle = list.get<std::string>("Cycle") == "W";
+  return options;
+}
+
 RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
-                                           const Teuchos::ParameterList& list) {
+                                           const Teuchos::ParameterList& given) {
+  Teuchos::ParameterList list(given);
+  if (type_of(list) == "Automatic")
+    list.set("Type", "MueLu");
   auto op = system.pressure_block;
   if (const auto a = assembled(op); !a.is_null()) {
-    const std::string type = list.isType<std::string>("Type") ? list.get<std::string>("Type") : "";
+    const std::string type = type_of(list);
     const bool factors = type == "Ifpack2" || type == "Direct";
     const auto regular = shifted(a, diagonal_shift(system, *a, factors));
     if (regular != a)

@@ -1,7 +1,7 @@
 #pragma once
 #include "linear/merge.hpp"
-#include "strategies/refined_strategy.hpp"
-#include "strategies/strategy_parameters.hpp"
+#include "strategies/common/refined_strategy.hpp"
+#include "strategies/common/strategy_parameters.hpp"
 
 namespace lockstep {
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "strategies/refined_strategy.hpp"
-#include "strategies/strategy_parameters.hpp"
+#include "strategies/common/refined_strategy.hpp"
+#include "strategies/common/strategy_parameters.hpp"
 
 namespace lockstep {
 
@@ -16,12 +16,9 @@ class SchurCg : public RefinedStrategy {
   std::string name() const override { return "schur-cg"; }
 
  private:
-  void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) override;
+  void build(const BlockSystem&, bool, bool) override {}
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) override;
-
-  ParameterList pressure_list_;
-  RCP<const LinearOperator> pressure_inverse_;
 };
 
 }  // namespace lockstep

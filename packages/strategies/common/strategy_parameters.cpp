@@ -1,4 +1,4 @@
-#include "strategies/strategy_parameters.hpp"
+#include "strategies/common/strategy_parameters.hpp"
 
 #include "linear/preconditioner.hpp"
 

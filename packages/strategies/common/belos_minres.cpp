@@ -1,4 +1,4 @@
-#include "strategies/belos_minres.hpp"
+#include "strategies/common/belos_minres.hpp"
 
 #include <Thyra_BelosLinearOpWithSolveFactory.hpp>
 #include <Thyra_DefaultBlockedLinearOp.hpp>

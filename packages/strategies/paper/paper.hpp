@@ -1,6 +1,6 @@
 #pragma once
-#include "strategies/refined_strategy.hpp"
-#include "strategies/strategy_parameters.hpp"
+#include "strategies/common/refined_strategy.hpp"
+#include "strategies/common/strategy_parameters.hpp"
 
 namespace lockstep {
 
@@ -18,8 +18,8 @@ class Paper : public RefinedStrategy {
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) override;
 
-  ParameterList pressure_list_, solid_list_;
-  RCP<const LinearOperator> pressure_inverse_, solid_preconditioner_;
+  ParameterList solid_list_;
+  RCP<const LinearOperator> solid_preconditioner_;
 };
 
 }  // namespace lockstep

@@ -1,10 +1,13 @@
 #pragma once
 #include <Teuchos_ParameterList.hpp>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "interfaces/strategy.hpp"
 #include "linear/block_residual.hpp"
+#include "multigrid/pressure_layout.hpp"
 
 namespace lockstep {
 
@@ -14,6 +17,10 @@ namespace lockstep {
 /// V_S is always back-substituted from row 2, V_S = C^-1 (solid rhs - B^T p̂), so that momentum is
 /// exact; what is left of an error sits in row 1, the divergence, and a correction solves Eq. 16
 /// with right-hand side (r_1, 0). The initial guess of V_S is therefore ignored.
+///
+/// A strategy that names an approximate inverse of A gets it from here. Where that is the
+/// multigrid, the whole solve takes place in the multigrid's layout: `build` and `correct` are then
+/// given the system with its pressures reordered, and never notice.
 class RefinedStrategy : public SolverStrategy {
  public:
   /// Reuses what was built last for a system of the same name, stamps and maps. What belongs to A
@@ -24,10 +31,10 @@ class RefinedStrategy : public SolverStrategy {
                     const SolveRequest& request) final;
 
  protected:
-  /// Reads the parameters common to all strategies, which must all be there.
-  explicit RefinedStrategy(const Teuchos::ParameterList& list)
-      : maximum_iterations_(list.get<int>("Maximum Iterations")),
-        check_symmetry_(list.get<bool>("Check Preconditioner Symmetry")) {}
+  /// Reads the parameters common to all strategies, which must all be there. `pressure_list` names
+  /// the approximate inverse of A, for strategies that use one (see pressure_inverse.hpp).
+  explicit RefinedStrategy(const Teuchos::ParameterList& list,
+                           std::optional<Teuchos::ParameterList> pressure_list = {});
 
   struct CorrectionRequest {
     std::string name;        ///< for messages
@@ -51,6 +58,13 @@ class RefinedStrategy : public SolverStrategy {
   virtual int correct(const BlockSystem& system, const CorrectionRequest& request,
                       Vector& correction) = 0;
 
+  /// The approximate inverse of A that the list names, symmetric positive definite.
+  const RCP<const LinearOperator>& pressure_inverse() const { return pressure_inverse_; }
+  /// How it may differ from symmetry: round-off of the precision it works in.
+  double symmetry_tolerance() const { return layout_ ? 1e-5 : 1e-8; }
+  /// The null vectors that an iteration must project out of every preconditioned residual; none
+  /// where the inverse of A leaves them harmless.
+  const std::vector<RCP<const Vector>>& iteration_null_space(const BlockSystem& system) const;
   /// C^-1 to round-off; null without a solid block.
   const RCP<const LinearOperator>& solid_inverse() const { return solid_inverse_; }
   bool check_symmetry() const { return check_symmetry_; }
@@ -62,8 +76,17 @@ class RefinedStrategy : public SolverStrategy {
     RCP<const Map> pressure_map, solid_map;
   };
 
+  /// The system as `build` and `correct` see it.
+  const BlockSystem& working(const BlockSystem& system) const {
+    return layout_ ? (system.has_solid() ? relaid_ : relaid_pressure_) : system;
+  }
+  void build_pressure_inverse(const BlockSystem& system);
+  void relay(const BlockSystem& system);
+  SolveReport refine(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
+                     const SolveRequest& request);
   void back_substitute(const BlockSystem& system, const BlockVector& rhs,
                        BlockVector& solution) const;
+  bool is_ready(const BlockSystem& system) const;
   bool geometry_matches(const BlockSystem& system) const;
   bool solid_matches(const BlockSystem& system) const;
 
@@ -72,6 +95,10 @@ class RefinedStrategy : public SolverStrategy {
   bool is_prepared_ = false;
   Prepared prepared_;
   RCP<const LinearOperator> solid_inverse_;
+  std::optional<Teuchos::ParameterList> pressure_list_;
+  RCP<const LinearOperator> pressure_inverse_;
+  std::shared_ptr<PressureLayout> layout_;  ///< null: pressures stay in the fluid's order
+  BlockSystem relaid_, relaid_pressure_;
   double setup_seconds_ = 0;
   int n_builds_ = 0, n_reuses_ = 0;
 };

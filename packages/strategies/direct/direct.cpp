@@ -1,4 +1,4 @@
-#include "strategies/direct.hpp"
+#include "strategies/direct/direct.hpp"
 
 #include <Thyra_VectorSpaceBase.hpp>
 #include <Tpetra_CrsMatrix.hpp>

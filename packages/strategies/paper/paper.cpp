@@ -1,4 +1,4 @@
-#include "strategies/paper.hpp"
+#include "strategies/paper/paper.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -6,21 +6,22 @@
 #include "linear/preconditioner.hpp"
 #include "linear/symmetry_check.hpp"
 #include "linear/thyra_vectors.hpp"
-#include "strategies/belos_minres.hpp"
-#include "strategies/pressure_cg.hpp"
-#include "strategies/pressure_inverse.hpp"
+#include "strategies/common/belos_minres.hpp"
+#include "strategies/common/pressure_cg.hpp"
+#include "strategies/common/pressure_inverse.hpp"
 
 namespace lockstep {
 
 namespace {
 
 /// RILUK(0) of a symmetric matrix is its incomplete Cholesky factorisation without fill.
-ParameterList default_pressure_inverse() {
-  ParameterList list;
-  list.set("Type", "Ifpack2");
-  list.set("Prec Type", "RILUK");
-  list.set("Overlap", 0);
-  list.sublist("Ifpack2 Settings").set("fact: iluk level-of-fill", 0);
+ParameterList pressure_list_of(const ParameterList& given) {
+  ParameterList list = pressure_inverse_list(given, "Ifpack2");
+  if (list.get<std::string>("Type") == "Ifpack2" && list.numParams() == 1) {
+    list.set("Prec Type", "RILUK");
+    list.set("Overlap", 0);
+    list.sublist("Ifpack2 Settings").set("fact: iluk level-of-fill", 0);
+  }
   return list;
 }
 
@@ -34,29 +35,22 @@ ParameterList default_solid_inverse() {
 
 ParameterList Paper::valid_parameters() {
   ParameterList list = common_strategy_parameters();
-  declare_inverse(list, "Pressure Inverse",
-                  "Approximate inverse of the pressure block A. Default: Ifpack2's RILUK(0), which "
-                  "is the paper's incomplete Cholesky.");
+  declare_pressure_inverse(list,
+                           "Approximate inverse of the pressure block A. Default: Ifpack2's "
+                           "RILUK(0), which is the paper's incomplete Cholesky.");
   declare_inverse(list, "Solid Inverse",
                   "Approximate inverse of the solid block C. Default: Exact.");
   return list;
 }
 
 Paper::Paper(const ParameterList& given)
-    : RefinedStrategy(with_defaults(given, valid_parameters())),
-      pressure_list_(inverse_list(given, "Pressure Inverse", default_pressure_inverse())),
+    : RefinedStrategy(with_defaults(given, valid_parameters()), pressure_list_of(given)),
       solid_list_(inverse_list(given, "Solid Inverse", default_solid_inverse())) {}
 
-void Paper::build(const BlockSystem& system, bool geometry_changed, bool solid_changed) {
-  const std::string pressure_name = "pressure block of the " + system.name;
+void Paper::build(const BlockSystem& system, bool, bool solid_changed) {
   const std::string solid_name = "solid block of the " + system.name;
   if (system.has_solid())
     check_no_empty_rank(system, "The strategy paper");
-  if (geometry_changed) {
-    pressure_inverse_ = pressure_inverse(system, pressure_list_);
-    if (check_symmetry())
-      check_symmetric_positive(*pressure_inverse_, pressure_name);
-  }
   if (solid_changed) {
     solid_preconditioner_ =
         solid_list_.get<std::string>("Type") == "Exact"
@@ -70,14 +64,14 @@ void Paper::build(const BlockSystem& system, bool geometry_changed, bool solid_c
 int Paper::correct(const BlockSystem& system, const CorrectionRequest& request,
                    Vector& correction) {
   if (!system.has_solid())
-    return pressure_cg(system, *pressure_inverse_, *request.residual,
-                       {request.name, request.target, request.maximum_iterations, system.null_space,
-                        request.update_target},
+    return pressure_cg(system, *pressure_inverse(), *request.residual,
+                       {request.name, request.target, request.maximum_iterations,
+                        iteration_null_space(system), request.update_target},
                        correction);
   return belos_minres(system, *request.residual,
                       {request.name, request.target, request.pressure_scale, request.solid_scale,
                        request.maximum_iterations},
-                      pressure_inverse_, solid_preconditioner_, correction);
+                      pressure_inverse(), solid_preconditioner_, correction);
 }
 
 }  // namespace lockstep

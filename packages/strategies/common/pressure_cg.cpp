@@ -1,4 +1,4 @@
-#include "strategies/pressure_cg.hpp"
+#include "strategies/common/pressure_cg.hpp"
 
 #include <Tpetra_Vector.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "linear/conjugate_gradients.hpp"
-#include "strategies/refined_strategy.hpp"
+#include "strategies/common/refined_strategy.hpp"
 
 namespace lockstep {
 

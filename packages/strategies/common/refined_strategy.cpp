@@ -1,4 +1,4 @@
-#include "strategies/refined_strategy.hpp"
+#include "strategies/common/refined_strategy.hpp"
 
 #include <Teuchos_Time.hpp>
 #include <Tpetra_CrsMatrix.hpp>
@@ -9,6 +9,8 @@
 #include "linear/exact_inverse.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
+#include "linear/symmetry_check.hpp"
+#include "strategies/common/pressure_inverse.hpp"
 
 namespace lockstep {
 
@@ -76,20 +78,61 @@ bool RefinedStrategy::solid_matches(const BlockSystem& system) const {
           prepared_.solid_map->isSameAs(*domain_map(*system.solid_block)));
 }
 
+RefinedStrategy::RefinedStrategy(const Teuchos::ParameterList& list,
+                                 std::optional<Teuchos::ParameterList> pressure_list)
+    : maximum_iterations_(list.get<int>("Maximum Iterations")),
+      check_symmetry_(list.get<bool>("Check Preconditioner Symmetry")),
+      pressure_list_(std::move(pressure_list)) {}
+
+const std::vector<RCP<const Vector>>& RefinedStrategy::iteration_null_space(
+    const BlockSystem& system) const {
+  static const std::vector<RCP<const Vector>> none;
+  return layout_ ? none : system.null_space;
+}
+
+void RefinedStrategy::build_pressure_inverse(const BlockSystem& system) {
+  if (is_multigrid(*pressure_list_, system)) {
+    layout_ = PressureLayout::make(system, multigrid_options(*pressure_list_), layout_);
+    pressure_inverse_ = layout_->inverse();
+  } else {
+    layout_.reset();
+    pressure_inverse_ = lockstep::pressure_inverse(system, *pressure_list_);
+  }
+  if (check_symmetry_)
+    check_symmetric_positive(*pressure_inverse_, "pressure block of the " + system.name,
+                             symmetry_tolerance());
+}
+
+void RefinedStrategy::relay(const BlockSystem& system) {
+  (system.has_solid() ? relaid_ : relaid_pressure_) = layout_->relaid(system);
+}
+
+bool RefinedStrategy::is_ready(const BlockSystem& system) const {
+  const bool is_relaid = !layout_ || !working(system).pressure_block.is_null();
+  return geometry_matches(system) && solid_matches(system) && is_relaid &&
+         is_built_for(working(system));
+}
+
 void RefinedStrategy::prepare(const BlockSystem& system) {
   const double start = Teuchos::Time::wallTime();
-  const bool geometry_changed = !geometry_matches(system);
-  const bool solid_changed = system.has_solid() && (geometry_changed || !solid_matches(system));
-  if (!geometry_changed && !solid_changed && is_built_for(system)) {
+  if (is_ready(system)) {
     ++n_reuses_;
     return;
   }
+  const bool geometry_changed = !geometry_matches(system);
+  const bool solid_changed = system.has_solid() && (geometry_changed || !solid_matches(system));
   is_prepared_ = false;
-  if (geometry_changed)
+  if (geometry_changed) {
     solid_inverse_ = Teuchos::null;
+    relaid_ = relaid_pressure_ = {};
+    if (pressure_list_)
+      build_pressure_inverse(system);
+  }
   if (solid_changed)
     solid_inverse_ = exact_inverse(system.solid_block, "solid block of the " + system.name);
-  build(system, geometry_changed, solid_changed);
+  if (layout_)
+    relay(system);
+  build(working(system), geometry_changed, solid_changed);
   prepared_.system_name = system.name;
   prepared_.geometry_stamp = system.geometry_stamp;
   prepared_.pressure_map = domain_map(*system.pressure_block);
@@ -113,8 +156,21 @@ void RefinedStrategy::back_substitute(const BlockSystem& system, const BlockVect
 
 SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector& rhs,
                                    BlockVector& solution, const SolveRequest& request) {
-  if (!geometry_matches(system) || !solid_matches(system) || !is_built_for(system))
+  if (!is_ready(system))
     prepare(system);
+  if (!layout_)
+    return refine(system, rhs, solution, request);
+  const BlockVector b{make_vector(layout_->map()), rhs.solid};
+  BlockVector x{make_vector(layout_->map()), solution.solid};
+  layout_->to_layout(*rhs.pressure, *b.pressure);
+  layout_->to_layout(*solution.pressure, *x.pressure);
+  const SolveReport report = refine(working(system), b, x, request);
+  layout_->from_layout(*x.pressure, *solution.pressure);
+  return report;
+}
+
+SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector& rhs,
+                                    BlockVector& solution, const SolveRequest& request) {
   const double start = Teuchos::Time::wallTime();
   const std::string name =
       fmt::format("Solve {} of the {} by {}", request.name, system.name, this->name());

@@ -1,0 +1,33 @@
+#pragma once
+#include <Teuchos_ParameterList.hpp>
+
+#include "interfaces/strategy.hpp"
+#include "multigrid/multigrid.hpp"
+
+namespace lockstep {
+
+/// Declares "Pressure Inverse", the list that names the approximate inverse of A. Its "Type" is
+///   "Automatic"   the default of most strategies: Multigrid where the fluid's A is a stencil that
+///   it
+///                 can halve, else MueLu
+///   "Multigrid"   the matrix-free geometric multigrid ("Sweeps", 2; "Cycle", "W")
+/// or one of linear/preconditioner.hpp, which need an assembled A.
+void declare_pressure_inverse(Teuchos::ParameterList& list, const std::string& doc);
+/// The list given, checked, or `standard` if there is none. Throws InputError.
+Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
+                                             const std::string& standard_type);
+
+/// Whether the list asks for the multigrid, of this system.
+bool is_multigrid(const Teuchos::ParameterList& list, const BlockSystem& system);
+MultigridOptions multigrid_options(const Teuchos::ParameterList& list);
+
+/// Any other inverse that a list names, made positive definite where A is not:
+/// - a cell all of whose faces are mixed has an empty row in A; its diagonal becomes that of
+///   B diag(C)^-1 B^T;
+/// - with "Ifpack2" and "Direct", which factor, the first cell of each null vector of A alone is
+///   pinned by adding its diagonal once more. Multigrid and Jacobi take a singular A.
+/// Throws InputError for a bad list, SolveError if the set-up fails. Collective.
+RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
+                                           const Teuchos::ParameterList& list);
+
+}  // namespace lockstep
