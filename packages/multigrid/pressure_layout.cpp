@@ -3,7 +3,9 @@
 #include <Thyra_TpetraThyraWrappers.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "base/errors.hpp"
 #include "linear/added_mass_diagonal.hpp"
@@ -17,6 +19,23 @@ using TpetraOperator = Tpetra::Operator<double, int, GlobalIndex>;
 
 RCP<const LinearOperator> as_thyra_operator(const RCP<const TpetraOperator>& op) {
   return Thyra::createConstLinearOp<double, int, GlobalIndex>(op);
+}
+
+constexpr int n_lanes = 16;
+
+/// Sum of products, in lanes so that no addition waits for the one before it.
+template <typename A, typename B>
+double dot(const A* a, const B* b, int n) {
+  std::array<double, n_lanes> sums{};
+  int i = 0;
+  for (; i + n_lanes <= n; i += n_lanes) {
+#pragma GCC ivdep
+    for (int lane = 0; lane < n_lanes; ++lane)
+      sums[lane] += static_cast<double>(a[i + lane]) * static_cast<double>(b[i + lane]);
+  }
+  for (; i < n; ++i)
+    sums[0] += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 /// A symmetric operator on the layout's vectors that overwrites its result.
@@ -56,32 +75,52 @@ class LayoutStencil final : public LayoutOperator {
       with_ghosts_.resize(2 * level.grid().n_slots);
   }
 
- private:
-  void apply_to(const double* x, double* y) const override {
-    const LevelGrid& grid = level_.grid();
-    if (!halo_.empty()) {
-      std::copy_n(x, with_ghosts_.size(), with_ghosts_.data());
-      for (int colour = 0; colour < 2; ++colour)
-        halo_.fill(colour, with_ghosts_.data() + colour * grid.n_slots);
-      x = with_ghosts_.data();
-    }
-    for (int slab = 0; slab < grid.n_slabs(); ++slab) {
-      const auto rows = level_.rows_of(slab);
-      for (int j = rows.j_begin; j < rows.j_end; ++j) {
-        for (int colour = 0; colour < 2; ++colour)
-          multiply_row(colour, j, rows.k, x, y);
+  /// y = A x; `before(slab)` is called for each slab before x is read there. Returns x.y of this
+  /// rank.
+  template <typename Before>
+  double multiply(const double* x, double* y, const Before& before) const {
+    const int n_slabs = level_.grid().n_slabs();
+    double sum = 0;
+    if (halo_.empty()) {
+      for (int front = 0; front <= n_slabs; ++front) {
+        if (front < n_slabs)
+          before(front);
+        if (front > 0)
+          sum += multiply_slab(front - 1, x, y);
       }
+      return sum;
     }
+    for (int slab = 0; slab < n_slabs; ++slab)
+      before(slab);
+    std::copy_n(x, with_ghosts_.size(), with_ghosts_.data());
+    for (int colour = 0; colour < 2; ++colour)
+      halo_.fill(colour, with_ghosts_.data() + colour * level_.grid().n_slots);
+    for (int slab = 0; slab < n_slabs; ++slab)
+      sum += multiply_slab(slab, with_ghosts_.data(), y);
+    return sum;
   }
 
-  void multiply_row(int colour, int j, int k, const double* x, double* y) const {
+ private:
+  void apply_to(const double* x, double* y) const override {
+    multiply(x, y, [](int) {});
+  }
+
+  double multiply_slab(int slab, const double* x, double* y) const {
     const LevelGrid& grid = level_.grid();
-    double* to = y + colour * grid.n_slots;
-    level_.multiply(colour, j, k, x + colour * grid.n_slots, x + (1 - colour) * grid.n_slots, to);
-    const auto range = level_.range(j, k);
-    double* row = to + grid.slot(0, j, k);
-    for (int m = range.first; m < range.last; ++m)
-      row[m] *= unit_;
+    const auto rows = level_.rows_of(slab);
+    double sum = 0;
+    for (int j = rows.j_begin; j < rows.j_end; ++j) {
+      const auto range = level_.range(j, rows.k);
+      const int n = range.last - range.first;
+      for (int colour = 0; colour < 2; ++colour) {
+        const double* in = x + colour * grid.n_slots;
+        double* out = y + colour * grid.n_slots;
+        level_.multiply(colour, j, rows.k, unit_, in, x + (1 - colour) * grid.n_slots, out);
+        const std::ptrdiff_t at = grid.slot(range.first, j, rows.k);
+        sum += dot(in + at, out + at, n);
+      }
+    }
+    return sum;
   }
 
   const StencilLevel<dim>& level_;
@@ -94,6 +133,7 @@ class LayoutStencil final : public LayoutOperator {
 struct EmptyRow {
   int entry = 0;
   double inverse = 0;
+  double z = 0;  ///< of the last cycle
 };
 
 /// One cycle as an approximate inverse of A.
@@ -108,62 +148,78 @@ class LayoutInverse final : public LayoutOperator {
         unit_(unit),
         empty_rows_(std::move(empty_rows)) {}
 
- private:
+  /// Calls f(colour, slot of the first cell, number of slots) for the rows of a slab.
   template <typename Function>
-  void for_each_row(const Function& f) const {
+  void for_each_row(int slab, const Function& f) const {
     const StencilLevel<dim>& level = multigrid_.finest();
-    const LevelGrid& grid = level.grid();
-    for (int k = 0; k < grid.n[2]; ++k) {
-      for (int j = 0; j < grid.n[1]; ++j) {
-        const auto range = level.range(j, k);
-        for (int colour = 0; colour < 2; ++colour)
-          f(colour, grid.slot(range.first, j, k), range.last - range.first);
-      }
+    const auto rows = level.rows_of(slab);
+    for (int j = rows.j_begin; j < rows.j_end; ++j) {
+      const auto range = level.range(j, rows.k);
+      for (int colour = 0; colour < 2; ++colour)
+        f(colour, level.grid().slot(range.first, j, rows.k), range.last - range.first);
     }
   }
-
-  /// Single precision has a small range: x is taken in units of a power of 2 near its largest
-  /// value.
-  double scale_of(const double* x) const {
-    const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
-    double sum = 0;
-    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
-      const double* row = x + colour * n_slots + at;
-      double of_row = 0;
-      for (int m = 0; m < n; ++m)
-        of_row += row[m] * row[m];
-      sum += of_row;
-    });
-    sum = sum_all(comm_, sum);
-    check_solve(std::isfinite(sum), "The multigrid was given a residual that is not finite.");
-    return sum > 0 ? std::exp2(-std::round(0.5 * std::log2(sum))) : 1;
+  template <typename Function>
+  void for_each_row(const Function& f) const {
+    for (int slab = 0; slab < multigrid_.finest().grid().n_slabs(); ++slab)
+      for_each_row(slab, f);
   }
 
-  void apply_to(const double* x, double* y) const override {
+  /// Leaves z / `back()` in the multigrid's solution, z of the empty rows in `empty_rows()`;
+  /// returns r.z of this rank.
+  double cycle(const double* r, double r_norm) const {
     const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
-    const double scale = scale_of(x);
+    // Single precision has a small range: r is taken in units of a power of 2 near its norm.
+    const double scale = r_norm > 0 ? std::exp2(-std::round(std::log2(r_norm))) : 1;
     for_each_row([&](int colour, std::ptrdiff_t at, int n) {
-      const double* from = x + colour * n_slots + at;
+      const double* from = r + colour * n_slots + at;
       float* to = multigrid_.rhs(colour) + at;
       for (int m = 0; m < n; ++m)
         to[m] = static_cast<float>(scale * from[m]);
     });
     multigrid_.cycle();
-    const double back = 1 / (scale * unit_);
+    back_ = 1 / (scale * unit_);
+    double sum = 0;
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      sum += dot(r + colour * n_slots + at, multigrid_.solution(colour) + at, n);
+    });
+    sum *= back_;
+    for (EmptyRow& row : empty_rows_) {
+      row.z = row.inverse * r[row.entry];
+      sum += row.z * r[row.entry];
+    }
+    return sum;
+  }
+  double back() const { return back_; }
+  const float* solution(int colour) const { return multigrid_.solution(colour); }
+  const std::vector<EmptyRow>& empty_rows() const { return empty_rows_; }
+
+ private:
+  void apply_to(const double* x, double* y) const override {
+    const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
+    double sum = 0;
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      const double* row = x + colour * n_slots + at;
+      sum += dot(row, row, n);
+    });
+    sum = sum_all(comm_, sum);
+    check_solve(std::isfinite(sum), "The multigrid was given a residual that is not finite.");
+    cycle(x, std::sqrt(sum));
     for_each_row([&](int colour, std::ptrdiff_t at, int n) {
       const float* from = multigrid_.solution(colour) + at;
       double* to = y + colour * n_slots + at;
       for (int m = 0; m < n; ++m)
-        to[m] = back * from[m];
+        to[m] = back_ * from[m];
     });
     for (const EmptyRow& row : empty_rows_)
-      y[row.entry] = row.inverse * x[row.entry];
+      y[row.entry] = row.z;
   }
 
   Multigrid<dim>& multigrid_;
   Communicator comm_;
   double unit_;
-  std::vector<EmptyRow> empty_rows_;
+  mutable double back_ = 1;
+  mutable std::vector<EmptyRow> empty_rows_;
 };
 
 template <int dim>
@@ -179,15 +235,19 @@ class PressureLayoutOf final : public PressureLayout {
     const FaceCoefficients& coefficients = *stencil_of(system.pressure_block);
     multigrid_.set(coefficients);
     number_rows(coefficients);
-    stencil_ = as_thyra_operator(rcp(new LayoutStencil<dim>(
-        map_, multigrid_.finest(), layout_->levels().front().halo, coefficients.unit)));
-    inverse_ = as_thyra_operator(rcp(new LayoutInverse<dim>(
-        map_, multigrid_, layout_->blocks().comm, coefficients.unit, empty_rows(system))));
+    stencil_ = rcp(new LayoutStencil<dim>(map_, multigrid_.finest(), layout_->levels().front().halo,
+                                          coefficients.unit));
+    inverse_ = rcp(new LayoutInverse<dim>(map_, multigrid_, layout_->blocks().comm,
+                                          coefficients.unit, empty_rows(system)));
   }
   const std::shared_ptr<const LatticeLayout>& layout() const { return layout_; }
 
-  RCP<const LinearOperator> pressure_block() const override { return stencil_; }
-  RCP<const LinearOperator> inverse() const override { return inverse_; }
+  RCP<const LinearOperator> pressure_block() const override { return as_thyra_operator(stencil_); }
+  RCP<const LinearOperator> inverse() const override { return as_thyra_operator(inverse_); }
+  double precondition(const Vector& r, double r_norm) override {
+    return sum_all(layout_->blocks().comm, inverse_->cycle(r.getData().getRawPtr(), r_norm));
+  }
+  double advance_direction(double beta, Vector& d, Vector& q) override;
   std::size_t bytes() const override { return multigrid_.bytes(); }
   MessageCount sent() const override {
     MessageCount total;
@@ -203,8 +263,38 @@ class PressureLayoutOf final : public PressureLayout {
   std::vector<EmptyRow> empty_rows(const BlockSystem& system) const;
 
   Multigrid<dim> multigrid_;
-  RCP<const LinearOperator> stencil_, inverse_;
+  RCP<LayoutStencil<dim>> stencil_;
+  RCP<LayoutInverse<dim>> inverse_;
 };
+
+template <int dim>
+double PressureLayoutOf<dim>::advance_direction(double beta, Vector& d, Vector& q) {
+  const std::ptrdiff_t n_slots = layout_->finest().n_slots;
+  const auto d_values = d.getDataNonConst(), q_values = q.getDataNonConst();
+  double* direction = d_values.getRawPtr();
+  std::vector<double> in_empty_rows;
+  for (const EmptyRow& row : inverse_->empty_rows())
+    in_empty_rows.push_back(row.z + (beta == 0 ? 0 : beta * direction[row.entry]));
+  const double back = inverse_->back();
+  const auto update_slab = [&](int slab) {
+    inverse_->for_each_row(slab, [&](int colour, std::ptrdiff_t at, int n) {
+      const float* z = inverse_->solution(colour) + at;
+      double* to = direction + colour * n_slots + at;
+      if (beta == 0) {
+        for (int m = 0; m < n; ++m)
+          to[m] = back * z[m];
+      } else {
+#pragma GCC ivdep
+        for (int m = 0; m < n; ++m)
+          to[m] = back * z[m] + beta * to[m];
+      }
+    });
+  };
+  const double sum = stencil_->multiply(direction, q_values.getRawPtr(), update_slab);
+  for (std::size_t i = 0; i < in_empty_rows.size(); ++i)  // A does not see them
+    direction[inverse_->empty_rows()[i].entry] = in_empty_rows[i];
+  return sum_all(layout_->blocks().comm, sum);
+}
 
 template <int dim>
 void PressureLayoutOf<dim>::number_rows(const FaceCoefficients& coefficients) {

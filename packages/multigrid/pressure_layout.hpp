@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "interfaces/strategy.hpp"
+#include "linear/conjugate_gradients.hpp"
 #include "multigrid/lattice_layout.hpp"
 #include "multigrid/multigrid.hpp"
 
@@ -11,7 +12,7 @@ namespace lockstep {
 /// The pressure unknowns in the multigrid's own order: flat, split by colour, with zeros where
 /// there is no unknown. Krylov vectors live there during a solve, so that nothing is reordered
 /// between A and its inverse.
-class PressureLayout {
+class PressureLayout : public ConjugateGradientKernels {
  public:
   /// For the stencil of a system, which must have one (see `why_not`); `previous`, if any, gives
   /// its arrays and whatever else depends on the grid only. Collective.
@@ -20,7 +21,6 @@ class PressureLayout {
                                               std::shared_ptr<PressureLayout> previous);
   /// Why there can be none for this system, as a sentence; empty if there can.
   static std::string why_not(const BlockSystem& system);
-  virtual ~PressureLayout() = default;
 
   /// The system with its pressures in this layout; other things shared. Collective.
   BlockSystem relaid(const BlockSystem& system) const;

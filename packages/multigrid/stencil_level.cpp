@@ -283,8 +283,8 @@ float StencilLevel<dim>::residual_at(int colour, int m, int j, int k, const floa
 }
 
 template <int dim>
-void StencilLevel<dim>::multiply(int colour, int j, int k, const double* p, const double* other,
-                                 double* result) const {
+void StencilLevel<dim>::multiply(int colour, int j, int k, double unit, const double* p,
+                                 const double* other, double* result) const {
   const std::ptrdiff_t at = grid_.slot(0, j, k);
   const double* p_row = p + at;
   const float* diagonal = diagonal_[colour].data() + at;
@@ -292,7 +292,7 @@ void StencilLevel<dim>::multiply(int colour, int j, int k, const double* p, cons
   with_sums(colour, j, k, other, [=](int first, int last, const auto& sum) {
 #pragma GCC ivdep
     for (int m = first; m < last; ++m) {
-      const double value = diagonal[m] * p_row[m] - sum(m);
+      const double value = unit * (diagonal[m] * p_row[m] - sum(m));
       result_row[m] = diagonal[m] > 0 ? value : 0;
     }
   });

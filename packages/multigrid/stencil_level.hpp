@@ -51,8 +51,8 @@ class StencilLevel {
   /// The same of one cell, in slot m of the row.
   float residual_at(int colour, int m, int j, int k, const float* b, const float* x,
                     const float* other) const;
-  /// result := A p of one row in double precision.
-  void multiply(int colour, int j, int k, const double* p, const double* other,
+  /// result := unit A p of one row in double precision.
+  void multiply(int colour, int j, int k, double unit, const double* p, const double* other,
                 double* result) const;
 
   /// The first and one beyond the last row (j) and plane (k) of a slab.

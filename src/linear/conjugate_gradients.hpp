@@ -21,11 +21,26 @@ struct ConjugateGradientsRequest {
   std::function<double(const Vector& x)> update_target = {};
 };
 
+/// What an iteration does to its vectors, in as few passes over memory as the operators allow. The
+/// preconditioned residual z belongs to the kernels. All sums are global, all calls collective.
+class ConjugateGradientKernels {
+ public:
+  virtual ~ConjugateGradientKernels() = default;
+  /// z = M r; returns r.z. `r_norm` is |r|.
+  virtual double precondition(const Vector& r, double r_norm) = 0;
+  /// d = z + beta d, q = (operator) d; returns d.q. With beta 0 the old d does not matter.
+  virtual double advance_direction(double beta, Vector& d, Vector& q) = 0;
+};
+
 /// Preconditioned conjugate gradients on a symmetric positive (semi)definite operator, from a zero
 /// initial guess (pass the residual of a better one as right-hand side, and add the result to it).
 /// Returns the number of iterations; running out of them is no error here, for the caller checks
 /// the true residual. Throws SolveError if the operator or the preconditioner turns out indefinite
 /// or not finite. Right on ranks that own no row. Collective.
+int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Vector& x,
+                        const ConjugateGradientsRequest& request);
+
+/// The same from two operators; the request's null vectors are projected out of z.
 int conjugate_gradients(const Action& op, const Action& preconditioner, const Vector& rhs,
                         Vector& x, const ConjugateGradientsRequest& request);
 

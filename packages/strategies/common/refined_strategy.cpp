@@ -66,6 +66,18 @@ void check_compatible(const std::string& name, double removed, const BlockResidu
 
 }  // namespace
 
+int RefinedStrategy::pressure_cg(const BlockSystem& system, const CorrectionRequest& request,
+                                 Vector& correction) const {
+  const ConjugateGradientsRequest cg{request.name, request.target, request.maximum_iterations,
+                                     iteration_null_space(system), request.update_target};
+  if (layout_)
+    return conjugate_gradients(*layout_, *request.residual, correction, cg);
+  return conjugate_gradients(
+      [&](const Vector& x, Vector& y) { apply(*system.pressure_block, x, y); },
+      [&](const Vector& x, Vector& y) { apply(*pressure_inverse_, x, y); }, *request.residual,
+      correction, cg);
+}
+
 bool RefinedStrategy::geometry_matches(const BlockSystem& system) const {
   return is_prepared_ && prepared_.geometry_stamp == system.geometry_stamp &&
          prepared_.system_name == system.name &&
@@ -179,7 +191,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
   BlockResidual residual;
   double previous = 0;
   project_out(system.null_space, *solution.pressure);
-  const auto update_target = [&](const Vector& x) {
+  const std::function<double(const Vector&)> update_target = [&](const Vector& x) {
     BlockVector corrected{rcp(new Vector(*solution.pressure, Teuchos::Copy)), solution.solid};
     corrected.pressure->update(1, x, 1);
     back_substitute(system, rhs, corrected);
@@ -187,6 +199,8 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
            std::max(request.tolerance * block_residual(system, rhs, corrected).pressure_scale,
                     request.negligible_pressure_residual);
   };
+  const std::function<double(const Vector&)> no_update;
+  const double rhs_norm = rhs.pressure->norm2();
   while (true) {
     back_substitute(system, rhs, solution);
     residual = block_residual(system, rhs, solution);
@@ -202,6 +216,8 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
     const double solvable = residual.vector.pressure->norm2();
     const double target =
         std::max(request.tolerance * residual.pressure_scale, request.negligible_pressure_residual);
+    // The scale of any solution is at least |rhs|: near that nothing need be asked again.
+    const bool is_settled = residual.pressure_scale <= 1.5 * rhs_norm;
     if (solvable <= target || done.n_stalls > 1)
       check_compatible(name, removed, residual, request.tolerance);
     if (done.n_corrections > 0 && solvable > least_progress * previous)
@@ -211,11 +227,13 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
     if (done.n_stalls > 1 || done.n_iterations >= maximum_iterations_)
       give_up(name, residual, done, request.tolerance, maximum_iterations_);
     previous = solvable;
-    done.n_iterations += correct(
-        system,
-        {name, residual.vector.pressure.get(), solvable, safety * target, residual.pressure_scale,
-         residual.solid_scale, maximum_iterations_ - done.n_iterations, update_target},
-        correction);
+    done.n_iterations +=
+        correct(system,
+                {name, residual.vector.pressure.get(), solvable,
+                 is_settled ? safety * target / 1.5 : safety * target, residual.pressure_scale,
+                 residual.solid_scale, maximum_iterations_ - done.n_iterations,
+                 is_settled ? no_update : update_target},
+                correction);
     project_out(system.null_space, correction);
     solution.pressure->update(1, correction, 1);
     ++done.n_corrections;

@@ -60,11 +60,17 @@ class RefinedStrategy : public SolverStrategy {
 
   /// The approximate inverse of A that the list names, symmetric positive definite.
   const RCP<const LinearOperator>& pressure_inverse() const { return pressure_inverse_; }
+  /// The layout that `build` and `correct` work in, which holds A and this inverse as kernels; null
+  /// if the inverse is another.
+  PressureLayout* layout() const { return layout_.get(); }
   /// How it may differ from symmetry: round-off of the precision it works in.
   double symmetry_tolerance() const { return layout_ ? 1e-5 : 1e-8; }
   /// The null vectors that an iteration must project out of every preconditioned residual; none
   /// where the inverse of A leaves them harmless.
   const std::vector<RCP<const Vector>>& iteration_null_space(const BlockSystem& system) const;
+  /// A correction for a system without solid: conjugate gradients on A with that inverse.
+  int pressure_cg(const BlockSystem& system, const CorrectionRequest& request,
+                  Vector& correction) const;
   /// C^-1 to round-off; null without a solid block.
   const RCP<const LinearOperator>& solid_inverse() const { return solid_inverse_; }
   bool check_symmetry() const { return check_symmetry_; }

@@ -7,7 +7,6 @@
 #include "linear/symmetry_check.hpp"
 #include "linear/thyra_vectors.hpp"
 #include "strategies/common/belos_minres.hpp"
-#include "strategies/common/pressure_cg.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 
 namespace lockstep {
@@ -64,10 +63,7 @@ void Paper::build(const BlockSystem& system, bool, bool solid_changed) {
 int Paper::correct(const BlockSystem& system, const CorrectionRequest& request,
                    Vector& correction) {
   if (!system.has_solid())
-    return pressure_cg(system, *pressure_inverse(), *request.residual,
-                       {request.name, request.target, request.maximum_iterations,
-                        iteration_null_space(system), request.update_target},
-                       correction);
+    return pressure_cg(system, request, correction);
   return belos_minres(system, *request.residual,
                       {request.name, request.target, request.pressure_scale, request.solid_scale,
                        request.maximum_iterations},

@@ -3,10 +3,54 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
-#include "strategies/common/pressure_cg.hpp"
+#include "linear/conjugate_gradients.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 
 namespace lockstep {
+
+namespace {
+
+/// What the elimination of V_S adds to A: B C^-1 B^T.
+class Eliminated {
+ public:
+  Eliminated(const BlockSystem& system, const LinearOperator& solid_inverse)
+      : coupling_(*system.coupling_transposed),
+        solid_inverse_(solid_inverse),
+        force_(coupling_.getRangeMap()),
+        velocity_(coupling_.getRangeMap()) {}
+
+  /// y += B C^-1 B^T x; returns x.B C^-1 B^T x.
+  double add(const Vector& x, Vector& y) {
+    coupling_.apply(x, force_);
+    apply(solid_inverse_, force_, velocity_);
+    coupling_.apply(velocity_, y, Teuchos::TRANS, 1, 1);
+    return force_.dot(velocity_);
+  }
+
+ private:
+  const CrsMatrix& coupling_;
+  const LinearOperator& solid_inverse_;
+  Vector force_, velocity_;
+};
+
+class SchurKernels final : public ConjugateGradientKernels {
+ public:
+  SchurKernels(ConjugateGradientKernels& pressure, Eliminated& eliminated)
+      : pressure_(pressure), eliminated_(eliminated) {}
+  double precondition(const Vector& r, double r_norm) override {
+    return pressure_.precondition(r, r_norm);
+  }
+  double advance_direction(double beta, Vector& d, Vector& q) override {
+    const double of_pressure = pressure_.advance_direction(beta, d, q);
+    return of_pressure + eliminated_.add(d, q);
+  }
+
+ private:
+  ConjugateGradientKernels& pressure_;
+  Eliminated& eliminated_;
+};
+
+}  // namespace
 
 ParameterList SchurCg::valid_parameters() {
   ParameterList list = common_strategy_parameters();
@@ -24,18 +68,19 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
   const ConjugateGradientsRequest cg{request.name, request.target, request.maximum_iterations,
                                      iteration_null_space(system), request.update_target};
   if (!system.has_solid())
-    return pressure_cg(system, *pressure_inverse(), *request.residual, cg, correction);
-  const CrsMatrix& coupling = *system.coupling_transposed;
-  Vector force(coupling.getRangeMap()), velocity(coupling.getRangeMap());
-  const auto schur_complement = [&](const Vector& x, Vector& y) {
-    apply(*system.pressure_block, x, y);
-    coupling.apply(x, force);
-    apply(*solid_inverse(), force, velocity);
-    coupling.apply(velocity, y, Teuchos::TRANS, 1, 1);
-  };
+    return pressure_cg(system, request, correction);
+  Eliminated eliminated(system, *solid_inverse());
+  if (layout() != nullptr) {
+    SchurKernels kernels(*layout(), eliminated);
+    return conjugate_gradients(kernels, *request.residual, correction, cg);
+  }
   return conjugate_gradients(
-      schur_complement, [&](const Vector& x, Vector& y) { apply(*pressure_inverse(), x, y); },
-      *request.residual, correction, cg);
+      [&](const Vector& x, Vector& y) {
+        apply(*system.pressure_block, x, y);
+        eliminated.add(x, y);
+      },
+      [&](const Vector& x, Vector& y) { apply(*pressure_inverse(), x, y); }, *request.residual,
+      correction, cg);
 }
 
 }  // namespace lockstep
