@@ -11,6 +11,7 @@
 #include <Tpetra_Core.hpp>
 #include <iostream>
 
+#include "base/memory.hpp"
 #include "output/build_information.hpp"
 #include "parameters/command_line.hpp"
 #include "parameters/reference.hpp"
@@ -145,6 +146,7 @@ int run(int argc, char** argv, const Communicator& comm) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   Tpetra::ScopeGuard scope(&argc, &argv);
   const Communicator comm = Tpetra::getDefaultComm();
   return run_and_report(comm, [&] { return run(argc, argv, comm); });

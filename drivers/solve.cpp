@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
+#include "base/memory.hpp"
 #include "linear/system_file.hpp"
 #include "output/on_root.hpp"
 #include "output/run_record.hpp"
@@ -200,6 +201,7 @@ int run(int argc, char** argv, const Communicator& comm) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   Tpetra::ScopeGuard scope(&argc, &argv);
   const Communicator comm = Tpetra::getDefaultComm();
   return run_and_report(comm, [&] { return run(argc, argv, comm); });
