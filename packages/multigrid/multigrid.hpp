@@ -34,7 +34,7 @@ class Multigrid {
   /// no unknown. Collective.
   void cycle();
   float* rhs(int colour) { return work_.front().b[colour].data(); }
-  const float* solution(int colour) const { return work_.front().x[colour].data(); }
+  float* solution(int colour) { return work_.front().x[colour].data(); }
 
   const StencilLevel<dim>& finest() const { return stencils_.front(); }
   int n_levels() const { return static_cast<int>(stencils_.size()); }

@@ -1,4 +1,5 @@
 #pragma once
+#include "strategies/common/deflation.hpp"
 #include "strategies/common/refined_strategy.hpp"
 #include "strategies/common/strategy_parameters.hpp"
 
@@ -16,9 +17,11 @@ class SchurCg : public RefinedStrategy {
   std::string name() const override { return "schur-cg"; }
 
  private:
-  void build(const BlockSystem&, bool, bool) override {}
+  void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) override;
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) override;
+
+  std::unique_ptr<Deflation> deflation_;  ///< null unless some solid is light
 };
 
 }  // namespace lockstep
