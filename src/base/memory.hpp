@@ -2,9 +2,9 @@
 
 namespace lockstep {
 
-/// Keeps large freed blocks of memory in the process for the next field or vector of that size: given
-/// back, every one would be zeroed page by page again when it is next asked for. For programs whose
-/// steps allocate what the last step freed. Call once, at the start.
+/// Keeps large freed blocks of memory in the process for the next field or vector of that size:
+/// given back, every one would be zeroed page by page again when it is next asked for. For programs
+/// whose steps allocate what the last step freed. Call once, at the start.
 void keep_freed_memory();
 
 }  // namespace lockstep

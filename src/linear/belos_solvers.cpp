@@ -128,9 +128,7 @@ class MinresFactory : public Belos::CustomSolverFactory<double, Vectors, LinearO
     return name == supported() ? Teuchos::rcp(new MinresManager(list)) : Teuchos::null;
   }
   int numSupportedSolvers() const override { return 1; }
-  std::vector<std::string> supportedSolverNames() const override {
-    return {supported()};
-  }
+  std::vector<std::string> supportedSolverNames() const override { return {supported()}; }
   bool isSupported(const std::string& name) const override { return name == supported(); }
 
  private:

@@ -116,7 +116,7 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
   ParameterList package = without_type(list);
   if (type == "MueLu" && package.numParams() == 0)
     package = default_muelu();
-  return stratimikos_preconditioner(op, type, package, name);
+  return stratimikos_preconditioner(as_operator(matrix), type, package, name);
 }
 
 }  // namespace lockstep
