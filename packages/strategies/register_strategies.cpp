@@ -1,8 +1,16 @@
 #include "strategies/register_strategies.hpp"
 
+#include "strategies/block_elimination/block_elimination.hpp"
+#include "strategies/block_lu/block_lu.hpp"
+#include "strategies/bramble_pasciak/bramble_pasciak.hpp"
 #include "strategies/direct/direct.hpp"
+#include "strategies/gauss_seidel/gauss_seidel.hpp"
 #include "strategies/paper/paper.hpp"
+#include "strategies/pressure_schur/pressure_schur.hpp"
 #include "strategies/schur_cg/schur_cg.hpp"
+#include "strategies/simple/simple.hpp"
+#include "strategies/solid_schur/minres_solid_schur.hpp"
+#include "strategies/uzawa/uzawa.hpp"
 
 namespace lockstep {
 
@@ -22,6 +30,21 @@ void register_strategies(StrategyRegistry& registry) {
                "cheap to invert");
   add<Paper>(registry, "paper",
              "The paper's MINRES with incomplete Cholesky of A and the inverse of C");
+  add<PressureSchur>(
+      registry, "pressure-schur",
+      "MINRES with diag((A + B C^-1 B^T)^-1, C^-1): iterations independent of density");
+  add<MinresSolidSchur>(registry, "solid-schur",
+                        "MINRES with diag(A^-1, (C + B^T A^-1 B)^-1): a few rigid bodies");
+  add<BlockLu>(registry, "block-lu",
+               "Flexible GMRES with Teko's block LU factorisation: a few rigid bodies");
+  add<GaussSeidel>(registry, "gauss-seidel", "Flexible GMRES with Teko's block Gauss-Seidel");
+  add<Simple>(registry, "simple", "Flexible GMRES with Teko's SIMPLE");
+  add<BramblePasciak>(
+      registry, "bramble-pasciak",
+      "Conjugate gradients on the indefinite system in an inner product of its own");
+  add<Uzawa>(registry, "uzawa", "The partitioned iteration, as a control: heavy solids only");
+  add<BlockElimination>(registry, "block-elimination",
+                        "The assembled Schur complement of Section 6.1, O(n^4): as a baseline");
   add<Direct>(registry, "direct", "Sparse factorisation gathered on one rank: for small systems");
 }
 

@@ -55,6 +55,7 @@ struct SolveReport {
   double solid_residual = 0;     ///< ||r_2|| / scale_2
   double setup_seconds = 0, solve_seconds = 0;
   int preconditioner_builds = 0, preconditioner_reuses = 0;
+  long stored_nonzeros = 0;  ///< of matrices that the strategy assembled; 0 if it does not count
 };
 
 /// A way to solve Eq. 16.

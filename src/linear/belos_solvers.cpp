@@ -5,14 +5,12 @@
 #include <BelosSolverFactory_Generic.hpp>
 #include <BelosSolverManager.hpp>
 #include <BelosThyraAdapter.hpp>
-#include <Thyra_ProductMultiVectorBase.hpp>
-#include <Thyra_ProductVectorSpaceBase.hpp>
-#include <Thyra_TpetraThyraWrappers.hpp>
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
 #include "base/errors.hpp"
 #include "linear/minres.hpp"
+#include "linear/thyra_vectors.hpp"
 
 namespace lockstep {
 
@@ -20,19 +18,6 @@ namespace {
 
 using Vectors = Thyra::MultiVectorBase<double>;
 using Problem = Belos::LinearProblem<double, Vectors, LinearOperator>;
-using Extraction = Thyra::TpetraOperatorVectorExtraction<double, int, GlobalIndex>;
-
-/// The Tpetra vectors behind the first column of a (product) multivector; values are shared.
-Blocks blocks_of(const RCP<Vectors>& vectors) {
-  const auto product = Teuchos::rcp_dynamic_cast<Thyra::ProductMultiVectorBase<double>>(vectors);
-  if (product.is_null())
-    return {Extraction::getTpetraMultiVector(vectors)->getVectorNonConst(0)};
-  Blocks blocks;
-  for (int block = 0; block < product->productSpace()->numBlocks(); ++block)
-    blocks.push_back(Extraction::getTpetraMultiVector(product->getNonconstMultiVectorBlock(block))
-                         ->getVectorNonConst(0));
-  return blocks;
-}
 
 class MinresManager : public BelosSolver {
  public:

@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "linear/action_operator.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/gathered_direct.hpp"
+#include "linear/matrix_rows.hpp"
 #include "linear/solver_list.hpp"
 #include "linear/stratimikos.hpp"
 #include "parameters/suggestion.hpp"
@@ -116,7 +118,12 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
   ParameterList package = without_type(list);
   if (type == "MueLu" && package.numParams() == 0)
     package = default_muelu();
-  return stratimikos_preconditioner(as_operator(matrix), type, package, name);
+  const auto inverse = stratimikos_preconditioner(as_operator(matrix), type, package, name);
+  if (type != "MueLu")
+    return inverse;
+  // MueLu's operator ignores the factors of y = alpha M x + beta y.
+  return action_operator(domain_map(*op),
+                         [inverse](const Vector& x, Vector& y) { apply(*inverse, x, y); });
 }
 
 }  // namespace lockstep

@@ -4,6 +4,8 @@
 #include <Thyra_DefaultProductVector.hpp>
 #include <Thyra_DefaultProductVectorSpace.hpp>
 #include <Thyra_DefaultScaledAdjointLinearOp.hpp>
+#include <Thyra_ProductMultiVectorBase.hpp>
+#include <Thyra_ProductVectorSpaceBase.hpp>
 #include <Thyra_TpetraThyraWrappers.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -24,6 +26,18 @@ RCP<ThyraVector> as_thyra(const BlockVector& vector, const LinearOperator& op) {
   const Teuchos::Array<RCP<ThyraVector>> parts = Teuchos::tuple(
       as_thyra(vector.pressure, space->getBlock(0)), as_thyra(vector.solid, space->getBlock(1)));
   return Thyra::defaultProductVector<double>(space, parts());
+}
+
+std::vector<RCP<Vector>> blocks_of(const RCP<Thyra::MultiVectorBase<double>>& vectors) {
+  using Extraction = Thyra::TpetraOperatorVectorExtraction<double, int, GlobalIndex>;
+  const auto product = Teuchos::rcp_dynamic_cast<Thyra::ProductMultiVectorBase<double>>(vectors);
+  if (product.is_null())
+    return {Extraction::getTpetraMultiVector(vectors)->getVectorNonConst(0)};
+  std::vector<RCP<Vector>> blocks;
+  for (int block = 0; block < product->productSpace()->numBlocks(); ++block)
+    blocks.push_back(Extraction::getTpetraMultiVector(product->getNonconstMultiVectorBlock(block))
+                         ->getVectorNonConst(0));
+  return blocks;
 }
 
 RCP<const LinearOperator> block_operator(const BlockSystem& system, double s, double t) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <Thyra_VectorBase.hpp>
+#include <vector>
 
 #include "interfaces/strategy.hpp"
 
@@ -14,6 +15,9 @@ RCP<ThyraVector> as_thyra(const RCP<Vector>& vector,
 
 /// Product vector (p̂, V_S) of a block operator; shares the values of both parts.
 RCP<ThyraVector> as_thyra(const BlockVector& vector, const LinearOperator& block_operator);
+
+/// The Tpetra vectors behind the first column of a (product) multivector; shares the values.
+std::vector<RCP<Vector>> blocks_of(const RCP<Thyra::MultiVectorBase<double>>& vectors);
 
 /// Eq. 16 as a blocked operator [A, -B; -B^T, -C], nothing copied. With `pressure_scale` s and
 /// `solid_scale` t, the symmetrically scaled [s^2 A, -s t B; -s t B^T, -t^2 C], for unknowns p̂/s

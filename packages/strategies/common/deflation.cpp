@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "linear/matrix_rows.hpp"
+#include "strategies/common/small_dense.hpp"
 
 namespace lockstep {
 
@@ -28,22 +29,6 @@ struct SmallSolids {
   Eigen::MatrixXd c;
   std::vector<std::vector<int>> dofs;  ///< of each solid, ascending
 };
-
-Eigen::MatrixXd replicated(const CrsMatrix& matrix) {
-  std::vector<double> entries;
-  for_each_entry(matrix, [&](int row, GlobalIndex column, double value) {
-    entries.push_back(static_cast<double>(matrix.getRowMap()->getGlobalElement(row)));
-    entries.push_back(static_cast<double>(column));
-    entries.push_back(value);
-  });
-  entries = gather_all(matrix.getRowMap()->getComm(), entries);
-  const auto n = static_cast<Eigen::Index>(matrix.getGlobalNumRows());
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t i = 0; i < entries.size(); i += 3)
-    dense(static_cast<Eigen::Index>(entries[i]), static_cast<Eigen::Index>(entries[i + 1])) +=
-        entries[i + 2];
-  return dense;
-}
 
 std::vector<std::vector<int>> components(const Eigen::MatrixXd& c) {
   const auto n = static_cast<int>(c.rows());
@@ -274,22 +259,13 @@ Eigen::VectorXd Deflation::restrict(const Get& get, bool with_operator) const {
   return sums;
 }
 
-Eigen::VectorXd Deflation::solid_values(const Vector& solid) const {
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(motion_.rows());
-  const auto mine = solid.getData();
-  for (int row = 0; row < static_cast<int>(mine.size()); ++row)
-    values[solid.getMap()->getGlobalElement(row)] = mine[row];
-  sum_all(solid.getMap()->getComm(), values.data(), static_cast<int>(values.size()));
-  return values;
-}
-
 /// W^T S z.
 Eigen::VectorXd Deflation::restricted_operator(const Vector& z) const {
   const auto values = z.getData();
   Vector force(system_.coupling_transposed->getRangeMap());
   system_.coupling_transposed->apply(z, force);
   return restrict([&](int entry) { return values[entry]; }, true) +
-         motion_.transpose() * solid_values(force);
+         motion_.transpose() * replicated(force);
 }
 
 /// x += W coarse.
@@ -312,11 +288,7 @@ void Deflation::add_operator(const Eigen::VectorXd& coarse, double factor, Vecto
   }
   const Eigen::VectorXd velocity = motion_ * coarse;
   Vector solid(system_.coupling_transposed->getRangeMap());
-  {
-    const auto values = solid.getDataNonConst();
-    for (int row = 0; row < static_cast<int>(values.size()); ++row)
-      values[row] = velocity[solid.getMap()->getGlobalElement(row)];
-  }
+  distribute(velocity, solid);
   system_.coupling_transposed->apply(solid, r, Teuchos::TRANS, factor, 1);
 }
 
@@ -344,7 +316,7 @@ double Deflation::correct(const Vector& r) {
   system_.coupling_transposed->apply(touched, force);
   const Eigen::VectorXd of_r = restrict([&](int entry) { return r_values[entry]; }, false);
   const Eigen::VectorXd of_z = restrict([&](int entry) { return z.get(entry); }, true) +
-                               motion_.transpose() * solid_values(force);
+                               motion_.transpose() * replicated(force);
   const Eigen::VectorXd coarse = coarse_inverse_ * (of_r - of_z);
   for (const Cell& cell : cells_) {
     double value = 0;

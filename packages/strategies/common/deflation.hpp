@@ -51,7 +51,6 @@ class Deflation {
   Eigen::VectorXd restricted_operator(const Vector& z) const;
   void add(const Eigen::VectorXd& coarse, Vector& x) const;
   void add_operator(const Eigen::VectorXd& coarse, double factor, Vector& r) const;
-  Eigen::VectorXd solid_values(const Vector& solid) const;
 
   BlockSystem system_;
   PressureLayout& layout_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "linear/action_operator.hpp"
 #include "linear/added_mass_diagonal.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/preconditioner.hpp"
@@ -131,6 +132,16 @@ Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
   return given;
 }
 
+Teuchos::ParameterList incomplete_cholesky_list(const Teuchos::ParameterList& given) {
+  Teuchos::ParameterList list = pressure_inverse_list(given, "Ifpack2");
+  if (list.get<std::string>("Type") == "Ifpack2" && list.numParams() == 1) {
+    list.set("Prec Type", "RILUK");
+    list.set("Overlap", 0);
+    list.sublist("Ifpack2 Settings").set("fact: iluk level-of-fill", 0);
+  }
+  return list;
+}
+
 bool is_multigrid(const Teuchos::ParameterList& list, const BlockSystem& system) {
   const std::string type = type_of(list);
   return type == "Multigrid" || (type == "Automatic" && PressureLayout::why_not(system).empty());
@@ -143,6 +154,17 @@ MultigridOptions multigrid_options(const Teuchos::ParameterList& list) {
   if (list.isParameter("Cycle"))
     options.is_w_cycle = list.get<std::string>("Cycle") == "W";
   return options;
+}
+
+RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
+                                                   const MultigridOptions& options) {
+  const auto layout = PressureLayout::make(system, options, nullptr);
+  const auto r_layout = make_vector(layout->map()), z_layout = make_vector(layout->map());
+  return action_operator(domain_map(*system.pressure_block), [=](const Vector& r, Vector& z) {
+    layout->to_layout(r, *r_layout);
+    apply(*layout->inverse(), *r_layout, *z_layout);
+    layout->from_layout(*z_layout, z);
+  });
 }
 
 RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,

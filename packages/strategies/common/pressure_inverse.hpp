@@ -8,18 +8,23 @@ namespace lockstep {
 
 /// Declares "Pressure Inverse", the list that names the approximate inverse of A. Its "Type" is
 ///   "Automatic"   the default of most strategies: Multigrid where the fluid's A is a stencil that
-///   it
-///                 can halve, else MueLu
+///                 it can halve, else MueLu
 ///   "Multigrid"   the matrix-free geometric multigrid ("Sweeps", 2; "Cycle", "W")
 /// or one of linear/preconditioner.hpp, which need an assembled A.
 void declare_pressure_inverse(Teuchos::ParameterList& list, const std::string& doc);
 /// The list given, checked, or `standard` if there is none. Throws InputError.
 Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
                                              const std::string& standard_type);
+/// The same for strategies whose standard is Ifpack2's RILUK(0), which of a symmetric matrix is its
+/// incomplete Cholesky factorisation without fill; "Ifpack2" without parameters means that too.
+Teuchos::ParameterList incomplete_cholesky_list(const Teuchos::ParameterList& list);
 
 /// Whether the list asks for the multigrid, of this system.
 bool is_multigrid(const Teuchos::ParameterList& list, const BlockSystem& system);
 MultigridOptions multigrid_options(const Teuchos::ParameterList& list);
+/// The multigrid's cycle on pressures in the fluid's own order. Collective.
+RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
+                                                   const MultigridOptions& options);
 
 /// Any other inverse that a list names, made positive definite where A is not:
 /// - a cell all of whose faces are mixed has an empty row in A; its diagonal becomes that of

@@ -64,6 +64,27 @@ void check_compatible(const std::string& name, double removed, const BlockResidu
               name, removed / residual.pressure_scale, tolerance);
 }
 
+/// The norm of B C^-1, by a few steps of the power method.
+double gain(const CrsMatrix& coupling_transposed, const LinearOperator& solid_inverse) {
+  constexpr int n_steps = 4;
+  Vector force(coupling_transposed.getRangeMap()), velocity(force.getMap());
+  Vector pressure(coupling_transposed.getDomainMap());
+  pseudo_random(force, 1);
+  double result = 0;
+  for (int step = 0; step < n_steps; ++step) {
+    const double norm = force.norm2();
+    if (norm == 0)
+      break;
+    force.scale(1 / norm);
+    apply(solid_inverse, force, velocity);
+    coupling_transposed.apply(velocity, pressure, Teuchos::TRANS);
+    result = pressure.norm2();
+    coupling_transposed.apply(pressure, velocity);
+    apply(solid_inverse, velocity, force);
+  }
+  return result;
+}
+
 }  // namespace
 
 int RefinedStrategy::pressure_cg(const BlockSystem& system, const CorrectionRequest& request,
@@ -91,9 +112,11 @@ bool RefinedStrategy::solid_matches(const BlockSystem& system) const {
 }
 
 RefinedStrategy::RefinedStrategy(const Teuchos::ParameterList& list,
-                                 std::optional<Teuchos::ParameterList> pressure_list)
+                                 std::optional<Teuchos::ParameterList> pressure_list,
+                                 PressureOrder order)
     : maximum_iterations_(list.get<int>("Maximum Iterations")),
       check_symmetry_(list.get<bool>("Check Preconditioner Symmetry")),
+      order_(order),
       pressure_list_(std::move(pressure_list)) {}
 
 const std::vector<RCP<const Vector>>& RefinedStrategy::iteration_null_space(
@@ -103,16 +126,30 @@ const std::vector<RCP<const Vector>>& RefinedStrategy::iteration_null_space(
 }
 
 void RefinedStrategy::build_pressure_inverse(const BlockSystem& system) {
-  if (is_multigrid(*pressure_list_, system)) {
-    layout_ = PressureLayout::make(system, multigrid_options(*pressure_list_), layout_);
-    pressure_inverse_ = layout_->inverse();
-  } else {
+  is_single_precision_ = is_multigrid(*pressure_list_, system);
+  if (!is_single_precision_) {
     layout_.reset();
     pressure_inverse_ = lockstep::pressure_inverse(system, *pressure_list_);
+  } else if (order_ == PressureOrder::of_the_fluid) {
+    pressure_inverse_ = multigrid_in_fluid_order(system, multigrid_options(*pressure_list_));
+  } else {
+    layout_ = PressureLayout::make(system, multigrid_options(*pressure_list_), layout_);
+    pressure_inverse_ = layout_->inverse();
   }
   if (check_symmetry_)
     check_symmetric_positive(*pressure_inverse_, "pressure block of the " + system.name,
                              symmetry_tolerance());
+}
+
+BlockKrylovRequest RefinedStrategy::block_krylov(const CorrectionRequest& request) {
+  return {request.name, request.target, request.solid_target, request.maximum_iterations};
+}
+
+void RefinedStrategy::refuse_region_closed_by_solid(const BlockSystem& system) const {
+  check_solve(system.pressure_null_space.size() <= system.null_space.size(),
+              "The strategy {} refuses the {}: a moving solid closes a region of fluid, in which "
+              "the fluid alone has no solution. Choose schur-cg, pressure-schur or paper.",
+              name(), system.name);
 }
 
 void RefinedStrategy::relay(const BlockSystem& system) {
@@ -140,8 +177,10 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
     if (pressure_list_)
       build_pressure_inverse(system);
   }
-  if (solid_changed)
+  if (solid_changed) {
     solid_inverse_ = exact_inverse(system.solid_block, "solid block of the " + system.name);
+    solid_gain_ = gain(*system.coupling_transposed, *solid_inverse_);
+  }
   if (layout_)
     relay(system);
   build(working(system), geometry_changed, solid_changed);
@@ -227,12 +266,14 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
     if (done.n_stalls > 1 || done.n_iterations >= maximum_iterations_)
       give_up(name, residual, done, request.tolerance, maximum_iterations_);
     previous = solvable;
+    const double aim = is_settled ? safety * target / 1.5 : safety * target;
+    // Below round-off of row 2 nothing can be asked; what that leaves is for the next correction.
+    const double solid_target =
+        std::max(solid_gain_ > 0 ? aim / solid_gain_ : aim, 1e-15 * residual.solid_scale);
     done.n_iterations +=
         correct(system,
-                {name, residual.vector.pressure.get(), solvable,
-                 is_settled ? safety * target / 1.5 : safety * target, residual.pressure_scale,
-                 residual.solid_scale, maximum_iterations_ - done.n_iterations,
-                 is_settled ? no_update : update_target},
+                {name, residual.vector.pressure.get(), solvable, aim, solid_target,
+                 maximum_iterations_ - done.n_iterations, is_settled ? no_update : update_target},
                 correction);
     project_out(system.null_space, correction);
     solution.pressure->update(1, correction, 1);
@@ -249,6 +290,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
   report.setup_seconds = std::exchange(setup_seconds_, 0);
   report.preconditioner_builds = std::exchange(n_builds_, 0);
   report.preconditioner_reuses = std::exchange(n_reuses_, 0);
+  report.stored_nonzeros = stored_nonzeros();
   return report;
 }
 

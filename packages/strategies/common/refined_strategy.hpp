@@ -8,6 +8,7 @@
 #include "interfaces/strategy.hpp"
 #include "linear/block_residual.hpp"
 #include "multigrid/pressure_layout.hpp"
+#include "strategies/common/block_krylov.hpp"
 
 namespace lockstep {
 
@@ -32,17 +33,20 @@ class RefinedStrategy : public SolverStrategy {
 
  protected:
   /// Reads the parameters common to all strategies, which must all be there. `pressure_list` names
-  /// the approximate inverse of A, for strategies that use one (see pressure_inverse.hpp).
+  /// the approximate inverse of A, for strategies that use one (see pressure_inverse.hpp). A
+  /// strategy that needs A as a matrix asks for the fluid's own order of pressures; the multigrid
+  /// then reorders at every application.
+  enum class PressureOrder { of_the_inverse, of_the_fluid };
   explicit RefinedStrategy(const Teuchos::ParameterList& list,
-                           std::optional<Teuchos::ParameterList> pressure_list = {});
+                           std::optional<Teuchos::ParameterList> pressure_list = {},
+                           PressureOrder order = PressureOrder::of_the_inverse);
 
   struct CorrectionRequest {
     std::string name;        ///< for messages
     const Vector* residual;  ///< r_1, free of null vectors
     double residual_norm;    ///< |r_1|
     double target;           ///< what |r_1| should become
-    double pressure_scale;   ///< what the residuals of the blocks are measured against
-    double solid_scale;
+    double solid_target;     ///< of |r_2| where V_S is iterated on, see BlockKrylovRequest
     int maximum_iterations;
     /// `target` for the solution that this correction would give: the scales move with it.
     std::function<double(const Vector& correction)> update_target;
@@ -53,6 +57,8 @@ class RefinedStrategy : public SolverStrategy {
   /// False if, at unchanged operators, something is missing for this system (with or without
   /// solid).
   virtual bool is_built_for(const BlockSystem&) const { return true; }
+  /// Entries of the matrices that the strategy has assembled for itself; 0 if it does not count.
+  virtual long stored_nonzeros() const { return 0; }
   /// An approximate solution p̂ of Eq. 16 with right-hand side (r_1, 0), written to `correction`;
   /// returns the number of iterations. The same without a solid block: A p̂ = r_1.
   virtual int correct(const BlockSystem& system, const CorrectionRequest& request,
@@ -64,7 +70,7 @@ class RefinedStrategy : public SolverStrategy {
   /// if the inverse is another.
   PressureLayout* layout() const { return layout_.get(); }
   /// How it may differ from symmetry: round-off of the precision it works in.
-  double symmetry_tolerance() const { return layout_ ? 1e-5 : 1e-8; }
+  double symmetry_tolerance() const { return is_single_precision_ ? 1e-5 : 1e-8; }
   /// The null vectors that an iteration must project out of every preconditioned residual; none
   /// where the inverse of A leaves them harmless.
   const std::vector<RCP<const Vector>>& iteration_null_space(const BlockSystem& system) const;
@@ -74,6 +80,11 @@ class RefinedStrategy : public SolverStrategy {
   /// C^-1 to round-off; null without a solid block.
   const RCP<const LinearOperator>& solid_inverse() const { return solid_inverse_; }
   bool check_symmetry() const { return check_symmetry_; }
+  /// The same request for a Krylov method on both blocks.
+  static BlockKrylovRequest block_krylov(const CorrectionRequest& request);
+  /// Throws SolveError where a dynamic solid closes a region of fluid: A alone is singular there,
+  /// and a strategy that solves for the fluid alone cannot go on.
+  void refuse_region_closed_by_solid(const BlockSystem& system) const;
 
  private:
   struct Prepared {
@@ -98,9 +109,12 @@ class RefinedStrategy : public SolverStrategy {
 
   int maximum_iterations_;
   bool check_symmetry_;
+  PressureOrder order_;
+  bool is_single_precision_ = false;
   bool is_prepared_ = false;
   Prepared prepared_;
   RCP<const LinearOperator> solid_inverse_;
+  double solid_gain_ = 0;  ///< |B C^-1|
   std::optional<Teuchos::ParameterList> pressure_list_;
   RCP<const LinearOperator> pressure_inverse_;
   std::shared_ptr<PressureLayout> layout_;  ///< null: pressures stay in the fluid's order

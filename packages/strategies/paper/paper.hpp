@@ -1,12 +1,13 @@
 #pragma once
+#include "strategies/common/block_krylov.hpp"
 #include "strategies/common/refined_strategy.hpp"
-#include "strategies/common/strategy_parameters.hpp"
 
 namespace lockstep {
 
 /// Section 6.1: MINRES on Eq. 16 with the preconditioner diag(incomplete Cholesky of A, C^-1).
 /// MINRES is Belos', through Thyra's block operator, on the system scaled symmetrically so that
-/// both blocks' residuals mean the same. Every rank must own rows of both blocks.
+/// both blocks' residuals mean the same; then every rank must own rows of both blocks. Iterations
+/// grow like sqrt(1 + added mass / solid mass) / h.
 class Paper : public RefinedStrategy {
  public:
   explicit Paper(const ParameterList& list);
@@ -18,6 +19,7 @@ class Paper : public RefinedStrategy {
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) override;
 
+  MinresKind minres_;
   ParameterList solid_list_;
   RCP<const LinearOperator> solid_preconditioner_;
 };

@@ -1,5 +1,3 @@
-#include "strategies/common/belos_minres.hpp"
-
 #include <Thyra_BelosLinearOpWithSolveFactory.hpp>
 #include <Thyra_DefaultBlockedLinearOp.hpp>
 #include <Thyra_DefaultPreconditioner.hpp>
@@ -10,11 +8,16 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "linear/minres.hpp"
 #include "linear/thyra_vectors.hpp"
+#include "strategies/common/block_krylov.hpp"
 
 namespace lockstep {
 
 namespace {
+
+const std::string parameter = "Krylov Method";
+const std::string lockstep_name = "Lockstep MINRES", belos_name = "Belos MINRES";
 
 /// Belos' explicit residual test cannot be met far below this in one go.
 constexpr double strongest_reduction = 1e-9;
@@ -46,13 +49,11 @@ RCP<const LinearOperator> scaled_preconditioner(const RCP<const LinearOperator>&
                                  Thyra::scale<double>(factor / (t * t), solid_inverse));
 }
 
-}  // namespace
-
-int belos_minres(const BlockSystem& system, const Vector& rhs, const MinresRequest& request,
+int belos_minres(const BlockSystem& system, const Vector& rhs, const BlockKrylovRequest& request,
                  const RCP<const LinearOperator>& pressure_inverse,
                  const RCP<const LinearOperator>& solid_inverse, Vector& pressure) {
-  const double s = 1 / request.pressure_scale;
-  const double t = request.solid_scale > 0 ? 1 / request.solid_scale : s;
+  // Scaled symmetrically, so that both blocks' residuals mean the same.
+  const double s = 1 / rhs.norm2(), t = s * request.target / request.solid_target;
   const auto op = block_operator(system, s, t);
   const RCP<const LinearOperator> preconditioner =
       scaled_preconditioner(pressure_inverse, solid_inverse, s, t, rhs);
@@ -78,6 +79,59 @@ int belos_minres(const BlockSystem& system, const Vector& rhs, const MinresReque
         "\"Check Preconditioner Symmetry\".",
         request.name, error.what()));
   }
+}
+
+int lockstep_minres(const BlockSystem& system, const Vector& rhs, const BlockKrylovRequest& request,
+                    const RCP<const LinearOperator>& pressure_inverse,
+                    const RCP<const LinearOperator>& solid_inverse, Vector& pressure) {
+  const CrsMatrix& coupling = *system.coupling_transposed;
+  const BlockAction op = [&](const Blocks& x, Blocks& y) {
+    apply(*system.pressure_block, *x[0], *y[0]);
+    coupling.apply(*x[1], *y[0], Teuchos::TRANS, -1, 1);
+    apply(*system.solid_block, *x[1], *y[1]);
+    coupling.apply(*x[0], *y[1], Teuchos::NO_TRANS, -1, -1);
+  };
+  const BlockAction precondition = [&](const Blocks& r, Blocks& z) {
+    apply(*pressure_inverse, *r[0], *z[0]);
+    apply(*solid_inverse, *r[1], *z[1]);
+  };
+  const auto solid_map = coupling.getRangeMap();
+  const Blocks b{rcp(new Vector(rhs, Teuchos::Copy)), make_vector(solid_map)};
+  Blocks x{make_vector(rhs.getMap()), make_vector(solid_map)};
+  MinresRequest minres_request;
+  minres_request.name = request.name;
+  minres_request.maximum_iterations = request.maximum_iterations;
+  minres_request.targets = {request.target, request.solid_target};
+  const MinresReport report = minres(op, precondition, b, x, minres_request);
+  pressure.update(1, *x[0], 0);
+  return report.n_iterations;
+}
+
+}  // namespace
+
+void declare_minres(ParameterList& list, const std::string& standard) {
+  declare_choice(list, parameter, standard, {lockstep_name, belos_name},
+                 "Lockstep MINRES (MINRES-QLP: right on singular systems, stops block by block) or "
+                 "Belos MINRES");
+}
+
+MinresKind minres_kind(const ParameterList& list) {
+  const auto& name = list.get<std::string>(parameter);
+  check_input(name == lockstep_name || name == belos_name,
+              "\"{}\" is \"{}\", but must be \"{}\" or \"{}\".", parameter, name, lockstep_name,
+              belos_name);
+  return name == belos_name ? MinresKind::belos : MinresKind::lockstep;
+}
+
+int solve_by_minres(MinresKind kind, const BlockSystem& system, const Vector& rhs,
+                    const BlockKrylovRequest& request,
+                    const RCP<const LinearOperator>& pressure_inverse,
+                    const RCP<const LinearOperator>& solid_inverse, Vector& pressure) {
+  if (kind == MinresKind::belos) {
+    check_no_empty_rank(system, "Belos MINRES");
+    return belos_minres(system, rhs, request, pressure_inverse, solid_inverse, pressure);
+  }
+  return lockstep_minres(system, rhs, request, pressure_inverse, solid_inverse, pressure);
 }
 
 }  // namespace lockstep

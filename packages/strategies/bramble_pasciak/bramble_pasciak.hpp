@@ -1,0 +1,30 @@
+#pragma once
+#include "strategies/common/refined_strategy.hpp"
+#include "strategies/common/strategy_parameters.hpp"
+
+namespace lockstep {
+
+/// Conjugate gradients on Eq. 16 in an inner product of their own (Bramble and Pasciak 1988): with
+/// A_0 < A and S_0 near C + B^T A^-1 B, both symmetric positive definite, the operator
+/// [A_0, 0; -B^T, -S_0]^-1 [A, -B; -B^T, -C] is symmetric positive definite with respect to
+/// H = diag(A - A_0, S_0). A_0 is the approximate inverse of A that the scene names, scaled below A
+/// by a Lanczos estimate; S_0 is C + B^T A_0^-1 B, dense, for at most "Largest Solid" solid
+/// unknowns, else C. A - A_0 cannot be positive where A alone is singular and the system is not:
+/// regions closed by a dynamic body are refused.
+class BramblePasciak : public RefinedStrategy {
+ public:
+  explicit BramblePasciak(const ParameterList& list);
+  static ParameterList valid_parameters();
+  std::string name() const override { return "bramble-pasciak"; }
+
+ private:
+  void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) override;
+  int correct(const BlockSystem& system, const CorrectionRequest& request,
+              Vector& correction) override;
+
+  int largest_solid_;
+  RCP<const LinearOperator> scaled_inverse_;       ///< A_0^-1
+  RCP<const LinearOperator> solid_schur_inverse_;  ///< S_0^-1
+};
+
+}  // namespace lockstep

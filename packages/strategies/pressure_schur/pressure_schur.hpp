@@ -1,0 +1,36 @@
+#pragma once
+#include "strategies/common/block_krylov.hpp"
+#include "strategies/common/deflation.hpp"
+#include "strategies/common/refined_strategy.hpp"
+
+namespace lockstep {
+
+/// MINRES on Eq. 16 with the preconditioner diag(Ŝ^-1, C^-1), where Ŝ approximates the Schur
+/// complement S = A + B C^-1 B^T of the solids. With the exact ones the spectrum lies in
+/// [-1.618, -1] and [0.618, 1] (Murphy, Golub and Wathen 2000): iterations depend neither on the
+/// density nor on h nor dt, and Ŝ is positive definite for closed balloons, where A is not. Ŝ^-1 is
+/// - with multigrid: its cycle, with the rigid motions of light solids projected out (Deflation);
+/// - with another inverse of A: that, updated by Woodbury's formula for at most "Largest Solid"
+///   solid unknowns, else the inverse of the assembled A + B diag(C)^-1 B^T, which is sparse for
+///   the nodes of deformable solids.
+class PressureSchur : public RefinedStrategy {
+ public:
+  explicit PressureSchur(const ParameterList& list);
+  static ParameterList valid_parameters();
+  std::string name() const override { return "pressure-schur"; }
+
+ private:
+  void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) override;
+  int correct(const BlockSystem& system, const CorrectionRequest& request,
+              Vector& correction) override;
+
+  RCP<const LinearOperator> schur_inverse(const BlockSystem& system);
+
+  MinresKind minres_;
+  int largest_solid_;
+  ParameterList pressure_list_, solid_list_;
+  std::unique_ptr<Deflation> deflation_;  ///< null unless some solid is light
+  RCP<const LinearOperator> schur_inverse_, solid_preconditioner_;
+};
+
+}  // namespace lockstep
