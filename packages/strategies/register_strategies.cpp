@@ -14,38 +14,33 @@
 
 namespace lockstep {
 
-namespace {
-
-template <typename Strategy>
-void add(StrategyRegistry& registry, const std::string& name, const std::string& documentation) {
-  registry.add(name, documentation, &Strategy::valid_parameters,
-               [](const ParameterList& list) { return std::make_unique<Strategy>(list); });
-}
-
-}  // namespace
-
 void register_strategies(StrategyRegistry& registry) {
-  add<SchurCg>(registry, "schur-cg",
-               "Conjugate gradients on A + B C^-1 B^T with multigrid for A: the fastest while C is "
-               "cheap to invert");
-  add<Paper>(registry, "paper",
-             "The paper's MINRES with incomplete Cholesky of A and the inverse of C");
-  add<PressureSchur>(
+  add_strategy<SchurCg>(
+      registry, "schur-cg",
+      "Conjugate gradients on A + B C^-1 B^T with multigrid for A: the fastest while C is "
+      "cheap to invert");
+  add_strategy<Paper>(registry, "paper",
+                      "The paper's MINRES with incomplete Cholesky of A and the inverse of C");
+  add_strategy<PressureSchur>(
       registry, "pressure-schur",
       "MINRES with diag((A + B C^-1 B^T)^-1, C^-1): iterations independent of density");
-  add<MinresSolidSchur>(registry, "solid-schur",
-                        "MINRES with diag(A^-1, (C + B^T A^-1 B)^-1): a few rigid bodies");
-  add<BlockLu>(registry, "block-lu",
-               "Flexible GMRES with Teko's block LU factorisation: a few rigid bodies");
-  add<GaussSeidel>(registry, "gauss-seidel", "Flexible GMRES with Teko's block Gauss-Seidel");
-  add<Simple>(registry, "simple", "Flexible GMRES with Teko's SIMPLE");
-  add<BramblePasciak>(
+  add_strategy<MinresSolidSchur>(registry, "solid-schur",
+                                 "MINRES with diag(A^-1, (C + B^T A^-1 B)^-1): a few rigid bodies");
+  add_strategy<BlockLu>(registry, "block-lu",
+                        "Flexible GMRES with Teko's block LU factorisation: a few rigid bodies");
+  add_strategy<GaussSeidel>(registry, "gauss-seidel",
+                            "Flexible GMRES with Teko's block Gauss-Seidel");
+  add_strategy<Simple>(registry, "simple", "Flexible GMRES with Teko's SIMPLE");
+  add_strategy<BramblePasciak>(
       registry, "bramble-pasciak",
       "Conjugate gradients on the indefinite system in an inner product of its own");
-  add<Uzawa>(registry, "uzawa", "The partitioned iteration, as a control: heavy solids only");
-  add<BlockElimination>(registry, "block-elimination",
-                        "The assembled Schur complement of Section 6.1, O(n^4): as a baseline");
-  add<Direct>(registry, "direct", "Sparse factorisation gathered on one rank: for small systems");
+  add_strategy<Uzawa>(registry, "uzawa",
+                      "The partitioned iteration, as a control: heavy solids only");
+  add_strategy<BlockElimination>(
+      registry, "block-elimination",
+      "The assembled Schur complement of Section 6.1, O(n^4): as a baseline");
+  add_strategy<Direct>(registry, "direct",
+                       "Sparse factorisation gathered on one rank: for small systems");
 }
 
 }  // namespace lockstep

@@ -210,6 +210,7 @@ void Simulation<dim>::count(const StepReport<dim>& report) {
     worst_residual_ = std::max({worst_residual_, solve->pressure_residual, solve->solid_residual});
     preconditioner_builds_ += solve->preconditioner_builds;
     preconditioner_reuses_ += solve->preconditioner_reuses;
+    stored_nonzeros_ = std::max(stored_nonzeros_, solve->stored_nonzeros);
   }
 }
 
@@ -250,6 +251,7 @@ nlohmann::ordered_json Simulation<dim>::summary(const std::string& status, doubl
           {"worst_residual", worst_residual_},
           {"preconditioner_builds", preconditioner_builds_},
           {"preconditioner_reuses", preconditioner_reuses_},
+          {"stored_nonzeros", stored_nonzeros_},
           {"wall_seconds", wall_seconds},
           {"peak_memory_mb", memory.all_ranks_mb},
           {"peak_memory_largest_rank_mb", memory.largest_rank_mb},

@@ -60,6 +60,7 @@ class Simulation {
   std::vector<int> s1_iterations_, f2_iterations_, s2_iterations_;
   double largest_momentum_error_ = 0, largest_angular_error_ = 0, worst_residual_ = 0;
   int preconditioner_builds_ = 0, preconditioner_reuses_ = 0;
+  long stored_nonzeros_ = 0;
 };
 
 }  // namespace lockstep

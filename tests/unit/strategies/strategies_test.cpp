@@ -10,6 +10,7 @@
 #include "base/errors.hpp"
 #include "strategies/register_strategies.hpp"
 #include "unit/linear/saddle_problem.hpp"
+#include "unit/strategies/steepest_descent.hpp"
 
 namespace lockstep::test {
 
@@ -25,6 +26,7 @@ std::unique_ptr<SolverStrategy> make(const std::string& name,
                                      const ParameterList& list = ParameterList()) {
   StrategyRegistry registry("solver strategy");
   register_strategies(registry);
+  add_strategy<SteepestDescent>(registry, "steepest-descent", "The tutorial's example");
   return registry.create(name, list);
 }
 
@@ -183,7 +185,8 @@ TEST_P(EveryStrategy, RefusesANotANumber) {
 INSTANTIATE_TEST_SUITE_P(Strategies, EveryStrategy,
                          ::testing::Values("paper", "schur-cg", "direct", "pressure-schur",
                                            "solid-schur", "block-lu", "gauss-seidel", "simple",
-                                           "bramble-pasciak", "uzawa", "block-elimination"));
+                                           "bramble-pasciak", "uzawa", "block-elimination",
+                                           "steepest-descent"));
 
 TEST(Strategies, PreparedPartsAreReusedByStamp) {
   SaddleProblem problem(world(), {});
