@@ -20,6 +20,8 @@ namespace {
 /// estimate lies above it.
 constexpr int n_lanczos_steps = 15;
 constexpr double margin = 0.8;
+/// What the residual must have been reduced by for a restart to be worth it.
+constexpr double restart_gain = 0.1;
 
 /// (p̂, V_S).
 struct Pair {
@@ -80,10 +82,11 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
   r.pressure.update(1, *request.residual, 0);
   precondition_pressure(r.pressure, z.pressure);
 
+  const BlockKrylovRequest goal = block_krylov(request, Presumes::symmetry);
   double z_dot_z = 0;
   int n_iterations = 0;
   for (; n_iterations < request.maximum_iterations; ++n_iterations) {
-    if (r.pressure.norm2() <= request.target && r.solid.norm2() <= request.solid_target)
+    if (r.pressure.norm2() <= goal.target && r.solid.norm2() <= goal.solid_target)
       break;
     const double previous = z_dot_z;
     // z = [A_0, 0; -B^T, -S_0]^-1 r, and <z, z>_H.
@@ -92,6 +95,11 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
     apply(*solid_schur_inverse_, below, z.solid);
     apply(*system.pressure_block, z.pressure, a_z);
     z_dot_z = z.pressure.dot(a_z) - z.pressure.dot(r.pressure) + z.solid.dot(below);
+    // Near the round-off of A_0^-1, which may be that of single precision, the difference of two
+    // nearly equal energies loses its sign: start anew from the true residual.
+    if (n_iterations > 0 && !(z_dot_z > 0) &&
+        r.pressure.norm2() < restart_gain * request.residual_norm)
+      break;
     check_solve(std::isfinite(z_dot_z) && z_dot_z > 0,
                 "{}: A - A_0 is not positive definite (<z, z> = {:.3e} in iteration {}): the "
                 "estimate of the smallest eigenvalue of the preconditioned A is too high. Choose "

@@ -31,8 +31,8 @@ int GmresStrategy::correct(const BlockSystem& system, const CorrectionRequest& r
                            Vector& correction) {
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
-  return solve_by_flexible_gmres(scaled_, *request.residual, block_krylov(request), restart_,
-                                 correction);
+  return solve_by_flexible_gmres(scaled_, *request.residual,
+                                 block_krylov(request, Presumes::nothing), restart_, correction);
 }
 
 }  // namespace lockstep

@@ -21,6 +21,9 @@ constexpr double safety = 0.5;
 /// A correction that gains less than this factor is no progress; two of them in a row end the
 /// solve.
 constexpr double least_progress = 0.5;
+/// What a Krylov method with short recurrences may reduce a residual by before the round-off of an
+/// inverse of A in single precision, 1e-7 of the first vectors, is felt.
+constexpr double strongest_single_reduction = 1e-5;
 
 struct Refinement {
   int n_corrections = 0, n_stalls = 0, n_iterations = 0;
@@ -141,8 +144,14 @@ void RefinedStrategy::build_pressure_inverse(const BlockSystem& system) {
                              symmetry_tolerance());
 }
 
-BlockKrylovRequest RefinedStrategy::block_krylov(const CorrectionRequest& request) {
-  return {request.name, request.target, request.solid_target, request.maximum_iterations};
+BlockKrylovRequest RefinedStrategy::block_krylov(const CorrectionRequest& request,
+                                                 Presumes presumes) const {
+  const double least = presumes == Presumes::symmetry && is_single_precision_
+                           ? strongest_single_reduction * request.residual_norm
+                           : 0;
+  const double relief = std::max(1.0, least / request.target);
+  return {request.name, relief * request.target, relief * request.solid_target,
+          request.maximum_iterations};
 }
 
 void RefinedStrategy::refuse_region_closed_by_solid(const BlockSystem& system) const {

@@ -80,8 +80,10 @@ class RefinedStrategy : public SolverStrategy {
   /// C^-1 to round-off; null without a solid block.
   const RCP<const LinearOperator>& solid_inverse() const { return solid_inverse_; }
   bool check_symmetry() const { return check_symmetry_; }
-  /// The same request for a Krylov method on both blocks.
-  static BlockKrylovRequest block_krylov(const CorrectionRequest& request);
+  /// The same request for a Krylov method on both blocks. One that presumes a linear, symmetric
+  /// inverse of A asks for no more than what single precision allows before a fresh start.
+  enum class Presumes { nothing, symmetry };
+  BlockKrylovRequest block_krylov(const CorrectionRequest& request, Presumes presumes) const;
   /// Throws SolveError where a dynamic solid closes a region of fluid: A alone is singular there,
   /// and a strategy that solves for the fluid alone cannot go on.
   void refuse_region_closed_by_solid(const BlockSystem& system) const;

@@ -33,8 +33,9 @@ int Paper::correct(const BlockSystem& system, const CorrectionRequest& request,
                    Vector& correction) {
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
-  return solve_by_minres(minres_, system, *request.residual, block_krylov(request),
-                         pressure_inverse(), solid_preconditioner_, correction);
+  return solve_by_minres(minres_, system, *request.residual,
+                         block_krylov(request, Presumes::symmetry), pressure_inverse(),
+                         solid_preconditioner_, correction);
 }
 
 }  // namespace lockstep

@@ -69,7 +69,8 @@ int PressureSchur::correct(const BlockSystem& system, const CorrectionRequest& r
                            Vector& correction) {
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
-  return solve_by_minres(minres_, system, *request.residual, block_krylov(request), schur_inverse_,
+  return solve_by_minres(minres_, system, *request.residual,
+                         block_krylov(request, Presumes::symmetry), schur_inverse_,
                          solid_preconditioner_, correction);
 }
 

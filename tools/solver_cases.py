@@ -1,0 +1,94 @@
+"""Scenes that the tools measure solvers on, the bandwidth of this machine, and where things are."""
+import json
+import pathlib
+import random
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def parameter(name, kind, value):
+    return f'<Parameter name="{name}" type="{kind}" value="{value}"/>'
+
+
+def vector(values):
+    return "{" + ", ".join(f"{value:.6g}" for value in values) + "}"
+
+
+def body(name, geometry, position, density=None, surface_density=None):
+    lines = [f'<ParameterList name="{name}">', parameter("Type", "string", "rigid body"),
+             '<ParameterList name="Geometry">', *geometry, "</ParameterList>",
+             parameter("Position", "Array(double)", vector(position))]
+    if density is not None:
+        lines.append(parameter("Density", "double", repr(float(density))))
+    if surface_density is not None:
+        lines.append(parameter("Surface Density", "double", repr(float(surface_density))))
+    return lines + ["</ParameterList>"]
+
+
+def ball(name, radius, position, density):
+    return body(name, [parameter("Shape", "string", "ball"), parameter("Radius", "double", radius)], position, density)
+
+
+def thirty_balls(density):
+    """At the points of a lattice, each moved a little, so that they do not touch and no two are alike."""
+    generator = random.Random(3)
+    points = [(0.15 + 0.175 * i, 0.14 + 0.18 * j, 0.15 + 0.175 * k)
+              for i in range(5) for j in range(3) for k in range(5)]
+    lines = []
+    for number, point in enumerate(generator.sample(points, 30)):
+        position = [x + generator.uniform(-0.012, 0.012) for x in point]
+        lines += ball(f"Ball {number + 1:02d}", 0.065, position, density)
+    return lines
+
+
+PLATE = body("Plate", [parameter("Shape", "string", "plate"), parameter("Size", "Array(double)", "{0.62, 0, 0.58}"),
+                       parameter("Normal", "string", "y")], (0.47, 0.43, 0.52), surface_density=20)
+CASES = {
+    "free top, ball 1e-3": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1)),
+    "free top, ball 1": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1000)),
+    "free top, ball 1e3": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1e6)),
+    "closed, ball 0.5": (False, ball("Ball", 0.15, (0.47, 0.41, 0.53), 500)),
+    "free top, 30 balls 2": (True, thirty_balls(2000)),
+    "free top, 30 balls 1e-3": (True, thirty_balls(1)),
+    "free top, thin plate": (True, PLATE),
+}
+
+
+def scene(case, cells):
+    return scene_of(*CASES[case], cells)
+
+
+def scene_of(is_open, solids, cells, step=0.005):
+    """The text of a scene file: a unit cube of water, gravity, n^3 cells."""
+    lines = ['<ParameterList name="Scene">', parameter("Dimension", "int", 3), '<ParameterList name="Domain">',
+             parameter("Upper", "Array(double)", "{1, 1, 1}"),
+             parameter("Cells", "Array(int)", "{" + ", ".join([str(cells)] * 3) + "}")]
+    if is_open:
+        lines += ['<ParameterList name="Sides"><ParameterList name="y upper">', parameter("Type", "string", "open"),
+                  "</ParameterList></ParameterList>"]
+    lines += ["</ParameterList>", '<ParameterList name="Fluid">', parameter("Type", "string", "mac"),
+              parameter("Density", "double", "1000.0"), parameter("Gravity", "Array(double)", "{0, -9.8, 0}"),
+              "</ParameterList>", '<ParameterList name="Solids">', *solids, "</ParameterList>",
+              '<ParameterList name="Time">', parameter("End", "double", "1.0"),
+              parameter("Fixed Step", "double", repr(step)), "</ParameterList>", '<ParameterList name="Output">',
+              parameter("Frames", "bool", "false"), "</ParameterList>", "</ParameterList>"]
+    return "\n".join(lines) + "\n"
+
+
+def largest_cache_megabytes():
+    text = subprocess.run(["lscpu", "-B", "-C=NAME,ONE-SIZE", "--json"], capture_output=True, text=True).stdout
+    sizes = [int(cache["one-size"]) for cache in json.loads(text)["caches"]] if text else [32 << 20]
+    return max(sizes) / 1e6
+
+
+def triad(build):
+    text = subprocess.run([build / "tests/benchmarks/triad", str(int(4 * largest_cache_megabytes()))],
+                          capture_output=True, text=True, check=True).stdout
+    return float(re.search(r"[0-9.]+", text).group())
+
+
+def commit():
+    return subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True,
+                          text=True).stdout.strip()
