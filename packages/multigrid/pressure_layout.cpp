@@ -65,13 +65,14 @@ class LayoutOperator : public TpetraOperator {
   RCP<const Map> map_;
 };
 
-/// A in the layout.
+/// A in the layout. `empty` are the entries of unknowns whose row A leaves empty: the loops over
+/// cells with faces may pass them by.
 template <int dim>
 class LayoutStencil final : public LayoutOperator {
  public:
   LayoutStencil(const RCP<const Map>& map, const StencilLevel<dim>& level, const LevelHalo& halo,
-                double unit)
-      : LayoutOperator(map), level_(level), halo_(halo), unit_(unit) {
+                double unit, std::vector<int> empty)
+      : LayoutOperator(map), level_(level), halo_(halo), unit_(unit), empty_(std::move(empty)) {
     if (!halo.empty())
       with_ghosts_.resize(2 * level.grid().n_slots);
   }
@@ -82,6 +83,8 @@ class LayoutStencil final : public LayoutOperator {
   double multiply(const double* x, double* y, const Before& before) const {
     const int n_slabs = level_.grid().n_slabs();
     double sum = 0;
+    for (const int entry : empty_)
+      y[entry] = 0;
     if (halo_.empty()) {
       for (int front = 0; front <= n_slabs; ++front) {
         if (front < n_slabs)
@@ -127,6 +130,7 @@ class LayoutStencil final : public LayoutOperator {
   const StencilLevel<dim>& level_;
   const LevelHalo& halo_;
   double unit_;
+  std::vector<int> empty_;
   mutable std::vector<double> with_ghosts_;
 };
 
@@ -237,10 +241,14 @@ class PressureLayoutOf final : public PressureLayout {
     multigrid_.set(coefficients);
     unit_ = coefficients.unit;
     number_rows(coefficients);
+    std::vector<EmptyRow> empty = empty_rows(system);
+    std::vector<int> entries;
+    for (const EmptyRow& row : empty)
+      entries.push_back(row.entry);
     stencil_ = rcp(new LayoutStencil<dim>(map_, multigrid_.finest(), layout_->levels().front().halo,
-                                          coefficients.unit));
+                                          coefficients.unit, std::move(entries)));
     inverse_ = rcp(new LayoutInverse<dim>(map_, multigrid_, layout_->blocks().comm,
-                                          coefficients.unit, empty_rows(system)));
+                                          coefficients.unit, std::move(empty)));
   }
   const std::shared_ptr<const LatticeLayout>& layout() const { return layout_; }
 

@@ -85,6 +85,25 @@ std::vector<SolidState<dim>> SolidSystem<dim>::states() const {
 }
 
 template <int dim>
+double SolidSystem<dim>::largest_surface_speed() const {
+  double largest = 0;
+  for (const auto& solid_model : models_) {
+    const std::vector<SolidState<dim>> states = solid_model->states();
+    const SurfaceMesh<dim>& surface = solid_model->surface();
+    for (std::size_t s = 0; s < states.size(); ++s) {
+      const SolidDescription& solid = solid_model->solids()[s];
+      for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
+        const Point<dim> arm = surface.vertices[v] - states[s].center_of_mass;
+        const Point<dim> velocity =
+            states[s].velocity + rotate<dim>(states[s].angular_velocity, arm);
+        largest = std::max(largest, velocity.template lpNorm<1>());
+      }
+    }
+  }
+  return largest;
+}
+
+template <int dim>
 std::pair<int, SurfacePoint<dim>> SolidSystem<dim>::in_model(const SurfacePoint<dim>& point) const {
   const auto next = std::upper_bound(simplex_begin_.begin(), simplex_begin_.end(), point.simplex);
   const int m = static_cast<int>(next - simplex_begin_.begin()) - 1;

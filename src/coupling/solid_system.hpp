@@ -29,6 +29,8 @@ class SolidSystem {
   std::shared_ptr<const SurfaceSnapshot<dim>> snapshot() const;
   const std::vector<SolidDescription>& solids() const { return solids_; }
   std::vector<SolidState<dim>> states() const;
+  /// Largest 1-norm of the velocity of a surface vertex, each solid taken as rigid [m/s]. Local.
+  double largest_surface_speed() const;
 
   /// Rows of a surface point of a snapshot, with ids of `map`. Local.
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,

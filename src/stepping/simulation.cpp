@@ -103,11 +103,9 @@ double Simulation<dim>::next_step() const {
   double dt = time.fixed_step;
   if (dt == 0) {
     const double rate = components_.fluid->largest_cell_crossing_rate();
-    double solid_rate = 0;  // a resting fluid still has to resolve moving solids
-    for (const auto& state : components_.solids->states()) {
-      solid_rate = std::max(solid_rate, state.velocity.template lpNorm<1>());
-    }
-    solid_rate /= components_.fluid->spacing();
+    // A resting fluid still has to resolve moving solids.
+    const double solid_rate =
+        components_.solids->largest_surface_speed() / components_.fluid->spacing();
     // The velocity that gravity adds within the step counts as well.
     const double acceleration =
         components_.fluid->gravity().template lpNorm<1>() / components_.fluid->spacing();

@@ -94,6 +94,10 @@ std::unique_ptr<Deflation> Deflation::make(const BlockSystem& system, PressureLa
   if (!system.has_solid() || system.solid_block->domain()->dim() > most_solid_dofs ||
       assembled(system.solid_block).is_null())
     return nullptr;
+  // Where a solid closes a region, only its motion lets the region's pressure level matter: without
+  // that motion the rest would be singular.
+  if (system.pressure_null_space.size() > system.null_space.size())
+    return nullptr;
   std::unique_ptr<Deflation> deflation(new Deflation(system, layout));
   if (!deflation->build())
     return nullptr;

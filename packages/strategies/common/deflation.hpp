@@ -19,8 +19,8 @@ namespace lockstep {
 /// Woodbury update, nothing here must be exact for the preconditioner to stay positive definite.
 class Deflation {
  public:
-  /// For a system in `layout`; null if no solid is light. Solids are the small components of C
-  /// (which must be assembled). Collective.
+  /// For a system in `layout`; null if no solid is light, or if one closes a region of fluid.
+  /// Solids are the small components of C (which must be assembled). Collective.
   static std::unique_ptr<Deflation> make(const BlockSystem& system, PressureLayout& layout);
 
   int size() const { return static_cast<int>(coarse_inverse_.rows()); }

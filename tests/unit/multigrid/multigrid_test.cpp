@@ -6,6 +6,7 @@
 
 #include "../mac/mac_cases.hpp"
 #include "linear/conjugate_gradients.hpp"
+#include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
 #include "linear/symmetry_check.hpp"
 #include "multigrid/pressure_layout.hpp"
@@ -102,14 +103,13 @@ std::shared_ptr<const SurfaceSnapshot<dim>> plate(double h, double where) {
 }
 
 template <int dim>
-void expect_matvec_of_the_layout(int n) {
-  Case<dim> scene(cube<dim>(n), 1.0 / n);
-  scene.side(dim == 2 ? "y upper" : "z upper", "open");
-  const Problem<dim> problem(scene, plate<dim>(1.0 / n, 0.43));
+void expect_matvec_of_the_layout(const Problem<dim>& problem) {
   const auto layout = PressureLayout::make(problem.system, {}, nullptr);
   const auto x = right_hand_side(problem);
   Vector in(layout->map()), out(layout->map()), ax(x->getMap()), by_matrix(x->getMap());
   layout->to_layout(*x, in);
+  by_matrix.putScalar(1e3);
+  layout->to_layout(by_matrix, out);  // what was there must not matter
   apply(*layout->pressure_block(), in, out);
   layout->from_layout(out, ax);
   const auto matrix = assembled(problem.system.pressure_block);
@@ -120,14 +120,41 @@ void expect_matvec_of_the_layout(int n) {
   EXPECT_LT(ax.normInf(), 1e-14 * scale);
 }
 
+template <int dim>
+void expect_matvec_beside_a_plate(int n) {
+  Case<dim> scene(cube<dim>(n), 1.0 / n);
+  scene.side(dim == 2 ? "y upper" : "z upper", "open");
+  expect_matvec_of_the_layout(Problem<dim>(scene, plate<dim>(1.0 / n, 0.43)));
+}
+
 TEST(Multigrid, TheLayoutHasTheSameOperator2D) {
-  expect_matvec_of_the_layout<2>(64);
+  expect_matvec_beside_a_plate<2>(64);
 }
 TEST(Multigrid, TheLayoutHasTheSameOperator3D) {
-  expect_matvec_of_the_layout<3>(20);
+  expect_matvec_beside_a_plate<3>(20);
 }
 TEST(Multigrid, RowsThatFillTheirStorage) {
-  expect_matvec_of_the_layout<3>(32);
+  expect_matvec_beside_a_plate<3>(32);
+}
+
+TEST(Multigrid, ACellWithoutFacesFarFromAllOthersInItsRow) {
+  // A long box on the floor leaves one cell in the corner, a plate covers it: its row of A is
+  // empty, and no other cell in its row of the grid is fluid before the 25th.
+  constexpr int n = 32;
+  constexpr double h = 1.0 / n;
+  Case<2> scene(cube<2>(n), h);
+  scene.side("y upper", "open");
+  Solids<2> solids;
+  solids.add(box_surface<2>(Point<2>(23 * h, 8 * h), h), Point<2>(12.5 * h, 4 * h), true);
+  solids.add(plate_surface<2>(Point<2>(2 * h, 0), 1, h), Point<2>(0.5 * h, h), false);
+  const Problem<2> problem(scene, solids.snapshot());
+  const auto matrix = assembled(problem.system.pressure_block);
+  const auto diagonal = diagonal_of(*matrix);
+  double n_empty = 0;
+  for (const double value : diagonal->getData())
+    n_empty += value == 0;
+  EXPECT_EQ(sum_all(matrix->getComm(), n_empty), 1);
+  expect_matvec_of_the_layout(problem);
 }
 
 template <int dim>
