@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "linear/stratimikos_registration.hpp"
 #include "parameters/suggestion.hpp"
+#include "parameters/teko_library.hpp"
 
 namespace lockstep {
 
@@ -82,68 +83,38 @@ void check_against(const ParameterList& list, const ParameterList& valid,
   }
 }
 
-class TekoLibrary {
- public:
-  TekoLibrary(const ParameterList& library, const ParameterList& valid)
-      : library_(library), valid_(valid) {}
+constexpr const char* place = "Teko's \"Inverse Factory Library\"";
 
-  void check() const {
-    for (const auto& entry : library_) {
-      check_input(entry.second.isList(), "{}: \"{}\" must be a list.", place, entry.first);
-      check_inverse(library_.sublist(entry.first), fmt::format("{}, \"{}\"", place, entry.first));
-    }
+/// Other types of Stratimikos, "Belos" as inner solver.
+void check_stratimikos_type(const ParameterList& list, const std::string& type,
+                            const ParameterList& valid, const std::string& where) {
+  for (const char* types : {"Linear Solver Types", "Preconditioner Types"}) {
+    if (!valid.sublist(types).isSublist(type))
+      continue;
+    ParameterList without_type(list);
+    without_type.remove("Type");
+    without_type.remove("Preconditioner Type", false);
+    check_against(without_type, valid.sublist(types).sublist(type), where);
   }
-  /// `name` must be one of the library or a package's own.
-  void check_reference(const std::string& name, const std::string& where) const {
-    std::vector<std::string> known = names_in(library_);
-    for (const char* types : {"Linear Solver Types", "Preconditioner Types"}) {
-      const auto packages = names_in(valid_.sublist(types));
-      known.insert(known.end(), packages.begin(), packages.end());
-    }
-    const std::string nearest = nearest_name(name, known);
-    check_input(std::find(known.begin(), known.end(), name) != known.end(),
-                "{}: there is no inverse \"{}\" in the library.{}", where, name,
-                nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest));
-  }
+}
 
- private:
-  void check_inverse(const ParameterList& list, const std::string& where) const {
-    check_input(list.isType<std::string>("Type"), "{}: the parameter \"Type\" (string) is missing.",
-                where);
+/// The factories' own parameters and references, then the lists of the packages that they name.
+void check_library(const ParameterList& library, const ParameterList& valid) {
+  check_teko_library(library, Source{place, {}}, "Inverse Factory Library",
+                     {{"SPD Block Diagonal", {"Fluid Inverse Type", "Solid Inverse Type"}}});
+  for (const auto& entry : library) {
+    const ParameterList& list = library.sublist(entry.first);
     const auto& type = list.get<std::string>("Type");
-    if (type == "SPD Block Diagonal") {
-      check_names(list, {"Type", "Fluid Inverse Type", "Solid Inverse Type"}, where);
-      for (const char* inverse : {"Fluid Inverse Type", "Solid Inverse Type"}) {
-        check_input(list.isType<std::string>(inverse),
-                    "{}: the parameter \"{}\" (string) is missing.", where, inverse);
-        check_reference(list.get<std::string>(inverse), where);
-      }
-    } else if (type == "MueLu" || type == "Ifpack2") {
+    const std::string where = fmt::format("{}, \"{}\"", place, entry.first);
+    if (type == "MueLu" || type == "Ifpack2") {
       check_package_list(type, list, where);
-    } else {
-      check_input(type.rfind("Amesos", 0) != 0 || Tpetra::getDefaultComm()->getSize() == 1,
-                  "{}: {} is wrong on several ranks with this Trilinos.", where, type);
-      check_stratimikos_type(list, type, where);
+      continue;
     }
+    check_input(type.rfind("Amesos", 0) != 0 || Tpetra::getDefaultComm()->getSize() == 1,
+                "{}: {} is wrong on several ranks with this Trilinos.", where, type);
+    check_stratimikos_type(list, type, valid, where);
   }
-
-  /// Other types of Stratimikos ("Belos" as inner solver); Teko's own factories check themselves.
-  void check_stratimikos_type(const ParameterList& list, const std::string& type,
-                              const std::string& where) const {
-    for (const char* types : {"Linear Solver Types", "Preconditioner Types"}) {
-      if (!valid_.sublist(types).isSublist(type))
-        continue;
-      ParameterList without_type(list);
-      without_type.remove("Type");
-      without_type.remove("Preconditioner Type", false);
-      check_against(without_type, valid_.sublist(types).sublist(type), where);
-    }
-  }
-
-  static constexpr const char* place = "Teko's \"Inverse Factory Library\"";
-  const ParameterList& library_;
-  const ParameterList& valid_;
-};
+}
 
 }  // namespace
 
@@ -172,10 +143,16 @@ void check_solver_list(const ParameterList& list) {
   check_names(teko, names_in(valid_teko), "the list \"Teko\"");
   if (!teko.isSublist("Inverse Factory Library"))
     return;
-  const TekoLibrary library(teko.sublist("Inverse Factory Library"), *valid);
-  library.check();
-  if (teko.isType<std::string>("Inverse Type"))
-    library.check_reference(teko.get<std::string>("Inverse Type"), "the list \"Teko\"");
+  const ParameterList& library = teko.sublist("Inverse Factory Library");
+  check_library(library, *valid);
+  if (!teko.isType<std::string>("Inverse Type"))
+    return;
+  const auto& name = teko.get<std::string>("Inverse Type");
+  const auto known = names_in(library);
+  const std::string nearest = nearest_name(name, known);
+  check_input(std::find(known.begin(), known.end(), name) != known.end(),
+              "The list \"Teko\": there is no inverse \"{}\" in the library.{}", name,
+              nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest));
 }
 
 }  // namespace lockstep
