@@ -3,29 +3,11 @@
 #include <cctype>
 
 #include "base/errors.hpp"
+#include "base/xml_text.hpp"
 
 namespace lockstep::xdmf {
 
 namespace {
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string data_item(const std::string& extents, const std::string& type, int bytes,
                       const std::string& where) {
@@ -42,7 +24,7 @@ std::string attribute(const std::string& name, const std::string& unit, int n_co
       "          <Information Name=\"unit\" Value=\"{}\"/>\n"
       "          {}\n"
       "        </Attribute>\n",
-      escaped(name), n_components == 1 ? "Scalar" : "Vector", center, escaped(unit), item);
+      xml_escaped(name), n_components == 1 ? "Scalar" : "Vector", center, xml_escaped(unit), item);
 }
 
 int bytes_of(Precision precision) {
@@ -86,7 +68,7 @@ std::string box_grid(const BoxFrame& box, const std::string& file, Precision pre
       "          {}\n"
       "          {}\n"
       "        </Geometry>\n",
-      escaped(box.name), box.n_cells[2] + 1, box.n_cells[1] + 1, box.n_cells[0] + 1,
+      xml_escaped(box.name), box.n_cells[2] + 1, box.n_cells[1] + 1, box.n_cells[0] + 1,
       triple(bottom, box.origin[1], box.origin[0]),
       triple(thickness, box.spacing[1], box.spacing[0]));
   for (const BoxField& field : box.fields) {
@@ -116,7 +98,7 @@ std::string surface_grid(const SurfaceFrame& surface, const std::string& file,
       "        <Geometry GeometryType=\"XYZ\">\n"
       "          {}\n"
       "        </Geometry>\n",
-      escaped(surface.name), topology_type(surface.simplex_size), n_simplices,
+      xml_escaped(surface.name), topology_type(surface.simplex_size), n_simplices,
       data_item(corners, "Int", 4, group + "simplices"),
       data_item(fmt::format("{} 3", n_vertices), "Float", 8, group + "vertices"));
   for (const SurfaceField& field : surface.fields) {

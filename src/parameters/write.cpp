@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/errors.hpp"
+#include "base/xml_text.hpp"
 #include "parameters/parameter_rule.hpp"
 #include "parameters/source.hpp"
 #include "parameters/strict_values.hpp"
@@ -13,36 +14,8 @@ namespace lockstep {
 
 namespace {
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\n':
-      case '\t':
-      case '\r':
-        result += fmt::format("&#{};", static_cast<int>(c));
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
 std::string attribute(const std::string& name, const std::string& value) {
-  return value.empty() ? "" : fmt::format(" {}=\"{}\"", name, escaped(value));
+  return value.empty() ? "" : fmt::format(" {}=\"{}\"", name, xml_escaped(value));
 }
 
 /// The text of a value, proven to read back to the same value.
@@ -62,15 +35,15 @@ std::string readable_text(const std::string& name, const ParameterEntry& entry) 
 void add_list(std::string& xml, const ParameterList& list, const std::string& name,
               const std::string& documentation, int depth) {
   const std::string indent(2 * depth, ' ');
-  xml += fmt::format("{}<ParameterList name=\"{}\"{}>\n", indent, escaped(name),
+  xml += fmt::format("{}<ParameterList name=\"{}\"{}>\n", indent, xml_escaped(name),
                      attribute("docString", documentation));
   for (const auto& [child, entry] : entries(list)) {
     if (entry.isList()) {
       add_list(xml, list.sublist(child), child, entry.docString(), depth + 1);
     } else {
       xml += fmt::format("{}  <Parameter name=\"{}\" type=\"{}\" value=\"{}\"{}{}/>\n", indent,
-                         escaped(child), type_name(value_type(entry)),
-                         escaped(readable_text(child, entry)),
+                         xml_escaped(child), type_name(value_type(entry)),
+                         xml_escaped(readable_text(child, entry)),
                          entry.isDefault() ? " isDefault=\"true\"" : "",
                          attribute("docString", entry.docString()));
     }

@@ -24,12 +24,7 @@ constexpr double light_ratio = 1.5;
 constexpr double reach = 1.5;
 constexpr int shortest_reach = 4, longest_reach = 32;
 
-/// C on every rank, and its solids.
-struct SmallSolids {
-  Eigen::MatrixXd c;
-  std::vector<std::vector<int>> dofs;  ///< of each solid, ascending
-};
-
+/// The solids: the connected components of C, each as its dofs, ascending.
 std::vector<std::vector<int>> components(const Eigen::MatrixXd& c) {
   const auto n = static_cast<int>(c.rows());
   std::vector<int> root(n);
@@ -72,6 +67,44 @@ Columns columns_of(const CrsMatrix& coupling, int n_dofs) {
   return columns;
 }
 
+/// The solids that have light motions.
+struct LightSolids {
+  std::vector<std::vector<int>> dofs;  ///< by solid: its light ones
+  std::vector<int> first{0};      ///< by solid: number of its first function; one more at the end
+  int n_layers = shortest_reach;  ///< of cells that the functions reach
+
+  int n_functions() const { return first.back(); }
+};
+
+/// The added mass of a body of radius R is about that of its first layer of cells, sum b^2 / a,
+/// times 2 R / h.
+LightSolids find_light_solids(const Eigen::MatrixXd& c, const CrsMatrix& coupling,
+                              const PressureLayout::FaceScale& scale) {
+  const Columns columns = columns_of(coupling, static_cast<int>(c.rows()));
+  LightSolids result;
+  for (const auto& dofs : components(c)) {
+    if (static_cast<int>(dofs.size()) > most_dofs_of_a_solid)
+      continue;
+    double n_cells = 0;
+    for (const int dof : dofs)
+      n_cells = std::max(n_cells, columns.n_cells[dof]);
+    const double radius = scale.dimension == 3 ? std::sqrt(n_cells / 12.6) : n_cells / 8;
+    std::vector<int> light;
+    for (const int dof : dofs) {
+      const double added = 2 * radius * columns.squares[dof] / (2 * scale.dimension * scale.unit);
+      if (added > light_ratio * c(dof, dof))
+        light.push_back(dof);
+    }
+    if (light.empty())
+      continue;
+    result.n_layers = std::max(result.n_layers, static_cast<int>(std::lround(reach * radius)));
+    result.first.push_back(result.first.back() + static_cast<int>(light.size()));
+    result.dofs.push_back(std::move(light));
+  }
+  result.n_layers = std::min(result.n_layers, longest_reach);
+  return result;
+}
+
 /// Values of `vector` on the columns of B^T.
 Vector on_columns(const CrsMatrix& coupling, const Vector& vector) {
   Vector result(coupling.getColMap());
@@ -81,6 +114,71 @@ Vector on_columns(const CrsMatrix& coupling, const Vector& vector) {
   else
     result.doImport(vector, *importer, Tpetra::INSERT);
   return result;
+}
+
+/// The unknowns that each light solid touches, by its number + 1; 0 elsewhere.
+Vector seeds_of(const LightSolids& light, const CrsMatrix& coupling, const RCP<const Map>& map) {
+  std::vector<int> label_of_dof(coupling.getGlobalNumRows(), 0);
+  for (std::size_t solid = 0; solid < light.dofs.size(); ++solid) {
+    for (const int dof : light.dofs[solid])
+      label_of_dof[dof] = static_cast<int>(solid) + 1;
+  }
+  Vector column_labels(coupling.getColMap()), seeds(map);
+  {
+    const auto values = column_labels.getDataNonConst();
+    for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
+      double& label = values[coupling.getColMap()->getLocalElement(column)];
+      if (value != 0)
+        label = std::max<double>(label, label_of_dof[coupling.getRowMap()->getGlobalElement(row)]);
+    });
+  }
+  if (const auto importer = coupling.getGraph()->getImporter(); importer.is_null())
+    seeds.update(1, column_labels, 0);
+  else
+    seeds.doExport(column_labels, *importer, Tpetra::ABSMAX);
+  return seeds;
+}
+
+/// B times the sum of the j-th light motions of all solids; false if no solid has so many.
+bool sum_of_columns(const LightSolids& light, int j, const CrsMatrix& coupling, Vector& sum) {
+  Vector ones(coupling.getRangeMap());
+  bool any = false;
+  for (const auto& dofs : light.dofs) {
+    if (j >= static_cast<int>(dofs.size()))
+      continue;
+    any = true;
+    if (ones.getMap()->isNodeGlobalElement(dofs[j]))
+      ones.replaceGlobalValue(dofs[j], 1.0);
+  }
+  coupling.apply(ones, sum, Teuchos::TRANS);
+  return any;
+}
+
+/// g += B^T w_j of this rank, split into the functions of the solids by the labels of the columns.
+void add_forces(const LightSolids& light, int j, const CrsMatrix& coupling, const Vector& labels,
+                const Vector& w, Eigen::MatrixXd& g) {
+  const Vector on_column = on_columns(coupling, w);
+  const auto values = on_column.getData(), label_values = labels.getData();
+  for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
+    const int local = coupling.getColMap()->getLocalElement(column);
+    const int solid = static_cast<int>(label_values[local]) - 1;
+    if (solid >= 0 && j < static_cast<int>(light.dofs[solid].size()))
+      g(coupling.getRowMap()->getGlobalElement(row), light.first[solid] + j) +=
+          value * values[local];
+  });
+}
+
+/// The pseudo-inverse of a symmetric positive semidefinite matrix, scaled to a unit diagonal first:
+/// a solid whose cells all lie at borders has no function, and its row and column are zero.
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& e) {
+  const Eigen::VectorXd scaling =
+      e.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaling.asDiagonal() * e *
+                                                             scaling.asDiagonal());
+  const Eigen::VectorXd inverse =
+      eigen.eigenvalues().unaryExpr([](double value) { return value > 1e-12 ? 1 / value : 0.0; });
+  return scaling.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
+         eigen.eigenvectors().transpose() * scaling.asDiagonal();
 }
 
 /// 1 within half the reach, falling to 0 at its end.
@@ -108,146 +206,73 @@ bool Deflation::build() {
   const CrsMatrix& coupling = *system_.coupling_transposed;
   const Communicator comm = coupling.getRowMap()->getComm();
   const Eigen::MatrixXd c = replicated(*assembled(system_.solid_block));
-  const auto n_dofs = static_cast<int>(c.rows());
-  const Columns columns = columns_of(coupling, n_dofs);
-  const PressureLayout::FaceScale scale = layout_.face_scale();
-
-  // Which motions are light: the added mass of a body of radius R is about that of its first layer
-  // of cells, sum b^2 / a, times 2 R / h.
-  std::vector<std::vector<int>> chosen;  // by solid: its light dofs
-  int n_layers = shortest_reach;
-  for (const auto& dofs : components(c)) {
-    if (static_cast<int>(dofs.size()) > most_dofs_of_a_solid)
-      continue;
-    double n_cells = 0;
-    for (const int dof : dofs)
-      n_cells = std::max(n_cells, columns.n_cells[dof]);
-    const double radius = scale.dimension == 3 ? std::sqrt(n_cells / 12.6) : n_cells / 8;
-    std::vector<int> light;
-    for (const int dof : dofs) {
-      const double added = 2 * radius * columns.squares[dof] / (2 * scale.dimension * scale.unit);
-      if (added > light_ratio * c(dof, dof))
-        light.push_back(dof);
-    }
-    if (light.empty())
-      continue;
-    n_layers = std::max(n_layers, static_cast<int>(std::lround(reach * radius)));
-    chosen.push_back(std::move(light));
-  }
-  if (chosen.empty())
+  const LightSolids light = find_light_solids(c, coupling, layout_.face_scale());
+  if (light.dofs.empty())
     return false;
-  n_layers = std::min(n_layers, longest_reach);
 
-  // The supports: unknowns near the cells that each solid touches.
-  std::vector<int> solid_of_dof(n_dofs, -1);
-  for (std::size_t solid = 0; solid < chosen.size(); ++solid) {
-    for (const int dof : chosen[solid])
-      solid_of_dof[dof] = static_cast<int>(solid);
+  const Vector seeds = seeds_of(light, coupling, layout_.map());
+  const auto seed_values = seeds.getData();
+  for (int entry = 0; entry < static_cast<int>(seed_values.size()); ++entry) {
+    if (seed_values[entry] != 0)
+      touched_.push_back(entry);
   }
-  Vector column_labels(coupling.getColMap()), seeds(layout_.map());
-  {
-    const auto values = column_labels.getDataNonConst();
-    for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
-      const int solid = solid_of_dof[coupling.getRowMap()->getGlobalElement(row)];
-      double& label = values[coupling.getColMap()->getLocalElement(column)];
-      if (solid >= 0 && value != 0)
-        label = std::max<double>(label, solid + 1);
-    });
-  }
-  if (const auto importer = coupling.getGraph()->getImporter(); importer.is_null())
-    seeds.update(1, column_labels, 0);
-  else
-    seeds.doExport(column_labels, *importer, Tpetra::ABSMAX);
-  {
-    const auto values = seeds.getData();
-    for (int entry = 0; entry < static_cast<int>(values.size()); ++entry) {
-      if (values[entry] != 0)
-        touched_.push_back(entry);
-    }
-  }
-  const auto grown = layout_.grow(seeds, n_layers);
-  std::vector<int> first(chosen.size() + 1, 0);
-  for (std::size_t solid = 0; solid < chosen.size(); ++solid)
-    first[solid + 1] = first[solid] + static_cast<int>(chosen[solid].size());
-  const int n_functions = first.back();
-  for (const auto& cell : grown)
-    cells_.push_back({cell.entry, first[cell.label], first[cell.label + 1] - first[cell.label]});
-
-  // The functions: one cycle for the j-th of all solids at once.
+  const auto grown = layout_.grow(seeds, light.n_layers);
   Vector label_of_entry(layout_.map());
   {
     const auto values = label_of_entry.getDataNonConst();
-    for (const auto& cell : grown)
+    for (const auto& cell : grown) {
       values[cell.entry] = cell.label + 1;
+      cells_.push_back(
+          {cell.entry, light.first[cell.label], static_cast<int>(light.dofs[cell.label].size())});
+    }
   }
   const Vector labels = on_columns(coupling, label_of_entry);
-  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(n_dofs, n_functions);  // B^T W
-  Vector ones(coupling.getRangeMap()), column_sum(layout_.map()), w(layout_.map()),
-      aw(layout_.map());
+
+  // One cycle makes the j-th function of all solids.
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(c.rows(), light.n_functions());  // B^T W
+  Vector column_sum(layout_.map()), w(layout_.map()), aw(layout_.map());
   for (int j = 0; j < most_dofs_of_a_solid; ++j) {
-    bool any = false;
-    ones.putScalar(0);
-    for (const auto& dofs : chosen) {
-      if (j >= static_cast<int>(dofs.size()))
-        continue;
-      any = true;
-      if (ones.getMap()->isNodeGlobalElement(dofs[j]))
-        ones.replaceGlobalValue(dofs[j], 1.0);
-    }
-    if (!any)
+    if (!sum_of_columns(light, j, coupling, column_sum))
       break;
-    coupling.apply(ones, column_sum, Teuchos::TRANS);
     apply(*layout_.inverse(), column_sum, w);
-    {
-      const auto values = w.getDataNonConst();
-      std::vector<double> kept(grown.size());
-      for (std::size_t i = 0; i < grown.size(); ++i) {
-        const bool has_function = j < cells_[i].n && !grown[i].at_border;
-        kept[i] = has_function ? values[grown[i].entry] * cut_off(grown[i].layer, n_layers) : 0;
-      }
-      std::fill(values.begin(), values.end(), 0.0);
-      for (std::size_t i = 0; i < grown.size(); ++i) {
-        cells_[i].w[j] = static_cast<float>(kept[i]);
-        values[grown[i].entry] = cells_[i].w[j];
-      }
-    }
+    keep_functions(j, grown, light.n_layers, w);
     apply(*layout_.pressure_block(), w, aw);
-    {
-      const auto values = aw.getData();
-      for (Cell& cell : cells_)
-        cell.aw[j] = values[cell.entry];
-    }
-    const Vector values = on_columns(coupling, w);
-    const auto w_values = values.getData(), label_values = labels.getData();
-    for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
-      const int local = coupling.getColMap()->getLocalElement(column);
-      const int solid = static_cast<int>(label_values[local]) - 1;
-      if (solid >= 0 && j < static_cast<int>(chosen[solid].size()))
-        g(coupling.getRowMap()->getGlobalElement(row), first[solid] + j) += value * w_values[local];
-    });
+    const auto values = aw.getData();
+    for (Cell& cell : cells_)
+      cell.aw[j] = values[cell.entry];
+    add_forces(light, j, coupling, labels, w, g);
   }
   sum_all(comm, g.data(), static_cast<int>(g.size()));
+  motion_ = c.llt().solve(g);
+  coarse_inverse_ = pseudo_inverse(energy(light.n_functions()) + g.transpose() * motion_);
+  return true;
+}
 
-  Eigen::MatrixXd energy = Eigen::MatrixXd::Zero(n_functions, n_functions);  // W^T A W
+/// Cuts off the j-th functions in w, and stores them.
+void Deflation::keep_functions(int j, const std::vector<PressureLayout::Grown>& grown, int n_layers,
+                               Vector& w) {
+  const auto values = w.getDataNonConst();
+  for (std::size_t i = 0; i < grown.size(); ++i) {
+    const bool has_function = j < cells_[i].n && !grown[i].at_border;
+    cells_[i].w[j] = static_cast<float>(
+        has_function ? values[grown[i].entry] * cut_off(grown[i].layer, n_layers) : 0.0);
+  }
+  std::fill(values.begin(), values.end(), 0.0);
+  for (const Cell& cell : cells_)
+    values[cell.entry] = cell.w[j];
+}
+
+/// W^T A W, on every rank; symmetric.
+Eigen::MatrixXd Deflation::energy(int n_functions) const {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n_functions, n_functions);
   for (const Cell& cell : cells_) {
     for (int a = 0; a < cell.n; ++a) {
       for (int b = 0; b < cell.n; ++b)
-        energy(cell.first + a, cell.first + b) += static_cast<double>(cell.w[a]) * cell.aw[b];
+        result(cell.first + a, cell.first + b) += static_cast<double>(cell.w[a]) * cell.aw[b];
     }
   }
-  sum_all(comm, energy.data(), static_cast<int>(energy.size()));
-  motion_ = c.llt().solve(g);
-  const Eigen::MatrixXd e = 0.5 * (energy + energy.transpose()) + g.transpose() * motion_;
-  // A solid whose cells all lie at borders has no function; its row and column are zero.
-  const Eigen::VectorXd scaling =
-      e.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaling.asDiagonal() * e *
-                                                             scaling.asDiagonal());
-  const Eigen::VectorXd inverse =
-      eigen.eigenvalues().unaryExpr([](double value) { return value > 1e-12 ? 1 / value : 0.0; });
-  coarse_inverse_ = scaling.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-                    eigen.eigenvectors().transpose() * scaling.asDiagonal();
-  return true;
+  sum_all(layout_.map()->getComm(), result.data(), static_cast<int>(result.size()));
+  return 0.5 * (result + result.transpose());
 }
 
 /// W^T x, or (A W)^T x, of x given by its entries; on every rank.

@@ -45,6 +45,9 @@ class Deflation {
 
   Deflation(const BlockSystem& system, PressureLayout& layout) : system_(system), layout_(layout) {}
   bool build();
+  void keep_functions(int j, const std::vector<PressureLayout::Grown>& grown, int n_layers,
+                      Vector& w);
+  Eigen::MatrixXd energy(int n_functions) const;
 
   template <typename Get>
   Eigen::VectorXd restrict(const Get& get, bool with_operator) const;

@@ -1,7 +1,6 @@
 #include "strategies/common/solid_preconditioner.hpp"
 
 #include "linear/preconditioner.hpp"
-#include "linear/symmetry_check.hpp"
 
 namespace lockstep {
 
@@ -17,15 +16,10 @@ ParameterList solid_inverse_list(const ParameterList& list) {
 }
 
 RCP<const LinearOperator> solid_preconditioner(const BlockSystem& system, const ParameterList& list,
-                                               const RCP<const LinearOperator>& exact,
-                                               bool check_symmetry) {
-  const std::string name = "solid block of the " + system.name;
-  const auto inverse = list.get<std::string>("Type") == "Exact"
-                           ? exact
-                           : preconditioner_from_list(system.solid_block, list, name);
-  if (check_symmetry)
-    check_symmetric_positive(*inverse, name);
-  return inverse;
+                                               const RCP<const LinearOperator>& exact) {
+  if (list.get<std::string>("Type") == "Exact")
+    return exact;
+  return preconditioner_from_list(system.solid_block, list, "solid block of the " + system.name);
 }
 
 }  // namespace lockstep

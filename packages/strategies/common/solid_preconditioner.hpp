@@ -11,9 +11,8 @@ void declare_solid_inverse(ParameterList& list);
 ParameterList solid_inverse_list(const ParameterList& list);
 
 /// What that list names, symmetric positive definite; `exact` if it says so. Throws SolveError if
-/// C does not allow it, or if it is found unsymmetric with `check_symmetry`. Collective.
+/// C does not allow it. Collective.
 RCP<const LinearOperator> solid_preconditioner(const BlockSystem& system, const ParameterList& list,
-                                               const RCP<const LinearOperator>& exact,
-                                               bool check_symmetry);
+                                               const RCP<const LinearOperator>& exact);
 
 }  // namespace lockstep

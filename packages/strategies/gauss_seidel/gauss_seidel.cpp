@@ -24,8 +24,7 @@ RCP<const LinearOperator> GaussSeidel::make_preconditioner(const BlockSystem& sy
                                                            const ScaledSystem& scaled) {
   const auto pressure = Thyra::scale<double>(1 / (scaled.s * scaled.s), pressure_inverse());
   const auto solid = Thyra::scale<double>(
-      -1 / (scaled.t * scaled.t),
-      solid_preconditioner(system, solid_list_, solid_inverse(), check_symmetry()));
+      -1 / (scaled.t * scaled.t), solid_preconditioner(system, solid_list_, solid_inverse()));
   const Teko::GaussSeidelPreconditionerFactory factory(Teko::GS_UseLowerTriangle, pressure, solid);
   return Thyra::prec<double>(factory, scaled.op)->getUnspecifiedPrecOp();
 }

@@ -4,7 +4,6 @@
 #include <Tpetra_Vector.hpp>
 
 #include "linear/action_operator.hpp"
-#include "linear/symmetry_check.hpp"
 #include "strategies/common/assembled_schur.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 #include "strategies/common/solid_preconditioner.hpp"
@@ -13,8 +12,7 @@
 namespace lockstep {
 
 ParameterList PressureSchur::valid_parameters() {
-  ParameterList list = common_strategy_parameters();
-  declare_minres(list, "Lockstep MINRES");
+  ParameterList list = minres_parameters("Lockstep MINRES");
   declare_pressure_inverse(list,
                            "Approximate inverse of the pressure block A, which is extended to one "
                            "of A + B C^-1 B^T. Default: Automatic.");
@@ -26,14 +24,11 @@ ParameterList PressureSchur::valid_parameters() {
 }
 
 PressureSchur::PressureSchur(const ParameterList& given)
-    : RefinedStrategy(with_defaults(given, valid_parameters()),
-                      pressure_inverse_list(given, "Automatic")),
+    : MinresStrategy(with_defaults(given, valid_parameters()),
+                     pressure_inverse_list(given, "Automatic")),
+      largest_solid_(with_defaults(given, valid_parameters()).get<int>("Largest Solid")),
       pressure_list_(pressure_inverse_list(given, "Automatic")),
-      solid_list_(solid_inverse_list(given)) {
-  const ParameterList list = with_defaults(given, valid_parameters());
-  minres_ = minres_kind(list);
-  largest_solid_ = list.get<int>("Largest Solid");
-}
+      solid_list_(solid_inverse_list(given)) {}
 
 RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system) {
   if (layout() != nullptr) {
@@ -54,24 +49,8 @@ RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system
   return lockstep::pressure_inverse(schur, pressure_list_);
 }
 
-void PressureSchur::build(const BlockSystem& system, bool, bool solid_changed) {
-  if (!solid_changed)
-    return;
-  solid_preconditioner_ =
-      solid_preconditioner(system, solid_list_, solid_inverse(), check_symmetry());
-  schur_inverse_ = schur_inverse(system);
-  if (check_symmetry())
-    check_symmetric_positive(*schur_inverse_, "Schur complement of the " + system.name,
-                             symmetry_tolerance());
-}
-
-int PressureSchur::correct(const BlockSystem& system, const CorrectionRequest& request,
-                           Vector& correction) {
-  if (!system.has_solid())
-    return pressure_cg(system, request, correction);
-  return solve_by_minres(minres_, system, *request.residual,
-                         block_krylov(request, Presumes::symmetry), schur_inverse_,
-                         solid_preconditioner_, correction);
+MinresStrategy::Preconditioners PressureSchur::make_preconditioners(const BlockSystem& system) {
+  return {schur_inverse(system), solid_preconditioner(system, solid_list_, solid_inverse())};
 }
 
 }  // namespace lockstep

@@ -1,7 +1,6 @@
 #pragma once
-#include "strategies/common/block_krylov.hpp"
 #include "strategies/common/deflation.hpp"
-#include "strategies/common/refined_strategy.hpp"
+#include "strategies/common/minres_strategy.hpp"
 
 namespace lockstep {
 
@@ -13,24 +12,19 @@ namespace lockstep {
 /// - with another inverse of A: that, updated by Woodbury's formula for at most "Largest Solid"
 ///   solid unknowns, else the inverse of the assembled A + B diag(C)^-1 B^T, which is sparse for
 ///   the nodes of deformable solids.
-class PressureSchur : public RefinedStrategy {
+class PressureSchur : public MinresStrategy {
  public:
   explicit PressureSchur(const ParameterList& list);
   static ParameterList valid_parameters();
   std::string name() const override { return "pressure-schur"; }
 
  private:
-  void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) override;
-  int correct(const BlockSystem& system, const CorrectionRequest& request,
-              Vector& correction) override;
-
+  Preconditioners make_preconditioners(const BlockSystem& system) override;
   RCP<const LinearOperator> schur_inverse(const BlockSystem& system);
 
-  MinresKind minres_;
   int largest_solid_;
   ParameterList pressure_list_, solid_list_;
   std::unique_ptr<Deflation> deflation_;  ///< null unless some solid is light
-  RCP<const LinearOperator> schur_inverse_, solid_preconditioner_;
 };
 
 }  // namespace lockstep
