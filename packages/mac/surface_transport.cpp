@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/simplex_queries.hpp"
+#include "mac/surface_marks.hpp"
 
 namespace lockstep {
 
@@ -25,8 +26,7 @@ SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
     : lattice_(lattice),
       tracer_(tracer),
       surface_(surface),
-      interpolation_(grid, lattice, usable, surface),
-      reach_(largest_displacement) {
+      interpolation_(grid, lattice, usable, surface) {
   if (interpolation_.nearby().empty())
     return;
   const SurfaceSnapshot<dim>& before = *surface.before;
@@ -42,24 +42,28 @@ SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
     swept_[s].extend(after.bounds(s));
     swept_[s] = widened<dim>(swept_[s], 2 * interpolation_.nearby().tolerance());
   }
+  // What a ray crosses, and the samples one cell around it, must be clear of surfaces.
+  near_ = mark_within(grid, before,
+                      (largest_displacement + 1 + surface_displacement_) * grid.spacing());
+  near_tiles_.resize(grid.n_owned_tiles());
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    const auto first = near_.begin() + tile * tile_volume<dim>;
+    near_tiles_[tile] = std::find(first, first + tile_volume<dim>, 1) != first + tile_volume<dim>;
+  }
 }
 
 template <int dim>
-bool SurfaceTransport<dim>::is_near(const Box<dim>& box) const {
-  if (interpolation_.nearby().empty())
-    return false;
-  return interpolation_.nearby().touches(
-      interpolation_.physical(widened<dim>(box, reach_ + 2 + surface_displacement_)));
-}
-
-template <int dim>
-void SurfaceTransport<dim>::enter(const Box<dim>& box) {
-  around_.clear();
-  if (interpolation_.nearby().empty())
-    return;
+void SurfaceTransport<dim>::enter(const Index<dim>& begin, const Index<dim>& end) {
+  Box<dim> box;
+  for (int a = 0; a < dim; ++a) {
+    box.min()[a] = begin[a];
+    box.max()[a] = end[a];
+  }
+  interpolation_.enter(widened<dim>(box, 1.1 + short_ray + surface_displacement_));
   const Box<dim> wide = interpolation_.physical(widened<dim>(box, surface_displacement_ + 0.01));
   const Box<dim> exact = interpolation_.physical(box);
   surface_.before->touching(wide, candidates_);
+  around_.clear();
   for (const int s : candidates_)
     if (swept_[s].intersects(exact))
       around_.push_back(s);

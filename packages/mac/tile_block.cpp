@@ -1,57 +1,115 @@
 #include "mac/tile_block.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <type_traits>
 
 namespace lockstep {
 
 namespace {
 
-double blend(double a, double b, double weight) {
+template <typename Values>
+Values blend(const Values& a, const Values& b, const Values& weight) {
   return a + weight * (b - a);
 }
 
-/// The 2^dim samples around each point of a row, in a form that compilers turn into vector code:
-/// calls f(i, first sample, strides, weights).
-template <int dim, typename Function>
-void for_each_stencil(const double* block, int width, SampleKind kind, const RowPoints<dim>& points,
-                      const Function& f) {
-  std::array<double, dim> offset;
-  offset.fill(0.5);
-  if (kind != cell_centers)
-    offset[kind] = 0;
-  for (int i = 0; i < tile_width<dim>; ++i) {
-    const double t0 = points[0][i] - offset[0], t1 = points[1][i] - offset[1];
-    const double f0 = std::floor(t0), f1 = std::floor(t1);
-    if constexpr (dim == 2) {
-      f(i, block + static_cast<int>(f0) + width * static_cast<int>(f1), t0 - f0, t1 - f1, 0.0);
-    } else {
-      const double t2 = points[2][i] - offset[2];
-      const double f2 = std::floor(t2);
-      const int first =
-          static_cast<int>(f0) + width * (static_cast<int>(f1) + width * static_cast<int>(f2));
-      f(i, block + first, t0 - f0, t1 - f1, t2 - f2);
-    }
-  }
-}
+/// The samples below a row of points along one axis, and the weights of those above.
+template <int dim>
+struct RowSplit {
+  RowValues<dim> below, weight;
+};
 
 template <int dim>
-void interpolate_row(const double* block, int width, SampleKind kind, const RowPoints<dim>& points,
-                     RowValues<dim>& values) {
-  const int up = width * width;
-  for_each_stencil<dim>(
-      block, width, kind, points, [&](int i, const double* c, double w0, double w1, double w2) {
-        const double lower = blend(blend(c[0], c[1], w0), blend(c[width], c[width + 1], w0), w1);
-        if constexpr (dim == 2) {
-          static_cast<void>(w2);
-          values[i] = lower;
-        } else {
-          const double* d = c + up;
-          const double upper = blend(blend(d[0], d[1], w0), blend(d[width], d[width + 1], w0), w1);
-          values[i] = blend(lower, upper, w2);
+RowSplit<dim> split(const RowValues<dim>& x, double offset) {
+  RowSplit<dim> result;
+  result.below = (x - offset).floor();
+  result.weight = (x - offset) - result.below;
+  return result;
+}
+
+/// The 2^dim samples around each point of a row.
+template <int dim>
+class RowStencil {
+ public:
+  /// The points split along each axis, and the strides of the block.
+  RowStencil(const std::array<const RowSplit<dim>*, dim>& splits,
+             const std::array<int, dim>& stride);
+
+  void interpolate(const double* block, RowValues<dim>& values) const {
+    if (in_step_)
+      values = blended<RowValues<dim>>(block + first_at(0), [&](int a) { return weight(a); });
+    else
+      for (int i = 0; i < tile_width<dim>; ++i)
+        values[i] = blended<double>(block + first_at(i), [&](int a) { return weight(a)[i]; });
+  }
+  void find_range(const double* block, RowValues<dim>& low, RowValues<dim>& high) const {
+    if (in_step_) {
+      const double* c = block + first_at(0);
+      low = high = at<RowValues<dim>>(c);
+      for (int k = 1; k < 1 << dim; ++k) {
+        low = low.min(at<RowValues<dim>>(c + corner(k)));
+        high = high.max(at<RowValues<dim>>(c + corner(k)));
+      }
+    } else {
+      for (int i = 0; i < tile_width<dim>; ++i) {
+        const double* c = block + first_at(i);
+        low[i] = high[i] = *c;
+        for (int k = 1; k < 1 << dim; ++k) {
+          low[i] = std::min(low[i], c[corner(k)]);
+          high[i] = std::max(high[i], c[corner(k)]);
         }
-      });
+      }
+    }
+  }
+
+ private:
+  const RowValues<dim>& weight(int axis) const { return splits_[axis]->weight; }
+  int first_at(int i) const { return static_cast<int>(first_[i]); }
+  /// From the lowest sample of a point to sample k; bit a of k: upper along axis a.
+  int corner(int k) const {
+    int step = 0;
+    for (int a = 0; a < dim; ++a)
+      step += ((k >> a) & 1) * stride_[a];
+    return step;
+  }
+  /// One sample, or those of a whole row that is in step.
+  template <typename Values>
+  static Values at(const double* c) {
+    if constexpr (std::is_same_v<Values, double>)
+      return *c;
+    else
+      return Eigen::Map<const Values>(c);
+  }
+  template <typename Values, typename Weight>
+  Values blended(const double* c, const Weight& weight) const {
+    const int up = stride_[1];
+    const Values w0 = weight(0), w1 = weight(1);
+    const auto in_plane = [&](const double* d) {
+      const Values lower = blend<Values>(at<Values>(d), at<Values>(d + 1), w0);
+      const Values upper = blend<Values>(at<Values>(d + up), at<Values>(d + up + 1), w0);
+      return blend<Values>(lower, upper, w1);
+    };
+    if constexpr (dim == 2)
+      return in_plane(c);
+    else
+      return blend<Values>(in_plane(c), in_plane(c + stride_[2]), weight(2));
+  }
+
+  std::array<const RowSplit<dim>*, dim> splits_;
+  std::array<int, dim> stride_;
+  RowValues<dim> first_;  ///< place of the lowest sample of each point
+  /// The points keep step with the samples: neighbours in the row look at neighbours in memory, so
+  /// that whole rows can be loaded at once.
+  bool in_step_;
+};
+
+template <int dim>
+RowStencil<dim>::RowStencil(const std::array<const RowSplit<dim>*, dim>& splits,
+                            const std::array<int, dim>& stride)
+    : splits_(splits), stride_(stride), first_(splits[0]->below) {
+  for (int a = 1; a < dim; ++a)
+    first_ += stride[a] * splits[a]->below;
+  const RowValues<dim> steps = RowValues<dim>::LinSpaced(0, tile_width<dim> - 1);
+  in_step_ = (first_ - first_[0] - steps).abs().maxCoeff() == 0;
 }
 
 }  // namespace
@@ -61,121 +119,115 @@ TileBlock<dim>::TileBlock(const SampleLattice<dim>& lattice, const RayTracer<dim
                           int reach)
     : lattice_(lattice), tracer_(tracer), reach_(reach), width_(tile_width<dim> + 2 * reach + 2) {
   int size = 1;
-  for (int a = 0; a < dim; ++a)
+  for (int a = 0; a < dim; ++a) {
+    stride_[a] = size;
     size *= width_;
-  for (auto& ids : ids_)
-    ids.resize(size);
+  }
   for (auto& component : velocity_)
     component.resize(size);
   field_.resize(size);
 }
 
 template <int dim>
-void TileBlock<dim>::copy(const std::vector<int>& ids, const double* field,
-                          std::vector<double>& block) {
-  for (std::size_t k = 0; k < ids.size(); ++k)
-    block[k] = ids[k] < 0 ? 0 : field[ids[k]];
-}
-
-template <int dim>
 bool TileBlock<dim>::enter(const Index<dim>& tile_begin) {
-  Index<dim> begin = tile_begin;
   for (int a = 0; a < dim; ++a) {
-    begin[a] -= reach_ + 1;
-    const bool periodic = lattice_.periodic(a);
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    lower_[a] = periodic ? -infinity : -begin[a];
-    upper_[a] = periodic ? infinity : lattice_.n_cells()[a] - begin[a];
+    begin_[a] = tile_begin[a] - reach_ - 1;
+    // Whatever the velocity is where there is no fluid, no ray may look outside the block.
+    lower_[a] = 0.5;
+    upper_[a] = width_ - 1.5;
+    if (lattice_.periodic(a))
+      continue;
+    lower_[a] = std::max<double>(lower_[a], -begin_[a]);
+    upper_[a] = std::min<double>(upper_[a], lattice_.n_cells()[a] - begin_[a]);
   }
-  for (SampleKind kind = cell_centers; kind < dim; ++kind)
-    if (!lattice_.find_block(kind, begin, width_, ids(kind)))
-      return false;
   for (int a = 0; a < dim; ++a)
-    copy(ids_[a], tracer_.velocity()[a], velocity_[a]);
+    if (!lattice_.copy_block(a, begin_, width_, tracer_.velocity()[a], velocity_[a].data()))
+      return false;
   return true;
 }
 
 template <int dim>
 void TileBlock<dim>::load(SampleKind kind, const double* field) {
   kind_ = kind;
-  copy(ids(kind), field, field_);
+  // Complete, because the velocity is.
+  lattice_.copy_block(kind, begin_, width_, field, field_.data());
 }
 
 template <int dim>
-RowPoints<dim> TileBlock<dim>::row(SampleKind kind, const Index<dim>& in_tile) const {
-  const Point<dim> offset = sample_offset<dim>(kind);
-  RowPoints<dim> row;
-  for (int i = 0; i < tile_width<dim>; ++i)
-    row[0][i] = reach_ + 1 + i + offset[0];
-  for (int a = 1; a < dim; ++a)
-    row[a].fill(reach_ + 1 + in_tile[a] + offset[a]);
-  // A tile may reach beyond the domain: what is there has no result, but must stay in the block.
+RowValues<dim> TileBlock<dim>::velocity_at_samples(int axis, int place) const {
+  using Row = Eigen::Map<const RowValues<dim>>;
+  const double* c = velocity_[axis].data() + place;
+  // A sample lies at a face of the component, or half-way between two along one axis or two.
+  if (axis == kind_)
+    return Row(c);
+  const RowValues<dim> half = RowValues<dim>::Constant(0.5);
+  if (kind_ == cell_centers)
+    return blend<RowValues<dim>>(Row(c), Row(c + stride_[axis]), half);
+  const int first = stride_[std::min(axis, kind_)], second = stride_[std::max(axis, kind_)];
+  c -= stride_[kind_];
+  const RowValues<dim> lower = blend<RowValues<dim>>(Row(c), Row(c + first), half);
+  const RowValues<dim> upper =
+      blend<RowValues<dim>>(Row(c + second), Row(c + second + first), half);
+  return blend<RowValues<dim>>(lower, upper, half);
+}
+
+template <int dim>
+void TileBlock<dim>::clamp(RowPoints<dim>& points) const {
+  // In this order, what is not a number goes to the lower limit.
   for (int a = 0; a < dim; ++a)
-    for (double& x : row[a])
-      clamp(x, a);
-  return row;
+    points[a] = RowValues<dim>::Constant(lower_[a]).max(points[a]).min(upper_[a]);
 }
 
 template <int dim>
-bool TileBlock<dim>::clamp(double& x, int axis) const {
-  const double inside = x < lower_[axis] ? lower_[axis] : x > upper_[axis] ? upper_[axis] : x;
-  const bool moved = inside != x;
-  x = inside;
-  return moved;
-}
-
-template <int dim>
-RowPoints<dim> TileBlock<dim>::displaced(const RowPoints<dim>& start, const RowPoints<dim>& at,
-                                         double factor) const {
-  RowPoints<dim> end;
-  for (int a = 0; a < dim; ++a) {
-    interpolate_row<dim>(velocity_[a].data(), width_, a, at, end[a]);
-    for (int i = 0; i < tile_width<dim>; ++i)
-      end[a][i] = start[a][i] + factor * end[a][i];
-  }
-  return end;
-}
-
-template <int dim>
-RowRays<dim> TileBlock<dim>::trace(const RowPoints<dim>& start, double direction) const {
+RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction) const {
   const double factor = direction * tracer_.cells_per_velocity();
-  RowPoints<dim> middle = displaced(start, start, 0.5 * factor);
+  const Point<dim> offset = sample_offset<dim>(kind_);
+  int place = 0;
+  RowPoints<dim> start, middle;
+  for (int a = 0; a < dim; ++a) {
+    const int first = reach_ + 1 + (a == 0 ? 0 : in_tile[a]);
+    start[a] = RowValues<dim>::Constant(first + offset[a]);
+    place += first * stride_[a];
+  }
+  start[0] += RowValues<dim>::LinSpaced(0, tile_width<dim> - 1);
   for (int a = 0; a < dim; ++a)
-    for (double& x : middle[a])
-      clamp(x, a);
+    middle[a] = start[a] + 0.5 * factor * velocity_at_samples(a, place);
+  clamp(middle);
+
+  std::array<RowSplit<dim>, dim> on_faces, at_centers;
+  for (int a = 0; a < dim; ++a) {
+    on_faces[a] = split<dim>(middle[a], 0);
+    at_centers[a] = split<dim>(middle[a], 0.5);
+  }
   RowRays<dim> rays;
-  rays.end = displaced(start, middle, factor);
-  rays.clipped.fill(false);
+  for (int a = 0; a < dim; ++a) {
+    std::array<const RowSplit<dim>*, dim> splits;
+    for (int b = 0; b < dim; ++b)
+      splits[b] = a == b ? &on_faces[b] : &at_centers[b];
+    RowStencil<dim>(splits, stride_).interpolate(velocity_[a].data(), rays.end[a]);
+    rays.end[a] = start[a] + factor * rays.end[a];
+  }
+  const RowPoints<dim> wanted = rays.end;
+  clamp(rays.end);
+  rays.clipped.setZero();
   for (int a = 0; a < dim; ++a)
-    for (int i = 0; i < tile_width<dim>; ++i)
-      rays.clipped[i] |= clamp(rays.end[a][i], a);
+    rays.clipped += (rays.end[a] - wanted[a]).abs();
   return rays;
 }
 
 template <int dim>
-void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values) const {
-  interpolate_row<dim>(field_.data(), width_, kind_, points, values);
-}
-
-template <int dim>
-void TileBlock<dim>::look_up_range(const RowPoints<dim>& points, RowValues<dim>& low,
-                                   RowValues<dim>& high) const {
-  const int row_step = width_, up = width_ * width_;
-  for_each_stencil<dim>(field_.data(), width_, kind_, points,
-                        [&](int i, const double* c, double, double, double) {
-                          const auto least = [](double a, double b) { return b < a ? b : a; };
-                          const auto most = [](double a, double b) { return a < b ? b : a; };
-                          const double* r = c + row_step;
-                          double lowest = least(least(c[0], c[1]), least(r[0], r[1]));
-                          double highest = most(most(c[0], c[1]), most(r[0], r[1]));
-                          if constexpr (dim == 3) {
-                            const double *d = c + up, *e = r + up;
-                            lowest = least(lowest, least(least(d[0], d[1]), least(e[0], e[1])));
-                            highest = most(highest, most(most(d[0], d[1]), most(e[0], e[1])));
-                          }
-                          low[i] = lowest;
-                          high[i] = highest;
-                        });
+void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values,
+                             RowValues<dim>* low, RowValues<dim>* high) const {
+  std::array<RowSplit<dim>, dim> along;
+  std::array<const RowSplit<dim>*, dim> splits;
+  for (int a = 0; a < dim; ++a) {
+    along[a] = split<dim>(points[a], a == kind_ ? 0 : 0.5);
+    splits[a] = &along[a];
+  }
+  const RowStencil<dim> stencil(splits, stride_);
+  stencil.interpolate(field_.data(), values);
+  if (low)
+    stencil.find_range(field_.data(), *low, *high);
 }
 
 template class TileBlock<2>;
