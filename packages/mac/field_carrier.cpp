@@ -35,12 +35,12 @@ int row_length(const TransportFrame<dim>& frame, SampleKind kind, int tile) {
 
 /// The values of a row, of which there is storage for the whole.
 template <int dim>
-Eigen::Map<RowValues<dim>> row_of(CellField& field, int first) {
-  return Eigen::Map<RowValues<dim>>(field.data() + first);
+Eigen::Map<RowValues<dim>> row_of(double* field, int first) {
+  return Eigen::Map<RowValues<dim>>(field + first);
 }
 template <int dim>
-Eigen::Map<const RowValues<dim>> row_of(const CellField& field, int first) {
-  return Eigen::Map<const RowValues<dim>>(field.data() + first);
+Eigen::Map<const RowValues<dim>> row_of(const double* field, int first) {
+  return Eigen::Map<const RowValues<dim>>(field + first);
 }
 
 }  // namespace
@@ -86,8 +86,9 @@ void FieldCarrier<dim>::begin(Passenger<dim>& passenger) {
   passenger.result->resize(passenger.start->size());
   if (passenger.corrects()) {
     passenger.half_way.resize(passenger.start->size());
-    passenger.low.resize(frame_.setting.grid.n_owned_cells());
-    passenger.high.resize(frame_.setting.grid.n_owned_cells());
+    // Every value is set before it is used.
+    passenger.low.reset(new double[frame_.setting.grid.n_owned_cells()]);
+    passenger.high.reset(new double[frame_.setting.grid.n_owned_cells()]);
   }
 }
 
@@ -107,12 +108,12 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
       if (passenger.corrects()) {
         block.look_up(rays.end, values, &low, &high);
         const auto stays_inside = rays.clipped == 0;
-        row_of<dim>(passenger.low, first) = stays_inside.select(low, 1);
-        row_of<dim>(passenger.high, first) = stays_inside.select(high, 0);
+        row_of<dim>(passenger.low.get(), first) = stays_inside.select(low, 1);
+        row_of<dim>(passenger.high.get(), first) = stays_inside.select(high, 0);
       } else {
         block.look_up(rays.end, values);
       }
-      row_of<dim>(carried, first) = values;
+      row_of<dim>(carried.data(), first) = values;
       for (int id = first; id < first + length; ++id) {
         bool has_value;
         if (!is_carried(kind, id, has_value))
@@ -258,12 +259,12 @@ bool FieldCarrier<dim>::correct_rows(std::vector<Passenger<dim>>& passengers,
       RowValues<dim> returned;
       const RowRays<dim> rays = block.trace(row, 1);
       block.look_up(rays.end, returned);
-      const RowValues<dim> start = row_of<dim>(*passenger.start, first);
-      const RowValues<dim> half_way = row_of<dim>(passenger.half_way, first);
-      const RowValues<dim> low = row_of<dim>(passenger.low, first);
-      const RowValues<dim> high = row_of<dim>(passenger.high, first);
+      const RowValues<dim> start = row_of<dim>(passenger.start->data(), first);
+      const RowValues<dim> half_way = row_of<dim>(passenger.half_way.data(), first);
+      const RowValues<dim> low = row_of<dim>(passenger.low.get(), first);
+      const RowValues<dim> high = row_of<dim>(passenger.high.get(), first);
       const RowValues<dim> better = (half_way - 0.5 * (returned - start)).max(low).min(high);
-      row_of<dim>(*passenger.result, first) =
+      row_of<dim>(passenger.result->data(), first) =
           (low <= high && rays.clipped == 0).select(better, half_way);
     });
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "mac/transport_frame.hpp"
@@ -13,9 +14,10 @@ struct Passenger {
   CarriedField<dim> field;           ///< kind and inflow set by the caller
   CellField* result = nullptr;
   std::vector<char>* invalid = nullptr;
-  CellField storage;    ///< of field.values
-  CellField half_way;   ///< MacCormack's first half: the result of semi-Lagrangian transport
-  CellField low, high;  ///< range of the samples used; empty (low > high): not to be corrected
+  CellField storage;   ///< of field.values
+  CellField half_way;  ///< MacCormack's first half: the result of semi-Lagrangian transport
+  /// Range of the samples used, of owned cells; empty (low > high): not to be corrected.
+  std::unique_ptr<double[]> low, high;
 
   bool corrects() const { return scheme == AdvectionScheme::maccormack; }
   /// Where the semi-Lagrangian values go.

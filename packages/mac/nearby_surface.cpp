@@ -50,9 +50,10 @@ bool NearbySurface<dim>::touches(const Box<dim>& box) const {
   if (entered_.contains(box))
     return any_image(box, [&](const Point<dim>& shift) {
       const Box<dim> there(box.min() - shift, box.max() - shift);
-      return std::any_of(near_.begin(), near_.end(), [&](const Near& near) {
-        return near.exact.intersects(there) && near.shift == shift;
-      });
+      for (std::size_t n = 0; n < near_.size(); ++n)
+        if (boxes_[n].intersects(there) && near_[n].shift == shift)
+          return true;
+      return false;
     });
   return any_image(box, [&](const Point<dim>& shift) {
     return snapshot_->touches(Box<dim>(box.min() - shift, box.max() - shift));
@@ -77,6 +78,7 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>&
 template <int dim>
 void NearbySurface<dim>::fetch(const Box<dim>& box) {
   near_.clear();
+  boxes_.clear();
   any_image(box, [&](const Point<dim>& shift) {
     snapshot_->touching(Box<dim>(box.min() - shift, box.max() - shift), found_);
     for (const int s : found_) {
@@ -90,9 +92,9 @@ void NearbySurface<dim>::fetch(const Box<dim>& box) {
       near.normal = area_vector<dim>(near.corners);
       near.normal.normalize();
       near.bounds = widened<dim>(near.bounds, 2 * tolerance_);
-      near.exact = snapshot_->bounds(s);
       near.shift = shift;
       near_.push_back(near);
+      boxes_.push_back(snapshot_->bounds(s));
     }
     return false;
   });
@@ -125,7 +127,7 @@ void NearbySurface<dim>::gather(const Box<dim>& box) {
   any_image(wide, [&](const Point<dim>& shift) {
     const Box<dim> there(wide.min() - shift, wide.max() - shift);
     for (int n = 0; n < static_cast<int>(near_.size()); ++n)
-      if (near_[n].exact.intersects(there) && near_[n].shift == shift)
+      if (boxes_[n].intersects(there) && near_[n].shift == shift)
         gathered_.push_back(n);
     return false;
   });

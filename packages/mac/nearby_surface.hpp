@@ -48,7 +48,6 @@ class NearbySurface {
     std::array<Point<dim>, dim> corners;  ///< of the image
     Point<dim> normal;                    ///< of length one; zero if the simplex is degenerate
     Box<dim> bounds;                      ///< of the image, widened by the tolerance
-    Box<dim> exact;                       ///< of the simplex, at its real place
     Point<dim> shift;                     ///< from the real place to the image
   };
   /// Puts the images of simplices that touch the box into `near_`.
@@ -69,6 +68,7 @@ class NearbySurface {
   double tolerance_;
   Box<dim> entered_;                             ///< what touches it is in near_
   std::vector<Near> near_;                       ///< ascending by image and simplex
+  std::vector<Box<dim>> boxes_;                  ///< of the simplices in near_, at their real place
   std::vector<int> gathered_, focused_, found_;  ///< gathered_, focused_: places in near_
 };
 

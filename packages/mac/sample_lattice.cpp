@@ -20,8 +20,9 @@ void copy_part(const Index<3>& size, const double* from, int width, double* to) 
     const double* source = from + z * tile_row * tile_row;
     double* target = to + z * width * width;
     if (size[0] == tile_row) {
+      using Row = Eigen::Array<double, tile_row, 1>;
       for (int y = 0; y < size[1]; ++y)
-        std::copy_n(source + y * tile_row, tile_row, target + y * width);
+        Eigen::Map<Row>(target + y * width) = Eigen::Map<const Row>(source + y * tile_row);
     } else {  // short rows are copied fastest across
       for (int x = 0; x < size[0]; ++x)
         for (int y = 0; y < size[1]; ++y)

@@ -10,7 +10,7 @@ namespace lockstep {
 namespace {
 
 /// Rays up to this length look at the simplices gathered around their start alone [cells].
-constexpr double short_ray = 1.5;
+constexpr double longest_short_ray = 1.5;
 /// How far before a surface a ray stops [cells].
 constexpr double stand_off = 1e-3;
 
@@ -42,6 +42,7 @@ SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
     swept_[s].extend(after.bounds(s));
     swept_[s] = widened<dim>(swept_[s], 2 * interpolation_.nearby().tolerance());
   }
+  short_ray_ = std::min(longest_short_ray, largest_displacement + surface_displacement_ + 0.01);
   // What a ray crosses, and the samples one cell around it, must be clear of surfaces.
   near_ = mark_within(grid, before,
                       (largest_displacement + 1 + surface_displacement_) * grid.spacing());
@@ -59,7 +60,7 @@ void SurfaceTransport<dim>::enter(const Index<dim>& begin, const Index<dim>& end
     box.min()[a] = begin[a];
     box.max()[a] = end[a];
   }
-  interpolation_.enter(widened<dim>(box, 1.1 + short_ray + surface_displacement_));
+  interpolation_.enter(widened<dim>(box, 1.1 + short_ray_ + surface_displacement_));
   const Box<dim> wide = interpolation_.physical(widened<dim>(box, surface_displacement_ + 0.01));
   const Box<dim> exact = interpolation_.physical(box);
   surface_.before->touching(wide, candidates_);
@@ -107,25 +108,25 @@ std::optional<SurfacePoint<dim>> SurfaceTransport<dim>::hit_on_way(const Point<d
                                                                    const Point<dim>& end) const {
   const NearbySurface<dim>& nearby = interpolation_.nearby();
   const Point<dim> a = interpolation_.physical(x), b = interpolation_.physical(end);
-  return (end - x).cwiseAbs().maxCoeff() <= short_ray ? nearby.near_hit(a, b)
-                                                      : nearby.first_hit(a, b);
+  return (end - x).cwiseAbs().maxCoeff() <= short_ray_ ? nearby.near_hit(a, b)
+                                                       : nearby.first_hit(a, b);
 }
 
 template <int dim>
 Ray<dim> SurfaceTransport<dim>::trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit) {
-  interpolation_.look_around(x, short_ray);
+  interpolation_.look_around(x, short_ray_);
   const double scale = tracer_.cells_per_velocity();
   Point<dim> displacement = scale * interpolation_.velocity_at(x, tracer_.velocity());
   Ray<dim> half;
   half.end = x - 0.5 * displacement;
   tracer_.clip(x, half);
   if (!hit_on_way(x, half.end)) {
-    const bool is_long = (half.end - x).cwiseAbs().maxCoeff() > short_ray;
+    const bool is_long = (half.end - x).cwiseAbs().maxCoeff() > short_ray_;
     if (is_long)
       interpolation_.look_around(half.end);
     displacement = scale * interpolation_.velocity_at(half.end, tracer_.velocity());
     if (is_long)
-      interpolation_.look_around(x, short_ray);
+      interpolation_.look_around(x, short_ray_);
   }
   Ray<dim> ray;
   ray.middle = half.end;
@@ -158,7 +159,7 @@ std::optional<double> SurfaceTransport<dim>::carry(const CarriedField<dim>& fiel
   const Ray<dim> ray = trace(x, hit);
   if (ray.inflow_axis >= 0)
     return field.inflow(ray);
-  const bool is_long = (ray.end - x).cwiseAbs().maxCoeff() > short_ray;
+  const bool is_long = (ray.end - x).cwiseAbs().maxCoeff() > short_ray_;
   if (is_long)
     interpolation_.look_around(ray.end);
   auto value = look_up(field, ray.end);

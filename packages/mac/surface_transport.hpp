@@ -54,7 +54,8 @@ class SurfaceTransport {
   const RayTracer<dim>& tracer_;
   const MovingSurface<dim>& surface_;
   VisibleInterpolation<dim> interpolation_;
-  double surface_displacement_ = 0;      ///< largest of a vertex over the step [cells]
+  double surface_displacement_ = 0;  ///< largest of a vertex over the step [cells]
+  double short_ray_ = 0;  ///< rays up to this length need only what is gathered around their start
   std::vector<char> near_, near_tiles_;  ///< owned cells and tiles; empty without surface
   std::vector<Box<dim>> swept_;  ///< box of each simplex over the step, a little widened [m]
   std::vector<int> around_;      ///< simplices whose swept box touches the box entered

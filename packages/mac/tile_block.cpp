@@ -12,19 +12,31 @@ Values blend(const Values& a, const Values& b, const Values& weight) {
   return a + weight * (b - a);
 }
 
+/// 0, 1, 2, ...
+template <int dim>
+RowValues<dim> steps() {
+  alignas(64) static constexpr double counted[] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                   8, 9, 10, 11, 12, 13, 14, 15};
+  static_assert(tile_width<dim> <= 16);
+  return Eigen::Map<const RowValues<dim>>(counted);
+}
+
 /// The samples below a row of points along one axis, and the weights of those above.
 template <int dim>
 struct RowSplit {
+  void set(const RowValues<dim>& x, int axis, double offset) {
+    below = (x - offset).floor();
+    weight = (x - offset) - below;
+    strays = below - below[0];
+    if (axis == 0)
+      strays -= steps<dim>();
+    strays = strays.abs();
+  }
   RowValues<dim> below, weight;
+  /// How far the points are from keeping step with the samples of their row, that is, from lying
+  /// one sample further each along x and at the same one along other axes. Integers.
+  RowValues<dim> strays;
 };
-
-template <int dim>
-RowSplit<dim> split(const RowValues<dim>& x, double offset) {
-  RowSplit<dim> result;
-  result.below = (x - offset).floor();
-  result.weight = (x - offset) - result.below;
-  return result;
-}
 
 /// The 2^dim samples around each point of a row.
 template <int dim>
@@ -32,7 +44,13 @@ class RowStencil {
  public:
   /// The points split along each axis, and the strides of the block.
   RowStencil(const std::array<const RowSplit<dim>*, dim>& splits,
-             const std::array<int, dim>& stride);
+             const std::array<int, dim>& stride)
+      : splits_(splits), stride_(stride) {
+    RowValues<dim> strays = splits[0]->strays;
+    for (int a = 1; a < dim; ++a)
+      strays += splits[a]->strays;
+    in_step_ = strays.sum() == 0;
+  }
 
   void interpolate(const double* block, RowValues<dim>& values) const {
     if (in_step_)
@@ -63,7 +81,12 @@ class RowStencil {
 
  private:
   const RowValues<dim>& weight(int axis) const { return splits_[axis]->weight; }
-  int first_at(int i) const { return static_cast<int>(first_[i]); }
+  int first_at(int i) const {
+    double first = splits_[0]->below[i];
+    for (int a = 1; a < dim; ++a)
+      first += stride_[a] * splits_[a]->below[i];
+    return static_cast<int>(first);
+  }
   /// From the lowest sample of a point to sample k; bit a of k: upper along axis a.
   int corner(int k) const {
     int step = 0;
@@ -96,21 +119,9 @@ class RowStencil {
 
   std::array<const RowSplit<dim>*, dim> splits_;
   std::array<int, dim> stride_;
-  RowValues<dim> first_;  ///< place of the lowest sample of each point
-  /// The points keep step with the samples: neighbours in the row look at neighbours in memory, so
-  /// that whole rows can be loaded at once.
+  /// Neighbours in the row look at neighbours in memory: whole rows can be loaded at once.
   bool in_step_;
 };
-
-template <int dim>
-RowStencil<dim>::RowStencil(const std::array<const RowSplit<dim>*, dim>& splits,
-                            const std::array<int, dim>& stride)
-    : splits_(splits), stride_(stride), first_(splits[0]->below) {
-  for (int a = 1; a < dim; ++a)
-    first_ += stride[a] * splits[a]->below;
-  const RowValues<dim> steps = RowValues<dim>::LinSpaced(0, tile_width<dim> - 1);
-  in_step_ = (first_ - first_[0] - steps).abs().maxCoeff() == 0;
-}
 
 }  // namespace
 
@@ -172,10 +183,9 @@ RowValues<dim> TileBlock<dim>::velocity_at_samples(int axis, int place) const {
 }
 
 template <int dim>
-void TileBlock<dim>::clamp(RowPoints<dim>& points) const {
+RowValues<dim> TileBlock<dim>::clamped(const RowValues<dim>& x, int axis) const {
   // In this order, what is not a number goes to the lower limit.
-  for (int a = 0; a < dim; ++a)
-    points[a] = RowValues<dim>::Constant(lower_[a]).max(points[a]).min(upper_[a]);
+  return RowValues<dim>::Constant(lower_[axis]).max(x).min(upper_[axis]);
 }
 
 template <int dim>
@@ -189,29 +199,27 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction) 
     start[a] = RowValues<dim>::Constant(first + offset[a]);
     place += first * stride_[a];
   }
-  start[0] += RowValues<dim>::LinSpaced(0, tile_width<dim> - 1);
+  start[0] += steps<dim>();
   for (int a = 0; a < dim; ++a)
-    middle[a] = start[a] + 0.5 * factor * velocity_at_samples(a, place);
-  clamp(middle);
+    middle[a] = clamped(start[a] + 0.5 * factor * velocity_at_samples(a, place), a);
 
   std::array<RowSplit<dim>, dim> on_faces, at_centers;
   for (int a = 0; a < dim; ++a) {
-    on_faces[a] = split<dim>(middle[a], 0);
-    at_centers[a] = split<dim>(middle[a], 0.5);
+    on_faces[a].set(middle[a], a, 0);
+    at_centers[a].set(middle[a], a, 0.5);
   }
   RowRays<dim> rays;
+  rays.clipped.setZero();
   for (int a = 0; a < dim; ++a) {
     std::array<const RowSplit<dim>*, dim> splits;
     for (int b = 0; b < dim; ++b)
       splits[b] = a == b ? &on_faces[b] : &at_centers[b];
-    RowStencil<dim>(splits, stride_).interpolate(velocity_[a].data(), rays.end[a]);
-    rays.end[a] = start[a] + factor * rays.end[a];
+    RowValues<dim> velocity;
+    RowStencil<dim>(splits, stride_).interpolate(velocity_[a].data(), velocity);
+    const RowValues<dim> wanted = start[a] + factor * velocity;
+    rays.end[a] = clamped(wanted, a);
+    rays.clipped += (rays.end[a] - wanted).abs();
   }
-  const RowPoints<dim> wanted = rays.end;
-  clamp(rays.end);
-  rays.clipped.setZero();
-  for (int a = 0; a < dim; ++a)
-    rays.clipped += (rays.end[a] - wanted[a]).abs();
   return rays;
 }
 
@@ -221,7 +229,7 @@ void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& value
   std::array<RowSplit<dim>, dim> along;
   std::array<const RowSplit<dim>*, dim> splits;
   for (int a = 0; a < dim; ++a) {
-    along[a] = split<dim>(points[a], a == kind_ ? 0 : 0.5);
+    along[a].set(points[a], a, a == kind_ ? 0 : 0.5);
     splits[a] = &along[a];
   }
   const RowStencil<dim> stencil(splits, stride_);

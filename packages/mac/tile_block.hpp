@@ -47,8 +47,8 @@ class TileBlock {
  private:
   /// Velocity component at a row of samples of the loaded field, the first at that place.
   RowValues<dim> velocity_at_samples(int axis, int place) const;
-  /// Moves points to where rays may go.
-  void clamp(RowPoints<dim>& points) const;
+  /// Coordinates along an axis, moved to where rays may go.
+  RowValues<dim> clamped(const RowValues<dim>& x, int axis) const;
 
   const SampleLattice<dim>& lattice_;
   const RayTracer<dim>& tracer_;
