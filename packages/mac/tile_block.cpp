@@ -54,7 +54,8 @@ class RowStencil {
 
   void interpolate(const double* block, RowValues<dim>& values) const {
     if (in_step_)
-      values = blended<RowValues<dim>>(block + first_at(0), [&](int a) { return weight(a); });
+      values = blended<RowValues<dim>>(block + first_at(0),
+                                       [&](int a) -> const RowValues<dim>& { return weight(a); });
     else
       for (int i = 0; i < tile_width<dim>; ++i)
         values[i] = blended<double>(block + first_at(i), [&](int a) { return weight(a)[i]; });
@@ -105,7 +106,7 @@ class RowStencil {
   template <typename Values, typename Weight>
   Values blended(const double* c, const Weight& weight) const {
     const int up = stride_[1];
-    const Values w0 = weight(0), w1 = weight(1);
+    const auto &w0 = weight(0), &w1 = weight(1);
     const auto in_plane = [&](const double* d) {
       const Values lower = blend<Values>(at<Values>(d), at<Values>(d + 1), w0);
       const Values upper = blend<Values>(at<Values>(d + up), at<Values>(d + up + 1), w0);
@@ -193,15 +194,18 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction) 
   const double factor = direction * tracer_.cells_per_velocity();
   const Point<dim> offset = sample_offset<dim>(kind_);
   int place = 0;
-  RowPoints<dim> start, middle;
+  Point<dim> first;
   for (int a = 0; a < dim; ++a) {
-    const int first = reach_ + 1 + (a == 0 ? 0 : in_tile[a]);
-    start[a] = RowValues<dim>::Constant(first + offset[a]);
-    place += first * stride_[a];
+    const int cell = reach_ + 1 + (a == 0 ? 0 : in_tile[a]);
+    first[a] = cell + offset[a];
+    place += cell * stride_[a];
   }
-  start[0] += steps<dim>();
+  const auto start = [&](int a) -> RowValues<dim> {
+    return first[a] + (a == 0 ? 1.0 : 0.0) * steps<dim>();
+  };
+  RowPoints<dim> middle;
   for (int a = 0; a < dim; ++a)
-    middle[a] = clamped(start[a] + 0.5 * factor * velocity_at_samples(a, place), a);
+    middle[a] = clamped(start(a) + 0.5 * factor * velocity_at_samples(a, place), a);
 
   std::array<RowSplit<dim>, dim> on_faces, at_centers;
   for (int a = 0; a < dim; ++a) {
@@ -216,7 +220,7 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction) 
       splits[b] = a == b ? &on_faces[b] : &at_centers[b];
     RowValues<dim> velocity;
     RowStencil<dim>(splits, stride_).interpolate(velocity_[a].data(), velocity);
-    const RowValues<dim> wanted = start[a] + factor * velocity;
+    const RowValues<dim> wanted = start(a) + factor * velocity;
     rays.end[a] = clamped(wanted, a);
     rays.clipped += (rays.end[a] - wanted).abs();
   }
