@@ -42,7 +42,7 @@ struct RowSplit {
 template <int dim>
 class RowStencil {
  public:
-  /// The points split along each axis, and the strides of the block.
+  /// The points split along each axis, and the strides of the block; both must live on.
   RowStencil(const std::array<const RowSplit<dim>*, dim>& splits,
              const std::array<int, dim>& stride)
       : splits_(splits), stride_(stride) {
@@ -118,8 +118,8 @@ class RowStencil {
       return blend<Values>(in_plane(c), in_plane(c + stride_[2]), weight(2));
   }
 
-  std::array<const RowSplit<dim>*, dim> splits_;
-  std::array<int, dim> stride_;
+  const std::array<const RowSplit<dim>*, dim>& splits_;
+  const std::array<int, dim>& stride_;
   /// Neighbours in the row look at neighbours in memory: whole rows can be loaded at once.
   bool in_step_;
 };
@@ -161,6 +161,7 @@ bool TileBlock<dim>::enter(const Index<dim>& tile_begin) {
 template <int dim>
 void TileBlock<dim>::load(SampleKind kind, const double* field) {
   kind_ = kind;
+  offset_ = sample_offset<dim>(kind);
   // Complete, because the velocity is.
   lattice_.copy_block(kind, begin_, width_, field, field_.data());
 }
@@ -192,12 +193,11 @@ RowValues<dim> TileBlock<dim>::clamped(const RowValues<dim>& x, int axis) const 
 template <int dim>
 RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction) const {
   const double factor = direction * tracer_.cells_per_velocity();
-  const Point<dim> offset = sample_offset<dim>(kind_);
   int place = 0;
   Point<dim> first;
   for (int a = 0; a < dim; ++a) {
     const int cell = reach_ + 1 + (a == 0 ? 0 : in_tile[a]);
-    first[a] = cell + offset[a];
+    first[a] = cell + offset_[a];
     place += cell * stride_[a];
   }
   const auto start = [&](int a) -> RowValues<dim> {
@@ -233,7 +233,7 @@ void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& value
   std::array<RowSplit<dim>, dim> along;
   std::array<const RowSplit<dim>*, dim> splits;
   for (int a = 0; a < dim; ++a) {
-    along[a].set(points[a], a, a == kind_ ? 0 : 0.5);
+    along[a].set(points[a], a, offset_[a]);
     splits[a] = &along[a];
   }
   const RowStencil<dim> stencil(splits, stride_);

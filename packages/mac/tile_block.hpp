@@ -57,7 +57,8 @@ class TileBlock {
   std::array<int, dim> stride_{};              ///< of neighbours in the block
   std::array<double, dim> lower_{}, upper_{};  ///< where rays may go, relative to the block
   std::array<std::vector<double>, dim> velocity_;
-  SampleKind kind_ = cell_centers;
+  SampleKind kind_ = cell_centers;  ///< of the loaded field
+  Point<dim> offset_;               ///< of its samples in their cells
   std::vector<double> field_;
 };
 
