@@ -160,6 +160,8 @@ class TiledGrid {
   void store_tiles(const Owners& owners, int ghost_tiles);
   void build_directory();
   void link_neighbors();
+  /// `neighbor` of a lattice cell of that tile.
+  int neighbor_in_lattice(const Tile& tile, int cell, int axis, int side) const;
   /// Local tile at these tile coordinates, or -1.
   int find_tile(const Index<dim>& tile) const;
 

@@ -50,8 +50,13 @@ inline int TiledGrid<dim>::cell(const Index<dim>& coordinates) const {
 template <int dim>
 inline int TiledGrid<dim>::neighbor(int cell, int axis, int side) const {
   LOCKSTEP_ASSERT(in_lattice(cell));
+  return neighbor_in_lattice(tiles_[tile_of(cell)], cell, axis, side);
+}
+
+template <int dim>
+inline int TiledGrid<dim>::neighbor_in_lattice(const Tile& tile, int cell, int axis,
+                                               int side) const {
   const int position = local(cell, axis);
-  const Tile& tile = tiles_[tile_of(cell)];
   if (side == 0) {
     if (position > 0)
       return cell - stride(axis);
@@ -188,10 +193,10 @@ inline void TiledGrid<dim>::for_each_owned_row(const Function& f) const {
       CellRow<dim> row;
       row.begin = first + offset;
       row.n = n;
-      row.neighbors[0] = neighbor(row.begin, 0, 0);
-      row.neighbors[1] = neighbor(row.begin + n - 1, 0, 1);
+      row.neighbors[0] = neighbor_in_lattice(tiles_[t], row.begin, 0, 0);
+      row.neighbors[1] = neighbor_in_lattice(tiles_[t], row.begin + n - 1, 0, 1);
       for (int i = 2; i < 2 * dim; ++i)
-        row.neighbors[i] = neighbor(row.begin, i / 2, i % 2);
+        row.neighbors[i] = neighbor_in_lattice(tiles_[t], row.begin, i / 2, i % 2);
       f(row);
     });
   }

@@ -33,6 +33,16 @@ int row_length(const TransportFrame<dim>& frame, SampleKind kind, int tile) {
                   frame.samples_end(kind, 0) - frame.setting.grid.tile_begin(tile)[0]);
 }
 
+/// The values of a row, of which there is storage for the whole.
+template <int dim>
+Eigen::Map<RowValues<dim>> row_of(double* field, int first) {
+  return Eigen::Map<RowValues<dim>>(field + first);
+}
+template <int dim>
+Eigen::Map<const RowValues<dim>> row_of(const double* field, int first) {
+  return Eigen::Map<const RowValues<dim>>(field + first);
+}
+
 }  // namespace
 
 template <int dim>
@@ -48,30 +58,37 @@ bool FieldCarrier<dim>::is_carried(SampleKind kind, int id, bool& has_value) con
 }
 
 template <int dim>
+void FieldCarrier<dim>::keep(Passenger<dim>& passenger, int id, bool has_value) const {
+  passenger.carried()[id] = (*passenger.start)[id];
+  (*passenger.invalid)[id] = !has_value;
+  passenger.forbid_correction(id);
+}
+
+template <int dim>
 void FieldCarrier<dim>::carry(std::vector<Passenger<dim>>& passengers) {
   for (Passenger<dim>& passenger : passengers)
     begin(passenger);
   for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
-    if (frame_.paths[tile] == TilePath::rows && carry_rows(passengers, tile))
-      continue;
-    for (Passenger<dim>& passenger : passengers)
-      if (frame_.paths[tile] == TilePath::surface)
-        carry_surface_tile(passenger, tile);
-      else
+    const bool by_rows = frame_.plans[tile].by_rows && carry_rows(passengers, tile);
+    if (frame_.plans[tile].near_surface)
+      carry_near_surfaces(passengers, tile, by_rows);
+    else if (!by_rows)
+      for (Passenger<dim>& passenger : passengers)
         carry_singles(passenger, tile);
   }
-  for (Passenger<dim>& passenger : passengers)
-    if (passenger.corrects())
-      correct(passenger);
+  if (passengers.front().corrects())
+    correct(passengers);
 }
 
 template <int dim>
 void FieldCarrier<dim>::begin(Passenger<dim>& passenger) {
   passenger.field.values = frame_.setting.halo.fetch(*passenger.start, passenger.storage).data();
-  *passenger.result = *passenger.start;
+  passenger.result->resize(passenger.start->size());
   if (passenger.corrects()) {
-    passenger.low.assign(frame_.setting.grid.n_owned_cells(), 1);
-    passenger.high.assign(frame_.setting.grid.n_owned_cells(), 0);
+    passenger.half_way.resize(passenger.start->size());
+    // Every value is set before it is used.
+    passenger.low.reset(new double[frame_.setting.grid.n_owned_cells()]);
+    passenger.high.reset(new double[frame_.setting.grid.n_owned_cells()]);
   }
 }
 
@@ -83,24 +100,24 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
   for (Passenger<dim>& passenger : passengers) {
     const SampleKind kind = passenger.field.kind;
     const int length = row_length(frame_, kind, tile);
+    CellField& carried = passenger.carried();
     block.load(kind, passenger.field.values);
     for_each_row(frame_, kind, tile, [&](const Index<dim>& row, int first) {
       RowValues<dim> values, low, high;
-      const RowRays<dim> rays = block.trace(block.row(kind, row), -1);
-      block.look_up(rays.end, values);
-      if (passenger.corrects())
-        block.look_up_range(rays.end, low, high);
-      for (int i = 0, id = first; i < length; ++i, ++id) {
+      const RowRays<dim> rays = block.trace(row, -1);
+      if (passenger.corrects()) {
+        block.look_up(rays.end, values, &low, &high);
+        const auto stays_inside = rays.clipped == 0;
+        row_of<dim>(passenger.low.get(), first) = stays_inside.select(low, 1);
+        row_of<dim>(passenger.high.get(), first) = stays_inside.select(high, 0);
+      } else {
+        block.look_up(rays.end, values);
+      }
+      row_of<dim>(carried.data(), first) = values;
+      for (int id = first; id < first + length; ++id) {
         bool has_value;
-        if (!is_carried(kind, id, has_value)) {
-          (*passenger.invalid)[id] = !has_value;
-          continue;
-        }
-        (*passenger.result)[id] = values[i];
-        if (passenger.corrects() && !rays.clipped[i]) {
-          passenger.low[id] = low[i];
-          passenger.high[id] = high[i];
-        }
+        if (!is_carried(kind, id, has_value))
+          keep(passenger, id, has_value);
       }
     });
   }
@@ -118,12 +135,13 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
   const SampleKind kind = passenger.field.kind;
   bool has_value;
   if (!is_carried(kind, id, has_value)) {
-    (*passenger.invalid)[id] = !has_value;
+    keep(passenger, id, has_value);
     return;
   }
+  passenger.forbid_correction(id);
   const Ray<dim> ray = frame_.tracer->trace(x, -1);
   if (ray.complete && ray.inflow_axis >= 0) {
-    (*passenger.result)[id] = passenger.field.inflow(ray);
+    passenger.carried()[id] = passenger.field.inflow(ray);
     return;
   }
   const Stencil<dim> stencil = frame_.lattice->locate(kind, ray.end);
@@ -132,7 +150,7 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
     return;
   }
   const double* values = passenger.field.values;
-  (*passenger.result)[id] = interpolate<dim>(stencil, values);
+  passenger.carried()[id] = interpolate<dim>(stencil, values);
   if (!passenger.corrects() || ray.clipped)
     return;
   passenger.low[id] = std::numeric_limits<double>::infinity();
@@ -146,113 +164,120 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
 
 template <int dim>
 void FieldCarrier<dim>::carry_seeing(Passenger<dim>& passenger, int id, const Point<dim>& x) {
+  passenger.forbid_correction(id);
   if (const auto value = frame_.near_surface->carry(passenger.field, x))
-    (*passenger.result)[id] = *value;
+    passenger.carried()[id] = *value;
   else
-    (*passenger.invalid)[id] = 1;
+    keep(passenger, id, false);
 }
 
 template <int dim>
-void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x) {
+void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x,
+                                        bool by_rows) {
   SurfaceTransport<dim>& near_surface = *frame_.near_surface;
   const SampleKind kind = passenger.field.kind;
   bool has_value;
   const bool carried = is_carried(kind, id, has_value);
-  if (!has_value || (carried && near_surface.swept(x))) {
-    (*passenger.invalid)[id] = 1;
+  if (!carried || near_surface.swept(x)) {
+    keep(passenger, id, !carried && has_value);
     return;
   }
-  if (!carried)
-    return;
   const Ray<dim> ray = frame_.tracer->trace(x, -1);
   Box<dim> points(x);
   points.extend(ray.middle).extend(ray.end);
   if (!ray.complete || !near_surface.clear(points, false)) {
     if (kind != cell_centers && near_surface.inside(x))
-      (*passenger.invalid)[id] = 1;
+      keep(passenger, id, false);
     else
       carry_seeing(passenger, id, x);
     return;
   }
-  carry_single(passenger, id, x);
-  if (!passenger.corrects() || passenger.low[id] > passenger.high[id])
+  if (!by_rows)
+    carry_single(passenger, id, x);
+  if (!passenger.may_correct(id))
     return;
   const Ray<dim> forward = frame_.tracer->trace(x, 1);
   points.extend(forward.middle).extend(forward.end);
   if (!forward.complete || !near_surface.clear(points, true))
-    passenger.low[id] = passenger.high[id] + 1;
+    passenger.forbid_correction(id);
 }
 
 template <int dim>
-void FieldCarrier<dim>::carry_surface_tile(Passenger<dim>& passenger, int tile) {
+void FieldCarrier<dim>::carry_near_surfaces(std::vector<Passenger<dim>>& passengers, int tile,
+                                            bool by_rows) {
   constexpr int width = 1 << log_block_width;
   constexpr int log_n_along = log_tile_width<dim> - log_block_width;
   SurfaceTransport<dim>& near_surface = *frame_.near_surface;
-  const SampleKind kind = passenger.field.kind;
   for (int block = 0; block < 1 << (dim * log_n_along); ++block) {
     Index<dim> begin = frame_.setting.grid.tile_begin(tile), end;
-    Box<dim> box;
     for (int a = 0; a < dim; ++a) {
       begin[a] += ((block >> (a * log_n_along)) & ((1 << log_n_along) - 1)) * width;
       end[a] = begin[a] + width;
-      box.min()[a] = begin[a];
-      box.max()[a] = end[a];
     }
-    const bool near = near_surface.is_near(box);
-    if (near)
-      near_surface.enter(box);
-    frame_.for_each_sample(kind, tile, begin, end, [&](int id, const Point<dim>& x) {
-      if (near)
-        carry_with_care(passenger, id, x);
-      else
-        carry_single(passenger, id, x);
-    });
+    bool entered = false;
+    for (Passenger<dim>& passenger : passengers)
+      frame_.for_each_sample(passenger.field.kind, tile, begin, end,
+                             [&](int id, const Point<dim>& x) {
+                               if (!near_surface.is_near(id)) {
+                                 if (!by_rows)
+                                   carry_single(passenger, id, x);
+                                 return;
+                               }
+                               if (!entered)
+                                 near_surface.enter(begin, end);
+                               entered = true;
+                               carry_with_care(passenger, id, x, by_rows);
+                             });
   }
 }
 
 template <int dim>
-void FieldCarrier<dim>::correct(Passenger<dim>& passenger) {
-  CellField storage;
-  const double* carried = frame_.setting.halo.fetch(*passenger.result, storage).data();
-  CellField corrected = *passenger.result;
+void FieldCarrier<dim>::correct(std::vector<Passenger<dim>>& passengers) {
+  std::vector<const double*> carried;
+  for (Passenger<dim>& passenger : passengers)
+    carried.push_back(frame_.setting.halo.fetch(passenger.half_way, passenger.storage).data());
   for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
-    if (frame_.paths[tile] == TilePath::rows && correct_rows(passenger, carried, tile, corrected))
+    if (frame_.plans[tile].by_rows && correct_rows(passengers, carried, tile))
       continue;
-    frame_.for_each_sample(passenger.field.kind, tile, [&](int id, const Point<dim>& x) {
-      if (passenger.low[id] <= passenger.high[id])
-        correct_single(passenger, carried, id, x, corrected);
-    });
+    for (std::size_t p = 0; p < passengers.size(); ++p)
+      frame_.for_each_sample(passengers[p].field.kind, tile, [&](int id, const Point<dim>& x) {
+        correct_single(passengers[p], carried[p], id, x);
+      });
   }
-  passenger.result->swap(corrected);
 }
 
 template <int dim>
-bool FieldCarrier<dim>::correct_rows(Passenger<dim>& passenger, const double* carried, int tile,
-                                     CellField& corrected) {
+bool FieldCarrier<dim>::correct_rows(std::vector<Passenger<dim>>& passengers,
+                                     const std::vector<const double*>& carried, int tile) {
   TileBlock<dim>& block = *frame_.block;
   if (!block.enter(frame_.setting.grid.tile_begin(tile)))
     return false;
-  const SampleKind kind = passenger.field.kind;
-  const int length = row_length(frame_, kind, tile);
-  block.load(kind, carried);
-  for_each_row(frame_, kind, tile, [&](const Index<dim>& row, int first) {
-    RowValues<dim> returned;
-    const RowRays<dim> rays = block.trace(block.row(kind, row), 1);
-    block.look_up(rays.end, returned);
-    for (int i = 0, id = first; i < length; ++i, ++id) {
-      if (passenger.low[id] > passenger.high[id] || rays.clipped[i])
-        continue;
-      const double error = 0.5 * (returned[i] - (*passenger.start)[id]);
-      corrected[id] =
-          std::clamp((*passenger.result)[id] - error, passenger.low[id], passenger.high[id]);
-    }
-  });
+  for (std::size_t p = 0; p < passengers.size(); ++p) {
+    Passenger<dim>& passenger = passengers[p];
+    block.load(passenger.field.kind, carried[p]);
+    for_each_row(frame_, passenger.field.kind, tile, [&](const Index<dim>& row, int first) {
+      RowValues<dim> returned;
+      const RowRays<dim> rays = block.trace(row, 1);
+      block.look_up(rays.end, returned);
+      const RowValues<dim> start = row_of<dim>(passenger.start->data(), first);
+      const RowValues<dim> half_way = row_of<dim>(passenger.half_way.data(), first);
+      const RowValues<dim> low = row_of<dim>(passenger.low.get(), first);
+      const RowValues<dim> high = row_of<dim>(passenger.high.get(), first);
+      const RowValues<dim> better = (half_way - 0.5 * (returned - start)).max(low).min(high);
+      row_of<dim>(passenger.result->data(), first) =
+          (low <= high && rays.clipped == 0).select(better, half_way);
+    });
+  }
   return true;
 }
 
 template <int dim>
-void FieldCarrier<dim>::correct_single(const Passenger<dim>& passenger, const double* carried,
-                                       int id, const Point<dim>& x, CellField& corrected) const {
+void FieldCarrier<dim>::correct_single(Passenger<dim>& passenger, const double* carried, int id,
+                                       const Point<dim>& x) const {
+  double& result = (*passenger.result)[id];
+  result = passenger.half_way[id];
+  if (!passenger.may_correct(id))
+    return;
   const Ray<dim> ray = frame_.tracer->trace(x, 1);
   if (!ray.complete || ray.clipped)
     return;
@@ -260,8 +285,7 @@ void FieldCarrier<dim>::correct_single(const Passenger<dim>& passenger, const do
   if (!stencil.complete())
     return;
   const double error = 0.5 * (interpolate<dim>(stencil, carried) - (*passenger.start)[id]);
-  corrected[id] =
-      std::clamp((*passenger.result)[id] - error, passenger.low[id], passenger.high[id]);
+  result = std::clamp(result - error, passenger.low[id], passenger.high[id]);
 }
 
 template class FieldCarrier<2>;

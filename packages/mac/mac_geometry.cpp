@@ -92,6 +92,19 @@ void ask_rule(const MacDomain<dim>& domain, double density, const OpenFractionRu
   geometry.volumes.push_back(volume);
 }
 
+/// Owned tiles all of whose cells are fluid, with no surface near.
+template <int dim>
+std::vector<char> find_plain_tiles(const TiledGrid<dim>& grid, const MacGeometry<dim>& geometry) {
+  std::vector<char> plain(grid.n_owned_tiles());
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    bool is_plain = true;
+    for (int cell = tile * tile_volume<dim>; cell < (tile + 1) * tile_volume<dim>; ++cell)
+      is_plain &= geometry.state.cells[cell] == CellState::fluid && !geometry.near_surface(cell);
+    plain[tile] = is_plain;
+  }
+  return plain;
+}
+
 /// Partly open faces on any rank give every rank the array, for the exchange.
 template <int dim>
 void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
@@ -147,9 +160,15 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
     geometry.near = std::move(marks.near);
   }
   number_pressures(domain, geometry);
+  const std::vector<char> plain = find_plain_tiles(grid, geometry);
   for (int axis = 0; axis < dim; ++axis) {
     state.faces[axis].assign(grid.n_stored_cells(), FaceState::inactive);
+    const int place_in_tile = (tile_width<dim> - 1) << (axis * log_tile_width<dim>);
     grid.for_each_owned_face(axis, [&](int cell) {
+      if (plain[TiledGrid<dim>::tile_of(cell)] && (cell & place_in_tile) != 0) {
+        state.faces[axis][cell] = FaceState::free;
+        return;
+      }
       const FaceCells face = cells_of_face(grid, state.cells, axis, cell);
       FaceState& result = state.faces[axis][cell];
       result = state_far_from_surfaces(domain, state.cells, axis, face);

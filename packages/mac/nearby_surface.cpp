@@ -1,5 +1,6 @@
 #include "mac/nearby_surface.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -46,6 +47,14 @@ template <int dim>
 bool NearbySurface<dim>::touches(const Box<dim>& box) const {
   if (empty())
     return false;
+  if (entered_.contains(box))
+    return any_image(box, [&](const Point<dim>& shift) {
+      const Box<dim> there(box.min() - shift, box.max() - shift);
+      for (std::size_t n = 0; n < near_.size(); ++n)
+        if (boxes_[n].intersects(there) && near_[n].shift == shift)
+          return true;
+      return false;
+    });
   return any_image(box, [&](const Point<dim>& shift) {
     return snapshot_->touches(Box<dim>(box.min() - shift, box.max() - shift));
   });
@@ -67,42 +76,82 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>&
 }
 
 template <int dim>
-void NearbySurface<dim>::gather(const Box<dim>& box) {
+void NearbySurface<dim>::fetch(const Box<dim>& box) {
   near_.clear();
-  all_.clear();
-  focused_.clear();
-  if (empty())
-    return;
-  const Box<dim> wide = widened<dim>(box, tolerance_);
-  any_image(wide, [&](const Point<dim>& shift) {
-    snapshot_->touching(Box<dim>(wide.min() - shift, wide.max() - shift), found_);
+  boxes_.clear();
+  any_image(box, [&](const Point<dim>& shift) {
+    snapshot_->touching(Box<dim>(box.min() - shift, box.max() - shift), found_);
     for (const int s : found_) {
-      Near near{s, snapshot_->corners(s), Box<dim>(), shift};
+      Near near;
+      near.simplex = s;
+      near.corners = snapshot_->corners(s);
       for (Point<dim>& corner : near.corners) {
         corner += shift;
         near.bounds.extend(corner);
       }
+      near.normal = area_vector<dim>(near.corners);
+      near.normal.normalize();
       near.bounds = widened<dim>(near.bounds, 2 * tolerance_);
+      near.shift = shift;
       near_.push_back(near);
+      boxes_.push_back(snapshot_->bounds(s));
     }
     return false;
   });
-  all_.resize(near_.size());
-  std::iota(all_.begin(), all_.end(), 0);
+}
+
+template <int dim>
+void NearbySurface<dim>::enter(const Box<dim>& box) {
+  gathered_.clear();
+  focused_.clear();
+  if (empty())
+    return;
+  entered_ = box;
+  fetch(box);
+}
+
+template <int dim>
+void NearbySurface<dim>::gather(const Box<dim>& box) {
+  gathered_.clear();
+  focused_.clear();
+  if (empty())
+    return;
+  const Box<dim> wide = widened<dim>(box, tolerance_);
+  if (!entered_.contains(wide)) {
+    entered_.setEmpty();
+    fetch(wide);
+    gathered_.resize(near_.size());
+    std::iota(gathered_.begin(), gathered_.end(), 0);
+    return;
+  }
+  any_image(wide, [&](const Point<dim>& shift) {
+    const Box<dim> there(wide.min() - shift, wide.max() - shift);
+    for (int n = 0; n < static_cast<int>(near_.size()); ++n)
+      if (boxes_[n].intersects(there) && near_[n].shift == shift)
+        gathered_.push_back(n);
+    return false;
+  });
 }
 
 template <int dim>
 void NearbySurface<dim>::focus(const Box<dim>& box) {
   focused_.clear();
-  for (const int n : all_)
-    if (near_[n].bounds.intersects(box))
+  const Point<dim> center = box.center(), half = 0.5 * box.sizes();
+  for (const int n : gathered_) {
+    const Near& near = near_[n];
+    if (!near.bounds.intersects(box))
+      continue;
+    // No segment in the box meets a simplex whose plane passes by.
+    const double height = std::abs(near.normal.dot(center - near.corners[0]));
+    if (height <= near.normal.cwiseAbs().dot(half) + 3 * tolerance_)
       focused_.push_back(n);
+  }
 }
 
 template <int dim>
 std::optional<SurfacePoint<dim>> NearbySurface<dim>::near_hit(const Point<dim>& a,
                                                               const Point<dim>& b) const {
-  return hit_among(all_, a, b);
+  return hit_among(gathered_, a, b);
 }
 
 template <int dim>
@@ -116,6 +165,10 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::hit_among(const std::vector
   for (const int n : among) {
     const Near& near = near_[n];
     if (!near.bounds.intersects(box))
+      continue;
+    const double from = near.normal.dot(a - near.corners[0]);
+    const double to = near.normal.dot(b - near.corners[0]);
+    if (std::min(from, to) > 3 * tolerance_ || std::max(from, to) < -3 * tolerance_)
       continue;
     if (is_point) {
       const auto closest = closest_on_simplex<dim>(near.corners, a);

@@ -29,9 +29,11 @@ class NearbySurface {
   /// that of a periodic image.
   std::optional<SurfacePoint<dim>> first_hit(const Point<dim>& a, const Point<dim>& b) const;
 
-  /// Remembers the simplices that touch the box [m]; replaces what was gathered before.
+  /// Remembers what touches the box [m], so that `touches` and `gather` for boxes inside it are
+  /// fast; forgets what was gathered.
+  void enter(const Box<dim>& box);
+  /// Picks the simplices that touch the box [m]; replaces what was gathered before.
   void gather(const Box<dim>& box);
-  bool nothing_near() const { return near_.empty(); }
   /// First of the gathered simplices that the segment, inside the box, meets.
   std::optional<SurfacePoint<dim>> near_hit(const Point<dim>& a, const Point<dim>& b) const;
   /// Picks the gathered simplices that touch a smaller box, for many segments inside it.
@@ -44,9 +46,12 @@ class NearbySurface {
   struct Near {
     int simplex;
     std::array<Point<dim>, dim> corners;  ///< of the image
+    Point<dim> normal;                    ///< of length one; zero if the simplex is degenerate
     Box<dim> bounds;                      ///< of the image, widened by the tolerance
     Point<dim> shift;                     ///< from the real place to the image
   };
+  /// Puts the images of simplices that touch the box into `near_`.
+  void fetch(const Box<dim>& box);
   /// Calls f(shift) for each period by which the surface may have to be moved to touch the box,
   /// until f returns true.
   template <typename Function>
@@ -61,8 +66,10 @@ class NearbySurface {
   Snapshot snapshot_;
   Point<dim> lower_, period_;  ///< period 0: not periodic
   double tolerance_;
-  std::vector<Near> near_;
-  std::vector<int> all_, focused_, found_;  ///< all_: 0, 1, 2, ...
+  Box<dim> entered_;                             ///< what touches it is in near_
+  std::vector<Near> near_;                       ///< ascending by image and simplex
+  std::vector<Box<dim>> boxes_;                  ///< of the simplices in near_, at their real place
+  std::vector<int> gathered_, focused_, found_;  ///< gathered_, focused_: places in near_
 };
 
 /// The box widened by a distance on all sides.

@@ -22,6 +22,11 @@ class DisjointSets {
     j = root(j);
     parent_[std::max(i, j)] = std::min(i, j);
   }
+  /// Makes every member point at its root.
+  void flatten() {
+    for (int& parent : parent_)  // parents come first
+      parent = parent_[parent];
+  }
 
  private:
   std::vector<int> parent_;
@@ -36,53 +41,122 @@ struct LocalComponents {
   std::vector<std::pair<GlobalIndex, GlobalIndex>> joined;  ///< across ranks
 };
 
+template <typename State>
+bool all_are(const std::vector<State>& states, int begin, int n, State value) {
+  bool same = true;
+  for (int i = begin; i < begin + n; ++i)
+    same &= states[i] == value;
+  return same;
+}
+
+/// Joins the cells of this rank that are connected, row by row.
+template <int dim>
+class ComponentFinder {
+ public:
+  ComponentFinder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry)
+      : sets(domain.grid.n_owned_cells()),
+        grid_(domain.grid),
+        geometry_(geometry),
+        cells_(geometry.state.cells) {
+    grid_.for_each_owned_row([&](const CellRow<dim>& row) { join_row(row); });
+    sets.flatten();
+  }
+
+  DisjointSets sets;
+  std::vector<int> fixed_cells;             ///< at open sides or empty cells
+  std::vector<std::pair<int, int>> across;  ///< cells joined with ghosts
+
+ private:
+  /// All cells of the row are fluid and connected along it.
+  bool is_one(int begin, int n) const {
+    return all_are(cells_, begin, n, CellState::fluid) &&
+           all_are(geometry_.state.faces[0], begin + 1, n - 1, FaceState::free);
+  }
+  void join_row(const CellRow<dim>& row) {
+    const bool one = is_one(row.begin, row.n);
+    for (int x = 0; x < row.n; ++x) {
+      const int cell = row.begin + x;
+      if (cells_[cell] != CellState::fluid)
+        continue;
+      if (one && x > 0)
+        sets.join(row.begin, cell);
+      else
+        look(cell, x > 0 ? cell - 1 : row.neighbors[0], 0, 0);
+      if (!one || x == row.n - 1)
+        look(cell, x < row.n - 1 ? cell + 1 : row.neighbors[1], 0, 1);
+    }
+    for (int axis = 1; axis < dim; ++axis)
+      for (int end = 0; end < 2; ++end)
+        join_rows(row, one, axis, end);
+  }
+  void join_rows(const CellRow<dim>& row, bool one, int axis, int end) {
+    const int other = row.neighbors[2 * axis + end];
+    if (one && other >= 0 && grid_.owned(other) && is_one(other, row.n)) {
+      if (end == 1)  // the other row does it
+        return;
+      if (all_are(geometry_.state.faces[axis], row.begin, row.n, FaceState::free)) {
+        sets.join(row.begin, other);
+        return;
+      }
+    }
+    for (int x = 0; x < row.n; ++x)
+      if (cells_[row.begin + x] == CellState::fluid)
+        look(row.begin + x, other < 0 ? -1 : other + x, axis, end);
+  }
+  /// A fluid cell and its neighbour.
+  void look(int cell, int other, int axis, int end) {
+    const int face = end == 0 ? cell : other;
+    if (face < 0 || geometry_.open_fraction(axis, face) == 0)
+      return;
+    if (other < 0 || cells_[other] != CellState::fluid)
+      fixed_cells.push_back(cell);
+    else if (!grid_.owned(other))
+      across.emplace_back(cell, other);
+    else if (end == 0)
+      sets.join(cell, other);
+  }
+
+  const TiledGrid<dim>& grid_;
+  const MacGeometry<dim>& geometry_;
+  const std::vector<CellState>& cells_;
+};
+
 template <int dim>
 LocalComponents local_components(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry) {
   const TiledGrid<dim>& grid = domain.grid;
   const auto& cells = geometry.state.cells;
-  DisjointSets sets(grid.n_owned_cells());
-  std::vector<int> fixed_cells;
-  std::vector<std::pair<int, int>> across;
-  grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
-    if (cells[cell] != CellState::fluid)
-      return;
-    for (int axis = 0; axis < dim; ++axis)
-      for (int end = 0; end < 2; ++end) {
-        const int other = neighbors[2 * axis + end];
-        const int face = end == 0 ? cell : other;
-        if (face < 0 || geometry.open_fraction(axis, face) == 0)
-          continue;
-        if (other < 0 || cells[other] != CellState::fluid)
-          fixed_cells.push_back(cell);
-        else if (!grid.owned(other))
-          across.emplace_back(cell, other);
-        else if (end == 0)
-          sets.join(cell, other);
-      }
-  });
+  ComponentFinder<dim> found(domain, geometry);
 
   LocalComponents result;
   result.label.assign(grid.n_stored_cells(), no_index);
-  // First the smallest lattice number of each set at its root, then that for all its cells.
+  // First the smallest lattice number of each set at its root, then that for all its cells. Numbers
+  // grow along a row: only where another set begins one may be smaller.
+  int last_root = -1, last_cell = -1;
   grid.for_each_owned_cell([&](int cell) {
     if (cells[cell] != CellState::fluid)
       return;
-    GlobalIndex& label = result.label[sets.root(cell)];
+    const int root = found.sets.root(cell);
+    const bool goes_on = root == last_root && cell == last_cell + 1 && cell % tile_width<dim> > 0;
+    last_root = root;
+    last_cell = cell;
+    if (goes_on)
+      return;
+    GlobalIndex& label = result.label[root];
     const GlobalIndex id = grid.global_id(cell);
     label = label == no_index ? id : std::min(label, id);
   });
   grid.for_each_owned_cell([&](int cell) {
     if (cells[cell] != CellState::fluid)
       return;
-    const int root = sets.root(cell);
+    const int root = found.sets.root(cell);
     result.label[cell] = result.label[root];
     if (root == cell)
       result.labels.push_back(result.label[cell]);
   });
   domain.halo.fill(result.label);
-  for (const int cell : fixed_cells)
+  for (const int cell : found.fixed_cells)
     result.fixed.push_back(result.label[cell]);
-  for (const auto& [cell, other] : across)
+  for (const auto& [cell, other] : found.across)
     result.joined.emplace_back(result.label[cell], result.label[other]);
   std::sort(result.fixed.begin(), result.fixed.end());
   result.fixed.erase(std::unique(result.fixed.begin(), result.fixed.end()), result.fixed.end());

@@ -4,6 +4,35 @@
 
 namespace lockstep {
 
+namespace {
+
+/// Sets a part of a block with rows of `width` values to zero.
+void fill_part(const Index<3>& size, int width, double* to) {
+  for (int z = 0; z < size[2]; ++z)
+    for (int y = 0; y < size[1]; ++y)
+      std::fill_n(to + (z * width + y) * width, size[0], 0.0);
+}
+
+/// Copies a part of a tile with rows of `tile_row` values to a block with rows of `width`.
+template <int tile_row>
+void copy_part(const Index<3>& size, const double* from, int width, double* to) {
+  for (int z = 0; z < size[2]; ++z) {
+    const double* source = from + z * tile_row * tile_row;
+    double* target = to + z * width * width;
+    if (size[0] == tile_row) {
+      using Row = Eigen::Array<double, tile_row, 1>;
+      for (int y = 0; y < size[1]; ++y)
+        Eigen::Map<Row>(target + y * width) = Eigen::Map<const Row>(source + y * tile_row);
+    } else {  // short rows are copied fastest across
+      for (int x = 0; x < size[0]; ++x)
+        for (int y = 0; y < size[1]; ++y)
+          target[y * width + x] = source[y * tile_row + x];
+    }
+  }
+}
+
+}  // namespace
+
 template <int dim>
 SampleLattice<dim>::SampleLattice(const TiledGrid<dim>& grid)
     : n_cells_(grid.n_cells()), periodic_(grid.description().periodic) {
@@ -55,42 +84,47 @@ std::array<StencilCorner<dim>, (1 << dim)> SampleLattice<dim>::corners(SampleKin
 }
 
 template <int dim>
-bool SampleLattice<dim>::find_block(SampleKind kind, const Index<dim>& begin, int width,
-                                    std::vector<int>& ids) const {
-  constexpr int log_width = log_tile_width<dim>;
-  // Shares of each coordinate in the tile table and in the offset within the tile.
-  std::array<std::vector<int>, dim> tile, offset;
-  std::array<std::vector<char>, dim> at_wall;
-  int n_rows = 1;
-  for (int a = 0; a < dim; ++a) {
-    for (int k = 0; k < width; ++k) {
-      const int i = resolve(a, a == kind, begin[a] + k);
-      tile[a].push_back(table_share(a, i));
-      offset[a].push_back((i & (tile_width<dim> - 1)) << (log_width * a));
-      at_wall[a].push_back(a == kind && virtual_wall_[a] && i == n_cells_[a]);
-    }
-    if (a > 0)
-      n_rows *= width;
+std::vector<typename SampleLattice<dim>::Run> SampleLattice<dim>::find_runs(int axis, bool on_faces,
+                                                                            int begin,
+                                                                            int width) const {
+  std::vector<Run> runs;
+  for (int k = 0; k < width; ++k) {
+    const int i = resolve(axis, on_faces, begin + k);
+    Run place{k, 1, table_share(axis, i),
+              (i & (tile_width<dim> - 1)) << (log_tile_width<dim> * axis),
+              on_faces && virtual_wall_[axis] && i == n_cells_[axis]};
+    Run* last = runs.empty() ? nullptr : &runs.back();
+    if (last && place.tile == last->tile && place.at_wall == last->at_wall &&
+        place.offset == last->offset + (last->length << (log_tile_width<dim> * axis)))
+      ++last->length;
+    else
+      runs.push_back(place);
   }
-  int* id = ids.data();
-  bool complete = true;
-  for (int row = 0; row < n_rows; ++row) {
-    int row_tile = 0, row_offset = 0;
-    bool row_at_wall = false;
-    for (int a = 1, rest = row; a < dim; ++a, rest /= width) {
-      row_tile += tile[a][rest % width];
-      row_offset += offset[a][rest % width];
-      row_at_wall = row_at_wall || at_wall[a][rest % width];
-    }
-    for (int i = 0; i < width; ++i) {
-      const int stored = table_[row_tile + tile[0][i]];
-      const bool wall = row_at_wall || at_wall[0][i];
-      complete = complete && (stored >= 0 || wall);
-      *id++ =
-          wall ? Stencil<dim>::wall_sample : stored * tile_volume<dim> + row_offset + offset[0][i];
-    }
-  }
-  return complete;
+  return runs;
+}
+
+template <int dim>
+bool SampleLattice<dim>::copy_block(SampleKind kind, const Index<dim>& begin, int width,
+                                    const double* field, double* block) const {
+  std::array<std::vector<Run>, 3> runs;
+  runs[2] = {Run{0, 1, 0, 0, false}};
+  for (int a = 0; a < dim; ++a)
+    runs[a] = find_runs(a, a == kind, begin[a], width);
+  for (const Run& z : runs[2])
+    for (const Run& y : runs[1])
+      for (const Run& x : runs[0]) {
+        double* to = block + (z.begin * width + y.begin) * width + x.begin;
+        const int tile = table_[z.tile + y.tile + x.tile];
+        if (z.at_wall || y.at_wall || x.at_wall)
+          fill_part({x.length, y.length, z.length}, width, to);
+        else if (tile < 0)
+          return false;
+        else
+          copy_part<tile_width<dim>>(
+              {x.length, y.length, z.length},
+              field + tile * tile_volume<dim> + z.offset + y.offset + x.offset, width, to);
+      }
+  return true;
 }
 
 template class SampleLattice<2>;

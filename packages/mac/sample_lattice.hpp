@@ -76,9 +76,10 @@ class SampleLattice {
 
   const Index<dim>& n_cells() const { return n_cells_; }
   bool periodic(int axis) const { return periodic_[axis]; }
-  /// Ids, as in a stencil, of the samples of a cube of `width` cells that starts at `begin`, x
-  /// fastest. False if any is missing.
-  bool find_block(SampleKind kind, const Index<dim>& begin, int width, std::vector<int>& ids) const;
+  /// Copies the samples of a cube of `width` cells that starts at `begin`, x fastest. False if any
+  /// is missing.
+  bool copy_block(SampleKind kind, const Index<dim>& begin, int width, const double* field,
+                  double* block) const;
 
  private:
   /// The two samples around x along one axis.
@@ -88,6 +89,14 @@ class SampleLattice {
     std::array<bool, 2> at_wall{};
     double weight;
   };
+  /// Neighbouring places of a block along one axis whose samples are neighbours in their tile too.
+  struct Run {
+    int begin = 0, length = 0;  ///< places in the block
+    int tile = 0;               ///< share of the place in the tile table
+    int offset = 0;             ///< share of the first place's offset in the tile
+    bool at_wall = false;
+  };
+  std::vector<Run> find_runs(int axis, bool on_faces, int begin, int width) const;
   Pair find_pair(int axis, bool on_faces, double x) const;
   Stencil<dim> combine(const std::array<const Pair*, dim>& pairs) const;
   /// Sample coordinate after wrapping and clamping.

@@ -3,13 +3,14 @@
 #include <algorithm>
 
 #include "geometry/simplex_queries.hpp"
+#include "mac/surface_marks.hpp"
 
 namespace lockstep {
 
 namespace {
 
 /// Rays up to this length look at the simplices gathered around their start alone [cells].
-constexpr double short_ray = 1.5;
+constexpr double longest_short_ray = 1.5;
 /// How far before a surface a ray stops [cells].
 constexpr double stand_off = 1e-3;
 
@@ -25,8 +26,7 @@ SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
     : lattice_(lattice),
       tracer_(tracer),
       surface_(surface),
-      interpolation_(grid, lattice, usable, surface),
-      reach_(largest_displacement) {
+      interpolation_(grid, lattice, usable, surface) {
   if (interpolation_.nearby().empty())
     return;
   const SurfaceSnapshot<dim>& before = *surface.before;
@@ -42,24 +42,29 @@ SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
     swept_[s].extend(after.bounds(s));
     swept_[s] = widened<dim>(swept_[s], 2 * interpolation_.nearby().tolerance());
   }
+  short_ray_ = std::min(longest_short_ray, largest_displacement + surface_displacement_ + 0.01);
+  // What a ray crosses, and the samples one cell around it, must be clear of surfaces.
+  near_ = mark_within(grid, before,
+                      (largest_displacement + 1 + surface_displacement_) * grid.spacing());
+  near_tiles_.resize(grid.n_owned_tiles());
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    const auto first = near_.begin() + tile * tile_volume<dim>;
+    near_tiles_[tile] = std::find(first, first + tile_volume<dim>, 1) != first + tile_volume<dim>;
+  }
 }
 
 template <int dim>
-bool SurfaceTransport<dim>::is_near(const Box<dim>& box) const {
-  if (interpolation_.nearby().empty())
-    return false;
-  return interpolation_.nearby().touches(
-      interpolation_.physical(widened<dim>(box, reach_ + 2 + surface_displacement_)));
-}
-
-template <int dim>
-void SurfaceTransport<dim>::enter(const Box<dim>& box) {
-  around_.clear();
-  if (interpolation_.nearby().empty())
-    return;
+void SurfaceTransport<dim>::enter(const Index<dim>& begin, const Index<dim>& end) {
+  Box<dim> box;
+  for (int a = 0; a < dim; ++a) {
+    box.min()[a] = begin[a];
+    box.max()[a] = end[a];
+  }
+  interpolation_.enter(widened<dim>(box, 1.1 + short_ray_ + surface_displacement_));
   const Box<dim> wide = interpolation_.physical(widened<dim>(box, surface_displacement_ + 0.01));
   const Box<dim> exact = interpolation_.physical(box);
   surface_.before->touching(wide, candidates_);
+  around_.clear();
   for (const int s : candidates_)
     if (swept_[s].intersects(exact))
       around_.push_back(s);
@@ -103,25 +108,25 @@ std::optional<SurfacePoint<dim>> SurfaceTransport<dim>::hit_on_way(const Point<d
                                                                    const Point<dim>& end) const {
   const NearbySurface<dim>& nearby = interpolation_.nearby();
   const Point<dim> a = interpolation_.physical(x), b = interpolation_.physical(end);
-  return (end - x).cwiseAbs().maxCoeff() <= short_ray ? nearby.near_hit(a, b)
-                                                      : nearby.first_hit(a, b);
+  return (end - x).cwiseAbs().maxCoeff() <= short_ray_ ? nearby.near_hit(a, b)
+                                                       : nearby.first_hit(a, b);
 }
 
 template <int dim>
 Ray<dim> SurfaceTransport<dim>::trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit) {
-  interpolation_.look_around(x, short_ray);
+  interpolation_.look_around(x, short_ray_);
   const double scale = tracer_.cells_per_velocity();
   Point<dim> displacement = scale * interpolation_.velocity_at(x, tracer_.velocity());
   Ray<dim> half;
   half.end = x - 0.5 * displacement;
   tracer_.clip(x, half);
   if (!hit_on_way(x, half.end)) {
-    const bool is_long = (half.end - x).cwiseAbs().maxCoeff() > short_ray;
+    const bool is_long = (half.end - x).cwiseAbs().maxCoeff() > short_ray_;
     if (is_long)
       interpolation_.look_around(half.end);
     displacement = scale * interpolation_.velocity_at(half.end, tracer_.velocity());
     if (is_long)
-      interpolation_.look_around(x, short_ray);
+      interpolation_.look_around(x, short_ray_);
   }
   Ray<dim> ray;
   ray.middle = half.end;
@@ -154,7 +159,7 @@ std::optional<double> SurfaceTransport<dim>::carry(const CarriedField<dim>& fiel
   const Ray<dim> ray = trace(x, hit);
   if (ray.inflow_axis >= 0)
     return field.inflow(ray);
-  const bool is_long = (ray.end - x).cwiseAbs().maxCoeff() > short_ray;
+  const bool is_long = (ray.end - x).cwiseAbs().maxCoeff() > short_ray_;
   if (is_long)
     interpolation_.look_around(ray.end);
   auto value = look_up(field, ray.end);

@@ -26,10 +26,13 @@ class SurfaceTransport {
                    const RayTracer<dim>& tracer, const UsableSamples<dim>& usable,
                    const MovingSurface<dim>& surface, double largest_displacement);
 
-  /// True if a surface may come into the way of a ray from a sample in the box.
-  bool is_near(const Box<dim>& box) const;
-  /// Prepares the questions about samples in the box.
-  void enter(const Box<dim>& box);
+  /// True if a surface may come into the way of a ray from a sample of the owned cell, forth or
+  /// back, or sweep over it.
+  bool is_near(int cell) const { return !near_.empty() && near_[cell]; }
+  /// True of some cell of the tile.
+  bool is_near_tile(int tile) const { return !near_tiles_.empty() && near_tiles_[tile]; }
+  /// Prepares the questions about samples in the cells [begin, end).
+  void enter(const Index<dim>& begin, const Index<dim>& end);
   /// The sample changes sides or has none: swept over, or on a surface at t^n or t^{n+1}.
   bool swept(const Point<dim>& x) const;
   /// Inside a closed solid at t^n: possible for the centre of a coupled face.
@@ -51,10 +54,11 @@ class SurfaceTransport {
   const RayTracer<dim>& tracer_;
   const MovingSurface<dim>& surface_;
   VisibleInterpolation<dim> interpolation_;
-  double reach_;                     ///< largest displacement of a ray [cells]
   double surface_displacement_ = 0;  ///< largest of a vertex over the step [cells]
-  std::vector<Box<dim>> swept_;      ///< box of each simplex over the step, a little widened [m]
-  std::vector<int> around_;          ///< simplices whose swept box touches the box entered
+  double short_ray_ = 0;  ///< rays up to this length need only what is gathered around their start
+  std::vector<char> near_, near_tiles_;  ///< owned cells and tiles; empty without surface
+  std::vector<Box<dim>> swept_;  ///< box of each simplex over the step, a little widened [m]
+  std::vector<int> around_;      ///< simplices whose swept box touches the box entered
   mutable std::vector<int> candidates_;
 };
 

@@ -1,58 +1,128 @@
 #include "mac/tile_block.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <type_traits>
 
 namespace lockstep {
 
 namespace {
 
-double blend(double a, double b, double weight) {
+template <typename Values>
+Values blend(const Values& a, const Values& b, const Values& weight) {
   return a + weight * (b - a);
 }
 
-/// The 2^dim samples around each point of a row, in a form that compilers turn into vector code:
-/// calls f(i, first sample, strides, weights).
-template <int dim, typename Function>
-void for_each_stencil(const double* block, int width, SampleKind kind, const RowPoints<dim>& points,
-                      const Function& f) {
-  std::array<double, dim> offset;
-  offset.fill(0.5);
-  if (kind != cell_centers)
-    offset[kind] = 0;
-  for (int i = 0; i < tile_width<dim>; ++i) {
-    const double t0 = points[0][i] - offset[0], t1 = points[1][i] - offset[1];
-    const double f0 = std::floor(t0), f1 = std::floor(t1);
-    if constexpr (dim == 2) {
-      f(i, block + static_cast<int>(f0) + width * static_cast<int>(f1), t0 - f0, t1 - f1, 0.0);
-    } else {
-      const double t2 = points[2][i] - offset[2];
-      const double f2 = std::floor(t2);
-      const int first =
-          static_cast<int>(f0) + width * (static_cast<int>(f1) + width * static_cast<int>(f2));
-      f(i, block + first, t0 - f0, t1 - f1, t2 - f2);
-    }
-  }
+/// 0, 1, 2, ...
+template <int dim>
+RowValues<dim> steps() {
+  alignas(64) static constexpr double counted[] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                   8, 9, 10, 11, 12, 13, 14, 15};
+  static_assert(tile_width<dim> <= 16);
+  return Eigen::Map<const RowValues<dim>>(counted);
 }
 
+/// The samples below a row of points along one axis, and the weights of those above.
 template <int dim>
-void interpolate_row(const double* block, int width, SampleKind kind, const RowPoints<dim>& points,
-                     RowValues<dim>& values) {
-  const int up = width * width;
-  for_each_stencil<dim>(
-      block, width, kind, points, [&](int i, const double* c, double w0, double w1, double w2) {
-        const double lower = blend(blend(c[0], c[1], w0), blend(c[width], c[width + 1], w0), w1);
-        if constexpr (dim == 2) {
-          static_cast<void>(w2);
-          values[i] = lower;
-        } else {
-          const double* d = c + up;
-          const double upper = blend(blend(d[0], d[1], w0), blend(d[width], d[width + 1], w0), w1);
-          values[i] = blend(lower, upper, w2);
+struct RowSplit {
+  void set(const RowValues<dim>& x, int axis, double offset) {
+    below = (x - offset).floor();
+    weight = (x - offset) - below;
+    strays = below - below[0];
+    if (axis == 0)
+      strays -= steps<dim>();
+    strays = strays.abs();
+  }
+  RowValues<dim> below, weight;
+  /// How far the points are from keeping step with the samples of their row, that is, from lying
+  /// one sample further each along x and at the same one along other axes. Integers.
+  RowValues<dim> strays;
+};
+
+/// The 2^dim samples around each point of a row.
+template <int dim>
+class RowStencil {
+ public:
+  /// The points split along each axis, and the strides of the block; both must live on.
+  RowStencil(const std::array<const RowSplit<dim>*, dim>& splits,
+             const std::array<int, dim>& stride)
+      : splits_(splits), stride_(stride) {
+    RowValues<dim> strays = splits[0]->strays;
+    for (int a = 1; a < dim; ++a)
+      strays += splits[a]->strays;
+    in_step_ = strays.sum() == 0;
+  }
+
+  void interpolate(const double* block, RowValues<dim>& values) const {
+    if (in_step_)
+      values = blended<RowValues<dim>>(block + first_at(0),
+                                       [&](int a) -> const RowValues<dim>& { return weight(a); });
+    else
+      for (int i = 0; i < tile_width<dim>; ++i)
+        values[i] = blended<double>(block + first_at(i), [&](int a) { return weight(a)[i]; });
+  }
+  void find_range(const double* block, RowValues<dim>& low, RowValues<dim>& high) const {
+    if (in_step_) {
+      const double* c = block + first_at(0);
+      low = high = at<RowValues<dim>>(c);
+      for (int k = 1; k < 1 << dim; ++k) {
+        low = low.min(at<RowValues<dim>>(c + corner(k)));
+        high = high.max(at<RowValues<dim>>(c + corner(k)));
+      }
+    } else {
+      for (int i = 0; i < tile_width<dim>; ++i) {
+        const double* c = block + first_at(i);
+        low[i] = high[i] = *c;
+        for (int k = 1; k < 1 << dim; ++k) {
+          low[i] = std::min(low[i], c[corner(k)]);
+          high[i] = std::max(high[i], c[corner(k)]);
         }
-      });
-}
+      }
+    }
+  }
+
+ private:
+  const RowValues<dim>& weight(int axis) const { return splits_[axis]->weight; }
+  int first_at(int i) const {
+    double first = splits_[0]->below[i];
+    for (int a = 1; a < dim; ++a)
+      first += stride_[a] * splits_[a]->below[i];
+    return static_cast<int>(first);
+  }
+  /// From the lowest sample of a point to sample k; bit a of k: upper along axis a.
+  int corner(int k) const {
+    int step = 0;
+    for (int a = 0; a < dim; ++a)
+      step += ((k >> a) & 1) * stride_[a];
+    return step;
+  }
+  /// One sample, or those of a whole row that is in step.
+  template <typename Values>
+  static Values at(const double* c) {
+    if constexpr (std::is_same_v<Values, double>)
+      return *c;
+    else
+      return Eigen::Map<const Values>(c);
+  }
+  template <typename Values, typename Weight>
+  Values blended(const double* c, const Weight& weight) const {
+    const int up = stride_[1];
+    const auto &w0 = weight(0), &w1 = weight(1);
+    const auto in_plane = [&](const double* d) {
+      const Values lower = blend<Values>(at<Values>(d), at<Values>(d + 1), w0);
+      const Values upper = blend<Values>(at<Values>(d + up), at<Values>(d + up + 1), w0);
+      return blend<Values>(lower, upper, w1);
+    };
+    if constexpr (dim == 2)
+      return in_plane(c);
+    else
+      return blend<Values>(in_plane(c), in_plane(c + stride_[2]), weight(2));
+  }
+
+  const std::array<const RowSplit<dim>*, dim>& splits_;
+  const std::array<int, dim>& stride_;
+  /// Neighbours in the row look at neighbours in memory: whole rows can be loaded at once.
+  bool in_step_;
+};
 
 }  // namespace
 
@@ -61,121 +131,115 @@ TileBlock<dim>::TileBlock(const SampleLattice<dim>& lattice, const RayTracer<dim
                           int reach)
     : lattice_(lattice), tracer_(tracer), reach_(reach), width_(tile_width<dim> + 2 * reach + 2) {
   int size = 1;
-  for (int a = 0; a < dim; ++a)
+  for (int a = 0; a < dim; ++a) {
+    stride_[a] = size;
     size *= width_;
-  for (auto& ids : ids_)
-    ids.resize(size);
+  }
   for (auto& component : velocity_)
     component.resize(size);
   field_.resize(size);
 }
 
 template <int dim>
-void TileBlock<dim>::copy(const std::vector<int>& ids, const double* field,
-                          std::vector<double>& block) {
-  for (std::size_t k = 0; k < ids.size(); ++k)
-    block[k] = ids[k] < 0 ? 0 : field[ids[k]];
-}
-
-template <int dim>
 bool TileBlock<dim>::enter(const Index<dim>& tile_begin) {
-  Index<dim> begin = tile_begin;
   for (int a = 0; a < dim; ++a) {
-    begin[a] -= reach_ + 1;
-    const bool periodic = lattice_.periodic(a);
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    lower_[a] = periodic ? -infinity : -begin[a];
-    upper_[a] = periodic ? infinity : lattice_.n_cells()[a] - begin[a];
+    begin_[a] = tile_begin[a] - reach_ - 1;
+    // Whatever the velocity is where there is no fluid, no ray may look outside the block.
+    lower_[a] = 0.5;
+    upper_[a] = width_ - 1.5;
+    if (lattice_.periodic(a))
+      continue;
+    lower_[a] = std::max<double>(lower_[a], -begin_[a]);
+    upper_[a] = std::min<double>(upper_[a], lattice_.n_cells()[a] - begin_[a]);
   }
-  for (SampleKind kind = cell_centers; kind < dim; ++kind)
-    if (!lattice_.find_block(kind, begin, width_, ids(kind)))
-      return false;
   for (int a = 0; a < dim; ++a)
-    copy(ids_[a], tracer_.velocity()[a], velocity_[a]);
+    if (!lattice_.copy_block(a, begin_, width_, tracer_.velocity()[a], velocity_[a].data()))
+      return false;
   return true;
 }
 
 template <int dim>
 void TileBlock<dim>::load(SampleKind kind, const double* field) {
   kind_ = kind;
-  copy(ids(kind), field, field_);
+  offset_ = sample_offset<dim>(kind);
+  // Complete, because the velocity is.
+  lattice_.copy_block(kind, begin_, width_, field, field_.data());
 }
 
 template <int dim>
-RowPoints<dim> TileBlock<dim>::row(SampleKind kind, const Index<dim>& in_tile) const {
-  const Point<dim> offset = sample_offset<dim>(kind);
-  RowPoints<dim> row;
-  for (int i = 0; i < tile_width<dim>; ++i)
-    row[0][i] = reach_ + 1 + i + offset[0];
-  for (int a = 1; a < dim; ++a)
-    row[a].fill(reach_ + 1 + in_tile[a] + offset[a]);
-  // A tile may reach beyond the domain: what is there has no result, but must stay in the block.
-  for (int a = 0; a < dim; ++a)
-    for (double& x : row[a])
-      clamp(x, a);
-  return row;
+RowValues<dim> TileBlock<dim>::velocity_at_samples(int axis, int place) const {
+  using Row = Eigen::Map<const RowValues<dim>>;
+  const double* c = velocity_[axis].data() + place;
+  // A sample lies at a face of the component, or half-way between two along one axis or two.
+  if (axis == kind_)
+    return Row(c);
+  const RowValues<dim> half = RowValues<dim>::Constant(0.5);
+  if (kind_ == cell_centers)
+    return blend<RowValues<dim>>(Row(c), Row(c + stride_[axis]), half);
+  const int first = stride_[std::min(axis, kind_)], second = stride_[std::max(axis, kind_)];
+  c -= stride_[kind_];
+  const RowValues<dim> lower = blend<RowValues<dim>>(Row(c), Row(c + first), half);
+  const RowValues<dim> upper =
+      blend<RowValues<dim>>(Row(c + second), Row(c + second + first), half);
+  return blend<RowValues<dim>>(lower, upper, half);
 }
 
 template <int dim>
-bool TileBlock<dim>::clamp(double& x, int axis) const {
-  const double inside = x < lower_[axis] ? lower_[axis] : x > upper_[axis] ? upper_[axis] : x;
-  const bool moved = inside != x;
-  x = inside;
-  return moved;
+RowValues<dim> TileBlock<dim>::clamped(const RowValues<dim>& x, int axis) const {
+  // In this order, what is not a number goes to the lower limit.
+  return RowValues<dim>::Constant(lower_[axis]).max(x).min(upper_[axis]);
 }
 
 template <int dim>
-RowPoints<dim> TileBlock<dim>::displaced(const RowPoints<dim>& start, const RowPoints<dim>& at,
-                                         double factor) const {
-  RowPoints<dim> end;
-  for (int a = 0; a < dim; ++a) {
-    interpolate_row<dim>(velocity_[a].data(), width_, a, at, end[a]);
-    for (int i = 0; i < tile_width<dim>; ++i)
-      end[a][i] = start[a][i] + factor * end[a][i];
-  }
-  return end;
-}
-
-template <int dim>
-RowRays<dim> TileBlock<dim>::trace(const RowPoints<dim>& start, double direction) const {
+RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction) const {
   const double factor = direction * tracer_.cells_per_velocity();
-  RowPoints<dim> middle = displaced(start, start, 0.5 * factor);
+  int place = 0;
+  Point<dim> first;
+  for (int a = 0; a < dim; ++a) {
+    const int cell = reach_ + 1 + (a == 0 ? 0 : in_tile[a]);
+    first[a] = cell + offset_[a];
+    place += cell * stride_[a];
+  }
+  const auto start = [&](int a) -> RowValues<dim> {
+    return first[a] + (a == 0 ? 1.0 : 0.0) * steps<dim>();
+  };
+  RowPoints<dim> middle;
   for (int a = 0; a < dim; ++a)
-    for (double& x : middle[a])
-      clamp(x, a);
+    middle[a] = clamped(start(a) + 0.5 * factor * velocity_at_samples(a, place), a);
+
+  std::array<RowSplit<dim>, dim> on_faces, at_centers;
+  for (int a = 0; a < dim; ++a) {
+    on_faces[a].set(middle[a], a, 0);
+    at_centers[a].set(middle[a], a, 0.5);
+  }
   RowRays<dim> rays;
-  rays.end = displaced(start, middle, factor);
-  rays.clipped.fill(false);
-  for (int a = 0; a < dim; ++a)
-    for (int i = 0; i < tile_width<dim>; ++i)
-      rays.clipped[i] |= clamp(rays.end[a][i], a);
+  rays.clipped.setZero();
+  for (int a = 0; a < dim; ++a) {
+    std::array<const RowSplit<dim>*, dim> splits;
+    for (int b = 0; b < dim; ++b)
+      splits[b] = a == b ? &on_faces[b] : &at_centers[b];
+    RowValues<dim> velocity;
+    RowStencil<dim>(splits, stride_).interpolate(velocity_[a].data(), velocity);
+    const RowValues<dim> wanted = start(a) + factor * velocity;
+    rays.end[a] = clamped(wanted, a);
+    rays.clipped += (rays.end[a] - wanted).abs();
+  }
   return rays;
 }
 
 template <int dim>
-void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values) const {
-  interpolate_row<dim>(field_.data(), width_, kind_, points, values);
-}
-
-template <int dim>
-void TileBlock<dim>::look_up_range(const RowPoints<dim>& points, RowValues<dim>& low,
-                                   RowValues<dim>& high) const {
-  const int row_step = width_, up = width_ * width_;
-  for_each_stencil<dim>(field_.data(), width_, kind_, points,
-                        [&](int i, const double* c, double, double, double) {
-                          const auto least = [](double a, double b) { return b < a ? b : a; };
-                          const auto most = [](double a, double b) { return a < b ? b : a; };
-                          const double* r = c + row_step;
-                          double lowest = least(least(c[0], c[1]), least(r[0], r[1]));
-                          double highest = most(most(c[0], c[1]), most(r[0], r[1]));
-                          if constexpr (dim == 3) {
-                            const double *d = c + up, *e = r + up;
-                            lowest = least(lowest, least(least(d[0], d[1]), least(e[0], e[1])));
-                            highest = most(highest, most(most(d[0], d[1]), most(e[0], e[1])));
-                          }
-                          low[i] = lowest;
-                          high[i] = highest;
-                        });
+void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values,
+                             RowValues<dim>* low, RowValues<dim>* high) const {
+  std::array<RowSplit<dim>, dim> along;
+  std::array<const RowSplit<dim>*, dim> splits;
+  for (int a = 0; a < dim; ++a) {
+    along[a].set(points[a], a, offset_[a]);
+    splits[a] = &along[a];
+  }
+  const RowStencil<dim> stencil(splits, stride_);
+  stencil.interpolate(field_.data(), values);
+  if (low)
+    stencil.find_range(field_.data(), *low, *high);
 }
 
 template class TileBlock<2>;

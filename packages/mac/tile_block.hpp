@@ -8,7 +8,7 @@ namespace lockstep {
 
 /// Values for one row of samples of a tile, along x.
 template <int dim>
-using RowValues = std::array<double, tile_width<dim>>;
+using RowValues = Eigen::Array<double, tile_width<dim>, 1>;
 /// Positions of such a row, by axis, relative to a block's first cell.
 template <int dim>
 using RowPoints = std::array<RowValues<dim>, dim>;
@@ -17,12 +17,13 @@ using RowPoints = std::array<RowValues<dim>, dim>;
 template <int dim>
 struct RowRays {
   RowPoints<dim> end;
-  std::array<bool, tile_width<dim>> clipped;  ///< it would have left the domain
+  /// Not 0 where a ray would have left the domain.
+  RowValues<dim> clipped;
 };
 
 /// A tile and its surroundings as dense arrays, in which short rays are followed a row at a time:
-/// several times faster than one by one, with the same result. For tiles away from surfaces and
-/// inflow sides.
+/// many times faster than one by one, with the same result up to round-off (positions are relative
+/// to the block). For tiles away from inflow sides; knows nothing of surfaces.
 template <int dim>
 class TileBlock {
  public:
@@ -36,29 +37,28 @@ class TileBlock {
   /// Copies the field to be looked up around the same tile.
   void load(SampleKind kind, const double* field);
 
-  /// Positions of the samples of a row with these coordinates within the tile (x is ignored).
-  RowPoints<dim> row(SampleKind kind, const Index<dim>& in_tile) const;
-  /// Rays by the midpoint rule, against the flow (direction -1) or with it (+1).
-  RowRays<dim> trace(const RowPoints<dim>& start, double direction) const;
-  /// The loaded field at a row of points.
-  void look_up(const RowPoints<dim>& points, RowValues<dim>& values) const;
-  /// The range of the samples used there.
-  void look_up_range(const RowPoints<dim>& points, RowValues<dim>& low, RowValues<dim>& high) const;
+  /// Rays by the midpoint rule, against the flow (direction -1) or with it (+1), from the row of
+  /// samples of the loaded field with these coordinates within the tile (x is ignored).
+  RowRays<dim> trace(const Index<dim>& in_tile, double direction) const;
+  /// The loaded field at a row of points and, if wanted, the range of the samples used there.
+  void look_up(const RowPoints<dim>& points, RowValues<dim>& values, RowValues<dim>* low = nullptr,
+               RowValues<dim>* high = nullptr) const;
 
  private:
-  RowPoints<dim> displaced(const RowPoints<dim>& start, const RowPoints<dim>& at,
-                           double factor) const;
-  bool clamp(double& x, int axis) const;
-  std::vector<int>& ids(SampleKind kind) { return ids_[kind == cell_centers ? dim : kind]; }
-  static void copy(const std::vector<int>& ids, const double* field, std::vector<double>& block);
+  /// Velocity component at a row of samples of the loaded field, the first at that place.
+  RowValues<dim> velocity_at_samples(int axis, int place) const;
+  /// Coordinates along an axis, moved to where rays may go.
+  RowValues<dim> clamped(const RowValues<dim>& x, int axis) const;
 
   const SampleLattice<dim>& lattice_;
   const RayTracer<dim>& tracer_;
   int reach_, width_;
-  std::array<std::vector<int>, dim + 1> ids_;  ///< of the block's samples by kind, x fastest
-  std::array<double, dim> lower_, upper_;      ///< the domain, relative to the block
+  Index<dim> begin_{};                         ///< first cell of the block
+  std::array<int, dim> stride_{};              ///< of neighbours in the block
+  std::array<double, dim> lower_{}, upper_{};  ///< where rays may go, relative to the block
   std::array<std::vector<double>, dim> velocity_;
-  SampleKind kind_ = cell_centers;
+  SampleKind kind_ = cell_centers;  ///< of the loaded field
+  Point<dim> offset_;               ///< of its samples in their cells
   std::vector<double> field_;
 };
 

@@ -42,7 +42,7 @@ struct Transport<dim>::Implementation {
   explicit Implementation(const TransportSetting<dim>& setting);
 
   void mark_usable();
-  TilePath choose_path(int tile) const;
+  TilePlan make_plan(int tile) const;
 
   TransportFrame<dim> frame;
   FaceField<dim> velocity_storage;
@@ -73,7 +73,7 @@ Transport<dim>::Implementation::Implementation(const TransportSetting<dim>& sett
   if (reach <= TileBlock<dim>::longest_reach)
     frame.block = std::make_unique<TileBlock<dim>>(*frame.lattice, *frame.tracer, reach);
   for (int tile = 0; tile < setting.grid.n_owned_tiles(); ++tile)
-    frame.paths.push_back(choose_path(tile));
+    frame.plans.push_back(make_plan(tile));
 }
 
 template <int dim>
@@ -95,21 +95,17 @@ void Transport<dim>::Implementation::mark_usable() {
 }
 
 template <int dim>
-TilePath Transport<dim>::Implementation::choose_path(int tile) const {
+TilePlan Transport<dim>::Implementation::make_plan(int tile) const {
   const TiledGrid<dim>& grid = frame.setting.grid;
-  Box<dim> box;
   bool near_inflow = false;
   for (int a = 0; a < dim; ++a) {
-    box.min()[a] = grid.tile_begin(tile)[a];
-    box.max()[a] = box.min()[a] + tile_width<dim>;
-    const double lower_gap = box.min()[a], upper_gap = grid.n_cells()[a] - box.max()[a];
+    const double lower_gap = grid.tile_begin(tile)[a];
+    const double upper_gap = grid.n_cells()[a] - (grid.tile_begin(tile)[a] + tile_width<dim>);
     const double reach = frame.largest_displacement + 1;
     near_inflow = near_inflow || (frame.tracer->flows_in(a, 0) && lower_gap < reach) ||
                   (frame.tracer->flows_in(a, 1) && upper_gap < reach);
   }
-  if (frame.near_surface->is_near(box))
-    return TilePath::surface;
-  return frame.block && !near_inflow ? TilePath::rows : TilePath::singles;
+  return {frame.block && !near_inflow, frame.near_surface->is_near_tile(tile)};
 }
 
 template <int dim>

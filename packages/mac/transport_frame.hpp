@@ -10,10 +10,9 @@
 namespace lockstep {
 
 /// How the samples of a tile are carried.
-enum class TilePath : char {
-  rows,     ///< short rays, far from surfaces and inflow sides
-  singles,  ///< far from surfaces
-  surface   ///< a surface may be in the way
+struct TilePlan {
+  bool by_rows = false;  ///< short rays, far from inflow sides: first as if no surface was near
+  bool near_surface = false;  ///< a surface may be in the way of some
 };
 
 /// What all fields carried in one step have in common.
@@ -25,7 +24,7 @@ struct TransportFrame {
   std::unique_ptr<RayTracer<dim>> tracer;
   std::unique_ptr<SurfaceTransport<dim>> near_surface;
   std::unique_ptr<TileBlock<dim>> block;  ///< null if the rays are too long for it
-  std::vector<TilePath> paths;            ///< of owned tiles
+  std::vector<TilePlan> plans;            ///< of owned tiles
   InvalidSamples<dim> invalid;
 
   /// Calls f(id, position in lattice units) for the samples of that kind of an owned tile, within

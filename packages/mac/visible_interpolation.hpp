@@ -30,6 +30,8 @@ class VisibleInterpolation {
         surface_(surface),
         nearby_(surface.before, grid) {}
 
+  /// Makes the questions about points well inside the box faster.
+  void enter(const Box<dim>& box) { nearby_.enter(physical(box)); }
   /// Prepares interpolation at x and, to see far, at points within `radius` cells of it.
   void look_around(const Point<dim>& x, double radius = 0);
   /// A velocity component; samples hidden by the surface have the surface's velocity there. None if

@@ -239,16 +239,21 @@ std::optional<SurfacePoint<dim>> SurfaceSnapshot<dim>::first_hit(const Point<dim
 template <int dim>
 std::optional<SurfacePoint<dim>> SurfaceSnapshot<dim>::closest(const Point<dim>& x,
                                                                double radius) const {
+  // Most of what is found is near, and the box of a small radius holds much less.
   std::vector<int> candidates;
-  touching(grown<dim>(Box<dim>(x), radius), candidates);
   std::optional<SurfacePoint<dim>> best;
-  for (const int s : candidates) {
-    const double reach = best ? best->fraction : radius;
-    if (bounds(s).squaredExteriorDistance(x) > reach * reach)
-      continue;
-    const auto near = closest_on_simplex<dim>(corners(s), x);
-    if (best ? near.distance < reach : near.distance <= reach)
-      best = SurfacePoint<dim>{s, near.barycentric, near.position, near.distance};
+  for (const double part : {0.25, 1.0}) {
+    touching(grown<dim>(Box<dim>(x), part * radius), candidates);
+    for (const int s : candidates) {
+      const double reach = best ? best->fraction : part * radius;
+      if (bounds(s).squaredExteriorDistance(x) > reach * reach)
+        continue;
+      const auto near = closest_on_simplex<dim>(corners(s), x);
+      if (best ? near.distance < reach : near.distance <= reach)
+        best = SurfacePoint<dim>{s, near.barycentric, near.position, near.distance};
+    }
+    if (best)
+      break;
   }
   return best;
 }
