@@ -128,6 +128,7 @@ void take_fraction(const MacDomain<dim>& domain, const OpenFractionRule<dim>& ru
       geometry.partial[axis].assign(domain.grid.n_stored_cells(), 1.0);
     geometry.partial[axis][cell] = volume.open_fraction;
     volume.open_center = rule.open_center(volume, surface);
+    geometry.state.open_centers[axis][cell] = volume.open_center;
   } else {
     geometry.state.faces[axis][cell] = FaceState::coupled;
   }
@@ -217,7 +218,9 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       const FaceCells face = cells_of_face(grid, state.cells, axis, cell);
       FaceState& result = state.faces[axis][cell];
       result = state_far_from_surfaces(domain, state.cells, axis, face);
-      if (result == FaceState::free && geometry.near_surface(cell)) {
+      // A closed face behind a cut cell need not be near the surface.
+      const bool asked = geometry.near_surface(cell) || (cut && fractions[axis][cell] == 0);
+      if (result == FaceState::free && asked) {
         ControlVolume<dim> volume = control_volume(domain, geometry, density, axis, cell);
         volume.open_fraction =
             cut ? fractions[axis][cell]
