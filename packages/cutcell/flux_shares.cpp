@@ -1,6 +1,7 @@
 #include "cutcell/flux_shares.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/errors.hpp"
 #include "geometry/line_crossing.hpp"
@@ -103,7 +104,10 @@ double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<
   for (const ClosedPart<dim>& part :
        closed_parts<dim>(surface, face_of<dim>(volume), volume.direction))
     closed += part.area / volume.area;
-  const double open = static_cast<float>(std::max(0., 1 - closed));
+  // Steps of which a float holds the sum over the faces of a cell exactly: in the single precision
+  // of the stencils, rows of A must add up to zero.
+  constexpr double steps = 1 << 20;
+  const double open = std::round(steps * std::max(0., 1 - closed)) / steps;
   if (open < smallest || blocked_by_shell<dim>(volume, surface))
     return 0;
   return open;

@@ -27,8 +27,8 @@ Box<dim> face_of(const ControlVolume<dim>& volume);
 template <int dim>
 bool blocked_by_shell(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface);
 
-/// Open part of a face: one minus the parts inside closed solids, rounded to a float (as the
-/// stencils store it), and closed altogether below `smallest`. A shell between the pressure points
+/// Open part of a face: one minus the parts inside closed solids, rounded to a millionth, and
+/// closed altogether below `smallest`. A shell between the pressure points
 /// closes it as well. Local.
 template <int dim>
 double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
