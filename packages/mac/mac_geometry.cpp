@@ -1,6 +1,7 @@
 #include "mac/mac_geometry.hpp"
 
 #include <Tpetra_Map.hpp>
+#include <algorithm>
 
 #include "mac/surface_marks.hpp"
 
@@ -98,7 +99,19 @@ OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain, double dens
   return fractions;
 }
 
-/// Near the surface, the cells with an open face are fluid, wherever their centres are.
+/// True if a thin shell comes between a cell and its neighbours' centres.
+template <int dim>
+bool holds_shell(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface, int cell) {
+  const Point<dim> reach = Point<dim>::Constant(domain.spacing());
+  const Point<dim> x = domain.grid.center(cell);
+  std::vector<int> touching;
+  surface.touching(Box<dim>(x - reach, x + reach), touching);
+  return std::any_of(touching.begin(), touching.end(),
+                     [&](int s) { return !surface.solids()[surface.solid_of(s)].closed; });
+}
+
+/// Near the surface, the cells with an open face are fluid, wherever their centres are; and so are
+/// pockets between shells.
 template <int dim>
 void open_cut_cells(const MacDomain<dim>& domain, const OpenFractions<dim>& fractions,
                     MacGeometry<dim>& geometry) {
@@ -111,9 +124,28 @@ void open_cut_cells(const MacDomain<dim>& domain, const OpenFractions<dim>& frac
       const int upper = neighbors[2 * axis + 1];
       open = open || fractions[axis][cell] > 0 || (upper >= 0 && fractions[axis][upper] > 0);
     }
-    cells[cell] = open ? CellState::fluid : CellState::solid;
+    const bool is_pocket = !open && cells[cell] == CellState::fluid &&
+                           holds_shell(domain, *geometry.state.surface, cell);
+    cells[cell] = open || is_pocket ? CellState::fluid : CellState::solid;
   });
   fill_flags(domain.full_halo, cells);
+}
+
+/// The centroid of the open part of a face; or, where that lies in a solid (its tip is in the
+/// face), a place beside an edge of the face.
+template <int dim>
+Point<dim> place_in_fluid(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
+  Point<dim> place = volume.open_center;
+  for (int k = 1; k < dim && surface.inside(place) >= 0; ++k) {
+    const int across = (volume.direction + k) % dim;
+    for (const double end : {0.49, -0.49}) {
+      const Point<dim> edge =
+          volume.center + end * volume.box.sizes()[across] * Point<dim>::Unit(across);
+      if (surface.inside(edge) < 0)
+        place = edge;
+    }
+  }
+  return place;
 }
 
 /// Takes an open fraction below one for a face near the surface that would be free otherwise.
@@ -128,7 +160,7 @@ void take_fraction(const MacDomain<dim>& domain, const OpenFractionRule<dim>& ru
       geometry.partial[axis].assign(domain.grid.n_stored_cells(), 1.0);
     geometry.partial[axis][cell] = volume.open_fraction;
     volume.open_center = rule.open_center(volume, surface);
-    geometry.state.open_centers[axis][cell] = volume.open_center;
+    geometry.state.open_centers[axis][cell] = place_in_fluid(volume, surface);
   } else {
     geometry.state.faces[axis][cell] = FaceState::coupled;
   }
