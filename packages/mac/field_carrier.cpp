@@ -178,6 +178,8 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
   const SampleKind kind = passenger.field.kind;
   bool has_value;
   const bool carried = is_carried(kind, id, has_value);
+  if (carried && carry_open_part(passenger, id, x))
+    return;
   if (!carried || near_surface.swept(x)) {
     keep(passenger, id, !carried && has_value);
     return;
@@ -200,6 +202,23 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
   points.extend(forward.middle).extend(forward.end);
   if (!forward.complete || !near_surface.clear(points, true))
     passenger.forbid_correction(id);
+}
+
+template <int dim>
+bool FieldCarrier<dim>::carry_open_part(Passenger<dim>& passenger, int id, const Point<dim>& x) {
+  const SampleKind kind = passenger.field.kind;
+  if (kind == cell_centers)
+    return false;
+  const auto& places = frame_.setting.state.open_centers[kind];
+  const auto place = places.find(id);
+  SurfaceTransport<dim>& near_surface = *frame_.near_surface;
+  if (place == places.end() || !(near_surface.inside(x) || near_surface.swept(x)))
+    return false;
+  const TiledGrid<dim>& grid = frame_.setting.grid;
+  const Point<dim> shift = (place->second - grid.face_center(kind, id)) / grid.spacing();
+  (*passenger.result)[id] =
+      (*passenger.start)[id] + near_surface.change(passenger.field, x + shift);
+  return true;
 }
 
 template <int dim>

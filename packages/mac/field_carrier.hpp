@@ -49,6 +49,9 @@ class FieldCarrier {
   void carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x);
   void carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x, bool by_rows);
   void carry_seeing(Passenger<dim>& passenger, int id, const Point<dim>& x);
+  /// A partly open face whose centre a solid holds or passes keeps its own value and takes the
+  /// change where its fluid is; false: it is no such face.
+  bool carry_open_part(Passenger<dim>& passenger, int id, const Point<dim>& x);
   /// Semi-Lagrangian there and back again shows the error, half of which is taken off.
   void correct(std::vector<Passenger<dim>>& passengers);
   bool correct_rows(std::vector<Passenger<dim>>& passengers,

@@ -127,6 +127,22 @@ Momentum<dim> MacFluid<dim>::push_sources(double time) {
 }
 
 template <int dim>
+template <typename Velocity>
+AngularVector<dim> MacFluid<dim>::moment_of_shifts(const Velocity& velocity) const {
+  AngularVector<dim> moment = AngularVector<dim>::Zero();
+  for (std::size_t i = 0; i < geometry_.volumes.size(); ++i) {
+    const ControlVolume<dim>& volume = geometry_.volumes[i];
+    if (volume.open_fraction == 0)
+      continue;
+    const double mass = volume.density * volume.box.volume() * volume.open_fraction;
+    const Point<dim> momentum = Point<dim>::Unit(volume.direction) *
+                                (mass * velocity(volume.direction, geometry_.coupled[i].cell));
+    moment += cross<dim>(volume.open_center - volume.center, momentum);
+  }
+  return moment;
+}
+
+template <int dim>
 Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
   time_ = time + dt;
   last_step_ = dt;
@@ -151,6 +167,7 @@ Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
   for (const auto& [axis, cell] : geometry_.open_sides)
     mine.add(domain_.grid.face_center(axis, cell), axis,
              -0.5 * full_mass * geometry_.open_fraction(axis, cell) * dt * force(axis, cell));
+  mine.angular += moment_of_shifts([&](int axis, int cell) { return dt * force(axis, cell); });
   domain_.halo.fill(prediction_);
   return impulse + sum_over_ranks(mine, domain_.grid.comm());
 }
@@ -173,12 +190,17 @@ std::unique_ptr<ViscousSystem<dim>> MacFluid<dim>::viscous_system() const {
 template <int dim>
 Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector& velocity,
                                             double dt) {
+  const auto now = [&](int axis, int cell) { return prediction_[axis][cell]; };
+  Momentum<dim> shifts;
+  shifts.angular = -moment_of_shifts(now);
   viscosity_->store(solution, prediction_);
   domain_.halo.fill(prediction_);
   const Momentum<dim> impulse = viscosity_->impulse(prediction_, time_, dt);
   viscosity_->store(velocity, prediction_);
   domain_.halo.fill(prediction_);
-  return impulse;
+  // The scheme's forces act at the faces' centres, the momentum counts where the fluid is.
+  shifts.angular += moment_of_shifts(now);
+  return impulse + sum_over_ranks(shifts, domain_.grid.comm());
 }
 
 template <int dim>
@@ -237,6 +259,7 @@ Momentum<dim> MacFluid<dim>::momentum() const {
   for (const auto& [axis, cell] : geometry_.open_sides)
     mine.add(domain_.grid.face_center(axis, cell), axis,
              -0.5 * full_mass * geometry_.open_fraction(axis, cell) * prediction_[axis][cell]);
+  mine.angular += moment_of_shifts([&](int axis, int cell) { return prediction_[axis][cell]; });
   return sum_over_ranks(mine, domain_.grid.comm());
 }
 

@@ -102,6 +102,10 @@ class MacFluid : public FluidDiscretization<dim> {
     return state == FaceState::free || state == FaceState::coupled;
   }
   void set_prescribed(FaceField<dim>& velocity) const;
+  /// What partly open faces of this rank add to an angular momentum, because their fluid moves
+  /// beside their centres; velocity(axis, cell).
+  template <typename Velocity>
+  AngularVector<dim> moment_of_shifts(const Velocity& velocity) const;
   Momentum<dim> push_sources(double time);
 
   MacDomain<dim> domain_;

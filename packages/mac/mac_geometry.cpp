@@ -1,6 +1,7 @@
 #include "mac/mac_geometry.hpp"
 
 #include <Tpetra_Map.hpp>
+#include <algorithm>
 
 #include "mac/surface_marks.hpp"
 
@@ -64,26 +65,102 @@ bool in_solid(const std::vector<CellState>& cells, int cell) {
   return cell >= 0 && cells[cell] == CellState::solid;
 }
 
-/// Asks the rule about a face near the surface that would be free otherwise.
+/// Open fractions of all owned faces and those above them, where cut cells are wanted.
 template <int dim>
-void ask_rule(const MacDomain<dim>& domain, double density, const OpenFractionRule<dim>& rule,
-              int axis, int cell, const FaceCells& face, bool crossed, MacGeometry<dim>& geometry) {
+using OpenFractions = std::array<CellField, dim>;
+
+/// Asks a cut-cell rule about all faces near the surface. Walls and inflows open no cell.
+template <int dim>
+OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain, double density,
+                                       const OpenFractionRule<dim>& rule,
+                                       const SurfaceMarks<dim>& marks, MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
   const auto& cells = geometry.state.cells;
-  const bool leads_into_solid =
-      in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper);
-  const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
-  ControlVolume<dim> volume = control_volume(domain, geometry, density, axis, cell);
-  const bool blocked = crossed || leads_into_solid;
-  volume.open_fraction = rule.open_fraction(volume, blocked, surface);
-  // An open face between fluid and solid would be a silent leak, whatever the rule says.
-  if (leads_into_solid)
-    volume.open_fraction = 0;
+  geometry.unknown.assign(grid.n_stored_cells(), no_index);
+  OpenFractions<dim> fractions;
+  for (int axis = 0; axis < dim; ++axis) {
+    fractions[axis].assign(grid.n_stored_cells(), 0.0);
+    grid.for_each_owned_face(axis, [&](int cell) {
+      const FaceCells face = cells_of_face(grid, cells, axis, cell);
+      if (face.lower < 0 && face.upper < 0)
+        return;
+      if (face.at_side() && domain.boundary.side(axis, face.lower < 0 ? 0 : 1).prescribed())
+        return;
+      double& fraction = fractions[axis][cell];
+      if (geometry.near_surface(cell))
+        fraction =
+            rule.open_fraction(control_volume(domain, geometry, density, axis, cell),
+                               (marks.blocked[cell] >> axis & 1) != 0, *geometry.state.surface);
+      else
+        fraction = in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper) ? 0 : 1;
+    });
+    domain.halo.fill(fractions[axis]);
+  }
+  return fractions;
+}
+
+/// True if a thin shell comes between a cell and its neighbours' centres.
+template <int dim>
+bool holds_shell(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface, int cell) {
+  const Point<dim> reach = Point<dim>::Constant(domain.spacing());
+  const Point<dim> x = domain.grid.center(cell);
+  std::vector<int> touching;
+  surface.touching(Box<dim>(x - reach, x + reach), touching);
+  return std::any_of(touching.begin(), touching.end(),
+                     [&](int s) { return !surface.solids()[surface.solid_of(s)].closed; });
+}
+
+/// Near the surface, the cells with an open face are fluid, wherever their centres are; and so are
+/// pockets between shells.
+template <int dim>
+void open_cut_cells(const MacDomain<dim>& domain, const OpenFractions<dim>& fractions,
+                    MacGeometry<dim>& geometry) {
+  auto& cells = geometry.state.cells;
+  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    if (!geometry.near_surface(cell) || cells[cell] == CellState::outside)
+      return;
+    bool open = false;
+    for (int axis = 0; axis < dim; ++axis) {
+      const int upper = neighbors[2 * axis + 1];
+      open = open || fractions[axis][cell] > 0 || (upper >= 0 && fractions[axis][upper] > 0);
+    }
+    const bool is_pocket = !open && cells[cell] == CellState::fluid &&
+                           holds_shell(domain, *geometry.state.surface, cell);
+    cells[cell] = open || is_pocket ? CellState::fluid : CellState::solid;
+  });
+  fill_flags(domain.full_halo, cells);
+}
+
+/// The centroid of the open part of a face; or, where that lies in a solid (its tip is in the
+/// face), a place beside an edge of the face.
+template <int dim>
+Point<dim> place_in_fluid(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
+  Point<dim> place = volume.open_center;
+  for (int k = 1; k < dim && surface.inside(place) >= 0; ++k) {
+    const int across = (volume.direction + k) % dim;
+    for (const double end : {0.49, -0.49}) {
+      const Point<dim> edge =
+          volume.center + end * volume.box.sizes()[across] * Point<dim>::Unit(across);
+      if (surface.inside(edge) < 0)
+        place = edge;
+    }
+  }
+  return place;
+}
+
+/// Takes an open fraction below one for a face near the surface that would be free otherwise.
+template <int dim>
+void take_fraction(const MacDomain<dim>& domain, const OpenFractionRule<dim>& rule, int axis,
+                   int cell, ControlVolume<dim> volume, MacGeometry<dim>& geometry) {
   if (volume.open_fraction >= 1)
     return;
+  const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
   if (volume.open_fraction > 0) {
     if (geometry.partial[axis].empty())
       geometry.partial[axis].assign(domain.grid.n_stored_cells(), 1.0);
     geometry.partial[axis][cell] = volume.open_fraction;
+    volume.open_center = rule.open_center(volume, surface);
+    geometry.state.open_centers[axis][cell] = place_in_fluid(volume, surface);
   } else {
     geometry.state.faces[axis][cell] = FaceState::coupled;
   }
@@ -103,6 +180,19 @@ std::vector<char> find_plain_tiles(const TiledGrid<dim>& grid, const MacGeometry
     plain[tile] = is_plain;
   }
   return plain;
+}
+
+/// Asks the rule about a face near the surface that would be free otherwise.
+template <int dim>
+double ask_rule(const OpenFractionRule<dim>& rule, const ControlVolume<dim>& volume,
+                const MacGeometry<dim>& geometry, const FaceCells& face, bool crossed) {
+  const auto& cells = geometry.state.cells;
+  const bool leads_into_solid =
+      in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper);
+  const double fraction =
+      rule.open_fraction(volume, crossed || leads_into_solid, *geometry.state.surface);
+  // An open face between fluid and solid would be a silent leak, whatever the rule says.
+  return leads_into_solid ? 0 : fraction;
 }
 
 /// Partly open faces on any rank give every rank the array, for the exchange.
@@ -130,6 +220,7 @@ ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometr
   ControlVolume<dim> volume;
   volume.direction = axis;
   volume.center = grid.face_center(axis, cell);
+  volume.open_center = volume.center;
   volume.density = density;
   volume.area = domain.face_area();
   volume.id = dim * grid.global_id(cell) + axis;
@@ -159,6 +250,12 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
     marks = mark_surface(domain, *surface, state.cells);
     geometry.near = std::move(marks.near);
   }
+  OpenFractions<dim> fractions;
+  const bool cut = state.surface && rule.cuts_cells();
+  if (cut) {
+    fractions = find_open_fractions(domain, density, rule, marks, geometry);
+    open_cut_cells<dim>(domain, fractions, geometry);
+  }
   number_pressures(domain, geometry);
   const std::vector<char> plain = find_plain_tiles(grid, geometry);
   for (int axis = 0; axis < dim; ++axis) {
@@ -172,9 +269,15 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       const FaceCells face = cells_of_face(grid, state.cells, axis, cell);
       FaceState& result = state.faces[axis][cell];
       result = state_far_from_surfaces(domain, state.cells, axis, face);
-      if (result == FaceState::free && geometry.near_surface(cell))
-        ask_rule(domain, density, rule, axis, cell, face, (marks.blocked[cell] >> axis & 1) != 0,
-                 geometry);
+      // A closed face behind a cut cell need not be near the surface.
+      const bool asked = geometry.near_surface(cell) || (cut && fractions[axis][cell] == 0);
+      if (result == FaceState::free && asked) {
+        ControlVolume<dim> volume = control_volume(domain, geometry, density, axis, cell);
+        volume.open_fraction =
+            cut ? fractions[axis][cell]
+                : ask_rule(rule, volume, geometry, face, (marks.blocked[cell] >> axis & 1) != 0);
+        take_fraction(domain, rule, axis, cell, volume, geometry);
+      }
       if (result == FaceState::prescribed)
         geometry.prescribed.push_back({axis, cell});
       if (result == FaceState::free && face.at_side())

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "geometry/surface_snapshot.hpp"
@@ -29,6 +30,8 @@ struct MacState {
   std::shared_ptr<const SurfaceSnapshot<dim>> surface;
   std::vector<CellState> cells;
   std::array<std::vector<FaceState>, dim> faces;  ///< of the lower face of each cell
+  /// Where the fluid of partly open owned faces is; their centres may lie inside a solid.
+  std::array<std::unordered_map<int, Point<dim>>, dim> open_centers;
 };
 
 }  // namespace lockstep

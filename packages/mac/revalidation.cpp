@@ -91,6 +91,15 @@ class Fronts {
   Point<dim> position(int id) const {
     return kind_ == cell_centers ? grid_.center(id) : grid_.face_center(kind_, id);
   }
+  /// Where its fluid is, as seen from its regular position.
+  Point<dim> shift(int id) const {
+    if (kind_ == cell_centers)
+      return Point<dim>::Zero();
+    const auto& centers = state_.open_centers[kind_];
+    const auto found = centers.find(id);
+    return found == centers.end() ? Point<dim>(Point<dim>::Zero())
+                                  : Point<dim>(found->second - position(id));
+  }
 
   void look_around(int id) {
     if (is_prescribed(id)) {
@@ -99,16 +108,16 @@ class Fronts {
     }
     Waiting<dim> sample;
     sample.id = id;
-    const Point<dim> x = position(id);
+    const Point<dim> x = position(id), eye = x + shift(id);
     const double h = grid_.spacing();
-    nearby_.gather(Box<dim>(x - Point<dim>::Constant(h), x + Point<dim>::Constant(h)));
+    nearby_.gather(widened<dim>(Box<dim>(x), 1.5 * h));
     for (int a = 0; a < dim; ++a)
       for (int side = 0; side < 2; ++side) {
         const int neighbor = grid_.neighbor(id, a, side);
         if (neighbor < 0 || !in_fluid(neighbor))
           continue;
-        const Point<dim> other = x + (side == 0 ? -h : h) * Point<dim>::Unit(a);
-        if (!nearby_.near_hit(x, other))
+        const Point<dim> other = x + (side == 0 ? -h : h) * Point<dim>::Unit(a) + shift(neighbor);
+        if (!nearby_.near_hit(eye, other))
           sample.visible[sample.n_visible++] = neighbor;
       }
     waiting_.push_back(sample);

@@ -173,6 +173,14 @@ std::optional<double> SurfaceTransport<dim>::carry(const CarriedField<dim>& fiel
   return value;
 }
 
+template <int dim>
+double SurfaceTransport<dim>::change(const CarriedField<dim>& field, const Point<dim>& x) {
+  const auto carried = carry(field, x);
+  interpolation_.look_around(x);
+  const auto here = look_up(field, x);
+  return carried && here ? *carried - *here : 0;
+}
+
 template class SurfaceTransport<2>;
 template class SurfaceTransport<3>;
 

@@ -42,6 +42,8 @@ class SurfaceTransport {
   bool clear(const Box<dim>& points, bool during_step) const;
   /// The value carried to the sample at x; none if it sees no valid sample.
   std::optional<double> carry(const CarriedField<dim>& field, const Point<dim>& x);
+  /// By how much the value at x, any place in the fluid, changes; zero where nothing is seen.
+  double change(const CarriedField<dim>& field, const Point<dim>& x);
 
  private:
   /// Where the fluid of x came from, as far as it can be seen; sets `hit` if a surface is in the

@@ -85,26 +85,14 @@ void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point
   }
 }
 
-template <int dim>
-CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
-                                 const std::vector<std::vector<SurfaceShare<dim>>>& shares,
-                                 const SolidSystem<dim>& solids) {
+CouplingWeights weights_of_rows(int n_rows, const std::function<void(int, RowEntries&)>& entries) {
   CouplingWeights weights;
   std::vector<GlobalIndex> ids;  // column of each entry, global
-  VelocityRow<dim> scratch;
-  std::vector<GlobalIndex> dofs;
-  std::vector<double> values;
-  std::vector<std::pair<GlobalIndex, double>> row;
+  RowEntries row;
   weights.row_begin.push_back(0);
-  for (std::size_t f = 0; f < volumes.size(); ++f) {
+  for (int f = 0; f < n_rows; ++f) {
     row.clear();
-    for (const SurfaceShare<dim>& share : shares[f]) {
-      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch, dofs,
-                        values);
-      for (std::size_t k = 0; k < dofs.size(); ++k) {
-        row.emplace_back(dofs[k], share.weight * values[k]);
-      }
-    }
+    entries(f, row);
     std::stable_sort(row.begin(), row.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [id, value] : row) {
@@ -126,6 +114,24 @@ CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
         std::lower_bound(weights.dofs.begin(), weights.dofs.end(), id) - weights.dofs.begin()));
   }
   return weights;
+}
+
+template <int dim>
+CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
+                                 const std::vector<std::vector<SurfaceShare<dim>>>& shares,
+                                 const SolidSystem<dim>& solids) {
+  VelocityRow<dim> scratch;
+  std::vector<GlobalIndex> dofs;
+  std::vector<double> values;
+  return weights_of_rows(static_cast<int>(volumes.size()), [&](int f, RowEntries& row) {
+    for (const SurfaceShare<dim>& share : shares[f]) {
+      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch, dofs,
+                        values);
+      for (std::size_t k = 0; k < dofs.size(); ++k) {
+        row.emplace_back(dofs[k], share.weight * values[k]);
+      }
+    }
+  });
 }
 
 template std::vector<std::vector<SurfaceShare<2>>> surface_shares<2>(

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "coupling/solid_system.hpp"
@@ -38,6 +40,11 @@ template <int dim>
 void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point,
                   const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
                   std::vector<GlobalIndex>& dofs, std::vector<double>& values);
+
+/// Rows from their entries (id of the solid map, value), in any order: equal ids are added.
+/// `entries(f, row)` appends those of row f.
+using RowEntries = std::vector<std::pair<GlobalIndex, double>>;
+CouplingWeights weights_of_rows(int n_rows, const std::function<void(int, RowEntries&)>& entries);
 
 template <int dim>
 CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,

@@ -26,13 +26,14 @@ struct PressureSide {
 /// M u' = M u* - area (p̂_upper - p̂_lower) (Eq. 9).
 template <int dim>
 struct ControlVolume {
-  int direction = 0;                       ///< axis of its velocity
-  Point<dim> center = Point<dim>::Zero();  ///< R_f [m]
-  Box<dim> box;                            ///< the dual cell; half of it at an open side
-  double density = 0;                      ///< of its fluid [kg/m^3]
-  double area = 0;                         ///< of the face, V |G| [m^(dim-1)]
-  std::array<PressureSide<dim>, 2> sides;  ///< lower, upper along `direction`
-  double open_fraction = 1;                ///< alpha_f, as the coupling's rule answered
+  int direction = 0;                            ///< axis of its velocity
+  Point<dim> center = Point<dim>::Zero();       ///< R_f [m]
+  Box<dim> box;                                 ///< the dual cell; half of it at an open side
+  double density = 0;                           ///< of its fluid [kg/m^3]
+  double area = 0;                              ///< of the face, V |G| [m^(dim-1)]
+  std::array<PressureSide<dim>, 2> sides;       ///< lower, upper along `direction`
+  double open_fraction = 1;                     ///< alpha_f, as the coupling's rule answered
+  Point<dim> open_center = Point<dim>::Zero();  ///< where its fluid moves: R_f unless partly open
   bool seen_by_fluid = true;  ///< a fluid cell beside it sees its centre without crossing a surface
   GlobalIndex id = no_index;  ///< the fluid's own number; the same on any number of ranks
 };
@@ -47,6 +48,15 @@ class OpenFractionRule {
   /// `blocked`: the segment between its two pressure points meets the surface.
   virtual double open_fraction(const ControlVolume<dim>& volume, bool blocked,
                                const SurfaceSnapshot<dim>& surface) const = 0;
+  /// False: cells whose centre is inside a closed solid carry no pressure, and their faces are
+  /// closed. True: every cell with an open face does, wherever its centre is.
+  virtual bool cuts_cells() const { return false; }
+  /// Centroid of the open part of a face whose open fraction is between 0 and 1: there its momentum
+  /// counts. Default: the centre of the face.
+  virtual Point<dim> open_center(const ControlVolume<dim>& volume,
+                                 const SurfaceSnapshot<dim>&) const {
+    return volume.center;
+  }
 };
 
 /// The surfaces of one step, from t^n to t^{n+1}, and how fast they move.

@@ -13,7 +13,7 @@ TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".sh", "
 # The sibling packages that a package may include.
 SIBLINGS = {
     "mac": {"grid"},
-    "cutcell": {"grid", "mac"},
+    "cutcell": {"grid", "mac", "mixedface"},
     "articulated": {"rigid", "deformable"},
     "strategies": {"multigrid"},
 }

@@ -1,0 +1,173 @@
+#include "cutcell/displaced_volume.hpp"
+
+#include <cmath>
+
+namespace lockstep {
+namespace {
+
+/// V sum (1 - alpha) of one solid along one axis, its first moments about the solid's centroid, and
+/// the areas of its faces: signed, of those beside a pressure, they cancel if every column ends in
+/// the fluid.
+template <int dim>
+struct Displaced {
+  double volume = 0;
+  Point<dim> moment = Point<dim>::Zero();
+  double open_area = 0, area = 0;
+};
+template <int dim>
+using DisplacedOfSolid = std::array<Displaced<dim>, dim>;
+
+template <int dim>
+void add_face(const ControlVolume<dim>& volume, const FluxShare<dim>& share,
+              const Point<dim>& center, Displaced<dim>& sum) {
+  const int a = volume.direction;
+  const double area = share.weight * (1 - volume.open_fraction) * volume.area;
+  sum.area += area;
+  Point<dim> arm = share.center - center;
+  arm[a] = 0;
+  // The pressure p = x_a pushes with area (x_upper - x_lower) on the cells of the face.
+  for (int side = 0; side < 2; ++side) {
+    if (volume.sides[side].unknown == no_index)
+      continue;
+    const double sign = side == 0 ? -1 : 1;
+    const double lifted = sign * area * (volume.sides[side].center[a] - center[a]);
+    sum.volume += lifted;
+    sum.moment += lifted * arm;
+    sum.open_area += sign * area;
+  }
+}
+
+template <int dim>
+void sum_over_ranks(std::vector<DisplacedOfSolid<dim>>& all, const Communicator& comm) {
+  std::vector<double> flat;
+  for (const auto& solid : all)
+    for (const Displaced<dim>& d : solid) {
+      flat.insert(flat.end(), {d.volume, d.open_area, d.area});
+      flat.insert(flat.end(), d.moment.data(), d.moment.data() + dim);
+    }
+  if (flat.empty())
+    return;
+  sum_all(comm, flat.data(), static_cast<int>(flat.size()));
+  const double* value = flat.data();
+  for (auto& solid : all)
+    for (Displaced<dim>& d : solid) {
+      d.volume = *value++;
+      d.open_area = *value++;
+      d.area = *value++;
+      for (int a = 0; a < dim; ++a)
+        d.moment[a] = *value++;
+    }
+}
+
+template <int dim>
+SurfaceMesh<dim> surface_of(const SurfaceSnapshot<dim>& surface, const SolidDescription& solid) {
+  SurfaceMesh<dim> mesh;
+  mesh.vertices.assign(surface.mesh().vertices.begin() + solid.vertex_begin,
+                       surface.mesh().vertices.begin() + solid.vertex_end);
+  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+    auto simplex = surface.mesh().simplices[s];
+    for (int& vertex : simplex)
+      vertex -= solid.vertex_begin;
+    mesh.simplices.push_back(simplex);
+  }
+  return mesh;
+}
+
+/// The surface point in the middle of a simplex.
+template <int dim>
+SurfacePoint<dim> middle(const SurfaceSnapshot<dim>& surface, int simplex) {
+  SurfacePoint<dim> point;
+  point.simplex = simplex;
+  point.barycentric.setConstant(1. / dim);
+  for (const Point<dim>& corner : surface.corners(simplex))
+    point.position += corner / dim;
+  return point;
+}
+
+/// Adds scale times the row of a point, taken at x.
+template <int dim>
+void add_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point, const Point<dim>& x,
+             double scale, AxisForce& force) {
+  VelocityRow<dim> row;
+  solids.velocity_row(point, x, row);
+  for (std::size_t k = 0; k < row.dofs.size(); ++k) {
+    force.dofs.push_back(row.dofs[k]);
+    force.values.push_back(scale * row.coefficients[k][force.axis]);
+  }
+}
+
+/// A rigid body takes the force and its moment; a deformable one the force, over its surface.
+template <int dim>
+AxisForce force_of(const SolidSystem<dim>& solids, const SurfaceSnapshot<dim>& surface,
+                   const SolidDescription& solid, int axis, const Point<dim>& center, double mass,
+                   const Point<dim>& moment) {
+  AxisForce force;
+  force.axis = axis;
+  if (solid.rigid) {
+    const SurfacePoint<dim> point = middle<dim>(surface, solid.simplex_begin);
+    const double length = surface.bounds(solid.simplex_begin).diagonal().norm();
+    const double strength = moment.norm() / length;
+    add_row<dim>(solids, point, center, mass, force);
+    if (strength > 0) {  // a couple: rows of a rigid body are linear in x
+      add_row<dim>(solids, point, center + moment / strength, strength, force);
+      add_row<dim>(solids, point, center, -strength, force);
+    }
+    return force;
+  }
+  double total = 0;
+  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s)
+    total += area_vector<dim>(surface.corners(s)).norm();
+  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+    const SurfacePoint<dim> point = middle<dim>(surface, s);
+    const double share = area_vector<dim>(surface.corners(s)).norm() / total;
+    add_row<dim>(solids, point, point.position, mass * share, force);
+  }
+  return force;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<AxisForce> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
+                                        const std::vector<FaceShares<dim>>& shares,
+                                        const SolidSystem<dim>& solids,
+                                        const SurfaceSnapshot<dim>& surface, double density) {
+  const auto& descriptions = surface.solids();
+  const auto is_lifted = [&](int s) {
+    return descriptions[s].closed && !descriptions[s].prescribed;
+  };
+  const int n_solids = static_cast<int>(descriptions.size());
+  std::vector<MassProperties<dim>> bodies(n_solids);
+  for (int s = 0; s < n_solids; ++s)
+    if (is_lifted(s))
+      bodies[s] = volume_properties<dim>(surface_of<dim>(surface, descriptions[s]));
+
+  std::vector<DisplacedOfSolid<dim>> displaced(n_solids);
+  for (std::size_t f = 0; f < volumes.size(); ++f)
+    for (const FluxShare<dim>& share : shares[f].all)
+      add_face<dim>(volumes[f], share, bodies[share.solid].centroid,
+                    displaced[share.solid][volumes[f].direction]);
+  sum_over_ranks<dim>(displaced, solids.comm());
+
+  std::vector<AxisForce> forces;
+  for (int s = 0; s < n_solids; ++s)
+    for (int a = 0; is_lifted(s) && a < dim; ++a) {
+      const Displaced<dim>& d = displaced[s][a];
+      if (std::abs(d.open_area) > 1e-6 * d.area)
+        continue;
+      forces.push_back(force_of<dim>(solids, surface, descriptions[s], a, bodies[s].centroid,
+                                     density * (d.volume - bodies[s].measure), density * d.moment));
+    }
+  return forces;
+}
+
+template std::vector<AxisForce> displaced_excess<2>(const std::vector<ControlVolume<2>>&,
+                                                    const std::vector<FaceShares<2>>&,
+                                                    const SolidSystem<2>&,
+                                                    const SurfaceSnapshot<2>&, double);
+template std::vector<AxisForce> displaced_excess<3>(const std::vector<ControlVolume<3>>&,
+                                                    const std::vector<FaceShares<3>>&,
+                                                    const SolidSystem<3>&,
+                                                    const SurfaceSnapshot<3>&, double);
+
+}  // namespace lockstep

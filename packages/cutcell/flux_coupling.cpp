@@ -1,0 +1,292 @@
+#include "cutcell/flux_coupling.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+#include "linear/triplet_matrix.hpp"
+#include "mixedface/lumping.hpp"
+
+namespace lockstep {
+namespace {
+
+RCP<Import> import_of(std::vector<GlobalIndex> wanted, const RCP<const Map>& owner) {
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  const auto map = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                               Teuchos::arrayViewFromVector(wanted), 0, owner->getComm()));
+  return rcp(new Import(owner, map));
+}
+
+/// rhs += the overlapping values, summed over ranks.
+void add_overlap(const Vector& overlap, const Import& import, Vector& rhs) {
+  Vector sum(rhs.getMap());
+  sum.doExport(overlap, import, Tpetra::ADD);
+  rhs.update(1, sum, 1);
+}
+
+/// result += weights times the dofs they touch.
+void add_rows(const CouplingWeights& weights, const Import& import, const Vector& dofs,
+              std::vector<double>& result) {
+  Vector overlap(import.getTargetMap());
+  overlap.doImport(dofs, import, Tpetra::INSERT);
+  const auto values = overlap.getData();
+  for (int f = 0; f < weights.n_rows(); ++f)
+    for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k)
+      result[f] += weights.values[k] * values[weights.columns[k]];
+}
+
+bool is_dynamic_shell(const SolidDescription& solid) {
+  return !solid.closed && !solid.prescribed;
+}
+
+}  // namespace
+
+template <int dim>
+double FluxCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool,
+                                        const SurfaceSnapshot<dim>& surface) const {
+  return open_fraction_of<dim>(volume, surface, options_.smallest_open_fraction);
+}
+
+template <int dim>
+Point<dim> FluxCoupling<dim>::open_center(const ControlVolume<dim>& volume,
+                                          const SurfaceSnapshot<dim>& surface) const {
+  return open_center_of<dim>(volume, face_shares<dim>(volume, surface).all);
+}
+
+template <int dim>
+void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
+                                 const SolidSystem<dim>& solids,
+                                 const SurfaceSnapshot<dim>& surface) {
+  surface_ = &surface;
+  volumes_ = fluid.coupled_volumes();
+  const std::size_t n = volumes_.size();
+  shares_.clear();
+  masses_.assign(n, 0);
+  prescribed_velocity_.assign(n, 0);
+  prescribed_shell_velocity_.assign(n, 0);
+  std::vector<GlobalIndex> unknowns;
+  for (std::size_t f = 0; f < n; ++f) {
+    const ControlVolume<dim>& volume = volumes_[f];
+    shares_.push_back(face_shares<dim>(volume, surface));
+    masses_[f] = volume.density * volume.box.volume() * shares_[f].shell_part;
+    for (const auto& side : volume.sides)
+      if (side.unknown != no_index)
+        unknowns.push_back(side.unknown);
+  }
+  pressure_import_ = import_of(std::move(unknowns), fluid.pressure_map());
+
+  coupling_transposed_ = Teuchos::null;
+  added_mass_ = Teuchos::null;
+  excess_.clear();
+  if (!solids.has_unknowns())
+    return;
+  if (options_.correct_buoyancy) {
+    double density = volumes_.empty() ? 0 : volumes_.front().density;
+    density = max_all(solids.comm(), density);
+    if (density == 0)
+      density = fluid.density(surface.bounds_of_solid(0).center());
+    excess_ = displaced_excess<dim>(volumes_, shares_, solids, surface, density);
+  }
+  assemble_blocks(solids);
+}
+
+template <int dim>
+void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
+  VelocityRow<dim> scratch;
+  std::vector<GlobalIndex> dofs;
+  std::vector<double> values;
+  weights_ = weights_of_rows(static_cast<int>(volumes_.size()), [&](int f, RowEntries& row) {
+    for (const FluxShare<dim>& share : shares_[f].all) {
+      directed_row<dim>(solids, share.point, share.center, volumes_[f].direction, scratch, dofs,
+                        values);
+      for (std::size_t k = 0; k < dofs.size(); ++k)
+        row.emplace_back(dofs[k], share.weight * values[k]);
+    }
+  });
+  solid_import_ = import_of(weights_.dofs, solids.map());
+  std::vector<Triplet> coupling;
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k)
+      for (int side = 0; side < 2; ++side)
+        if (volumes_[f].sides[side].unknown != no_index)
+          coupling.push_back({weights_.dofs[weights_.columns[k]], volumes_[f].sides[side].unknown,
+                              push(f, side) * weights_.values[k]});
+  coupling_transposed_ =
+      assemble_triplets(std::move(coupling), solids.map(), pressure_import_->getSourceMap());
+
+  std::vector<std::vector<SurfaceShare<dim>>> shells;
+  for (const FaceShares<dim>& shares : shares_)
+    shells.push_back(shares.of_shells);
+  shell_weights_ = coupling_weights<dim>(volumes_, shells, solids);
+  shell_solid_import_ = import_of(shell_weights_.dofs, solids.map());
+  if (std::any_of(solids.solids().begin(), solids.solids().end(), is_dynamic_shell))
+    added_mass_ = assemble_triplets(
+        added_mass_triplets<dim>(volumes_, shells, solids, masses_, Lumping::diagonal),
+        solids.map(), solids.map());
+}
+
+template <int dim>
+void FluxCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity, double dt,
+                                            Vector& rhs) const {
+  const RCP<const Map> map = rhs.getMap();
+  for (const AxisForce& force : excess_)
+    for (std::size_t k = 0; k < force.dofs.size(); ++k)
+      if (map->isNodeGlobalElement(force.dofs[k]))
+        rhs.sumIntoGlobalValue(force.dofs[k], gravity[force.axis] * dt * force.values[k]);
+}
+
+template <int dim>
+void FluxCoupling<dim>::set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) {
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const auto velocity = [&](const SurfacePoint<dim>& point, const Point<dim>& x) {
+      return (motion == Motion::present
+                  ? solids.prescribed_velocity(point, x)
+                  : solids.effective_velocity(point, x))[volumes_[f].direction];
+    };
+    prescribed_velocity_[f] = prescribed_shell_velocity_[f] = 0;
+    for (const FluxShare<dim>& share : shares_[f].all)
+      if (solids.solids()[share.solid].prescribed)
+        prescribed_velocity_[f] += share.weight * velocity(share.point, share.center);
+    for (const SurfaceShare<dim>& share : shares_[f].of_shells)
+      if (solids.solids()[share.solid].prescribed)
+        prescribed_shell_velocity_[f] += share.weight * velocity(share.point, volumes_[f].center);
+  }
+}
+
+template <int dim>
+void FluxCoupling<dim>::add_divergence(const std::vector<double>& coupled_velocity,
+                                       Vector& rhs) const {
+  Vector overlap(pressure_import_->getTargetMap());
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    for (int side = 0; side < 2; ++side)
+      if (volumes_[f].sides[side].unknown != no_index)
+        overlap.sumIntoGlobalValue(volumes_[f].sides[side].unknown,
+                                   push(f, side) * coupled_velocity[f]);
+  add_overlap(overlap, *pressure_import_, rhs);
+}
+
+template <int dim>
+void FluxCoupling<dim>::add_prescribed_divergence(Vector& rhs) const {
+  add_divergence(prescribed_velocity_, rhs);
+}
+
+template <int dim>
+void FluxCoupling<dim>::add_lumped_momentum(const std::vector<double>& coupled_velocity,
+                                            Vector& rhs) const {
+  if (added_mass_.is_null())
+    return;
+  Vector overlap(shell_solid_import_->getTargetMap());
+  {
+    const auto values = overlap.getDataNonConst();
+    for (int f = 0; f < shell_weights_.n_rows(); ++f)
+      for (int k = shell_weights_.row_begin[f]; k < shell_weights_.row_begin[f + 1]; ++k)
+        values[shell_weights_.columns[k]] +=
+            shell_weights_.values[k] * masses_[f] * coupled_velocity[f];
+  }
+  add_overlap(overlap, *shell_solid_import_, rhs);
+}
+
+/// Fluid lumped on shells moves with them alone, so that its momentum is what the solve balanced.
+template <int dim>
+std::vector<double> FluxCoupling<dim>::velocity(const Vector& solid_velocity) const {
+  std::vector<double> result = prescribed_velocity_, of_shells = prescribed_shell_velocity_;
+  if (!coupling_transposed_.is_null()) {
+    add_rows(weights_, *solid_import_, solid_velocity, result);
+    add_rows(shell_weights_, *shell_solid_import_, solid_velocity, of_shells);
+  }
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    if (!shares_[f].of_shells.empty())
+      result[f] = of_shells[f];
+  return result;
+}
+
+template <int dim>
+std::vector<double> FluxCoupling<dim>::effective_velocity(const SolidSystem<dim>& solids) const {
+  std::vector<double> result(volumes_.size(), 0);
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    for (const FluxShare<dim>& share : shares_[f].all)
+      result[f] += share.weight *
+                   solids.effective_velocity(share.point, share.center)[volumes_[f].direction];
+  return result;
+}
+
+template <int dim>
+Momentum<dim> FluxCoupling<dim>::prescribed_impulse(const std::vector<double>& velocity_before,
+                                                    const std::vector<double>&,
+                                                    const Vector& scaled_pressure) const {
+  Vector beside(pressure_import_->getTargetMap());
+  beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
+  const auto pressure = beside.getData();
+  Momentum<dim> impulse;
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const ControlVolume<dim>& volume = volumes_[f];
+    double push_of_fluid = 0;
+    for (int side = 0; side < 2; ++side)
+      if (volume.sides[side].unknown != no_index)
+        push_of_fluid +=
+            push(f, side) * pressure[beside.getMap()->getLocalElement(volume.sides[side].unknown)];
+    for (const FluxShare<dim>& share : shares_[f].all)
+      if (surface_->solids()[share.solid].prescribed)
+        impulse.add(share.center, volume.direction, share.weight * push_of_fluid);
+    double shell_share = 0;
+    for (const SurfaceShare<dim>& share : shares_[f].of_shells)
+      shell_share += surface_->solids()[share.solid].prescribed ? share.weight : 0;
+    impulse.add(volume.center, volume.direction,
+                masses_[f] * (prescribed_shell_velocity_[f] - shell_share * velocity_before[f]));
+  }
+  return sum_over_ranks<dim>(impulse, pressure_import_->getSourceMap()->getComm());
+}
+
+template <int dim>
+void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
+                                   const SolidSystem<dim>& solids, LinkRow& row) const {
+  VelocityRow<dim> scratch;
+  std::vector<GlobalIndex> dofs;
+  std::vector<double> values;
+  Point<dim> pulled = Point<dim>::Zero();  // nodes are pulled where the surface is
+  double dynamic_share = 0;
+  for (const FluxShare<dim>& share : shares) {
+    const SolidDescription& solid = solids.solids()[share.solid];
+    if (solid.prescribed) {
+      row.prescribed +=
+          share.weight * solids.prescribed_velocity(share.point, share.center)[direction];
+      row.prescribed_share += share.weight;
+      continue;
+    }
+    dynamic_share += share.weight;
+    pulled += share.weight * (solid.rigid ? share.center : share.point.position);
+    directed_row<dim>(solids, share.point, share.center, direction, scratch, dofs, values);
+    for (std::size_t k = 0; k < dofs.size(); ++k) {
+      row.dofs.push_back(dofs[k]);
+      row.weights.push_back(share.weight * values[k]);
+    }
+  }
+  if (dynamic_share > 0)
+    row.position = pulled / dynamic_share;
+}
+
+template <int dim>
+void FluxCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
+                                 LinkRow& row) const {
+  row = LinkRow();
+  if (link.coupled_volume >= 0) {
+    row.position = volumes_[link.coupled_volume].center;
+    add_to_row(shares_[link.coupled_volume].all, link.direction, solids, row);
+  } else if (link.remote_volume) {
+    ControlVolume<dim> volume = *link.remote_volume;
+    volume.open_fraction = 0;
+    row.position = volume.center;
+    add_to_row(face_shares<dim>(volume, *surface_).all, link.direction, solids, row);
+  } else {
+    row.position = link.point.position;
+    add_to_row({{1, link.point, surface_->solid_of(link.point.simplex), link.point.position}},
+               link.direction, solids, row);
+  }
+}
+
+template class FluxCoupling<2>;
+template class FluxCoupling<3>;
+
+}  // namespace lockstep

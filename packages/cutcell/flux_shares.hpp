@@ -1,0 +1,53 @@
+#pragma once
+#include <vector>
+
+#include "cutcell/closed_parts.hpp"
+#include "interfaces/fluid.hpp"
+#include "mixedface/weights.hpp"
+
+namespace lockstep {
+
+/// One solid's share of the closed part of a face; the shares of a face sum to one. A rigid body
+/// moves its share with the velocity of its rigid motion at `center`, the centroid of its part of
+/// the face: as a rigid motion is free of divergence, what flows through the closed faces of a cell
+/// is then exactly what the surface inside the cell pushes out (design: the flux form).
+template <int dim>
+struct FluxShare {
+  double weight = 0;
+  SurfacePoint<dim> point;  ///< names the solid, and carries the weights of its vertices
+  int solid = -1;
+  Point<dim> center = Point<dim>::Zero();  ///< [m]
+};
+
+/// The flat box of a face [m].
+template <int dim>
+Box<dim> face_of(const ControlVolume<dim>& volume);
+
+/// True if a thin shell lies between the two pressure points.
+template <int dim>
+bool blocked_by_shell(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface);
+
+/// Open part of a face: one minus the parts inside closed solids, rounded to a millionth, and
+/// closed altogether below `smallest`. A shell between the pressure points
+/// closes it as well. Local.
+template <int dim>
+double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
+                        double smallest);
+
+/// Centroid of what the shares of a partly open face leave open: both together balance about the
+/// centre of the face, whatever was rounded.
+template <int dim>
+Point<dim> open_center_of(const ControlVolume<dim>& volume,
+                          const std::vector<FluxShare<dim>>& shares);
+
+/// What the coupling knows of one face with open_fraction < 1.
+template <int dim>
+struct FaceShares {
+  std::vector<FluxShare<dim>> all;           ///< of the closed part; weights sum to one
+  std::vector<SurfaceShare<dim>> of_shells;  ///< shells only, as in the mixed-face coupling
+  double shell_part = 0;  ///< of the face: its fluid moves with the shells and is lumped on them
+};
+template <int dim>
+FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface);
+
+}  // namespace lockstep

@@ -1,0 +1,42 @@
+#include "cutcell/register_flux.hpp"
+
+#include "cutcell/flux_coupling.hpp"
+
+namespace lockstep {
+namespace {
+
+ParameterList valid_parameters() {
+  ParameterList list;
+  declare_between(
+      list, "Smallest Open Fraction", FluxOptions().smallest_open_fraction, 1e-6, 0.5,
+      "Faces of which a smaller part than this [1] is open are closed; what they would have let "
+      "through is given to the solid in both neighbours.");
+  declare(list, "Correct Buoyancy", true,
+          "Correct the weight of every closed body, axis by axis, by what the grid displaces too "
+          "much, so that a neutrally buoyant one rests exactly.");
+  return list;
+}
+
+FluxOptions options_from(const ParameterList& list) {
+  FluxOptions options;
+  options.smallest_open_fraction = list.get<double>("Smallest Open Fraction");
+  options.correct_buoyancy = list.get<bool>("Correct Buoyancy");
+  return options;
+}
+
+}  // namespace
+
+template <int dim>
+void register_flux(Registry<Coupling<dim>>& couplings) {
+  couplings.add("flux",
+                "Second-order coupling of closed bodies by the flux through cut cells: faces keep "
+                "their open part; shells move whole faces, as with 'mixed face'.",
+                valid_parameters, [](const ParameterList& list) {
+                  return std::make_unique<FluxCoupling<dim>>(options_from(list));
+                });
+}
+
+template void register_flux<2>(Registry<Coupling<2>>&);
+template void register_flux<3>(Registry<Coupling<3>>&);
+
+}  // namespace lockstep
