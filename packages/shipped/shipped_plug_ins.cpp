@@ -1,6 +1,7 @@
 #include "shipped/shipped_plug_ins.hpp"
 
 #include "contact/register_contact.hpp"
+#include "deformable/register_deformable.hpp"
 #include "mac/boundary.hpp"
 #include "mac/register_mac.hpp"
 #include "mixedface/register_mixed_face.hpp"
@@ -15,6 +16,7 @@ Registries<dim> shipped_plug_ins() {
   registries.domain_parameters = domain_parameters<dim>;
   register_mac<dim>(registries.fluids);
   register_rigid<dim>(registries.solids);
+  register_deformable<dim>(registries.solids);
   register_mixed_face<dim>(registries.couplings);
   register_contact<dim>(registries.contacts);
   register_strategies(registries.strategies);
