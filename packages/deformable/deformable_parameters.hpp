@@ -17,4 +17,14 @@ template <int dim>
 DeformableBody<dim> read_deformable_body(const std::string& name, const ParameterList& list,
                                          double grid_spacing);
 
+/// Everything a solid of type "cloth" may say, without "Type".
+template <int dim>
+ParameterList cloth_parameters();
+
+/// A thin shell at the start from its list, validated against `cloth_parameters`; the rest as
+/// above.
+template <int dim>
+DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& list,
+                               double grid_spacing);
+
 }  // namespace lockstep

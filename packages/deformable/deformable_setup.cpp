@@ -35,9 +35,10 @@ ElementCorners shifted(ElementCorners corners, int shift) {
 }  // namespace
 
 template <int dim>
-DeformableSolids<dim>::DeformableSolids(std::vector<DeformableBody<dim>> bodies,
+DeformableSolids<dim>::DeformableSolids(const std::string& type,
+                                        std::vector<DeformableBody<dim>> bodies,
                                         const Point<dim>& gravity, const Communicator& comm)
-    : comm_(comm), gravity_(gravity) {
+    : type_(type), comm_(comm), gravity_(gravity) {
   int n_nodes = 0;
   for (auto& body : bodies) {
     add_body(body, n_nodes);
@@ -197,9 +198,9 @@ void DeformableSolids<dim>::distribute_surface(const std::vector<DeformableBody<
   surface_velocity_.assign(surface_node_.size(), Point<dim>::Zero());
 }
 
-template DeformableSolids<2>::DeformableSolids(std::vector<DeformableBody<2>>, const Point<2>&,
-                                               const Communicator&);
-template DeformableSolids<3>::DeformableSolids(std::vector<DeformableBody<3>>, const Point<3>&,
-                                               const Communicator&);
+template DeformableSolids<2>::DeformableSolids(const std::string&, std::vector<DeformableBody<2>>,
+                                               const Point<2>&, const Communicator&);
+template DeformableSolids<3>::DeformableSolids(const std::string&, std::vector<DeformableBody<3>>,
+                                               const Point<3>&, const Communicator&);
 
 }  // namespace lockstep

@@ -20,11 +20,11 @@ namespace lockstep {
 template <int dim>
 class DeformableSolids : public SolidModel<dim> {
  public:
-  /// gravity [m/s^2]. Collective.
-  DeformableSolids(std::vector<DeformableBody<dim>> bodies, const Point<dim>& gravity,
-                   const Communicator& comm);
+  /// `type` is the name of the model, gravity [m/s^2]. Collective.
+  DeformableSolids(const std::string& type, std::vector<DeformableBody<dim>> bodies,
+                   const Point<dim>& gravity, const Communicator& comm);
 
-  std::string name() const override { return "deformable body"; }
+  std::string name() const override { return type_; }
 
   const std::vector<SolidDescription>& solids() const override { return solids_; }
   const SurfaceMesh<dim>& surface() const override { return surface_; }
@@ -88,6 +88,7 @@ class DeformableSolids : public SolidModel<dim> {
   Nodes surface_values(const Nodes& owned) const;
   int body_of_node(int local) const { return body_of_node_[local]; }
 
+  std::string type_;
   Communicator comm_;
   Point<dim> gravity_;
   std::vector<Body> bodies_;

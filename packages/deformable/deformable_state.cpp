@@ -9,8 +9,6 @@ namespace lockstep {
 
 namespace {
 
-const std::string group = "deformable bodies";
-
 template <typename Bodies>
 std::string joined_names(const Bodies& bodies) {
   std::string names;
@@ -42,12 +40,12 @@ void DeformableSolids<dim>::save(CheckpointWriter& writer) const {
   std::vector<GlobalIndex> ids;
   for (int i = 0; i < space_.n_owned(); ++i)
     ids.push_back(space_.original(i));
-  writer.file().create_group(group);
-  writer.file().write_text(group + "/names", joined_names(bodies_));
-  writer.write_distributed(group + "/positions", ids, numbers_of<dim>(x_, ids.size()), dim);
-  writer.write_distributed(group + "/velocities", ids,
+  writer.file().create_group(type_);
+  writer.file().write_text(type_ + "/names", joined_names(bodies_));
+  writer.write_distributed(type_ + "/positions", ids, numbers_of<dim>(x_, ids.size()), dim);
+  writer.write_distributed(type_ + "/velocities", ids,
                            numbers_of<dim>(space_.owned(*velocity_), ids.size()), dim);
-  writer.file().write_replicated(group + "/surface velocities",
+  writer.file().write_replicated(type_ + "/surface velocities",
                                  numbers_of<dim>(surface_velocity_, surface_velocity_.size()), dim);
 }
 
@@ -55,18 +53,18 @@ template <int dim>
 void DeformableSolids<dim>::load(const CheckpointReader& reader) {
   const Hdf5File& file = reader.file();
   check_input(
-      file.exists(group + "/names") && file.read_text(group + "/names") == joined_names(bodies_),
-      "{}: the checkpoint does not hold the deformable bodies of this scene; restart with "
-      "the scene that wrote it.",
-      file.path());
+      file.exists(type_ + "/names") && file.read_text(type_ + "/names") == joined_names(bodies_),
+      "{}: the checkpoint does not hold the solids of type \"{}\" of this scene; restart with the "
+      "scene that wrote it.",
+      file.path(), type_);
   std::vector<GlobalIndex> ids;
   for (int i = 0; i < space_.n_local(); ++i)
     ids.push_back(space_.original(i));
-  x_ = points_of<dim>(reader.read_distributed<double>(group + "/positions", ids));
+  x_ = points_of<dim>(reader.read_distributed<double>(type_ + "/positions", ids));
   ids.resize(space_.n_owned());
   velocity_ =
-      space_.vector(points_of<dim>(reader.read_distributed<double>(group + "/velocities", ids)));
-  surface_velocity_ = points_of<dim>(file.read_all<double>(group + "/surface velocities"));
+      space_.vector(points_of<dim>(reader.read_distributed<double>(type_ + "/velocities", ids)));
+  surface_velocity_ = points_of<dim>(file.read_all<double>(type_ + "/surface velocities"));
   update_geometry();
 }
 

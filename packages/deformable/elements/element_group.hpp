@@ -29,7 +29,6 @@ class ElementGroup {
   virtual int add_stiffness(const Nodes& x, NodeMatrix<dim>& stiffness) const = 0;
   /// Adds B [N s/m], damping force = -B v: symmetric positive semidefinite, zero for rigid motions.
   virtual void add_damping(const Nodes& x, NodeMatrix<dim>& damping) const = 0;
-  virtual bool damped() const = 0;
 
  protected:
   ElementGroup() = default;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 
+#include "deformable/elements/element_list.hpp"
 #include "deformable/materials/tensor_products.hpp"
 
 namespace lockstep {
@@ -16,7 +17,7 @@ struct VolumeElement {
 };
 
 template <int dim>
-class VolumeElements : public ElementGroup<dim> {
+class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElements<dim>> {
  public:
   using Nodes = typename ElementGroup<dim>::Nodes;
 
@@ -34,25 +35,6 @@ class VolumeElements : public ElementGroup<dim> {
       element.gradients.col(0) = -element.gradients.template rightCols<dim>().rowwise().sum();
       elements_.push_back(element);
     }
-  }
-
-  ElementCorners corners() const override {
-    ElementCorners all{dim + 1, {}};
-    for (const auto& element : elements_)
-      all.nodes.insert(all.nodes.end(), element.corners.begin(), element.corners.end());
-    return all;
-  }
-
-  std::unique_ptr<ElementGroup<dim>> restricted(const std::vector<int>& kept,
-                                                const std::vector<int>& number) const override {
-    auto part = std::make_unique<VolumeElements>(*this);
-    part->elements_.clear();
-    for (const int e : kept) {
-      part->elements_.push_back(elements_[e]);
-      for (int& corner : part->elements_.back().corners)
-        corner = number[corner];
-    }
-    return part;
   }
 
   double add_elastic_forces(const Nodes& x, int n_owned, Nodes& force) const override {
@@ -87,7 +69,7 @@ class VolumeElements : public ElementGroup<dim> {
   }
 
   void add_damping(const Nodes& x, NodeMatrix<dim>& damping) const override {
-    if (!damped())
+    if (!damping_.active())
       return;
     for (const auto& element : elements_) {
       const Tensor<dim> f = deformation_gradient(element, x);
@@ -100,9 +82,10 @@ class VolumeElements : public ElementGroup<dim> {
       add_matrix(element, derivative, damping);
     }
   }
-  bool damped() const override { return damping_.active(); }
 
  private:
+  using ElementList<dim, VolumeElement<dim>, VolumeElements<dim>>::elements_;
+
   static Tensor<dim> deformation_gradient(const VolumeElement<dim>& element, const Nodes& x) {
     Tensor<dim> f = Tensor<dim>::Zero();
     for (int k = 1; k <= dim; ++k) {
@@ -130,7 +113,6 @@ class VolumeElements : public ElementGroup<dim> {
 
   std::shared_ptr<const Material<dim>> material_;
   StrainRateDamping damping_;
-  std::vector<VolumeElement<dim>> elements_;
 };
 
 }  // namespace
