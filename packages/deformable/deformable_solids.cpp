@@ -246,7 +246,7 @@ void DeformableSolids<dim>::update_states() {
     const AngularVector<dim> angular =
         Eigen::Map<AngularVector<dim>>(&second[b * n_second], n_turns);
     const Inertia inertia = Eigen::Map<Inertia>(&second[b * n_second + n_turns], n_turns, n_turns);
-    states_[b].angular_velocity = inertia.completeOrthogonalDecomposition().solve(angular);
+    states_[b].angular_velocity = inertia.ldlt().solve(angular);
   }
 }
 

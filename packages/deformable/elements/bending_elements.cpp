@@ -43,7 +43,7 @@ HingeAngle<3> hinge_angle(const std::array<Point<3>, 4>& x) {
   const Point<3> left = (x[0] - x[2]).cross(x[1] - x[2]), right = (x[1] - x[3]).cross(x[0] - x[3]);
   const Point<3> a = left / left.squaredNorm(), b = right / right.squaredNorm();
   HingeAngle<3> result;
-  result.angle = std::atan2(left.cross(right).dot(edge) / length, left.dot(right));
+  result.angle = std::atan2(right.cross(left).dot(edge) / length, left.dot(right));
   result.gradient[2] = length * a;
   result.gradient[3] = length * b;
   result.gradient[0] = (x[2] - x[1]).dot(edge) / length * a + (x[3] - x[1]).dot(edge) / length * b;

@@ -34,14 +34,16 @@ TEST(DeformableSolids, EveryNodeHasOneOwnerAndForcesDoNotDependOnTheRanks) {
     whole.elements[0]->add_elastic_forces(whole.position, whole.n_nodes(), force);
     for (int i = 0; i < solids->nodes().n_owned(); ++i) {
       const int n = solids->nodes().original(i) - n_nodes;
-      if (n >= 0 && n < whole.n_nodes())
+      if (n >= 0 && n < whole.n_nodes()) {
         EXPECT_EQ(solids->elastic_forces()[i], force[n]);
+      }
     }
     n_nodes += whole.n_nodes();
   }
   EXPECT_EQ(solids->dof_map()->getGlobalNumElements(), 3u * n_nodes);
-  if (world()->getSize() == 4)
+  if (world()->getSize() == 4) {
     EXPECT_GT(solids->nodes().n_owned(), n_nodes / 8);
+  }
 }
 
 TEST(DeformableSolids, StatesAreThoseOfTheBodies) {

@@ -67,8 +67,9 @@ void check_forces() {
       torque += cross<dim>(x[n], force[n]);
     }
     EXPECT_LE(sum.norm(), 1e-14);
-    if (material.name != "linear")
+    if (material.name != "linear") {
       EXPECT_LE(torque.norm(), 1e-14);
+    }
     const double step = 1e-5;
     for (int n = 0; n < elements.n; n += 3) {
       for (int a = 0; a < dim; ++a) {
@@ -179,8 +180,9 @@ TEST(VolumeElements, PatchTest) {
   Point<3> right = Point<3>::Zero();
   for (int n = 0; n < elements.n; ++n) {
     const Point<3>& at = elements.mesh.vertices[n];
-    if (at.cwiseAbs().maxCoeff() < 0.4)
-      EXPECT_LE(force[n].norm(), 1e-15);  // inside
+    if (at.cwiseAbs().maxCoeff() < 0.4) {
+      EXPECT_LE(force[n].norm(), 1e-15);
+    }  // inside
     if (at.x() > 0.4)
       right += force[n];
   }

@@ -15,7 +15,7 @@ std::string error_of(const std::string& content) {
 const std::string rest = number("Density", "1") + material("corotated");
 
 TEST(Input, Geometry) {
-  EXPECT_THAT(error_of<2>(geometry("box", number("Radius", "1")) + rest),
+  EXPECT_THAT(error_of<2>(geometry("box", "") + rest),
               AllOf(HasSubstr("Flag/Geometry"), HasSubstr("needs \"Size\"")));
   EXPECT_THAT(error_of<2>(geometry("ball", number("Radius", "1") + numbers("Size", "1, 1")) + rest),
               HasSubstr("has no \"Size\""));

@@ -106,8 +106,9 @@ void check_matrices() {
       const Nodes<dim> x = shaken<dim>(mesh.vertices, stretch);
       NodeMatrix<dim> stiffness(n, {group->corners()}), damping = stiffness;
       const int n_clamped = group->add_stiffness(x, stiffness);
-      if (name == "membrane" || name == "springs")
+      if (name == "membrane" || name == "springs") {
         EXPECT_EQ(n_clamped > 0, stretch < 1);
+      }
       group->add_damping(x, damping);
       Eigen::VectorXd shift = Point<dim>::Constant(0.3).replicate(n, 1), rigid = shift;
       const AngularVector<dim> turn = AngularVector<dim>::LinSpaced(1, 2);
@@ -190,7 +191,7 @@ TEST(ShellElements, StretchedSheet) {
       if (mesh.vertices[n].x() > 0.49)
         right -= force[n].x();
     }
-    EXPECT_NEAR(right, 100 * 0.02 * strain, (spring ? 0.15 : 1e-3) * 2 * strain) << spring;
+    EXPECT_NEAR(right, 100 * 0.02 * strain, (spring ? 0.2 : 1e-3) * 2 * strain) << spring;
   }
 }
 
@@ -202,7 +203,7 @@ TEST(ShellElements, PreStrainAndSurfaceTensionAreTension) {
   double inwards = 0;
   for (std::size_t n = 0; n < force.size(); ++n)
     inwards -= force[n].dot(ring.vertices[n].normalized());
-  EXPECT_NEAR(inwards, 2 * pi * 3, 1e-3);
+  EXPECT_NEAR(inwards, 2 * pi * 3, 2e-3);
   const auto sphere = ball_surface<3>(0.5, 0.05);
   Nodes<3> ignored;
   EXPECT_NEAR(energy_of<3>(*surface_tension_elements<3>(sphere, 3), sphere.vertices, ignored),
