@@ -54,5 +54,37 @@ TEST(Input, RegionsHoldNodes) {
   EXPECT_EQ(n_locked, 3);
 }
 
+template <int dim>
+DeformableBody<dim> cloth(const std::string& content) {
+  Document document =
+      read_xml_string("<ParameterList>" + content + "</ParameterList>", "scene.xml");
+  validate(document, cloth_parameters<dim>());
+  return read_cloth<dim>("Flag", document.list, 0.1);
+}
+const std::string sheet = number("Young&apos;s Modulus", "1e4") + number("Thickness", "1e-3") +
+                          number("Surface Density", "0.5");
+
+TEST(Input, Cloth) {
+  const auto message = [](const std::string& content) { return error([&] { cloth<3>(content); }); };
+  EXPECT_THAT(message(geometry("sheet", numbers("Size", "1, 0, 1")) + sheet),
+              HasSubstr("needs \"Normal\""));
+  EXPECT_THAT(message(geometry("ball", number("Radius", "1") + text("Normal", "x")) + sheet),
+              HasSubstr("has no \"Normal\""));
+  EXPECT_THAT(message(geometry("ball", number("Radius", "1")) + number("Thickness", "1e-3")),
+              HasSubstr("required"));
+  EXPECT_THAT(message(geometry("ball", number("Radius", "1")) + sheet +
+                      list("Membrane", text("Type", "springs"))),
+              HasSubstr("mass-spring"));
+  const auto made =
+      cloth<3>(geometry("sheet", numbers("Size", "1, 0, 2") + text("Normal", "y")) + sheet +
+               list("Membrane", text("Type", "mass-spring")) + number("Surface Tension", "2"));
+  EXPECT_EQ(made.elements.size(), 3u);  // springs, bending, tension
+  double mass = 0;
+  for (const double m : made.element_mass)
+    mass += m;
+  EXPECT_NEAR(mass, 1, 1e-12);
+  EXPECT_FALSE(made.closed);
+}
+
 }  // namespace
 }  // namespace lockstep

@@ -163,6 +163,36 @@ TEST(TimeIntegration, FreeBodiesKeepTheirMomentum) {
   }
 }
 
+/// A hanging chain, benchmark A13: a catenary of length 1.2 between posts at distance 1.
+TEST(TimeIntegration, HangingChain) {
+  Document document = read_xml_string(
+      "<ParameterList>" +
+          geometry("sheet", numbers("Size", "1, 0") + text("Normal", "y") +
+                                number("Mesh Spacing", "0.025")) +
+          number("Young&apos;s Modulus", "1e6") + number("Thickness", "0.01") +
+          number("Surface Density", "1") + number("Pre-Strain", "-0.166666666666667") +
+          number("Stiffness Damping", "0.002") + text("Bending", "none") +
+          text("Time Integration", "fully-implicit") +
+          list("Pinned",
+               list("left", numbers("Lower", "-0.5, 0") + numbers("Upper", "-0.5, 0")) +
+                   list("right", numbers("Lower", "0.5, 0") + numbers("Upper", "0.5, 0"))) +
+          "</ParameterList>",
+      "scene.xml");
+  validate(document, cloth_parameters<2>());
+  std::vector<DeformableBody<2>> bodies;
+  bodies.push_back(read_cloth<2>("chain", document.list, 0.1));
+  Alone<2> alone(
+      std::make_unique<DeformableSolids<2>>("cloth", std::move(bodies), Point<2>(0, -10), world()));
+  for (int i = 0; i < 800; ++i)
+    alone.step(0.02);
+  // 2 a sinh(1/(2 a)) = 1.2 gives a = 0.46939; the sag is a (cosh(1/(2 a)) - 1).
+  const double a = 0.46939;
+  double lowest = 0;
+  for (const auto& x : alone.solids.surface().vertices)
+    lowest = std::min(lowest, x.y());
+  EXPECT_NEAR(-lowest, a * (std::cosh(0.5 / a) - 1), 0.003);
+}
+
 TEST(TimeIntegration, RanksAgree) {
   Alone<3> alone(model<3>({box("1, 0.25, 0.25", "0.125") + material("corotated", "1000") +
                            number("Density", "1") + text("Time Integration", "fully-implicit") +
