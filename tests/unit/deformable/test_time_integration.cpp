@@ -101,7 +101,7 @@ TEST(TimeIntegration, ExplicitStepsAreStableUpToTheBound) {
   Alone<2> alone(model<2>({box("1, 0.5", "0.125") + material("corotated") + number("Density", "1") +
                            numbers("Stretch", "1.1, 1") + text("Time Integration", "explicit")}));
   const double before = energy(alone.solids);
-  for (int i = 0; i < 300; ++i)
+  for (int i = 0; i < 100; ++i)
     alone.step(std::min(0.05, alone.solids.largest_stable_step()));
   EXPECT_LE(energy(alone.solids), before);
   EXPECT_GE(energy(alone.solids), 0.01 * before);
@@ -118,11 +118,11 @@ TEST(TimeIntegration, FullyImplicitStepsAreStableAtAnyStep) {
                                number("Stiffness Damping", damped ? std::to_string(dt / 2) : "0") +
                                text("Time Integration", "fully-implicit")}));
       const double before = energy(alone.solids);
-      for (int i = 0; i < 20; ++i) {
+      for (int i = 0; i < 10; ++i) {
         alone.step(dt);
         EXPECT_LE(energy(alone.solids), 1.2 * before) << dt << " " << damped;
       }
-      EXPECT_LE(alone.solids.states()[0].center_of_mass.norm(), 1e-9) << dt;
+      EXPECT_LE(alone.solids.states()[0].center_of_mass.norm(), 1e-6) << dt;
     }
   }
 }
@@ -132,8 +132,8 @@ TEST(TimeIntegration, InvertedBodyRecovers) {
     Alone<2> alone(model<2>({box("1, 1", "0.5") + material(law) + number("Density", "1") +
                              numbers("Stretch", "0.05, 1.1") + number("Stiffness Damping", "0.3") +
                              text("Time Integration", "fully-implicit")}));
-    for (int i = 0; i < 100; ++i)
-      alone.step(0.05);
+    for (int i = 0; i < 40; ++i)
+      alone.step(0.1);
     const auto state = alone.solids.states()[0];
     EXPECT_NEAR(state.volume, 1, 1e-3) << law;
     EXPECT_LE(state.elastic_energy, 1e-3) << law;
@@ -171,7 +171,7 @@ TEST(TimeIntegration, HangingChain) {
                                 number("Mesh Spacing", "0.025")) +
           number("Young&apos;s Modulus", "1e6") + number("Thickness", "0.01") +
           number("Surface Density", "1") + number("Pre-Strain", "-0.166666666666667") +
-          number("Stiffness Damping", "0.002") + text("Bending", "none") +
+          number("Stiffness Damping", "0.01") + text("Bending", "none") +
           text("Time Integration", "fully-implicit") +
           list("Pinned",
                list("left", numbers("Lower", "-0.5, 0") + numbers("Upper", "-0.5, 0")) +
@@ -183,7 +183,7 @@ TEST(TimeIntegration, HangingChain) {
   bodies.push_back(read_cloth<2>("chain", document.list, 0.1));
   Alone<2> alone(
       std::make_unique<DeformableSolids<2>>("cloth", std::move(bodies), Point<2>(0, -10), world()));
-  for (int i = 0; i < 800; ++i)
+  for (int i = 0; i < 400; ++i)
     alone.step(0.02);
   // 2 a sinh(1/(2 a)) = 1.2 gives a = 0.46954; the sag is a (cosh(1/(2 a)) - 1).
   const double a = 0.46954;
