@@ -216,8 +216,9 @@ bool FieldCarrier<dim>::carry_open_part(Passenger<dim>& passenger, int id, const
     return false;
   const TiledGrid<dim>& grid = frame_.setting.grid;
   const Point<dim> shift = (place->second - grid.face_center(kind, id)) / grid.spacing();
-  (*passenger.result)[id] =
+  passenger.carried()[id] =
       (*passenger.start)[id] + near_surface.change(passenger.field, x + shift);
+  passenger.forbid_correction(id);
   return true;
 }
 

@@ -112,6 +112,50 @@ void MixedFaceCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
       solids.map());
 }
 
+namespace {
+
+/// Where the force acts on a rigid solid so that its torque is right; a vanishing one has no such
+/// place.
+template <int dim>
+VelocityRow<dim> rigid_row(const SolidSystem<dim>& solids, const SolidDescription& solid,
+                           const UnseenMass<dim>& left, int axis) {
+  Point<dim> x = left.center;
+  if (left.mass[axis] != 0)
+    x += left.moment.row(axis).transpose() / left.mass[axis];
+  SurfacePoint<dim> point;
+  point.simplex = solid.simplex_begin;
+  point.barycentric.setConstant(1. / dim);
+  point.position = left.center;
+  VelocityRow<dim> row;
+  solids.velocity_row(point, x, row);
+  return row;
+}
+
+/// The mean over the surface of a solid that is not rigid.
+template <int dim>
+VelocityRow<dim> mean_row(const SolidSystem<dim>& solids, const SolidDescription& solid,
+                          const SurfaceSnapshot<dim>& surface) {
+  VelocityRow<dim> sum, row;
+  double total = 0;
+  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+    SurfacePoint<dim> point;
+    point.simplex = s;
+    point.barycentric.setConstant(1. / dim);
+    const double area = area_vector<dim>(surface.corners(s)).norm();
+    total += area;
+    solids.velocity_row(point, point.position, row);
+    for (std::size_t k = 0; k < row.dofs.size(); ++k) {
+      sum.dofs.push_back(row.dofs[k]);
+      sum.coefficients.push_back(area * row.coefficients[k]);
+    }
+  }
+  for (auto& coefficient : sum.coefficients)
+    coefficient /= total;
+  return sum;
+}
+
+}  // namespace
+
 template <int dim>
 void MixedFaceCoupling<dim>::assemble_unseen(const SolidSystem<dim>& solids,
                                              const SurfaceSnapshot<dim>& surface) {
@@ -121,15 +165,8 @@ void MixedFaceCoupling<dim>::assemble_unseen(const SolidSystem<dim>& solids,
     for (int a = 0; a < dim; ++a) {
       VelocityRow<dim> row;
       if (left.mass[a] != 0 || left.moment.row(a).norm() != 0) {
-        // The force acts where its torque is right; a vanishing force has no such place.
-        Point<dim> x = left.center;
-        if (left.mass[a] != 0)
-          x += left.moment.row(a).transpose() / left.mass[a];
-        SurfacePoint<dim> point;
-        point.simplex = solid.simplex_begin;
-        point.barycentric.setConstant(1. / dim);
-        point.position = left.center;
-        solids.velocity_row(point, x, row);
+        row = solid.rigid ? rigid_row<dim>(solids, solid, left, a)
+                          : mean_row<dim>(solids, solid, surface);
       }
       unseen_rows_.push_back(std::move(row));
     }

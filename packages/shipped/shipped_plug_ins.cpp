@@ -2,6 +2,7 @@
 
 #include "contact/register_contact.hpp"
 #include "cutcell/register_flux.hpp"
+#include "deformable/register_deformable.hpp"
 #include "mac/boundary.hpp"
 #include "mac/register_mac.hpp"
 #include "mixedface/register_mixed_face.hpp"
@@ -16,6 +17,7 @@ Registries<dim> shipped_plug_ins() {
   registries.domain_parameters = domain_parameters<dim>;
   register_mac<dim>(registries.fluids);
   register_rigid<dim>(registries.solids);
+  register_deformable<dim>(registries.solids);
   register_mixed_face<dim>(registries.couplings);
   register_flux<dim>(registries.couplings);
   register_contact<dim>(registries.contacts);

@@ -35,11 +35,20 @@ def read_table(path):
     return list(csv.DictReader(lines))
 
 
-def check_history(folder):
+def checked_errors(scene):
+    """Nodes of soft bodies are pulled where the surface is, not at the faces' centres: angular momentum is
+    then exact only in the limit of a fine grid."""
+    types = {p.get("value") for p in xml.etree.ElementTree.parse(scene).getroot().findall(
+        "ParameterList[@name='Solids']/ParameterList/Parameter[@name='Type']")}
+    soft = types & {"deformable body", "cloth"}
+    return ("momentum_error",) if soft else ("momentum_error", "angular_momentum_error")
+
+
+def check_history(folder, errors):
     rows = read_table(folder / "history.csv")
     assert [int(row["step"]) for row in rows] == list(range(1, N_STEPS + 1)), f"steps {rows}"
     for row in rows:
-        for column in ("momentum_error", "angular_momentum_error"):
+        for column in errors:
             value = float(row[column])
             assert value < LARGEST_MOMENTUM_ERROR, f"{column} is {value} in step {row['step']}"
 
@@ -72,7 +81,7 @@ def main():
         result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         print(" ".join(command), result.stdout, sep="\n")
         assert result.returncode == 0, f"exit code {result.returncode}"
-        check_history(Path(folder))
+        check_history(Path(folder), checked_errors(scene))
         check_frames(Path(folder), n_cells)
 
 

@@ -1,0 +1,120 @@
+#include "deformable/body_mesh.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "deformable/list_values.hpp"
+#include "deformable/mesh/gmsh_file.hpp"
+#include "deformable/mesh/volume_generators.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using deformable_lists::vector_value;
+
+/// A shape and the parameters that only some shapes have.
+struct ShapeSizes {
+  std::string shape;
+  std::vector<std::string> needed;
+};
+
+const std::vector<ShapeSizes>& shapes() {
+  static const std::vector<ShapeSizes> all{{"ball", {"Radius"}},
+                                           {"box", {"Size"}},
+                                           {"cylinder", {"Radius", "Length"}},
+                                           {"torus", {"Radius", "Tube Radius"}},
+                                           {"file", {"File", "Scale"}}};
+  return all;
+}
+
+void check_sizes(const ParameterList& list, const std::string& shape, const std::string& name) {
+  const auto found = std::find_if(shapes().begin(), shapes().end(),
+                                  [&](const ShapeSizes& sizes) { return sizes.shape == shape; });
+  const auto& needed = found->needed;
+  for (const char* size : {"Radius", "Length", "Tube Radius", "Size", "File", "Scale"}) {
+    const bool given = list.isParameter(size);
+    const bool wanted = std::find(needed.begin(), needed.end(), size) != needed.end();
+    check_input(given || !wanted || std::string(size) == "Scale",
+                "In \"{}/Geometry\", the shape \"{}\" needs \"{}\".", name, shape, size);
+    check_input(!given || wanted,
+                "In \"{}/Geometry\", the shape \"{}\" has no \"{}\"; leave it out.", name, shape,
+                size);
+  }
+}
+
+template <int dim>
+VolumeMesh<dim> generate(const ParameterList& list, const std::string& shape, double spacing) {
+  const auto number = [&](const char* parameter) { return list.get<double>(parameter); };
+  if (shape == "ball")
+    return ball_volume<dim>(number("Radius"), spacing);
+  if (shape == "box")
+    return box_volume<dim>(vector_value<dim>(list, "Size"), spacing);
+  if (shape == "cylinder")
+    return cylinder_volume<dim>(number("Radius"), number("Length"), spacing);
+  return torus_volume<dim>(number("Radius"), number("Tube Radius"), spacing);
+}
+
+}  // namespace
+
+template <int dim>
+void declare_deformable_geometry(ParameterList& body) {
+  ParameterList& list =
+      declare_list(body, "Geometry",
+                   "The volume at rest, in coordinates of the body: shapes are centred at their "
+                   "origin.");
+  std::vector<std::string> names;
+  for (const auto& shape : shapes()) {
+    if (dim == 3 || shape.shape != "torus")
+      names.push_back(shape.shape);
+  }
+  declare_required_choice(list, "Shape", names,
+                          "ball, box, cylinder, torus; file: a Gmsh mesh of triangles (2D) or "
+                          "tetrahedra (3D).");
+  declare_optional<double>(list, "Radius", "Of ball and cylinder, of the torus' centre line [m].");
+  declare_optional<double>(list, "Length",
+                           "Of a cylinder, along z; in 2D it is a box, along y [m].");
+  declare_optional<double>(list, "Tube Radius", "Of the section of a torus [m].");
+  declare_optional<ParameterArray<double>>(list, "Size", "Edges of a box [m].");
+  set_length(list, "Size", dim);
+  declare_optional<std::string>(
+      list, "File",
+      "Mesh: .msh of Gmsh, ASCII, version 2.2 or 4.1; relative to the folder of the scene.");
+  declare_optional<double>(list, "Scale", "Factor on the coordinates of the file [1]; default 1.");
+  declare_optional<double>(list, "Mesh Spacing",
+                           "Longest step of the lattice of a generated mesh [m]; default one grid "
+                           "cell.");
+  for (const char* size : {"Radius", "Length", "Tube Radius", "Scale", "Size", "Mesh Spacing"})
+    set_positive(list, size);
+  declare_between(
+      list, "Worst Quality", 1e-3, 0.0, 1.0,
+      "Least quality of an element that is accepted: 1 for the regular simplex, 0 for a "
+      "flat one [1].");
+}
+
+template <int dim>
+VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacing,
+                               const std::string& name) {
+  const auto& shape = geometry.get<std::string>("Shape");
+  check_sizes(geometry, shape, name);
+  VolumeMesh<dim> mesh;
+  if (shape == "file") {
+    mesh = read_gmsh_volume<dim>(geometry.get<std::string>("File"));
+    const double scale = geometry.isParameter("Scale") ? geometry.get<double>("Scale") : 1;
+    for (auto& vertex : mesh.vertices)
+      vertex *= scale;
+  } else {
+    const double spacing =
+        geometry.isParameter("Mesh Spacing") ? geometry.get<double>("Mesh Spacing") : grid_spacing;
+    mesh = generate<dim>(geometry, shape, spacing);
+  }
+  check_volume_mesh(mesh, name, geometry.get<double>("Worst Quality"));
+  return mesh;
+}
+
+template void declare_deformable_geometry<2>(ParameterList&);
+template void declare_deformable_geometry<3>(ParameterList&);
+template VolumeMesh<2> make_body_mesh<2>(const ParameterList&, double, const std::string&);
+template VolumeMesh<3> make_body_mesh<3>(const ParameterList&, double, const std::string&);
+
+}  // namespace lockstep

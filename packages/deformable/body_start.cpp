@@ -1,0 +1,131 @@
+#include "deformable/body_start.hpp"
+
+#include <Eigen/Geometry>
+
+#include "base/errors.hpp"
+#include "deformable/list_values.hpp"
+#include "deformable/node_region.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using deformable_lists::vector_value;
+
+template <int dim>
+using Rotation = Eigen::Matrix<double, dim, dim>;
+
+template <int dim>
+void declare_start(ParameterList& body) {
+  declare_vector(body, "Position", ParameterArray<double>(dim, 0.0), dim,
+                 "Where the origin of the body's coordinates lies at the start [m].");
+  if constexpr (dim == 2) {
+    declare(body, "Rotation", 0.0,
+            "Angle by which the body is turned about that origin at the start [rad].");
+    declare(body, "Angular Velocity", 0.0, "About that origin at the start [rad/s].");
+  } else {
+    declare_vector(body, "Rotation", {0.0, 0.0, 0.0}, 3,
+                   "Rotation vector (axis times angle) by which the body is turned about that "
+                   "origin at the start [rad].");
+    declare_vector(body, "Angular Velocity", {0.0, 0.0, 0.0}, 3,
+                   "About that origin at the start [rad/s].");
+  }
+  declare_vector(body, "Velocity", ParameterArray<double>(dim, 0.0), dim,
+                 "Of that origin at the start [m/s].");
+  declare_vector(body, "Stretch", ParameterArray<double>(dim, 1.0), dim,
+                 "Factors along the body's axes by which it is stretched at the start, before it "
+                 "is turned [1].");
+  set_positive(body, "Stretch");
+}
+
+template <int dim>
+Rotation<dim> read_rotation(const ParameterList& list) {
+  if constexpr (dim == 2) {
+    return Eigen::Rotation2Dd(list.get<double>("Rotation")).toRotationMatrix();
+  } else {
+    const Point<3> turn = vector_value<3>(list, "Rotation");
+    const double angle = turn.norm();
+    return angle == 0 ? Rotation<3>(Rotation<3>::Identity())
+                      : Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  }
+}
+
+template <int dim>
+AngularVector<dim> read_angular_velocity(const ParameterList& list) {
+  if constexpr (dim == 2) {
+    return AngularVector<2>(list.get<double>("Angular Velocity"));
+  } else {
+    return vector_value<3>(list, "Angular Velocity");
+  }
+}
+
+/// Positions and velocities of the nodes at the start.
+template <int dim>
+void place(const ParameterList& list, const std::vector<Point<dim>>& rest,
+           DeformableBody<dim>& body) {
+  const Point<dim> origin = vector_value<dim>(list, "Position");
+  const Point<dim> velocity = vector_value<dim>(list, "Velocity");
+  const Point<dim> stretch = vector_value<dim>(list, "Stretch");
+  const AngularVector<dim> angular_velocity = read_angular_velocity<dim>(list);
+  const Rotation<dim> rotation = read_rotation<dim>(list);
+  for (const Point<dim>& x : rest) {
+    const Point<dim> arm = rotation * x.cwiseProduct(stretch);
+    body.position.push_back(origin + arm);
+    body.velocity.push_back(velocity + rotate<dim>(angular_velocity, arm));
+  }
+}
+
+TimeIntegration read_integration(const ParameterList& list) {
+  const auto& name = list.get<std::string>("Time Integration");
+  if (name == "explicit")
+    return TimeIntegration::explicit_forces;
+  return name == "semi-implicit" ? TimeIntegration::semi_implicit : TimeIntegration::fully_implicit;
+}
+
+}  // namespace
+
+template <int dim>
+void declare_body_start(ParameterList& list) {
+  declare_choice(list, "Mass", "lumped", {"lumped", "consistent"},
+                 "lumped: a share of each element on its corners. consistent: the mass matrix of "
+                 "the finite elements.");
+  declare_at_least(list, "Stiffness Damping", 0.0, 0.0,
+                   "Rayleigh's factor of the stiffness at rest [s]: a mode of angular frequency w "
+                   "has w/2 times this of critical damping.");
+  declare_choice(
+      list, "Time Integration", "semi-implicit", {"explicit", "semi-implicit", "fully-implicit"},
+      "explicit: all forces at the present state. semi-implicit: elastic forces at the "
+      "present positions, implicit damping. fully-implicit: both linearised and solved "
+      "together with the fluid; stable at any step. The step of the others is bounded by "
+      "the stiffest element.");
+  declare_start<dim>(list);
+  declare_constraints_and_loads<dim>(list);
+  declare_between(list, "Restitution", 0.0, 0.0, 1.0,
+                  "Speed after over speed before a collision [1].");
+  declare_at_least(list, "Friction", 0.0, 0.0, "Coulomb's coefficient of contacts [1].");
+}
+
+template <int dim>
+void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& rest,
+                     DeformableBody<dim>& body) {
+  body.restitution = list.get<double>("Restitution");
+  body.friction = list.get<double>("Friction");
+  body.integration = read_integration(list);
+  body.consistent_mass = list.get<std::string>("Mass") == "consistent";
+  std::vector<double> node_mass(rest.size(), 0);
+  const int n = body.mass_elements.n_corners;
+  for (std::size_t k = 0; k < body.mass_elements.nodes.size(); ++k)
+    node_mass[body.mass_elements.nodes[k]] += body.element_mass[k / n] / n;
+  place<dim>(list, rest, body);
+  body.locked = read_pinned<dim>(list, rest, body.name);
+  body.force = read_loads<dim>(list, rest, node_mass, body.name);
+}
+
+template void declare_body_start<2>(ParameterList&);
+template void declare_body_start<3>(ParameterList&);
+template void read_body_start<2>(const ParameterList&, const std::vector<Point<2>>&,
+                                 DeformableBody<2>&);
+template void read_body_start<3>(const ParameterList&, const std::vector<Point<3>>&,
+                                 DeformableBody<3>&);
+
+}  // namespace lockstep

@@ -1,0 +1,19 @@
+#pragma once
+#include <vector>
+
+#include "deformable/deformable_body.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// Declares what volumes and shells share: mass matrix, damping, time integration, where and how
+/// fast they start, constraints, loads, contact.
+template <int dim>
+void declare_body_start(ParameterList& list);
+
+/// Reads it for nodes at these rest positions; name, mass elements and their masses are set before.
+template <int dim>
+void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& rest,
+                     DeformableBody<dim>& body);
+
+}  // namespace lockstep

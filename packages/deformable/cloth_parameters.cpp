@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "base/errors.hpp"
+#include "deformable/body_start.hpp"
+#include "deformable/deformable_parameters.hpp"
+#include "deformable/elements/shell_elements.hpp"
+#include "deformable/list_values.hpp"
+#include "deformable/mesh/gmsh_file.hpp"
+#include "geometry/generators.hpp"
+#include "geometry/mesh_files.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using deformable_lists::vector_value;
+
+/// The shapes and the parameters that each needs.
+const std::vector<std::pair<std::string, std::vector<std::string>>>& shapes() {
+  static const std::vector<std::pair<std::string, std::vector<std::string>>> all{
+      {"sheet", {"Size", "Normal"}}, {"bag", {"Size"}}, {"ball", {"Radius"}}, {"file", {"File"}}};
+  return all;
+}
+
+template <int dim>
+void declare_cloth_geometry(ParameterList& body) {
+  ParameterList& list =
+      declare_list(body, "Geometry",
+                   "The shell, in coordinates of the body: shapes are centred at their origin.");
+  std::vector<std::string> names, axes{"x", "y", "z"};
+  axes.resize(dim);
+  for (const auto& shape : shapes())
+    names.push_back(shape.first);
+  declare_required_choice(
+      list, "Shape", names,
+      "sheet: flat. bag: a box without its lid (y is up). ball: a closed sphere "
+      "(2D: ring). file: what the file holds.");
+  declare_optional<ParameterArray<double>>(
+      list, "Size", "Extent of a sheet (along \"Normal\" ignored), edges of a bag [m].");
+  set_length(list, "Size", dim);
+  declare_optional<std::string>(list, "Normal", "Axis that a sheet is normal to.");
+  set_choices(list, "Normal", axes);
+  declare_optional<double>(list, "Radius", "Of a ball [m].");
+  declare_optional<std::string>(list, "File",
+                                "Surface mesh: .obj, .off, .msh of Gmsh or (3D) .stl; relative to "
+                                "the folder of the scene.");
+  declare_optional<double>(list, "Mesh Spacing",
+                           "Longest edge of a generated mesh [m]; default one grid cell.");
+  for (const char* size : {"Radius", "Mesh Spacing"})
+    set_positive(list, size);
+}
+
+void check_sizes(const ParameterList& list, const std::string& shape, const std::string& name) {
+  const auto found = std::find_if(shapes().begin(), shapes().end(),
+                                  [&](const auto& entry) { return entry.first == shape; });
+  for (const char* size : {"Size", "Normal", "Radius", "File"}) {
+    const bool wanted =
+        std::find(found->second.begin(), found->second.end(), size) != found->second.end();
+    const bool given = list.isParameter(size);
+    check_input(given || !wanted, "In \"{}/Geometry\", the shape \"{}\" needs \"{}\".", name, shape,
+                size);
+    check_input(!given || wanted,
+                "In \"{}/Geometry\", the shape \"{}\" has no \"{}\"; leave it out.", name, shape,
+                size);
+  }
+}
+
+template <int dim>
+SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
+                                 const std::string& name) {
+  const auto& shape = list.get<std::string>("Shape");
+  check_sizes(list, shape, name);
+  const double spacing =
+      list.isParameter("Mesh Spacing") ? list.get<double>("Mesh Spacing") : grid_spacing;
+  SurfaceMesh<dim> mesh;
+  if (shape == "sheet") {
+    mesh = plate_surface<dim>(vector_value<dim>(list, "Size"),
+                              list.get<std::string>("Normal")[0] - 'x', spacing);
+  } else if (shape == "bag") {
+    mesh = open_box_surface<dim>(vector_value<dim>(list, "Size"), spacing);
+  } else if (shape == "ball") {
+    mesh = ball_surface<dim>(list.get<double>("Radius"), spacing);
+  } else {
+    const auto& file = list.get<std::string>("File");
+    mesh = std::filesystem::path(file).extension() == ".msh" ? read_gmsh_surface<dim>(file)
+                                                             : read_surface<dim>(file);
+  }
+  check_surface(mesh, false, name);
+  return mesh;
+}
+
+template <int dim>
+void add_elements(const ParameterList& list, const SurfaceMesh<dim>& mesh,
+                  DeformableBody<dim>& body) {
+  const SheetMaterial sheet{list.get<double>("Young's Modulus"),
+                            list.get<double>("Poisson's Ratio"), list.get<double>("Thickness"),
+                            list.get<double>("Stiffness Damping")};
+  const double stretch = 1 + list.get<double>("Pre-Strain");
+  const ParameterList& membrane = list.sublist("Membrane");
+  if (membrane.get<std::string>("Type") == "mass-spring") {
+    body.elements.push_back(
+        membrane_springs<dim>(mesh, sheet, stretch, membrane.get<double>("Shear Ratio")));
+  } else {
+    body.elements.push_back(membrane_elements<dim>(mesh, sheet, stretch));
+  }
+  const auto& bending = list.get<std::string>("Bending");
+  if (bending != "none")
+    body.elements.push_back(bending_elements<dim>(mesh, sheet, bending == "flat"));
+  if (const double tension = list.get<double>("Surface Tension"); tension > 0)
+    body.elements.push_back(surface_tension_elements<dim>(mesh, tension));
+}
+
+}  // namespace
+
+template <int dim>
+ParameterList cloth_parameters() {
+  ParameterList list("cloth");
+  declare_cloth_geometry<dim>(list);
+  declare_required_positive(list, "Young's Modulus", "Of the material [Pa].");
+  declare_between(list, "Poisson's Ratio", 0.3, -0.99, 0.5,
+                  "Of the material [1]. Springs behave like 1/3, whatever is given.");
+  declare_required_positive(list, "Thickness",
+                            "Of the sheet [m]: membrane stiffness goes with it, bending stiffness "
+                            "with its cube.");
+  declare_required_positive(list, "Surface Density", "As meshed [kg/m^2] (2D: [kg/m]).");
+  ParameterList elements("finite element"), springs("mass-spring");
+  declare_at_least(springs, "Shear Ratio", 0.5, 0.0,
+                   "Stiffness of the springs across an edge over that of the edge's own [1].");
+  declare_typed_sublist(
+      list, "Membrane", "Resistance to stretch and shear.",
+      {{"finite element", "Constant strain, Hooke's law in the plane.", elements},
+       {"mass-spring", "Springs along the edges and, in 3D, across them.", springs}},
+      "finite element");
+  declare_choice(list, "Bending", "as meshed", {"as meshed", "flat", "none"},
+                 "Shape without bending moments: the mesh's own, or a flat one; none: no bending "
+                 "stiffness.");
+  declare_between(list, "Pre-Strain", 0.0, -0.9, 100.0,
+                  "By how much the mesh is longer than the sheet at rest, in all directions [1]; "
+                  "positive: under tension.");
+  declare_at_least(list, "Surface Tension", 0.0, 0.0,
+                   "Besides the elastic stress, whatever the strain [N/m] (2D: [N]).");
+  declare_body_start<dim>(list);
+  return list;
+}
+
+template <int dim>
+DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& list,
+                               double grid_spacing) {
+  const SurfaceMesh<dim> mesh = make_cloth_mesh<dim>(list.sublist("Geometry"), grid_spacing, name);
+  DeformableBody<dim> body;
+  body.name = name;
+  body.closed = false;
+  body.density = list.get<double>("Surface Density");
+  add_elements<dim>(list, mesh, body);
+  body.surface = mesh.simplices;
+  body.mass_elements.n_corners = dim;
+  for (const auto& simplex : mesh.simplices) {
+    std::array<Point<dim>, dim> corners;
+    for (int k = 0; k < dim; ++k)
+      corners[k] = mesh.vertices[simplex[k]];
+    body.element_mass.push_back(body.density * area_vector<dim>(corners).norm());
+    body.mass_elements.nodes.insert(body.mass_elements.nodes.end(), simplex.begin(), simplex.end());
+  }
+  read_body_start<dim>(list, mesh.vertices, body);
+  return body;
+}
+
+template ParameterList cloth_parameters<2>();
+template ParameterList cloth_parameters<3>();
+template DeformableBody<2> read_cloth<2>(const std::string&, const ParameterList&, double);
+template DeformableBody<3> read_cloth<3>(const std::string&, const ParameterList&, double);
+
+}  // namespace lockstep

@@ -1,0 +1,40 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deformable/elements/element_group.hpp"
+
+namespace lockstep {
+
+/// How the forces of a body enter the step (design: Eq. 16's D).
+enum class TimeIntegration {
+  explicit_forces,  ///< D = 0: elasticity and damping at the present state
+  semi_implicit,    ///< D = -B: elasticity at the present positions, implicit damping
+  fully_implicit    ///< D(dt) = -(B + dt K): both linearised at the present positions
+};
+
+/// One deformable body at the start, in nodes of its own: what the model is made of.
+template <int dim>
+struct DeformableBody {
+  std::string name;
+  bool closed = true;  ///< a volume; false: a thin shell
+  double density = 0;  ///< [kg/m^dim], of a shell [kg/m^(dim-1)]
+  double restitution = 0, friction = 0;
+  TimeIntegration integration = TimeIntegration::semi_implicit;
+  bool consistent_mass = false;  ///< of the finite elements; false: lumped to the nodes
+
+  std::vector<Point<dim>> position;           ///< of the nodes [m]
+  std::vector<Point<dim>> velocity;           ///< [m/s]
+  std::vector<std::array<int, dim>> surface;  ///< simplices of nodes, normals outwards
+  std::vector<std::array<bool, dim>> locked;  ///< per node and axis: held where it is
+  std::vector<Point<dim>> force;              ///< constant load on each node [N]
+  std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
+  ElementCorners mass_elements;      ///< simplices of even mass
+  std::vector<double> element_mass;  ///< [kg], of each of them
+
+  int n_nodes() const { return static_cast<int>(position.size()); }
+};
+
+}  // namespace lockstep

@@ -1,0 +1,75 @@
+#include "deformable/deformable_parameters.hpp"
+
+#include "base/errors.hpp"
+#include "deformable/body_mesh.hpp"
+#include "deformable/body_start.hpp"
+#include "deformable/elements/volume_elements.hpp"
+
+namespace lockstep {
+
+namespace {
+
+void declare_material(ParameterList& body) {
+  ParameterList law("law");
+  declare_required_positive(law, "Young's Modulus", "Stiffness in uniaxial stress [Pa].");
+  declare_between(law, "Poisson's Ratio", 0.3, -0.99, 0.4999,
+                  "Contraction across over stretch along [1]. In 2D strain is plane. Near 0.5 "
+                  "linear elements lock: refine, or stay below 0.45.");
+  std::vector<TypedSchema> laws;
+  for (const MaterialName& material : material_names())
+    laws.push_back({material.name, material.documentation, law});
+  declare_typed_sublist(body, "Material", "The elastic law.", laws, "corotated");
+}
+
+}  // namespace
+
+template <int dim>
+ParameterList deformable_body_parameters() {
+  ParameterList list("deformable body");
+  declare_deformable_geometry<dim>(list);
+  declare_material(list);
+  declare_required_positive(list, "Density", "At rest [kg/m^3] (2D: [kg/m^2]).");
+  declare_at_least(list, "Viscosity", 0.0, 0.0,
+                   "Of the material: shear stress over twice the strain rate [Pa s].");
+  declare_body_start<dim>(list);
+  return list;
+}
+
+template <int dim>
+DeformableBody<dim> read_deformable_body(const std::string& name, const ParameterList& list,
+                                         double grid_spacing) {
+  const VolumeMesh<dim> mesh = make_body_mesh<dim>(list.sublist("Geometry"), grid_spacing, name);
+  DeformableBody<dim> body;
+  body.name = name;
+  body.density = list.get<double>("Density");
+  const ParameterList& material = list.sublist("Material");
+  const LameConstants lame = lame_constants(material.get<double>("Young's Modulus"),
+                                            material.get<double>("Poisson's Ratio"));
+  const double factor = list.get<double>("Stiffness Damping");
+  const StrainRateDamping damping{list.get<double>("Viscosity") + factor * lame.mu,
+                                  factor * lame.lambda};
+  body.elements.push_back(volume_elements<dim>(
+      mesh, make_material<dim>(material.get<std::string>("Type"), lame), damping));
+  body.mass_elements = body.elements.back()->corners();
+  for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e)
+    body.element_mass.push_back(body.density * element_volume(mesh, e));
+
+  BoundarySurface<dim> boundary = extract_surface(mesh, name);
+  check_surface(boundary.surface, true, name);
+  for (auto simplex : boundary.surface.simplices) {
+    for (int& corner : simplex)
+      corner = boundary.vertices[corner];
+    body.surface.push_back(simplex);
+  }
+  read_body_start<dim>(list, mesh.vertices, body);
+  return body;
+}
+
+template ParameterList deformable_body_parameters<2>();
+template ParameterList deformable_body_parameters<3>();
+template DeformableBody<2> read_deformable_body<2>(const std::string&, const ParameterList&,
+                                                   double);
+template DeformableBody<3> read_deformable_body<3>(const std::string&, const ParameterList&,
+                                                   double);
+
+}  // namespace lockstep

@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+
+#include "deformable/deformable_body.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// Everything a solid of type "deformable body" may say, without "Type".
+template <int dim>
+ParameterList deformable_body_parameters();
+
+/// A body at the start from its list, validated against `deformable_body_parameters`. A "File" must
+/// be absolute or relative to the working directory; `grid_spacing` [m] sets the resolution of
+/// generated meshes. Throws InputError. Every rank reads.
+template <int dim>
+DeformableBody<dim> read_deformable_body(const std::string& name, const ParameterList& list,
+                                         double grid_spacing);
+
+/// Everything a solid of type "cloth" may say, without "Type".
+template <int dim>
+ParameterList cloth_parameters();
+
+/// A thin shell at the start from its list, validated against `cloth_parameters`; the rest as
+/// above.
+template <int dim>
+DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& list,
+                               double grid_spacing);
+
+}  // namespace lockstep

@@ -1,0 +1,256 @@
+#include "deformable/deformable_solids.hpp"
+
+#include <Eigen/Dense>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+
+template <int dim>
+void DeformableSolids<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<dim>&,
+                                         VelocityRow<dim>& row) const {
+  row.clear();
+  for (int k = 0; k < dim; ++k) {
+    if (point.barycentric[k] == 0)
+      continue;
+    const GlobalIndex node = surface_node_[surface_.simplices[point.simplex][k]];
+    for (int a = 0; a < dim; ++a) {
+      row.dofs.push_back(dim * node + a);
+      row.coefficients.push_back(point.barycentric[k] * Point<dim>::Unit(a));
+    }
+  }
+}
+
+template <int dim>
+Point<dim> DeformableSolids<dim>::effective_velocity(const SurfacePoint<dim>& point,
+                                                     const Point<dim>&) const {
+  Point<dim> sum = Point<dim>::Zero();
+  for (int k = 0; k < dim; ++k)
+    sum += point.barycentric[k] * surface_velocity_[surface_.simplices[point.simplex][k]];
+  return sum;
+}
+
+template <int dim>
+RCP<const LinearOperator> DeformableSolids<dim>::implicit_force(double dt) const {
+  NodeMatrix<dim> sum = stiffness_;
+  sum.set_zero();
+  bool any = false;
+  for (const Body& body : bodies_)
+    any = any || body.integration != TimeIntegration::explicit_forces;
+  if (!any)
+    return Teuchos::null;
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    const TimeIntegration integration = bodies_[body_of_node_[i]].integration;
+    if (integration == TimeIntegration::explicit_forces)
+      continue;
+    sum.add_row(i, -1, damping_);
+    if (integration == TimeIntegration::fully_implicit)
+      sum.add_row(i, -dt, stiffness_);
+  }
+  return as_operator(space_.matrix(sum));
+}
+
+template <int dim>
+void DeformableSolids<dim>::explicit_momentum(double, double dt, Vector& momentum) const {
+  apply(*mass_, *velocity_, momentum);
+  if (dt == 0)
+    return;
+  Nodes velocity;
+  for (const Body& body : bodies_) {
+    if (body.integration == TimeIntegration::explicit_forces && velocity.empty())
+      velocity = space_.with_ghosts(*velocity_);
+  }
+  const auto values = momentum.getDataNonConst();
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    Point<dim> force = elastic_force_[i] + node_force_[i] + node_mass_[i] * gravity_;
+    if (bodies_[body_of_node_[i]].integration == TimeIntegration::explicit_forces)
+      force -= damping_.row_times(i, velocity);
+    for (int a = 0; a < dim; ++a)
+      values[dim * i + a] += dt * force[a];
+  }
+}
+
+template <int dim>
+Momentum<dim> DeformableSolids<dim>::external_impulse(double, double dt) const {
+  return {dt * load_.linear, dt * load_.angular};
+}
+
+template <int dim>
+std::vector<GlobalIndex> DeformableSolids<dim>::locked_dofs() const {
+  std::vector<GlobalIndex> dofs;
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    for (int a = 0; a < dim; ++a) {
+      if (locked_[i][a])
+        dofs.push_back(space_.dof_map()->getGlobalElement(dim * i + a));
+    }
+  }
+  return dofs;
+}
+
+template <int dim>
+std::vector<Momentum<dim>> DeformableSolids<dim>::momentum_of_each(
+    const Vector& generalized_momentum) const {
+  constexpr int n = dim + n_rotations<dim>;
+  std::vector<double> sums(bodies_.size() * n, 0);
+  const Nodes impulse = space_.owned(generalized_momentum);
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    double* sum = &sums[body_of_node_[i] * n];
+    Eigen::Map<Point<dim>>(sum, dim) += impulse[i];
+    Eigen::Map<AngularVector<dim>>(sum + dim, n_rotations<dim>) += cross<dim>(x_[i], impulse[i]);
+  }
+  sum_all(comm_, sums.data(), static_cast<int>(sums.size()));
+  std::vector<Momentum<dim>> all(bodies_.size());
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    all[b].linear = Eigen::Map<Point<dim>>(&sums[b * n], dim);
+    all[b].angular = Eigen::Map<AngularVector<dim>>(&sums[b * n + dim], n_rotations<dim>);
+  }
+  return all;
+}
+
+template <int dim>
+void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
+  velocity_ = rcp(new Vector(velocity, Teuchos::Copy));
+  update_states();
+}
+
+template <int dim>
+void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
+  const Nodes change = space_.with_ghosts(velocity);
+  for (int i = 0; i < space_.n_local(); ++i)
+    x_[i] += dt * change[i];
+  surface_velocity_ = surface_values(change);
+  update_geometry();
+}
+
+template <int dim>
+std::vector<Point<dim>> DeformableSolids<dim>::surface_values(const Nodes& owned) const {
+  std::vector<double> mine;
+  for (const int node : own_surface_vertices_)
+    mine.insert(mine.end(), owned[node].data(), owned[node].data() + dim);
+  const std::vector<double> gathered = gather_all(comm_, mine);
+  Nodes all(surface_node_.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[gathered_surface_vertices_[i]] = Eigen::Map<const Point<dim>>(&gathered[dim * i]);
+  return all;
+}
+
+template <int dim>
+void DeformableSolids<dim>::update_geometry() {
+  surface_.vertices = surface_values(x_);
+  update_forces();
+  update_largest_stable_step();
+  update_states();
+}
+
+template <int dim>
+void DeformableSolids<dim>::update_forces() {
+  Nodes force(space_.n_local(), Point<dim>::Zero());
+  stiffness_.set_zero();
+  damping_.set_zero();
+  n_clamped_ = 0;
+  std::vector<double> energies;
+  for (const Body& body : bodies_) {
+    energies.push_back(0);
+    for (const auto& group : body.elements) {
+      energies.back() += group->add_elastic_forces(x_, space_.n_owned(), force);
+      n_clamped_ += group->add_stiffness(x_, stiffness_);
+      group->add_damping(x_, damping_);
+    }
+  }
+  force.resize(space_.n_owned());
+  elastic_force_ = std::move(force);
+  n_clamped_ = sum_all(comm_, n_clamped_);
+  sum_all(comm_, energies.data(), static_cast<int>(energies.size()));
+  Momentum<dim> load;
+  for (int i = 0; i < space_.n_owned(); ++i)
+    load.add(x_[i], node_mass_[i] * gravity_ + node_force_[i]);
+  load_ = sum_over_ranks<dim>(load, comm_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    bodies_[b].elastic_energy = energies[b];
+}
+
+/// By Gershgorin's circles of M^-1 K and M^-1 B: omega dt <= sqrt 2, and for explicit damping
+/// dt <= 2 / rate. The least eigenvalue of a consistent mass matrix is 1/(n_corners + 1) of the
+/// lumped one's.
+template <int dim>
+void DeformableSolids<dim>::update_largest_stable_step() {
+  constexpr double safety = 0.9;
+  double largest = 0;  // 1/dt
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    const Body& body = bodies_[body_of_node_[i]];
+    if (body.integration == TimeIntegration::fully_implicit)
+      continue;
+    const double least_mass = node_mass_[i] / (body.consistent_mass ? dim + 2 : 1);
+    Point<dim> elastic = Point<dim>::Zero(), viscous = Point<dim>::Zero();
+    for (int k = stiffness_.row_begin(i); k < stiffness_.row_end(i); ++k) {
+      elastic += stiffness_.block(k).cwiseAbs().rowwise().sum();
+      viscous += damping_.block(k).cwiseAbs().rowwise().sum();
+    }
+    largest = std::max(largest, std::sqrt(elastic.maxCoeff() / (2 * least_mass)));
+    if (body.integration == TimeIntegration::explicit_forces)
+      largest = std::max(largest, viscous.maxCoeff() / (2 * least_mass));
+  }
+  largest = max_all(comm_, largest);
+  largest_stable_step_ = largest > 0 ? safety / largest : 1e300;
+}
+
+template <int dim>
+void DeformableSolids<dim>::update_states() {
+  constexpr int n_turns = n_rotations<dim>;
+  using Inertia = Eigen::Matrix<double, n_turns, n_turns>;
+  // Mass times position, momentum, twice the kinetic energy.
+  constexpr int n_first = 2 * dim + 1, n_second = n_turns + n_turns * n_turns;
+  const int n_bodies = static_cast<int>(bodies_.size());
+  const auto q = make_vector(space_.dof_map());
+  apply(*mass_, *velocity_, *q);
+  const Nodes momentum = space_.owned(*q), velocity = space_.owned(*velocity_);
+  std::vector<double> first(n_bodies * n_first, 0), second(n_bodies * n_second, 0);
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    double* sum = &first[body_of_node_[i] * n_first];
+    Eigen::Map<Point<dim>>(sum, dim) += node_mass_[i] * x_[i];
+    Eigen::Map<Point<dim>>(sum + dim, dim) += momentum[i];
+    sum[2 * dim] += momentum[i].dot(velocity[i]);
+  }
+  sum_all(comm_, first.data(), static_cast<int>(first.size()));
+  states_.assign(n_bodies, {});
+  for (int b = 0; b < n_bodies; ++b) {
+    SolidState<dim>& state = states_[b];
+    state.name = bodies_[b].name;
+    state.mass = bodies_[b].mass;
+    state.center_of_mass = Eigen::Map<Point<dim>>(&first[b * n_first], dim) / state.mass;
+    state.velocity = Eigen::Map<Point<dim>>(&first[b * n_first + dim], dim) / state.mass;
+    state.kinetic_energy = 0.5 * first[b * n_first + 2 * dim];
+    state.elastic_energy = bodies_[b].elastic_energy;
+    for (int s = solids_[b].simplex_begin; bodies_[b].closed && s < solids_[b].simplex_end; ++s) {
+      std::array<Point<dim>, dim> corners;
+      for (int k = 0; k < dim; ++k)
+        corners[k] = surface_.vertices[surface_.simplices[s][k]];
+      state.volume += area_vector<dim>(corners).dot(corners[0] - state.center_of_mass) / dim;
+    }
+  }
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    const int b = body_of_node_[i];
+    const Point<dim> arm = x_[i] - states_[b].center_of_mass;
+    double* sum = &second[b * n_second];
+    Eigen::Map<AngularVector<dim>>(sum, n_turns) += cross<dim>(arm, momentum[i]);
+    Inertia inertia = arm.squaredNorm() * Inertia::Identity();
+    if constexpr (dim == 3)
+      inertia -= arm * arm.transpose();
+    Eigen::Map<Inertia>(sum + n_turns, n_turns, n_turns) += node_mass_[i] * inertia;
+  }
+  sum_all(comm_, second.data(), static_cast<int>(second.size()));
+  for (int b = 0; b < n_bodies; ++b) {
+    const AngularVector<dim> angular =
+        Eigen::Map<AngularVector<dim>>(&second[b * n_second], n_turns);
+    const Inertia inertia = Eigen::Map<Inertia>(&second[b * n_second + n_turns], n_turns, n_turns);
+    states_[b].angular_velocity = inertia.ldlt().solve(angular);
+  }
+}
+
+template class DeformableSolids<2>;
+template class DeformableSolids<3>;
+
+}  // namespace lockstep

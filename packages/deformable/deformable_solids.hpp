@@ -1,0 +1,119 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deformable/deformable_body.hpp"
+#include "deformable/node_space.hpp"
+#include "interfaces/solid.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// All deformable bodies of a scene: volumes of finite elements and thin shells. The dofs are the
+/// velocities of the nodes, distributed by METIS; the surface is replicated.
+///
+/// Elastic forces are those at the present positions. Together with the step they make, for one
+/// mode of stiffness m omega^2 and a = omega dt, b = 1 + a^2/4, the fully implicit map
+/// x' = (1 - a^2/(2 b)) x + (dt/b) v, v' = (v - dt omega^2 x')/(1 + a^2); the other two are stable
+/// up to a = sqrt 2.
+template <int dim>
+class DeformableSolids : public SolidModel<dim> {
+ public:
+  /// `type` is the name of the model, gravity [m/s^2]. Collective.
+  DeformableSolids(const std::string& type, std::vector<DeformableBody<dim>> bodies,
+                   const Point<dim>& gravity, const Communicator& comm);
+
+  std::string name() const override { return type_; }
+
+  const std::vector<SolidDescription>& solids() const override { return solids_; }
+  const SurfaceMesh<dim>& surface() const override { return surface_; }
+  void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
+                    VelocityRow<dim>& row) const override;
+  Point<dim> prescribed_velocity(const SurfacePoint<dim>&, const Point<dim>&) const override {
+    return Point<dim>::Zero();
+  }
+  Point<dim> effective_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const override;
+
+  RCP<const Map> dof_map() const override { return space_.dof_map(); }
+  /// A CrsMatrix; diagonal where the mass is lumped.
+  RCP<const LinearOperator> mass() const override { return mass_; }
+  /// A CrsMatrix, or null if all bodies are explicit. Of rigid motions it is zero, but for the
+  /// torque of fully implicit elasticity, which turns the present forces with the body.
+  RCP<const LinearOperator> implicit_force(double dt) const override;
+  void explicit_momentum(double time, double dt, Vector& momentum) const override;
+  Momentum<dim> external_impulse(double time, double dt) const override;
+  std::vector<GlobalIndex> locked_dofs() const override;
+  std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const override;
+
+  RCP<const Vector> velocity() const override { return velocity_; }
+  void set_velocity(const Vector& velocity) override;
+  void move(const Vector& velocity, double time, double dt) override;
+  std::vector<SolidState<dim>> states() const override { return states_; }
+  double largest_stable_step() const override { return largest_stable_step_; }
+
+  /// Bit for bit on the same ranks. Throws InputError if the checkpoint holds other bodies.
+  void save(CheckpointWriter& writer) const override;
+  void load(const CheckpointReader& reader) override;
+
+  /// Elements whose stiffness had to be made definite at the present positions, on all ranks.
+  GlobalIndex n_clamped() const { return n_clamped_; }
+  /// Owned nodes: their numbers in the order of the bodies, positions [m] and elastic forces [N].
+  const NodeSpace<dim>& nodes() const { return space_; }
+  const std::vector<Point<dim>>& positions() const { return x_; }
+  const std::vector<Point<dim>>& elastic_forces() const { return elastic_force_; }
+
+ private:
+  using Nodes = std::vector<Point<dim>>;
+  /// What stays of a body, on this rank.
+  struct Body {
+    std::string name;
+    bool closed = true, consistent_mass = false;
+    TimeIntegration integration = TimeIntegration::semi_implicit;
+    double mass = 0;
+    int node_begin = 0, node_end = 0;  ///< original numbers
+    std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
+    double elastic_energy = 0;  ///< of all ranks
+  };
+
+  void add_body(DeformableBody<dim>& body, int node_begin);
+  void distribute(std::vector<DeformableBody<dim>>& bodies, const Communicator& comm);
+  void assemble_mass(const std::vector<DeformableBody<dim>>& bodies);
+  void distribute_surface(const std::vector<DeformableBody<dim>>& bodies);
+  /// After the positions have changed: surface, forces, linearisation, states.
+  void update_geometry();
+  void update_forces();
+  void update_largest_stable_step();
+  void update_states();
+  Nodes surface_values(const Nodes& owned) const;
+  int body_of_node(int local) const { return body_of_node_[local]; }
+
+  std::string type_;
+  Communicator comm_;
+  Point<dim> gravity_;
+  std::vector<Body> bodies_;
+  NodeSpace<dim> space_;
+  std::vector<int> body_of_node_;  ///< of the owned nodes
+  std::vector<double> node_mass_;  ///< lumped, of the owned nodes [kg]
+  Nodes node_force_;               ///< constant loads on them [N]
+  std::vector<std::array<bool, dim>> locked_;
+
+  std::vector<SolidDescription> solids_;
+  SurfaceMesh<dim> surface_;
+  std::vector<GlobalIndex> surface_node_;       ///< global number of each vertex
+  std::vector<int> own_surface_vertices_;       ///< local nodes, in the order of gathering
+  std::vector<int> gathered_surface_vertices_;  ///< the vertex of each gathered value
+  Nodes surface_velocity_;                      ///< of the last move [m/s]
+
+  RCP<const LinearOperator> mass_;
+  NodeMatrix<dim> stiffness_, damping_;
+  Nodes x_;              ///< of all local nodes [m]
+  Nodes elastic_force_;  ///< of the owned nodes [N]
+  RCP<const Vector> velocity_;
+  std::vector<SolidState<dim>> states_;
+  Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]
+  double largest_stable_step_ = 1e300;
+  GlobalIndex n_clamped_ = 0;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,76 @@
+// Checkpoints of the deformable bodies.
+#include <Tpetra_Vector.hpp>
+
+#include "base/errors.hpp"
+#include "deformable/deformable_solids.hpp"
+#include "output/checkpoint.hpp"
+
+namespace lockstep {
+
+namespace {
+
+template <typename Bodies>
+std::string joined_names(const Bodies& bodies) {
+  std::string names;
+  for (const auto& body : bodies)
+    names += fmt::format("{} {}\n", body.name, body.node_end - body.node_begin);
+  return names;
+}
+
+template <int dim>
+std::vector<double> numbers_of(const std::vector<Point<dim>>& points, std::size_t n) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < n; ++i)
+    values.insert(values.end(), points[i].data(), points[i].data() + dim);
+  return values;
+}
+
+template <int dim>
+std::vector<Point<dim>> points_of(const std::vector<double>& values) {
+  std::vector<Point<dim>> points(values.size() / dim);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = Eigen::Map<const Point<dim>>(&values[dim * i]);
+  return points;
+}
+
+}  // namespace
+
+template <int dim>
+void DeformableSolids<dim>::save(CheckpointWriter& writer) const {
+  std::vector<GlobalIndex> ids;
+  for (int i = 0; i < space_.n_owned(); ++i)
+    ids.push_back(space_.original(i));
+  writer.file().create_group(type_);
+  writer.file().write_text(type_ + "/names", joined_names(bodies_));
+  writer.write_distributed(type_ + "/positions", ids, numbers_of<dim>(x_, ids.size()), dim);
+  writer.write_distributed(type_ + "/velocities", ids,
+                           numbers_of<dim>(space_.owned(*velocity_), ids.size()), dim);
+  writer.file().write_replicated(type_ + "/surface velocities",
+                                 numbers_of<dim>(surface_velocity_, surface_velocity_.size()), dim);
+}
+
+template <int dim>
+void DeformableSolids<dim>::load(const CheckpointReader& reader) {
+  const Hdf5File& file = reader.file();
+  check_input(
+      file.exists(type_ + "/names") && file.read_text(type_ + "/names") == joined_names(bodies_),
+      "{}: the checkpoint does not hold the solids of type \"{}\" of this scene; restart with the "
+      "scene that wrote it.",
+      file.path(), type_);
+  std::vector<GlobalIndex> ids;
+  for (int i = 0; i < space_.n_local(); ++i)
+    ids.push_back(space_.original(i));
+  x_ = points_of<dim>(reader.read_distributed<double>(type_ + "/positions", ids));
+  ids.resize(space_.n_owned());
+  velocity_ =
+      space_.vector(points_of<dim>(reader.read_distributed<double>(type_ + "/velocities", ids)));
+  surface_velocity_ = points_of<dim>(file.read_all<double>(type_ + "/surface velocities"));
+  update_geometry();
+}
+
+template void DeformableSolids<2>::save(CheckpointWriter&) const;
+template void DeformableSolids<3>::save(CheckpointWriter&) const;
+template void DeformableSolids<2>::load(const CheckpointReader&);
+template void DeformableSolids<3>::load(const CheckpointReader&);
+
+}  // namespace lockstep

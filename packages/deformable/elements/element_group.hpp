@@ -1,0 +1,39 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "deformable/elements/node_matrix.hpp"
+
+namespace lockstep {
+
+/// Elements of one kind and law that pull on their corners, as one rank holds them. Positions,
+/// velocities and forces are indexed by local node number; of the nodes of other ranks (ghosts)
+/// only positions and velocities count, forces on them may be left anything.
+template <int dim>
+class ElementGroup {
+ public:
+  using Nodes = std::vector<Point<dim>>;
+  virtual ~ElementGroup() = default;
+
+  /// The corners of all elements.
+  virtual ElementCorners corners() const = 0;
+  /// The elements `kept`, in that order, with node n renamed to number[n].
+  virtual std::unique_ptr<ElementGroup> restricted(const std::vector<int>& kept,
+                                                   const std::vector<int>& number) const = 0;
+
+  /// Adds the elastic forces [N] and returns the energy [J] of the elements whose first corner is
+  /// below `n_owned`.
+  virtual double add_elastic_forces(const Nodes& x, int n_owned, Nodes& force) const = 0;
+  /// Adds K = -d force / dx [N/m], made positive semidefinite element by element; returns how many
+  /// elements (counted as above) had to be changed for it.
+  virtual int add_stiffness(const Nodes& x, NodeMatrix<dim>& stiffness) const = 0;
+  /// Adds B [N s/m], damping force = -B v: symmetric positive semidefinite, zero for rigid motions.
+  virtual void add_damping(const Nodes& x, NodeMatrix<dim>& damping) const = 0;
+
+ protected:
+  ElementGroup() = default;
+  ElementGroup(const ElementGroup&) = default;
+  ElementGroup& operator=(const ElementGroup&) = default;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,74 @@
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lockstep {
+
+/// Deformation gradient F = dx/dX, stress, ... at a point.
+template <int dim>
+using Tensor = Eigen::Matrix<double, dim, dim>;
+
+/// dP/dF: entry (a + dim i, b + dim j) is dP_ai / dF_bj, as for columns stacked to a vector.
+/// Symmetric.
+template <int dim>
+using TensorDerivative = Eigen::Matrix<double, dim * dim, dim * dim>;
+
+/// Lamé's constants [Pa].
+struct LameConstants {
+  double lambda = 0, mu = 0;
+};
+
+/// From Young's modulus [Pa] and Poisson's ratio in (-1, 0.5). Throws InputError.
+LameConstants lame_constants(double youngs_modulus, double poisson_ratio);
+
+/// A hyperelastic law. In 2D it is that of plane strain: F_zz = 1.
+template <int dim>
+class Material {
+ public:
+  virtual ~Material() = default;
+  /// Elastic energy per volume at rest [J/m^3]; zero at rest.
+  virtual double energy_density(const Tensor<dim>& f) const = 0;
+  /// First Piola-Kirchhoff stress P = d energy / dF [Pa]; zero at rest.
+  virtual Tensor<dim> stress(const Tensor<dim>& f) const = 0;
+  /// dP/dF [Pa].
+  virtual TensorDerivative<dim> stress_derivative(const Tensor<dim>& f) const = 0;
+
+ protected:
+  Material() = default;
+  Material(const Material&) = default;
+  Material& operator=(const Material&) = default;
+};
+
+/// Small strain about the reference position: for small displacements and rotations only, does not
+/// conserve angular momentum beyond them. Linear.
+template <int dim>
+std::unique_ptr<Material<dim>> linear_elasticity(const LameConstants& lame);
+
+/// Linear in the strain S - I of F = R S. The rotation R of an inverted element is that of the
+/// nearest upright shape, so that it turns back.
+template <int dim>
+std::unique_ptr<Material<dim>> corotated(const LameConstants& lame);
+
+/// Linear in Green's strain. Weak under strong compression: a crushed element offers no resistance
+/// and may invert.
+template <int dim>
+std::unique_ptr<Material<dim>> st_venant_kirchhoff(const LameConstants& lame);
+
+/// Stable neo-Hookean after Smith, de Goes and Kim (2018), Eq. 14: finite and with restoring forces
+/// at every F, inverted ones included.
+template <int dim>
+std::unique_ptr<Material<dim>> neo_hookean(const LameConstants& lame);
+
+/// Names and one line each, for parameters.
+struct MaterialName {
+  std::string name, documentation;
+};
+const std::vector<MaterialName>& material_names();
+
+/// By name; throws InputError for an unknown one.
+template <int dim>
+std::unique_ptr<Material<dim>> make_material(const std::string& name, const LameConstants& lame);
+
+}  // namespace lockstep

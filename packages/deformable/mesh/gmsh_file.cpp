@@ -1,0 +1,230 @@
+#include "deformable/mesh/gmsh_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <unordered_map>
+
+#include "geometry/text_lines.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Gmsh's number of the linear simplex with so many corners.
+constexpr int simplex_type(int n_corners) {
+  return n_corners == 2 ? 1 : n_corners == 3 ? 2 : 4;
+}
+
+template <int dim, int n_corners>
+struct Simplices {
+  std::vector<Point<dim>> vertices;
+  std::vector<std::array<int, n_corners>> simplices;
+};
+
+/// Reads one file; `tags` are Gmsh's node numbers, which need not be consecutive.
+template <int dim, int n_corners>
+class GmshReader {
+ public:
+  explicit GmshReader(const std::string& file) : file_(file), lines_(file) {
+    check_input(std::filesystem::is_regular_file(file) && std::ifstream(file).good(),
+                "{}: cannot open this mesh file; check its path and permissions.", file);
+  }
+
+  Simplices<dim, n_corners> read() {
+    expect("$MeshFormat");
+    next(2);
+    const std::string version = words_[0];
+    check_input(version == "2.2" || version == "4.1",
+                "{}: Gmsh version {} is not known; save the mesh as version 2.2 or 4.1.",
+                lines_.where(), version);
+    check_input(words_[1] == "0",
+                "{}: the file is binary; save it as ASCII (Mesh.Binary = 0 in Gmsh).",
+                lines_.where());
+    expect("$EndMeshFormat");
+    bool nodes = false, elements = false;
+    while (lines_.next(words_)) {
+      const std::string section = words_[0];
+      check_input(section.size() > 1 && section[0] == '$',
+                  "{}: expected the start of a section ($...), but found '{}'.", lines_.where(),
+                  section);
+      const std::string end = "$End" + section.substr(1);
+      if (section == "$Nodes") {
+        version == "2.2" ? read_nodes_2() : read_nodes_4();
+        nodes = true;
+        expect(end);
+      } else if (section == "$Elements") {
+        check_input(nodes, "{}: $Elements comes before $Nodes.", lines_.where());
+        version == "2.2" ? read_elements_2() : read_elements_4();
+        elements = true;
+        expect(end);
+      } else {
+        skip_to(end);
+      }
+    }
+    check_input(nodes && elements, "{}: the file has no {} section.", file_,
+                nodes ? "$Elements" : "$Nodes");
+    check_input(!mesh_.simplices.empty(), "{}: the file holds no {}.", file_,
+                n_corners == 2   ? "segments"
+                : n_corners == 3 ? "triangles"
+                                 : "tetrahedra");
+    drop_unused();
+    return std::move(mesh_);
+  }
+
+ private:
+  void next(std::size_t n_words) {
+    check_input(lines_.next(words_), "{}: the file ends too early.", file_);
+    check_input(words_.size() >= n_words, "{}: expected at least {} numbers, but found {}.",
+                lines_.where(), n_words, words_.size());
+  }
+  void expect(const std::string& word) {
+    next(1);
+    check_input(words_[0] == word, "{}: expected {}, but found '{}'.", lines_.where(), word,
+                words_[0]);
+  }
+  void skip_to(const std::string& end) {
+    do {
+      next(1);
+    } while (words_[0] != end);
+  }
+  long count(std::size_t word) const {
+    const long n = lines_.integer(words_[word]);
+    check_input(n >= 0, "{}: a count is negative: {}.", lines_.where(), n);
+    return n;
+  }
+
+  void add_node(long tag, std::size_t first_word) {
+    Point<dim> x;
+    for (int a = 0; a < dim; ++a)
+      x[a] = lines_.number(words_[first_word + a]);
+    if (dim == 2) {
+      const double z = lines_.number(words_[first_word + 2]);
+      check_input(z == 0, "{}: a mesh of a 2D scene must lie in z = 0, but node {} has z = {}.",
+                  lines_.where(), tag, z);
+    }
+    const bool is_new = numbers_.emplace(tag, static_cast<int>(mesh_.vertices.size())).second;
+    check_input(is_new, "{}: node {} occurs twice.", lines_.where(), tag);
+    mesh_.vertices.push_back(x);
+  }
+  void read_nodes_2() {
+    next(1);
+    const long n = count(0);
+    for (long i = 0; i < n; ++i) {
+      next(4);
+      add_node(lines_.integer(words_[0]), 1);
+    }
+  }
+  void read_nodes_4() {
+    next(4);
+    const long n_blocks = count(0);
+    for (long block = 0; block < n_blocks; ++block) {
+      next(4);
+      const long n = count(3);
+      std::vector<long> tags(n);
+      for (long& tag : tags) {
+        next(1);
+        tag = lines_.integer(words_[0]);
+      }
+      for (const long tag : tags) {
+        next(3);
+        add_node(tag, 0);
+      }
+    }
+  }
+
+  void add_element(long tag, long type, std::size_t first_word) {
+    check_input(type <= 7 || type == 15,
+                "{}: element {} is of Gmsh type {}, of higher order; save a mesh of order 1.",
+                lines_.where(), tag, type);
+    const bool too_rich =
+        (n_corners >= 3 && type == 3) || (n_corners == 4 && type >= 5 && type < 8);
+    check_input(!too_rich, "{}: element {} is no simplex (Gmsh type {}); make a mesh of {} only.",
+                lines_.where(), tag, type, n_corners == 4 ? "tetrahedra" : "triangles");
+    if (type != simplex_type(n_corners))
+      return;
+    check_input(words_.size() >= first_word + n_corners, "{}: element {} has too few corners.",
+                lines_.where(), tag);
+    std::array<int, n_corners> corners;
+    for (int k = 0; k < n_corners; ++k) {
+      const long node = lines_.integer(words_[first_word + k]);
+      const auto found = numbers_.find(node);
+      check_input(found != numbers_.end(), "{}: element {} refers to node {}, which is not there.",
+                  lines_.where(), tag, node);
+      corners[k] = found->second;
+    }
+    mesh_.simplices.push_back(corners);
+  }
+  void read_elements_2() {
+    next(1);
+    const long n = count(0);
+    for (long i = 0; i < n; ++i) {
+      next(3);
+      add_element(lines_.integer(words_[0]), lines_.integer(words_[1]), 3 + count(2));
+    }
+  }
+  void read_elements_4() {
+    next(4);
+    const long n_blocks = count(0);
+    for (long block = 0; block < n_blocks; ++block) {
+      next(4);
+      const long type = count(2), n = count(3);
+      for (long i = 0; i < n; ++i) {
+        next(2);
+        add_element(lines_.integer(words_[0]), type, 1);
+      }
+    }
+  }
+
+  void drop_unused() {
+    std::vector<int> number(mesh_.vertices.size(), -1);
+    for (const auto& simplex : mesh_.simplices) {
+      for (const int v : simplex)
+        number[v] = 0;
+    }
+    std::vector<Point<dim>> used;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] < 0)
+        continue;
+      number[v] = static_cast<int>(used.size());
+      used.push_back(mesh_.vertices[v]);
+    }
+    mesh_.vertices = std::move(used);
+    for (auto& simplex : mesh_.simplices) {
+      for (int& v : simplex)
+        v = number[v];
+    }
+  }
+
+  std::string file_;
+  TextLines lines_;
+  std::vector<std::string> words_;
+  std::unordered_map<long, int> numbers_;
+  Simplices<dim, n_corners> mesh_;
+};
+
+}  // namespace
+
+template <int dim>
+VolumeMesh<dim> read_gmsh_volume(const std::string& file) {
+  auto read = GmshReader<dim, dim + 1>(file).read();
+  VolumeMesh<dim> mesh;
+  mesh.vertices = std::move(read.vertices);
+  mesh.elements = std::move(read.simplices);
+  return mesh;
+}
+
+template <int dim>
+SurfaceMesh<dim> read_gmsh_surface(const std::string& file) {
+  auto read = GmshReader<dim, dim>(file).read();
+  SurfaceMesh<dim> mesh;
+  mesh.vertices = std::move(read.vertices);
+  mesh.simplices = std::move(read.simplices);
+  return mesh;
+}
+
+template VolumeMesh<2> read_gmsh_volume<2>(const std::string&);
+template VolumeMesh<3> read_gmsh_volume<3>(const std::string&);
+template SurfaceMesh<2> read_gmsh_surface<2>(const std::string&);
+template SurfaceMesh<3> read_gmsh_surface<3>(const std::string&);
+
+}  // namespace lockstep

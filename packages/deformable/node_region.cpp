@@ -1,0 +1,130 @@
+#include "deformable/node_region.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "deformable/list_values.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using deformable_lists::vector_value;
+
+template <int dim>
+std::vector<std::string> axes() {
+  std::vector<std::string> names{"x", "y", "z"};
+  names.resize(dim);
+  return names;
+}
+
+}  // namespace
+
+template <int dim>
+void declare_node_region(ParameterList& list) {
+  for (const char* corner : {"Lower", "Upper"}) {
+    declare_required_vector<double>(list, corner, dim,
+                                    "Corner of the box that holds the nodes meant, in coordinates "
+                                    "of the body at rest [m]; its sides belong to it.");
+  }
+}
+
+template <int dim>
+std::vector<int> nodes_in_region(const ParameterList& list, const std::vector<Point<dim>>& nodes,
+                                 const std::string& where) {
+  Box<dim> box(vector_value<dim>(list, "Lower"), vector_value<dim>(list, "Upper"));
+  for (int a = 0; a < dim; ++a) {
+    check_input(box.min()[a] <= box.max()[a],
+                "In \"{}\", \"Lower\" ({}) lies above \"Upper\" ({}) along {}.", where,
+                box.min()[a], box.max()[a], axes<dim>()[a]);
+  }
+  Box<dim> body;
+  for (const auto& x : nodes)
+    body.extend(x);
+  // Nodes on the sides of the box are not lost to round-off.
+  const double margin = 1e-9 * body.diagonal().norm();
+  box.min().array() -= margin;
+  box.max().array() += margin;
+  std::vector<int> found;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (box.contains(nodes[n]))
+      found.push_back(static_cast<int>(n));
+  }
+  check_input(!found.empty(),
+              "The box of \"{}\" holds no node of the body; its coordinates are those of the body "
+              "at rest, before it is turned and placed.",
+              where);
+  return found;
+}
+
+template <int dim>
+void declare_constraints_and_loads(ParameterList& body) {
+  ParameterList pinned("pinned"), load("load");
+  declare_node_region<dim>(pinned);
+  const auto names = axes<dim>();
+  declare(pinned, "Directions", ParameterArray<std::string>(names),
+          "Axes of space along which the nodes are held.");
+  set_choices(pinned, "Directions", names);
+  declare_named_sublists(body, "Pinned", "Nodes held where they start.", pinned);
+  declare_node_region<dim>(load);
+  declare_required_vector<double>(
+      load, "Force", dim,
+      "Constant force in all, spread over the nodes in proportion to their masses [N] (2D: per "
+      "unit depth).");
+  declare_named_sublists(body, "Loads", "Forces on nodes, besides gravity.", load);
+}
+
+template <int dim>
+std::vector<std::array<bool, dim>> read_pinned(const ParameterList& body,
+                                               const std::vector<Point<dim>>& nodes,
+                                               const std::string& name) {
+  std::vector<std::array<bool, dim>> locked(nodes.size(), std::array<bool, dim>{});
+  const ParameterList& all = body.sublist("Pinned");
+  for (auto entry = all.begin(); entry != all.end(); ++entry) {
+    const ParameterList& list = all.sublist(all.name(entry));
+    const auto& directions = list.get<ParameterArray<std::string>>("Directions");
+    for (const int n : nodes_in_region<dim>(list, nodes, name + "/Pinned/" + all.name(entry))) {
+      for (const auto& direction : directions)
+        locked[n][direction[0] - 'x'] = true;
+    }
+  }
+  return locked;
+}
+
+template <int dim>
+std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<Point<dim>>& nodes,
+                                   const std::vector<double>& node_mass, const std::string& name) {
+  std::vector<Point<dim>> force(nodes.size(), Point<dim>::Zero());
+  const ParameterList& all = body.sublist("Loads");
+  for (auto entry = all.begin(); entry != all.end(); ++entry) {
+    const ParameterList& list = all.sublist(all.name(entry));
+    const auto found = nodes_in_region<dim>(list, nodes, name + "/Loads/" + all.name(entry));
+    double mass = 0;
+    for (const int n : found)
+      mass += node_mass[n];
+    for (const int n : found)
+      force[n] += node_mass[n] / mass * vector_value<dim>(list, "Force");
+  }
+  return force;
+}
+
+template void declare_node_region<2>(ParameterList&);
+template void declare_node_region<3>(ParameterList&);
+template std::vector<int> nodes_in_region<2>(const ParameterList&, const std::vector<Point<2>>&,
+                                             const std::string&);
+template std::vector<int> nodes_in_region<3>(const ParameterList&, const std::vector<Point<3>>&,
+                                             const std::string&);
+template void declare_constraints_and_loads<2>(ParameterList&);
+template void declare_constraints_and_loads<3>(ParameterList&);
+template std::vector<std::array<bool, 2>> read_pinned<2>(const ParameterList&,
+                                                         const std::vector<Point<2>>&,
+                                                         const std::string&);
+template std::vector<std::array<bool, 3>> read_pinned<3>(const ParameterList&,
+                                                         const std::vector<Point<3>>&,
+                                                         const std::string&);
+template std::vector<Point<2>> read_loads<2>(const ParameterList&, const std::vector<Point<2>>&,
+                                             const std::vector<double>&, const std::string&);
+template std::vector<Point<3>> read_loads<3>(const ParameterList&, const std::vector<Point<3>>&,
+                                             const std::vector<double>&, const std::string&);
+
+}  // namespace lockstep

@@ -1,0 +1,34 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// Declares a box that picks nodes: "Lower" and "Upper", in coordinates of the body.
+template <int dim>
+void declare_node_region(ParameterList& list);
+
+/// The nodes (numbers) in the box of a validated list. Throws InputError if there are none; `where`
+/// names the list.
+template <int dim>
+std::vector<int> nodes_in_region(const ParameterList& list, const std::vector<Point<dim>>& nodes,
+                                 const std::string& where);
+
+/// Declares the named sublists "Pinned" and "Loads".
+template <int dim>
+void declare_constraints_and_loads(ParameterList& body);
+
+/// Reads them for nodes at these rest positions; `name` is the body's, for messages.
+template <int dim>
+std::vector<std::array<bool, dim>> read_pinned(const ParameterList& body,
+                                               const std::vector<Point<dim>>& nodes,
+                                               const std::string& name);
+/// Loads are spread over the nodes in proportion to `node_mass`.
+template <int dim>
+std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<Point<dim>>& nodes,
+                                   const std::vector<double>& node_mass, const std::string& name);
+
+}  // namespace lockstep

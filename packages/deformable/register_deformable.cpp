@@ -1,0 +1,45 @@
+#include "deformable/register_deformable.hpp"
+
+#include "deformable/deformable_parameters.hpp"
+#include "deformable/deformable_solids.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// One model of all bodies of a type.
+template <int dim>
+std::unique_ptr<SolidModel<dim>> make_model(
+    const std::string& type,
+    DeformableBody<dim> (*read)(const std::string&, const ParameterList&, double),
+    const NamedLists& lists, const SolidSetting<dim>& setting) {
+  if (lists.empty())
+    return nullptr;
+  std::vector<DeformableBody<dim>> bodies;
+  for (const auto& [name, list] : lists)
+    bodies.push_back(read(name, list, setting.grid_spacing));
+  return std::make_unique<DeformableSolids<dim>>(type, std::move(bodies), setting.gravity,
+                                                 setting.comm);
+}
+
+}  // namespace
+
+template <int dim>
+void register_deformable(SolidRegistry<dim>& solids) {
+  solids.add("deformable body", "Elastic volume of triangles (2D) or tetrahedra (3D).",
+             deformable_body_parameters<dim>,
+             [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
+               return make_model<dim>("deformable body", read_deformable_body<dim>, lists, setting);
+             });
+  solids.add("cloth",
+             "Elastic thin shell of segments (2D) or triangles (3D): membrane and bending.",
+             cloth_parameters<dim>,
+             [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
+               return make_model<dim>("cloth", read_cloth<dim>, lists, setting);
+             });
+}
+
+template void register_deformable<2>(SolidRegistry<2>&);
+template void register_deformable<3>(SolidRegistry<3>&);
+
+}  // namespace lockstep

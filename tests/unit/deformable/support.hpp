@@ -1,0 +1,107 @@
+#pragma once
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Teuchos_DefaultComm.hpp>
+#include <string>
+
+#include "base/errors.hpp"
+#include "coupling/solid_system.hpp"
+#include "deformable/deformable_parameters.hpp"
+#include "deformable/deformable_solids.hpp"
+#include "parameters/strict_xml.hpp"
+#include "parameters/validate.hpp"
+
+namespace lockstep::test {
+
+inline Communicator world() {
+  return Teuchos::DefaultComm<int>::getComm();
+}
+
+/// The message of the InputError that `action` throws, or "".
+template <typename Action>
+std::string error(const Action& action) {
+  try {
+    action();
+  } catch (const InputError& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+/// <Parameter .../> of the type that the value has in a scene file.
+inline std::string number(const std::string& name, const std::string& value) {
+  return "<Parameter name=\"" + name + "\" type=\"double\" value=\"" + value + "\"/>";
+}
+inline std::string numbers(const std::string& name, const std::string& value) {
+  return "<Parameter name=\"" + name + "\" type=\"Array(double)\" value=\"{" + value + "}\"/>";
+}
+inline std::string text(const std::string& name, const std::string& value) {
+  return "<Parameter name=\"" + name + "\" type=\"string\" value=\"" + value + "\"/>";
+}
+inline std::string texts(const std::string& name, const std::string& value) {
+  return "<Parameter name=\"" + name + "\" type=\"Array(string)\" value=\"{" + value + "}\"/>";
+}
+inline std::string list(const std::string& name, const std::string& content) {
+  return "<ParameterList name=\"" + name + "\">" + content + "</ParameterList>";
+}
+inline std::string geometry(const std::string& shape, const std::string& content) {
+  return list("Geometry", text("Shape", shape) + content);
+}
+inline std::string box(const std::string& size, const std::string& spacing) {
+  return geometry("box", numbers("Size", size) + number("Mesh Spacing", spacing));
+}
+inline std::string material(const std::string& type, const std::string& youngs_modulus = "100",
+                            const std::string& poisson_ratio = "0.3") {
+  return list("Material", text("Type", type) + number("Young&apos;s Modulus", youngs_modulus) +
+                              number("Poisson&apos;s Ratio", poisson_ratio));
+}
+inline std::string pinned(const std::string& lower, const std::string& upper,
+                          const std::string& directions) {
+  return list("Pinned", list("some", numbers("Lower", lower) + numbers("Upper", upper) +
+                                         texts("Directions", directions)));
+}
+
+/// A body as a scene file has it.
+template <int dim>
+ParameterList body_list(const std::string& content) {
+  Document document =
+      read_xml_string("<ParameterList>" + content + "</ParameterList>", "scene.xml");
+  validate(document, deformable_body_parameters<dim>());
+  return document.list;
+}
+template <int dim>
+DeformableBody<dim> body(const std::string& content, const std::string& name = "body") {
+  return read_deformable_body<dim>(name, body_list<dim>(content), 0.1);
+}
+
+/// A model of bodies "0", "1", ...
+template <int dim>
+std::unique_ptr<DeformableSolids<dim>> model(const std::vector<std::string>& contents,
+                                             const Point<dim>& gravity = Point<dim>::Zero()) {
+  std::vector<DeformableBody<dim>> bodies;
+  for (const auto& content : contents)
+    bodies.push_back(body<dim>(content, std::to_string(bodies.size())));
+  return std::make_unique<DeformableSolids<dim>>("deformable body", std::move(bodies), gravity,
+                                                 world());
+}
+
+/// One model as all the solids there are.
+template <int dim>
+struct Alone {
+  explicit Alone(std::unique_ptr<DeformableSolids<dim>> made)
+      : solids(*made), system(stack(std::move(made)), world()) {}
+  static std::vector<std::unique_ptr<SolidModel<dim>>> stack(
+      std::unique_ptr<DeformableSolids<dim>> made) {
+    std::vector<std::unique_ptr<SolidModel<dim>>> models;
+    models.push_back(std::move(made));
+    return models;
+  }
+  /// A step without fluid: S1 to t + dt/2, move, S2.
+  void step(double dt);
+
+  DeformableSolids<dim>& solids;
+  SolidSystem<dim> system;
+};
+
+}  // namespace lockstep::test

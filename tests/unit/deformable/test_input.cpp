@@ -1,0 +1,90 @@
+// What a scene may get wrong.
+#include "support.hpp"
+
+namespace lockstep {
+namespace {
+
+using namespace test;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+template <int dim>
+std::string error_of(const std::string& content) {
+  return error([&] { body<dim>(content, "Flag"); });
+}
+const std::string rest = number("Density", "1") + material("corotated");
+
+TEST(Input, Geometry) {
+  EXPECT_THAT(error_of<2>(geometry("box", "") + rest),
+              AllOf(HasSubstr("Flag/Geometry"), HasSubstr("needs \"Size\"")));
+  EXPECT_THAT(error_of<2>(geometry("ball", number("Radius", "1") + numbers("Size", "1, 1")) + rest),
+              HasSubstr("has no \"Size\""));
+  EXPECT_THAT(error_of<2>(geometry("torus", number("Radius", "1")) + rest), HasSubstr("torus"));
+  EXPECT_THAT(
+      error_of<3>(geometry("torus", number("Radius", "1") + number("Tube Radius", "2")) + rest),
+      HasSubstr("meets itself"));
+  EXPECT_THAT(error_of<3>(geometry("file", text("File", "nowhere.msh")) + rest),
+              HasSubstr("nowhere.msh"));
+}
+
+TEST(Input, RequiredAndBounded) {
+  const std::string disc = geometry("ball", number("Radius", "0.3"));
+  EXPECT_THAT(error_of<2>(disc + material("corotated")), HasSubstr("Density"));
+  EXPECT_THAT(error_of<2>(disc + number("Density", "1")), HasSubstr("Young's Modulus"));
+  EXPECT_THAT(error_of<2>(disc + number("Density", "1") + material("rubber")), HasSubstr("rubber"));
+  EXPECT_THAT(error_of<2>(disc + number("Density", "1") + material("linear", "1", "0.5")),
+              HasSubstr("Poisson"));
+  EXPECT_THAT(error_of<2>(disc + rest + text("Time Integration", "implicit")),
+              HasSubstr("fully-implicit"));
+  EXPECT_EQ(error_of<2>(disc + rest), "");
+}
+
+TEST(Input, RegionsHoldNodes) {
+  const std::string square = box("1, 1", "0.5") + rest;
+  EXPECT_THAT(error_of<2>(square + pinned("2, 2", "3, 3", "x")),
+              AllOf(HasSubstr("Flag/Pinned/some"), HasSubstr("holds no node")));
+  EXPECT_THAT(error_of<2>(square + pinned("1, 0", "0, 0", "x")), HasSubstr("lies above"));
+  const auto made =
+      body<2>(square + pinned("-0.5, -0.5", "-0.5, 0.5", "y") + numbers("Position", "7, 7"));
+  int n_locked = 0;
+  for (const auto& locked : made.locked) {
+    EXPECT_FALSE(locked[0]);
+    n_locked += locked[1];
+  }
+  EXPECT_EQ(n_locked, 3);
+}
+
+template <int dim>
+DeformableBody<dim> cloth(const std::string& content) {
+  Document document =
+      read_xml_string("<ParameterList>" + content + "</ParameterList>", "scene.xml");
+  validate(document, cloth_parameters<dim>());
+  return read_cloth<dim>("Flag", document.list, 0.1);
+}
+const std::string sheet = number("Young&apos;s Modulus", "1e4") + number("Thickness", "1e-3") +
+                          number("Surface Density", "0.5");
+
+TEST(Input, Cloth) {
+  const auto message = [](const std::string& content) { return error([&] { cloth<3>(content); }); };
+  EXPECT_THAT(message(geometry("sheet", numbers("Size", "1, 0, 1")) + sheet),
+              HasSubstr("needs \"Normal\""));
+  EXPECT_THAT(message(geometry("ball", number("Radius", "1") + text("Normal", "x")) + sheet),
+              HasSubstr("has no \"Normal\""));
+  EXPECT_THAT(message(geometry("ball", number("Radius", "1")) + number("Thickness", "1e-3")),
+              HasSubstr("required"));
+  EXPECT_THAT(message(geometry("ball", number("Radius", "1")) + sheet +
+                      list("Membrane", text("Type", "springs"))),
+              HasSubstr("mass-spring"));
+  const auto made =
+      cloth<3>(geometry("sheet", numbers("Size", "1, 0, 2") + text("Normal", "y")) + sheet +
+               list("Membrane", text("Type", "mass-spring")) + number("Surface Tension", "2"));
+  EXPECT_EQ(made.elements.size(), 3u);  // springs, bending, tension
+  double mass = 0;
+  for (const double m : made.element_mass)
+    mass += m;
+  EXPECT_NEAR(mass, 1, 1e-12);
+  EXPECT_FALSE(made.closed);
+}
+
+}  // namespace
+}  // namespace lockstep

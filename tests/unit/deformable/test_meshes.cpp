@@ -1,0 +1,146 @@
+// Volume meshes: generators, surfaces, checks, Gmsh files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/errors.hpp"
+#include "deformable/mesh/gmsh_file.hpp"
+#include "deformable/mesh/volume_generators.hpp"
+#include "support.hpp"
+
+namespace lockstep {
+namespace {
+
+using ::testing::HasSubstr;
+constexpr double pi = 3.14159265358979323846;
+
+template <int dim>
+double worst_quality(const VolumeMesh<dim>& mesh) {
+  double worst = 1;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    worst = std::min(worst, element_quality(mesh, static_cast<int>(e)));
+  return worst;
+}
+
+/// The mesh passes its checks, and its surface is closed and encloses the volume of the elements.
+template <int dim>
+void expect_sound(VolumeMesh<dim> mesh, double volume, double quality) {
+  check_volume_mesh(mesh, "mesh");
+  EXPECT_NEAR(mesh_volume(mesh), volume, 1e-12 * volume);
+  EXPECT_GE(worst_quality(mesh), quality);
+  auto boundary = extract_surface(mesh, "mesh");
+  EXPECT_TRUE(is_closed(boundary.surface));
+  EXPECT_NEAR(volume_properties(boundary.surface).measure, volume, 1e-12 * volume);
+  for (std::size_t v = 0; v < boundary.vertices.size(); ++v)
+    EXPECT_EQ(boundary.surface.vertices[v], mesh.vertices[boundary.vertices[v]]);
+}
+
+TEST(VolumeMesh, OneTetrahedron) {
+  VolumeMesh<3> mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
+  EXPECT_DOUBLE_EQ(element_volume(mesh, 0), 1. / 6);
+  const auto boundary = extract_surface(mesh, "one");
+  ASSERT_EQ(boundary.surface.simplices.size(), 4u);
+  EXPECT_NEAR(volume_properties(boundary.surface).measure, 1. / 6, 1e-15);
+}
+
+TEST(VolumeMesh, RegularSimplicesHaveQualityOne) {
+  const VolumeMesh<2> triangle{{{0, 0}, {1, 0}, {0.5, std::sqrt(0.75)}}, {{0, 1, 2}}};
+  EXPECT_NEAR(element_quality(triangle, 0), 1, 1e-14);
+  const VolumeMesh<3> tetrahedron{{{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}},
+                                  {{0, 1, 2, 3}}};
+  EXPECT_NEAR(std::abs(element_quality(tetrahedron, 0)), 1, 1e-14);
+}
+
+TEST(VolumeMesh, GeneratorsFillTheirShapes) {
+  expect_sound(box_volume<2>({3, 1}, 0.25), 3, 0.8);
+  expect_sound(box_volume<3>({2, 1, 0.5}, 0.25), 1, 0.5);
+  expect_sound(ball_volume<2>(0.5, 0.1), pi / 4, 0.7);
+  expect_sound(ball_volume<3>(0.5, 0.15), pi / 6, 0.35);
+  expect_sound(cylinder_volume<2>(0.5, 2, 0.2), 2, 0.8);
+  expect_sound(torus_volume<3>(1, 0.3, 0.15), 2 * pi * pi * 0.09, 0.2);
+  auto cylinder = cylinder_volume<3>(0.5, 2, 0.2);
+  expect_sound(cylinder, pi / 2, 0.2);
+}
+
+TEST(VolumeMesh, BadElementsAreNamed) {
+  auto mesh = box_volume<2>({1, 1}, 0.5);
+  const auto sound = mesh;
+  std::swap(mesh.elements[3][0], mesh.elements[3][1]);
+  EXPECT_THAT(test::error([&] { check_volume_mesh(mesh, "plate"); }),
+              AllOf(HasSubstr("'plate'"), HasSubstr("element 3 is inverted")));
+  mesh = sound;
+  for (auto& element : mesh.elements)
+    std::swap(element[0], element[1]);
+  check_volume_mesh(mesh, "plate");  // all of them: turned around
+  EXPECT_NEAR(mesh_volume(mesh), 1, 1e-14);
+  mesh.vertices[mesh.elements[5][2]] =
+      0.5 * (mesh.vertices[mesh.elements[5][0]] + mesh.vertices[mesh.elements[5][1]]) +
+      1e-6 * (mesh.vertices[mesh.elements[5][2]] - mesh.vertices[mesh.elements[5][0]]);
+  EXPECT_THAT(test::error([&] { check_volume_mesh(mesh, "plate"); }), HasSubstr("element"));
+  mesh = sound;
+  mesh.vertices.push_back({9, 9});
+  EXPECT_THAT(test::error([&] { check_volume_mesh(mesh, "plate"); }),
+              HasSubstr("belongs to no element"));
+  mesh = sound;
+  mesh.elements[2][1] = 77;
+  EXPECT_THAT(test::error([&] { check_volume_mesh(mesh, "plate"); }),
+              HasSubstr("element 2 refers to vertex 77"));
+  mesh = sound;
+  mesh.elements.push_back(mesh.elements[0]);
+  mesh.elements.push_back(mesh.elements[0]);
+  EXPECT_THAT(test::error([&] { extract_surface(mesh, "plate"); }), HasSubstr("share one side"));
+}
+
+class GmshFile : public ::testing::Test {
+ protected:
+  std::string write(const std::string& text) {
+    path_ = ::testing::TempDir() + "mesh" + std::to_string(test::world()->getRank()) + ".msh";
+    std::ofstream(path_) << text;
+    return path_;
+  }
+  ~GmshFile() override { std::filesystem::remove(path_); }
+  std::string path_;
+};
+
+TEST_F(GmshFile, Version2) {
+  const auto mesh = read_gmsh_volume<3>(
+      write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body\"\n"
+            "$EndPhysicalNames\n$Nodes\n5\n7 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n9 5 5 5\n$EndNodes\n"
+            "$Elements\n2\n1 2 2 1 1 7 2 3\n2 4 2 1 1 7 2 3 4\n$EndElements\n"));
+  ASSERT_EQ(mesh.elements.size(), 1u);
+  ASSERT_EQ(mesh.vertices.size(), 4u);  // node 9 is used by nobody
+  EXPECT_NEAR(mesh_volume(mesh), 1. / 6, 1e-15);
+  EXPECT_EQ(read_gmsh_surface<3>(path_).simplices.size(), 1u);
+}
+
+const char* const square_of_version_4 =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 1 0\n1 0 0 0 1 1 0 0 0\n$EndEntities\n"
+    "$Nodes\n2 4 1 4\n2 1 0 2\n1\n2\n0 0 0\n1 0 0\n2 1 0 2\n3\n4\n1 1 0\n0 1 0\n$EndNodes\n"
+    "$Elements\n2 3 1 3\n1 1 1 1\n1 1 2\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
+
+TEST_F(GmshFile, Version4) {
+  const auto mesh = read_gmsh_volume<2>(write(square_of_version_4));
+  ASSERT_EQ(mesh.elements.size(), 2u);
+  EXPECT_NEAR(mesh_volume(mesh), 1, 1e-15);
+  EXPECT_EQ(read_gmsh_surface<2>(path_).simplices.size(), 1u);
+}
+
+TEST_F(GmshFile, ErrorsNameTheLine) {
+  EXPECT_THAT(test::error([&] { read_gmsh_volume<2>("no/such.msh"); }), HasSubstr("cannot open"));
+  EXPECT_THAT(
+      test::error([&] { read_gmsh_volume<2>(write("$MeshFormat\n2.2 1 8\n$EndMeshFormat\n")); }),
+      AllOf(HasSubstr("line 2"), HasSubstr("binary")));
+  EXPECT_THAT(test::error([&] { read_gmsh_volume<3>(write(square_of_version_4)); }),
+              HasSubstr("no tetrahedra"));
+  std::string broken = square_of_version_4;
+  broken.replace(broken.find("3 1 3 4"), 7, "3 1 3 8");
+  EXPECT_THAT(test::error([&] { read_gmsh_volume<2>(write(broken)); }),
+              AllOf(HasSubstr("element 3"), HasSubstr("node 8")));
+  broken.resize(broken.size() - 20);
+  EXPECT_THAT(test::error([&] { read_gmsh_volume<2>(write(broken)); }), HasSubstr("line 27"));
+}
+
+}  // namespace
+}  // namespace lockstep

@@ -1,0 +1,215 @@
+// Free motion against the maps of one mode, and the bound of the step.
+#include <Eigen/Dense>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "support.hpp"
+#include "support/dense.hpp"
+
+namespace lockstep {
+namespace {
+
+using namespace test;
+using testing::dense;
+
+/// Two triangles, held but for the x of one corner, which belongs to one of them alone.
+std::string one_mode(const std::string& integration) {
+  const auto pin = [](const std::string& name, const std::string& corner,
+                      const std::string& directions) {
+    return list(name, numbers("Lower", corner) + numbers("Upper", corner) +
+                          texts("Directions", directions));
+  };
+  return box("1, 1", "1") + material("linear", "100", "0") + number("Density", "3") +
+         text("Time Integration", integration) + number("Viscosity", "0.7") +
+         numbers("Velocity", "0.02, 0") +
+         list("Pinned", pin("a", "-0.5, -0.5", "x, y") + pin("b", "-0.5, 0.5", "x, y") +
+                            pin("c", "0.5, 0.5", "x, y") + pin("free", "0.5, -0.5", "y"));
+}
+// Its shape function has the gradient g = (1, -1): F = I + x e_x g^T. With nu = 0, energy =
+// area E/2 (strain : strain) and the viscous force is linear in the rate of Green's strain.
+const double stiffness = 0.5 * 100 * 1.5, mass = 3 * 0.5 / 3;
+double damping(double x) {
+  return 0.5 * 2 * 0.7 * 0.5 * (3 + 8 * x + 8 * x * x);
+}
+
+/// Displacement and velocity of the corner after a step of S1 (half) and S2.
+Eigen::Vector2d expected_step(const Eigen::Vector2d& state, double dt, bool elastic_implicit,
+                              bool damping_implicit) {
+  const auto velocity = [&](double x, double v, double tau) {
+    const double c = damping(x);
+    const double m =
+        mass + (damping_implicit ? tau * c : 0) + (elastic_implicit ? tau * tau * stiffness : 0);
+    return (mass * v - tau * (stiffness * x + (damping_implicit ? 0 : c * v))) / m;
+  };
+  const double x = state[0] + dt * velocity(state[0], state[1], dt / 2);
+  return {x, velocity(x, state[1], dt)};
+}
+
+TEST(TimeIntegration, StepsAreThoseOfOneMode) {
+  for (const std::string name : {"explicit", "semi-implicit", "fully-implicit"}) {
+    for (const double a : {0.1, 1.0, 30.0}) {
+      SCOPED_TRACE(name + ", omega dt = " + std::to_string(a));
+      Alone<2> alone(model<2>({one_mode(name)}));
+      const double dt = a / std::sqrt(stiffness / mass);
+      Eigen::Vector2d state(0, 0.02);
+      for (int i = 0; i < 3; ++i) {
+        alone.step(dt);
+        state = expected_step(state, dt, name == "fully-implicit", name != "explicit");
+        const double scale = std::abs(state[0]) + dt * std::abs(state[1]);
+        double right = -1e300;
+        for (const auto& vertex : alone.solids.surface().vertices)
+          right = vertex.y() < -0.4 && vertex.x() != -0.5 ? vertex.x() : right;
+        EXPECT_NEAR(right - 0.5, state[0], 1e-9 * scale);
+        const double momentum =
+            alone.solids.states()[0].mass * alone.solids.states()[0].velocity.x();
+        EXPECT_NEAR(momentum, mass * state[1], 1e-9 * mass * scale / dt);
+      }
+    }
+  }
+}
+
+/// The largest omega of M^-1 K by dense algebra.
+template <int dim>
+double largest_omega(const DeformableSolids<dim>& solids) {
+  const Eigen::MatrixXd mass_matrix = dense(solids.mass());
+  const Eigen::MatrixXd d = dense(solids.implicit_force(1)) - dense(solids.implicit_force(1e-9));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      0.5 * (-d - d.transpose().eval()), mass_matrix, Eigen::EigenvaluesOnly);
+  return std::sqrt(eigen.eigenvalues().maxCoeff());
+}
+
+TEST(TimeIntegration, StepBoundIsSafeAndNotTooSmall) {
+  const std::string start = box("1, 0.5, 0.5", "0.25") + material("neo-hookean", "100", "0.4") +
+                            number("Density", "2") + numbers("Stretch", "1.3, 0.8, 1");
+  for (const std::string mass_matrix : {"lumped", "consistent"}) {
+    const std::string content = start + text("Mass", mass_matrix);
+    const auto implicit = model<3>({content + text("Time Integration", "fully-implicit")});
+    EXPECT_EQ(implicit->largest_stable_step(), 1e300);
+    const double limit = std::sqrt(2) / largest_omega(*implicit);
+    const double bound = model<3>({content})->largest_stable_step();
+    EXPECT_LE(bound, 0.9 * limit * (1 + 1e-6));
+    EXPECT_GE(bound, 0.3 * limit);
+  }
+}
+
+double energy(const DeformableSolids<2>& solids) {
+  return solids.states()[0].kinetic_energy + solids.states()[0].elastic_energy;
+}
+
+TEST(TimeIntegration, ExplicitStepsAreStableUpToTheBound) {
+  Alone<2> alone(model<2>({box("1, 0.5", "0.125") + material("corotated") + number("Density", "1") +
+                           numbers("Stretch", "1.1, 1") + text("Time Integration", "explicit")}));
+  const double before = energy(alone.solids);
+  for (int i = 0; i < 100; ++i)
+    alone.step(std::min(0.05, alone.solids.largest_stable_step()));
+  EXPECT_LE(energy(alone.solids), before);
+  EXPECT_GE(energy(alone.solids), 0.01 * before);
+}
+
+/// Moderate strains at any step; large ones with damping of the step's size, since an undamped S1
+/// overshoots rest by as much as the body is strained.
+TEST(TimeIntegration, FullyImplicitStepsAreStableAtAnyStep) {
+  for (const double dt : {0.001, 0.03, 1.0, 100.0}) {
+    for (const bool damped : {false, true}) {
+      Alone<2> alone(model<2>({box("1, 0.25", "0.125") + material("neo-hookean", "1000") +
+                               number("Density", "1") +
+                               numbers("Stretch", damped ? "1.4, 0.9" : "1.02, 0.99") +
+                               number("Stiffness Damping", damped ? std::to_string(dt / 2) : "0") +
+                               text("Time Integration", "fully-implicit")}));
+      const double before = energy(alone.solids);
+      for (int i = 0; i < 10; ++i) {
+        alone.step(dt);
+        EXPECT_LE(energy(alone.solids), 1.2 * before) << dt << " " << damped;
+      }
+      EXPECT_LE(alone.solids.states()[0].center_of_mass.norm(), 1e-6) << dt;
+    }
+  }
+}
+
+TEST(TimeIntegration, InvertedBodyRecovers) {
+  for (const char* law : {"corotated", "neo-hookean"}) {
+    Alone<2> alone(model<2>({box("1, 1", "0.5") + material(law) + number("Density", "1") +
+                             numbers("Stretch", "0.05, 1.1") + number("Stiffness Damping", "0.3") +
+                             text("Time Integration", "fully-implicit")}));
+    for (int i = 0; i < 40; ++i)
+      alone.step(0.1);
+    const auto state = alone.solids.states()[0];
+    EXPECT_NEAR(state.volume, 1, 1e-3) << law;
+    EXPECT_LE(state.elastic_energy, 1e-3) << law;
+  }
+}
+
+/// A turning, ringing, damped body keeps its linear momentum to round-off.
+TEST(TimeIntegration, FreeBodiesKeepTheirMomentum) {
+  for (const std::string name : {"explicit", "semi-implicit", "fully-implicit"}) {
+    Alone<3> alone(
+        model<3>({box("1, 0.5, 0.5", "0.25") + material("corotated") + number("Density", "2") +
+                  numbers("Stretch", "1.2, 0.9, 1") + numbers("Velocity", "1, -2, 0.5") +
+                  numbers("Angular Velocity", "1, 2, 3") + number("Viscosity", "0.1") +
+                  text("Time Integration", name)}));
+    const auto momentum = [&] {
+      const auto q = make_vector(alone.solids.dof_map());
+      apply(*alone.solids.mass(), *alone.solids.velocity(), *q);
+      return alone.solids.momentum_of_each(*q)[0];
+    };
+    const Momentum<3> before = momentum();
+    for (int i = 0; i < 20; ++i)
+      alone.step(0.003);
+    const Momentum<3> after = momentum();
+    EXPECT_LE((after.linear - before.linear).norm(), 1e-13) << name;
+    // Not conserved by the step, but to first order in dt.
+    EXPECT_LE((after.angular - before.angular).norm(), 0.02 * before.angular.norm()) << name;
+  }
+}
+
+/// A hanging chain, benchmark A13: a catenary of length 1.2 between posts at distance 1.
+TEST(TimeIntegration, HangingChain) {
+  Document document = read_xml_string(
+      "<ParameterList>" +
+          geometry("sheet", numbers("Size", "1, 0") + text("Normal", "y") +
+                                number("Mesh Spacing", "0.025")) +
+          number("Young&apos;s Modulus", "1e6") + number("Thickness", "0.01") +
+          number("Surface Density", "1") + number("Pre-Strain", "-0.166666666666667") +
+          number("Stiffness Damping", "0.01") + text("Bending", "none") +
+          text("Time Integration", "fully-implicit") +
+          list("Pinned",
+               list("left", numbers("Lower", "-0.5, 0") + numbers("Upper", "-0.5, 0")) +
+                   list("right", numbers("Lower", "0.5, 0") + numbers("Upper", "0.5, 0"))) +
+          "</ParameterList>",
+      "scene.xml");
+  validate(document, cloth_parameters<2>());
+  std::vector<DeformableBody<2>> bodies;
+  bodies.push_back(read_cloth<2>("chain", document.list, 0.1));
+  Alone<2> alone(
+      std::make_unique<DeformableSolids<2>>("cloth", std::move(bodies), Point<2>(0, -10), world()));
+  for (int i = 0; i < 400; ++i)
+    alone.step(0.02);
+  // 2 a sinh(1/(2 a)) = 1.2 gives a = 0.46954; the sag is a (cosh(1/(2 a)) - 1).
+  const double a = 0.46954;
+  double lowest = 0;
+  for (const auto& x : alone.solids.surface().vertices)
+    lowest = std::min(lowest, x.y());
+  EXPECT_NEAR(-lowest, a * (std::cosh(0.5 / a) - 1), 0.003);
+}
+
+TEST(TimeIntegration, RanksAgree) {
+  Alone<3> alone(model<3>({box("1, 0.25, 0.25", "0.125") + material("corotated", "1000") +
+                           number("Density", "1") + text("Time Integration", "fully-implicit") +
+                           pinned("-0.5, -1, -1", "-0.5, 1, 1", "x, y, z")},
+                          {0, -10, 0}));
+  for (int i = 0; i < 5; ++i)
+    alone.step(0.02);
+  const auto state = alone.solids.states()[0];
+  // The figures of one rank.
+  EXPECT_NEAR(state.center_of_mass.y(), -0.026845356198630, 1e-12);
+  double tip = 0;
+  for (const auto& x : alone.solids.surface().vertices)
+    tip = std::min(tip, x.y());
+  EXPECT_EQ(min_all(world(), tip), max_all(world(), tip));
+  const auto locked = alone.solids.locked_dofs();
+  EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(locked.size())), 27);
+}
+
+}  // namespace
+}  // namespace lockstep
