@@ -130,6 +130,7 @@ AxisForce force_of(const SolidSystem<dim>& solids, const SurfaceSnapshot<dim>& s
 template <int dim>
 std::vector<AxisForce> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
                                         const std::vector<FaceShares<dim>>& shares,
+                                        const std::vector<double>& lumped_masses,
                                         const SolidSystem<dim>& solids,
                                         const SurfaceSnapshot<dim>& surface, double density) {
   const auto& descriptions = surface.solids();
@@ -143,10 +144,18 @@ std::vector<AxisForce> displaced_excess(const std::vector<ControlVolume<dim>>& v
       bodies[s] = volume_properties<dim>(surface_of<dim>(surface, descriptions[s]));
 
   std::vector<DisplacedOfSolid<dim>> displaced(n_solids);
-  for (std::size_t f = 0; f < volumes.size(); ++f)
+  for (std::size_t f = 0; f < volumes.size(); ++f) {
+    const int a = volumes[f].direction;
     for (const FluxShare<dim>& share : shares[f].all)
-      add_face<dim>(volumes[f], share, bodies[share.solid].centroid,
-                    displaced[share.solid][volumes[f].direction]);
+      add_face<dim>(volumes[f], share, bodies[share.solid].centroid, displaced[share.solid][a]);
+    for (const SurfaceShare<dim>& share : shares[f].of_thin) {
+      const double volume = share.weight * lumped_masses[f] / density;
+      Point<dim> arm = volumes[f].center - bodies[share.solid].centroid;
+      arm[a] = 0;
+      displaced[share.solid][a].volume -= volume;
+      displaced[share.solid][a].moment -= volume * arm;
+    }
+  }
   sum_over_ranks<dim>(displaced, solids.comm());
 
   std::vector<AxisForce> forces;
@@ -163,10 +172,12 @@ std::vector<AxisForce> displaced_excess(const std::vector<ControlVolume<dim>>& v
 
 template std::vector<AxisForce> displaced_excess<2>(const std::vector<ControlVolume<2>>&,
                                                     const std::vector<FaceShares<2>>&,
+                                                    const std::vector<double>&,
                                                     const SolidSystem<2>&,
                                                     const SurfaceSnapshot<2>&, double);
 template std::vector<AxisForce> displaced_excess<3>(const std::vector<ControlVolume<3>>&,
                                                     const std::vector<FaceShares<3>>&,
+                                                    const std::vector<double>&,
                                                     const SolidSystem<3>&,
                                                     const SurfaceSnapshot<3>&, double);
 

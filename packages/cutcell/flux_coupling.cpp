@@ -37,10 +37,6 @@ void add_rows(const CouplingWeights& weights, const Import& import, const Vector
       result[f] += weights.values[k] * values[weights.columns[k]];
 }
 
-bool is_dynamic_shell(const SolidDescription& solid) {
-  return !solid.closed && !solid.prescribed;
-}
-
 }  // namespace
 
 template <int dim>
@@ -65,12 +61,12 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   shares_.clear();
   masses_.assign(n, 0);
   prescribed_velocity_.assign(n, 0);
-  prescribed_shell_velocity_.assign(n, 0);
+  prescribed_thin_velocity_.assign(n, 0);
   std::vector<GlobalIndex> unknowns;
   for (std::size_t f = 0; f < n; ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
     shares_.push_back(face_shares<dim>(volume, surface));
-    masses_[f] = volume.density * volume.box.volume() * shares_[f].shell_part;
+    masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
     for (const auto& side : volume.sides)
       if (side.unknown != no_index)
         unknowns.push_back(side.unknown);
@@ -87,7 +83,7 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
     density = max_all(solids.comm(), density);
     if (density == 0)
       density = fluid.density(surface.bounds_of_solid(0).center());
-    excess_ = displaced_excess<dim>(volumes_, shares_, solids, surface, density);
+    excess_ = displaced_excess<dim>(volumes_, shares_, masses_, solids, surface, density);
   }
   assemble_blocks(solids);
 }
@@ -116,15 +112,16 @@ void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
   coupling_transposed_ =
       assemble_triplets(std::move(coupling), solids.map(), pressure_import_->getSourceMap());
 
-  std::vector<std::vector<SurfaceShare<dim>>> shells;
+  std::vector<std::vector<SurfaceShare<dim>>> thin;
   for (const FaceShares<dim>& shares : shares_)
-    shells.push_back(shares.of_shells);
-  shell_weights_ = coupling_weights<dim>(volumes_, shells, solids);
-  shell_solid_import_ = import_of(shell_weights_.dofs, solids.map());
-  if (std::any_of(solids.solids().begin(), solids.solids().end(), is_dynamic_shell))
+    thin.push_back(shares.of_thin);
+  thin_weights_ = coupling_weights<dim>(volumes_, thin, solids);
+  thin_solid_import_ = import_of(thin_weights_.dofs, solids.map());
+  const bool lumps = std::any_of(masses_.begin(), masses_.end(), [](double m) { return m > 0; });
+  if (max_all(solids.comm(), lumps ? 1. : 0.) > 0)
     added_mass_ = assemble_triplets(
-        added_mass_triplets<dim>(volumes_, shells, solids, masses_, Lumping::diagonal),
-        solids.map(), solids.map());
+        added_mass_triplets<dim>(volumes_, thin, solids, masses_, Lumping::diagonal), solids.map(),
+        solids.map());
 }
 
 template <int dim>
@@ -145,13 +142,13 @@ void FluxCoupling<dim>::set_prescribed_motion(const SolidSystem<dim>& solids, Mo
                   ? solids.prescribed_velocity(point, x)
                   : solids.effective_velocity(point, x))[volumes_[f].direction];
     };
-    prescribed_velocity_[f] = prescribed_shell_velocity_[f] = 0;
+    prescribed_velocity_[f] = prescribed_thin_velocity_[f] = 0;
     for (const FluxShare<dim>& share : shares_[f].all)
       if (solids.solids()[share.solid].prescribed)
         prescribed_velocity_[f] += share.weight * velocity(share.point, share.center);
-    for (const SurfaceShare<dim>& share : shares_[f].of_shells)
+    for (const SurfaceShare<dim>& share : shares_[f].of_thin)
       if (solids.solids()[share.solid].prescribed)
-        prescribed_shell_velocity_[f] += share.weight * velocity(share.point, volumes_[f].center);
+        prescribed_thin_velocity_[f] += share.weight * velocity(share.point, volumes_[f].center);
   }
 }
 
@@ -177,28 +174,29 @@ void FluxCoupling<dim>::add_lumped_momentum(const std::vector<double>& coupled_v
                                             Vector& rhs) const {
   if (added_mass_.is_null())
     return;
-  Vector overlap(shell_solid_import_->getTargetMap());
+  Vector overlap(thin_solid_import_->getTargetMap());
   {
     const auto values = overlap.getDataNonConst();
-    for (int f = 0; f < shell_weights_.n_rows(); ++f)
-      for (int k = shell_weights_.row_begin[f]; k < shell_weights_.row_begin[f + 1]; ++k)
-        values[shell_weights_.columns[k]] +=
-            shell_weights_.values[k] * masses_[f] * coupled_velocity[f];
+    for (int f = 0; f < thin_weights_.n_rows(); ++f)
+      for (int k = thin_weights_.row_begin[f]; k < thin_weights_.row_begin[f + 1]; ++k)
+        values[thin_weights_.columns[k]] +=
+            thin_weights_.values[k] * masses_[f] * coupled_velocity[f];
   }
-  add_overlap(overlap, *shell_solid_import_, rhs);
+  add_overlap(overlap, *thin_solid_import_, rhs);
 }
 
-/// Fluid lumped on shells moves with them alone, so that its momentum is what the solve balanced.
+/// Fluid lumped on thin parts moves with them alone, so that its momentum is what the solve
+/// balanced.
 template <int dim>
 std::vector<double> FluxCoupling<dim>::velocity(const Vector& solid_velocity) const {
-  std::vector<double> result = prescribed_velocity_, of_shells = prescribed_shell_velocity_;
+  std::vector<double> result = prescribed_velocity_, of_thin = prescribed_thin_velocity_;
   if (!coupling_transposed_.is_null()) {
     add_rows(weights_, *solid_import_, solid_velocity, result);
-    add_rows(shell_weights_, *shell_solid_import_, solid_velocity, of_shells);
+    add_rows(thin_weights_, *thin_solid_import_, solid_velocity, of_thin);
   }
   for (std::size_t f = 0; f < volumes_.size(); ++f)
-    if (!shares_[f].of_shells.empty())
-      result[f] = of_shells[f];
+    if (!shares_[f].of_thin.empty())
+      result[f] = of_thin[f];
   return result;
 }
 
@@ -230,11 +228,11 @@ Momentum<dim> FluxCoupling<dim>::prescribed_impulse(const std::vector<double>& v
     for (const FluxShare<dim>& share : shares_[f].all)
       if (surface_->solids()[share.solid].prescribed)
         impulse.add(share.center, volume.direction, share.weight * push_of_fluid);
-    double shell_share = 0;
-    for (const SurfaceShare<dim>& share : shares_[f].of_shells)
-      shell_share += surface_->solids()[share.solid].prescribed ? share.weight : 0;
+    double thin_share = 0;
+    for (const SurfaceShare<dim>& share : shares_[f].of_thin)
+      thin_share += surface_->solids()[share.solid].prescribed ? share.weight : 0;
     impulse.add(volume.center, volume.direction,
-                masses_[f] * (prescribed_shell_velocity_[f] - shell_share * velocity_before[f]));
+                masses_[f] * (prescribed_thin_velocity_[f] - thin_share * velocity_before[f]));
   }
   return sum_over_ranks<dim>(impulse, pressure_import_->getSourceMap()->getComm());
 }

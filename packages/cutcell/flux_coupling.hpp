@@ -18,8 +18,8 @@ struct FluxOptions {
 /// Coupling by the flux of the surface through cut cells (face fractions of Ng, Min and Gibou
 /// 2009): faces keep the open part of their area and of their fluid's mass, the closed part moves
 /// with the solid. B_cj is what dof j pushes out of cell c. Closed solids lump no fluid, so that
-/// C = M_S - dt D; only the normal velocity is tied. Thin shells close their faces and lump the
-/// fluid as mixed faces do.
+/// C = M_S - dt D; only the normal velocity is tied. Thin shells, and parts of closed solids
+/// thinner than a cell, close their faces and lump the fluid as mixed faces do.
 template <int dim>
 class FluxCoupling : public Coupling<dim> {
  public:
@@ -35,7 +35,7 @@ class FluxCoupling : public Coupling<dim> {
   void assemble(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
                 const SurfaceSnapshot<dim>& surface) override;
   RCP<const CrsMatrix> coupling_transposed() const override { return coupling_transposed_; }
-  /// Of shells only; null without any.
+  /// Of thin parts only; null without any.
   RCP<const CrsMatrix> added_mass() const override { return added_mass_; }
 
   using Motion = typename Coupling<dim>::Motion;
@@ -46,7 +46,7 @@ class FluxCoupling : public Coupling<dim> {
   std::vector<double> effective_velocity(const SolidSystem<dim>& solids) const override;
   void add_divergence(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
 
-  /// Zero but at shells.
+  /// Zero but at thin parts.
   const std::vector<double>& fluid_mass() const override { return masses_; }
   Momentum<dim> prescribed_impulse(const std::vector<double>& velocity_before,
                                    const std::vector<double>& velocity_after,
@@ -70,15 +70,15 @@ class FluxCoupling : public Coupling<dim> {
   const SurfaceSnapshot<dim>* surface_ = nullptr;  ///< of the last `assemble`
   std::vector<ControlVolume<dim>> volumes_;
   std::vector<FaceShares<dim>> shares_;
-  CouplingWeights weights_;        ///< of all shares
-  CouplingWeights shell_weights_;  ///< of shells
+  CouplingWeights weights_;       ///< of all shares
+  CouplingWeights thin_weights_;  ///< of thin parts
   std::vector<double> masses_;
-  std::vector<double> prescribed_velocity_;        ///< of all prescribed shares, by weight
-  std::vector<double> prescribed_shell_velocity_;  ///< of the prescribed ones of shells
+  std::vector<double> prescribed_velocity_;       ///< of all prescribed shares, by weight
+  std::vector<double> prescribed_thin_velocity_;  ///< of the prescribed ones of thin parts
   RCP<const CrsMatrix> coupling_transposed_, added_mass_;
-  RCP<Import> solid_import_;        ///< solid map -> `weights_.dofs`
-  RCP<Import> shell_solid_import_;  ///< solid map -> `shell_weights_.dofs`
-  RCP<Import> pressure_import_;     ///< pressure map -> unknowns beside this rank's volumes
+  RCP<Import> solid_import_;       ///< solid map -> `weights_.dofs`
+  RCP<Import> thin_solid_import_;  ///< solid map -> `thin_weights_.dofs`
+  RCP<Import> pressure_import_;    ///< pressure map -> unknowns beside this rank's volumes
   std::vector<AxisForce> excess_;
 };
 

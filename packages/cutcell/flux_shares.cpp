@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/errors.hpp"
 #include "geometry/line_crossing.hpp"
@@ -55,14 +56,33 @@ void center_on_face(const ControlVolume<dim>& volume, std::vector<FluxShare<dim>
     share.center += shift;
 }
 
-/// The shells' shares of a face that they block.
+/// True if the pressure points see the same place in the open part of the face: what lies between
+/// them is the tip of a body, around which the fluid flows.
 template <int dim>
-std::vector<SurfaceShare<dim>> shell_shares(const ControlVolume<dim>& volume,
-                                            const SurfaceSnapshot<dim>& surface) {
+bool leads_around(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
+  Point<dim> moment = Point<dim>::Zero();
+  double open = volume.area;
+  for (const auto& part : closed_parts<dim>(surface, face_of<dim>(volume), volume.direction)) {
+    moment += part.area * (part.center - volume.center);
+    open -= part.area;
+  }
+  if (open <= 0)
+    return false;
+  const Point<dim> place = volume.center - moment / open;
+  return !surface.first_hit(volume.sides[0].center, place) &&
+         !surface.first_hit(place, volume.sides[1].center);
+}
+
+/// The shares of thin parts in a face that they block.
+template <int dim>
+std::vector<SurfaceShare<dim>> thin_shares(const ControlVolume<dim>& volume,
+                                           const SurfaceSnapshot<dim>& surface,
+                                           const std::vector<int>& solids) {
   std::vector<SurfaceShare<dim>> shares = surface_shares<dim>({volume}, surface).front();
-  shares.erase(std::remove_if(shares.begin(), shares.end(),
-                              [&](const auto& s) { return surface.solids()[s.solid].closed; }),
-               shares.end());
+  const auto is_other = [&](const SurfaceShare<dim>& share) {
+    return !std::binary_search(solids.begin(), solids.end(), share.solid);
+  };
+  shares.erase(std::remove_if(shares.begin(), shares.end(), is_other), shares.end());
   double total = 0;
   for (const SurfaceShare<dim>& share : shares)
     total += share.weight;
@@ -83,18 +103,25 @@ Box<dim> face_of(const ControlVolume<dim>& volume) {
 
 // The same half-open decision as for the crossings of the lattice of cell centres.
 template <int dim>
-bool blocked_by_shell(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
+std::vector<int> thin_between(const ControlVolume<dim>& volume,
+                              const SurfaceSnapshot<dim>& surface) {
   const int axis = volume.direction;
-  const double lower = volume.sides[0].center[axis], upper = volume.sides[1].center[axis];
-  const Box<dim> segment(volume.sides[0].center, volume.sides[1].center);
+  const Point<dim> from = volume.sides[0].center, to = volume.sides[1].center;
   std::vector<int> found;
-  surface.touching(segment, found);
+  surface.touching(Box<dim>(from, to), found);
+  std::map<int, int> n_crossings;  // by solid
   Crossing<dim> crossing;
-  return std::any_of(found.begin(), found.end(), [&](int s) {
-    return !surface.solids()[surface.solid_of(s)].closed &&
-           cross_line<dim>(surface.corners(s), axis, volume.sides[0].center, crossing) &&
-           crossing.coordinate > lower && crossing.coordinate <= upper;
-  });
+  for (const int s : found)
+    if (cross_line<dim>(surface.corners(s), axis, from, crossing) &&
+        crossing.coordinate > from[axis] && crossing.coordinate <= to[axis])
+      ++n_crossings[surface.solid_of(s)];
+  std::vector<int> thin;
+  for (const auto& [solid, n] : n_crossings) {
+    const bool is_shell = !surface.solids()[solid].closed;
+    if (is_shell || (n % 2 == 0 && !leads_around(volume, surface)))
+      thin.push_back(solid);
+  }
+  return thin;
 }
 
 template <int dim>
@@ -108,7 +135,7 @@ double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<
   // of the stencils, rows of A must add up to zero.
   constexpr double steps = 1 << 20;
   const double open = std::round(steps * std::max(0., 1 - closed)) / steps;
-  if (open < smallest || blocked_by_shell<dim>(volume, surface))
+  if (open < smallest || !thin_between<dim>(volume, surface).empty())
     return 0;
   return open;
 }
@@ -126,16 +153,18 @@ template <int dim>
 FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
   const auto parts = closed_parts<dim>(surface, face_of<dim>(volume), volume.direction);
   const bool is_closed = volume.open_fraction == 0;
-  const bool has_shell = is_closed && blocked_by_shell<dim>(volume, surface);
+  std::vector<int> thin;
+  if (is_closed)
+    thin = thin_between<dim>(volume, surface);
   double closed = 0;
   for (const ClosedPart<dim>& part : parts)
     closed += part.area / volume.area;
   FaceShares<dim> result;
-  if (has_shell) {
-    result.of_shells = shell_shares<dim>(volume, surface);
-    result.shell_part = std::max(0., 1 - closed);
+  if (!thin.empty()) {
+    result.of_thin = thin_shares<dim>(volume, surface, thin);
+    result.thin_part = std::max(0., 1 - closed);
   }
-  const double total = has_shell ? std::max(closed, 1.) : closed;
+  const double total = thin.empty() ? closed : std::max(closed, 1.);
   LOCKSTEP_ASSERT(total > 0);
   for (const ClosedPart<dim>& part : parts) {
     const double weight = part.area / volume.area / total;
@@ -147,16 +176,16 @@ FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnaps
   }
   if (is_closed)
     center_on_face<dim>(volume, result.all);
-  for (const SurfaceShare<dim>& share : result.of_shells)
+  for (const SurfaceShare<dim>& share : result.of_thin)
     result.all.push_back(
-        {result.shell_part * share.weight, share.point, share.solid, volume.center});
+        {result.thin_part * share.weight, share.point, share.solid, volume.center});
   return result;
 }
 
 template Box<2> face_of<2>(const ControlVolume<2>&);
 template Box<3> face_of<3>(const ControlVolume<3>&);
-template bool blocked_by_shell<2>(const ControlVolume<2>&, const SurfaceSnapshot<2>&);
-template bool blocked_by_shell<3>(const ControlVolume<3>&, const SurfaceSnapshot<3>&);
+template std::vector<int> thin_between<2>(const ControlVolume<2>&, const SurfaceSnapshot<2>&);
+template std::vector<int> thin_between<3>(const ControlVolume<3>&, const SurfaceSnapshot<3>&);
 template double open_fraction_of<2>(const ControlVolume<2>&, const SurfaceSnapshot<2>&, double);
 template double open_fraction_of<3>(const ControlVolume<3>&, const SurfaceSnapshot<3>&, double);
 template Point<2> open_center_of<2>(const ControlVolume<2>&, const std::vector<FluxShare<2>>&);

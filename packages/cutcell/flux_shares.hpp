@@ -23,12 +23,16 @@ struct FluxShare {
 template <int dim>
 Box<dim> face_of(const ControlVolume<dim>& volume);
 
-/// True if a thin shell lies between the two pressure points.
+/// The solids of which a thin part lies between the two pressure points, in ascending order:
+/// shells, and closed solids that the segment enters and leaves again, unless both points see the
+/// same open place of the face (a tip). No face fraction sees those: they would leak. Faces that
+/// they block are mixed faces.
 template <int dim>
-bool blocked_by_shell(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface);
+std::vector<int> thin_between(const ControlVolume<dim>& volume,
+                              const SurfaceSnapshot<dim>& surface);
 
 /// Open part of a face: one minus the parts inside closed solids, rounded to a millionth, and
-/// closed altogether below `smallest`. A shell between the pressure points
+/// closed altogether below `smallest`. A thin part between the pressure points
 /// closes it as well. Local.
 template <int dim>
 double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
@@ -43,9 +47,10 @@ Point<dim> open_center_of(const ControlVolume<dim>& volume,
 /// What the coupling knows of one face with open_fraction < 1.
 template <int dim>
 struct FaceShares {
-  std::vector<FluxShare<dim>> all;           ///< of the closed part; weights sum to one
-  std::vector<SurfaceShare<dim>> of_shells;  ///< shells only, as in the mixed-face coupling
-  double shell_part = 0;  ///< of the face: its fluid moves with the shells and is lumped on them
+  std::vector<FluxShare<dim>> all;  ///< of the closed part; weights sum to one
+  /// Of thin parts between the pressure points, as in the mixed-face coupling.
+  std::vector<SurfaceShare<dim>> of_thin;
+  double thin_part = 0;  ///< of the face: its fluid moves with the thin parts and is lumped on them
 };
 template <int dim>
 FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface);

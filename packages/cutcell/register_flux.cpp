@@ -30,7 +30,7 @@ template <int dim>
 void register_flux(Registry<Coupling<dim>>& couplings) {
   couplings.add("flux",
                 "Second-order coupling of closed bodies by the flux through cut cells: faces keep "
-                "their open part; shells move whole faces, as with 'mixed face'.",
+                "their open part; shells and thin parts move whole faces, as with 'mixed face'.",
                 valid_parameters, [](const ParameterList& list) {
                   return std::make_unique<FluxCoupling<dim>>(options_from(list));
                 });

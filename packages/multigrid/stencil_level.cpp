@@ -69,7 +69,7 @@ void NaturalStencil::complete(const LayoutLevel& level) {
 
 template <int dim>
 StencilLevel<dim>::StencilLevel(const LayoutLevel& level)
-    : grid_(level.grid), rows_touch_(grid_.margin == 0 && grid_.row_stride * 2 == grid_.n[0]) {
+    : grid_(level.grid), rows_touch_(grid_.margin == 0 && grid_.row_stride * 2 <= grid_.n[0] + 1) {
   for (int colour = 0; colour < 2; ++colour) {
     diagonal_[colour] = AlignedArray<float>(grid_.n_slots);
     inverse_[colour] = AlignedArray<float>(grid_.n_slots);

@@ -267,6 +267,22 @@ TEST(Flux, KeepsPocketsBetweenShells) {
   EXPECT_FALSE(c.coupling.added_mass().is_null());
 }
 
+// A closed plate of a third of a cell, between the planes of the faces, is no open door.
+TEST(Flux, PartsThinnerThanACellDoNotLeak) {
+  FakeBody<2> plate;
+  plate.surface = box_surface<2>({0.03, 1.2}, 0.1);
+  for (auto& x : plate.surface.vertices)
+    x += Point<2>(0.525, 0.5);
+  plate.center = {0.525, 0.5};
+  const FluxCase<2> c(10, {plate});
+  EXPECT_EQ(c.fluid->regions().n_regions, 2);
+  double pushed = 0;  // per unit of velocity, on one side
+  const Eigen::VectorXd push = c.pushed().col(0);
+  for (Eigen::Index row = 0; row < push.size(); ++row)
+    pushed += std::max(0., push[row]);
+  EXPECT_NEAR(pushed, 1, 1e-14);
+}
+
 // The fluid slips along a body at rest: faces with their centre inside the body, but open beside
 // it, carry on the velocity of the fluid they see.
 TEST(Flux, PartlyOpenFacesKeepTheVelocityOfTheirFluid) {

@@ -135,6 +135,7 @@ TEST(Multigrid, TheLayoutHasTheSameOperator3D) {
 }
 TEST(Multigrid, RowsThatFillTheirStorage) {
   expect_matvec_beside_a_plate<3>(32);
+  expect_matvec_beside_a_plate<2>(31);  // one of the colours fills it
 }
 
 TEST(Multigrid, ACellWithoutFacesFarFromAllOthersInItsRow) {
