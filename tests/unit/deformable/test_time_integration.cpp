@@ -173,6 +173,33 @@ TEST(TimeIntegration, FreeBodiesKeepTheirMomentum) {
   }
 }
 
+/// A block on tethers: every node is an oscillator of the same frequency, and the anchors hold it.
+TEST(TimeIntegration, TetheredBlock) {
+  Alone<3> alone(
+      model<3>({box("1, 0.5, 0.5", "0.25") + material("corotated") + number("Density", "4") +
+                text("Time Integration", "fully-implicit") +
+                list("Tethers",
+                     list("all", numbers("Lower", "-1, -1, -1") + numbers("Upper", "1, 1, 1") +
+                                     number("Stiffness", "9") + numbers("Offset", "0, 0.1, 0")))}));
+  const double dt = 0.3, a = 3 * dt, b = 1 + a * a / 4;  // omega = sqrt(9 / 1)
+  Eigen::Vector2d state(-0.1, 0);
+  for (int i = 0; i < 3; ++i) {
+    alone.step(dt);
+    const double x = (1 - a * a / (2 * b)) * state[0] + dt / b * state[1];
+    state = {x, (state[1] - dt * 9 * x) / (1 + a * a)};
+    const auto solid = alone.solids.states()[0];
+    EXPECT_NEAR(solid.center_of_mass.y(), 0.1 + state[0], 1e-12);
+    EXPECT_NEAR(solid.velocity.y(), state[1], 1e-11);
+    EXPECT_NEAR(solid.mass, 1, 1e-14);
+  }
+  EXPECT_LT(model<3>({box("1, 1, 1", "0.5") + material("corotated") + number("Density", "4") +
+                      list("Tethers", list("all", numbers("Lower", "-1, -1, -1") +
+                                                      numbers("Upper", "1, 1, 1") +
+                                                      number("Stiffness", "9")))})
+                ->largest_stable_step(),
+            1);
+}
+
 /// A hanging chain, benchmark A13: a catenary of length 1.2 between posts at distance 1.
 TEST(TimeIntegration, HangingChain) {
   if (world()->getSize() > 1)
