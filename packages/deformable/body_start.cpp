@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
+#include "deformable/elements/shell_elements.hpp"
 #include "deformable/list_values.hpp"
 #include "deformable/node_region.hpp"
 
@@ -82,6 +83,23 @@ TimeIntegration read_integration(const ParameterList& list) {
   return name == "semi-implicit" ? TimeIntegration::semi_implicit : TimeIntegration::fully_implicit;
 }
 
+/// Anchors are locked nodes of their own, without mass and off the surface.
+template <int dim>
+void add_tethers(const std::vector<Tether<dim>>& tethers, DeformableBody<dim>& body) {
+  std::vector<Spring> all;
+  for (const Tether<dim>& tether : tethers) {
+    all.push_back({{tether.node, body.n_nodes()}, tether.stiffness, 0});
+    body.position.push_back(body.position[tether.node] + tether.offset);
+    body.velocity.push_back(Point<dim>::Zero());
+    body.force.push_back(Point<dim>::Zero());
+    std::array<bool, dim> locked;
+    locked.fill(true);
+    body.locked.push_back(locked);
+  }
+  if (!all.empty())
+    body.elements.push_back(springs<dim>(all, 0));
+}
+
 }  // namespace
 
 template <int dim>
@@ -119,6 +137,7 @@ void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& r
   place<dim>(list, rest, body);
   body.locked = read_pinned<dim>(list, rest, body.name);
   body.force = read_loads<dim>(list, rest, node_mass, body.name);
+  add_tethers(read_tethers<dim>(list, rest, node_mass, body.name), body);
 }
 
 template void declare_body_start<2>(ParameterList&);

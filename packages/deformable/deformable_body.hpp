@@ -31,7 +31,8 @@ struct DeformableBody {
   std::vector<std::array<bool, dim>> locked;  ///< per node and axis: held where it is
   std::vector<Point<dim>> force;              ///< constant load on each node [N]
   std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
-  ElementCorners mass_elements;      ///< simplices of even mass
+  /// Simplices of even mass. Nodes of none (the anchors of tethers) must be locked.
+  ElementCorners mass_elements;
   std::vector<double> element_mass;  ///< [kg], of each of them
 
   int n_nodes() const { return static_cast<int>(position.size()); }

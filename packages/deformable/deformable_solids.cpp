@@ -181,7 +181,7 @@ void DeformableSolids<dim>::update_largest_stable_step() {
   double largest = 0;  // 1/dt
   for (int i = 0; i < space_.n_owned(); ++i) {
     const Body& body = bodies_[body_of_node_[i]];
-    if (body.integration == TimeIntegration::fully_implicit)
+    if (body.integration == TimeIntegration::fully_implicit || node_mass_[i] == 0)
       continue;
     const double least_mass = node_mass_[i] / (body.consistent_mass ? dim + 2 : 1);
     Point<dim> elastic = Point<dim>::Zero(), viscous = Point<dim>::Zero();

@@ -59,7 +59,7 @@ std::vector<int> nodes_in_region(const ParameterList& list, const std::vector<Po
 
 template <int dim>
 void declare_constraints_and_loads(ParameterList& body) {
-  ParameterList pinned("pinned"), load("load");
+  ParameterList pinned("pinned"), load("load"), tether("tether");
   declare_node_region<dim>(pinned);
   const auto names = axes<dim>();
   declare(pinned, "Directions", ParameterArray<std::string>(names),
@@ -72,6 +72,15 @@ void declare_constraints_and_loads(ParameterList& body) {
       "Constant force in all, spread over the nodes in proportion to their masses [N] (2D: per "
       "unit depth).");
   declare_named_sublists(body, "Loads", "Forces on nodes, besides gravity.", load);
+  declare_node_region<dim>(tether);
+  declare_required_positive(tether, "Stiffness",
+                            "Of all the springs together, spread over the nodes in proportion to "
+                            "their masses [N/m] (2D: per unit depth).");
+  declare_vector(tether, "Offset", ParameterArray<double>(dim, 0.0), dim,
+                 "Of each anchor from where its node starts [m].");
+  declare_named_sublists(body, "Tethers",
+                         "Nodes tied to fixed points of space by springs without rest length.",
+                         tether);
 }
 
 template <int dim>
@@ -108,6 +117,27 @@ std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<
   return force;
 }
 
+template <int dim>
+std::vector<Tether<dim>> read_tethers(const ParameterList& body,
+                                      const std::vector<Point<dim>>& nodes,
+                                      const std::vector<double>& node_mass,
+                                      const std::string& name) {
+  std::vector<Tether<dim>> tethers;
+  const ParameterList& all = body.sublist("Tethers");
+  for (auto entry = all.begin(); entry != all.end(); ++entry) {
+    const ParameterList& list = all.sublist(all.name(entry));
+    const auto found = nodes_in_region<dim>(list, nodes, name + "/Tethers/" + all.name(entry));
+    double mass = 0;
+    for (const int n : found)
+      mass += node_mass[n];
+    for (const int n : found) {
+      tethers.push_back({n, vector_value<dim>(list, "Offset"),
+                         list.get<double>("Stiffness") * node_mass[n] / mass});
+    }
+  }
+  return tethers;
+}
+
 template void declare_node_region<2>(ParameterList&);
 template void declare_node_region<3>(ParameterList&);
 template std::vector<int> nodes_in_region<2>(const ParameterList&, const std::vector<Point<2>>&,
@@ -126,5 +156,9 @@ template std::vector<Point<2>> read_loads<2>(const ParameterList&, const std::ve
                                              const std::vector<double>&, const std::string&);
 template std::vector<Point<3>> read_loads<3>(const ParameterList&, const std::vector<Point<3>>&,
                                              const std::vector<double>&, const std::string&);
+template std::vector<Tether<2>> read_tethers<2>(const ParameterList&, const std::vector<Point<2>>&,
+                                                const std::vector<double>&, const std::string&);
+template std::vector<Tether<3>> read_tethers<3>(const ParameterList&, const std::vector<Point<3>>&,
+                                                const std::vector<double>&, const std::string&);
 
 }  // namespace lockstep

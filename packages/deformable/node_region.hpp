@@ -17,7 +17,7 @@ template <int dim>
 std::vector<int> nodes_in_region(const ParameterList& list, const std::vector<Point<dim>>& nodes,
                                  const std::string& where);
 
-/// Declares the named sublists "Pinned" and "Loads".
+/// Declares the named sublists "Pinned", "Loads" and "Tethers".
 template <int dim>
 void declare_constraints_and_loads(ParameterList& body);
 
@@ -30,5 +30,19 @@ std::vector<std::array<bool, dim>> read_pinned(const ParameterList& body,
 template <int dim>
 std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<Point<dim>>& nodes,
                                    const std::vector<double>& node_mass, const std::string& name);
+
+/// A linear spring from a node to a fixed anchor.
+template <int dim>
+struct Tether {
+  int node = -1;
+  Point<dim> offset = Point<dim>::Zero();  ///< of the anchor from where the node starts [m]
+  double stiffness = 0;                    ///< [N/m]
+};
+/// Their stiffness is spread over the nodes in proportion to `node_mass`.
+template <int dim>
+std::vector<Tether<dim>> read_tethers(const ParameterList& body,
+                                      const std::vector<Point<dim>>& nodes,
+                                      const std::vector<double>& node_mass,
+                                      const std::string& name);
 
 }  // namespace lockstep

@@ -26,8 +26,8 @@ std::unique_ptr<ElementGroup<dim>> membrane_springs(const SurfaceMesh<dim>& mesh
                                                     const SheetMaterial& sheet, double stretch,
                                                     double shear_ratio);
 
-/// Springs of given ends: `stiffness` [N/m] and rest length [m]; `damping` is Rayleigh's factor
-/// [s].
+/// Springs of given ends: `stiffness` [N/m] and rest length [m]; zero makes them linear.
+/// `damping` is Rayleigh's factor [s], for the motion along the spring.
 struct Spring {
   std::array<int, 2> corners;
   double stiffness = 0, length = 0;

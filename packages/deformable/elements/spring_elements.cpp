@@ -39,6 +39,10 @@ class SpringElements : public ElementList<dim, Spring, SpringElements<dim>> {
     int n_clamped = 0;
     for (const Spring& spring : elements_) {
       const Point<dim> edge = x[spring.corners[1]] - x[spring.corners[0]];
+      if (spring.length == 0) {
+        add(spring, spring.stiffness * Square::Identity(), stiffness);
+        continue;
+      }
       const double length = edge.norm();
       const Square along = along_edge(edge);
       double across = length > 0 ? 1 - spring.length / length : -1;
