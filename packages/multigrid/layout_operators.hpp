@@ -1,0 +1,230 @@
+#pragma once
+// The operators of a PressureLayout; for pressure_layout.cpp alone.
+#include <Thyra_TpetraThyraWrappers.hpp>
+#include <Tpetra_Operator.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "multigrid/level_halo.hpp"
+#include "multigrid/multigrid.hpp"
+
+namespace lockstep {
+
+using TpetraOperator = Tpetra::Operator<double, int, GlobalIndex>;
+
+inline RCP<const LinearOperator> as_thyra_operator(const RCP<const TpetraOperator>& op) {
+  return Thyra::createConstLinearOp<double, int, GlobalIndex>(op);
+}
+
+constexpr int n_lanes = 16;
+
+/// Sum of products, in lanes so that no addition waits for the one before it.
+template <typename A, typename B>
+double dot(const A* a, const B* b, int n) {
+  std::array<double, n_lanes> sums{};
+  int i = 0;
+  for (; i + n_lanes <= n; i += n_lanes) {
+#pragma GCC ivdep
+    for (int lane = 0; lane < n_lanes; ++lane)
+      sums[lane] += static_cast<double>(a[i + lane]) * static_cast<double>(b[i + lane]);
+  }
+  for (; i < n; ++i)
+    sums[0] += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+/// A symmetric operator on the layout's vectors that overwrites its result.
+class LayoutOperator : public TpetraOperator {
+ public:
+  explicit LayoutOperator(RCP<const Map> map) : map_(std::move(map)) {}
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+  bool hasTransposeApply() const override { return true; }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, double alpha,
+             double beta) const override {
+    for (std::size_t column = 0; column < x.getNumVectors(); ++column) {
+      const auto in = x.getData(column);
+      if (alpha == 1 && beta == 0) {
+        apply_to(in.getRawPtr(), y.getDataNonConst(column).getRawPtr());
+        continue;
+      }
+      Vector result(map_);
+      apply_to(in.getRawPtr(), result.getDataNonConst().getRawPtr());
+      y.getVectorNonConst(column)->update(alpha, result, beta);
+    }
+  }
+
+ private:
+  virtual void apply_to(const double* x, double* y) const = 0;
+  RCP<const Map> map_;
+};
+
+/// A in the layout. `empty` are the entries of unknowns whose row A leaves empty: the loops over
+/// cells with faces may pass them by.
+template <int dim>
+class LayoutStencil final : public LayoutOperator {
+ public:
+  LayoutStencil(const RCP<const Map>& map, const StencilLevel<dim>& level, const LevelHalo& halo,
+                double unit, std::vector<int> empty)
+      : LayoutOperator(map), level_(level), halo_(halo), unit_(unit), empty_(std::move(empty)) {
+    if (!halo.empty())
+      with_ghosts_.resize(2 * level.grid().n_slots);
+  }
+
+  /// y = A x; `before(slab)` is called for each slab before x is read there. Returns x.y of this
+  /// rank.
+  template <typename Before>
+  double multiply(const double* x, double* y, const Before& before) const {
+    const int n_slabs = level_.grid().n_slabs();
+    double sum = 0;
+    for (const int entry : empty_)
+      y[entry] = 0;
+    if (halo_.empty()) {
+      for (int front = 0; front <= n_slabs; ++front) {
+        if (front < n_slabs)
+          before(front);
+        if (front > 0)
+          sum += multiply_slab(front - 1, x, y);
+      }
+      return sum;
+    }
+    for (int slab = 0; slab < n_slabs; ++slab)
+      before(slab);
+    std::copy_n(x, with_ghosts_.size(), with_ghosts_.data());
+    for (int colour = 0; colour < 2; ++colour)
+      halo_.fill(colour, with_ghosts_.data() + colour * level_.grid().n_slots);
+    for (int slab = 0; slab < n_slabs; ++slab)
+      sum += multiply_slab(slab, with_ghosts_.data(), y);
+    return sum;
+  }
+
+ private:
+  void apply_to(const double* x, double* y) const override {
+    multiply(x, y, [](int) {});
+  }
+
+  double multiply_slab(int slab, const double* x, double* y) const {
+    const LevelGrid& grid = level_.grid();
+    const auto rows = level_.rows_of(slab);
+    double sum = 0;
+    for (int j = rows.j_begin; j < rows.j_end; ++j) {
+      const auto range = level_.range(j, rows.k);
+      const int n = range.last - range.first;
+      for (int colour = 0; colour < 2; ++colour) {
+        const double* in = x + colour * grid.n_slots;
+        double* out = y + colour * grid.n_slots;
+        level_.multiply(colour, j, rows.k, unit_, in, x + (1 - colour) * grid.n_slots, out);
+        const std::ptrdiff_t at = grid.slot(range.first, j, rows.k);
+        sum += dot(in + at, out + at, n);
+      }
+    }
+    return sum;
+  }
+
+  const StencilLevel<dim>& level_;
+  const LevelHalo& halo_;
+  double unit_;
+  std::vector<int> empty_;
+  mutable std::vector<double> with_ghosts_;
+};
+
+/// A row of the layout that A leaves empty, and the inverse of what stands in for its diagonal.
+struct EmptyRow {
+  int entry = 0;
+  double inverse = 0;
+  double z = 0;  ///< of the last cycle
+};
+
+/// One cycle as an approximate inverse of A.
+template <int dim>
+class LayoutInverse final : public LayoutOperator {
+ public:
+  LayoutInverse(const RCP<const Map>& map, Multigrid<dim>& multigrid, Communicator comm,
+                double unit, std::vector<EmptyRow> empty_rows)
+      : LayoutOperator(map),
+        multigrid_(multigrid),
+        comm_(std::move(comm)),
+        unit_(unit),
+        empty_rows_(std::move(empty_rows)) {}
+
+  /// Calls f(colour, slot of the first cell, number of slots) for the rows of a slab.
+  template <typename Function>
+  void for_each_row(int slab, const Function& f) const {
+    const StencilLevel<dim>& level = multigrid_.finest();
+    const auto rows = level.rows_of(slab);
+    for (int j = rows.j_begin; j < rows.j_end; ++j) {
+      const auto range = level.range(j, rows.k);
+      for (int colour = 0; colour < 2; ++colour)
+        f(colour, level.grid().slot(range.first, j, rows.k), range.last - range.first);
+    }
+  }
+  template <typename Function>
+  void for_each_row(const Function& f) const {
+    for (int slab = 0; slab < multigrid_.finest().grid().n_slabs(); ++slab)
+      for_each_row(slab, f);
+  }
+
+  /// Leaves z / `back()` in the multigrid's solution, z of the empty rows in `empty_rows()`;
+  /// returns r.z of this rank.
+  double cycle(const double* r, double r_norm) const {
+    const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
+    // Single precision has a small range: r is taken in units of a power of 2 near its norm.
+    const double scale = r_norm > 0 ? std::exp2(-std::round(std::log2(r_norm))) : 1;
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      const double* from = r + colour * n_slots + at;
+      float* to = multigrid_.rhs(colour) + at;
+      for (int m = 0; m < n; ++m)
+        to[m] = static_cast<float>(scale * from[m]);
+    });
+    multigrid_.cycle();
+    back_ = 1 / (scale * unit_);
+    double sum = 0;
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      sum += dot(r + colour * n_slots + at, multigrid_.solution(colour) + at, n);
+    });
+    sum *= back_;
+    for (EmptyRow& row : empty_rows_) {
+      row.z = row.inverse * r[row.entry];
+      sum += row.z * r[row.entry];
+    }
+    return sum;
+  }
+  double back() const { return back_; }
+  const float* solution(int colour) const { return multigrid_.solution(colour); }
+  const std::vector<EmptyRow>& empty_rows() const { return empty_rows_; }
+
+ private:
+  void apply_to(const double* x, double* y) const override {
+    const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
+    double sum = 0;
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      const double* row = x + colour * n_slots + at;
+      sum += dot(row, row, n);
+    });
+    sum = sum_all(comm_, sum);
+    check_solve(std::isfinite(sum), "The multigrid was given a residual that is not finite.");
+    cycle(x, std::sqrt(sum));
+    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      const float* from = multigrid_.solution(colour) + at;
+      double* to = y + colour * n_slots + at;
+      for (int m = 0; m < n; ++m)
+        to[m] = back_ * from[m];
+    });
+    for (const EmptyRow& row : empty_rows_)
+      y[row.entry] = row.z;
+  }
+
+  Multigrid<dim>& multigrid_;
+  Communicator comm_;
+  double unit_;
+  mutable double back_ = 1;
+  mutable std::vector<EmptyRow> empty_rows_;
+};
+
+}  // namespace lockstep
