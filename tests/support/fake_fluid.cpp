@@ -131,6 +131,7 @@ void FakeFluid<dim>::classify(Face& face, const SurfaceSnapshot<dim>& surface,
   volume.open_fraction = 1;
   for (int a = 0; a < dim; ++a)
     volume.center[a] = box_.lower[a] + h * (face.index[a] + (a == axis ? 0 : 0.5));
+  volume.open_center = volume.center;
   volume.box = Box<dim>(volume.center - Point<dim>::Constant(h / 2),
                         volume.center + Point<dim>::Constant(h / 2));
   Index<dim> below = face.index;
