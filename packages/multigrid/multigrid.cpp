@@ -106,7 +106,7 @@ void Multigrid<dim>::set(const FaceCoefficients& coefficients) {
     if (level + 1 == n_levels())
       break;
     transfers_.push_back(coarsen(layout_->levels()[level], fine_, layout_->levels()[level + 1],
-                                 layout_->blocks(), dirichlet_factor(level), coarse_));
+                                 layout_->blocks(), {unit, dirichlet_factor(level)}, coarse_));
     std::swap(fine_, coarse_);
     unit *= dim == 3 ? 2 : 1;
   }

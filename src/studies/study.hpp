@@ -36,6 +36,15 @@ struct Quantity {
   Norm norm = Norm::l2;
   std::string reference;  ///< a formula, "self" or empty
   bool relative = true;   ///< error over |reference|
+  std::vector<double> targets;  ///< errors whose cost is reported
+  bool extrapolate = false;     ///< to the limit of its ladder, where the order is clean
+};
+
+/// A quantity over time, drawn for every case.
+struct Curve {
+  std::string name;
+  std::string expression;  ///< over the columns of history and bodies
+  std::string exact;       ///< the same of what it should be; may be empty
 };
 
 /// A study file: which scene is run with which changes, and what is measured.
@@ -52,6 +61,7 @@ struct Study {
   int n_samples = 1;
   std::vector<std::string> sample_assignments;
   std::vector<Quantity> quantities;
+  std::vector<Curve> curves;
 };
 
 /// Schema of a study file.
