@@ -55,21 +55,37 @@ void declare_reference(ParameterList& list) {
   declare(list, "Relative", true, "Divide the error by the size of the reference, unless it is 0.");
 }
 
+void declare_reduction(ParameterList& list) {
+  declare_choice(list, "Over", "last",
+                 {"last", "first", "max", "min", "mean", "rms", "amplitude", "frequency"},
+                 "How the rows of a run become one number; every row counts the same. amplitude: "
+                 "half of max - min. frequency: of the rises through the mean [1/s].");
+  declare(list, "From Time", -1e300, "Rows before this time do not count [s].");
+  declare_reference(list);
+  declare_targets(list);
+  declare(list, "Extrapolate", false,
+          "Report Richardson's extrapolation from the last three rungs of each series, where the "
+          "rungs have one ratio and the observed orders agree within 0.25: those of the last two "
+          "triples of rungs or, with three rungs, that of the triple and 1 or 2.");
+}
+
 std::vector<TypedSchema> quantity_types() {
-  ParameterList table, field;
+  ParameterList table, surface, field;
   declare_required<std::string>(
       table, "Expression",
       "Formula of the columns of history.csv, of bodies.csv as BODY.column, of summary.json as "
       "summary.name, of constants, parameters and h, dt, cells, ranks.");
-  declare_choice(table, "Over", "last", {"last", "first", "max", "min", "mean", "rms"},
-                 "How the rows of a run become one number; every row counts the same.");
-  declare(table, "From Time", -1e300, "Rows before this time do not count [s].");
-  declare_reference(table);
-  declare_targets(table);
-  declare(table, "Extrapolate", false,
-          "Report Richardson's extrapolation from the last three rungs of each series, where the "
-          "rungs have one ratio and the observed orders agree within 0.25: those of the last two "
-          "triples of rungs or, with three rungs, that of the triple and 1 or 2.");
+  declare_reduction(table);
+  declare_required<std::string>(surface, "Solid", "Name of the solid.");
+  declare_required<ParameterArray<double>>(
+      surface, "Point", "Picks the vertex of the surface that is nearest at the start [m].");
+  declare_required<std::string>(
+      surface, "Expression",
+      "Formula of time; x, y, z, of that vertex, x0, y0, z0 at the start [m]; volume [m^3] (2D: "
+      "[m^2]) inside the surface, or between an open one and its rim if the rim lies in a plane "
+      "(2D: line) with \"Point\"; area [m^2] (2D: [m]); volume0, area0; constants, parameters and "
+      "h, dt, cells, ranks.");
+  declare_reduction(surface);
   declare_required<std::string>(field, "Field", "Field of the last frame, such as \"velocity\".");
   declare_at_least(field, "Component", 0, 0, "Component of a vector: 0, 1, 2.");
   declare_required<std::string>(field, "Exact", "Formula of x, y, z, t, constants and parameters.");
@@ -78,6 +94,7 @@ std::vector<TypedSchema> quantity_types() {
                  "|e|. It is value and error at once.");
   declare_targets(field);
   return {{"table", "From the tables of a run.", table},
+          {"surface", "From a solid's surface in the frames of a run, one row a frame.", surface},
           {"field", "Difference of a cell-centred field to an exact solution.", field}};
 }
 
@@ -161,14 +178,26 @@ Value choice(const std::string& text, const std::vector<std::pair<const char*, V
       ->second;
 }
 
+void read_vertex(const ParameterList& list, const std::string& name, Quantity& quantity) {
+  quantity.solid = list.get<std::string>("Solid");
+  const auto& point = list.get<ParameterArray<double>>("Point");
+  check_input(point.size() == 2 || point.size() == 3,
+              "In quantity \"{}\", \"Point\" has {} components; it must have 2 or 3.", name,
+              point.size());
+  std::copy(point.begin(), point.end(), quantity.point.begin());
+}
+
 Quantity read_quantity(const ParameterList& list, const std::string& name) {
+  using From = Quantity::From;
   using Over = Quantity::Over;
   using Norm = Quantity::Norm;
   Quantity quantity;
   quantity.name = name;
   quantity.targets = list.get<ParameterArray<double>>("Targets").toVector();
-  quantity.is_field = list.get<std::string>("Type") == "field";
-  if (quantity.is_field) {
+  quantity.from = choice<From>(
+      list.get<std::string>("Type"),
+      {{"table", From::tables}, {"surface", From::surface}, {"field", From::field}});
+  if (quantity.from == From::field) {
     quantity.expression = list.get<std::string>("Exact");
     quantity.field = list.get<std::string>("Field");
     quantity.component = list.get<int>("Component");
@@ -183,7 +212,11 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
                                                                {"max", Over::max},
                                                                {"min", Over::min},
                                                                {"mean", Over::mean},
-                                                               {"rms", Over::rms}});
+                                                               {"rms", Over::rms},
+                                                               {"amplitude", Over::amplitude},
+                                                               {"frequency", Over::frequency}});
+  if (quantity.from == From::surface)
+    read_vertex(list, name, quantity);
   quantity.from_time = list.get<double>("From Time");
   quantity.reference = list.get<std::string>("Reference");
   quantity.relative = list.get<bool>("Relative");

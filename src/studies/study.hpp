@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,14 +25,17 @@ struct Series {
 
 /// One column of results, and what it is compared with.
 struct Quantity {
-  enum class Over { last, first, max, min, mean, rms };
+  enum class From { tables, surface, field };
+  enum class Over { last, first, max, min, mean, rms, amplitude, frequency };
   enum class Norm { l1, l2, max };
   std::string name;
-  bool is_field = false;
-  std::string expression;  ///< over the columns of history and bodies, or exact value of the field
-  Over over = Over::last;  ///< how the rows of a run become one number
-  double from_time = 0;    ///< rows before it do not count [s]
-  std::string field;       ///< dataset of the last frame
+  From from = From::tables;
+  std::string expression;        ///< over the rows of a run, or exact value of the field
+  Over over = Over::last;        ///< how the rows of a run become one number
+  double from_time = 0;          ///< rows before it do not count [s]
+  std::string solid;             ///< whose surface
+  std::array<double, 3> point{};  ///< that picks a vertex of the surface [m]
+  std::string field;             ///< dataset of the last frame
   int component = 0;
   Norm norm = Norm::l2;
   std::string reference;  ///< a formula, "self" or empty
