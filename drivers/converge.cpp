@@ -53,11 +53,10 @@ void plot(const std::string& directory, const std::string& tool, const std::stri
     script = installed;
   const std::string errors = directory + "/plot-errors.txt";
   const int exit_code =
-      fs::exists(script)
-          ? run_child({script, directory + "/" + table, directory + "/" + picture}, "/dev/null",
-                      errors)
-                .exit_code
-          : 127;
+      fs::exists(script) ? run_child({script, directory + "/" + table, directory + "/" + picture},
+                                     "/dev/null", errors)
+                               .exit_code
+                         : 127;
   if (exit_code != 0) {
     std::cerr << fmt::format("Warning: no plot was made: {}\n", fs::exists(errors)
                                                                     ? read_whole_file(errors)

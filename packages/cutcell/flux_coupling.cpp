@@ -42,8 +42,7 @@ void add_rows(const CouplingWeights& weights, const Import& import, const Vector
 template <int dim>
 double FluxCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool,
                                         const SurfaceSnapshot<dim>& surface) const {
-  return open_fraction_of<dim>(volume, surface, options_.smallest_open_fraction,
-                               options_.weights);
+  return open_fraction_of<dim>(volume, surface, options_.smallest_open_fraction, options_.weights);
 }
 
 template <int dim>
@@ -277,7 +276,8 @@ void FluxCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem
     ControlVolume<dim> volume = *link.remote_volume;
     volume.open_fraction = 0;
     row.position = volume.center;
-    add_to_row(face_shares<dim>(volume, *surface_, options_.weights).all, link.direction, solids, row);
+    add_to_row(face_shares<dim>(volume, *surface_, options_.weights).all, link.direction, solids,
+               row);
   } else {
     row.position = link.point.position;
     add_to_row({{1, link.point, surface_->solid_of(link.point.simplex), link.point.position}},

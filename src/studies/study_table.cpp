@@ -155,12 +155,12 @@ std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
       "iterations_median,iterations_max,peak_memory_mb,spread,samples,abscissa\n",
       study.title, study.abscissa, study.ladder_name, target_lines(study));
   for (const StudyRow& row : rows) {
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.series),
-                       row.cells, number_text(row.spacing), number_text(row.mean_step), row.ranks,
-                       csv_field(row.quantity), number_text(row.value), text(row.reference),
-                       text(row.error), text(row.order), row.wall_seconds, row.core_seconds,
-                       row.iterations_median, row.iterations_max, row.peak_memory_mb,
-                       number_text(row.spread), row.n_samples, number_text(row.abscissa));
+    csv += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.series), row.cells,
+        number_text(row.spacing), number_text(row.mean_step), row.ranks, csv_field(row.quantity),
+        number_text(row.value), text(row.reference), text(row.error), text(row.order),
+        row.wall_seconds, row.core_seconds, row.iterations_median, row.iterations_max,
+        row.peak_memory_mb, number_text(row.spread), row.n_samples, number_text(row.abscissa));
   }
   return csv;
 }

@@ -85,7 +85,8 @@ std::string targets_markdown(const Study& study, const std::vector<StudyRow>& ro
                  [&](const StudyRow& row) { return row.quantity == quantity.name; });
     page += fmt::format(
         "**{}: what an error costs, cheapest series first**\n\n"
-        "| error | place | series | core seconds | cells | memory [MB] |\n|---|---|---|---|---|---|\n",
+        "| error | place | series | core seconds | cells | memory [MB] "
+        "|\n|---|---|---|---|---|---|\n",
         quantity.name);
     for (const double target : quantity.targets) {
       int place = 0;

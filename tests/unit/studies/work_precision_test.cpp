@@ -53,8 +53,8 @@ TEST(WorkPrecision, CostIsInterpolatedInLogarithms) {
 }
 
 TEST(WorkPrecision, ARungCountsOnlyIfAllFinerOnesKeepTheTarget) {
-  const std::vector<StudyRow> lucky{row_of("a", 1, 0.2), row_of("a", 2, 0.001),
-                                    row_of("a", 4, 0.1), row_of("a", 8, 0.025)};
+  const std::vector<StudyRow> lucky{row_of("a", 1, 0.2), row_of("a", 2, 0.001), row_of("a", 4, 0.1),
+                                    row_of("a", 8, 0.025)};
   EXPECT_NEAR(cost_of_target(lucky, 0.05).core_seconds, 4 * std::sqrt(2.), 1e-12);
   EXPECT_EQ(cost_of_target(lucky, 0.01).found, TargetCost::Found::not_reached);
   const auto early = cost_of_target(lucky, 0.5);
@@ -97,16 +97,15 @@ TEST(Extrapolation, ACleanOrderGivesTheLimit) {
 
 TEST(Extrapolation, NothingIsSaidWhereTheOrderIsNotClean) {
   EXPECT_FALSE(extrapolate(halvings({3, 2.5})));
-  EXPECT_FALSE(extrapolate(halvings({3, 2, 2.5})));       // not monotone
-  EXPECT_FALSE(extrapolate(halvings({3, 2.5, 1})));       // diverges
-  EXPECT_FALSE(extrapolate(halvings({9, 5, 3, 2.75})));   // order 1, then 3
+  EXPECT_FALSE(extrapolate(halvings({3, 2, 2.5})));      // not monotone
+  EXPECT_FALSE(extrapolate(halvings({3, 2.5, 1})));      // diverges
+  EXPECT_FALSE(extrapolate(halvings({9, 5, 3, 2.75})));  // order 1, then 3
   auto uneven = halvings({3, 2.25, 2.0625});
   uneven[2].abscissa = 0.3;
   EXPECT_FALSE(extrapolate(uneven));
   Quantity quantity;
   quantity.extrapolate = true;
-  const std::string page =
-      extrapolations_markdown(study_of(quantity), halvings({3, 2.25, 2.0625}));
+  const std::string page = extrapolations_markdown(study_of(quantity), halvings({3, 2.25, 2.0625}));
   EXPECT_THAT(page, testing::HasSubstr("| speed | flux | 2.0625 | 2.00 | 2 | 0 |"));
 }
 
