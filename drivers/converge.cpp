@@ -5,7 +5,8 @@
 //   converge study.xml --rungs 1:4 --jobs 2        converge study.xml --list
 //   converge --parameters                          what a study file may say
 //
-// Writes DIR/table.csv, DIR/table.md and DIR/plot.png; the runs are kept in DIR/runs and used again
+// Writes DIR/table.csv, DIR/table.md and DIR/plot.png, and DIR/curves.csv and curves.png if the
+// study asks for curves; the runs are kept in DIR/runs and used again
 // if neither scene, case nor program changed. Runs serially and starts `simulate`, which lies
 // beside it, through mpirun where a case asks for ranks.
 //
@@ -20,7 +21,10 @@
 #include "output/build_information.hpp"
 #include "parameters/reference.hpp"
 #include "studies/child_process.hpp"
+#include "studies/curves.hpp"
+#include "studies/extrapolation.hpp"
 #include "studies/study_table.hpp"
+#include "studies/work_precision.hpp"
 
 using namespace lockstep;
 namespace fs = std::filesystem;
@@ -39,18 +43,20 @@ fs::path program_folder() {
   return fs::read_symlink("/proc/self/exe").parent_path();
 }
 
-/// Writes the plot with tools/plot-study; that it cannot is worth a warning only.
-void plot(const std::string& directory) {
-  std::string script = LOCKSTEP_TOOLS_DIRECTORY "/plot-study";
-  const fs::path installed = program_folder().parent_path() / "share/lockstep/tools/plot-study";
+/// Writes a picture of DIR/`table` with a program of tools/; that it cannot is worth a warning
+/// only.
+void plot(const std::string& directory, const std::string& tool, const std::string& table,
+          const std::string& picture) {
+  std::string script = LOCKSTEP_TOOLS_DIRECTORY "/" + tool;
+  const fs::path installed = program_folder().parent_path() / "share/lockstep/tools" / tool;
   if (!fs::exists(script))
     script = installed;
   const std::string errors = directory + "/plot-errors.txt";
-  const int exit_code = fs::exists(script)
-                            ? run_child({script, directory + "/table.csv", directory + "/plot.png"},
-                                        "/dev/null", errors)
-                                  .exit_code
-                            : 127;
+  const int exit_code =
+      fs::exists(script) ? run_child({script, directory + "/" + table, directory + "/" + picture},
+                                     "/dev/null", errors)
+                               .exit_code
+                         : 127;
   if (exit_code != 0) {
     std::cerr << fmt::format("Warning: no plot was made: {}\n", fs::exists(errors)
                                                                     ? read_whole_file(errors)
@@ -97,9 +103,16 @@ int run_study(const Study& study, const Arguments& arguments) {
   // 5. Measure what is there.
   const std::vector<StudyRow> table = study_table(study, cases, outcomes);
   write_file_atomically(directory + "/table.csv", table_csv(study, table));
-  write_file_atomically(directory + "/table.md", table_markdown(study, table));
+  write_file_atomically(directory + "/table.md", table_markdown(study, table) +
+                                                     targets_markdown(study, table) +
+                                                     extrapolations_markdown(study, table));
   if (!table.empty())
-    plot(directory);
+    plot(directory, "plot-study", "table.csv", "plot.png");
+  const std::string curves = curves_csv(study, cases, outcomes);
+  if (!curves.empty()) {
+    write_file_atomically(directory + "/curves.csv", curves);
+    plot(directory, "plot-curves", "curves.csv", "curves.png");
+  }
   std::cout << fmt::format("{} of {} cases, {} rows in {}/table.md\n",
                            std::count_if(outcomes.begin(), outcomes.end(),
                                          [](const CaseOutcome& one) { return one.done; }),

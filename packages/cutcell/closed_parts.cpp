@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/solid_volume.hpp"
+
 namespace lockstep {
 namespace {
 
@@ -209,6 +211,50 @@ std::vector<ClosedPart<dim>> closed_parts(const SurfaceSnapshot<dim>& surface, c
   return parts;
 }
 
+template <int dim>
+std::vector<ClosedPart<dim>> closed_volumes(const SurfaceSnapshot<dim>& surface,
+                                            const Box<dim>& box, int axis) {
+  constexpr std::array<std::pair<double, double>, 4> gauss{
+      {{-0.86113631159405258, 0.34785484513745386},
+       {-0.33998104358485626, 0.65214515486254614},
+       {0.33998104358485626, 0.65214515486254614},
+       {0.86113631159405258, 0.34785484513745386}}};
+  const double length = box.sizes()[axis];
+  std::vector<ClosedPart<dim>> parts, sections;
+  for (const auto& [place, weight] : gauss) {
+    Box<dim> section = box;
+    section.min()[axis] = section.max()[axis] = box.center()[axis] + 0.5 * place * length;
+    for (ClosedPart<dim> part : closed_parts<dim>(surface, section, axis)) {
+      part.area *= weight;
+      sections.push_back(part);
+    }
+  }
+  std::vector<int> solids;
+  surface.solids_touching(box, solids);
+  constexpr double round_off = 1e-10;
+  for (const int solid : solids) {
+    if (!surface.solids()[solid].closed)
+      continue;
+    const double volume = solid_volume_in_box<dim>(surface, box, solid);
+    if (volume <= round_off * box.volume())
+      continue;
+    ClosedPart<dim> part{solid, volume / length, Point<dim>::Zero()};
+    double total = 0;
+    for (const ClosedPart<dim>& section : sections)
+      if (section.solid == solid) {
+        part.center += section.area * section.center;
+        total += section.area;
+      }
+    part.center = total > 0 ? Point<dim>(part.center / total) : Point<dim>(box.center());
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+template std::vector<ClosedPart<2>> closed_volumes<2>(const SurfaceSnapshot<2>&, const Box<2>&,
+                                                      int);
+template std::vector<ClosedPart<3>> closed_volumes<3>(const SurfaceSnapshot<3>&, const Box<3>&,
+                                                      int);
 template std::vector<ClosedPart<2>> closed_parts<2>(const SurfaceSnapshot<2>&, const Box<2>&, int);
 template std::vector<ClosedPart<3>> closed_parts<3>(const SurfaceSnapshot<3>&, const Box<3>&, int);
 

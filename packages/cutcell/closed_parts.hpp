@@ -21,4 +21,11 @@ template <int dim>
 std::vector<ClosedPart<dim>> closed_parts(const SurfaceSnapshot<dim>& surface, const Box<dim>& face,
                                           int axis);
 
+/// The volumes of a dual cell inside each closed solid, as parts of its face: area is volume over
+/// the length of `box` along `axis` (Batty et al. 2007). The volumes are exact for polyhedra; the
+/// centroids come from four sections of the box. Local.
+template <int dim>
+std::vector<ClosedPart<dim>> closed_volumes(const SurfaceSnapshot<dim>& surface,
+                                            const Box<dim>& box, int axis);
+
 }  // namespace lockstep

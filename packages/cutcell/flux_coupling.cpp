@@ -42,13 +42,13 @@ void add_rows(const CouplingWeights& weights, const Import& import, const Vector
 template <int dim>
 double FluxCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool,
                                         const SurfaceSnapshot<dim>& surface) const {
-  return open_fraction_of<dim>(volume, surface, options_.smallest_open_fraction);
+  return open_fraction_of<dim>(volume, surface, options_.smallest_open_fraction, options_.weights);
 }
 
 template <int dim>
 Point<dim> FluxCoupling<dim>::open_center(const ControlVolume<dim>& volume,
                                           const SurfaceSnapshot<dim>& surface) const {
-  return open_center_of<dim>(volume, face_shares<dim>(volume, surface).all);
+  return open_center_of<dim>(volume, face_shares<dim>(volume, surface, options_.weights).all);
 }
 
 template <int dim>
@@ -65,7 +65,7 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   std::vector<GlobalIndex> unknowns;
   for (std::size_t f = 0; f < n; ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
-    shares_.push_back(face_shares<dim>(volume, surface));
+    shares_.push_back(face_shares<dim>(volume, surface, options_.weights));
     masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
     for (const auto& side : volume.sides)
       if (side.unknown != no_index)
@@ -276,7 +276,8 @@ void FluxCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem
     ControlVolume<dim> volume = *link.remote_volume;
     volume.open_fraction = 0;
     row.position = volume.center;
-    add_to_row(face_shares<dim>(volume, *surface_).all, link.direction, solids, row);
+    add_to_row(face_shares<dim>(volume, *surface_, options_.weights).all, link.direction, solids,
+               row);
   } else {
     row.position = link.point.position;
     add_to_row({{1, link.point, surface_->solid_of(link.point.simplex), link.point.position}},

@@ -13,6 +13,7 @@ struct FluxOptions {
   /// neighbours, so that nothing is lost, and every pressure has a face of at least this size.
   double smallest_open_fraction = 1e-4;
   bool correct_buoyancy = true;  ///< see displaced_excess
+  FaceWeights weights = FaceWeights::areas;
 };
 
 /// Coupling by the flux of the surface through cut cells (face fractions of Ng, Min and Gibou

@@ -56,6 +56,14 @@ void center_on_face(const ControlVolume<dim>& volume, std::vector<FluxShare<dim>
     share.center += shift;
 }
 
+template <int dim>
+std::vector<ClosedPart<dim>> parts_of(const ControlVolume<dim>& volume,
+                                      const SurfaceSnapshot<dim>& surface, FaceWeights weights) {
+  return weights == FaceWeights::areas
+             ? closed_parts<dim>(surface, face_of<dim>(volume), volume.direction)
+             : closed_volumes<dim>(surface, volume.box, volume.direction);
+}
+
 /// True if the pressure points see the same place in the open part of the face: what lies between
 /// them is the tip of a body, around which the fluid flows.
 template <int dim>
@@ -126,10 +134,9 @@ std::vector<int> thin_between(const ControlVolume<dim>& volume,
 
 template <int dim>
 double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
-                        double smallest) {
+                        double smallest, FaceWeights weights) {
   double closed = 0;
-  for (const ClosedPart<dim>& part :
-       closed_parts<dim>(surface, face_of<dim>(volume), volume.direction))
+  for (const ClosedPart<dim>& part : parts_of<dim>(volume, surface, weights))
     closed += part.area / volume.area;
   // Steps of which a float holds the sum over the faces of a cell exactly: in the single precision
   // of the stencils, rows of A must add up to zero.
@@ -150,8 +157,9 @@ Point<dim> open_center_of(const ControlVolume<dim>& volume,
 }
 
 template <int dim>
-FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
-  const auto parts = closed_parts<dim>(surface, face_of<dim>(volume), volume.direction);
+FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
+                            FaceWeights weights) {
+  const auto parts = parts_of<dim>(volume, surface, weights);
   const bool is_closed = volume.open_fraction == 0;
   std::vector<int> thin;
   if (is_closed)
@@ -186,11 +194,15 @@ template Box<2> face_of<2>(const ControlVolume<2>&);
 template Box<3> face_of<3>(const ControlVolume<3>&);
 template std::vector<int> thin_between<2>(const ControlVolume<2>&, const SurfaceSnapshot<2>&);
 template std::vector<int> thin_between<3>(const ControlVolume<3>&, const SurfaceSnapshot<3>&);
-template double open_fraction_of<2>(const ControlVolume<2>&, const SurfaceSnapshot<2>&, double);
-template double open_fraction_of<3>(const ControlVolume<3>&, const SurfaceSnapshot<3>&, double);
+template double open_fraction_of<2>(const ControlVolume<2>&, const SurfaceSnapshot<2>&, double,
+                                    FaceWeights);
+template double open_fraction_of<3>(const ControlVolume<3>&, const SurfaceSnapshot<3>&, double,
+                                    FaceWeights);
 template Point<2> open_center_of<2>(const ControlVolume<2>&, const std::vector<FluxShare<2>>&);
 template Point<3> open_center_of<3>(const ControlVolume<3>&, const std::vector<FluxShare<3>>&);
-template FaceShares<2> face_shares<2>(const ControlVolume<2>&, const SurfaceSnapshot<2>&);
-template FaceShares<3> face_shares<3>(const ControlVolume<3>&, const SurfaceSnapshot<3>&);
+template FaceShares<2> face_shares<2>(const ControlVolume<2>&, const SurfaceSnapshot<2>&,
+                                      FaceWeights);
+template FaceShares<3> face_shares<3>(const ControlVolume<3>&, const SurfaceSnapshot<3>&,
+                                      FaceWeights);
 
 }  // namespace lockstep

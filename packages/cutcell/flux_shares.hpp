@@ -19,6 +19,12 @@ struct FluxShare {
   Point<dim> center = Point<dim>::Zero();  ///< [m]
 };
 
+/// What of a face counts as closed.
+enum class FaceWeights {
+  areas,   ///< its own area inside the solids (Ng, Min and Gibou 2009)
+  volumes  ///< the volume of its dual cell inside them (Batty et al. 2007)
+};
+
 /// The flat box of a face [m].
 template <int dim>
 Box<dim> face_of(const ControlVolume<dim>& volume);
@@ -36,7 +42,7 @@ std::vector<int> thin_between(const ControlVolume<dim>& volume,
 /// closes it as well. Local.
 template <int dim>
 double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
-                        double smallest);
+                        double smallest, FaceWeights weights = FaceWeights::areas);
 
 /// Centroid of what the shares of a partly open face leave open: both together balance about the
 /// centre of the face, whatever was rounded.
@@ -53,6 +59,7 @@ struct FaceShares {
   double thin_part = 0;  ///< of the face: its fluid moves with the thin parts and is lumped on them
 };
 template <int dim>
-FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface);
+FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
+                            FaceWeights weights = FaceWeights::areas);
 
 }  // namespace lockstep

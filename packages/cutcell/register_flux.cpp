@@ -11,6 +11,10 @@ ParameterList valid_parameters() {
       list, "Smallest Open Fraction", FluxOptions().smallest_open_fraction, 1e-6, 0.5,
       "Faces of which a smaller part than this [1] is open are closed; what they would have let "
       "through is given to the solid in both neighbours.");
+  declare_choice(
+      list, "Weights", "face fractions", {"face fractions", "volume fractions"},
+      "What of a face is closed: its own area inside the solids (Ng, Min and Gibou 2009) "
+      "or the volume of its dual cell inside them (Batty et al. 2007).");
   declare(list, "Correct Buoyancy", true,
           "Correct the weight of every closed body, axis by axis, by what the grid displaces too "
           "much, so that a neutrally buoyant one rests exactly.");
@@ -20,6 +24,8 @@ ParameterList valid_parameters() {
 FluxOptions options_from(const ParameterList& list) {
   FluxOptions options;
   options.smallest_open_fraction = list.get<double>("Smallest Open Fraction");
+  options.weights = list.get<std::string>("Weights") == "volume fractions" ? FaceWeights::volumes
+                                                                           : FaceWeights::areas;
   options.correct_buoyancy = list.get<bool>("Correct Buoyancy");
   return options;
 }

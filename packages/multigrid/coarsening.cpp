@@ -2,6 +2,7 @@
 
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "multigrid/thin_walls.hpp"
 
@@ -11,30 +12,49 @@ namespace {
 
 using Cell = std::array<int, 3>;
 
-constexpr float face_factor = 0.5F;
+/// What a face of a fine cell adds to the coarse face it lies in: its coupling in series with half
+/// a regular one on either side, as the centres of coarse cells are that much further from it. Half
+/// of a regular face is left, but nearly all of a narrow gap: cells behind a gap would be corrected
+/// too far otherwise, twice more on every level, and a W-cycle that overshoots by more than two is
+/// not positive definite. Rounded, so that sums stay exact.
+class FacePart {
+ public:
+  explicit FacePart(float unit) : unit_(unit) {}
+  float operator()(float face) const {
+    if (face == unit_)
+      return 0.5F * face;
+    constexpr float steps = 1 << 20;
+    return std::round(steps * face / (unit_ + face)) * (unit_ / steps);
+  }
+
+ private:
+  float unit_;
+};
+
 /// Couplings below this part of the regular one are what differences of sums leave.
 constexpr float round_off = 1e-5F;
 
-/// Adds pairs of a fine row to a coarse one; only entries of `owned` cells, if given.
-void add_pairs(const float* fine, const char* owned, int n, float factor, float* coarse) {
+/// Adds the parts of pairs of a fine row to a coarse one; only of `owned` cells, if given.
+template <typename Part>
+void add_pairs(const float* fine, const char* owned, int n, const Part& part, float* coarse) {
   const int n_pairs = n / 2;
   if (owned == nullptr) {
     for (int i = 0; i < n_pairs; ++i)
-      coarse[i] += factor * (fine[2 * i] + fine[2 * i + 1]);
+      coarse[i] += part(fine[2 * i]) + part(fine[2 * i + 1]);
     if (n % 2 != 0)
-      coarse[n_pairs] += factor * fine[n - 1];
+      coarse[n_pairs] += part(fine[n - 1]);
     return;
   }
   for (int i = 0; i < n; ++i) {
     if (owned[i])
-      coarse[i / 2] += factor * fine[i];
+      coarse[i / 2] += part(fine[i]);
   }
 }
 
-void add_even(const float* fine, const char* owned, int n, float factor, float* coarse) {
+void add_even(const float* fine, const char* owned, int n, const FacePart& part, float* coarse) {
   for (int i = 0; i < n; i += 2) {
     if (owned == nullptr || owned[i])
-      coarse[i / 2] += factor * fine[i];
+      coarse[i / 2] += part(fine[i]);
   }
 }
 
@@ -42,14 +62,16 @@ void add_even(const float* fine, const char* owned, int n, float factor, float* 
 class Coarsening {
  public:
   Coarsening(const LayoutLevel& fine_level, const NaturalStencil& fine,
-             const LayoutLevel& coarse_level, float dirichlet_factor, NaturalStencil& coarse)
+             const LayoutLevel& coarse_level, const CoarseningFactors& factors,
+             NaturalStencil& coarse)
       : fine_level_(fine_level),
         f_(fine_level.grid),
         c_(coarse_level.grid),
         fine_(fine),
         coarse_owned_(coarse_level.owned),
         coarse_(coarse),
-        dirichlet_factor_(dirichlet_factor) {
+        dirichlet_factor_(factors.dirichlet),
+        face_part_(factors.unit) {
     for (int axis = 0; axis < 3; ++axis)
       transfer_.offset[axis] = (f_.begin[axis] >> 1) - c_.begin[axis];
   }
@@ -111,6 +133,7 @@ class Coarsening {
   const std::vector<char>& coarse_owned_;
   NaturalStencil& coarse_;
   float dirichlet_factor_;
+  FacePart face_part_;
   Transfer transfer_;
 };
 
@@ -121,13 +144,15 @@ void Coarsening::sum_rows() {
       const std::ptrdiff_t to = natural(parent({0, j, k}));
       const char* owned = fine_level_.owned.empty() ? nullptr : fine_level_.owned.data() + row;
       const int n = f_.n[0];
-      add_pairs(fine_.dirichlet.data() + row, owned, n, dirichlet_factor_,
-                coarse_.dirichlet.data() + to);
-      add_even(fine_.lower[0].data() + row, owned, n, face_factor, coarse_.lower[0].data() + to);
+      const float factor = dirichlet_factor_;
+      add_pairs(
+          fine_.dirichlet.data() + row, owned, n, [factor](float value) { return factor * value; },
+          coarse_.dirichlet.data() + to);
+      add_even(fine_.lower[0].data() + row, owned, n, face_part_, coarse_.lower[0].data() + to);
       if ((j & 1) == 0)
-        add_pairs(fine_.lower[1].data() + row, owned, n, face_factor, coarse_.lower[1].data() + to);
+        add_pairs(fine_.lower[1].data() + row, owned, n, face_part_, coarse_.lower[1].data() + to);
       if (f_.dimension == 3 && (k & 1) == 0)
-        add_pairs(fine_.lower[2].data() + row, owned, n, face_factor, coarse_.lower[2].data() + to);
+        add_pairs(fine_.lower[2].data() + row, owned, n, face_part_, coarse_.lower[2].data() + to);
     }
   }
 }
@@ -141,8 +166,10 @@ void Coarsening::add_face(const Cell& a, const Cell& b, float value) {
     if (a[d] != b[d])
       axis = d;
   }
-  if (distance != 1)
+  if (distance != 1) {
+    transfer_.loses_coupling = transfer_.loses_coupling || distance > 1;
     return;
+  }
   const Cell& upper = a[axis] > b[axis] ? a : b;
   if (is_stored(upper))
     coarse_.lower[axis][natural(upper)] += value;
@@ -153,7 +180,7 @@ void Coarsening::move_face(const Cell& upper, int axis, const std::vector<char>&
   Cell lower = upper;
   --lower[axis];
   const std::ptrdiff_t at = f_.natural(upper[0], upper[1], upper[2]);
-  const float value = face_factor * fine_.lower[axis][at];
+  const float value = face_part_(fine_.lower[axis][at]);
   if (value == 0)
     return;
   const char of_upper = destinations[at];
@@ -161,6 +188,8 @@ void Coarsening::move_face(const Cell& upper, int axis, const std::vector<char>&
   add_face(parent(upper), parent(lower), -value);
   if (of_upper != destination::none && of_lower != destination::none)
     add_face(new_parent(upper, of_upper), new_parent(lower, of_lower), value);
+  else
+    transfer_.loses_coupling = true;
 }
 
 void Coarsening::move_cell(const Cell& cell, char destination) {
@@ -254,9 +283,9 @@ void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_al
 
 Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
                  const LayoutLevel& coarse_level, const LatticeBlocks& blocks,
-                 float dirichlet_factor, NaturalStencil& coarse) {
+                 const CoarseningFactors& factors, NaturalStencil& coarse) {
   coarse.resize(coarse_level.grid);
-  Coarsening step(fine_level, fine, coarse_level, dirichlet_factor, coarse);
+  Coarsening step(fine_level, fine, coarse_level, factors, coarse);
   step.sum_rows();
   const auto destinations = destinations_behind_thin_walls(fine_level, fine, blocks.comm);
   if (!destinations.empty())
@@ -266,8 +295,10 @@ Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
   coarse.complete(coarse_level);
   Transfer transfer = step.take_transfer();
   sort_by_slab(fine_level.grid, transfer);
-  if (!destinations.empty())
+  if (!destinations.empty()) {
     transfer.leaves_rank = max_all(blocks.comm, transfer.leaves_rank ? 1.0 : 0.0) > 0;
+    transfer.loses_coupling = max_all(blocks.comm, transfer.loses_coupling ? 1.0 : 0.0) > 0;
+  }
   return transfer;
 }
 

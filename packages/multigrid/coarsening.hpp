@@ -22,13 +22,21 @@ struct Transfer {
   std::vector<MovedCell> moved;      ///< sorted by slab
   std::vector<std::size_t> in_slab;  ///< by slab: the first of `moved`; one more at the end
   bool leaves_rank = false;          ///< some rank moves a cell to a ghost
+  /// Some coupling of a moved cell has no coarse face: the coarse problem is too soft there.
+  bool loses_coupling = false;
 };
 
-/// The coarse stencil: a coarse face is half the sum of its fine faces (their area over twice the
-/// distance), a Dirichlet part is the sum of the fine ones times `dirichlet_factor`. Cells behind
+struct CoarseningFactors {
+  float unit = 1;       ///< coupling through a regular face of the fine level
+  float dirichlet = 1;  ///< of the sum of fine Dirichlet parts
+};
+
+/// The coarse stencil: a coarse face is the sum of its fine faces, each in series with half a
+/// regular one on either side (half of it, if it is regular itself: its area over twice the
+/// distance); a Dirichlet part is the sum of the fine ones times `factors.dirichlet`. Cells behind
 /// thin walls are moved first. Everything of `coarse` is overwritten. Collective.
 Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
                  const LayoutLevel& coarse_level, const LatticeBlocks& blocks,
-                 float dirichlet_factor, NaturalStencil& coarse);
+                 const CoarseningFactors& factors, NaturalStencil& coarse);
 
 }  // namespace lockstep

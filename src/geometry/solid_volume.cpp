@@ -91,26 +91,34 @@ Column<dim> shortest_column(const Box<dim>& box, const Box<dim>& bounds) {
 // slab and zero elsewhere, and cutting the surface to the column adds only sides normal to other
 // axes. So the sides of the box never enter, and the result is exact for polyhedra.
 template <int dim>
-double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box) {
-  std::vector<int> solids, simplices;
-  surface.solids_touching(box, solids);
+double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box, int solid) {
+  const Box<dim> bounds = surface.bounds_of_solid(solid);
+  const Column<dim> column = shortest_column<dim>(box, bounds);
+  Box<dim> reach = box;
+  (column.side > 0 ? reach.max() : reach.min())[column.axis] =
+      (column.side > 0 ? bounds.max() : bounds.min())[column.axis];
+  std::vector<int> simplices;
+  surface.touching(reach, simplices);
   double volume = 0;
-  for (const int solid : solids) {
-    if (!surface.solids()[solid].closed)
-      continue;
-    const Box<dim> bounds = surface.bounds_of_solid(solid);
-    const Column<dim> column = shortest_column<dim>(box, bounds);
-    Box<dim> reach = box;
-    (column.side > 0 ? reach.max() : reach.min())[column.axis] =
-        (column.side > 0 ? bounds.max() : bounds.min())[column.axis];
-    surface.touching(reach, simplices);
-    for (const int s : simplices)
-      if (surface.solid_of(s) == solid)
-        volume += column_flux<dim>(surface.corners(s), column);
-  }
+  for (const int s : simplices)
+    if (surface.solid_of(s) == solid)
+      volume += column_flux<dim>(surface.corners(s), column);
   return std::clamp(volume, 0.0, box.volume());
 }
 
+template <int dim>
+double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box) {
+  std::vector<int> solids;
+  surface.solids_touching(box, solids);
+  double volume = 0;
+  for (const int solid : solids)
+    if (surface.solids()[solid].closed)
+      volume += solid_volume_in_box<dim>(surface, box, solid);
+  return std::min(volume, box.volume());
+}
+
+template double solid_volume_in_box<2>(const SurfaceSnapshot<2>&, const Box<2>&, int);
+template double solid_volume_in_box<3>(const SurfaceSnapshot<3>&, const Box<3>&, int);
 template double solid_volume_in_box<2>(const SurfaceSnapshot<2>&, const Box<2>&);
 template double solid_volume_in_box<3>(const SurfaceSnapshot<3>&, const Box<3>&);
 

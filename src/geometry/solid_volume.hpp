@@ -11,4 +11,8 @@ namespace lockstep {
 template <int dim>
 double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box);
 
+/// The same of one closed solid.
+template <int dim>
+double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box, int solid);
+
 }  // namespace lockstep

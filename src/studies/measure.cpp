@@ -6,48 +6,77 @@
 
 #include "base/errors.hpp"
 #include "studies/frame_field.hpp"
+#include "studies/surface_rows.hpp"
 
 namespace lockstep {
 
 namespace {
 
-double reduce(Quantity::Over over, const std::vector<double>& values) {
+/// Mean frequency of the rises through the mean value [1/s].
+double rise_frequency(const std::vector<double>& times, const std::vector<double>& values) {
+  const double mean =
+      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  int n_rises = 0;
+  double first = 0, last = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i - 1] >= mean || values[i] < mean)
+      continue;
+    const double part = (mean - values[i - 1]) / (values[i] - values[i - 1]);
+    last = times[i - 1] + part * (times[i] - times[i - 1]);
+    if (n_rises++ == 0)
+      first = last;
+  }
+  check_input(n_rises > 1, "A frequency needs two rises through the mean, but there are {}.",
+              n_rises);
+  return (n_rises - 1) / (last - first);
+}
+
+double reduce(Quantity::Over over, const std::vector<double>& times,
+              const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
   switch (over) {
     case Quantity::Over::last:
       return values.back();
     case Quantity::Over::first:
       return values.front();
     case Quantity::Over::max:
-      return *std::max_element(values.begin(), values.end());
+      return *largest;
     case Quantity::Over::min:
-      return *std::min_element(values.begin(), values.end());
+      return *least;
     case Quantity::Over::mean:
       return std::accumulate(values.begin(), values.end(), 0.0) / n;
     case Quantity::Over::rms:
       return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0) / n);
+    case Quantity::Over::amplitude:
+      return 0.5 * (*largest - *least);
+    case Quantity::Over::frequency:
+      return rise_frequency(times, values);
   }
   return 0;
 }
 
-double table_value(const Quantity& quantity, const RunResults& run, const Variables& variables) {
+/// From the rows, each of which holds the same names, "time" among them.
+double row_value(const Quantity& quantity, const std::vector<Variables>& rows,
+                 const Variables& variables) {
   const std::string where = fmt::format("Quantity \"{}\"", quantity.name);
   // The columns come last: a row's own dt, not the mean one.
   Variables all = variables;
-  for (const auto& [name, value] : run.rows.front())
+  for (const auto& [name, value] : rows.front())
     all[name] = value;
   const Expression expression(quantity.expression, all, where);
-  std::vector<double> values;
-  for (const Variables& row : run.rows) {
+  std::vector<double> times, values;
+  for (const Variables& row : rows) {
     if (row.at("time") < quantity.from_time)
       continue;
     for (const auto& [name, value] : row)
       all[name] = value;
+    times.push_back(row.at("time"));
     values.push_back(expression.value());
   }
-  check_input(!values.empty(), "{}: no row of {} is later than \"From Time\" = {} s.", where,
-              run.directory, quantity.from_time);
-  return reduce(quantity.over, values);
+  check_input(!values.empty(), "{}: no row is later than \"From Time\" = {} s.", where,
+              quantity.from_time);
+  return reduce(quantity.over, times, values);
 }
 
 double field_value(const Quantity& quantity, const RunResults& run, const Variables& variables) {
@@ -99,8 +128,16 @@ Variables run_variables(const Study& study, const StudyCase& study_case, const R
 }
 
 double measure(const Quantity& quantity, const RunResults& run, const Variables& variables) {
-  return quantity.is_field ? field_value(quantity, run, variables)
-                           : table_value(quantity, run, variables);
+  switch (quantity.from) {
+    case Quantity::From::tables:
+      return row_value(quantity, run.rows, variables);
+    case Quantity::From::surface:
+      return row_value(quantity, read_surface_rows(run.directory, quantity.solid, quantity.point),
+                       variables);
+    case Quantity::From::field:
+      return field_value(quantity, run, variables);
+  }
+  return 0;
 }
 
 }  // namespace lockstep

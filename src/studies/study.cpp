@@ -7,6 +7,7 @@
 #include "parameters/strict_values.hpp"
 #include "parameters/strict_xml.hpp"
 #include "parameters/validate.hpp"
+#include "studies/series_product.hpp"
 
 namespace lockstep {
 
@@ -31,6 +32,21 @@ ParameterList series_parameters() {
   return series;
 }
 
+/// Options of a factor of the series.
+ParameterList factor_parameters() {
+  ParameterList factor;
+  declare_named_sublists(factor, "Options",
+                         "The choices, one sublist each; their names make up those of the series.",
+                         series_parameters());
+  return factor;
+}
+
+void declare_targets(ParameterList& list) {
+  declare(list, "Targets", ParameterArray<double>(),
+          "Errors whose cost is reported: in how many core seconds, with how many cells and how "
+          "much memory each series reaches them, cheapest first.");
+}
+
 void declare_reference(ParameterList& list) {
   declare(
       list, "Reference", "",
@@ -39,24 +55,55 @@ void declare_reference(ParameterList& list) {
   declare(list, "Relative", true, "Divide the error by the size of the reference, unless it is 0.");
 }
 
+void declare_reduction(ParameterList& list) {
+  declare_choice(list, "Over", "last",
+                 {"last", "first", "max", "min", "mean", "rms", "amplitude", "frequency"},
+                 "How the rows of a run become one number; every row counts the same. amplitude: "
+                 "half of max - min. frequency: of the rises through the mean [1/s].");
+  declare(list, "From Time", -1e300, "Rows before this time do not count [s].");
+  declare_reference(list);
+  declare_targets(list);
+  declare(list, "Extrapolate", false,
+          "Report Richardson's extrapolation from the last three rungs of each series, where the "
+          "rungs have one ratio and the observed orders agree within 0.25: those of the last two "
+          "triples of rungs or, with three rungs, that of the triple and 1 or 2.");
+}
+
 std::vector<TypedSchema> quantity_types() {
-  ParameterList table, field;
+  ParameterList table, surface, field;
   declare_required<std::string>(
       table, "Expression",
       "Formula of the columns of history.csv, of bodies.csv as BODY.column, of summary.json as "
       "summary.name, of constants, parameters and h, dt, cells, ranks.");
-  declare_choice(table, "Over", "last", {"last", "first", "max", "min", "mean", "rms"},
-                 "How the rows of a run become one number; every row counts the same.");
-  declare(table, "From Time", -1e300, "Rows before this time do not count [s].");
-  declare_reference(table);
+  declare_reduction(table);
+  declare_required<std::string>(surface, "Solid", "Name of the solid.");
+  declare_required<ParameterArray<double>>(
+      surface, "Point", "Picks the vertex of the surface that is nearest at the start [m].");
+  declare_required<std::string>(
+      surface, "Expression",
+      "Formula of time; x, y, z, of that vertex, x0, y0, z0 at the start [m]; volume [m^3] (2D: "
+      "[m^2]) inside the surface, or between an open one and its rim if the rim lies in a plane "
+      "(2D: line) with \"Point\"; area [m^2] (2D: [m]); volume0, area0; constants, parameters and "
+      "h, dt, cells, ranks.");
+  declare_reduction(surface);
   declare_required<std::string>(field, "Field", "Field of the last frame, such as \"velocity\".");
   declare_at_least(field, "Component", 0, 0, "Component of a vector: 0, 1, 2.");
   declare_required<std::string>(field, "Exact", "Formula of x, y, z, t, constants and parameters.");
   declare_choice(field, "Norm", "L2", {"L1", "L2", "max"},
                  "Of the difference, per unit volume: mean of |e|, root of the mean of e^2, max "
                  "|e|. It is value and error at once.");
+  declare_targets(field);
   return {{"table", "From the tables of a run.", table},
+          {"surface", "From a solid's surface in the frames of a run, one row a frame.", surface},
           {"field", "Difference of a cell-centred field to an exact solution.", field}};
+}
+
+ParameterList curve_parameters() {
+  ParameterList curve;
+  declare_required<std::string>(curve, "Expression",
+                                "Formula of the columns of the tables, as for a quantity.");
+  declare(curve, "Exact", "", "Formula of what it should be, of the same; drawn dashed.");
+  return curve;
 }
 
 Formulas read_formulas(const ParameterList& list, const std::string& where) {
@@ -100,6 +147,30 @@ Series read_series(const ParameterList& list, const std::string& name, const std
   return series;
 }
 
+std::vector<Series> read_all_series(const ParameterList& study, const std::string& file) {
+  const auto& scene = study.get<std::string>("Scene");
+  const auto read_list = [&](const ParameterList& list) {
+    std::vector<Series> all;
+    for (const auto& [name, entry] : entries(list))
+      all.push_back(read_series(Teuchos::getValue<ParameterList>(entry), name, file, scene));
+    return all;
+  };
+  const Series plain{"", resolve_path(file, scene), {}, {}, {}, 1};
+  std::vector<Series> series = read_list(study.sublist("Series"));
+  std::vector<std::vector<Series>> factors;
+  for (const auto& [name, entry] : entries(study.sublist("Factors"))) {
+    factors.push_back(read_list(Teuchos::getValue<ParameterList>(entry).sublist("Options")));
+    check_input(!factors.back().empty(), "{}: the factor \"{}\" has no \"Options\".", file, name);
+  }
+  for (Series& one : series_product(factors, plain))
+    series.push_back(std::move(one));
+  if (series.empty()) {
+    series.push_back(plain);
+    series.back().name = "all";
+  }
+  return series;
+}
+
 template <typename Value>
 Value choice(const std::string& text, const std::vector<std::pair<const char*, Value>>& values) {
   return std::find_if(values.begin(), values.end(),
@@ -107,13 +178,26 @@ Value choice(const std::string& text, const std::vector<std::pair<const char*, V
       ->second;
 }
 
+void read_vertex(const ParameterList& list, const std::string& name, Quantity& quantity) {
+  quantity.solid = list.get<std::string>("Solid");
+  const auto& point = list.get<ParameterArray<double>>("Point");
+  check_input(point.size() == 2 || point.size() == 3,
+              "In quantity \"{}\", \"Point\" has {} components; it must have 2 or 3.", name,
+              point.size());
+  std::copy(point.begin(), point.end(), quantity.point.begin());
+}
+
 Quantity read_quantity(const ParameterList& list, const std::string& name) {
+  using From = Quantity::From;
   using Over = Quantity::Over;
   using Norm = Quantity::Norm;
   Quantity quantity;
   quantity.name = name;
-  quantity.is_field = list.get<std::string>("Type") == "field";
-  if (quantity.is_field) {
+  quantity.targets = list.get<ParameterArray<double>>("Targets").toVector();
+  quantity.from =
+      choice<From>(list.get<std::string>("Type"),
+                   {{"table", From::tables}, {"surface", From::surface}, {"field", From::field}});
+  if (quantity.from == From::field) {
     quantity.expression = list.get<std::string>("Exact");
     quantity.field = list.get<std::string>("Field");
     quantity.component = list.get<int>("Component");
@@ -128,10 +212,15 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
                                                                {"max", Over::max},
                                                                {"min", Over::min},
                                                                {"mean", Over::mean},
-                                                               {"rms", Over::rms}});
+                                                               {"rms", Over::rms},
+                                                               {"amplitude", Over::amplitude},
+                                                               {"frequency", Over::frequency}});
+  if (quantity.from == From::surface)
+    read_vertex(list, name, quantity);
   quantity.from_time = list.get<double>("From Time");
   quantity.reference = list.get<std::string>("Reference");
   quantity.relative = list.get<bool>("Relative");
+  quantity.extrapolate = list.get<bool>("Extrapolate");
   return quantity;
 }
 
@@ -158,6 +247,11 @@ ParameterList study_parameters() {
           "dt, cells, ranks.");
   declare_named_sublists(study, "Series", "The lines of the plot; without any there is one.",
                          series_parameters());
+  declare_named_sublists(
+      study, "Factors",
+      "More series: one for every choice of one option of each factor, such as discretization, "
+      "strategy and time step. An option says what a series can say.",
+      factor_parameters());
   ParameterList& samples = declare_list(
       study, "Samples",
       "Each case is run several times with other offsets, and values are averaged. offset_x, "
@@ -168,6 +262,8 @@ ParameterList study_parameters() {
   declare(samples, "Set", "", assignments_doc);
   declare_named_sublists(study, "Quantities", "What is measured, one sublist each.",
                          quantity_types(), "table");
+  declare_named_sublists(study, "Curves", "What is drawn over time, one picture each.",
+                         curve_parameters());
   return study;
 }
 
@@ -178,7 +274,6 @@ Study read_study(const std::string& file) {
   const ParameterList& ladder = list.sublist("Ladder");
   Study study;
   study.title = list.get<std::string>("Title");
-  const auto& scene = list.get<std::string>("Scene");
   study.constants = read_formulas(list.sublist("Constants"), file);
   for (const auto& [name, entry] : entries(list.sublist("Parameters")))
     study.parameters.emplace_back(name, value_text(entry));
@@ -187,15 +282,17 @@ Study read_study(const std::string& file) {
   study.ladder_values = ladder.get<ParameterArray<double>>("Values").toVector();
   study.usual_rungs = ladder.get<int>("Usual Rungs");
   study.abscissa = ladder.get<std::string>("Abscissa");
-  for (const auto& [name, entry] : entries(list.sublist("Series")))
-    study.series.push_back(read_series(Teuchos::getValue<ParameterList>(entry), name, file, scene));
-  if (study.series.empty())
-    study.series.push_back({"all", resolve_path(file, scene), {}, {}, {}, 1});
+  study.series = read_all_series(list, file);
   study.n_samples = list.sublist("Samples").get<int>("Number");
   study.sample_assignments =
       read_assignments(list.sublist("Samples").get<std::string>("Set"), file);
   for (const auto& [name, entry] : entries(list.sublist("Quantities")))
     study.quantities.push_back(read_quantity(Teuchos::getValue<ParameterList>(entry), name));
+  for (const auto& [name, entry] : entries(list.sublist("Curves"))) {
+    const auto& curve = Teuchos::getValue<ParameterList>(entry);
+    study.curves.push_back(
+        {name, curve.get<std::string>("Expression"), curve.get<std::string>("Exact")});
+  }
   check_input(!study.quantities.empty(), "{}: the study measures nothing; name a quantity.", file);
   check_input(!study.ladder_values.empty(), "{}: the ladder has no \"Values\".", file);
   return study;

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,18 +25,30 @@ struct Series {
 
 /// One column of results, and what it is compared with.
 struct Quantity {
-  enum class Over { last, first, max, min, mean, rms };
+  enum class From { tables, surface, field };
+  enum class Over { last, first, max, min, mean, rms, amplitude, frequency };
   enum class Norm { l1, l2, max };
   std::string name;
-  bool is_field = false;
-  std::string expression;  ///< over the columns of history and bodies, or exact value of the field
-  Over over = Over::last;  ///< how the rows of a run become one number
-  double from_time = 0;    ///< rows before it do not count [s]
-  std::string field;       ///< dataset of the last frame
+  From from = From::tables;
+  std::string expression;         ///< over the rows of a run, or exact value of the field
+  Over over = Over::last;         ///< how the rows of a run become one number
+  double from_time = 0;           ///< rows before it do not count [s]
+  std::string solid;              ///< whose surface
+  std::array<double, 3> point{};  ///< that picks a vertex of the surface [m]
+  std::string field;              ///< dataset of the last frame
   int component = 0;
   Norm norm = Norm::l2;
-  std::string reference;  ///< a formula, "self" or empty
-  bool relative = true;   ///< error over |reference|
+  std::string reference;        ///< a formula, "self" or empty
+  bool relative = true;         ///< error over |reference|
+  std::vector<double> targets;  ///< errors whose cost is reported
+  bool extrapolate = false;     ///< to the limit of its ladder, where the order is clean
+};
+
+/// A quantity over time, drawn for every case.
+struct Curve {
+  std::string name;
+  std::string expression;  ///< over the columns of history and bodies
+  std::string exact;       ///< the same of what it should be; may be empty
 };
 
 /// A study file: which scene is run with which changes, and what is measured.
@@ -52,6 +65,7 @@ struct Study {
   int n_samples = 1;
   std::vector<std::string> sample_assignments;
   std::vector<Quantity> quantities;
+  std::vector<Curve> curves;
 };
 
 /// Schema of a study file.

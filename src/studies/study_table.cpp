@@ -1,5 +1,7 @@
 #include "studies/study_table.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -108,14 +110,24 @@ std::string short_text(const std::optional<double>& number, int digits) {
   return number ? fmt::format("{:.{}g}", *number, digits) : "";
 }
 
-/// Inside a CSV field: no commas or line breaks.
-std::string plain(std::string name) {
+/// Comments that the plot reads.
+std::string target_lines(const Study& study) {
+  std::string lines;
+  for (const Quantity& quantity : study.quantities) {
+    if (!quantity.targets.empty())
+      lines += fmt::format("# targets of {}: {}\n", csv_field(quantity.name),
+                           fmt::join(quantity.targets, " "));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::string csv_field(std::string name) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == ',' || c == '\n' || c == '"'; }, ';');
   return name;
 }
-
-}  // namespace
 
 std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCase>& cases,
                                   const std::vector<CaseOutcome>& outcomes) {
@@ -139,16 +151,16 @@ std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
       "# cells: of the whole box; h [m], dt [s]: mean of a run; error: relative to the reference "
       "unless that is 0\n"
       "# wall_seconds, core_seconds [s]: of one run; spread: standard deviation over the samples\n"
-      "series,cells,h,dt,ranks,quantity,value,reference,error,order,wall_seconds,core_seconds,"
+      "{}series,cells,h,dt,ranks,quantity,value,reference,error,order,wall_seconds,core_seconds,"
       "iterations_median,iterations_max,peak_memory_mb,spread,samples,abscissa\n",
-      study.title, study.abscissa, study.ladder_name);
+      study.title, study.abscissa, study.ladder_name, target_lines(study));
   for (const StudyRow& row : rows) {
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", plain(row.series),
-                       row.cells, number_text(row.spacing), number_text(row.mean_step), row.ranks,
-                       plain(row.quantity), number_text(row.value), text(row.reference),
-                       text(row.error), text(row.order), row.wall_seconds, row.core_seconds,
-                       row.iterations_median, row.iterations_max, row.peak_memory_mb,
-                       number_text(row.spread), row.n_samples, number_text(row.abscissa));
+    csv += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.series), row.cells,
+        number_text(row.spacing), number_text(row.mean_step), row.ranks, csv_field(row.quantity),
+        number_text(row.value), text(row.reference), text(row.error), text(row.order),
+        row.wall_seconds, row.core_seconds, row.iterations_median, row.iterations_max,
+        row.peak_memory_mb, number_text(row.spread), row.n_samples, number_text(row.abscissa));
   }
   return csv;
 }

@@ -27,6 +27,9 @@ struct StudyRow {
 std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCase>& cases,
                                   const std::vector<CaseOutcome>& outcomes);
 
+/// A name inside a CSV field: no commas, quotes or line breaks.
+std::string csv_field(std::string name);
+
 /// With a commented header that tools/plot-study reads. Numbers that do not exist are left empty.
 std::string table_csv(const Study& study, const std::vector<StudyRow>& rows);
 /// For people: fewer digits, one table a quantity.

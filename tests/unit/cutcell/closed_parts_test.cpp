@@ -114,4 +114,14 @@ TEST(ClosedParts, ShellsCloseNothing) {
   EXPECT_TRUE(closed_parts<2>(surface, {Point<2>(0.5, 0), Point<2>(0.5, 0.5)}, 0).empty());
 }
 
+TEST(ClosedParts, VolumesOfADualCell) {
+  // [0.3, 0.8] x [0.2, 0.6]; the dual cell reaches over its left side.
+  const auto surface = one_solid<2>(box_surface<2>({0.5, 0.4}, 0.1), {0.55, 0.4});
+  const auto parts = closed_volumes<2>(surface, {Point<2>(0.25, 0.5), Point<2>(0.45, 0.7)}, 0);
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_NEAR(parts[0].area, 0.1 * 0.15 / 0.2, 1e-14);
+  EXPECT_NEAR(parts[0].center[1], 0.55, 1e-14);
+  EXPECT_TRUE(closed_volumes<2>(surface, {Point<2>(0.9, 0), Point<2>(1, 1)}, 0).empty());
+}
+
 }  // namespace lockstep::testing

@@ -219,6 +219,22 @@ TEST(Flux, OfAFluidAtRestLiftsTheBodyExactly) {
   EXPECT_LT(lift.segment(3, 3).norm(), 1e-14);
 }
 
+// Volume fractions displace the volume of the body without any correction.
+TEST(Flux, OfVolumeFractionsLiftsTheBodyExactly) {
+  FluxOptions options;
+  options.weights = FaceWeights::volumes;
+  options.correct_buoyancy = false;
+  const FluxCase<3> c(9, {ball<3>(0.24, {0.43, 0.52, 0.47}, 0.1)}, options);
+  const Point<3> gravity = c.fluid->gravity();
+  const auto pressure =
+      test::pressure_vector<3>(*c.fluid, [&](const Point<3>& x) { return gravity.dot(x); });
+  const auto lift = make_vector(c.solids->map());
+  c.coupling.coupling_transposed()->apply(*pressure, *lift, Teuchos::NO_TRANS, -1, 0);
+  const double volume = 4. / 3 * M_PI * std::pow(0.24, 3);
+  // Open fractions are rounded to a millionth.
+  EXPECT_LT((dense(*lift).head(3) + volume * gravity).norm(), 1e-6 * volume * gravity.norm());
+}
+
 TEST(Flux, SystemIsSymmetricAndDefinite) {
   const FluxCase<2> c(14, {ball<2>(0.2, {0.507, 0.511}, 0.03)});
   const BlockSystem& blocks = c.system->blocks(0.1);

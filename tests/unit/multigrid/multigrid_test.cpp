@@ -225,6 +225,25 @@ TEST(Multigrid, IsSymmetricAndPositive) {
   }
 }
 
+/// Two chambers that see each other through a single face. Coarse faces of half their fine ones
+/// would correct them 2^level times too far apart, and the W-cycle would not be positive.
+TEST(Multigrid, ChambersJoinedByAGap) {
+  const double h = 1.0 / 64;
+  Case<2> scene(cube<2>(64), h);
+  Solids<2> solids;
+  solids.add(plate_surface<2>({0, 1}, 0, h), {0.5, 0.5 - h}, false);
+  const Problem<2> problem(scene, solids.snapshot());
+  ASSERT_EQ(problem.fluid->regions().n_regions, 1);
+  const auto layout = PressureLayout::make(problem.system, {}, nullptr);
+  const auto apart =
+      pressure_vector<2>(*problem.fluid, [](const Point<2>& x) { return x[0] < 0.5 ? -1. : 1.; });
+  Vector u(layout->map()), mu(layout->map());
+  layout->to_layout(*apart, u);
+  apply(*layout->inverse(), u, mu);
+  EXPECT_GT(u.dot(mu), 0);
+  expect_few_iterations(problem, 14);
+}
+
 TEST(Multigrid, RefusesWhatItCannotHalve) {
   Case<2> scene({40, 40}, 1.0 / 40);
   scene.all_periodic();

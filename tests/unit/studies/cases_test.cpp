@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "base/errors.hpp"
+#include "studies/series_product.hpp"
 #include "studies/study_cases.hpp"
 
 namespace lockstep::test {
@@ -59,6 +60,30 @@ TEST(Cases, ALadderOfRanks) {
   ASSERT_EQ(cases.size(), 2u);
   EXPECT_EQ(cases[1].ranks, 4);
   EXPECT_EQ(cases[1].directory, "light-one/ranks=4");
+}
+
+TEST(Cases, AProductOfFactorsIsOneSeriesForEveryChoice) {
+  const Series plain{"", "scene.xml", {}, {}, {}, 1};
+  Series voxel = plain, flux = plain, fine = plain, coarse = plain;
+  voxel.name = "voxel";
+  flux.name = "flux";
+  flux.assignments = {"Coupling/Type=flux"};
+  fine.name = "small steps";
+  fine.constants = {{"number", "0.1"}};
+  coarse.name = "large steps";
+  coarse.scene_file = "other.xml";
+  coarse.values = {8, 16};
+  coarse.assignments = {"Time/CFL=4"};
+  const auto series = series_product({{voxel, flux}, {fine, coarse}}, plain);
+  ASSERT_EQ(series.size(), 4u);
+  EXPECT_EQ(series[0].name, "voxel, small steps");
+  EXPECT_EQ(series[0].scene_file, "scene.xml");
+  EXPECT_EQ(series[2].constants, (Formulas{{"number", "0.1"}}));
+  EXPECT_EQ(series[3].name, "flux, large steps");
+  EXPECT_EQ(series[3].scene_file, "other.xml");
+  EXPECT_THAT(series[3].assignments, testing::ElementsAre("Coupling/Type=flux", "Time/CFL=4"));
+  EXPECT_THAT(series[3].values, testing::ElementsAre(8, 16));
+  EXPECT_TRUE(series_product({}, plain).empty());
 }
 
 TEST(Cases, EveryShippedStudyCanBeExpanded) {

@@ -1,12 +1,16 @@
 #!/usr/bin/python3
-"""Stands in for simulate: a 'scene' whose error is h^2 + offset, in the files a run leaves behind.
+"""Stands in for simulate: a 'scene' whose error is h^2 + offset, in the files a run leaves behind. Its frames hold
+a unit square, "Ball 1", that breathes by a tenth with a period of 0.4 s.
 
 Understands --output and the settings Domain/Cells, Solids/Ball/Position and Fake/Fail (an exit code).
 """
 import json
+import math
 import os
 import sys
 from pathlib import Path
+
+import h5py
 
 arguments = sys.argv[2:]
 folder, settings = None, {}
@@ -43,3 +47,10 @@ h = 1 / cells[0]
   </ParameterList>
 </ParameterList>
 """)
+(folder / "frames").mkdir()
+for k in range(25):
+    size = 1 + 0.1 * math.cos(2 * math.pi * k / 8)
+    with h5py.File(folder / f"frames/frame-{k:06}.h5", "w") as file:
+        file.attrs["time"] = 0.05 * k
+        file["solids/Ball 1/vertices"] = [[0.0, 0, 0], [size, 0, 0], [size, size, 0], [0, size, 0]]
+        file["solids/Ball 1/simplices"] = [[0, 1], [1, 2], [2, 3], [3, 0]]

@@ -85,6 +85,29 @@ TEST_F(Runs, SelfConvergenceAndReductions) {
   EXPECT_NEAR(rows[3].value, 0.15, 1e-15);
 }
 
+TEST_F(Runs, SurfacesInTheFrames) {
+  study_.ladder_values = {4};
+  Quantity corner = study_.quantities[0];
+  corner.from = Quantity::From::surface;
+  corner.solid = "Ball 1";
+  corner.point = {2, 3, 0};
+  corner.reference = "";
+  Quantity volume = corner;
+  volume.expression = "volume / volume0";
+  volume.over = Quantity::Over::min;
+  corner.expression = "x + 2 * (y - y0)";
+  study_.quantities = {corner, corner, volume};
+  study_.quantities[0].over = Quantity::Over::frequency;
+  study_.quantities[1].over = Quantity::Over::amplitude;
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_NEAR(rows[0].value, 2.5, 1e-12);
+  EXPECT_NEAR(rows[1].value, 0.3, 1e-12);
+  EXPECT_NEAR(rows[2].value, 0.81 / 1.21, 1e-12);  // of a cone from outside the square
+  study_.quantities[0].solid = "Bell";
+  EXPECT_THROW(table(), OutputError);
+}
+
 TEST_F(Runs, MeanAndSpreadOverSamples) {
   study_.ladder_values = {4};
   study_.n_samples = 3;

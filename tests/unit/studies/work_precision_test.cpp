@@ -1,0 +1,112 @@
+// What an error costs, and what a ladder tends to, on tables made by hand.
+#include "studies/work_precision.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "studies/extrapolation.hpp"
+
+namespace lockstep::test {
+
+namespace {
+
+StudyRow row_of(const std::string& series, double seconds, double error) {
+  StudyRow row;
+  row.series = series;
+  row.quantity = "speed";
+  row.core_seconds = seconds;
+  row.cells = 10 * seconds;
+  row.peak_memory_mb = 100;
+  row.error = error;
+  return row;
+}
+
+/// Rungs h = 1, 1/2, 1/4... with the values given.
+std::vector<StudyRow> halvings(const std::vector<double>& values) {
+  std::vector<StudyRow> rows;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    rows.push_back(row_of("flux", 1, 1));
+    rows.back().value = values[k];
+    rows.back().abscissa = std::pow(0.5, static_cast<double>(k));
+    rows.back().reference = 2;
+  }
+  return rows;
+}
+
+Study study_of(const Quantity& quantity) {
+  Study study;
+  study.quantities = {quantity};
+  study.quantities[0].name = "speed";
+  return study;
+}
+
+}  // namespace
+
+TEST(WorkPrecision, CostIsInterpolatedInLogarithms) {
+  // error = 1 / seconds: 5 % cost 20 s.
+  const auto cost = cost_of_target({row_of("a", 10, 0.1), row_of("a", 100, 0.01)}, 0.05);
+  EXPECT_EQ(cost.found, TargetCost::Found::between_rungs);
+  EXPECT_NEAR(cost.core_seconds, 20, 1e-12);
+  EXPECT_NEAR(cost.cells, 200, 1e-12);
+  EXPECT_NEAR(cost.peak_memory_mb, 100, 1e-12);
+}
+
+TEST(WorkPrecision, ARungCountsOnlyIfAllFinerOnesKeepTheTarget) {
+  const std::vector<StudyRow> lucky{row_of("a", 1, 0.2), row_of("a", 2, 0.001), row_of("a", 4, 0.1),
+                                    row_of("a", 8, 0.025)};
+  EXPECT_NEAR(cost_of_target(lucky, 0.05).core_seconds, 4 * std::sqrt(2.), 1e-12);
+  EXPECT_EQ(cost_of_target(lucky, 0.01).found, TargetCost::Found::not_reached);
+  const auto early = cost_of_target(lucky, 0.5);
+  EXPECT_EQ(early.found, TargetCost::Found::at_coarsest);
+  EXPECT_EQ(early.core_seconds, 1);
+}
+
+TEST(WorkPrecision, NoErrorAtAllCostsItsRung) {
+  EXPECT_EQ(cost_of_target({row_of("a", 1, 0.1), row_of("a", 9, 0)}, 0.05).core_seconds, 9);
+}
+
+TEST(WorkPrecision, TheCheapestSeriesComesFirst) {
+  std::vector<StudyRow> rows{row_of("slow", 10, 0.1), row_of("slow", 100, 0.01),
+                             row_of("never", 1, 0.2), row_of("fast", 1, 0.1),
+                             row_of("fast", 10, 0.01)};
+  const auto costs = ranking(rows, 0.05);
+  ASSERT_EQ(costs.size(), 3u);
+  EXPECT_EQ(costs[0].series, "fast");
+  EXPECT_EQ(costs[1].series, "slow");
+  EXPECT_EQ(costs[2].series, "never");
+  EXPECT_EQ(costs[2].found, TargetCost::Found::not_reached);
+  Quantity quantity;
+  quantity.targets = {0.05};
+  const std::string page = targets_markdown(study_of(quantity), rows);
+  EXPECT_THAT(page, testing::HasSubstr("| 0.05 | 1 | fast | 2 | 20 | 100 |"));
+  EXPECT_THAT(page, testing::HasSubstr("| 0.05 | not reached | never |  |  |  |"));
+  EXPECT_EQ(targets_markdown(study_of({}), rows), "");
+}
+
+TEST(Extrapolation, ACleanOrderGivesTheLimit) {
+  const auto second = extrapolate(halvings({2 + 1., 2 + 1. / 4, 2 + 1. / 16}));
+  ASSERT_TRUE(second);
+  EXPECT_NEAR(second->order, 2, 1e-12);
+  EXPECT_NEAR(second->limit, 2, 1e-12);
+  // Of order 1.5: believed if four rungs say so, not from three.
+  const std::vector<double> odd{1, std::pow(0.5, 1.5), std::pow(0.25, 1.5), std::pow(0.125, 1.5)};
+  EXPECT_NEAR(extrapolate(halvings(odd))->limit, 0, 1e-12);
+  EXPECT_FALSE(extrapolate(halvings({odd.begin(), odd.begin() + 3})));
+}
+
+TEST(Extrapolation, NothingIsSaidWhereTheOrderIsNotClean) {
+  EXPECT_FALSE(extrapolate(halvings({3, 2.5})));
+  EXPECT_FALSE(extrapolate(halvings({3, 2, 2.5})));      // not monotone
+  EXPECT_FALSE(extrapolate(halvings({3, 2.5, 1})));      // diverges
+  EXPECT_FALSE(extrapolate(halvings({9, 5, 3, 2.75})));  // order 1, then 3
+  auto uneven = halvings({3, 2.25, 2.0625});
+  uneven[2].abscissa = 0.3;
+  EXPECT_FALSE(extrapolate(uneven));
+  Quantity quantity;
+  quantity.extrapolate = true;
+  const std::string page = extrapolations_markdown(study_of(quantity), halvings({3, 2.25, 2.0625}));
+  EXPECT_THAT(page, testing::HasSubstr("| speed | flux | 2.0625 | 2.00 | 2 | 0 |"));
+}
+
+}  // namespace lockstep::test
