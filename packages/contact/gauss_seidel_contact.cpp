@@ -3,6 +3,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "contact/contact_problem.hpp"
+#include "contact/impact_zones.hpp"
 #include "linear/exact_inverse.hpp"
 
 namespace lockstep {
@@ -61,15 +62,20 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   if (!acts)
     return report;
   const InverseMass inverse_mass = replicated_inverse_mass(solids);
-  ImpulseSolver<dim> solver(solids, inverse_mass, given);
+  ImpulseSolver<dim> solver(solids, shapes, inverse_mass, given);
   report.iterations = problem.solve(solver);
   report.n_contacts = solver.n_contacts();
   report.external_impulse = solver.external_impulse();
 
-  RCP<Vector> change = distributed(solids, solver.velocity());
+  std::vector<double> resolved = solver.velocity();
+  if (phase == ContactPhase::position) {
+    report.n_crossings =
+        join_impact_zones(solids, shapes, inverse_mass, options_.self_contact, dt, resolved);
+  }
+  RCP<Vector> change = distributed(solids, resolved);
   change->update(-1, *distributed(solids, given), 1);
   const RCP<const Vector> impulse = distributed(solids, solver.generalized_impulse());
-  if (!inverse_mass.exact)
+  if (!inverse_mass.exact && phase == ContactPhase::velocity)
     change = velocity_change(solids, *impulse);
   if (solids.has_locks())
     report.external_impulse += lock_impulse(solids, *change, *impulse);
