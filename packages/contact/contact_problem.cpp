@@ -17,10 +17,12 @@ template <int dim>
 constexpr int most_at_once = dim == 2 ? 2 : 4;
 
 /// Shells and what deforms have a skin.
-double half_thickness_of(const SolidDescription& solid, double usual) {
-  if (solid.contact_thickness > 0)
-    return 0.5 * solid.contact_thickness;
-  return solid.closed && solid.rigid ? 0 : 0.5 * usual;
+double half_thickness_of(const SolidDescription& solid, const GaussSeidelOptions& options,
+                         double spacing) {
+  const auto own = options.thickness_of.find(solid.name);
+  if (own != options.thickness_of.end())
+    return 0.5 * own->second;
+  return solid.closed && solid.rigid ? 0 : 0.5 * options.shell_thickness * spacing;
 }
 }  // namespace
 
@@ -38,7 +40,7 @@ ContactProblem<dim>::ContactProblem(const SolidSystem<dim>& system,
       phase_(phase),
       dt_(dt) {
   for (const SolidDescription& solid : shapes.solids())
-    half_thickness_.push_back(half_thickness_of(solid, options.shell_thickness * spacing));
+    half_thickness_.push_back(half_thickness_of(solid, options, spacing));
 }
 
 template <int dim>

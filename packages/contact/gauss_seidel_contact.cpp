@@ -1,7 +1,9 @@
 #include "contact/gauss_seidel_contact.hpp"
 
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
+#include "base/errors.hpp"
 #include "contact/contact_problem.hpp"
 #include "contact/impact_zones.hpp"
 #include "linear/exact_inverse.hpp"
@@ -29,6 +31,15 @@ Momentum<dim> lock_impulse(const SolidSystem<dim>& solids, const Vector& change,
   return solids.momentum(*reaction);
 }
 
+void check_names(const std::map<std::string, double>& by_name,
+                 const std::vector<SolidDescription>& solids) {
+  for (const auto& [name, value] : by_name) {
+    const auto has_name = [&wanted = name](const auto& solid) { return solid.name == wanted; };
+    check_input(std::any_of(solids.begin(), solids.end(), has_name),
+                "\"Contact/Skins/{0}\": there is no solid \"{0}\"; name one of \"Solids\".", name);
+  }
+}
+
 /// M_S^-1 of an impulse on the free dofs. Collective.
 template <int dim>
 RCP<Vector> velocity_change(const SolidSystem<dim>& solids, const Vector& impulse) {
@@ -54,6 +65,7 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   ContactReport<dim> report;
   if (!solids.has_unknowns())
     return report;
+  check_names(options_.thickness_of, solids.solids());
   const ContactShapes<dim> shapes(solids, topology_);
   ContactProblem<dim> problem(solids, shapes, walls_, options_, spacing_, phase, dt);
   const std::vector<double> given = replicated(solids, velocity);

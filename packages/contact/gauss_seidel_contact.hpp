@@ -1,5 +1,7 @@
 #pragma once
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "contact/contact_search.hpp"
@@ -18,7 +20,8 @@ struct GaussSeidelOptions {
   double deepest = 0.5;          ///< overlap that is recognised [h]
   double push_rate = 0.2;        ///< part of an overlap that one step removes [1]
   double bounce_speed = 1e-3;    ///< no restitution below this speed of approach [m/s]
-  bool self_contact = true;      ///< of solids that are not rigid
+  std::map<std::string, double> thickness_of;             ///< instead, by name of the solid [m]
+  bool self_contact = true;                               ///< of solids that are not rigid
   std::optional<double> wall_friction, wall_restitution;  ///< default: those of the solid
 };
 

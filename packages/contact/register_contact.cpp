@@ -20,9 +20,12 @@ ParameterList contact_parameters() {
                    "Overlap that is left alone, and gap up to which solids count as touching "
                    "[cells].");
   declare_positive(list, "Shell Thickness", usual.shell_thickness,
-                   "Thickness for contact of thin shells and of the skin of deformable bodies, "
-                   "where they have no \"Contact Thickness\" of their own [cells]. Surfaces that "
-                   "touch stay the mean of their thicknesses apart.");
+                   "Thickness for contact of thin shells and of the skins of deformable bodies "
+                   "[cells]. Surfaces that touch stay the mean of their thicknesses apart; of one "
+                   "that touches itself it should be below half the spacing of the mesh.");
+  ParameterList skin;
+  declare_required_positive(skin, "Thickness", "Instead of \"Shell Thickness\" [m].");
+  declare_named_sublists(list, "Skins", "By name of a solid: its own thickness for contact.", skin);
   declare_positive(list, "Deepest Overlap", usual.deepest,
                    "How deep inside a solid a vertex is still recognised [cells].");
   declare_between(list, "Push Out Rate", usual.push_rate, 0.0, 1.0,
@@ -60,6 +63,11 @@ GaussSeidelOptions options_from(const ParameterList& list) {
   options.deepest = list.get<double>("Deepest Overlap");
   options.push_rate = list.get<double>("Push Out Rate");
   options.bounce_speed = list.get<double>("Bounce Speed");
+  const ParameterList& skins = list.sublist("Skins");
+  for (auto skin = skins.begin(); skin != skins.end(); ++skin) {
+    const std::string& name = skins.name(skin);
+    options.thickness_of[name] = skins.sublist(name).get<double>("Thickness");
+  }
   options.self_contact = list.get<bool>("Self-Contact");
   options.wall_friction = optional_value(list, "Wall Friction");
   options.wall_restitution = optional_value(list, "Wall Restitution");

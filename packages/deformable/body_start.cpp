@@ -121,9 +121,6 @@ void declare_body_start(ParameterList& list) {
   declare_between(list, "Restitution", 0.0, 0.0, 1.0,
                   "Speed after over speed before a collision [1].");
   declare_at_least(list, "Friction", 0.0, 0.0, "Coulomb's coefficient of contacts [1].");
-  declare_at_least(list, "Contact Thickness", 0.0, 0.0,
-                   "Of the skin or shell for contact [m]; 0: \"Contact/Shell Thickness\". At most "
-                   "half the spacing of the mesh if it touches itself.");
 }
 
 template <int dim>
@@ -131,7 +128,6 @@ void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& r
                      DeformableBody<dim>& body) {
   body.restitution = list.get<double>("Restitution");
   body.friction = list.get<double>("Friction");
-  body.contact_thickness = list.get<double>("Contact Thickness");
   body.integration = read_integration(list);
   body.consistent_mass = list.get<std::string>("Mass") == "consistent";
   std::vector<double> node_mass(rest.size(), 0);

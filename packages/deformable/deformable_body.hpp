@@ -22,7 +22,6 @@ struct DeformableBody {
   bool closed = true;  ///< a volume; false: a thin shell
   double density = 0;  ///< [kg/m^dim], of a shell [kg/m^(dim-1)]
   double restitution = 0, friction = 0;
-  double contact_thickness = 0;  ///< [m]; 0: that of the contact model
   TimeIntegration integration = TimeIntegration::semi_implicit;
   bool consistent_mass = false;  ///< of the finite elements; false: lumped to the nodes
 

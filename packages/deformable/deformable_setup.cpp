@@ -60,7 +60,6 @@ void DeformableSolids<dim>::add_body(DeformableBody<dim>& body, int node_begin) 
   solid.density = body.density;
   solid.restitution = body.restitution;
   solid.friction = body.friction;
-  solid.contact_thickness = body.contact_thickness;
   solid.index_in_model = static_cast<int>(solids_.size());
   solid.simplex_begin = solids_.empty() ? 0 : solids_.back().simplex_end;
   solid.simplex_end = solid.simplex_begin + static_cast<int>(body.surface.size());

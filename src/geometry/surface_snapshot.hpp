@@ -11,15 +11,14 @@ namespace lockstep {
 /// What the framework knows of one solid's surface.
 struct SolidDescription {
   std::string name;
-  bool closed = true;            ///< encloses a volume; false: a thin shell
-  bool prescribed = false;       ///< kinematic or static: contributes velocities, not unknowns
-  bool rigid = true;             ///< all its velocity rows are those of one rigid motion
-  double density = 0;            ///< [kg/m^dim], of a shell [kg/m^(dim-1)]; for reports
-  double restitution = 0;        ///< of contacts: speed after over speed before [1]
-  double friction = 0;           ///< Coulomb's coefficient [1]
-  double contact_thickness = 0;  ///< [m]; 0: that of the contact model
-  int model = 0;                 ///< index of its SolidModel in the SolidSystem
-  int index_in_model = 0;        ///< its place in that model's `solids()`
+  bool closed = true;       ///< encloses a volume; false: a thin shell
+  bool prescribed = false;  ///< kinematic or static: contributes velocities, not unknowns
+  bool rigid = true;        ///< all its velocity rows are those of one rigid motion
+  double density = 0;       ///< [kg/m^dim], of a shell [kg/m^(dim-1)]; for reports
+  double restitution = 0;   ///< of contacts: speed after over speed before [1]
+  double friction = 0;      ///< Coulomb's coefficient [1]
+  int model = 0;            ///< index of its SolidModel in the SolidSystem
+  int index_in_model = 0;   ///< its place in that model's `solids()`
   int simplex_begin = 0, simplex_end = 0;  ///< its range of simplices in the snapshot
   int vertex_begin = 0, vertex_end = 0;    ///< its range of vertices in the snapshot
 };
