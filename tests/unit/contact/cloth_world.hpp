@@ -128,8 +128,11 @@ inline int n_crossings<2>(const SurfaceMesh<2>& mesh) {
 template <>
 inline int n_crossings<3>(const SurfaceMesh<3>& mesh) {
   const auto& x = mesh.vertices;
+  // Round-off in a flat sheet is no crossing.
   const auto volume = [&x](int a, int b, int c, int d) {
-    return (x[b] - x[a]).cross(x[c] - x[a]).dot(x[d] - x[a]);
+    const Point<3> u = x[b] - x[a], v = x[c] - x[a], w = x[d] - x[a];
+    const double value = u.cross(v).dot(w);
+    return std::abs(value) > 1e-13 * u.norm() * v.norm() * w.norm() ? value : 0;
   };
   int n = 0;
   for (const auto& edges : mesh.simplices) {
