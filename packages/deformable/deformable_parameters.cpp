@@ -9,6 +9,7 @@ namespace lockstep {
 
 namespace {
 
+template <int dim>
 void declare_material(ParameterList& body) {
   ParameterList law("law");
   declare_required_positive(law, "Young's Modulus", "Stiffness in uniaxial stress [Pa].");
@@ -16,9 +17,10 @@ void declare_material(ParameterList& body) {
                   "Contraction across over stretch along [1]. In 2D strain is plane. Near 0.5 "
                   "linear elements lock: refine, or stay below 0.45.");
   std::vector<TypedSchema> laws;
-  for (const MaterialName& material : material_names())
+  for (const auto& material : material_kinds<dim>())
     laws.push_back({material.name, material.documentation, law});
-  declare_typed_sublist(body, "Material", "The elastic law.", laws, "corotated");
+  declare_typed_sublist(body, "Material", "The elastic law.", laws,
+                        material_kinds<dim>().front().name);
 }
 
 }  // namespace
@@ -27,7 +29,7 @@ template <int dim>
 ParameterList deformable_body_parameters() {
   ParameterList list("deformable body");
   declare_deformable_geometry<dim>(list);
-  declare_material(list);
+  declare_material<dim>(list);
   declare_required_positive(list, "Density", "At rest [kg/m^3] (2D: [kg/m^2]).");
   declare_at_least(list, "Viscosity", 0.0, 0.0,
                    "Of the material: shear stress over twice the strain rate [Pa s].");

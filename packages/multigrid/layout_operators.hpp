@@ -4,13 +4,12 @@
 #include <Tpetra_Operator.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "base/errors.hpp"
+#include "linear/vector_sums.hpp"
 #include "multigrid/level_halo.hpp"
 #include "multigrid/multigrid.hpp"
 
@@ -20,23 +19,6 @@ using TpetraOperator = Tpetra::Operator<double, int, GlobalIndex>;
 
 inline RCP<const LinearOperator> as_thyra_operator(const RCP<const TpetraOperator>& op) {
   return Thyra::createConstLinearOp<double, int, GlobalIndex>(op);
-}
-
-constexpr int n_lanes = 16;
-
-/// Sum of products, in lanes so that no addition waits for the one before it.
-template <typename A, typename B>
-double dot(const A* a, const B* b, int n) {
-  std::array<double, n_lanes> sums{};
-  int i = 0;
-  for (; i + n_lanes <= n; i += n_lanes) {
-#pragma GCC ivdep
-    for (int lane = 0; lane < n_lanes; ++lane)
-      sums[lane] += static_cast<double>(a[i + lane]) * static_cast<double>(b[i + lane]);
-  }
-  for (; i < n; ++i)
-    sums[0] += static_cast<double>(a[i]) * static_cast<double>(b[i]);
-  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 /// A symmetric operator on the layout's vectors that overwrites its result.
@@ -121,7 +103,7 @@ class LayoutStencil final : public LayoutOperator {
         double* out = y + colour * grid.n_slots;
         level_.multiply(colour, j, rows.k, unit_, in, x + (1 - colour) * grid.n_slots, out);
         const std::ptrdiff_t at = grid.slot(range.first, j, rows.k);
-        sum += dot(in + at, out + at, n);
+        sum += sum_of_products(in + at, out + at, n);
       }
     }
     return sum;
@@ -186,7 +168,7 @@ class LayoutInverse final : public LayoutOperator {
     back_ = 1 / (scale * unit_);
     double sum = 0;
     for_each_row([&](int colour, std::ptrdiff_t at, int n) {
-      sum += dot(r + colour * n_slots + at, multigrid_.solution(colour) + at, n);
+      sum += sum_of_products(r + colour * n_slots + at, multigrid_.solution(colour) + at, n);
     });
     sum *= back_;
     for (EmptyRow& row : empty_rows_) {
@@ -205,7 +187,7 @@ class LayoutInverse final : public LayoutOperator {
     double sum = 0;
     for_each_row([&](int colour, std::ptrdiff_t at, int n) {
       const double* row = x + colour * n_slots + at;
-      sum += dot(row, row, n);
+      sum += sum_of_products(row, row, n);
     });
     sum = sum_all(comm_, sum);
     check_solve(std::isfinite(sum), "The multigrid was given a residual that is not finite.");

@@ -24,7 +24,6 @@ class PressureLayoutOf final : public PressureLayout {
   void set(const BlockSystem& system) {
     const FaceCoefficients& coefficients = *stencil_of(system.pressure_block);
     multigrid_.set(coefficients);
-    unit_ = coefficients.unit;
     number_rows(coefficients);
     std::vector<EmptyRow> empty = empty_rows(system);
     std::vector<int> entries;
@@ -43,13 +42,6 @@ class PressureLayoutOf final : public PressureLayout {
     return sum_all(layout_->blocks().comm, inverse_->cycle(r.getData().getRawPtr(), r_norm));
   }
   double advance_direction(double beta, Vector& d, Vector& q) override;
-  PreconditionedResidual preconditioned_residual() override {
-    return {{multigrid_.solution(0), multigrid_.solution(1)},
-            static_cast<int>(layout_->finest().n_slots),
-            inverse_->back()};
-  }
-  FaceScale face_scale() const override { return {dim, unit_}; }
-  std::vector<Grown> grow(const Vector& seeds, int n_layers) const override;
   std::size_t bytes() const override { return multigrid_.bytes(); }
   MessageCount sent() const override {
     MessageCount total;
@@ -65,7 +57,6 @@ class PressureLayoutOf final : public PressureLayout {
   std::vector<EmptyRow> empty_rows(const BlockSystem& system) const;
 
   Multigrid<dim> multigrid_;
-  double unit_ = 1;
   RCP<LayoutStencil<dim>> stencil_;
   RCP<LayoutInverse<dim>> inverse_;
 };
@@ -97,86 +88,6 @@ double PressureLayoutOf<dim>::advance_direction(double beta, Vector& d, Vector& 
   for (std::size_t i = 0; i < in_empty_rows.size(); ++i)  // A does not see them
     direction[inverse_->empty_rows()[i].entry] = in_empty_rows[i];
   return sum_all(layout_->blocks().comm, sum);
-}
-
-template <int dim>
-std::vector<PressureLayout::Grown> PressureLayoutOf<dim>::grow(const Vector& seeds,
-                                                               int n_layers) const {
-  const LevelGrid& grid = layout_->finest();
-  const LevelHalo& halo = layout_->levels().front().halo;
-  struct Cell {
-    std::ptrdiff_t natural;
-    int entry, layer;
-  };
-  std::vector<Cell> cells;
-  std::vector<float> labels(grid.n_natural, 0);  // + 1; 0: not reached
-  std::vector<int> entries(grid.n_natural, -1);
-  const auto values = seeds.getData();
-  for (int k = 0; k < grid.n[2]; ++k) {
-    for (int j = 0; j < grid.n[1]; ++j) {
-      for (int i = 0; i < grid.n[0]; ++i) {
-        const int colour = LevelGrid::colour(i, j, k);
-        const std::ptrdiff_t slot = grid.slot_of_cell(i, j, k);
-        const std::ptrdiff_t at = grid.natural(i, j, k);
-        const auto entry = static_cast<int>(colour * grid.n_slots + slot);
-        if (multigrid_.finest().diagonal(colour)[slot] > 0)
-          entries[at] = entry;
-        if (values[entry] == 0)
-          continue;
-        labels[at] = static_cast<float>(values[entry]);
-        cells.push_back({at, entry, 0});
-      }
-    }
-  }
-  const auto for_each_neighbor = [&](std::ptrdiff_t at, const auto& f) {
-    for (int axis = 0; axis < dim; ++axis) {
-      f(at - grid.natural_stride[axis]);
-      f(at + grid.natural_stride[axis]);
-    }
-  };
-  // A pass over the whole box a layer would cost more than all the rest: only fronts are followed,
-  // here and where they come in from other ranks.
-  for (int layer = 1; layer <= n_layers; ++layer) {
-    halo.fill_natural(labels.data());
-    std::vector<std::pair<std::ptrdiff_t, float>> reached;
-    const auto reach = [&](std::ptrdiff_t at, float label) {
-      if (entries[at] >= 0 && labels[at] == 0)
-        reached.push_back({at, label});
-    };
-    for (const Cell& cell : cells) {
-      if (cell.layer == layer - 1)
-        for_each_neighbor(cell.natural,
-                          [&](std::ptrdiff_t at) { reach(at, labels[cell.natural]); });
-    }
-    if (!halo.empty()) {
-      for (std::ptrdiff_t at = 0; at < grid.n_natural; ++at) {
-        if (entries[at] < 0 && labels[at] != 0)
-          for_each_neighbor(at, [&](std::ptrdiff_t beside) {
-            if (beside >= 0 && beside < grid.n_natural)
-              reach(beside, labels[at]);
-          });
-      }
-    }
-    // The lowest label wins a cell, on any number of ranks.
-    std::sort(reached.begin(), reached.end());
-    for (const auto& [at, label] : reached) {
-      if (labels[at] != 0)
-        continue;
-      labels[at] = label;
-      cells.push_back({at, entries[at], layer});
-    }
-  }
-  halo.fill_natural(labels.data());
-  std::vector<Grown> result;
-  result.reserve(cells.size());
-  for (const Cell& cell : cells) {
-    Grown grown{cell.entry, static_cast<int>(labels[cell.natural]) - 1, cell.layer, false};
-    for_each_neighbor(cell.natural, [&](std::ptrdiff_t at) {
-      grown.at_border = grown.at_border || (labels[at] != 0 && labels[at] != labels[cell.natural]);
-    });
-    result.push_back(grown);
-  }
-  return result;
 }
 
 template <int dim>

@@ -34,36 +34,6 @@ class PressureLayout : public ConjugateGradientKernels {
   /// One cycle of the multigrid. A row that A leaves empty is divided by its entry in the diagonal
   /// of B diag(C)^-1 B^T.
   virtual RCP<const LinearOperator> inverse() const = 0;
-  /// What a regular face of the finest level weighs: the unit of A's coefficients.
-  struct FaceScale {
-    int dimension = 3;
-    double unit = 1;
-  };
-  virtual FaceScale face_scale() const = 0;
-
-  /// The z of the kernels: entry e of the layout is back * values[e / n_slots][e % n_slots].
-  struct PreconditionedResidual {
-    std::array<float*, 2> values;
-    int n_slots;
-    double back;
-
-    double get(int entry) const { return back * values[entry / n_slots][entry % n_slots]; }
-    void add(int entry, double value) const {
-      values[entry / n_slots][entry % n_slots] += static_cast<float>(value / back);
-    }
-  };
-  virtual PreconditionedResidual preconditioned_residual() = 0;
-
-  /// An unknown near a seed.
-  struct Grown {
-    int entry = 0;
-    int label = 0;           ///< of the seed that reached it first
-    int layer = 0;           ///< steps from it
-    bool at_border = false;  ///< beside an unknown of another label
-  };
-  /// The unknowns of this rank within `n_layers` steps of the seeds: entries of `seeds` that are
-  /// their label + 1, others 0. Collective.
-  virtual std::vector<Grown> grow(const Vector& seeds, int n_layers) const = 0;
 
   virtual std::size_t bytes() const = 0;
   virtual MessageCount sent() const = 0;

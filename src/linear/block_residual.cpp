@@ -4,6 +4,8 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "linear/vector_sums.hpp"
+
 namespace lockstep {
 
 BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
@@ -11,11 +13,11 @@ BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
   BlockResidual result;
   const auto add_row = [](Vector& residual, const Vector& term, double sign, double& scale) {
     residual.update(sign, term, 1);
-    scale = std::max(scale, term.norm2());
+    scale = std::max(scale, norm(term));
   };
   auto& r1 = result.vector.pressure;
   r1 = rcp(new Vector(*rhs.pressure, Teuchos::Copy));
-  result.pressure_scale = r1->norm2();
+  result.pressure_scale = norm(*r1);
   Vector term(r1->getMap());
   apply(*system.pressure_block, *solution.pressure, term);
   add_row(*r1, term, -1, result.pressure_scale);
@@ -31,9 +33,9 @@ BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
     add_row(*r2, solid_term, 1, result.solid_scale);
     apply(*system.solid_block, *solution.solid, solid_term);
     add_row(*r2, solid_term, 1, result.solid_scale);
-    result.solid = r2->norm2();
+    result.solid = norm(*r2);
   }
-  result.pressure = r1->norm2();
+  result.pressure = norm(*r1);
   return result;
 }
 

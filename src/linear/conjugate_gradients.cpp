@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "linear/null_space.hpp"
+#include "linear/vector_sums.hpp"
 
 namespace lockstep {
 
@@ -76,7 +77,7 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
   const Communicator comm = map->getComm();
   Vector r(rhs, Teuchos::Copy), d(map), q(map);
   x.putScalar(0);
-  double r_norm = r.norm2();
+  double r_norm = norm(r);
   double r_dot_z = 0;
   int iteration = 0;
   double target = request.target;

@@ -15,30 +15,32 @@ LameConstants lame_constants(double youngs_modulus, double poisson_ratio) {
           youngs_modulus / (2 * (1 + poisson_ratio))};
 }
 
-const std::vector<MaterialName>& material_names() {
-  static const std::vector<MaterialName> all{
-      {"corotated", "Linear in the stretch once the rotation is taken out; survives inversion."},
-      {"neo-hookean", "Stable neo-Hookean rubber (Smith et al. 2018); survives inversion."},
-      {"st venant-kirchhoff", "Linear in Green's strain: large rotations, moderate strains."},
-      {"linear", "Small strain: small displacements and rotations only."}};
+template <int dim>
+const std::vector<MaterialKind<dim>>& material_kinds() {
+  static const std::vector<MaterialKind<dim>> all{
+      {"corotated", "Linear in the stretch once the rotation is taken out; survives inversion.",
+       corotated<dim>},
+      {"neo-hookean", "Stable neo-Hookean rubber (Smith et al. 2018); survives inversion.",
+       neo_hookean<dim>},
+      {"st venant-kirchhoff", "Linear in Green's strain: large rotations, moderate strains.",
+       st_venant_kirchhoff<dim>},
+      {"linear", "Small strain: small displacements and rotations only.", linear_elasticity<dim>}};
   return all;
 }
 
 template <int dim>
 std::unique_ptr<Material<dim>> make_material(const std::string& name, const LameConstants& lame) {
-  if (name == "corotated")
-    return corotated<dim>(lame);
-  if (name == "neo-hookean")
-    return neo_hookean<dim>(lame);
-  if (name == "st venant-kirchhoff")
-    return st_venant_kirchhoff<dim>(lame);
-  check_input(name == "linear",
-              "There is no material \"{}\"; use corotated, neo-hookean, st venant-kirchhoff or "
-              "linear.",
-              name);
-  return linear_elasticity<dim>(lame);
+  std::string names;
+  for (const MaterialKind<dim>& kind : material_kinds<dim>()) {
+    if (kind.name == name)
+      return kind.make(lame);
+    names += (names.empty() ? "" : ", ") + kind.name;
+  }
+  throw InputError(fmt::format("There is no material \"{}\"; there are {}.", name, names));
 }
 
+template const std::vector<MaterialKind<2>>& material_kinds<2>();
+template const std::vector<MaterialKind<3>>& material_kinds<3>();
 template std::unique_ptr<Material<2>> make_material<2>(const std::string&, const LameConstants&);
 template std::unique_ptr<Material<3>> make_material<3>(const std::string&, const LameConstants&);
 

@@ -61,11 +61,15 @@ std::unique_ptr<Material<dim>> st_venant_kirchhoff(const LameConstants& lame);
 template <int dim>
 std::unique_ptr<Material<dim>> neo_hookean(const LameConstants& lame);
 
-/// Names and one line each, for parameters.
-struct MaterialName {
+/// A law that scenes can name.
+template <int dim>
+struct MaterialKind {
   std::string name, documentation;
+  std::unique_ptr<Material<dim>> (*make)(const LameConstants&) = nullptr;
 };
-const std::vector<MaterialName>& material_names();
+/// All laws; the first is the default.
+template <int dim>
+const std::vector<MaterialKind<dim>>& material_kinds();
 
 /// By name; throws InputError for an unknown one.
 template <int dim>

@@ -10,6 +10,7 @@
 #include "base/errors.hpp"
 #include "linear/minres.hpp"
 #include "linear/thyra_vectors.hpp"
+#include "linear/vector_sums.hpp"
 #include "strategies/common/block_krylov.hpp"
 
 namespace lockstep {
@@ -42,8 +43,7 @@ RCP<const LinearOperator> scaled_preconditioner(const RCP<const LinearOperator>&
   const double energy = rhs.dot(preconditioned);
   check_solve(energy > 0,
               "The preconditioner of MINRES is not positive definite (r . M r = {:.3e}).", energy);
-  const double norm = s * rhs.norm2();
-  const double factor = norm * norm / energy;
+  const double factor = std::pow(s * norm(rhs), 2) / energy;
   return Thyra::block2x2<double>(Thyra::scale<double>(factor / (s * s), pressure_inverse),
                                  Teuchos::null, Teuchos::null,
                                  Thyra::scale<double>(factor / (t * t), solid_inverse));
@@ -53,7 +53,7 @@ int belos_minres(const BlockSystem& system, const Vector& rhs, const BlockKrylov
                  const RCP<const LinearOperator>& pressure_inverse,
                  const RCP<const LinearOperator>& solid_inverse, Vector& pressure) {
   // Scaled symmetrically, so that both blocks' residuals mean the same.
-  const double s = 1 / rhs.norm2(), t = s * request.target / request.solid_target;
+  const double s = 1 / norm(rhs), t = s * request.target / request.solid_target;
   const auto op = block_operator(system, s, t);
   const RCP<const LinearOperator> preconditioner =
       scaled_preconditioner(pressure_inverse, solid_inverse, s, t, rhs);
@@ -61,7 +61,7 @@ int belos_minres(const BlockSystem& system, const Vector& rhs, const BlockKrylov
   BlockVector b{make_vector(rhs.getMap()), make_vector(system.coupling_transposed->getRangeMap())};
   b.pressure->update(s, rhs, 0);
   const BlockVector x{make_vector(b.pressure->getMap()), make_vector(b.solid->getMap())};
-  const double tolerance = std::clamp(request.target / rhs.norm2(), strongest_reduction, 0.1);
+  const double tolerance = std::clamp(request.target / norm(rhs), strongest_reduction, 0.1);
   try {
     Thyra::BelosLinearOpWithSolveFactory<double> factory;
     factory.setParameterList(belos_list(tolerance, request.maximum_iterations));

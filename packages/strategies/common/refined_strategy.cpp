@@ -10,6 +10,7 @@
 #include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
 #include "linear/symmetry_check.hpp"
+#include "linear/vector_sums.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 
 namespace lockstep {
@@ -70,20 +71,20 @@ void check_compatible(const std::string& name, double removed, const BlockResidu
 /// The norm of B C^-1, by a few steps of the power method.
 double gain(const CrsMatrix& coupling_transposed, const LinearOperator& solid_inverse) {
   constexpr int n_steps = 4;
-  Vector force(coupling_transposed.getRangeMap()), velocity(force.getMap());
+  Vector force(coupling_transposed.getRangeMap()), velocity(force.getMap()), back(force.getMap());
   Vector pressure(coupling_transposed.getDomainMap());
   pseudo_random(force, 1);
   double result = 0;
   for (int step = 0; step < n_steps; ++step) {
-    const double norm = force.norm2();
-    if (norm == 0)
+    const double force_norm = force.norm2();
+    if (force_norm == 0)
       break;
-    force.scale(1 / norm);
+    force.scale(1 / force_norm);
     apply(solid_inverse, force, velocity);
     coupling_transposed.apply(velocity, pressure, Teuchos::TRANS);
-    result = pressure.norm2();
-    coupling_transposed.apply(pressure, velocity);
-    apply(solid_inverse, velocity, force);
+    coupling_transposed.apply(pressure, back);
+    result = std::sqrt(velocity.dot(back));  // |B C^-1 f|
+    apply(solid_inverse, back, force);
   }
   return result;
 }
@@ -248,7 +249,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
                     request.negligible_pressure_residual);
   };
   const std::function<double(const Vector&)> no_update;
-  const double rhs_norm = rhs.pressure->norm2();
+  const double rhs_norm = norm(*rhs.pressure);
   while (true) {
     back_substitute(system, rhs, solution);
     residual = block_residual(system, rhs, solution);
@@ -261,7 +262,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
     if (residual.relative_pressure() <= request.tolerance ||
         residual.pressure <= request.negligible_pressure_residual)
       break;
-    const double solvable = residual.vector.pressure->norm2();
+    const double solvable = norm(*residual.vector.pressure);
     const double target =
         std::max(request.tolerance * residual.pressure_scale, request.negligible_pressure_residual);
     // The scale of any solution is at least |rhs|: near that nothing need be asked again.

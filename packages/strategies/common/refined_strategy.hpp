@@ -52,8 +52,9 @@ class RefinedStrategy : public SolverStrategy {
     std::function<double(const Vector& correction)> update_target;
   };
 
-  /// Builds what depends on the operators. `geometry_changed` and `solid_changed` say what is new.
-  virtual void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) = 0;
+  /// Builds what depends on the operators, beside the inverses of A and C. `geometry_changed` and
+  /// `solid_changed` say what is new. Default: nothing.
+  virtual void build(const BlockSystem&, bool /*geometry_changed*/, bool /*solid_changed*/) {}
   /// False if, at unchanged operators, something is missing for this system (with or without
   /// solid).
   virtual bool is_built_for(const BlockSystem&) const { return true; }

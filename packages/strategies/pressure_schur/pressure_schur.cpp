@@ -3,7 +3,6 @@
 #include <Thyra_VectorSpaceBase.hpp>
 #include <Tpetra_Vector.hpp>
 
-#include "linear/action_operator.hpp"
 #include "strategies/common/assembled_schur.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 #include "strategies/common/solid_preconditioner.hpp"
@@ -17,9 +16,10 @@ ParameterList PressureSchur::valid_parameters() {
                            "Approximate inverse of the pressure block A, which is extended to one "
                            "of A + B C^-1 B^T. Default: Automatic.");
   declare_solid_inverse(list);
-  declare_positive(list, "Largest Solid", 60,
-                   "Without multigrid: with at most so many solid unknowns the inverse of A is "
-                   "extended by Woodbury's formula, with more A + B diag(C)^-1 B^T is assembled");
+  declare_positive(list, "Largest Solid", 18,
+                   "With at most so many solid unknowns the inverse of A is extended by "
+                   "Woodbury's formula, which stores a vector of pressures for each; with more, "
+                   "multigrid stays that of A, and others invert A + B diag(C)^-1 B^T");
   return list;
 }
 
@@ -31,18 +31,13 @@ PressureSchur::PressureSchur(const ParameterList& given)
       solid_list_(solid_inverse_list(given)) {}
 
 RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system) {
-  if (layout() != nullptr) {
-    deflation_ = Deflation::make(system, *layout());
-    if (!deflation_)
-      return pressure_inverse();
-    return action_operator(layout()->map(), [this](const Vector& r, Vector& z) {
-      deflation_->apply_balanced(*pressure_inverse(), r, z);
-    });
-  }
-  if (system.solid_block->domain()->dim() <= largest_solid_)
+  if (system.solid_block->domain()->dim() <= largest_solid_ &&
+      !assembled(system.solid_block).is_null())
     return SolidSchur::make(system, pressure_inverse(), largest_solid_, name(),
                             SolidSchur::Keep::columns)
         ->woodbury();
+  if (layout() != nullptr)
+    return pressure_inverse();
   BlockSystem schur = system;
   schur.pressure_block = as_operator(schur_with_diagonal(system));
   schur.pressure_null_space = system.null_space;

@@ -1,5 +1,4 @@
 #pragma once
-#include "strategies/common/deflation.hpp"
 #include "strategies/common/minres_strategy.hpp"
 
 namespace lockstep {
@@ -8,9 +7,9 @@ namespace lockstep {
 /// complement S = A + B C^-1 B^T of the solids. With the exact ones the spectrum lies in
 /// [-1.618, -1] and [0.618, 1] (Murphy, Golub and Wathen 2000): iterations depend neither on the
 /// density nor on h nor dt, and Ŝ is positive definite for closed balloons, where A is not. Ŝ^-1 is
-/// - with multigrid: its cycle, with the rigid motions of light solids projected out (Deflation);
-/// - with another inverse of A: that, updated by Woodbury's formula for at most "Largest Solid"
-///   solid unknowns, else the inverse of the assembled A + B diag(C)^-1 B^T, which is sparse for
+/// - for at most "Largest Solid" solid unknowns, that of A updated by Woodbury's formula;
+/// - for more, with multigrid: that of A, a little worse the lighter the solids are;
+/// - for more, with other inverses: that of the assembled A + B diag(C)^-1 B^T, which is sparse for
 ///   the nodes of deformable solids.
 class PressureSchur : public MinresStrategy {
  public:
@@ -24,7 +23,6 @@ class PressureSchur : public MinresStrategy {
 
   int largest_solid_;
   ParameterList pressure_list_, solid_list_;
-  std::unique_ptr<Deflation> deflation_;  ///< null unless some solid is light
 };
 
 }  // namespace lockstep

@@ -35,11 +35,10 @@ class Eliminated {
 
 class SchurKernels final : public ConjugateGradientKernels {
  public:
-  SchurKernels(ConjugateGradientKernels& pressure, Deflation* deflation, Eliminated& eliminated)
-      : pressure_(pressure), deflation_(deflation), eliminated_(eliminated) {}
+  SchurKernels(ConjugateGradientKernels& pressure, Eliminated& eliminated)
+      : pressure_(pressure), eliminated_(eliminated) {}
   double precondition(const Vector& r, double r_norm) override {
-    const double of_pressure = pressure_.precondition(r, r_norm);
-    return of_pressure + (deflation_ == nullptr ? 0 : deflation_->correct(r));
+    return pressure_.precondition(r, r_norm);
   }
   double advance_direction(double beta, Vector& d, Vector& q) override {
     const double of_pressure = pressure_.advance_direction(beta, d, q);
@@ -48,7 +47,6 @@ class SchurKernels final : public ConjugateGradientKernels {
 
  private:
   ConjugateGradientKernels& pressure_;
-  Deflation* deflation_;  ///< or null
   Eliminated& eliminated_;
 };
 
@@ -65,11 +63,6 @@ SchurCg::SchurCg(const ParameterList& given)
     : RefinedStrategy(with_defaults(given, valid_parameters()),
                       pressure_inverse_list(given, "Automatic")) {}
 
-void SchurCg::build(const BlockSystem& system, bool, bool solid_changed) {
-  if (solid_changed)
-    deflation_ = layout() == nullptr ? nullptr : Deflation::make(system, *layout());
-}
-
 int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request,
                      Vector& correction) {
   const ConjugateGradientsRequest cg{request.name, request.target, request.maximum_iterations,
@@ -78,16 +71,8 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
     return pressure_cg(system, request, correction);
   Eliminated eliminated(system, *solid_inverse());
   if (layout() != nullptr) {
-    SchurKernels kernels(*layout(), deflation_.get(), eliminated);
-    if (!deflation_)
-      return conjugate_gradients(kernels, *request.residual, correction, cg);
-    Vector residual(*request.residual, Teuchos::Copy), start(correction.getMap());
-    deflation_->start(residual, start);
-    ConjugateGradientsRequest deflated = cg;
-    deflated.update_target = nullptr;  // it would have to know of `start`
-    const int n_iterations = conjugate_gradients(kernels, residual, correction, deflated);
-    correction.update(1, start, 1);
-    return n_iterations;
+    SchurKernels kernels(*layout(), eliminated);
+    return conjugate_gradients(kernels, *request.residual, correction, cg);
   }
   return conjugate_gradients(
       [&](const Vector& x, Vector& y) {

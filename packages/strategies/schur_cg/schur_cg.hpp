@@ -1,5 +1,4 @@
 #pragma once
-#include "strategies/common/deflation.hpp"
 #include "strategies/common/refined_strategy.hpp"
 #include "strategies/common/strategy_parameters.hpp"
 
@@ -17,11 +16,8 @@ class SchurCg : public RefinedStrategy {
   std::string name() const override { return "schur-cg"; }
 
  private:
-  void build(const BlockSystem& system, bool geometry_changed, bool solid_changed) override;
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) override;
-
-  std::unique_ptr<Deflation> deflation_;  ///< null unless some solid is light
 };
 
 }  // namespace lockstep

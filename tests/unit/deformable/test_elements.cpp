@@ -55,7 +55,7 @@ Eigen::MatrixXd dense(const NodeMatrix<dim>& matrix) {
 
 template <int dim>
 void check_forces() {
-  for (const auto& material : material_names()) {
+  for (const auto& material : material_kinds<dim>()) {
     SCOPED_TRACE(material.name);
     const Elements<dim> elements(material.name);
     Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 0.1);
@@ -88,7 +88,7 @@ TEST(VolumeElements, ForcesAreThoseOfTheEnergyAndHaveNoMomentum) {
 
 template <int dim>
 void check_stiffness() {
-  for (const auto& material : material_names()) {
+  for (const auto& material : material_kinds<dim>()) {
     SCOPED_TRACE(material.name);
     const Elements<dim> elements(material.name);
     // Stretched a little, so that nothing has to be clamped.

@@ -43,7 +43,7 @@ class Laws : public ::testing::Test {
  protected:
   template <typename Check>
   void for_each(const Check& check) const {
-    for (const auto& entry : material_names()) {
+    for (const auto& entry : material_kinds<dim>()) {
       SCOPED_TRACE(entry.name);
       check(*make_material<dim>(entry.name, lame), entry.name);
     }
