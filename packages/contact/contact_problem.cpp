@@ -8,9 +8,22 @@ namespace lockstep {
 namespace {
 constexpr int most_rounds = 12;
 constexpr int most_searches = 3;
+constexpr int most_impact_rounds = 20;
+/// What surfaces that would have met keep between them, and the overlap of skins that is left
+/// alone, over the sum of their half thicknesses.
+constexpr double clearance = 0.25;
 /// Contacts of a pair that become active at once: enough to hold a face.
 template <int dim>
 constexpr int most_at_once = dim == 2 ? 2 : 4;
+
+/// Shells and what deforms have a skin.
+double half_thickness_of(const SolidDescription& solid, const GaussSeidelOptions& options,
+                         double spacing) {
+  const auto own = options.thickness_of.find(solid.name);
+  if (own != options.thickness_of.end())
+    return 0.5 * own->second;
+  return solid.closed && solid.rigid ? 0 : 0.5 * options.shell_thickness * spacing;
+}
 }  // namespace
 
 template <int dim>
@@ -25,7 +38,10 @@ ContactProblem<dim>::ContactProblem(const SolidSystem<dim>& system,
       options_(options),
       spacing_(spacing),
       phase_(phase),
-      dt_(dt) {}
+      dt_(dt) {
+  for (const SolidDescription& solid : shapes.solids())
+    half_thickness_.push_back(half_thickness_of(solid, options, spacing));
+}
 
 template <int dim>
 ContactReach ContactProblem<dim>::reach(double speed) const {
@@ -34,50 +50,64 @@ ContactReach ContactProblem<dim>::reach(double speed) const {
   reach.near = spacing_ * std::max(options_.slop, options_.margin) +
                std::min(dt_ * speed, 2 * options_.margin * spacing_);
   reach.depth = spacing_ * options_.deepest;
-  reach.half_thickness = 0.5 * options_.shell_thickness * spacing_;
+  reach.half_thickness = half_thickness_;
   reach.dt = dt_;
+  reach.self = options_.self_contact;
   return reach;
 }
 
 template <int dim>
 double ContactProblem<dim>::normal_velocity(const SolidMotion<dim>& motion,
                                             const Contact<dim>& contact) const {
-  Point<dim> velocity = motion.at(contact.solid, contact.point, contact.x);
+  Point<dim> velocity = motion.at(contact.solid, contact.point, contact.place());
   if (contact.other >= 0)
-    velocity -= motion.at(contact.other, contact.other_point, contact.x);
+    velocity -= motion.at(contact.other, contact.other_point, contact.other_place());
   return contact.normal.dot(velocity);
 }
 
 template <int dim>
-double ContactProblem<dim>::friction(const Contact<dim>& contact) const {
-  const double one = shapes_.solids()[contact.solid].friction;
-  const double other = contact.other >= 0 ? shapes_.solids()[contact.other].friction
-                                          : options_.wall_friction.value_or(one);
+double ContactProblem<dim>::mean(const Contact<dim>& contact, double SolidDescription::*property,
+                                 const std::optional<double>& of_walls) const {
+  const double one = shapes_.solids()[contact.solid].*property;
+  const double other =
+      contact.other >= 0 ? shapes_.solids()[contact.other].*property : of_walls.value_or(one);
   return std::sqrt(one * other);
 }
 
 template <int dim>
-double ContactProblem<dim>::restitution(const Contact<dim>& contact) const {
-  const double one = shapes_.solids()[contact.solid].restitution;
-  const double other = contact.other >= 0 ? shapes_.solids()[contact.other].restitution
-                                          : options_.wall_restitution.value_or(one);
-  return std::sqrt(one * other);
+double ContactProblem<dim>::friction(const Contact<dim>& contact) const {
+  return mean(contact, &SolidDescription::friction, options_.wall_friction);
+}
+
+template <int dim>
+bool ContactProblem<dim>::any_bends(const Pair& pair) const {
+  const auto& solids = shapes_.solids();
+  return !solids[pair.first].rigid || (pair.second >= 0 && !solids[pair.second].rigid);
+}
+
+/// Rigid bodies may overlap a little so that contacts stay; skins do the same without touching.
+template <int dim>
+double ContactProblem<dim>::slop(const Contact<dim>& contact) const {
+  const double usual = options_.slop * spacing_;
+  if (contact.other < 0 || !any_bends({contact.solid, contact.other}))
+    return usual;
+  return std::min(usual,
+                  clearance * (half_thickness_[contact.solid] + half_thickness_[contact.other]));
 }
 
 template <int dim>
 double ContactProblem<dim>::target(const Contact<dim>& contact, double normal_velocity,
                                    double before) const {
-  const double slop = options_.slop * spacing_;
   const double free = -std::max(contact.gap, 0.0) / dt_;
   if (phase_ == ContactPhase::position) {
-    if (contact.gap >= -slop)
-      return free;
-    return std::min(options_.push_rate * (-contact.gap - slop), 0.25 * spacing_) / dt_;
+    const double excess = -contact.gap - slop(contact);
+    return excess <= 0 ? free : std::min(options_.push_rate * excess, 0.25 * spacing_) / dt_;
   }
   // Forces of this step alone, as those on a resting body, do not bounce.
   const double closing = std::min(-normal_velocity, -before);
   if (normal_velocity < free && closing > options_.bounce_speed)
-    return std::max(free, restitution(contact) * closing);
+    return std::max(
+        free, closing * mean(contact, &SolidDescription::restitution, options_.wall_restitution));
   return free;
 }
 
@@ -121,6 +151,10 @@ bool ContactProblem<dim>::prepare(const std::vector<double>& before,
   for (const Candidate& candidate : candidates_) {
     scale_ = std::max(scale_, candidate.target - normal_velocity(motion, candidate.contact));
   }
+  if (scale_ == 0) {
+    for (const Contact<dim>& contact : impacts_of(velocity))
+      scale_ = std::max(scale_, -contact.gap / dt_ - normal_velocity(motion, contact));
+  }
   return scale_ > 0;
 }
 
@@ -143,7 +177,13 @@ int ContactProblem<dim>::activate_violated(const SolidMotion<dim>& motion, int m
         violated.push_back({lack, k});
     }
     std::vector<Point<dim>> chosen;
-    for (int n = 0; n < most; ++n) {
+    const bool all = any_bends(pair);
+    for (const auto& [lack, k] : violated) {
+      if (all)
+        activate(candidates_[k], solver);
+      n_activated += all ? 1 : 0;
+    }
+    for (int n = 0; n < most && !all; ++n) {
       double best = 0;
       int next = -1;
       for (const auto& [lack, k] : violated) {
@@ -199,7 +239,46 @@ int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
       searches += candidates_.size() > known ? 1 : 0;
     }
   }
-  return sweeps + solver.iterate(options_.sweeps, options_.tolerance * scale_);
+  sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
+  return sweeps + stop_impacts(solver);
+}
+
+template <int dim>
+bool ContactProblem<dim>::follows_impacts() const {
+  const auto& solids = shapes_.solids();
+  return phase_ == ContactPhase::position &&
+         std::any_of(solids.begin(), solids.end(),
+                     [](const SolidDescription& solid) { return !solid.rigid; });
+}
+
+template <int dim>
+std::vector<Contact<dim>> ContactProblem<dim>::impacts_of(
+    const std::vector<double>& velocity) const {
+  std::vector<Contact<dim>> contacts;
+  if (!follows_impacts())
+    return contacts;
+  const SolidMotion<dim> motion(system_, shapes_, velocity);
+  const SurfacePath<dim> path(shapes_, motion, dt_);
+  for (const FoundImpact<dim>& found : find_impacts(shapes_, path, options_.self_contact)) {
+    const double apart =
+        clearance * (half_thickness_[found.pair.solid] + half_thickness_[found.pair.other]);
+    contacts.push_back(impact_contact(shapes_, motion, path, found, apart, dt_));
+  }
+  return contacts;
+}
+
+template <int dim>
+int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
+  int sweeps = 0;
+  for (int round = 0; round < most_impact_rounds; ++round) {
+    const std::vector<Contact<dim>> impacts = impacts_of(solver.velocity());
+    if (impacts.empty())
+      break;
+    for (const Contact<dim>& contact : impacts)
+      solver.add(contact, -contact.gap / dt_, friction(contact));
+    sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
+  }
+  return sweeps;
 }
 
 template <int dim>

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "contact/gauss_seidel_contact.hpp"
+#include "contact/impacts.hpp"
 
 namespace lockstep {
 
 /// One resolution of contacts: candidates from the search, of which those that would be violated
-/// become active, a few for every pair of solids, until none is left violated. Local, the same on
-/// all ranks.
+/// become active, a few for every pair of rigid solids, until none is left violated; for positions
+/// also the impacts of surfaces that are not rigid. Local, the same on all ranks.
 template <int dim>
 class ContactProblem {
  public:
@@ -18,7 +19,7 @@ class ContactProblem {
                  const std::vector<HalfSpace>& walls, const GaussSeidelOptions& options,
                  double spacing, ContactPhase phase, double dt);
 
-  /// Finds the candidates; false if there are none to act on.
+  /// Finds the candidates; false if there is nothing to act on.
   bool prepare(const std::vector<double>& before, const std::vector<double>& velocity);
   /// Solves; returns the number of sweeps.
   int solve(ImpulseSolver<dim>& solver);
@@ -37,8 +38,12 @@ class ContactProblem {
   void add_candidates(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
   double target(const Contact<dim>& contact, double normal_velocity, double before) const;
   double normal_velocity(const SolidMotion<dim>& motion, const Contact<dim>& contact) const;
+  /// Geometric mean of a property of both sides.
+  double mean(const Contact<dim>& contact, double SolidDescription::*property,
+              const std::optional<double>& of_walls) const;
   double friction(const Contact<dim>& contact) const;
-  double restitution(const Contact<dim>& contact) const;
+  double slop(const Contact<dim>& contact) const;
+  bool any_bends(const Pair& pair) const;
   void activate(Candidate& candidate, ImpulseSolver<dim>& solver) const;
   /// Activates up to `most` candidates of every pair, the most violated first, then those farthest
   /// from the others; returns how many.
@@ -46,6 +51,11 @@ class ContactProblem {
                         ImpulseSolver<dim>& solver);
   /// Looks again if the solution moves solids farther than the search had looked.
   void extend_search(const std::vector<double>& velocity);
+  bool follows_impacts() const;
+  /// What must hold against the impacts that these velocities lead to.
+  std::vector<Contact<dim>> impacts_of(const std::vector<double>& velocity) const;
+  /// Returns the number of sweeps.
+  int stop_impacts(ImpulseSolver<dim>& solver) const;
 
   const SolidSystem<dim>& system_;
   const ContactShapes<dim>& shapes_;
@@ -54,6 +64,7 @@ class ContactProblem {
   double spacing_;
   ContactPhase phase_;
   double dt_;
+  std::vector<double> half_thickness_;  ///< of the skin of each solid [m]
   std::vector<double> before_;
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed
   std::vector<Candidate> candidates_;

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "contact/edge_contacts.hpp"
+#include "contact/surface_contacts.hpp"
 #include "contact/vertex_contacts.hpp"
 
 namespace lockstep {
@@ -20,7 +21,7 @@ Box<dim> reached_box(const ContactShapes<dim>& shapes, const SolidMotion<dim>& m
     box = Box<dim>(box.min() + reach.dt * velocity.min().cwiseMin(0.0),
                    box.max() + reach.dt * velocity.max().cwiseMax(0.0));
   }
-  const double margin = 0.5 * reach.near + reach.half_thickness;
+  const double margin = 0.5 * reach.near + reach.half_thickness[solid];
   return Box<dim>(box.min().array() - margin, box.max().array() + margin);
 }
 
@@ -54,8 +55,10 @@ void add_wall_contacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>&
                        const HalfSpace& wall, const ContactReach& reach, int solid,
                        std::vector<Contact<dim>>& contacts) {
   const SolidDescription& description = shapes.solids()[solid];
-  const double thickness = description.closed ? 0 : reach.half_thickness;
+  const double thickness = reach.half_thickness[solid];
   for (int v = description.vertex_begin; v < description.vertex_end; ++v) {
+    if (shapes.held(v))
+      continue;
     const Point<dim>& x = shapes.mesh().vertices[v];
     const double gap = wall.sign * (x[wall.axis] - wall.coordinate) - thickness;
     if (gap > reach.near) {
@@ -88,7 +91,14 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
   for (int i = 0; i < shapes.n_solids(); ++i)
     boxes.push_back(reached_box(shapes, motion, reach, i));
   std::vector<Contact<dim>> contacts;
+  std::vector<Box<dim>> vertices;
+  for (const Point<dim>& x : shapes.mesh().vertices)
+    vertices.emplace_back(x);
   for (const auto& [i, j] : meeting_pairs(shapes, boxes)) {
+    if (!shapes.solids()[i].rigid || !shapes.solids()[j].rigid) {
+      add_surface_contacts(shapes, vertices, reach, i, j, contacts);
+      continue;
+    }
     VertexContacts<dim>(shapes, motion, reach, i, j).find(contacts);
     VertexContacts<dim>(shapes, motion, reach, j, i).find(contacts);
     if constexpr (dim == 3)
@@ -98,6 +108,8 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
     const SolidDescription& solid = shapes.solids()[i];
     if (solid.prescribed || solid.simplex_begin == solid.simplex_end)
       continue;
+    if (reach.self && !solid.rigid)
+      add_surface_contacts(shapes, vertices, reach, i, i, contacts);
     for (const HalfSpace& wall : walls) {
       const double nearest = wall.sign > 0 ? boxes[i].min()[wall.axis] - wall.coordinate
                                            : wall.coordinate - boxes[i].max()[wall.axis];

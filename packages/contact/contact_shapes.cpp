@@ -1,8 +1,10 @@
 #include "contact/contact_shapes.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
+#include "contact/inverse_mass.hpp"
 #include "geometry/simplex_queries.hpp"
 
 namespace lockstep {
@@ -19,28 +21,29 @@ std::array<Point<dim>, dim> corners_of(const SurfaceMesh<dim>& mesh, int simplex
   return corners;
 }
 
-std::vector<SharpEdge> find_sharp_edges(const SurfaceMesh<3>& mesh, const SolidDescription& solid) {
-  std::map<std::array<int, 2>, SharpEdge> edges;
+std::vector<SurfaceEdge> find_edges(const SurfaceMesh<3>& mesh, const SolidDescription& solid) {
+  std::map<std::array<int, 2>, SurfaceEdge> edges;
   for (int simplex = solid.simplex_begin; simplex < solid.simplex_end; ++simplex) {
     for (int k = 0; k < 3; ++k) {
       std::array<int, 2> ends{mesh.simplices[simplex][k], mesh.simplices[simplex][(k + 1) % 3]};
       std::sort(ends.begin(), ends.end());
-      SharpEdge& edge = edges[ends];
+      SurfaceEdge& edge = edges[ends];
       edge.vertices = ends;
       edge.simplices[edge.simplices[0] < 0 ? 0 : 1] = simplex;
     }
   }
-  std::vector<SharpEdge> sharp;
-  for (const auto& [ends, edge] : edges) {
-    if (edge.simplices[1] >= 0) {
-      const Point<3> one = area_vector<3>(corners_of(mesh, edge.simplices[0])).normalized();
-      const Point<3> other = area_vector<3>(corners_of(mesh, edge.simplices[1])).normalized();
-      if (one.dot(other) > smooth_cosine)
-        continue;
-    }
-    sharp.push_back(edge);
-  }
-  return sharp;
+  std::vector<SurfaceEdge> all;
+  for (const auto& [ends, edge] : edges)
+    all.push_back(edge);
+  return all;
+}
+
+bool is_sharp(const SurfaceMesh<3>& mesh, const SurfaceEdge& edge) {
+  if (edge.simplices[1] < 0)
+    return true;
+  const Point<3> one = area_vector<3>(corners_of(mesh, edge.simplices[0])).normalized();
+  const Point<3> other = area_vector<3>(corners_of(mesh, edge.simplices[1])).normalized();
+  return one.dot(other) <= smooth_cosine;
 }
 
 template <int dim>
@@ -77,11 +80,22 @@ ContactTopology<dim>::ContactTopology(const SurfaceMesh<dim>& mesh,
     for (int vertex : simplices_[s])
       around_[next[vertex]++] = s;
   }
+  edges_.resize(solids.size());
   sharp_edges_.resize(solids.size());
   if constexpr (dim == 3) {
-    for (std::size_t i = 0; i < solids.size(); ++i)
-      sharp_edges_[i] = find_sharp_edges(mesh, solids[i]);
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+      edges_[i] = find_edges(mesh, solids[i]);
+      std::copy_if(edges_[i].begin(), edges_[i].end(), std::back_inserter(sharp_edges_[i]),
+                   [&mesh](const SurfaceEdge& edge) { return is_sharp(mesh, edge); });
+    }
   }
+}
+
+template <int dim>
+bool ContactTopology<dim>::connected(int vertex, int other) const {
+  return std::any_of(begin(vertex), end(vertex), [this, other](int s) {
+    return std::find(simplices_[s].begin(), simplices_[s].end(), other) != simplices_[s].end();
+  });
 }
 
 template <int dim>
@@ -96,6 +110,27 @@ ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopolog
       for (int vertex : mesh_.simplices[s])
         bounds_[s].extend(mesh_.vertices[vertex]);
       solid_bounds_[i].extend(bounds_[s]);
+    }
+  }
+  find_held(system);
+}
+
+template <int dim>
+void ContactShapes<dim>::find_held(const SolidSystem<dim>& system) {
+  held_.assign(mesh_.vertices.size(), false);
+  std::vector<double> free;
+  if (system.has_locks())
+    free = replicated(system, *system.free_mask());
+  VelocityRow<dim> row;
+  for (int i = 0; i < n_solids(); ++i) {
+    for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v) {
+      held_[v] = solids_[i].prescribed;
+      const SurfacePoint<dim> point = at_vertex(v);
+      if (solids_[i].prescribed || solids_[i].rigid || free.empty() || point.simplex < 0)
+        continue;
+      system.velocity_row(point, point.position, row);
+      held_[v] = std::all_of(row.dofs.begin(), row.dofs.end(),
+                             [&free](GlobalIndex dof) { return free[dof] == 0; });
     }
   }
 }

@@ -6,9 +6,8 @@
 
 namespace lockstep {
 
-/// An edge of a 3D surface at which it bends by more than the mesh of a smooth body does, or at
-/// which a shell ends.
-struct SharpEdge {
+/// An edge of a 3D surface.
+struct SurfaceEdge {
   std::array<int, 2> vertices{};
   std::array<int, 2> simplices{-1, -1};  ///< the second is -1 at the rim of a shell
 };
@@ -27,21 +26,25 @@ class ContactTopology {
   /// Simplices around a vertex: [begin, end).
   const int* begin(int vertex) const { return around_.data() + begin_[vertex]; }
   const int* end(int vertex) const { return around_.data() + begin_[vertex + 1]; }
+  /// True if the vertices are those of one edge.
+  bool connected(int vertex, int other) const;
   /// Of one solid; none in 2D, where a corner is a vertex.
-  const std::vector<SharpEdge>& sharp_edges(int solid) const { return sharp_edges_[solid]; }
+  const std::vector<SurfaceEdge>& edges(int solid) const { return edges_[solid]; }
+  /// Those at which the surface bends by more than the mesh of a smooth body does, or ends.
+  const std::vector<SurfaceEdge>& sharp_edges(int solid) const { return sharp_edges_[solid]; }
 
  private:
   std::vector<std::array<int, dim>> simplices_;
   std::vector<int> begin_{0}, around_;
-  std::vector<std::vector<SharpEdge>> sharp_edges_;
+  std::vector<std::vector<SurfaceEdge>> edges_, sharp_edges_;
 };
 
 /// The surfaces of all solids at one instant, with the numbers of `SolidSystem::snapshot`, and what
-/// the search for contacts asks of them. Local, the same on all ranks.
+/// the search for contacts asks of them. The same on all ranks.
 template <int dim>
 class ContactShapes {
  public:
-  /// `topology` is renewed if it belongs to another mesh.
+  /// `topology` is renewed if it belongs to another mesh. Collective.
   ContactShapes(const SolidSystem<dim>& system, ContactTopology<dim>& topology);
 
   const std::vector<SolidDescription>& solids() const { return solids_; }
@@ -51,6 +54,8 @@ class ContactShapes {
 
   const Box<dim>& bounds(int simplex) const { return bounds_[simplex]; }
   const Box<dim>& bounds_of_solid(int solid) const { return solid_bounds_[solid]; }
+  /// True if contact cannot move this vertex: of a prescribed solid, or a pinned node.
+  bool held(int vertex) const { return held_[vertex]; }
   std::array<Point<dim>, dim> corners(int simplex) const;
   Point<dim> normal(int simplex) const;           ///< unit
   Point<dim> vertex_normal(int vertex) const;     ///< unit, weighted by area
@@ -61,10 +66,13 @@ class ContactShapes {
   bool inside(int solid, const Point<dim>& x, double radius) const;
 
  private:
+  void find_held(const SolidSystem<dim>& system);
+
   const std::vector<SolidDescription>& solids_;
   const ContactTopology<dim>* topology_;
   SurfaceMesh<dim> mesh_;
   std::vector<Box<dim>> bounds_, solid_bounds_;
+  std::vector<bool> held_;
 };
 
 }  // namespace lockstep

@@ -9,7 +9,7 @@ namespace {
 
 /// An edge with the directions in which its faces leave it.
 struct EdgeGeometry {
-  const SharpEdge* edge = nullptr;
+  const SurfaceEdge* edge = nullptr;
   Point<3> start, along;
   std::array<Point<3>, 2> away;
   int n_faces = 0;
@@ -25,7 +25,7 @@ struct EdgeGeometry {
   }
 };
 
-EdgeGeometry geometry_of(const ContactShapes<3>& shapes, const SharpEdge& edge) {
+EdgeGeometry geometry_of(const ContactShapes<3>& shapes, const SurfaceEdge& edge) {
   const auto& vertices = shapes.mesh().vertices;
   EdgeGeometry geometry;
   geometry.edge = &edge;
@@ -49,7 +49,7 @@ EdgeGeometry geometry_of(const ContactShapes<3>& shapes, const SharpEdge& edge) 
 
 std::vector<EdgeGeometry> edges_near(const ContactShapes<3>& shapes, int solid, const Box<3>& box) {
   std::vector<EdgeGeometry> edges;
-  for (const SharpEdge& edge : shapes.topology().sharp_edges(solid)) {
+  for (const SurfaceEdge& edge : shapes.topology().sharp_edges(solid)) {
     Box<3> bounds(shapes.mesh().vertices[edge.vertices[0]]);
     bounds.extend(shapes.mesh().vertices[edge.vertices[1]]);
     if (bounds.intersects(box))
@@ -91,8 +91,7 @@ bool crossing(const EdgeGeometry& a, const EdgeGeometry& b, double& s, double& t
 
 void add_edge_contacts(const ContactShapes<3>& shapes, const ContactReach& reach, int solid,
                        int other, std::vector<Contact<3>>& contacts) {
-  const bool closed = shapes.solids()[solid].closed, other_closed = shapes.solids()[other].closed;
-  const double thickness = reach.half_thickness * (int(!closed) + int(!other_closed));
+  const double thickness = reach.half_thickness[solid] + reach.half_thickness[other];
   const double range = std::max(reach.near + thickness, reach.depth);
   Box<3> box = shapes.bounds_of_solid(solid).intersection(
       Box<3>(shapes.bounds_of_solid(other).min().array() - range,

@@ -1,8 +1,11 @@
 #include "contact/gauss_seidel_contact.hpp"
 
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
+#include "base/errors.hpp"
 #include "contact/contact_problem.hpp"
+#include "contact/impact_zones.hpp"
 #include "linear/exact_inverse.hpp"
 
 namespace lockstep {
@@ -26,6 +29,15 @@ Momentum<dim> lock_impulse(const SolidSystem<dim>& solids, const Vector& change,
     }
   }
   return solids.momentum(*reaction);
+}
+
+void check_names(const std::map<std::string, double>& by_name,
+                 const std::vector<SolidDescription>& solids) {
+  for (const auto& [name, value] : by_name) {
+    const auto has_name = [&wanted = name](const auto& solid) { return solid.name == wanted; };
+    check_input(std::any_of(solids.begin(), solids.end(), has_name),
+                "\"Contact/Skins/{0}\": there is no solid \"{0}\"; name one of \"Solids\".", name);
+  }
 }
 
 /// M_S^-1 of an impulse on the free dofs. Collective.
@@ -53,6 +65,7 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   ContactReport<dim> report;
   if (!solids.has_unknowns())
     return report;
+  check_names(options_.thickness_of, solids.solids());
   const ContactShapes<dim> shapes(solids, topology_);
   ContactProblem<dim> problem(solids, shapes, walls_, options_, spacing_, phase, dt);
   const std::vector<double> given = replicated(solids, velocity);
@@ -61,15 +74,20 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   if (!acts)
     return report;
   const InverseMass inverse_mass = replicated_inverse_mass(solids);
-  ImpulseSolver<dim> solver(solids, inverse_mass, given);
+  ImpulseSolver<dim> solver(solids, shapes, inverse_mass, given);
   report.iterations = problem.solve(solver);
   report.n_contacts = solver.n_contacts();
   report.external_impulse = solver.external_impulse();
 
-  RCP<Vector> change = distributed(solids, solver.velocity());
+  std::vector<double> resolved = solver.velocity();
+  if (phase == ContactPhase::position) {
+    report.n_crossings =
+        join_impact_zones(solids, shapes, inverse_mass, options_.self_contact, dt, resolved);
+  }
+  RCP<Vector> change = distributed(solids, resolved);
   change->update(-1, *distributed(solids, given), 1);
   const RCP<const Vector> impulse = distributed(solids, solver.generalized_impulse());
-  if (!inverse_mass.exact)
+  if (!inverse_mass.exact && phase == ContactPhase::velocity)
     change = velocity_change(solids, *impulse);
   if (solids.has_locks())
     report.external_impulse += lock_impulse(solids, *change, *impulse);

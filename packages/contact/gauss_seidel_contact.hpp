@@ -1,5 +1,7 @@
 #pragma once
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "contact/contact_search.hpp"
@@ -14,10 +16,12 @@ struct GaussSeidelOptions {
   double tolerance = 1e-4;       ///< change of velocities over the largest one wanted [1]
   double margin = 0.1;           ///< gaps that are watched whatever the motion [h]
   double slop = 0.05;            ///< overlap that is left alone [h]
-  double shell_thickness = 0.1;  ///< [h]
+  double shell_thickness = 0.1;  ///< of shells and of the skins of deformable bodies [h]
   double deepest = 0.5;          ///< overlap that is recognised [h]
   double push_rate = 0.2;        ///< part of an overlap that one step removes [1]
   double bounce_speed = 1e-3;    ///< no restitution below this speed of approach [m/s]
+  std::map<std::string, double> thickness_of;             ///< instead, by name of the solid [m]
+  bool self_contact = true;                               ///< of solids that are not rigid
   std::optional<double> wall_friction, wall_restitution;  ///< default: those of the solid
 };
 
@@ -27,6 +31,16 @@ struct GaussSeidelOptions {
 /// counts (all near vertices of a face or a ball, or a fast one would be set spinning by the one
 /// that touches), and restitution acts there. Motion is linear within dt: solids that turn by more
 /// than about 0.3 rad a step overlap for a while.
+///
+/// Surfaces that are not rigid pass neither through each other nor through themselves: after the
+/// resolution of positions, impacts along the way (`find_impacts`) become contacts until there are
+/// none, and if that does not end, impact zones do (`join_impact_zones`). Prescribed solids are
+/// followed with their present velocities only. Their nodes are pushed by barycentric weights
+/// through M_S; pinned ones do not yield, and their reactions are in the report. Where M_S is
+/// consistent, lumped masses serve for the positions and, in the velocity phase, for the size of
+/// the impulses, which then act through M_S itself: momentum is exact, velocities at contacts are
+/// not. Implicit elasticity does not enter: a body on a sheet is integrated with the sheet's
+/// forces as they are at the beginning of the step.
 ///
 /// Surfaces and velocities of all solids are replicated and every rank solves the same problem:
 /// results do not depend on the number of ranks; the work, O(solids and their vertices), does not

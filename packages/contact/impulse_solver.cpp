@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "contact/carried_point.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -23,22 +25,43 @@ Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
 }  // namespace
 
 template <int dim>
-ImpulseSolver<dim>::ImpulseSolver(const SolidSystem<dim>& system, const InverseMass& inverse_mass,
-                                  std::vector<double> velocity)
-    : system_(system), inverse_mass_(inverse_mass), velocity_(std::move(velocity)) {}
+ImpulseSolver<dim>::ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
+                                  const InverseMass& inverse_mass, std::vector<double> velocity)
+    : system_(system),
+      shapes_(shapes),
+      inverse_mass_(inverse_mass),
+      velocity_(std::move(velocity)) {}
 
 template <int dim>
-void ImpulseSolver<dim>::add_side(Row& row, bool prescribed, const SurfacePoint<dim>& point,
-                                  double sign) {
-  if (prescribed) {
-    row.prescribed += sign * system_.prescribed_velocity(point, row.contact.x);
+void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& point,
+                                  const Point<dim>& x, double sign) {
+  using Factor = Eigen::Matrix<double, dim, dim>;
+  const SolidDescription& description = system_.solids()[solid];
+  if (description.prescribed) {
+    row.prescribed += sign * system_.prescribed_velocity(point, x);
     return;
   }
-  VelocityRow<dim> velocity_row;
-  system_.velocity_row(point, row.contact.x, velocity_row);
-  for (std::size_t k = 0; k < velocity_row.dofs.size(); ++k) {
+  if (description.rigid) {
+    add_entries(point, x, sign * Factor::Identity());
+    return;
+  }
+  const auto factors = carried_point<dim>(shapes_.corners(point.simplex), point, x);
+  for (int k = 0; k < dim; ++k) {
+    SurfacePoint<dim> corner;
+    corner.simplex = point.simplex;
+    corner.barycentric[k] = 1;
+    if (!factors[k].isZero(0))
+      add_entries(corner, x, sign * factors[k]);
+  }
+}
+
+template <int dim>
+void ImpulseSolver<dim>::add_entries(const SurfacePoint<dim>& point, const Point<dim>& x,
+                                     const Eigen::Matrix<double, dim, dim>& factor) {
+  system_.velocity_row(point, x, velocity_row_);
+  for (std::size_t k = 0; k < velocity_row_.dofs.size(); ++k) {
     jacobian_.push_back(
-        {static_cast<int>(velocity_row.dofs[k]), sign * velocity_row.coefficients[k]});
+        {static_cast<int>(velocity_row_.dofs[k]), factor * velocity_row_.coefficients[k]});
   }
 }
 
@@ -81,9 +104,9 @@ void ImpulseSolver<dim>::add(const Contact<dim>& contact, double target, double 
   row.solid_prescribed = solids[contact.solid].prescribed;
   row.other_prescribed = contact.other < 0 || solids[contact.other].prescribed;
   row.begin = static_cast<int>(jacobian_.size());
-  add_side(row, row.solid_prescribed, contact.point, 1);
+  add_side(row, contact.solid, contact.point, contact.place(), 1);
   if (contact.other >= 0)
-    add_side(row, row.other_prescribed, contact.other_point, -1);
+    add_side(row, contact.other, contact.other_point, contact.other_place(), -1);
   row.end = static_cast<int>(jacobian_.size());
   add_response(row);
   rows_.push_back(row);
@@ -174,9 +197,9 @@ Momentum<dim> ImpulseSolver<dim>::external_impulse() const {
   Momentum<dim> total;
   for (const Row& row : rows_) {
     if (row.solid_prescribed)
-      total.add(row.contact.x, -impulse(row));
+      total.add(row.contact.place(), -impulse(row));
     if (row.other_prescribed)
-      total.add(row.contact.x, impulse(row));
+      total.add(row.contact.other_place(), impulse(row));
   }
   return total;
 }

@@ -12,8 +12,8 @@ namespace lockstep {
 template <int dim>
 class ImpulseSolver {
  public:
-  ImpulseSolver(const SolidSystem<dim>& system, const InverseMass& inverse_mass,
-                std::vector<double> velocity);
+  ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
+                const InverseMass& inverse_mass, std::vector<double> velocity);
 
   /// Target: least normal velocity of `contact.solid` relative to the other [m/s].
   void add(const Contact<dim>& contact, double target, double friction);
@@ -48,7 +48,10 @@ class ImpulseSolver {
     Eigen::Matrix<double, dim - 1, 1> tangent_impulse;
   };
 
-  void add_side(Row& row, bool prescribed, const SurfacePoint<dim>& point, double sign);
+  void add_side(Row& row, int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
+                double sign);
+  void add_entries(const SurfacePoint<dim>& point, const Point<dim>& x,
+                   const Eigen::Matrix<double, dim, dim>& factor);
   void add_response(Row& row);
   Point<dim> relative_velocity(const Row& row) const;
   void push(const Row& row, const Point<dim>& impulse);
@@ -57,8 +60,10 @@ class ImpulseSolver {
   Point<dim> impulse(const Row& row) const;
 
   const SolidSystem<dim>& system_;
+  const ContactShapes<dim>& shapes_;
   const InverseMass& inverse_mass_;
   std::vector<double> velocity_;
+  VelocityRow<dim> velocity_row_;  ///< for use by add_entries alone
   std::vector<Row> rows_;
   std::vector<Entry> jacobian_, response_;
 };

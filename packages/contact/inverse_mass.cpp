@@ -28,19 +28,42 @@ std::vector<double> triplets_of(const CrsMatrix& matrix) {
   return triplets;
 }
 
-std::vector<double> lumped_triplets(const LinearOperator& mass, const RCP<const Map>& map) {
-  Vector ones(map), sums(map);
+/// Sums of the rows of M_S. Collective.
+RCP<Vector> row_sums(const LinearOperator& mass, const RCP<const Map>& map) {
+  Vector ones(map);
   ones.putScalar(1);
-  apply(mass, ones, sums);
+  const RCP<Vector> sums = make_vector(map);
+  apply(mass, ones, *sums);
+  return sums;
+}
+
+/// Replaces the inverse diagonal of blocks that were too large; a single entry in a row is either
+/// one of those or a block of its own, whose sum it is. Collective.
+void lump_large_blocks(const LinearOperator& mass, const CrsMatrix& inverse,
+                       std::vector<double>& triplets) {
+  const RCP<Vector> sums = row_sums(mass, inverse.getRowMap());
+  const auto values = sums->getData();
+  std::size_t k = 2;
+  for (int row = 0; row < values.size(); ++row) {
+    const std::size_t n = inverse.getNumEntriesInLocalRow(row);
+    if (n == 1 && values[row] > 0)
+      triplets[k] = 1 / values[row];
+    k += 3 * n;
+  }
+}
+
+/// Row, column, value of the inverse sums of rows. Collective.
+std::vector<double> lumped_triplets(const LinearOperator& mass, const RCP<const Map>& map) {
+  const RCP<Vector> sums = row_sums(mass, map);
   std::vector<double> triplets;
-  const auto values = sums.getData();
+  const auto values = sums->getData();
   std::string failure;
   for (int row = 0; row < values.size(); ++row) {
     const GlobalIndex id = map->getGlobalElement(row);
     if (!(values[row] > 0))
       failure = fmt::format(
-          "Contact needs lumped masses, but row {} of the matrix-free mass of the solids sums to "
-          "{}; let the solid model assemble its mass.",
+          "Contact needs lumped masses, but row {} of the mass of the solids sums to {}; let the "
+          "solid model lump its mass.",
           id, values[row]);
     triplets.insert(triplets.end(), {double(id), double(id), 1 / values[row]});
   }
@@ -92,6 +115,8 @@ InverseMass replicated_inverse_mass(const SolidSystem<dim>& system) {
     const auto blocks = block_diagonal_inverse(matrix, largest_block, "mass of the solids");
     result.exact = blocks.exact;
     triplets = triplets_of(*blocks.inverse);
+    if (!result.exact)
+      lump_large_blocks(*mass, *blocks.inverse, triplets);
   }
   const std::vector<double> all = gather_all(system.comm(), triplets);
   const std::vector<double> free = replicated(system, *system.free_mask());

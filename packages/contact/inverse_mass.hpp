@@ -7,7 +7,8 @@
 namespace lockstep {
 
 /// M_S^-1 on the free dofs, replicated: rows of small blocks. Where the blocks of M_S are larger
-/// than those of rigid bodies, its diagonal stands in (lumped masses if M_S is matrix-free).
+/// than those of rigid bodies (consistent mass matrices), lumped masses, the sums of its rows,
+/// stand in.
 struct InverseMass {
   bool exact = true;
   std::vector<std::vector<std::pair<int, double>>> rows;  ///< by id, without padding

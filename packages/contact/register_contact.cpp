@@ -20,13 +20,21 @@ ParameterList contact_parameters() {
                    "Overlap that is left alone, and gap up to which solids count as touching "
                    "[cells].");
   declare_positive(list, "Shell Thickness", usual.shell_thickness,
-                   "Thickness of thin shells for contact [cells].");
+                   "Thickness for contact of thin shells and of the skins of deformable bodies "
+                   "[cells]. Surfaces that touch stay the mean of their thicknesses apart; of one "
+                   "that touches itself it should be below half the spacing of the mesh.");
+  ParameterList skin;
+  declare_required_positive(skin, "Thickness", "Instead of \"Shell Thickness\" [m].");
+  declare_named_sublists(list, "Skins", "By name of a solid: its own thickness for contact.", skin);
   declare_positive(list, "Deepest Overlap", usual.deepest,
                    "How deep inside a solid a vertex is still recognised [cells].");
   declare_between(list, "Push Out Rate", usual.push_rate, 0.0, 1.0,
                   "Part of an overlap beyond the slop that one step removes [1].");
   declare_at_least(list, "Bounce Speed", usual.bounce_speed, 0.0,
                    "No restitution below this speed of approach [m/s].");
+  declare(list, "Self-Contact", usual.self_contact,
+          "Whether deformable bodies and cloth touch themselves. Neighbours across one edge of a "
+          "mesh are kept from crossing, not apart.");
   declare_optional<double>(list, "Wall Friction",
                            "Coulomb's coefficient of the domain's walls [1]; without it that of "
                            "the solid counts. Two solids, or a solid and a wall, have the "
@@ -55,6 +63,12 @@ GaussSeidelOptions options_from(const ParameterList& list) {
   options.deepest = list.get<double>("Deepest Overlap");
   options.push_rate = list.get<double>("Push Out Rate");
   options.bounce_speed = list.get<double>("Bounce Speed");
+  const ParameterList& skins = list.sublist("Skins");
+  for (auto skin = skins.begin(); skin != skins.end(); ++skin) {
+    const std::string& name = skins.name(skin);
+    options.thickness_of[name] = skins.sublist(name).get<double>("Thickness");
+  }
+  options.self_contact = list.get<bool>("Self-Contact");
   options.wall_friction = optional_value(list, "Wall Friction");
   options.wall_restitution = optional_value(list, "Wall Restitution");
   return options;

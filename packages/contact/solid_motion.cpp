@@ -1,6 +1,28 @@
 #include "contact/solid_motion.hpp"
 
+#include "contact/carried_point.hpp"
+
 namespace lockstep {
+
+namespace {
+/// The displacement of the end of an arm that turns by `turn` [rad].
+Point<2> swing(const AngularVector<2>& turn, const Point<2>& arm) {
+  return Eigen::Rotation2Dd(turn[0]) * arm - arm;
+}
+Point<3> swing(const AngularVector<3>& turn, const Point<3>& arm) {
+  const double angle = turn.norm();
+  if (angle == 0)
+    return Point<3>::Zero();
+  return Eigen::AngleAxisd(angle, turn / angle) * arm - arm;
+}
+
+AngularVector<2> spin_of(const Eigen::Matrix2d& gradient) {
+  return AngularVector<2>(gradient(1, 0));
+}
+AngularVector<3> spin_of(const Eigen::Matrix3d& gradient) {
+  return {gradient(2, 1), gradient(0, 2), gradient(1, 0)};
+}
+}  // namespace
 
 template <int dim>
 Point<dim> point_velocity(const SolidSystem<dim>& system, bool prescribed,
@@ -20,6 +42,7 @@ template <int dim>
 SolidMotion<dim>::SolidMotion(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
                               const std::vector<double>& velocity)
     : shapes_(shapes), motions_(shapes.n_solids()) {
+  const std::vector<SolidState<dim>> states = system.states();
   for (int i = 0; i < shapes.n_solids(); ++i) {
     const SolidDescription& solid = shapes.solids()[i];
     Motion& motion = motions_[i];
@@ -42,7 +65,7 @@ SolidMotion<dim>::SolidMotion(const SolidSystem<dim>& system, const ContactShape
     SurfacePoint<dim> point;
     point.simplex = solid.simplex_begin;
     point.barycentric.fill(1.0 / dim);
-    motion.center = box.center();
+    motion.center = states[i].center_of_mass;
     const auto field = [&](const Point<dim>& x) {
       return point_velocity(system, solid.prescribed, point, x, velocity);
     };
@@ -65,9 +88,10 @@ Point<dim> SolidMotion<dim>::at(int solid, const SurfacePoint<dim>& point,
   const Motion& motion = motions_[solid];
   if (motion.rigid)
     return motion.velocity + motion.gradient * (x - motion.center);
+  const auto factors = carried_point<dim>(shapes_.corners(point.simplex), point, x);
   Point<dim> sum = Point<dim>::Zero();
   for (int k = 0; k < dim; ++k)
-    sum += point.barycentric[k] * vertex_velocities_[shapes_.mesh().simplices[point.simplex][k]];
+    sum += factors[k] * vertex_velocities_[shapes_.mesh().simplices[point.simplex][k]];
   return sum;
 }
 
@@ -77,6 +101,20 @@ Point<dim> SolidMotion<dim>::of_vertex(int solid, int vertex) const {
   if (motion.rigid)
     return motion.velocity + motion.gradient * (shapes_.mesh().vertices[vertex] - motion.center);
   return vertex_velocities_[vertex];
+}
+
+template <int dim>
+Point<dim> SolidMotion<dim>::end_of_point(int rigid_solid, const Point<dim>& x, double dt) const {
+  const Motion& motion = motions_[rigid_solid];
+  const AngularVector<dim> turn = dt * spin_of(motion.gradient);
+  return x + dt * motion.velocity + swing(turn, Point<dim>(x - motion.center));
+}
+
+template <int dim>
+Point<dim> SolidMotion<dim>::end_of_vertex(int solid, int vertex, double dt) const {
+  const Point<dim>& x = shapes_.mesh().vertices[vertex];
+  return motions_[solid].rigid ? end_of_point(solid, x, dt)
+                               : Point<dim>(x + dt * vertex_velocities_[vertex]);
 }
 
 template class SolidMotion<2>;

@@ -14,18 +14,22 @@ class SolidMotion {
   SolidMotion(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
               const std::vector<double>& velocity);
 
-  /// Of a point of the solid [m/s]; for a rigid solid that of the given x. Wherever simplices carry
-  /// the motion, `point` says where.
+  /// Of x [m/s], a point of a rigid solid or one that the simplex of `point` carries along (see
+  /// `carried_point`).
   Point<dim> at(int solid, const SurfacePoint<dim>& point, const Point<dim>& x) const;
   /// Of a vertex [m/s].
   Point<dim> of_vertex(int solid, int vertex) const;
+  /// Where a vertex, or a point fixed to a rigid solid, is after dt: straight on, but about the
+  /// centre of mass of a rigid solid [m].
+  Point<dim> end_of_vertex(int solid, int vertex, double dt) const;
+  Point<dim> end_of_point(int rigid_solid, const Point<dim>& x, double dt) const;
   /// Componentwise bounds of the velocity over the solid [m/s].
   const Box<dim>& range(int solid) const { return motions_[solid].range; }
 
  private:
   struct Motion {
     bool rigid = true;
-    Point<dim> center, velocity;
+    Point<dim> center, velocity;  ///< of mass
     Eigen::Matrix<double, dim, dim> gradient;
     Box<dim> range;
   };

@@ -35,7 +35,7 @@ VertexContacts<dim>::VertexContacts(const ContactShapes<dim>& shapes,
       other_(other),
       solid_closed_(shapes.solids()[solid].closed),
       other_closed_(shapes.solids()[other].closed),
-      thickness_(reach.half_thickness * (int(!solid_closed_) + int(!other_closed_))),
+      thickness_(reach.half_thickness[solid] + reach.half_thickness[other]),
       near_(reach.near + thickness_) {
   collect_simplices();
 }

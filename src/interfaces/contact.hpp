@@ -13,6 +13,7 @@ template <int dim>
 struct ContactReport {
   int n_contacts = 0;
   int iterations = 0;
+  int n_crossings = 0;             ///< of surfaces that are not rigid, which could not be prevented
   double deepest_overlap = 0;      ///< before resolution [m]
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global
 };

@@ -273,6 +273,12 @@ int Simulation<dim>::run() {
     ++step_;
     last_dt_ = dt;
     count(report);
+    if (report.contact_position.n_crossings > 0) {
+      log_.warning(
+          "Step {}: prescribed solids or pinned nodes press surfaces through each other at {} "
+          "places, which contact cannot prevent; let them move less, or less far in a step.",
+          step_, report.contact_position.n_crossings);
+    }
     const double step_seconds = seconds_since(step_start);
     tables_.append(step_, report, components_.solids->states(), step_seconds);
     StepProgress progress = progress_of<dim>(step_, report, step_seconds);

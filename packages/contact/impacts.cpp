@@ -1,0 +1,81 @@
+#include "contact/impacts.hpp"
+
+#include <algorithm>
+
+namespace lockstep {
+
+template <int dim>
+SurfacePath<dim>::SurfacePath(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
+                              double dt)
+    : before(shapes.mesh().vertices), after(before) {
+  for (int i = 0; i < shapes.n_solids(); ++i) {
+    const SolidDescription& solid = shapes.solids()[i];
+    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
+      after[v] = motion.end_of_vertex(i, v, dt);
+  }
+}
+
+template <int dim>
+std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
+                                           const SurfacePath<dim>& path, bool self) {
+  std::vector<Box<dim>> swept, solid_swept(shapes.n_solids());
+  for (std::size_t v = 0; v < path.before.size(); ++v) {
+    swept.emplace_back(path.before[v]);
+    swept.back().extend(path.after[v]);
+  }
+  for (int i = 0; i < shapes.n_solids(); ++i) {
+    const SolidDescription& solid = shapes.solids()[i];
+    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
+      solid_swept[i].extend(swept[v]);
+  }
+  std::vector<FoundImpact<dim>> found;
+  for (int i = 0; i < shapes.n_solids(); ++i) {
+    for (int j = i; j < shapes.n_solids(); ++j) {
+      const bool both_rigid = shapes.solids()[i].rigid && shapes.solids()[j].rigid;
+      if (both_rigid || (i == j && !self) || !solid_swept[i].intersects(solid_swept[j]))
+        continue;
+      for (const PrimitivePair<dim>& pair : find_primitive_pairs(shapes, swept, 0, i, j)) {
+        const auto impact =
+            first_impact<dim>(pair.kind, points_of(pair, path.before), points_of(pair, path.after));
+        if (impact)
+          found.push_back({pair, *impact});
+      }
+    }
+  }
+  return found;
+}
+
+template <int dim>
+Contact<dim> impact_contact(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
+                            const SurfacePath<dim>& path, const FoundImpact<dim>& found,
+                            double clearance, double dt) {
+  const auto& [pair, impact] = found;
+  const auto points = surface_points(shapes, pair, impact.weights);
+  Contact<dim> contact;
+  contact.impact = true;
+  contact.solid = pair.solid;
+  contact.other = pair.other;
+  contact.point = points[0];
+  contact.other_point = points[1];
+  contact.normal = impact.normal;
+  const double start =
+      impact.normal.dot(weighted<dim>(impact.weights, points_of(pair, path.before)));
+  const double end = impact.normal.dot(weighted<dim>(impact.weights, points_of(pair, path.after)));
+  const double speed = impact.normal.dot(motion.at(pair.solid, points[0], points[0].position) -
+                                         motion.at(pair.other, points[1], points[1].position));
+  contact.gap = end - dt * speed - std::min(clearance, 0.5 * std::max(start, 0.0));
+  return contact;
+}
+
+template struct SurfacePath<2>;
+template struct SurfacePath<3>;
+template std::vector<FoundImpact<2>> find_impacts<2>(const ContactShapes<2>&, const SurfacePath<2>&,
+                                                     bool);
+template std::vector<FoundImpact<3>> find_impacts<3>(const ContactShapes<3>&, const SurfacePath<3>&,
+                                                     bool);
+template Contact<2> impact_contact<2>(const ContactShapes<2>&, const SolidMotion<2>&,
+                                      const SurfacePath<2>&, const FoundImpact<2>&, double, double);
+template Contact<3> impact_contact<3>(const ContactShapes<3>&, const SolidMotion<3>&,
+                                      const SurfacePath<3>&, const FoundImpact<3>&, double, double);
+
+}  // namespace lockstep

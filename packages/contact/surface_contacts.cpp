@@ -1,0 +1,172 @@
+#include "contact/surface_contacts.hpp"
+
+#include "contact/primitive_pairs.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// A pair with its closest points.
+template <int dim>
+struct NearPair {
+  const PrimitivePair<dim>* pair = nullptr;
+  ClosestPrimitives<dim> closest;
+  std::array<SurfacePoint<dim>, 2> points;
+  Point<dim> arm = Point<dim>::Zero();  ///< from the second point to the first [m]
+};
+
+template <int dim>
+class SurfaceContacts {
+ public:
+  SurfaceContacts(const ContactShapes<dim>& shapes, const ContactReach& reach,
+                  std::vector<Contact<dim>>& contacts)
+      : shapes_(shapes), reach_(reach), contacts_(contacts) {}
+
+  void add(const std::vector<PrimitivePair<dim>>& pairs) {
+    for (std::size_t k = 0; k < pairs.size();) {
+      if (pairs[k].kind == PrimitiveKind::edge_edge) {
+        if (const auto near = near_pair(pairs[k]); near && on_outer_sides(*near))
+          add_contact(*near);
+        ++k;
+      } else {
+        k = add_vertex(pairs, k);
+      }
+    }
+  }
+
+ private:
+  double thickness(const PrimitivePair<dim>& pair) const {
+    return reach_.half_thickness[pair.solid] + reach_.half_thickness[pair.other];
+  }
+
+  bool neighbours(const PrimitivePair<dim>& pair) const {
+    const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
+    for (int i = 0; i < n_first; ++i) {
+      for (int j = n_first; j <= dim; ++j) {
+        if (shapes_.topology().connected(pair.vertices[i], pair.vertices[j]))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  std::optional<NearPair<dim>> near_pair(const PrimitivePair<dim>& pair) const {
+    if (pair.solid == pair.other && neighbours(pair))
+      return {};
+    const auto closest =
+        closest_primitives<dim>(pair.kind, points_of(pair, shapes_.mesh().vertices));
+    if (!closest)
+      return {};
+    NearPair<dim> near;
+    near.pair = &pair;
+    near.closest = *closest;
+    near.points = surface_points(shapes_, pair, closest->weights);
+    near.arm = near.points[0].position - near.points[1].position;
+    return near;
+  }
+
+  bool is_closed(int solid) const { return shapes_.solids()[solid].closed; }
+
+  Point<dim> outward(const SurfacePoint<dim>& point) const {
+    Point<dim> sum = Point<dim>::Zero();
+    for (int k = 0; k < dim; ++k) {
+      if (point.barycentric[k] > 0)
+        sum += point.barycentric[k] *
+               shapes_.vertex_normal(shapes_.mesh().simplices[point.simplex][k]);
+    }
+    return sum;
+  }
+
+  bool on_outer_sides(const NearPair<dim>& near) const {
+    return !(is_closed(near.pair->other) && outward(near.points[1]).dot(near.arm) <= 0) &&
+           !(is_closed(near.pair->solid) && outward(near.points[0]).dot(near.arm) >= 0);
+  }
+
+  /// A vertex inside another closed solid.
+  bool overlaps(const NearPair<dim>& near) const {
+    return near.pair->solid != near.pair->other && is_closed(near.pair->other) &&
+           outward(near.points[1]).dot(near.arm) < 0;
+  }
+
+  /// All simplices near the vertex of pairs[k]; returns the first pair of another one.
+  std::size_t add_vertex(const std::vector<PrimitivePair<dim>>& pairs, std::size_t k) {
+    std::vector<NearPair<dim>> near;
+    std::size_t nearest = 0;
+    const int vertex = pairs[k].vertices[0];
+    for (; k < pairs.size() && pairs[k].kind == PrimitiveKind::vertex_simplex &&
+           pairs[k].vertices[0] == vertex;
+         ++k) {
+      if (const auto found = near_pair(pairs[k])) {
+        near.push_back(*found);
+        if (near.back().closest.distance < near[nearest].closest.distance)
+          nearest = near.size() - 1;
+      }
+    }
+    if (near.empty())
+      return k;
+    if (overlaps(near[nearest])) {
+      add_overlap(near[nearest]);
+      return k;
+    }
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      if ((near[i].closest.interior || i == nearest) && on_outer_sides(near[i]))
+        add_contact(near[i]);
+    }
+    return k;
+  }
+
+  void add_contact(const NearPair<dim>& near) {
+    const double range = reach_.near + thickness(*near.pair), distance = near.closest.distance;
+    if (distance <= range && distance > 1e-9 * range)
+      append(near, near.arm / distance, distance);
+  }
+
+  void add_overlap(const NearPair<dim>& near) {
+    if (near.closest.distance <= reach_.depth)
+      append(near, -near.arm / near.closest.distance, -near.closest.distance);
+  }
+
+  void append(const NearPair<dim>& near, const Point<dim>& normal, double distance) {
+    Contact<dim> contact;
+    contact.solid = near.pair->solid;
+    contact.other = near.pair->other;
+    contact.point = near.points[0];
+    contact.other_point = near.points[1];
+    contact.normal = normal;
+    contact.gap = distance - thickness(*near.pair);
+    // On the surface that bends: a rigid body carries any point exactly.
+    if (shapes_.solids()[contact.solid].rigid) {
+      contact.x = contact.other_point.position;
+    } else if (shapes_.solids()[contact.other].rigid) {
+      contact.x = contact.point.position;
+    } else {
+      contact.x = 0.5 * (contact.point.position + contact.other_point.position);
+    }
+    contacts_.push_back(contact);
+  }
+
+  const ContactShapes<dim>& shapes_;
+  const ContactReach& reach_;
+  std::vector<Contact<dim>>& contacts_;
+};
+
+}  // namespace
+
+template <int dim>
+void add_surface_contacts(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertices,
+                          const ContactReach& reach, int solid, int other,
+                          std::vector<Contact<dim>>& contacts) {
+  double range = reach.near + reach.half_thickness[solid] + reach.half_thickness[other];
+  const bool any_closed = shapes.solids()[solid].closed || shapes.solids()[other].closed;
+  if (solid != other && any_closed)
+    range = std::max(range, reach.depth);
+  SurfaceContacts<dim>(shapes, reach, contacts)
+      .add(find_primitive_pairs(shapes, vertices, range, solid, other));
+}
+
+template void add_surface_contacts<2>(const ContactShapes<2>&, const std::vector<Box<2>>&,
+                                      const ContactReach&, int, int, std::vector<Contact<2>>&);
+template void add_surface_contacts<3>(const ContactShapes<3>&, const std::vector<Box<3>>&,
+                                      const ContactReach&, int, int, std::vector<Contact<3>>&);
+
+}  // namespace lockstep

@@ -1,0 +1,21 @@
+#pragma once
+#include <vector>
+
+#include "contact/contact_search.hpp"
+
+namespace lockstep {
+
+/// Contacts of two solids of which one is not rigid, or (solid == other) of one with itself: of
+/// vertices with the insides of all near simplices, or else with the nearest rim, and of crossed
+/// edges. The skins of both must not meet; surfaces have not crossed (see `find_impacts`), so the
+/// side on which a point lies is where it belongs, and only the outer side of a closed solid
+/// counts, but for vertices up to `reach.depth` inside another closed solid, which are pushed out.
+/// A solid does not touch itself across one edge of its mesh: there only impacts count.
+///
+/// `vertices`: boxes that hold one vertex each.
+template <int dim>
+void add_surface_contacts(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertices,
+                          const ContactReach& reach, int solid, int other,
+                          std::vector<Contact<dim>>& contacts);
+
+}  // namespace lockstep
