@@ -3,8 +3,8 @@
 #include <string>
 
 #include "geometry/surface_mesh.hpp"
-#include "rigid/motion_script.hpp"
-#include "rigid/rotation.hpp"
+#include "motion/motion_script.hpp"
+#include "motion/rotation.hpp"
 
 namespace lockstep {
 

@@ -4,7 +4,8 @@
 
 #include "base/errors.hpp"
 #include "rigid/body_geometry.hpp"
-#include "rigid/list_values.hpp"
+#include "rigid/body_motion.hpp"
+#include "motion/list_values.hpp"
 
 namespace lockstep {
 
