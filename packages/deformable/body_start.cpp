@@ -6,6 +6,7 @@
 #include "deformable/elements/shell_elements.hpp"
 #include "deformable/list_values.hpp"
 #include "deformable/node_region.hpp"
+#include "deformable/pinned_regions.hpp"
 
 namespace lockstep {
 
@@ -117,7 +118,8 @@ void declare_body_start(ParameterList& list) {
       "together with the fluid; stable at any step. The step of the others is bounded by "
       "the stiffest element.");
   declare_start<dim>(list);
-  declare_constraints_and_loads<dim>(list);
+  declare_pinned<dim>(list);
+  declare_loads_and_tethers<dim>(list);
   declare_between(list, "Restitution", 0.0, 0.0, 1.0,
                   "Speed after over speed before a collision [1].");
   declare_at_least(list, "Friction", 0.0, 0.0, "Coulomb's coefficient of contacts [1].");
@@ -135,7 +137,7 @@ void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& r
   for (std::size_t k = 0; k < body.mass_elements.nodes.size(); ++k)
     node_mass[body.mass_elements.nodes[k]] += body.element_mass[k / n] / n;
   place<dim>(list, rest, body);
-  body.locked = read_pinned<dim>(list, rest, body.name);
+  read_pinned<dim>(list, rest, vector_value<dim>(list, "Position"), body);
   body.force = read_loads<dim>(list, rest, node_mass, body.name);
   add_tethers(read_tethers<dim>(list, rest, node_mass, body.name), body);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "deformable/elements/element_group.hpp"
+#include "deformable/held_nodes.hpp"
 
 namespace lockstep {
 
@@ -28,7 +29,8 @@ struct DeformableBody {
   std::vector<Point<dim>> position;           ///< of the nodes [m]
   std::vector<Point<dim>> velocity;           ///< [m/s]
   std::vector<std::array<int, dim>> surface;  ///< simplices of nodes, normals outwards
-  std::vector<std::array<bool, dim>> locked;  ///< per node and axis: held where it is
+  std::vector<std::array<bool, dim>> locked;  ///< per node and axis: held at the start
+  std::vector<NodeHold<dim>> holds;           ///< those of them that move or are let go
   std::vector<Point<dim>> force;              ///< constant load on each node [N]
   std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
   /// Simplices of even mass. Nodes of none (the anchors of tethers) must be locked.

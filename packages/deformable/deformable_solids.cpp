@@ -79,14 +79,15 @@ Momentum<dim> DeformableSolids<dim>::external_impulse(double, double dt) const {
 }
 
 template <int dim>
+void DeformableSolids<dim>::begin_step(double time, double) {
+  held_.begin_step(time);
+}
+
+template <int dim>
 std::vector<GlobalIndex> DeformableSolids<dim>::locked_dofs() const {
   std::vector<GlobalIndex> dofs;
-  for (int i = 0; i < space_.n_owned(); ++i) {
-    for (int a = 0; a < dim; ++a) {
-      if (locked_[i][a])
-        dofs.push_back(space_.dof_map()->getGlobalElement(dim * i + a));
-    }
-  }
+  for (const int dof : held_.dofs())
+    dofs.push_back(space_.dof_map()->getGlobalElement(dof));
   return dofs;
 }
 

@@ -20,9 +20,9 @@ namespace lockstep {
 template <int dim>
 class DeformableSolids : public SolidModel<dim> {
  public:
-  /// `type` is the name of the model, gravity [m/s^2]. Collective.
+  /// `type` is the name of the model, gravity [m/s^2], the start of the run [s]. Collective.
   DeformableSolids(const std::string& type, std::vector<DeformableBody<dim>> bodies,
-                   const Point<dim>& gravity, const Communicator& comm);
+                   const Point<dim>& gravity, const Communicator& comm, double start_time = 0);
 
   std::string name() const override { return type_; }
 
@@ -43,7 +43,11 @@ class DeformableSolids : public SolidModel<dim> {
   RCP<const LinearOperator> implicit_force(double dt) const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
   Momentum<dim> external_impulse(double time, double dt) const override;
+  void begin_step(double time, double dt) override;
   std::vector<GlobalIndex> locked_dofs() const override;
+  std::vector<double> locked_velocities(double begin, double end) const override {
+    return held_.velocities(begin, end);
+  }
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const override;
 
   RCP<const Vector> velocity() const override { return velocity_; }
@@ -77,6 +81,7 @@ class DeformableSolids : public SolidModel<dim> {
   };
 
   void add_body(DeformableBody<dim>& body, int node_begin);
+  void hold_nodes(const std::vector<DeformableBody<dim>>& bodies);
   void distribute(std::vector<DeformableBody<dim>>& bodies, const Communicator& comm);
   void assemble_mass(const std::vector<DeformableBody<dim>>& bodies);
   void distribute_surface(const std::vector<DeformableBody<dim>>& bodies);
@@ -96,7 +101,7 @@ class DeformableSolids : public SolidModel<dim> {
   std::vector<int> body_of_node_;  ///< of the owned nodes
   std::vector<double> node_mass_;  ///< lumped, of the owned nodes [kg]
   Nodes node_force_;               ///< constant loads on them [N]
-  std::vector<std::array<bool, dim>> locked_;
+  HeldNodes<dim> held_;
 
   std::vector<SolidDescription> solids_;
   SurfaceMesh<dim> surface_;

@@ -44,10 +44,16 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
     ids.push_back(first + i);
   map_ = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
                      Teuchos::arrayViewFromVector(ids), 0, comm));
+  make_free_mask();
+}
+
+template <int dim>
+void SolidSystem<dim>::make_free_mask() {
   free_mask_ = rcp(new Vector(map_));
   free_mask_->putScalar(1);
-  for (int i = 0; i < n_padding_; ++i)
-    free_mask_->replaceGlobalValue(first + i, 0.);
+  const int n_local = static_cast<int>(map_->getNodeNumElements());
+  for (int i = n_local - n_padding_; i < n_local; ++i)
+    free_mask_->replaceLocalValue(i, 0.);
   GlobalIndex n_locked = 0;
   for (int m = 0; m < n_models(); ++m) {
     for (GlobalIndex id : model(m).locked_dofs()) {
@@ -55,7 +61,32 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
       ++n_locked;
     }
   }
-  has_locks_ = sum_all(comm, n_locked) > 0;
+  has_locks_ = sum_all(comm_, n_locked) > 0;
+}
+
+template <int dim>
+bool SolidSystem<dim>::begin_step(double time, double dt) {
+  for (const auto& solid_model : models_)
+    solid_model->begin_step(time, dt);
+  const RCP<const Vector> before = free_mask_;
+  make_free_mask();
+  Vector change(*free_mask_, Teuchos::Copy);
+  change.update(-1, *before, 1);
+  return change.normInf() > 0;
+}
+
+template <int dim>
+RCP<const Vector> SolidSystem<dim>::locked_velocity(double begin, double end) const {
+  if (!has_locks_)
+    return Teuchos::null;
+  const auto velocity = make_vector(map_);
+  for (int m = 0; m < n_models(); ++m) {
+    const std::vector<GlobalIndex> dofs = model(m).locked_dofs();
+    const std::vector<double> values = model(m).locked_velocities(begin, end);
+    for (std::size_t k = 0; k < dofs.size(); ++k)
+      velocity->replaceGlobalValue(id_begin_[m] + dofs[k], values[k]);
+  }
+  return velocity->normInf() > 0 ? velocity : Teuchos::null;
 }
 
 template <int dim>

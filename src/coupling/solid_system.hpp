@@ -47,9 +47,14 @@ class SolidSystem {
   RCP<Vector> velocity_of(const Vector& generalized_momentum) const;
   /// M_S alone, locked dofs included.
   RCP<const LinearOperator> mass() const;
+  /// A step begins: true if other dofs are locked than before, on any rank. Collective.
+  bool begin_step(double time, double dt);
   /// 1 for free dofs, 0 for locked and padding ones.
   RCP<const Vector> free_mask() const { return free_mask_; }
   bool has_locks() const { return has_locks_; }
+  /// The velocities at which dofs are locked, zero elsewhere (`SolidModel::locked_velocities`); null
+  /// if all are zero. Collective.
+  RCP<const Vector> locked_velocity(double begin, double end) const;
 
   /// Stacked vectors. Collective.
   RCP<Vector> velocity() const;
@@ -68,6 +73,7 @@ class SolidSystem {
   std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;
   RCP<const Vector> part(const Vector& stacked, int m) const;
   RCP<Vector> part(Vector& stacked, int m) const;
+  void make_free_mask();
   RCP<const LinearOperator> block(const RCP<const CrsMatrix>& added, double dt,
                                   bool eliminate) const;
 

@@ -75,8 +75,15 @@ class SolidModel : public PlugIn {
   /// Total of the external impulses (gravity, loads) inside explicit_momentum, for the ledger.
   /// Global.
   virtual Momentum<dim> external_impulse(double time, double dt) const = 0;
-  /// Dofs held at zero velocity (ids in dof_map, those of this rank). Local.
+  /// A step from `time` to time + dt begins: from here on `locked_dofs` are its own. Collective.
+  virtual void begin_step(double, double) {}
+  /// Dofs held at a given velocity in the present step (ids in dof_map, those of this rank). Local.
   virtual std::vector<GlobalIndex> locked_dofs() const { return {}; }
+  /// Mean velocity of each of them between two times, at equal times that of the instant. Default:
+  /// zero. Local.
+  virtual std::vector<double> locked_velocities(double, double) const {
+    return std::vector<double>(locked_dofs().size(), 0);
+  }
   /// Linear and angular momentum (about the origin) of each solid for a generalized momentum q on
   /// dof_map; zero for prescribed ones. Every rank gets all. Collective.
   virtual std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const = 0;

@@ -85,6 +85,7 @@ class Stepper {
   void make_advection_velocity(StepReport<dim>& report);
   void finish(const CoupledSolution& solution, double dt, StepReport<dim>& report);
   ContactReport<dim> contact_momentum(double dt, Vector& momentum);
+  RCP<Vector> at_locked_velocity(const Vector& velocity) const;
   void ledger_solve(const CoupledSolution& solution, double dt, StepReport<dim>& report);
   SolveRequest request(const char* name, double dt) const;
   Momentum<dim> total_momentum() const;
@@ -99,6 +100,7 @@ class Stepper {
   double last_dt_ = 0;           ///< 0 before the first step
   Momentum<dim> last_momentum_;  ///< at the end of the last step
   RCP<Vector> viscous_impulse_;  ///< j_nu of the present prediction, or null
+  RCP<const Vector> locked_velocity_;  ///< of locked dofs in the present solve; null: at rest
 };
 
 }  // namespace lockstep
