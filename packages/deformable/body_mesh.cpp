@@ -35,7 +35,8 @@ void check_sizes(const ParameterList& list, const std::string& shape, const std:
   const auto found = std::find_if(shapes().begin(), shapes().end(),
                                   [&](const ShapeSizes& sizes) { return sizes.shape == shape; });
   const auto& needed = found->needed;
-  for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "File", "Scale"}) {
+  for (const char* size :
+       {"Radius", "Length", "Tube Radius", "Thickness", "Size", "File", "Scale"}) {
     const bool given = list.isParameter(size);
     const bool wanted = std::find(needed.begin(), needed.end(), size) != needed.end();
     check_input(given || !wanted || std::string(size) == "Scale",
@@ -83,8 +84,8 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_optional<double>(list, "Radius",
                            "Of ball and cylinder, of the torus' centre line, outer one of hollow "
                            "ball and tube [m].");
-  declare_optional<double>(list, "Length",
-                           "Of cylinder and tube, along z; in 2D a cylinder is a box, along y [m].");
+  declare_optional<double>(
+      list, "Length", "Of cylinder and tube, along z; in 2D a cylinder is a box, along y [m].");
   declare_optional<double>(list, "Thickness", "Of the wall of hollow ball and tube [m].");
   declare_optional<double>(list, "Tube Radius", "Of the section of a torus [m].");
   declare_optional<ParameterArray<double>>(list, "Size", "Edges of a box [m].");
@@ -96,7 +97,8 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest step of the lattice of a generated mesh [m]; default one grid "
                            "cell.");
-  for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Scale", "Size", "Mesh Spacing"})
+  for (const char* size :
+       {"Radius", "Length", "Tube Radius", "Thickness", "Scale", "Size", "Mesh Spacing"})
     set_positive(list, size);
   declare_between(
       list, "Worst Quality", 1e-3, 0.0, 1.0,

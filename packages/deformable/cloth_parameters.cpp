@@ -21,8 +21,9 @@ using deformable_lists::vector_value;
 /// The shapes and the parameters that each needs.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& shapes() {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> all{
-      {"sheet", {"Size", "Normal"}}, {"bag", {"Size"}}, {"ball", {"Radius"}},
-      {"open ball", {"Radius", "Opening Radius"}}, {"tube", {"Radius", "Length"}}, {"file", {"File"}}};
+      {"sheet", {"Size", "Normal"}},  {"bag", {"Size"}},
+      {"ball", {"Radius"}},           {"open ball", {"Radius", "Opening Radius"}},
+      {"tube", {"Radius", "Length"}}, {"file", {"File"}}};
   return all;
 }
 
@@ -151,6 +152,10 @@ ParameterList cloth_parameters() {
                   "positive: under tension.");
   declare_at_least(list, "Surface Tension", 0.0, 0.0,
                    "Besides the elastic stress, whatever the strain [N/m] (2D: [N]).");
+  declare_at_least(
+      list, "Stretch Limit", 0.0, 0.0,
+      "Most that an edge may be longer than at rest [1]: impulses along the edges keep "
+      "the step from stretching it further. 0: no limit.");
   declare_body_start<dim>(list);
   return list;
 }
@@ -164,6 +169,10 @@ DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& lis
   body.closed = false;
   body.density = list.get<double>("Surface Density");
   add_elements<dim>(list, mesh, body);
+  if (const double limit = list.get<double>("Stretch Limit"); limit > 0) {
+    body.limited_edges = limited_edges<dim>(mesh.vertices, mesh.simplices,
+                                            1 + list.get<double>("Pre-Strain"), limit);
+  }
   body.surface = mesh.simplices;
   body.mass_elements.n_corners = dim;
   for (const auto& simplex : mesh.simplices) {

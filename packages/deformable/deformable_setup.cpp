@@ -50,6 +50,14 @@ DeformableSolids<dim>::DeformableSolids(const std::string& type,
   held_.begin_step(start_time);
   assemble_mass(bodies);
   distribute_surface(bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (const auto& [node, solid] : bodies[b].attached) {
+      const int local = space_.numbers().local[bodies_[b].node_begin + node];
+      if (local >= 0 && local < space_.n_owned())
+        attached_.emplace_back(local, solid);
+    }
+  }
+  make_strain_limit(bodies);
   space_.forget_numbers();
   update_geometry();
 }
@@ -73,6 +81,7 @@ void DeformableSolids<dim>::add_body(DeformableBody<dim>& body, int node_begin) 
   part.closed = body.closed;
   part.consistent_mass = body.consistent_mass;
   part.integration = body.integration;
+  part.most_sub_steps = body.most_sub_steps;
   part.mass = std::accumulate(body.element_mass.begin(), body.element_mass.end(), 0.0);
   part.node_begin = node_begin;
   part.node_end = node_begin + body.n_nodes();

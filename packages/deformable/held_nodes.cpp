@@ -62,9 +62,8 @@ std::vector<double> HeldNodes<dim>::velocities(double begin, double end) const {
       const Pose &p = before[dof.hold], &q = after[dof.hold];
       const Point<dim> start = dof.start - holds_[dof.hold].origin, arm = q.rotation * start;
       if (end > begin) {
-        velocity =
-            (q.displacement - p.displacement + arm - Point<dim>(p.rotation * start)) /
-            (end - begin);
+        velocity = (q.displacement - p.displacement + arm - Point<dim>(p.rotation * start)) /
+                   (end - begin);
       } else {
         velocity = q.velocity + rotate<dim>(q.angular_velocity, arm);
       }

@@ -1,5 +1,7 @@
 #include "deformable/pinned_regions.hpp"
 
+#include <algorithm>
+
 #include "base/errors.hpp"
 #include "deformable/node_region.hpp"
 #include "motion/list_values.hpp"
@@ -102,6 +104,41 @@ void read_pinned(const ParameterList& list, const std::vector<Point<dim>>& rest,
   }
 }
 
+template <int dim>
+void declare_attachments(ParameterList& body) {
+  ParameterList attachment("attachment");
+  declare_node_region<dim>(attachment);
+  declare_required<std::string>(attachment, "Solid", "Name of a dynamic rigid body.");
+  declare_named_sublists(body, "Attachments",
+                         "Nodes that a rigid body carries, as if glued to it where they start.",
+                         attachment);
+}
+
+template <int dim>
+void read_attachments(const ParameterList& list, const std::vector<Point<dim>>& rest,
+                      DeformableBody<dim>& body) {
+  std::vector<char> taken(rest.size(), 0);
+  const ParameterList& all = list.sublist("Attachments");
+  for (auto entry = all.begin(); entry != all.end(); ++entry) {
+    const ParameterList& region = all.sublist(all.name(entry));
+    const std::string where = body.name + "/Attachments/" + all.name(entry);
+    for (const int n : nodes_in_region<dim>(region, rest, where)) {
+      const auto& locked = body.locked[n];
+      check_input(!taken[n] && std::none_of(locked.begin(), locked.end(), [](bool l) { return l; }),
+                  "The region \"{}\" attaches node {}, which is pinned or attached already.", where,
+                  n);
+      taken[n] = 1;
+      body.attached.emplace_back(n, region.get<std::string>("Solid"));
+    }
+  }
+}
+
+template void declare_attachments<2>(ParameterList&);
+template void declare_attachments<3>(ParameterList&);
+template void read_attachments<2>(const ParameterList&, const std::vector<Point<2>>&,
+                                  DeformableBody<2>&);
+template void read_attachments<3>(const ParameterList&, const std::vector<Point<3>>&,
+                                  DeformableBody<3>&);
 template void declare_pinned<2>(ParameterList&);
 template void declare_pinned<3>(ParameterList&);
 template void read_pinned<2>(const ParameterList&, const std::vector<Point<2>>&, const Point<2>&,

@@ -16,4 +16,13 @@ template <int dim>
 void read_pinned(const ParameterList& list, const std::vector<Point<dim>>& rest,
                  const Point<dim>& origin, DeformableBody<dim>& body);
 
+/// Declares the named sublists "Attachments": regions that rigid solids carry.
+template <int dim>
+void declare_attachments(ParameterList& body);
+
+/// Sets `body.attached`; `body.locked` is set before. Throws InputError.
+template <int dim>
+void read_attachments(const ParameterList& list, const std::vector<Point<dim>>& rest,
+                      DeformableBody<dim>& body);
+
 }  // namespace lockstep

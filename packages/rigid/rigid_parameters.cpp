@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "motion/list_values.hpp"
 #include "rigid/body_geometry.hpp"
 #include "rigid/body_motion.hpp"
-#include "motion/list_values.hpp"
 
 namespace lockstep {
 

@@ -72,8 +72,8 @@ RCP<Vector> CoupledSystem<dim>::unlocked_momentum(double dt, const Vector& veloc
 }
 
 template <int dim>
-BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum,
-                                                double& incompatibility, double dt,
+BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum, double& incompatibility,
+                                                double dt,
                                                 const RCP<const Vector>& locked_velocity) const {
   BlockVector rhs;
   rhs.pressure = make_vector(fluid_.pressure_map());

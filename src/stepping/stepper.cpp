@@ -84,9 +84,9 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
     if (!locked_velocity_.is_null())
       row->update(-1, *system_.unlocked_momentum(dt, *locked_velocity_), 1);
   }
-  const ViscousResult<dim> result = solve_viscous<dim>(
-      *viscous, fluid, solids, *components_.coupling, block, row, dt, options_.viscous_tolerance,
-      locked_velocity_);
+  const ViscousResult<dim> result =
+      solve_viscous<dim>(*viscous, fluid, solids, *components_.coupling, block, row, dt,
+                         options_.viscous_tolerance, locked_velocity_);
   viscous_impulse_ = result.solid_impulse;
   report.viscous_iterations += result.iterations;
   if (ledger)
@@ -198,6 +198,7 @@ void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
         solve(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
   }
   ScopedPhase phase(timers_, "solid motion");
+  solids.limit_motion(dt, *half_velocity);
   if (components_.contact && coupled()) {
     report.contact_position =
         components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);

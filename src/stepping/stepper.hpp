@@ -97,9 +97,9 @@ class Stepper {
   PhaseTimers& timers_;
   CoupledSystem<dim> system_;
   double time_;
-  double last_dt_ = 0;           ///< 0 before the first step
-  Momentum<dim> last_momentum_;  ///< at the end of the last step
-  RCP<Vector> viscous_impulse_;  ///< j_nu of the present prediction, or null
+  double last_dt_ = 0;                 ///< 0 before the first step
+  Momentum<dim> last_momentum_;        ///< at the end of the last step
+  RCP<Vector> viscous_impulse_;        ///< j_nu of the present prediction, or null
   RCP<const Vector> locked_velocity_;  ///< of locked dofs in the present solve; null: at rest
 };
 
