@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -134,7 +135,36 @@ template <int dim>
 void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   velocity_ = rcp(new Vector(velocity, Teuchos::Copy));
   limiting_impulse_.clear();
+  if (linearised_)
+    update_forces();
+  linearised_ = false;
   update_states();
+}
+
+/// With x* = x + dt V the force of the next V' is f(x*) - dt K(x*) (V' - V): explicit is f + dt K
+/// V.
+template <int dim>
+bool DeformableSolids<dim>::linearise(double dt, const Vector& velocity) {
+  const auto implicit = [](const Body& body) {
+    return body.integration == TimeIntegration::fully_implicit;
+  };
+  if (std::none_of(bodies_.begin(), bodies_.end(), implicit))
+    return false;
+  const Nodes v = space_.with_ghosts(velocity);
+  Nodes x = x_;
+  for (const Body& body : bodies_) {
+    for (int i = 0; implicit(body) && i < space_.n_local(); ++i) {
+      if (space_.original(i) >= body.node_begin && space_.original(i) < body.node_end)
+        x[i] += dt * v[i];
+    }
+  }
+  assemble_forces(x);
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    if (implicit(bodies_[body_of_node_[i]]))
+      elastic_force_[i] += dt * stiffness_.row_times(i, v);
+  }
+  linearised_ = true;
+  return true;
 }
 
 template <int dim>
@@ -160,6 +190,7 @@ std::vector<Point<dim>> DeformableSolids<dim>::surface_values(const Nodes& owned
 
 template <int dim>
 void DeformableSolids<dim>::update_geometry() {
+  linearised_ = false;
   surface_.vertices = surface_values(x_);
   update_forces();
   update_largest_stable_step();
@@ -167,7 +198,7 @@ void DeformableSolids<dim>::update_geometry() {
 }
 
 template <int dim>
-void DeformableSolids<dim>::update_forces() {
+void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
   Nodes force(space_.n_local(), Point<dim>::Zero());
   stiffness_.set_zero();
   damping_.set_zero();
@@ -176,9 +207,9 @@ void DeformableSolids<dim>::update_forces() {
   for (const Body& body : bodies_) {
     energies.push_back(0);
     for (const auto& group : body.elements) {
-      energies.back() += group->add_elastic_forces(x_, space_.n_owned(), force);
-      n_clamped_ += group->add_stiffness(x_, stiffness_);
-      group->add_damping(x_, damping_);
+      energies.back() += group->add_elastic_forces(x, space_.n_owned(), force);
+      n_clamped_ += group->add_stiffness(x, stiffness_);
+      group->add_damping(x, damping_);
     }
   }
   force.resize(space_.n_owned());

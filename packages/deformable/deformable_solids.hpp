@@ -54,6 +54,7 @@ class DeformableSolids : public SolidModel<dim> {
 
   RCP<const Vector> velocity() const override { return velocity_; }
   void set_velocity(const Vector& velocity) override;
+  bool linearise(double dt, const Vector& velocity) override;
   void limit_motion(double dt, Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return states_; }
@@ -93,7 +94,9 @@ class DeformableSolids : public SolidModel<dim> {
   void distribute_surface(const std::vector<DeformableBody<dim>>& bodies);
   /// After the positions have changed: surface, forces, linearisation, states.
   void update_geometry();
-  void update_forces();
+  void update_forces() { assemble_forces(x_); }
+  /// Forces, stiffness and damping at positions x of all local nodes.
+  void assemble_forces(const Nodes& x);
   void update_largest_stable_step();
   double least_mass(int node) const;  ///< a bound of the eigenvalues of M_S [kg]
   /// Elastic forces for a step: averaged over sub-steps where it is longer than a body's stable
@@ -134,7 +137,8 @@ class DeformableSolids : public SolidModel<dim> {
   std::vector<SolidState<dim>> states_;
   Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]
   double largest_stable_step_ = 1e300;
-  double step_ = 0;  ///< the present one [s]
+  double step_ = 0;          ///< the present one [s]
+  bool linearised_ = false;  ///< elsewhere than at x_
   GlobalIndex n_clamped_ = 0;
 };
 

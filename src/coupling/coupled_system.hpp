@@ -24,6 +24,9 @@ class CoupledSystem {
   /// Collective.
   const BlockSystem& blocks(double dt, bool with_solid = true);
 
+  /// The solids' D is another one than when `blocks` were asked for last.
+  void forget_solid_block() { block_dt_ = -1; }
+
   /// Row 1: V G_f^T u* + V G_d^T u_d + V G_c^T W_k V_k; row 2: `momentum` + W^T M_F (u*_F - W_k
   /// V_k), locked and padding rows zero. `momentum` = M_S V_S* (+ the viscous impulse); unused
   /// without unknowns. The velocities of locked dofs that move, or null, bring B V_locked to row 1

@@ -387,6 +387,16 @@ void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
 }
 
 template <int dim>
+bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
+  Vector full(velocity, Teuchos::Copy);
+  attachments_.expand_velocity(full);
+  bool any = false;
+  for (int m = 0; m < n_models(); ++m)
+    any = model(m).linearise(dt, *part(std::as_const(full), m)) || any;
+  return any;
+}
+
+template <int dim>
 void SolidSystem<dim>::limit_motion(double dt, Vector& velocity) {
   attachments_.expand_velocity(velocity);
   for (int m = 0; m < n_models(); ++m)

@@ -63,6 +63,7 @@ class SolidSystem {
   RCP<Vector> explicit_momentum(double time, double dt) const;
   void add_midpoint_correction(double dt, Vector& momentum) const;
   Momentum<dim> external_impulse(double time, double dt) const;
+  bool linearise(double dt, const Vector& velocity);
   void limit_motion(double dt, Vector& velocity);
   void move(const Vector& velocity, double time, double dt);
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.

@@ -102,6 +102,10 @@ class SolidModel : public PlugIn {
   // State.
   virtual RCP<const Vector> velocity() const = 0;         ///< V_S
   virtual void set_velocity(const Vector& velocity) = 0;  ///< V_S := velocity (end of S2, contact)
+  /// A Newton iteration: linearises forces and D at the positions that this velocity reaches in dt,
+  /// instead of at the present ones, until `move` or `set_velocity`. False if nothing depends on
+  /// that. Default: nothing does. Collective.
+  virtual bool linearise(double, const Vector&) { return false; }
   /// S1: velocities that are about to move the positions by dt, changed by internal impulses
   /// (limits of strain), which the model also adds to the `explicit_momentum` of S2. Default:
   /// nothing. Collective.

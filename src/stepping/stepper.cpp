@@ -176,6 +176,29 @@ typename Stepper<dim>::CoupledSolution Stepper<dim>::solve(double dt, const RCP<
   return solution;
 }
 
+/// Newton's method on the elastic forces at the positions that the solution reaches: every
+/// iteration is a coupled solve, whose explicit momentum differs from the last one's by theirs.
+template <int dim>
+typename Stepper<dim>::CoupledSolution Stepper<dim>::solve_newton(double dt,
+                                                                  const RCP<Vector>& momentum,
+                                                                  const char* name,
+                                                                  SolveReport& report,
+                                                                  double& incompatibility) {
+  auto& solids = *components_.solids;
+  CoupledSolution solution = solve(dt, momentum, name, report, incompatibility);
+  for (int k = 1; k < options_.newton_iterations && coupled(); ++k) {
+    const RCP<const Vector> before = solids.explicit_momentum(time_, dt);
+    if (!solids.linearise(dt, *solution.unknowns.solid))
+      break;
+    system_.forget_solid_block();
+    momentum->update(1, *solids.explicit_momentum(time_, dt), -1, *before, 1);
+    const int iterations = report.iterations;
+    solution = solve(dt, momentum, name, report, incompatibility);
+    report.iterations += iterations;
+  }
+  return solution;
+}
+
 /// Residuals below the round-off of the fluxes, with the speed that gravity may add, are nothing.
 template <int dim>
 SolveRequest Stepper<dim>::request(const char* name, double dt) const {
@@ -195,7 +218,7 @@ void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
     ScopedPhase phase(timers_, "S1");
     const RCP<Vector> momentum = solid_momentum(time_, dt / 2, nullptr, report);
     half_velocity =
-        solve(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
+        solve_newton(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
   }
   ScopedPhase phase(timers_, "solid motion");
   solids.limit_motion(dt, *half_velocity);
@@ -371,7 +394,7 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
     if (coupled())
       momentum = solid_momentum(time_, dt, &report.ledger, report);
     const CoupledSolution solution =
-        solve(dt, momentum, "S2", report.s2, report.incompatibility_s2);
+        solve_newton(dt, momentum, "S2", report.s2, report.incompatibility_s2);
     finish(solution, dt, report);
   }
   time_ += dt;

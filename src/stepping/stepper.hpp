@@ -24,6 +24,7 @@ struct Components {
 struct StepperOptions {
   double tolerance = 1e-8;           ///< of the S1, F2 and S2 solves, per block
   double viscous_tolerance = 1e-10;  ///< relative, of the viscous CG
+  int newton_iterations = 1;         ///< coupled solves each of S1 and S2 takes
   double length = 1;                 ///< size of the domain [m], scales the angular audit
   bool audit_angular = true;  ///< false with periodic sides, where torque has no common origin
 };
@@ -81,6 +82,8 @@ class Stepper {
                              StepReport<dim>& report);
   CoupledSolution solve(double dt, const RCP<Vector>& momentum, const char* name,
                         SolveReport& report, double& incompatibility);
+  CoupledSolution solve_newton(double dt, const RCP<Vector>& momentum, const char* name,
+                               SolveReport& report, double& incompatibility);
   void move_solids(double dt, StepReport<dim>& report);
   void make_advection_velocity(StepReport<dim>& report);
   void finish(const CoupledSolution& solution, double dt, StepReport<dim>& report);
