@@ -29,7 +29,8 @@ void DeformableSolids<dim>::update_largest_stable_step() {
     if (integration == TimeIntegration::explicit_forces)
       rates[2 * b + 1] = std::max(rates[2 * b + 1], viscous.maxCoeff() / (2 * least_mass(i)));
   }
-  max_all(comm_, rates.data(), 2 * n_bodies);
+  MPI_Allreduce(MPI_IN_PLACE, rates.data(), 2 * n_bodies, MPI_DOUBLE, MPI_MAX,
+                raw_communicator(comm_));
   largest_stable_step_ = 1e300;
   for (int b = 0; b < n_bodies; ++b) {
     Body& body = bodies_[b];

@@ -55,9 +55,6 @@ GlobalIndex max_all(const Communicator& comm, GlobalIndex value) {
 void sum_all(const Communicator& comm, double* values, int n) {
   MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, raw_communicator(comm));
 }
-void max_all(const Communicator& comm, double* values, int n) {
-  MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_MAX, raw_communicator(comm));
-}
 GlobalIndex exclusive_sum(const Communicator& comm, GlobalIndex value) {
   GlobalIndex result = 0;
   MPI_Exscan(&value, &result, 1, MPI_LONG_LONG, MPI_SUM, raw_communicator(comm));

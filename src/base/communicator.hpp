@@ -25,7 +25,6 @@ GlobalIndex sum_all(const Communicator& comm, GlobalIndex value);
 GlobalIndex max_all(const Communicator& comm, GlobalIndex value);
 /// Element by element, in place.
 void sum_all(const Communicator& comm, double* values, int n);
-void max_all(const Communicator& comm, double* values, int n);
 /// Sum over the ranks below this one (0 on rank 0).
 GlobalIndex exclusive_sum(const Communicator& comm, GlobalIndex value);
 /// Collective: the elements of every rank's vector, in rank order, on every rank. For short lists
