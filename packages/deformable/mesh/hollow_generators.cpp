@@ -19,7 +19,8 @@ VolumeMesh<dim> layered(const SurfaceMesh<dim>& surface, int n_layers, int n_axe
   const int n = static_cast<int>(surface.vertices.size());
   for (int layer = 0; layer <= n_layers; ++layer) {
     for (Point<dim> x : surface.vertices) {
-      x.head(n_axes) *= factor(layer);
+      for (int a = 0; a < n_axes; ++a)
+        x[a] *= factor(layer);
       mesh.vertices.push_back(x);
     }
   }
