@@ -46,11 +46,11 @@ double DeformableSolids<dim>::least_mass(int node) const {
   return node_mass_[node] / (bodies_[body_of_node_[node]].consistent_mass ? dim + 2 : 1);
 }
 
-/// Sub-steps of elasticity and loads alone, from rest, at the frozen fluid. With the weights 2 (n -
-/// k)/(n (n + 1)) their mean force is 2 m/t^2 times the path they take in the time t, less the
-/// loads: a mode of frequency omega feels its stiffness times (sin(omega t/2)/(omega t/2))^2. So
-/// slow modes feel their own stiffness and fast ones at most what a step of dt carries, whatever
-/// mass the fluid adds; every sub-step's forces sum to zero, and so does their mean.
+/// Leapfrog of elasticity and loads alone, from rest, over t = 2 dt. With the weights (1 - k/n)^2
+/// of its places a mode of frequency omega feels, of its stiffness, 6/z^2 (1 - sin z/z), z = omega
+/// t: slow modes all of it, fast ones what a step of dt carries, m (omega dt)^2 < 2 (never zero or
+/// negative, as with equal weights), whatever mass the fluid adds. The forces at every place sum to
+/// zero, and so does their mean.
 template <int dim>
 void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
   const Body& body = bodies_[b];
@@ -69,7 +69,7 @@ void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
     Nodes present(space_.n_local(), Point<dim>::Zero());
     for (const auto& group : body.elements)
       group->add_elastic_forces(x, space_.n_owned(), present);
-    const double weight = 2.0 * (n - k) / (double(n) * (n + 1));
+    const double weight = steps.weight(k), kick = (k == 0 ? 0.5 : 1) * steps.length;
     for (int i = 0; i < space_.n_owned(); ++i) {
       if (body_of_node_[i] != b)
         continue;
@@ -78,7 +78,7 @@ void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
       for (int a = 0; a < dim; ++a) {
         if (!free[dim * i + a])
           continue;
-        velocity[i][a] += steps.length / least_mass(i) * total[a];
+        velocity[i][a] += kick / least_mass(i) * total[a];
         x[i][a] += steps.length * velocity[i][a];
       }
     }
