@@ -5,6 +5,7 @@
 #include "base/errors.hpp"
 #include "deformable/list_values.hpp"
 #include "deformable/mesh/gmsh_file.hpp"
+#include "deformable/mesh/hollow_generators.hpp"
 #include "deformable/mesh/volume_generators.hpp"
 
 namespace lockstep {
@@ -24,6 +25,8 @@ const std::vector<ShapeSizes>& shapes() {
                                            {"box", {"Size"}},
                                            {"cylinder", {"Radius", "Length"}},
                                            {"torus", {"Radius", "Tube Radius"}},
+                                           {"hollow ball", {"Radius", "Thickness"}},
+                                           {"tube", {"Radius", "Thickness", "Length"}},
                                            {"file", {"File", "Scale"}}};
   return all;
 }
@@ -32,7 +35,8 @@ void check_sizes(const ParameterList& list, const std::string& shape, const std:
   const auto found = std::find_if(shapes().begin(), shapes().end(),
                                   [&](const ShapeSizes& sizes) { return sizes.shape == shape; });
   const auto& needed = found->needed;
-  for (const char* size : {"Radius", "Length", "Tube Radius", "Size", "File", "Scale"}) {
+  for (const char* size :
+       {"Radius", "Length", "Tube Radius", "Thickness", "Size", "File", "Scale"}) {
     const bool given = list.isParameter(size);
     const bool wanted = std::find(needed.begin(), needed.end(), size) != needed.end();
     check_input(given || !wanted || std::string(size) == "Scale",
@@ -52,6 +56,11 @@ VolumeMesh<dim> generate(const ParameterList& list, const std::string& shape, do
     return box_volume<dim>(vector_value<dim>(list, "Size"), spacing);
   if (shape == "cylinder")
     return cylinder_volume<dim>(number("Radius"), number("Length"), spacing);
+  if (shape == "hollow ball")
+    return hollow_ball_volume<dim>(number("Radius"), number("Thickness"), spacing);
+  if (shape == "tube") {
+    return tube_volume<dim>(number("Radius"), number("Thickness"), number("Length"), spacing);
+  }
   return torus_volume<dim>(number("Radius"), number("Tube Radius"), spacing);
 }
 
@@ -65,15 +74,19 @@ void declare_deformable_geometry(ParameterList& body) {
                    "origin.");
   std::vector<std::string> names;
   for (const auto& shape : shapes()) {
-    if (dim == 3 || shape.shape != "torus")
+    if (dim == 3 || (shape.shape != "torus" && shape.shape != "tube"))
       names.push_back(shape.shape);
   }
   declare_required_choice(list, "Shape", names,
-                          "ball, box, cylinder, torus; file: a Gmsh mesh of triangles (2D) or "
+                          "ball, box, cylinder, torus; hollow ball: a ball with a thick wall (2D: "
+                          "a ring); tube: a pipe; file: a Gmsh mesh of triangles (2D) or "
                           "tetrahedra (3D).");
-  declare_optional<double>(list, "Radius", "Of ball and cylinder, of the torus' centre line [m].");
-  declare_optional<double>(list, "Length",
-                           "Of a cylinder, along z; in 2D it is a box, along y [m].");
+  declare_optional<double>(list, "Radius",
+                           "Of ball and cylinder, of the torus' centre line, outer one of hollow "
+                           "ball and tube [m].");
+  declare_optional<double>(
+      list, "Length", "Of cylinder and tube, along z; in 2D a cylinder is a box, along y [m].");
+  declare_optional<double>(list, "Thickness", "Of the wall of hollow ball and tube [m].");
   declare_optional<double>(list, "Tube Radius", "Of the section of a torus [m].");
   declare_optional<ParameterArray<double>>(list, "Size", "Edges of a box [m].");
   set_length(list, "Size", dim);
@@ -84,7 +97,8 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest step of the lattice of a generated mesh [m]; default one grid "
                            "cell.");
-  for (const char* size : {"Radius", "Length", "Tube Radius", "Scale", "Size", "Mesh Spacing"})
+  for (const char* size :
+       {"Radius", "Length", "Tube Radius", "Thickness", "Scale", "Size", "Mesh Spacing"})
     set_positive(list, size);
   declare_between(
       list, "Worst Quality", 1e-3, 0.0, 1.0,

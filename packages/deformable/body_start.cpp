@@ -6,6 +6,7 @@
 #include "deformable/elements/shell_elements.hpp"
 #include "deformable/list_values.hpp"
 #include "deformable/node_region.hpp"
+#include "deformable/pinned_regions.hpp"
 
 namespace lockstep {
 
@@ -116,8 +117,16 @@ void declare_body_start(ParameterList& list) {
       "present positions, implicit damping. fully-implicit: both linearised and solved "
       "together with the fluid; stable at any step. The step of the others is bounded by "
       "the stiffest element.");
+  declare_at_least(
+      list, "Most Sub-Steps", 1, 1,
+      "Not fully-implicit: elastic forces are averaged over up to so many sub-steps of the body "
+      "alone where a step is longer than its stable one. Modes slower than the step keep their "
+      "stiffness, faster ones are softened until the step carries them. 1: the stable step bounds "
+      "the step of all.");
   declare_start<dim>(list);
-  declare_constraints_and_loads<dim>(list);
+  declare_pinned<dim>(list);
+  declare_attachments<dim>(list);
+  declare_loads_and_tethers<dim>(list);
   declare_between(list, "Restitution", 0.0, 0.0, 1.0,
                   "Speed after over speed before a collision [1].");
   declare_at_least(list, "Friction", 0.0, 0.0, "Coulomb's coefficient of contacts [1].");
@@ -129,13 +138,15 @@ void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& r
   body.restitution = list.get<double>("Restitution");
   body.friction = list.get<double>("Friction");
   body.integration = read_integration(list);
+  body.most_sub_steps = list.get<int>("Most Sub-Steps");
   body.consistent_mass = list.get<std::string>("Mass") == "consistent";
   std::vector<double> node_mass(rest.size(), 0);
   const int n = body.mass_elements.n_corners;
   for (std::size_t k = 0; k < body.mass_elements.nodes.size(); ++k)
     node_mass[body.mass_elements.nodes[k]] += body.element_mass[k / n] / n;
   place<dim>(list, rest, body);
-  body.locked = read_pinned<dim>(list, rest, body.name);
+  read_pinned<dim>(list, rest, vector_value<dim>(list, "Position"), body);
+  read_attachments<dim>(list, rest, body);
   body.force = read_loads<dim>(list, rest, node_mass, body.name);
   add_tethers(read_tethers<dim>(list, rest, node_mass, body.name), body);
 }

@@ -21,7 +21,9 @@ using deformable_lists::vector_value;
 /// The shapes and the parameters that each needs.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& shapes() {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> all{
-      {"sheet", {"Size", "Normal"}}, {"bag", {"Size"}}, {"ball", {"Radius"}}, {"file", {"File"}}};
+      {"sheet", {"Size", "Normal"}},  {"bag", {"Size"}},
+      {"ball", {"Radius"}},           {"open ball", {"Radius", "Opening Radius"}},
+      {"tube", {"Radius", "Length"}}, {"file", {"File"}}};
   return all;
 }
 
@@ -37,26 +39,29 @@ void declare_cloth_geometry(ParameterList& body) {
   declare_required_choice(
       list, "Shape", names,
       "sheet: flat. bag: a box without its lid (y is up). ball: a closed sphere "
-      "(2D: ring). file: what the file holds.");
+      "(2D: ring). open ball: a sphere with a round hole at its top (y is up). tube: without "
+      "ends, about z (2D: two walls along y). file: what the file holds.");
   declare_optional<ParameterArray<double>>(
       list, "Size", "Extent of a sheet (along \"Normal\" ignored), edges of a bag [m].");
   set_length(list, "Size", dim);
   declare_optional<std::string>(list, "Normal", "Axis that a sheet is normal to.");
   set_choices(list, "Normal", axes);
-  declare_optional<double>(list, "Radius", "Of a ball [m].");
+  declare_optional<double>(list, "Radius", "Of ball, open ball and tube [m].");
+  declare_optional<double>(list, "Opening Radius", "Of the hole of an open ball [m].");
+  declare_optional<double>(list, "Length", "Of a tube [m].");
   declare_optional<std::string>(list, "File",
                                 "Surface mesh: .obj, .off, .msh of Gmsh or (3D) .stl; relative to "
                                 "the folder of the scene.");
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest edge of a generated mesh [m]; default one grid cell.");
-  for (const char* size : {"Radius", "Mesh Spacing"})
+  for (const char* size : {"Radius", "Opening Radius", "Length", "Mesh Spacing"})
     set_positive(list, size);
 }
 
 void check_sizes(const ParameterList& list, const std::string& shape, const std::string& name) {
   const auto found = std::find_if(shapes().begin(), shapes().end(),
                                   [&](const auto& entry) { return entry.first == shape; });
-  for (const char* size : {"Size", "Normal", "Radius", "File"}) {
+  for (const char* size : {"Size", "Normal", "Radius", "Opening Radius", "Length", "File"}) {
     const bool wanted =
         std::find(found->second.begin(), found->second.end(), size) != found->second.end();
     const bool given = list.isParameter(size);
@@ -83,6 +88,11 @@ SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
     mesh = open_box_surface<dim>(vector_value<dim>(list, "Size"), spacing);
   } else if (shape == "ball") {
     mesh = ball_surface<dim>(list.get<double>("Radius"), spacing);
+  } else if (shape == "open ball") {
+    mesh = open_ball_surface<dim>(list.get<double>("Radius"), list.get<double>("Opening Radius"),
+                                  spacing);
+  } else if (shape == "tube") {
+    mesh = tube_surface<dim>(list.get<double>("Radius"), list.get<double>("Length"), spacing);
   } else {
     const auto& file = list.get<std::string>("File");
     mesh = std::filesystem::path(file).extension() == ".msh" ? read_gmsh_surface<dim>(file)
@@ -142,6 +152,10 @@ ParameterList cloth_parameters() {
                   "positive: under tension.");
   declare_at_least(list, "Surface Tension", 0.0, 0.0,
                    "Besides the elastic stress, whatever the strain [N/m] (2D: [N]).");
+  declare_at_least(
+      list, "Stretch Limit", 0.0, 0.0,
+      "Most that an edge may be longer than at rest [1]: impulses along the edges keep "
+      "the step from stretching it further. 0: no limit.");
   declare_body_start<dim>(list);
   return list;
 }
@@ -155,6 +169,10 @@ DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& lis
   body.closed = false;
   body.density = list.get<double>("Surface Density");
   add_elements<dim>(list, mesh, body);
+  if (const double limit = list.get<double>("Stretch Limit"); limit > 0) {
+    body.limited_edges = limited_edges<dim>(mesh.vertices, mesh.simplices,
+                                            1 + list.get<double>("Pre-Strain"), limit);
+  }
   body.surface = mesh.simplices;
   body.mass_elements.n_corners = dim;
   for (const auto& simplex : mesh.simplices) {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "deformable/elements/element_group.hpp"
+#include "deformable/held_nodes.hpp"
+#include "deformable/strain_limit.hpp"
 
 namespace lockstep {
 
@@ -23,17 +25,23 @@ struct DeformableBody {
   double density = 0;  ///< [kg/m^dim], of a shell [kg/m^(dim-1)]
   double restitution = 0, friction = 0;
   TimeIntegration integration = TimeIntegration::semi_implicit;
+  int most_sub_steps = 1;  ///< that average its elastic forces; 1: its stable step bounds the step
   bool consistent_mass = false;  ///< of the finite elements; false: lumped to the nodes
 
   std::vector<Point<dim>> position;           ///< of the nodes [m]
   std::vector<Point<dim>> velocity;           ///< [m/s]
   std::vector<std::array<int, dim>> surface;  ///< simplices of nodes, normals outwards
-  std::vector<std::array<bool, dim>> locked;  ///< per node and axis: held where it is
-  std::vector<Point<dim>> force;              ///< constant load on each node [N]
+  std::vector<std::array<bool, dim>> locked;  ///< per node and axis: held at the start
+  std::vector<NodeHold<dim>> holds;           ///< those of them that move or are let go
+  std::vector<std::pair<int, std::string>>
+      attached;                   ///< nodes and the rigid solids that carry them
+  std::vector<Point<dim>> force;  ///< constant load on each node [N]
   std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
   /// Simplices of even mass. Nodes of none (the anchors of tethers) must be locked.
   ElementCorners mass_elements;
   std::vector<double> element_mass;  ///< [kg], of each of them
+
+  std::vector<LimitedEdge> limited_edges;  ///< that may not stretch further
 
   int n_nodes() const { return static_cast<int>(position.size()); }
 };

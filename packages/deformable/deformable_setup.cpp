@@ -37,16 +37,27 @@ ElementCorners shifted(ElementCorners corners, int shift) {
 template <int dim>
 DeformableSolids<dim>::DeformableSolids(const std::string& type,
                                         std::vector<DeformableBody<dim>> bodies,
-                                        const Point<dim>& gravity, const Communicator& comm)
-    : type_(type), comm_(comm), gravity_(gravity) {
+                                        const Point<dim>& gravity, const Communicator& comm,
+                                        double start_time)
+    : type_(type), comm_(comm), gravity_(gravity), held_(start_time) {
   int n_nodes = 0;
   for (auto& body : bodies) {
     add_body(body, n_nodes);
     n_nodes += body.n_nodes();
   }
   distribute(bodies, comm);
+  hold_nodes(bodies);
+  held_.begin_step(start_time);
   assemble_mass(bodies);
   distribute_surface(bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (const auto& [node, solid] : bodies[b].attached) {
+      const int local = space_.numbers().local[bodies_[b].node_begin + node];
+      if (local >= 0 && local < space_.n_owned())
+        attached_.emplace_back(local, solid);
+    }
+  }
+  make_strain_limit(bodies);
   space_.forget_numbers();
   update_geometry();
 }
@@ -70,6 +81,7 @@ void DeformableSolids<dim>::add_body(DeformableBody<dim>& body, int node_begin) 
   part.closed = body.closed;
   part.consistent_mass = body.consistent_mass;
   part.integration = body.integration;
+  part.most_sub_steps = body.most_sub_steps;
   part.mass = std::accumulate(body.element_mass.begin(), body.element_mass.end(), 0.0);
   part.node_begin = node_begin;
   part.node_end = node_begin + body.n_nodes();
@@ -103,10 +115,8 @@ void DeformableSolids<dim>::distribute(std::vector<DeformableBody<dim>>& bodies,
     if (i >= space_.n_owned())
       continue;
     body_of_node_.push_back(static_cast<int>(b));
-    locked_.push_back(bodies[b].locked[n]);
     node_force_.push_back(bodies[b].force[n]);
-    for (int a = 0; a < dim; ++a)
-      velocity[i][a] = locked_[i][a] ? 0 : bodies[b].velocity[n][a];
+    velocity[i] = bodies[b].velocity[n];
   }
   velocity_ = space_.vector(velocity);
 
@@ -123,6 +133,36 @@ void DeformableSolids<dim>::distribute(std::vector<DeformableBody<dim>>& bodies,
   }
   stiffness_ = NodeMatrix<dim>(space_.n_owned(), local_corners);
   damping_ = stiffness_;
+}
+
+template <int dim>
+void DeformableSolids<dim>::hold_nodes(const std::vector<DeformableBody<dim>>& bodies) {
+  std::vector<std::vector<std::array<int, dim>>> number(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    std::array<int, dim> none;
+    none.fill(-1);
+    number[b].assign(bodies[b].locked.size(), none);
+    for (const NodeHold<dim>& hold : bodies[b].holds) {
+      const int h = held_.add(hold);
+      for (const int n : hold.nodes) {
+        for (int a = 0; a < dim; ++a)
+          number[b][n][a] = hold.axes[a] ? h : number[b][n][a];
+      }
+    }
+  }
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    const int b = body_of_node_[i], n = space_.original(i) - bodies_[b].node_begin;
+    for (int a = 0; a < dim; ++a) {
+      if (bodies[b].locked[n][a])
+        held_.hold(i, a, x_[i], number[b][n][a]);
+    }
+  }
+  Nodes velocity = space_.owned(*velocity_);
+  const std::vector<int> dofs = held_.dofs();
+  const std::vector<double> velocities = held_.velocities(held_.start_time(), held_.start_time());
+  for (std::size_t k = 0; k < dofs.size(); ++k)
+    velocity[dofs[k] / dim][dofs[k] % dim] = velocities[k];
+  velocity_ = space_.vector(velocity);
 }
 
 template <int dim>
@@ -158,7 +198,6 @@ void DeformableSolids<dim>::assemble_mass(const std::vector<DeformableBody<dim>>
   }
   for (int i = 0; i < space_.n_owned(); ++i) {
     // Nodes without mass never move; the matrix must be definite all the same.
-    LOCKSTEP_ASSERT(node_mass_[i] > 0 || locked_[i][0]);
     add(i, space_.original(i), node_mass_[i] > 0 ? 0 : 1);
   }
   mass_ = as_operator(matrix_from_rows(space_.dof_map(), rows));
@@ -199,8 +238,8 @@ void DeformableSolids<dim>::distribute_surface(const std::vector<DeformableBody<
 }
 
 template DeformableSolids<2>::DeformableSolids(const std::string&, std::vector<DeformableBody<2>>,
-                                               const Point<2>&, const Communicator&);
+                                               const Point<2>&, const Communicator&, double);
 template DeformableSolids<3>::DeformableSolids(const std::string&, std::vector<DeformableBody<3>>,
-                                               const Point<3>&, const Communicator&);
+                                               const Point<3>&, const Communicator&, double);
 
 }  // namespace lockstep

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -63,13 +64,17 @@ void DeformableSolids<dim>::explicit_momentum(double, double dt, Vector& momentu
     if (body.integration == TimeIntegration::explicit_forces && velocity.empty())
       velocity = space_.with_ghosts(*velocity_);
   }
+  const Nodes elastic = averaged_forces();
   const auto values = momentum.getDataNonConst();
   for (int i = 0; i < space_.n_owned(); ++i) {
-    Point<dim> force = elastic_force_[i] + node_force_[i] + node_mass_[i] * gravity_;
+    Point<dim> force = elastic[i] + node_force_[i] + node_mass_[i] * gravity_;
     if (bodies_[body_of_node_[i]].integration == TimeIntegration::explicit_forces)
       force -= damping_.row_times(i, velocity);
+    Point<dim> impulse = dt * force;
+    if (!limiting_impulse_.empty())
+      impulse += limiting_impulse_[i];
     for (int a = 0; a < dim; ++a)
-      values[dim * i + a] += dt * force[a];
+      values[dim * i + a] += impulse[a];
   }
 }
 
@@ -79,15 +84,31 @@ Momentum<dim> DeformableSolids<dim>::external_impulse(double, double dt) const {
 }
 
 template <int dim>
+void DeformableSolids<dim>::begin_step(double time, double dt) {
+  held_.begin_step(time);
+  step_ = dt;
+}
+
+template <int dim>
 std::vector<GlobalIndex> DeformableSolids<dim>::locked_dofs() const {
   std::vector<GlobalIndex> dofs;
-  for (int i = 0; i < space_.n_owned(); ++i) {
-    for (int a = 0; a < dim; ++a) {
-      if (locked_[i][a])
-        dofs.push_back(space_.dof_map()->getGlobalElement(dim * i + a));
-    }
-  }
+  for (const int dof : held_.dofs())
+    dofs.push_back(space_.dof_map()->getGlobalElement(dof));
   return dofs;
+}
+
+template <int dim>
+std::vector<NodeAttachment<dim>> DeformableSolids<dim>::attachments() const {
+  std::vector<NodeAttachment<dim>> all;
+  for (const auto& [node, solid] : attached_) {
+    NodeAttachment<dim> attachment;
+    for (int a = 0; a < dim; ++a)
+      attachment.dofs[a] = space_.dof_map()->getGlobalElement(dim * node + a);
+    attachment.position = x_[node];
+    attachment.solid = solid;
+    all.push_back(attachment);
+  }
+  return all;
 }
 
 template <int dim>
@@ -113,7 +134,37 @@ std::vector<Momentum<dim>> DeformableSolids<dim>::momentum_of_each(
 template <int dim>
 void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   velocity_ = rcp(new Vector(velocity, Teuchos::Copy));
+  limiting_impulse_.clear();
+  if (linearised_)
+    update_forces();
+  linearised_ = false;
   update_states();
+}
+
+/// With x* = x + dt V the force of the next V' is f(x*) - dt K(x*) (V' - V): explicit is f + dt K
+/// V.
+template <int dim>
+bool DeformableSolids<dim>::linearise(double dt, const Vector& velocity) {
+  const auto implicit = [](const Body& body) {
+    return body.integration == TimeIntegration::fully_implicit;
+  };
+  if (std::none_of(bodies_.begin(), bodies_.end(), implicit))
+    return false;
+  const Nodes v = space_.with_ghosts(velocity);
+  Nodes x = x_;
+  for (const Body& body : bodies_) {
+    for (int i = 0; implicit(body) && i < space_.n_local(); ++i) {
+      if (space_.original(i) >= body.node_begin && space_.original(i) < body.node_end)
+        x[i] += dt * v[i];
+    }
+  }
+  assemble_forces(x);
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    if (implicit(bodies_[body_of_node_[i]]))
+      elastic_force_[i] += dt * stiffness_.row_times(i, v);
+  }
+  linearised_ = true;
+  return true;
 }
 
 template <int dim>
@@ -139,6 +190,7 @@ std::vector<Point<dim>> DeformableSolids<dim>::surface_values(const Nodes& owned
 
 template <int dim>
 void DeformableSolids<dim>::update_geometry() {
+  linearised_ = false;
   surface_.vertices = surface_values(x_);
   update_forces();
   update_largest_stable_step();
@@ -146,7 +198,7 @@ void DeformableSolids<dim>::update_geometry() {
 }
 
 template <int dim>
-void DeformableSolids<dim>::update_forces() {
+void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
   Nodes force(space_.n_local(), Point<dim>::Zero());
   stiffness_.set_zero();
   damping_.set_zero();
@@ -155,9 +207,9 @@ void DeformableSolids<dim>::update_forces() {
   for (const Body& body : bodies_) {
     energies.push_back(0);
     for (const auto& group : body.elements) {
-      energies.back() += group->add_elastic_forces(x_, space_.n_owned(), force);
-      n_clamped_ += group->add_stiffness(x_, stiffness_);
-      group->add_damping(x_, damping_);
+      energies.back() += group->add_elastic_forces(x, space_.n_owned(), force);
+      n_clamped_ += group->add_stiffness(x, stiffness_);
+      group->add_damping(x, damping_);
     }
   }
   force.resize(space_.n_owned());
@@ -170,31 +222,6 @@ void DeformableSolids<dim>::update_forces() {
   load_ = sum_over_ranks<dim>(load, comm_);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     bodies_[b].elastic_energy = energies[b];
-}
-
-/// By Gershgorin's circles of M^-1 K and M^-1 B: omega dt <= sqrt 2, and for explicit damping
-/// dt <= 2 / rate. The least eigenvalue of a consistent mass matrix is 1/(n_corners + 1) of the
-/// lumped one's.
-template <int dim>
-void DeformableSolids<dim>::update_largest_stable_step() {
-  constexpr double safety = 0.9;
-  double largest = 0;  // 1/dt
-  for (int i = 0; i < space_.n_owned(); ++i) {
-    const Body& body = bodies_[body_of_node_[i]];
-    if (body.integration == TimeIntegration::fully_implicit || node_mass_[i] == 0)
-      continue;
-    const double least_mass = node_mass_[i] / (body.consistent_mass ? dim + 2 : 1);
-    Point<dim> elastic = Point<dim>::Zero(), viscous = Point<dim>::Zero();
-    for (int k = stiffness_.row_begin(i); k < stiffness_.row_end(i); ++k) {
-      elastic += stiffness_.block(k).cwiseAbs().rowwise().sum();
-      viscous += damping_.block(k).cwiseAbs().rowwise().sum();
-    }
-    largest = std::max(largest, std::sqrt(elastic.maxCoeff() / (2 * least_mass)));
-    if (body.integration == TimeIntegration::explicit_forces)
-      largest = std::max(largest, viscous.maxCoeff() / (2 * least_mass));
-  }
-  largest = max_all(comm_, largest);
-  largest_stable_step_ = largest > 0 ? safety / largest : 1e300;
 }
 
 template <int dim>

@@ -5,6 +5,7 @@
 
 #include "deformable/deformable_body.hpp"
 #include "deformable/node_space.hpp"
+#include "deformable/strain_limit.hpp"
 #include "interfaces/solid.hpp"
 #include "parameters/parameter_list.hpp"
 
@@ -20,9 +21,9 @@ namespace lockstep {
 template <int dim>
 class DeformableSolids : public SolidModel<dim> {
  public:
-  /// `type` is the name of the model, gravity [m/s^2]. Collective.
+  /// `type` is the name of the model, gravity [m/s^2], the start of the run [s]. Collective.
   DeformableSolids(const std::string& type, std::vector<DeformableBody<dim>> bodies,
-                   const Point<dim>& gravity, const Communicator& comm);
+                   const Point<dim>& gravity, const Communicator& comm, double start_time = 0);
 
   std::string name() const override { return type_; }
 
@@ -43,11 +44,18 @@ class DeformableSolids : public SolidModel<dim> {
   RCP<const LinearOperator> implicit_force(double dt) const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
   Momentum<dim> external_impulse(double time, double dt) const override;
+  void begin_step(double time, double dt) override;
   std::vector<GlobalIndex> locked_dofs() const override;
+  std::vector<double> locked_velocities(double begin, double end) const override {
+    return held_.velocities(begin, end);
+  }
+  std::vector<NodeAttachment<dim>> attachments() const override;
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const override;
 
   RCP<const Vector> velocity() const override { return velocity_; }
   void set_velocity(const Vector& velocity) override;
+  bool linearise(double dt, const Vector& velocity) override;
+  void limit_motion(double dt, Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return states_; }
   double largest_stable_step() const override { return largest_stable_step_; }
@@ -70,6 +78,8 @@ class DeformableSolids : public SolidModel<dim> {
     std::string name;
     bool closed = true, consistent_mass = false;
     TimeIntegration integration = TimeIntegration::semi_implicit;
+    int most_sub_steps = 1;
+    double elastic_step = 1e300;  ///< stable at the present positions, without sub-steps [s]
     double mass = 0;
     int node_begin = 0, node_end = 0;  ///< original numbers
     std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
@@ -77,14 +87,24 @@ class DeformableSolids : public SolidModel<dim> {
   };
 
   void add_body(DeformableBody<dim>& body, int node_begin);
+  void make_strain_limit(const std::vector<DeformableBody<dim>>& bodies);
+  void hold_nodes(const std::vector<DeformableBody<dim>>& bodies);
   void distribute(std::vector<DeformableBody<dim>>& bodies, const Communicator& comm);
   void assemble_mass(const std::vector<DeformableBody<dim>>& bodies);
   void distribute_surface(const std::vector<DeformableBody<dim>>& bodies);
   /// After the positions have changed: surface, forces, linearisation, states.
   void update_geometry();
-  void update_forces();
+  void update_forces() { assemble_forces(x_); }
+  /// Forces, stiffness and damping at positions x of all local nodes.
+  void assemble_forces(const Nodes& x);
   void update_largest_stable_step();
+  double least_mass(int node) const;  ///< a bound of the eigenvalues of M_S [kg]
+  /// Elastic forces for a step: averaged over sub-steps where it is longer than a body's stable
+  /// one.
+  Nodes averaged_forces() const;
+  void average_forces(int body, Nodes& force) const;
   void update_states();
+  Nodes mobility() const;
   Nodes surface_values(const Nodes& owned) const;
   int body_of_node(int local) const { return body_of_node_[local]; }
 
@@ -96,7 +116,8 @@ class DeformableSolids : public SolidModel<dim> {
   std::vector<int> body_of_node_;  ///< of the owned nodes
   std::vector<double> node_mass_;  ///< lumped, of the owned nodes [kg]
   Nodes node_force_;               ///< constant loads on them [N]
-  std::vector<std::array<bool, dim>> locked_;
+  HeldNodes<dim> held_;
+  std::vector<std::pair<int, std::string>> attached_;  ///< owned nodes and their carriers
 
   std::vector<SolidDescription> solids_;
   SurfaceMesh<dim> surface_;
@@ -104,6 +125,9 @@ class DeformableSolids : public SolidModel<dim> {
   std::vector<int> own_surface_vertices_;       ///< local nodes, in the order of gathering
   std::vector<int> gathered_surface_vertices_;  ///< the vertex of each gathered value
   Nodes surface_velocity_;                      ///< of the last move [m/s]
+
+  StrainLimit<dim> strain_limit_;
+  Nodes limiting_impulse_;  ///< of the last `limit_motion`, until S2 has used it [kg m/s]
 
   RCP<const LinearOperator> mass_;
   NodeMatrix<dim> stiffness_, damping_;
@@ -113,6 +137,8 @@ class DeformableSolids : public SolidModel<dim> {
   std::vector<SolidState<dim>> states_;
   Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]
   double largest_stable_step_ = 1e300;
+  double step_ = 0;          ///< the present one [s]
+  bool linearised_ = false;  ///< elsewhere than at x_
   GlobalIndex n_clamped_ = 0;
 };
 

@@ -58,14 +58,8 @@ std::vector<int> nodes_in_region(const ParameterList& list, const std::vector<Po
 }
 
 template <int dim>
-void declare_constraints_and_loads(ParameterList& body) {
-  ParameterList pinned("pinned"), load("load"), tether("tether");
-  declare_node_region<dim>(pinned);
-  const auto names = axes<dim>();
-  declare(pinned, "Directions", ParameterArray<std::string>(names),
-          "Axes of space along which the nodes are held.");
-  set_choices(pinned, "Directions", names);
-  declare_named_sublists(body, "Pinned", "Nodes held where they start.", pinned);
+void declare_loads_and_tethers(ParameterList& body) {
+  ParameterList load("load"), tether("tether");
   declare_node_region<dim>(load);
   declare_required_vector<double>(
       load, "Force", dim,
@@ -81,23 +75,6 @@ void declare_constraints_and_loads(ParameterList& body) {
   declare_named_sublists(body, "Tethers",
                          "Nodes tied to fixed points of space by springs without rest length.",
                          tether);
-}
-
-template <int dim>
-std::vector<std::array<bool, dim>> read_pinned(const ParameterList& body,
-                                               const std::vector<Point<dim>>& nodes,
-                                               const std::string& name) {
-  std::vector<std::array<bool, dim>> locked(nodes.size(), std::array<bool, dim>{});
-  const ParameterList& all = body.sublist("Pinned");
-  for (auto entry = all.begin(); entry != all.end(); ++entry) {
-    const ParameterList& list = all.sublist(all.name(entry));
-    const auto& directions = list.get<ParameterArray<std::string>>("Directions");
-    for (const int n : nodes_in_region<dim>(list, nodes, name + "/Pinned/" + all.name(entry))) {
-      for (const auto& direction : directions)
-        locked[n][direction[0] - 'x'] = true;
-    }
-  }
-  return locked;
 }
 
 template <int dim>
@@ -144,14 +121,8 @@ template std::vector<int> nodes_in_region<2>(const ParameterList&, const std::ve
                                              const std::string&);
 template std::vector<int> nodes_in_region<3>(const ParameterList&, const std::vector<Point<3>>&,
                                              const std::string&);
-template void declare_constraints_and_loads<2>(ParameterList&);
-template void declare_constraints_and_loads<3>(ParameterList&);
-template std::vector<std::array<bool, 2>> read_pinned<2>(const ParameterList&,
-                                                         const std::vector<Point<2>>&,
-                                                         const std::string&);
-template std::vector<std::array<bool, 3>> read_pinned<3>(const ParameterList&,
-                                                         const std::vector<Point<3>>&,
-                                                         const std::string&);
+template void declare_loads_and_tethers<2>(ParameterList&);
+template void declare_loads_and_tethers<3>(ParameterList&);
 template std::vector<Point<2>> read_loads<2>(const ParameterList&, const std::vector<Point<2>>&,
                                              const std::vector<double>&, const std::string&);
 template std::vector<Point<3>> read_loads<3>(const ParameterList&, const std::vector<Point<3>>&,

@@ -17,15 +17,11 @@ template <int dim>
 std::vector<int> nodes_in_region(const ParameterList& list, const std::vector<Point<dim>>& nodes,
                                  const std::string& where);
 
-/// Declares the named sublists "Pinned", "Loads" and "Tethers".
+/// Declares the named sublists "Loads" and "Tethers".
 template <int dim>
-void declare_constraints_and_loads(ParameterList& body);
+void declare_loads_and_tethers(ParameterList& body);
 
 /// Reads them for nodes at these rest positions; `name` is the body's, for messages.
-template <int dim>
-std::vector<std::array<bool, dim>> read_pinned(const ParameterList& body,
-                                               const std::vector<Point<dim>>& nodes,
-                                               const std::string& name);
 /// Loads are spread over the nodes in proportion to `node_mass`.
 template <int dim>
 std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<Point<dim>>& nodes,

@@ -19,7 +19,7 @@ std::unique_ptr<SolidModel<dim>> make_model(
   for (const auto& [name, list] : lists)
     bodies.push_back(read(name, list, setting.grid_spacing));
   return std::make_unique<DeformableSolids<dim>>(type, std::move(bodies), setting.gravity,
-                                                 setting.comm);
+                                                 setting.comm, setting.start_time);
 }
 
 }  // namespace

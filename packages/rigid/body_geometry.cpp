@@ -5,7 +5,7 @@
 #include "base/errors.hpp"
 #include "geometry/generators.hpp"
 #include "geometry/mesh_files.hpp"
-#include "rigid/list_values.hpp"
+#include "motion/list_values.hpp"
 
 namespace lockstep {
 

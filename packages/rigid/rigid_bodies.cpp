@@ -233,6 +233,14 @@ void RigidBodies<dim>::move(const Vector& velocity, double time, double dt) {
 }
 
 template <int dim>
+Point<dim> RigidBodies<dim>::carried(int solid, const Point<dim>& x) const {
+  const RigidBody<dim>& body = bodies_[solid];
+  const RigidPose<dim>& before = body.pose_before;
+  return body.pose.position +
+         body.pose.orientation * (before.orientation.inverse() * (x - before.position));
+}
+
+template <int dim>
 std::vector<SolidState<dim>> RigidBodies<dim>::states() const {
   std::vector<SolidState<dim>> all;
   for (const RigidBody<dim>& body : bodies_) {

@@ -49,6 +49,7 @@ class RigidBodies : public SolidModel<dim> {
   RCP<const Vector> velocity() const override;
   void set_velocity(const Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
+  Point<dim> carried(int solid, const Point<dim>& x) const override;
   std::vector<SolidState<dim>> states() const override;
 
   /// Bit for bit. Throws InputError if the checkpoint holds other bodies.

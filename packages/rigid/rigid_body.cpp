@@ -123,7 +123,7 @@ void follow_script(RigidBody<dim>& body, double time) {
 
 template <int dim>
 void move(RigidBody<dim>& body, const RigidVector<dim>& velocity, double time, double dt) {
-  const RigidPose<dim> before = body.pose;
+  const RigidPose<dim>& before = body.pose_before = body.pose;
   Point<dim> displacement;
   AngularVector<dim> turn;
   if (body.dynamic()) {

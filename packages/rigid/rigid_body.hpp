@@ -3,8 +3,8 @@
 #include <string>
 
 #include "geometry/surface_mesh.hpp"
-#include "rigid/motion_script.hpp"
-#include "rigid/rotation.hpp"
+#include "motion/motion_script.hpp"
+#include "motion/rotation.hpp"
 
 namespace lockstep {
 
@@ -54,6 +54,7 @@ struct RigidBody : RigidBodyConstants<dim> {
   RigidVector<dim> velocity = RigidVector<dim>::Zero();
   RigidVector<dim> momentum = RigidVector<dim>::Zero();  ///< of a dynamic body
   Twist<dim> last_move;                                  ///< that of the last `move`
+  RigidPose<dim> pose_before;                            ///< the last `move`
 
   bool dynamic() const { return !this->script; }
   /// From the reference point to the centre of mass, in world axes [m].

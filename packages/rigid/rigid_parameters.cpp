@@ -3,8 +3,9 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "motion/list_values.hpp"
 #include "rigid/body_geometry.hpp"
-#include "rigid/list_values.hpp"
+#include "rigid/body_motion.hpp"
 
 namespace lockstep {
 

@@ -65,17 +65,29 @@ RCP<Vector> CoupledSystem<dim>::lumped_momentum(const Vector& momentum) const {
 }
 
 template <int dim>
-BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum,
-                                                double& incompatibility) const {
+RCP<Vector> CoupledSystem<dim>::unlocked_momentum(double dt, const Vector& velocity) const {
+  const auto product = make_vector(solids_.map());
+  apply(*solids_.unlocked_block(coupling_.added_mass(), dt), velocity, *product);
+  return product;
+}
+
+template <int dim>
+BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum, double& incompatibility,
+                                                double dt,
+                                                const RCP<const Vector>& locked_velocity) const {
   BlockVector rhs;
   rhs.pressure = make_vector(fluid_.pressure_map());
   fluid_.divergence(*rhs.pressure);
   coupling_.add_prescribed_divergence(*rhs.pressure);
+  if (!locked_velocity.is_null())
+    unlocked_transposed_->apply(*locked_velocity, *rhs.pressure, Teuchos::TRANS, 1, 1);
   const bool with_solid = solids_.has_unknowns();
   incompatibility = relative_part_removed(
       with_solid ? blocks_.null_space : pressure_only_.null_space, *rhs.pressure);
   if (with_solid) {
-    const RCP<const Vector> full = lumped_momentum(momentum);
+    const RCP<Vector> full = lumped_momentum(momentum);
+    if (!locked_velocity.is_null())
+      full->update(-1, *unlocked_momentum(dt, *locked_velocity), 1);
     rhs.solid = make_vector(solids_.map());
     rhs.solid->elementWiseMultiply(1, *solids_.free_mask(), *full, 0);
   }
@@ -85,11 +97,10 @@ BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum,
 template <int dim>
 RCP<Vector> CoupledSystem<dim>::lock_reaction(double dt, const Vector& momentum,
                                               const BlockVector& solution) const {
-  const auto reaction = make_vector(solids_.map());
   if (!solids_.has_locks())
-    return reaction;
+    return make_vector(solids_.map());
   const RCP<const Vector> rhs = lumped_momentum(momentum);
-  apply(*solids_.unlocked_block(coupling_.added_mass(), dt), *solution.solid, *reaction);
+  const RCP<Vector> reaction = unlocked_momentum(dt, *solution.solid);
   unlocked_transposed_->apply(*solution.pressure, *reaction, Teuchos::NO_TRANS, 1, 1);
   reaction->update(-1, *rhs, 1);
   Vector free_part(solids_.map());

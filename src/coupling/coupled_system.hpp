@@ -24,13 +24,20 @@ class CoupledSystem {
   /// Collective.
   const BlockSystem& blocks(double dt, bool with_solid = true);
 
+  /// The solids' D is another one than when `blocks` were asked for last.
+  void forget_solid_block() { block_dt_ = -1; }
+
   /// Row 1: V G_f^T u* + V G_d^T u_d + V G_c^T W_k V_k; row 2: `momentum` + W^T M_F (u*_F - W_k
   /// V_k), locked and padding rows zero. `momentum` = M_S V_S* (+ the viscous impulse); unused
-  /// without unknowns. Incompatible parts are projected out; `incompatibility` gets their relative
-  /// size. Collective.
-  BlockVector right_hand_side(const Vector& momentum, double& incompatibility) const;
-  /// The row 2 of `right_hand_side` before locked rows are zeroed.
+  /// without unknowns. The velocities of locked dofs that move, or null, bring B V_locked to row 1
+  /// and -C V_locked, of a step of dt, to row 2; the solution is without them. Incompatible parts
+  /// are projected out; `incompatibility` gets their relative size. Collective.
+  BlockVector right_hand_side(const Vector& momentum, double& incompatibility, double dt = 0,
+                              const RCP<const Vector>& locked_velocity = Teuchos::null) const;
+  /// The row 2 of `right_hand_side` before locked rows are zeroed and without their velocities.
   RCP<Vector> lumped_momentum(const Vector& momentum) const;
+  /// C V for a step of dt with the rows and columns of locked dofs. Collective.
+  RCP<Vector> unlocked_momentum(double dt, const Vector& velocity) const;
 
   /// Impulses that hold the locked dofs, as generalized momentum; zero without locks. Collective.
   RCP<Vector> lock_reaction(double dt, const Vector& momentum, const BlockVector& solution) const;

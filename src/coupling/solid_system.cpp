@@ -44,10 +44,69 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
     ids.push_back(first + i);
   map_ = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
                      Teuchos::arrayViewFromVector(ids), 0, comm));
+  find_attachments();
+  make_free_mask();
+}
+
+template <int dim>
+int SolidSystem<dim>::carrier_named(const std::string& name, std::string& failure) const {
+  for (std::size_t s = 0; s < solids_.size(); ++s) {
+    if (solids_[s].name == name && solids_[s].rigid && !solids_[s].prescribed)
+      return static_cast<int>(s);
+  }
+  failure = fmt::format(
+      "Nodes are attached to \"{}\", which is no solid that is rigid and dynamic; name one, or pin "
+      "the nodes and give them a motion.",
+      name);
+  return 0;
+}
+
+/// Gathers the attached nodes of all models and ranks at their present positions. Collective.
+template <int dim>
+void SolidSystem<dim>::find_attachments() {
+  has_attached_nodes_.assign(n_models(), 0);
+  std::vector<double> mine;  // solid, dofs, position
+  std::string failure;
+  for (int m = 0; m < n_models(); ++m) {
+    for (const NodeAttachment<dim>& node : model(m).attachments()) {
+      mine.push_back(carrier_named(node.solid, failure));
+      for (const GlobalIndex dof : node.dofs)
+        mine.push_back(static_cast<double>(id_begin_[m] + dof));
+      mine.insert(mine.end(), node.position.data(), node.position.data() + dim);
+      has_attached_nodes_[m] = 1;
+    }
+  }
+  throw_on_all(comm_, failure, static_cast<int>(ExitCode::bad_input));
+  for (char& any : has_attached_nodes_)
+    any = static_cast<char>(max_all(comm_, double(any)));
+  const std::vector<double> all = gather_all(comm_, mine);
+  std::vector<typename Attachments<dim>::Node> nodes;
+  std::vector<VelocityRow<dim>> rows;
+  for (std::size_t k = 0; k < all.size(); k += 2 * dim + 1) {
+    typename Attachments<dim>::Node node;
+    node.solid = static_cast<int>(all[k]);
+    for (int a = 0; a < dim; ++a)
+      node.dofs[a] = static_cast<GlobalIndex>(all[k + 1 + a]);
+    node.position = Eigen::Map<const Point<dim>>(&all[k + 1 + dim]);
+    const int m = solids_[node.solid].model;
+    SurfacePoint<dim> point;
+    point.simplex = solids_[node.solid].simplex_begin - simplex_begin_[m];
+    rows.emplace_back();
+    model(m).velocity_row(point, node.position, rows.back());
+    for (GlobalIndex& id : rows.back().dofs)
+      id += id_begin_[m];
+    nodes.push_back(node);
+  }
+  attachments_.set(std::move(nodes), rows);
+}
+
+template <int dim>
+void SolidSystem<dim>::make_free_mask() {
   free_mask_ = rcp(new Vector(map_));
   free_mask_->putScalar(1);
-  for (int i = 0; i < n_padding_; ++i)
-    free_mask_->replaceGlobalValue(first + i, 0.);
+  const int n_local = static_cast<int>(map_->getNodeNumElements());
+  for (int i = n_local - n_padding_; i < n_local; ++i)
+    free_mask_->replaceLocalValue(i, 0.);
   GlobalIndex n_locked = 0;
   for (int m = 0; m < n_models(); ++m) {
     for (GlobalIndex id : model(m).locked_dofs()) {
@@ -55,7 +114,35 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
       ++n_locked;
     }
   }
-  has_locks_ = sum_all(comm, n_locked) > 0;
+  has_locks_ = sum_all(comm_, n_locked) > 0;
+  attachments_.mask(*free_mask_);
+}
+
+template <int dim>
+bool SolidSystem<dim>::begin_step(double time, double dt) {
+  for (const auto& solid_model : models_)
+    solid_model->begin_step(time, dt);
+  if (!attachments_.empty())
+    find_attachments();
+  const RCP<const Vector> before = free_mask_;
+  make_free_mask();
+  Vector change(*free_mask_, Teuchos::Copy);
+  change.update(-1, *before, 1);
+  return change.normInf() > 0;
+}
+
+template <int dim>
+RCP<const Vector> SolidSystem<dim>::locked_velocity(double begin, double end) const {
+  if (!has_locks_)
+    return Teuchos::null;
+  const auto velocity = make_vector(map_);
+  for (int m = 0; m < n_models(); ++m) {
+    const std::vector<GlobalIndex> dofs = model(m).locked_dofs();
+    const std::vector<double> values = model(m).locked_velocities(begin, end);
+    for (std::size_t k = 0; k < dofs.size(); ++k)
+      velocity->replaceGlobalValue(id_begin_[m] + dofs[k], values[k]);
+  }
+  return velocity->normInf() > 0 ? velocity : Teuchos::null;
 }
 
 template <int dim>
@@ -119,6 +206,7 @@ void SolidSystem<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<
   model(m).velocity_row(local, x, row);
   for (GlobalIndex& id : row.dofs)
     id += id_begin_[m];
+  attachments_.reduce(row);
 }
 
 template <int dim>
@@ -182,6 +270,9 @@ RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& ad
                      !assembled(parts.back().implicit_force).is_null());
   }
   if (!all_assembled) {
+    check_input(
+        attachments_.empty(),
+        "Nodes can only be attached to solids whose mass and forces are assembled matrices.");
     return as_thyra(
         rcp(new StackedOperator(parts, dt, added, eliminate ? free_mask_ : Teuchos::null, map_)));
   }
@@ -196,6 +287,7 @@ RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& ad
     }
     ++part;
   }
+  attachments_.reduce(triplets, *map_);
   if (!added.is_null())
     add_rows(*added, 0, 1, triplets);
   // Padding rows must exist in the pattern; their value is set by the elimination.
@@ -249,13 +341,16 @@ RCP<Vector> SolidSystem<dim>::velocity() const {
   const auto stacked = rcp(new Vector(map_));
   for (int m = 0; m < n_models(); ++m)
     part(*stacked, m)->update(1, *model(m).velocity(), 0);
+  attachments_.mask(*stacked);
   return stacked;
 }
 
 template <int dim>
 void SolidSystem<dim>::set_velocity(const Vector& velocity) {
+  Vector full(velocity, Teuchos::Copy);
+  attachments_.expand_velocity(full);
   for (int m = 0; m < n_models(); ++m)
-    model(m).set_velocity(*part(velocity, m));
+    model(m).set_velocity(*part(std::as_const(full), m));
 }
 
 template <int dim>
@@ -263,6 +358,7 @@ RCP<Vector> SolidSystem<dim>::explicit_momentum(double time, double dt) const {
   const auto stacked = rcp(new Vector(map_));
   for (int m = 0; m < n_models(); ++m)
     model(m).explicit_momentum(time, dt, *part(*stacked, m));
+  attachments_.reduce_momentum(*stacked);
   return stacked;
 }
 
@@ -282,8 +378,49 @@ Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
 
 template <int dim>
 void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
+  for (int m = 0; m < n_models(); ++m) {
+    if (!has_attached_nodes_[m])
+      model(m).move(*part(velocity, m), time, dt);
+  }
+  if (!attachments_.empty())
+    move_attached(velocity, time, dt);
+}
+
+template <int dim>
+bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
+  Vector full(velocity, Teuchos::Copy);
+  attachments_.expand_velocity(full);
+  bool any = false;
   for (int m = 0; m < n_models(); ++m)
-    model(m).move(*part(velocity, m), time, dt);
+    any = model(m).linearise(dt, *part(std::as_const(full), m)) || any;
+  return any;
+}
+
+template <int dim>
+void SolidSystem<dim>::limit_motion(double dt, Vector& velocity) {
+  attachments_.expand_velocity(velocity);
+  for (int m = 0; m < n_models(); ++m)
+    model(m).limit_motion(dt, *part(velocity, m));
+  attachments_.mask(velocity);
+}
+
+/// Attached nodes go where their solids have carried them, round the arc of a rotation.
+template <int dim>
+void SolidSystem<dim>::move_attached(const Vector& velocity, double time, double dt) {
+  Vector full(velocity, Teuchos::Copy);
+  for (const auto& node : attachments_.nodes()) {
+    const SolidDescription& solid = solids_[node.solid];
+    const Point<dim> target = model(solid.model).carried(solid.index_in_model, node.position);
+    for (int a = 0; a < dim; ++a) {
+      if (map_->isNodeGlobalElement(node.dofs[a]))
+        full.replaceGlobalValue(node.dofs[a], (target[a] - node.position[a]) / dt);
+    }
+  }
+  for (int m = 0; m < n_models(); ++m) {
+    if (has_attached_nodes_[m])
+      model(m).move(*part(std::as_const(full), m), time, dt);
+  }
+  find_attachments();
 }
 
 template <int dim>

@@ -2,13 +2,14 @@
 #include <memory>
 #include <vector>
 
-#include "interfaces/solid.hpp"
+#include "coupling/attachments.hpp"
 
 namespace lockstep {
 
 /// The stack of all solids: one surface, one space of generalized velocities. The models' dofs
-/// follow one another; every rank owns at least one row, if need be an inert padding dof (unit
-/// mass, never coupled), because empty ranks break Thyra's block vectors.
+/// follow one another; dofs of nodes attached to rigid solids are not unknowns (zero in all
+/// vectors, see `Attachments`); every rank owns at least one row, if need be an inert padding dof
+/// (unit mass, never coupled), because empty ranks break Thyra's block vectors.
 template <int dim>
 class SolidSystem {
  public:
@@ -47,9 +48,14 @@ class SolidSystem {
   RCP<Vector> velocity_of(const Vector& generalized_momentum) const;
   /// M_S alone, locked dofs included.
   RCP<const LinearOperator> mass() const;
-  /// 1 for free dofs, 0 for locked and padding ones.
+  /// A step begins: true if other dofs are locked than before, on any rank. Collective.
+  bool begin_step(double time, double dt);
+  /// 1 for free dofs, 0 for locked, attached and padding ones.
   RCP<const Vector> free_mask() const { return free_mask_; }
   bool has_locks() const { return has_locks_; }
+  /// The velocities at which dofs are locked, zero elsewhere (`SolidModel::locked_velocities`);
+  /// null if all are zero. Collective.
+  RCP<const Vector> locked_velocity(double begin, double end) const;
 
   /// Stacked vectors. Collective.
   RCP<Vector> velocity() const;
@@ -57,6 +63,8 @@ class SolidSystem {
   RCP<Vector> explicit_momentum(double time, double dt) const;
   void add_midpoint_correction(double dt, Vector& momentum) const;
   Momentum<dim> external_impulse(double time, double dt) const;
+  bool linearise(double dt, const Vector& velocity);
+  void limit_motion(double dt, Vector& velocity);
   void move(const Vector& velocity, double time, double dt);
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.
   /// Collective.
@@ -65,9 +73,14 @@ class SolidSystem {
   double largest_stable_step() const;
 
  private:
+  bool has_dofs(int m) const { return model(m).dof_map()->getGlobalNumElements() > 0; }
+  void find_attachments();
+  int carrier_named(const std::string& name, std::string& failure) const;
+  void move_attached(const Vector& velocity, double time, double dt);
   std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;
   RCP<const Vector> part(const Vector& stacked, int m) const;
   RCP<Vector> part(Vector& stacked, int m) const;
+  void make_free_mask();
   RCP<const LinearOperator> block(const RCP<const CrsMatrix>& added, double dt,
                                   bool eliminate) const;
 
@@ -80,6 +93,8 @@ class SolidSystem {
   std::vector<int> local_begin_;       ///< of each model among this rank's rows
   GlobalIndex n_unknowns_ = 0;
   int n_padding_ = 0;  ///< local
+  Attachments<dim> attachments_;
+  std::vector<char> has_attached_nodes_;  ///< of each model
   RCP<Vector> free_mask_;
   bool has_locks_ = false;
 };

@@ -212,14 +212,14 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
                                  const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
                                  const RCP<const Vector>& lumped_momentum, double dt,
-                                 double tolerance) {
+                                 double tolerance, const RCP<const Vector>& locked_velocity) {
   const Links<dim> links = make_links<dim>(system, solids, coupling);
   const RCP<const Vector> mask = solids.free_mask();
   const ViscousOperator<dim> op{system, links, solid_block, mask, dt};
 
-  // The pull of prescribed solids on resting fluid, on the right-hand side.
+  // The pull of prescribed solids and locked dofs on resting fluid, on the right-hand side.
   const RCP<const Vector> prescribed =
-      links.pull(*rcp(new Vector(system.map)), Teuchos::null, true);
+      links.pull(*rcp(new Vector(system.map)), locked_velocity, true);
   Pair rhs{rcp(new Vector(system.map)), RCP<Vector>()};
   rhs.fluid->elementWiseMultiply(1, *system.mass, *system.velocity, 0);
   rhs.fluid->update(dt, *system.wall_force, 1);
@@ -240,9 +240,11 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
   result.iterations =
       conjugate_gradients<dim>(op, inverse_diagonal<dim>(op, rhs), rhs, x, tolerance);
 
-  RCP<const Vector> solid_velocity;
+  RCP<Vector> solid_velocity;
   if (solids.has_unknowns())
     solid_velocity = op.masked(*x.solid);
+  if (!locked_velocity.is_null())
+    solid_velocity->update(1, *locked_velocity, 1);
   const RCP<const Vector> pull = links.pull(*x.fluid, solid_velocity, true);
   if (solids.has_unknowns()) {
     result.solid_impulse = rcp(new Vector(solids.map()));
@@ -265,10 +267,12 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
 template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, FluidDiscretization<2>&,
                                            const SolidSystem<2>&, const Coupling<2>&,
                                            const RCP<const LinearOperator>&,
-                                           const RCP<const Vector>&, double, double);
+                                           const RCP<const Vector>&, double, double,
+                                           const RCP<const Vector>&);
 template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, FluidDiscretization<3>&,
                                            const SolidSystem<3>&, const Coupling<3>&,
                                            const RCP<const LinearOperator>&,
-                                           const RCP<const Vector>&, double, double);
+                                           const RCP<const Vector>&, double, double,
+                                           const RCP<const Vector>&);
 
 }  // namespace lockstep

@@ -18,12 +18,15 @@ struct ViscousResult {
 ///   [ dt K_sf         M̃_S - dt D + dt K_ss ] [ V_S ] = [ M_S V_S* + W^T M_F u*_F        ]
 /// The fluid keeps u; of the solid only its viscous impulse is used, so that its own forces are not
 /// applied twice. `lumped_momentum` is row 2 and `solid_block` is C; both null without unknowns.
+/// `locked_velocity` is that of locked dofs that move (null: none do); its share of C V is taken
+/// from `lumped_momentum` already.
 /// Throws SolveError if CG does not reach `tolerance`. Collective.
 template <int dim>
 ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscretization<dim>& fluid,
                                  const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
                                  const RCP<const Vector>& lumped_momentum, double dt,
-                                 double tolerance);
+                                 double tolerance,
+                                 const RCP<const Vector>& locked_velocity = Teuchos::null);
 
 }  // namespace lockstep

@@ -21,9 +21,16 @@ SurfaceMesh<dim> capsule_surface(double radius, double length, double spacing);
 template <int dim>
 SurfaceMesh<dim> torus_surface(double radius, double tube, double spacing);
 /// Open thin shells: the open box ("boat": no lid on top, y in 2D and 3D is up), a flat plate
-/// normal to `axis` of the given size (the entry of `axis` is ignored).
+/// normal to `axis` of the given size (the entry of `axis` is ignored), and those below.
 template <int dim>
 SurfaceMesh<dim> open_box_surface(const Point<dim>& size, double spacing);
+/// A tube without ends about z (3D), whose section has the exact area; in 2D two walls along y.
+template <int dim>
+SurfaceMesh<dim> tube_surface(double radius, double length, double spacing);
+/// A sphere (2D: an arc) with a round hole of radius `opening` at its top (y is up). The vertices
+/// lie on the sphere, the rim in one plane.
+template <int dim>
+SurfaceMesh<dim> open_ball_surface(double radius, double opening, double spacing);
 template <int dim>
 SurfaceMesh<dim> plate_surface(const Point<dim>& size, int axis, double spacing);
 

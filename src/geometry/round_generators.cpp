@@ -1,4 +1,4 @@
-// Round surfaces: ball, cylinder, capsule, torus.
+// Round surfaces: ball, cylinder, capsule, torus, tube, ball with a hole.
 #include <map>
 
 #include "geometry/generators.hpp"
@@ -222,6 +222,74 @@ SurfaceMesh<3> torus_surface<3>(double radius, double tube, double spacing) {
         mesh.simplices.push_back({p, q, r});
         mesh.simplices.push_back({p, r, s});
       }
+    return mesh;
+  });
+}
+
+template <>
+SurfaceMesh<2> tube_surface<2>(double radius, double length, double spacing) {
+  check_shape("Tube", std::min(radius, length), std::max(radius, length), spacing);
+  SurfaceMesh<2> mesh;
+  const int n = n_steps(length, spacing);
+  for (const int side : {1, -1}) {
+    const int begin = static_cast<int>(mesh.vertices.size());
+    for (int i = 0; i <= n; ++i)
+      mesh.vertices.emplace_back(side * radius, side * length * (static_cast<double>(i) / n - 0.5));
+    for (int i = 0; i < n; ++i)
+      mesh.simplices.push_back({begin + i, begin + i + 1});
+  }
+  return mesh;
+}
+
+template <>
+SurfaceMesh<3> tube_surface<3>(double radius, double length, double spacing) {
+  check_shape("Tube", std::min(radius, length), std::max(radius, length), spacing);
+  return build_to_spacing<3>(spacing, [&](double step) {
+    const int n = n_steps(length, step);
+    std::vector<Ring> rings;
+    for (int i = 0; i <= n; ++i)
+      rings.push_back({radius, length * (static_cast<double>(i) / n - 0.5)});
+    return revolve(rings, step, true);
+  });
+}
+
+namespace {
+/// The arc from the lower pole to the rim of the hole [rad].
+double open_arc(double radius, double opening, double spacing) {
+  check_shape("Open ball", std::min(radius, opening), radius, spacing);
+  check_input(opening < radius, "Open ball: the radius of the opening ({}) must be less than {}.",
+              opening, radius);
+  return pi - std::asin(opening / radius);
+}
+}  // namespace
+
+template <>
+SurfaceMesh<2> open_ball_surface<2>(double radius, double opening, double spacing) {
+  const double arc = open_arc(radius, opening, spacing);
+  const int n = n_steps(2 * arc * radius, spacing);
+  SurfaceMesh<2> mesh;
+  for (int i = 0; i <= n; ++i) {
+    const double angle = arc * (2.0 * i / n - 1);  // from the lower pole, counterclockwise
+    mesh.vertices.emplace_back(radius * std::sin(angle), -radius * std::cos(angle));
+    if (i > 0)
+      mesh.simplices.push_back({i - 1, i});
+  }
+  return mesh;
+}
+
+template <>
+SurfaceMesh<3> open_ball_surface<3>(double radius, double opening, double spacing) {
+  const double arc = open_arc(radius, opening, spacing);
+  return build_to_spacing<3>(spacing, [&](double step) {
+    const int n = n_steps(arc * radius, step);
+    std::vector<Ring> rings;
+    for (int i = 0; i <= n; ++i) {
+      const double angle = arc * i / n;
+      rings.push_back({i == 0 ? 0 : radius * std::sin(angle), -radius * std::cos(angle)});
+    }
+    SurfaceMesh<3> mesh = revolve(rings, step, false);
+    for (auto& x : mesh.vertices)
+      x = Point<3>(x.y(), x.z(), x.x());  // the axis becomes y
     return mesh;
   });
 }

@@ -31,6 +31,14 @@ struct SolidState {
   double kinetic_energy = 0, elastic_energy = 0;                     ///< [J]
 };
 
+/// A node of one model that a rigid solid of another carries: it moves as that solid's point.
+template <int dim>
+struct NodeAttachment {
+  std::array<GlobalIndex, dim> dofs{};       ///< its velocity along each axis, ids in `dof_map`
+  Point<dim> position = Point<dim>::Zero();  ///< present [m]
+  std::string solid;                         ///< name of the rigid solid
+};
+
 /// All solids of one kind (all rigid bodies, all deformables, ...): their unknowns, mass, forces
 /// and surfaces. Knows nothing of the fluid and nothing of other models.
 ///
@@ -75,8 +83,18 @@ class SolidModel : public PlugIn {
   /// Total of the external impulses (gravity, loads) inside explicit_momentum, for the ledger.
   /// Global.
   virtual Momentum<dim> external_impulse(double time, double dt) const = 0;
-  /// Dofs held at zero velocity (ids in dof_map, those of this rank). Local.
+  /// A step from `time` to time + dt begins: from here on `locked_dofs` are its own. Collective.
+  virtual void begin_step(double, double) {}
+  /// Dofs held at a given velocity in the present step (ids in dof_map, those of this rank). Local.
   virtual std::vector<GlobalIndex> locked_dofs() const { return {}; }
+  /// Mean velocity of each of them between two times, at equal times that of the instant. Default:
+  /// zero. Local.
+  virtual std::vector<double> locked_velocities(double, double) const {
+    return std::vector<double>(locked_dofs().size(), 0);
+  }
+  /// This rank's nodes that solids of other models carry. The SolidSystem takes them out of the
+  /// unknowns, and hands their velocities back with all others. Default: none. Local.
+  virtual std::vector<NodeAttachment<dim>> attachments() const { return {}; }
   /// Linear and angular momentum (about the origin) of each solid for a generalized momentum q on
   /// dof_map; zero for prescribed ones. Every rank gets all. Collective.
   virtual std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const = 0;
@@ -84,9 +102,20 @@ class SolidModel : public PlugIn {
   // State.
   virtual RCP<const Vector> velocity() const = 0;         ///< V_S
   virtual void set_velocity(const Vector& velocity) = 0;  ///< V_S := velocity (end of S2, contact)
+  /// A Newton iteration: linearises forces and D at the positions that this velocity reaches in dt,
+  /// instead of at the present ones, until `move` or `set_velocity`. False if nothing depends on
+  /// that. Default: nothing does. Collective.
+  virtual bool linearise(double, const Vector&) { return false; }
+  /// S1: velocities that are about to move the positions by dt, changed by internal impulses
+  /// (limits of strain), which the model also adds to the `explicit_momentum` of S2. Default:
+  /// nothing. Collective.
+  virtual void limit_motion(double, Vector&) {}
   /// x := x + dt * velocity from the stored positions (S1), and prescribed solids to time + dt.
   /// Collective.
   virtual void move(const Vector& velocity, double time, double dt) = 0;
+  /// Where the last `move` carried the point x^n = x of a rigid solid (its number in this model);
+  /// asked for nodes attached to it. Default, for models without rigid solids: x. Local.
+  virtual Point<dim> carried(int solid, const Point<dim>& x) const;
   virtual std::vector<SolidState<dim>> states() const = 0;  ///< one per solid, on every rank
   /// Largest stable step of explicitly integrated forces [s]. Default: none.
   virtual double largest_stable_step() const;
@@ -95,6 +124,10 @@ class SolidModel : public PlugIn {
 template <int dim>
 RCP<const LinearOperator> SolidModel<dim>::implicit_force(double) const {
   return Teuchos::null;
+}
+template <int dim>
+Point<dim> SolidModel<dim>::carried(int, const Point<dim>& x) const {
+  return x;
 }
 template <int dim>
 double SolidModel<dim>::largest_stable_step() const {

@@ -41,6 +41,10 @@ void declare_solver(ParameterList& scene, const StrategyRegistry& strategies) {
           "wins.");
   declare_positive(solver, "Tolerance", 1e-8,
                    "Residual of each block, scaled to its own right-hand side [1].");
+  declare_positive(
+      solver, "Newton Iterations", 1,
+      "Coupled solves in each of S1 and S2, with fully-implicit solids linearised anew "
+      "about the motion of the one before. 1: linearised at the present positions.");
   declare_positive(solver, "Viscous Tolerance", 1e-10, "Relative residual of the viscous CG [1].");
   declare_typed_sublist(solver, "Strategy", "The solver strategy.", strategies.schemas(),
                         "schur-cg");
@@ -154,6 +158,7 @@ SceneOptions scene_options(const ParameterList& scene) {
   options.output.precision = output.get<std::string>("Precision");
   const ParameterList& solver = scene.sublist("Solver");
   options.stepper.tolerance = solver.get<double>("Tolerance");
+  options.stepper.newton_iterations = solver.get<int>("Newton Iterations");
   options.stepper.viscous_tolerance = solver.get<double>("Viscous Tolerance");
   const ParameterList& domain = scene.sublist("Domain");
   options.stepper.length = domain_box<dim>(domain).sizes().maxCoeff();

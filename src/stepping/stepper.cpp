@@ -24,6 +24,7 @@ template <int dim>
 void Stepper<dim>::resume(double time, double last_dt) {
   time_ = time;
   last_dt_ = last_dt;
+  components_.solids->begin_step(time, 0);
   freeze();
 }
 
@@ -75,14 +76,17 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
   ScopedPhase phase(timers_, "viscosity");
   const std::unique_ptr<ViscousSystem<dim>> viscous = fluid.viscous_system();
   RCP<const LinearOperator> block;
-  RCP<const Vector> row;
+  RCP<Vector> row;
   if (coupled()) {
     block = system_.blocks(dt).solid_block;
     const RCP<Vector> momentum = solids.explicit_momentum(time, dt);
     row = system_.lumped_momentum(*momentum);
+    if (!locked_velocity_.is_null())
+      row->update(-1, *system_.unlocked_momentum(dt, *locked_velocity_), 1);
   }
-  const ViscousResult<dim> result = solve_viscous<dim>(
-      *viscous, fluid, solids, *components_.coupling, block, row, dt, options_.viscous_tolerance);
+  const ViscousResult<dim> result =
+      solve_viscous<dim>(*viscous, fluid, solids, *components_.coupling, block, row, dt,
+                         options_.viscous_tolerance, locked_velocity_);
   viscous_impulse_ = result.solid_impulse;
   report.viscous_iterations += result.iterations;
   if (ledger)
@@ -114,11 +118,21 @@ RCP<Vector> Stepper<dim>::solid_momentum(double time, double dt, MomentumLedger<
   return momentum;
 }
 
+/// The velocities of the locked dofs put in.
+template <int dim>
+RCP<Vector> Stepper<dim>::at_locked_velocity(const Vector& velocity) const {
+  const auto result = make_vector(components_.solids->map());
+  result->elementWiseMultiply(1, *components_.solids->free_mask(), velocity, 0);
+  if (!locked_velocity_.is_null())
+    result->update(1, *locked_velocity_, 1);
+  return result;
+}
+
 /// Contact acts on V_S* = M_S^-1 momentum; its impulses go into the momentum.
 template <int dim>
 ContactReport<dim> Stepper<dim>::contact_momentum(double dt, Vector& momentum) {
   auto& solids = *components_.solids;
-  const RCP<Vector> velocity = solids.velocity_of(momentum);
+  const RCP<Vector> velocity = at_locked_velocity(*solids.velocity_of(momentum));
   Vector change(*velocity, Teuchos::Copy);
   const ContactReport<dim> report =
       components_.contact->resolve(solids, ContactPhase::velocity, dt, *velocity);
@@ -139,21 +153,49 @@ typename Stepper<dim>::CoupledSolution Stepper<dim>::solve(double dt, const RCP<
   solution.coupled_before = components_.fluid->coupled_velocity();
   {
     ScopedPhase phase(timers_, "right-hand side");
-    solution.rhs = system_.right_hand_side(*momentum, incompatibility);
+    solution.rhs = system_.right_hand_side(*momentum, incompatibility, dt, locked_velocity_);
   }
   const BlockSystem& blocks = system_.blocks(dt);
   solution.unknowns.pressure = components_.fluid->last_scaled_pressure();
   if (last_dt_ > 0)
     solution.unknowns.pressure->scale(dt / last_dt_);  // p̂ = dt p
   project_out(blocks.null_space, *solution.unknowns.pressure);
-  if (coupled())
-    solution.unknowns.solid = components_.solids->velocity();
+  if (coupled()) {
+    solution.unknowns.solid = make_vector(components_.solids->map());
+    solution.unknowns.solid->elementWiseMultiply(1, *components_.solids->free_mask(),
+                                                 *components_.solids->velocity(), 0);
+  }
   {
     ScopedPhase phase(timers_, "preconditioner");
     components_.strategy->prepare(blocks);
   }
   ScopedPhase phase(timers_, "iterations");
   report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns, request(name, dt));
+  if (coupled() && !locked_velocity_.is_null())
+    solution.unknowns.solid->update(1, *locked_velocity_, 1);
+  return solution;
+}
+
+/// Newton's method on the elastic forces at the positions that the solution reaches: every
+/// iteration is a coupled solve, whose explicit momentum differs from the last one's by theirs.
+template <int dim>
+typename Stepper<dim>::CoupledSolution Stepper<dim>::solve_newton(double dt,
+                                                                  const RCP<Vector>& momentum,
+                                                                  const char* name,
+                                                                  SolveReport& report,
+                                                                  double& incompatibility) {
+  auto& solids = *components_.solids;
+  CoupledSolution solution = solve(dt, momentum, name, report, incompatibility);
+  for (int k = 1; k < options_.newton_iterations && coupled(); ++k) {
+    const RCP<const Vector> before = solids.explicit_momentum(time_, dt);
+    if (!solids.linearise(dt, *solution.unknowns.solid))
+      break;
+    system_.forget_solid_block();
+    momentum->update(1, *solids.explicit_momentum(time_, dt), -1, *before, 1);
+    const int iterations = report.iterations;
+    solution = solve(dt, momentum, name, report, incompatibility);
+    report.iterations += iterations;
+  }
   return solution;
 }
 
@@ -176,9 +218,10 @@ void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
     ScopedPhase phase(timers_, "S1");
     const RCP<Vector> momentum = solid_momentum(time_, dt / 2, nullptr, report);
     half_velocity =
-        solve(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
+        solve_newton(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
   }
   ScopedPhase phase(timers_, "solid motion");
+  solids.limit_motion(dt, *half_velocity);
   if (components_.contact && coupled()) {
     report.contact_position =
         components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);
@@ -310,6 +353,9 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
   report.dt = dt;
   report.time = time_ + dt;
   report.cfl = dt * fluid.largest_cell_crossing_rate();
+  if (solids.begin_step(time_, dt))
+    freeze();  // other dofs are locked now
+  locked_velocity_ = solids.locked_velocity(time_, time_ + dt);
   const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
 
   if (coupled()) {  // F1 serves S1 only
@@ -339,6 +385,7 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
   }
   {
     ScopedPhase phase(timers_, "F3 forces");
+    locked_velocity_ = solids.locked_velocity(time_ + dt, time_ + dt);
     predict_forces(time_, dt, &report.ledger, report);
   }
   {
@@ -347,7 +394,7 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
     if (coupled())
       momentum = solid_momentum(time_, dt, &report.ledger, report);
     const CoupledSolution solution =
-        solve(dt, momentum, "S2", report.s2, report.incompatibility_s2);
+        solve_newton(dt, momentum, "S2", report.s2, report.incompatibility_s2);
     finish(solution, dt, report);
   }
   time_ += dt;

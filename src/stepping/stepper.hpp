@@ -24,6 +24,7 @@ struct Components {
 struct StepperOptions {
   double tolerance = 1e-8;           ///< of the S1, F2 and S2 solves, per block
   double viscous_tolerance = 1e-10;  ///< relative, of the viscous CG
+  int newton_iterations = 1;         ///< coupled solves each of S1 and S2 takes
   double length = 1;                 ///< size of the domain [m], scales the angular audit
   bool audit_angular = true;  ///< false with periodic sides, where torque has no common origin
 };
@@ -81,10 +82,13 @@ class Stepper {
                              StepReport<dim>& report);
   CoupledSolution solve(double dt, const RCP<Vector>& momentum, const char* name,
                         SolveReport& report, double& incompatibility);
+  CoupledSolution solve_newton(double dt, const RCP<Vector>& momentum, const char* name,
+                               SolveReport& report, double& incompatibility);
   void move_solids(double dt, StepReport<dim>& report);
   void make_advection_velocity(StepReport<dim>& report);
   void finish(const CoupledSolution& solution, double dt, StepReport<dim>& report);
   ContactReport<dim> contact_momentum(double dt, Vector& momentum);
+  RCP<Vector> at_locked_velocity(const Vector& velocity) const;
   void ledger_solve(const CoupledSolution& solution, double dt, StepReport<dim>& report);
   SolveRequest request(const char* name, double dt) const;
   Momentum<dim> total_momentum() const;
@@ -96,9 +100,10 @@ class Stepper {
   PhaseTimers& timers_;
   CoupledSystem<dim> system_;
   double time_;
-  double last_dt_ = 0;           ///< 0 before the first step
-  Momentum<dim> last_momentum_;  ///< at the end of the last step
-  RCP<Vector> viscous_impulse_;  ///< j_nu of the present prediction, or null
+  double last_dt_ = 0;                 ///< 0 before the first step
+  Momentum<dim> last_momentum_;        ///< at the end of the last step
+  RCP<Vector> viscous_impulse_;        ///< j_nu of the present prediction, or null
+  RCP<const Vector> locked_velocity_;  ///< of locked dofs in the present solve; null: at rest
 };
 
 }  // namespace lockstep

@@ -189,6 +189,29 @@ TEST(Eq16, LockedDofsAreEliminatedAndTheirReactionsFound) {
   EXPECT_EQ(reaction[2], 0);
 }
 
+TEST(Eq16, LockedDofsThatMoveActOnTheOthers) {
+  CoupledCase<2> c(two_plate_box(true), plates({0, 1}));
+  c.fluid.set_velocity(sheared);
+  const double dt = 0.1;
+  const RCP<Vector> momentum = c.solids.explicit_momentum(0, dt);
+  Eigen::VectorXd moving = Eigen::VectorXd::Zero(dense(*momentum).size());
+  moving.head(2) << 3, -2;
+  const RCP<const Vector> locked = distributed(moving, c.solids.map());
+  double removed = 0;
+  const BlockVector still = c.system.right_hand_side(*momentum, removed);
+  const BlockVector rhs = c.system.right_hand_side(*momentum, removed, dt, locked);
+  // The blocks with nothing locked say what the velocities do to the two rows.
+  CoupledCase<2> loose(two_plate_box(true), plates({}));
+  const BlockSystem& blocks = loose.system.blocks(dt);
+  const Eigen::VectorXd flux = dense(blocks.coupling_transposed).transpose() * moving;
+  EXPECT_GT(flux.norm(), 0.1);
+  EXPECT_LT((dense(*rhs.pressure) - dense(*still.pressure) - flux).norm(), near);
+  const Eigen::VectorXd push = dense(*rhs.solid) - dense(*still.solid);
+  EXPECT_EQ(push.head(2).norm(), 0);
+  const Eigen::VectorXd inertia = dense(blocks.solid_block) * moving;
+  EXPECT_LT((push + inertia).tail(push.size() - 2).norm(), near);
+}
+
 // A5, Fig. 4: a dual cell filled half by fluid (density rho1) and half by a solid (rho2). Solid and
 // lumped fluid accelerate together; what the fluid half needs tells the pressure between the two.
 TEST(Eq16, PressureInsideAHalfFilledDualCell) {

@@ -10,11 +10,16 @@ namespace lockstep::test {
 namespace {
 
 template <int dim>
-RCP<Vector> solved(const SolidSystem<dim>& system, double dt) {
-  const auto momentum = system.explicit_momentum(0, dt);
-  momentum->elementWiseMultiply(1, *system.free_mask(), *momentum, 0);
+RCP<Vector> solved(const SolidSystem<dim>& system, double dt, const RCP<const Vector>& locked) {
+  const auto given = system.explicit_momentum(0, dt);
+  if (!locked.is_null())
+    apply(*system.unlocked_block(Teuchos::null, dt), *locked, *given, -1, 1);
+  const auto momentum = make_vector(system.map());
+  momentum->elementWiseMultiply(1, *system.free_mask(), *given, 0);
   const auto velocity = make_vector(system.map());
   apply(*exact_inverse(system.solid_block(Teuchos::null, dt), "solids"), *momentum, *velocity);
+  if (!locked.is_null())
+    velocity->update(1, *locked, 1);
   return velocity;
 }
 
@@ -22,8 +27,12 @@ RCP<Vector> solved(const SolidSystem<dim>& system, double dt) {
 
 template <int dim>
 void Alone<dim>::step(double dt) {
-  system.move(*solved(system, dt / 2), 0, dt);
-  system.set_velocity(*solved(system, dt));
+  system.begin_step(time, dt);
+  const auto half = solved(system, dt / 2, system.locked_velocity(time, time + dt));
+  system.limit_motion(dt, *half);
+  system.move(*half, time, dt);
+  time += dt;
+  system.set_velocity(*solved(system, dt, system.locked_velocity(time, time)));
 }
 
 template struct Alone<2>;

@@ -102,6 +102,7 @@ struct Alone {
 
   DeformableSolids<dim>& solids;
   SolidSystem<dim> system;
+  double time = 0;  ///< [s]
 };
 
 }  // namespace lockstep::test

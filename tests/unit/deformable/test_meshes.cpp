@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "deformable/mesh/gmsh_file.hpp"
+#include "deformable/mesh/hollow_generators.hpp"
 #include "deformable/mesh/volume_generators.hpp"
 #include "support.hpp"
 
@@ -60,6 +61,9 @@ TEST(VolumeMesh, GeneratorsFillTheirShapes) {
   expect_sound(ball_volume<3>(0.5, 0.15), pi / 6, 0.35);
   expect_sound(cylinder_volume<2>(0.5, 2, 0.2), 2, 0.8);
   expect_sound(torus_volume<3>(1, 0.3, 0.15), 2 * pi * pi * 0.09, 0.2);
+  expect_sound(hollow_ball_volume<2>(0.5, 0.1, 0.1), pi * 0.09, 0.6);
+  expect_sound(hollow_ball_volume<3>(0.5, 0.2, 0.15), 4 * pi / 3 * (0.125 - 0.027), 0.2);
+  expect_sound(tube_volume<3>(0.5, 0.2, 1, 0.15), pi * 0.16, 0.2);
   auto cylinder = cylinder_volume<3>(0.5, 2, 0.2);
   expect_sound(cylinder, pi / 2, 0.2);
 }

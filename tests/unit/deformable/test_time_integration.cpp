@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "linear/exact_inverse.hpp"
 #include "support.hpp"
 #include "support/dense.hpp"
 
@@ -198,6 +199,35 @@ TEST(TimeIntegration, TetheredBlock) {
                                                       number("Stiffness", "9")))})
                 ->largest_stable_step(),
             1);
+}
+
+/// Outer Newton iterations end at M (V - V^n) = dt f(x + dt V).
+TEST(TimeIntegration, NewtonIterationsSolveTheNonlinearStep) {
+  Alone<2> alone(
+      model<2>({box("1, 0.5", "0.25") + material("neo-hookean", "100") + number("Density", "1") +
+                numbers("Stretch", "1.3, 0.8") + number("Angular Velocity", "2") +
+                text("Time Integration", "fully-implicit")}));
+  const double dt = 0.1;
+  RCP<Vector> velocity = alone.system.velocity();
+  std::vector<double> residuals;
+  for (int k = 0; k < 8; ++k) {
+    ASSERT_TRUE(alone.system.linearise(dt, *velocity));
+    const auto block = alone.system.solid_block(Teuchos::null, dt);
+    const auto momentum = alone.system.explicit_momentum(0, dt);
+    Vector residual(*momentum, Teuchos::Copy);
+    apply(*block, *velocity, residual, -1, 1);
+    residuals.push_back(residual.norm2() / momentum->norm2());
+    apply(*exact_inverse(block, "solids"), *momentum, *velocity);
+  }
+  EXPECT_GT(residuals[1], 1e-3);
+  EXPECT_LT(residuals[7], 1e-12);
+  // The step ends with the forces at the positions where the body is.
+  const auto before = alone.solids.positions();
+  alone.system.set_velocity(*velocity);
+  EXPECT_EQ(alone.solids.positions(), before);
+  const auto fresh = model<2>({box("1, 0.5", "0.25") + material("neo-hookean", "100") +
+                               number("Density", "1") + numbers("Stretch", "1.3, 0.8")});
+  EXPECT_EQ(alone.solids.elastic_forces(), fresh->elastic_forces());
 }
 
 /// A hanging chain, benchmark A13: a catenary of length 1.2 between posts at distance 1.

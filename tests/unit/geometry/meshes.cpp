@@ -58,6 +58,57 @@ TEST(Generators, OpenShells) {
   EXPECT_NEAR(shell_properties(open_box_surface<2>({1, 2}, 0.5)).measure, 5, 1e-12);
 }
 
+TEST(Generators, TubesAreOpenAndFaceOutwards) {
+  const auto tube = tube_surface<3>(0.5, 2, 0.1);
+  EXPECT_FALSE(is_closed(tube));
+  EXPECT_NEAR(shell_properties(tube).measure, 2 * pi, 0.01);
+  double flux = 0, spread = 0;  // of the field (x, y, 0): twice the volume inside
+  for (const auto& t : tube.simplices) {
+    const std::array<Point<3>, 3> corners{tube.vertices[t[0]], tube.vertices[t[1]],
+                                          tube.vertices[t[2]]};
+    Point<3> center = (corners[0] + corners[1] + corners[2]) / 3;
+    spread = std::max(spread, std::abs(center.z()));
+    center.z() = 0;
+    flux += area_vector<3>(corners).dot(center);
+  }
+  EXPECT_NEAR(flux, 2 * pi * 0.25 * 2, 1e-12);
+  EXPECT_LT(spread, 1);
+  auto walls = tube_surface<2>(0.5, 2, 0.3);
+  EXPECT_NEAR(shell_properties(walls).measure, 4, 1e-14);
+  for (const auto& s : walls.simplices) {
+    const auto normal = area_vector<2>({walls.vertices[s[0]], walls.vertices[s[1]]});
+    EXPECT_GT(normal.dot(walls.vertices[s[0]]), 0);
+  }
+  EXPECT_THROW(tube_surface<3>(1, 0, 0.1), InputError);
+}
+
+template <int dim>
+void expect_open_ball(double area, double tolerance) {
+  const auto shell = open_ball_surface<dim>(0.5, 0.3, 0.05);
+  EXPECT_FALSE(is_closed(shell));
+  EXPECT_NEAR(shell_properties(shell).measure, area, tolerance);
+  int n_rim = 0;
+  for (const auto& x : shell.vertices) {
+    EXPECT_NEAR(x.norm(), 0.5, 1e-14);
+    EXPECT_LE(x.y(), 0.4 + 1e-14);  // sqrt(0.5^2 - 0.3^2)
+    n_rim += x.y() > 0.4 - 1e-12;
+  }
+  EXPECT_GE(n_rim, dim == 2 ? 2 : 37);  // 2 pi 0.3 / 0.05
+  for (const auto& s : shell.simplices) {
+    std::array<Point<dim>, dim> corners;
+    for (int k = 0; k < dim; ++k)
+      corners[k] = shell.vertices[s[k]];
+    EXPECT_GT(area_vector<dim>(corners).dot(corners[0]), 0);
+  }
+}
+
+TEST(Generators, OpenBallsHaveARim) {
+  // The sphere without its cap: 2 pi r (r + 0.4); the arc 2 r (pi - asin 0.6).
+  expect_open_ball<3>(2 * pi * 0.5 * 0.9, 0.01);
+  expect_open_ball<2>(pi - std::asin(0.6), 2e-3);
+  EXPECT_THROW(open_ball_surface<3>(0.5, 0.5, 0.05), InputError);
+}
+
 TEST(MassProperties, BoxIsExactWhereverItLies) {
   const Point<3> shift(100, -20, 3);
   const auto box = volume_properties(moved<3>(box_surface<3>({1, 2, 3}, 0.7), shift));

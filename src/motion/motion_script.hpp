@@ -1,13 +1,14 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/types.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
 
-/// Where a prescribed body is at some time, relative to its initial pose, and how it moves there.
+/// Where something prescribed is at some time, relative to its start, and how it moves there.
 template <int dim>
 struct ScriptedMotion {
   Point<dim> displacement = Point<dim>::Zero();          ///< of the reference point [m]
@@ -17,17 +18,21 @@ struct ScriptedMotion {
 };
 
 /// A motion as a function of time [s]. The turn keeps its axis, so that its derivative is the
-/// angular velocity. Empty for a dynamic body.
+/// angular velocity. Empty for what is not prescribed.
 template <int dim>
 using MotionScript = std::function<ScriptedMotion<dim>(double time)>;
 
-/// Declares the typed sublist "Motion".
+/// Schemas of the motions that a list describes alone: "sinusoid" and "table", for a typed sublist.
 template <int dim>
-void declare_motion(ParameterList& body);
+std::vector<TypedSchema> timed_motion_schemas();
 
-/// The script of a body from its validated list (see `rigid_body_parameters`); empty if the body is
-/// dynamic. `name` is used in messages. Throws InputError.
+/// The script of a validated list of one of these types; `where` names the list in messages. Throws
+/// InputError.
 template <int dim>
-MotionScript<dim> read_motion(const ParameterList& body, const std::string& name);
+MotionScript<dim> read_timed_motion(const ParameterList& list, const std::string& where);
+
+/// Constant velocity [m/s] and angular velocity [rad/s]; displacement and turn are zero at time 0.
+template <int dim>
+MotionScript<dim> uniform_motion(const Point<dim>& velocity, const AngularVector<dim>& angular);
 
 }  // namespace lockstep

@@ -1,4 +1,4 @@
-#include "rigid/rotation.hpp"
+#include "motion/rotation.hpp"
 
 #include <cmath>
 

@@ -1,11 +1,11 @@
-#include "rigid/motion_script.hpp"
+#include "motion/motion_script.hpp"
 
 #include <boost/math/interpolators/cubic_hermite.hpp>
 #include <cmath>
 #include <vector>
 
 #include "base/errors.hpp"
-#include "rigid/list_values.hpp"
+#include "motion/list_values.hpp"
 
 namespace lockstep {
 
@@ -14,41 +14,30 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 template <int dim>
-std::vector<TypedSchema> motion_schemas() {
-  ParameterList nothing, sinusoid, table;
+ParameterList sinusoid_schema() {
+  ParameterList sinusoid;
   declare_vector(sinusoid, "Amplitude", ParameterArray<double>(dim, 0.0), dim,
-                 "Largest displacement of the reference point from \"Position\" [m].");
+                 "Largest displacement [m].");
   declare_rotation<dim>(sinusoid, "Angular Amplitude",
-                        dim == 2 ? "Largest angle from the initial orientation [rad]."
-                                 : "Largest rotation vector from the initial orientation [rad].");
+                        dim == 2 ? "Largest angle [rad]." : "Largest rotation vector [rad].");
   declare_required_positive(sinusoid, "Frequency", "Oscillations per second [1/s].");
   declare(sinusoid, "Phase", 0.0,
           "The motion is amplitude times sin(2 pi frequency time + phase) [rad].");
-  declare_required<ParameterArray<double>>(table, "Times", "Ascending times [s], two or more.");
-  declare_optional<ParameterArray<double>>(
-      table, "Displacements",
-      "Displacement of the reference point from \"Position\" [m]: a point for each time, one after "
-      "another. Absent: none.");
-  declare_optional<ParameterArray<double>>(
-      table, "Angles", "Rotation from the initial orientation for each time [rad]. Absent: none.");
-  if (dim == 3)
-    declare_vector(table, "Axis", {0.0, 0.0, 1.0}, 3, "Axis of the angles [1].");
-  return {{"dynamic", "Moved by its momentum, the fluid, gravity and contacts.", nothing},
-          {"static", "Never moves.", nothing},
-          {"constant velocity",
-           "Keeps \"Velocity\" and \"Angular Velocity\"; \"Position\" is that of time 0.", nothing},
-          {"sinusoid", "Swings about \"Position\" and the initial orientation.", sinusoid},
-          {"table",
-           "Follows a table through a monotone cubic interpolation with continuous velocity; at "
-           "rest before and after it.",
-           table}};
+  return sinusoid;
 }
 
 template <int dim>
-MotionScript<dim> uniform_motion(const Point<dim>& velocity, const AngularVector<dim>& angular) {
-  return [velocity, angular](double time) {
-    return ScriptedMotion<dim>{time * velocity, time * angular, velocity, angular};
-  };
+ParameterList table_schema() {
+  ParameterList table;
+  declare_required<ParameterArray<double>>(table, "Times", "Ascending times [s], two or more.");
+  declare_optional<ParameterArray<double>>(
+      table, "Displacements",
+      "Displacement [m]: a point for each time, one after another. Absent: none.");
+  declare_optional<ParameterArray<double>>(table, "Angles",
+                                           "Angle of the turn for each time [rad]. Absent: none.");
+  if (dim == 3)
+    declare_vector(table, "Axis", {0.0, 0.0, 1.0}, 3, "Axis of the angles [1].");
+  return table;
 }
 
 template <int dim>
@@ -102,15 +91,15 @@ class TableColumn {
 /// Columns of the rows "name" of a table; empty if it is absent.
 std::vector<TableColumn> read_columns(const ParameterList& list, const std::string& column,
                                       const std::vector<double>& times, int n_components,
-                                      const std::string& name) {
+                                      const std::string& where) {
   std::vector<TableColumn> columns;
   if (!list.isParameter(column))
     return columns;
   const auto& rows = list.get<ParameterArray<double>>(column);
   const std::size_t wanted = times.size() * static_cast<std::size_t>(n_components);
   check_input(static_cast<std::size_t>(rows.size()) == wanted,
-              "In \"{}/Motion\", \"{}\" has {} numbers, but {} times need {}.", name, column,
-              rows.size(), times.size(), wanted);
+              "In \"{}\", \"{}\" has {} numbers, but {} times need {}.", where, column, rows.size(),
+              times.size(), wanted);
   for (int c = 0; c < n_components; ++c) {
     std::vector<double> values;
     for (std::size_t i = 0; i < times.size(); ++i)
@@ -121,27 +110,26 @@ std::vector<TableColumn> read_columns(const ParameterList& list, const std::stri
 }
 
 template <int dim>
-AngularVector<dim> table_axis(const ParameterList& list, const std::string& name) {
+AngularVector<dim> table_axis(const ParameterList& list, const std::string& where) {
   if constexpr (dim == 2) {
     return AngularVector<2>(1.0);
   } else {
     const Point<3> axis = vector_value<3>(list, "Axis");
-    check_input(axis.norm() > 0, "In \"{}/Motion\", \"Axis\" must not be zero.", name);
+    check_input(axis.norm() > 0, "In \"{}\", \"Axis\" must not be zero.", where);
     return axis.normalized();
   }
 }
 
 template <int dim>
-MotionScript<dim> table(const ParameterList& list, const std::string& name) {
+MotionScript<dim> table(const ParameterList& list, const std::string& where) {
   const std::vector<double> times = list.get<ParameterArray<double>>("Times").toVector();
-  check_input(times.size() >= 2, "In \"{}/Motion\", \"Times\" needs two or more times.", name);
+  check_input(times.size() >= 2, "In \"{}\", \"Times\" needs two or more times.", where);
   for (std::size_t i = 1; i < times.size(); ++i)
-    check_input(times[i] > times[i - 1],
-                "In \"{}/Motion\", \"Times\" must ascend, but {} follows {}.", name, times[i],
-                times[i - 1]);
-  const auto displacements = read_columns(list, "Displacements", times, dim, name);
-  const auto angles = read_columns(list, "Angles", times, 1, name);
-  const AngularVector<dim> axis = table_axis<dim>(list, name);
+    check_input(times[i] > times[i - 1], "In \"{}\", \"Times\" must ascend, but {} follows {}.",
+                where, times[i], times[i - 1]);
+  const auto displacements = read_columns(list, "Displacements", times, dim, where);
+  const auto angles = read_columns(list, "Angles", times, 1, where);
+  const AngularVector<dim> axis = table_axis<dim>(list, where);
   return [=](double time) {
     ScriptedMotion<dim> motion;
     for (std::size_t a = 0; a < displacements.size(); ++a) {
@@ -159,36 +147,32 @@ MotionScript<dim> table(const ParameterList& list, const std::string& name) {
 }  // namespace
 
 template <int dim>
-void declare_motion(ParameterList& body) {
-  declare_typed_sublist(body, "Motion", "Whether the body is moved by forces or by a script.",
-                        motion_schemas<dim>(), "dynamic");
+std::vector<TypedSchema> timed_motion_schemas() {
+  return {{"sinusoid", "Swings about the position and orientation of the start.",
+           sinusoid_schema<dim>()},
+          {"table",
+           "Follows a table through a monotone cubic interpolation with continuous velocity; at "
+           "rest before and after it.",
+           table_schema<dim>()}};
 }
 
 template <int dim>
-MotionScript<dim> read_motion(const ParameterList& body, const std::string& name) {
-  const ParameterList& list = body.sublist("Motion");
-  const auto& type = list.get<std::string>("Type");
-  if (type == "dynamic")
-    return {};
-  const Point<dim> velocity = vector_value<dim>(body, "Velocity");
-  const AngularVector<dim> angular = rotation_value<dim>(body, "Angular Velocity");
-  if (type == "constant velocity")
-    return uniform_motion<dim>(velocity, angular);
-  check_input(
-      velocity.norm() == 0 && angular.norm() == 0,
-      "The solid \"{}\" has a velocity, but its motion is \"{}\"; leave out \"Velocity\" and "
-      "\"Angular Velocity\", or choose another motion.",
-      name, type);
-  if (type == "sinusoid")
-    return sinusoid<dim>(list);
-  if (type == "table")
-    return table<dim>(list, name);
-  return uniform_motion<dim>(velocity, angular);  // static: both are zero
+MotionScript<dim> read_timed_motion(const ParameterList& list, const std::string& where) {
+  return list.get<std::string>("Type") == "table" ? table<dim>(list, where) : sinusoid<dim>(list);
 }
 
-template void declare_motion<2>(ParameterList&);
-template void declare_motion<3>(ParameterList&);
-template MotionScript<2> read_motion<2>(const ParameterList&, const std::string&);
-template MotionScript<3> read_motion<3>(const ParameterList&, const std::string&);
+template <int dim>
+MotionScript<dim> uniform_motion(const Point<dim>& velocity, const AngularVector<dim>& angular) {
+  return [velocity, angular](double time) {
+    return ScriptedMotion<dim>{time * velocity, time * angular, velocity, angular};
+  };
+}
+
+template std::vector<TypedSchema> timed_motion_schemas<2>();
+template std::vector<TypedSchema> timed_motion_schemas<3>();
+template MotionScript<2> read_timed_motion<2>(const ParameterList&, const std::string&);
+template MotionScript<3> read_timed_motion<3>(const ParameterList&, const std::string&);
+template MotionScript<2> uniform_motion<2>(const Point<2>&, const AngularVector<2>&);
+template MotionScript<3> uniform_motion<3>(const Point<3>&, const AngularVector<3>&);
 
 }  // namespace lockstep

@@ -1,0 +1,106 @@
+// Bodies whose elasticity is explicit, at steps longer than their own stable one.
+#include <algorithm>
+#include <cmath>
+
+#include "deformable/deformable_solids.hpp"
+#include "deformable/sub_steps.hpp"
+
+namespace lockstep {
+
+/// By Gershgorin's circles of M^-1 K and M^-1 B: omega dt <= sqrt 2, and for explicit damping
+/// dt <= 2 / rate. The least eigenvalue of a consistent mass matrix is 1/(n_corners + 1) of the
+/// lumped one's.
+template <int dim>
+void DeformableSolids<dim>::update_largest_stable_step() {
+  constexpr double safety = 0.9;
+  const int n_bodies = static_cast<int>(bodies_.size());
+  std::vector<double> rates(2 * n_bodies, 0);  // of each body: elastic, viscous [1/s]
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    const int b = body_of_node_[i];
+    const TimeIntegration integration = bodies_[b].integration;
+    if (integration == TimeIntegration::fully_implicit || node_mass_[i] == 0)
+      continue;
+    Point<dim> elastic = Point<dim>::Zero(), viscous = Point<dim>::Zero();
+    for (int k = stiffness_.row_begin(i); k < stiffness_.row_end(i); ++k) {
+      elastic += stiffness_.block(k).cwiseAbs().rowwise().sum();
+      viscous += damping_.block(k).cwiseAbs().rowwise().sum();
+    }
+    rates[2 * b] = std::max(rates[2 * b], std::sqrt(elastic.maxCoeff() / (2 * least_mass(i))));
+    if (integration == TimeIntegration::explicit_forces)
+      rates[2 * b + 1] = std::max(rates[2 * b + 1], viscous.maxCoeff() / (2 * least_mass(i)));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, rates.data(), 2 * n_bodies, MPI_DOUBLE, MPI_MAX,
+                raw_communicator(comm_));
+  largest_stable_step_ = 1e300;
+  for (int b = 0; b < n_bodies; ++b) {
+    Body& body = bodies_[b];
+    body.elastic_step = rates[2 * b] > 0 ? safety / rates[2 * b] : 1e300;
+    const double viscous_step = rates[2 * b + 1] > 0 ? safety / rates[2 * b + 1] : 1e300;
+    largest_stable_step_ = std::min({largest_stable_step_, viscous_step,
+                                     longest_sub_stepped(body.elastic_step, body.most_sub_steps)});
+  }
+}
+
+template <int dim>
+double DeformableSolids<dim>::least_mass(int node) const {
+  return node_mass_[node] / (bodies_[body_of_node_[node]].consistent_mass ? dim + 2 : 1);
+}
+
+/// Leapfrog of elasticity and loads alone, from rest, over t = 2 dt. With the weights (1 - k/n)^2
+/// of its places a mode of frequency omega feels, of its stiffness, 6/z^2 (1 - sin z/z), z = omega
+/// t: slow modes all of it, fast ones what a step of dt carries, m (omega dt)^2 < 2 (never zero or
+/// negative, as with equal weights), whatever mass the fluid adds. The forces at every place sum to
+/// zero, and so does their mean.
+template <int dim>
+void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
+  const Body& body = bodies_[b];
+  const SubSteps steps = sub_steps_for(step_, body.elastic_step, body.most_sub_steps);
+  if (steps.n == 1)
+    return;
+  std::vector<char> free(dim * space_.n_owned(), 1);
+  for (const int dof : held_.dofs())
+    free[dof] = 0;
+  for (const auto& attached : attached_)
+    std::fill_n(free.begin() + dim * attached.first, dim, 0);
+
+  const int n = steps.n;
+  Nodes x = x_, velocity(space_.n_owned(), Point<dim>::Zero());
+  for (int k = 0; k < n; ++k) {
+    Nodes present(space_.n_local(), Point<dim>::Zero());
+    for (const auto& group : body.elements)
+      group->add_elastic_forces(x, space_.n_owned(), present);
+    const double weight = steps.weight(k), kick = (k == 0 ? 0.5 : 1) * steps.length;
+    for (int i = 0; i < space_.n_owned(); ++i) {
+      if (body_of_node_[i] != b)
+        continue;
+      force[i] = (k == 0 ? Point<dim>(Point<dim>::Zero()) : force[i]) + weight * present[i];
+      const Point<dim> total = present[i] + node_force_[i] + node_mass_[i] * gravity_;
+      for (int a = 0; a < dim; ++a) {
+        if (!free[dim * i + a])
+          continue;
+        velocity[i][a] += kick / least_mass(i) * total[a];
+        x[i][a] += steps.length * velocity[i][a];
+      }
+    }
+    x = space_.with_ghosts(*space_.vector(x));
+  }
+}
+
+template <int dim>
+typename DeformableSolids<dim>::Nodes DeformableSolids<dim>::averaged_forces() const {
+  Nodes force = elastic_force_;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    average_forces(static_cast<int>(b), force);
+  return force;
+}
+
+template void DeformableSolids<2>::update_largest_stable_step();
+template void DeformableSolids<3>::update_largest_stable_step();
+template double DeformableSolids<2>::least_mass(int) const;
+template double DeformableSolids<3>::least_mass(int) const;
+template std::vector<Point<2>> DeformableSolids<2>::averaged_forces() const;
+template std::vector<Point<3>> DeformableSolids<3>::averaged_forces() const;
+template void DeformableSolids<2>::average_forces(int, Nodes&) const;
+template void DeformableSolids<3>::average_forces(int, Nodes&) const;
+
+}  // namespace lockstep

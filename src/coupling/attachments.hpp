@@ -1,0 +1,50 @@
+#pragma once
+#include <map>
+#include <vector>
+
+#include "interfaces/solid.hpp"
+#include "linear/triplet_matrix.hpp"
+
+namespace lockstep {
+
+/// Nodes that rigid solids carry: their dofs are no unknowns but combinations of the solids',
+/// V = P V_reduced. Forces go the other way, q_reduced = P^T q, so that linear and angular momentum
+/// are kept exactly. Reduced vectors are zero on the dofs of attached nodes, reduced matrices have
+/// a row of the identity there. The nodes are replicated on all ranks.
+template <int dim>
+class Attachments {
+ public:
+  /// An attached node, in ids of the stacked map and numbers of all solids.
+  struct Node {
+    std::array<GlobalIndex, dim> dofs;
+    int solid = -1;
+    Point<dim> position;  ///< [m]
+  };
+
+  bool empty() const { return nodes_.empty(); }
+  const std::vector<Node>& nodes() const { return nodes_; }
+  /// `rows`: of each node, the velocity of its solid at its position.
+  void set(std::vector<Node> nodes, const std::vector<VelocityRow<dim>>& rows);
+
+  /// Local.
+  void reduce(VelocityRow<dim>& row) const;
+  /// P^T K P + identity on the attached dofs of `map`. Local.
+  void reduce(std::vector<Triplet>& triplets, const Map& map) const;
+  /// q := P^T q. Collective.
+  void reduce_momentum(Vector& momentum) const;
+  /// V := P V. Collective.
+  void expand_velocity(Vector& velocity) const;
+  /// Zero on the attached dofs. Local.
+  void mask(Vector& values) const;
+
+ private:
+  using Combination = std::vector<std::pair<GlobalIndex, double>>;
+  /// The combination of a dof: itself, if it is not attached.
+  Combination combination(GlobalIndex dof) const;
+
+  std::vector<Node> nodes_;
+  std::map<GlobalIndex, Combination> rows_;      ///< of each attached dof
+  std::map<GlobalIndex, std::size_t> carriers_;  ///< the dofs they are combinations of, counted
+};
+
+}  // namespace lockstep

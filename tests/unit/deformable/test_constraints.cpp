@@ -1,0 +1,244 @@
+// Scripted and released nodes, strain limits, sub-steps.
+#include <Eigen/Dense>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "deformable/sub_steps.hpp"
+#include "support.hpp"
+#include "support/dense.hpp"
+
+namespace lockstep {
+namespace {
+
+using namespace test;
+using testing::dense;
+
+std::string region(const std::string& lower, const std::string& upper, const std::string& more) {
+  return list("Pinned", list("rim", numbers("Lower", lower) + numbers("Upper", upper) + more));
+}
+std::string motion(const std::string& type, const std::string& content) {
+  return list("Motion", text("Type", type) + content);
+}
+std::string sub_steps(const std::string& most) {
+  return "<Parameter name=\"Most Sub-Steps\" type=\"int\" value=\"" + most + "\"/>";
+}
+const std::string block =
+    box("1, 0.5", "0.25") + material("corotated", "1000") + number("Density", "2");
+
+/// Vertices of the surface left of x, at the start.
+template <int dim>
+std::vector<int> vertices_left_of(const DeformableSolids<dim>& solids, double x) {
+  std::vector<int> found;
+  for (std::size_t v = 0; v < solids.surface().vertices.size(); ++v) {
+    if (solids.surface().vertices[v].x() < x)
+      found.push_back(static_cast<int>(v));
+  }
+  return found;
+}
+
+TEST(Constraints, ScriptedNodesFollowTheirScript) {
+  Alone<2> alone(model<2>(
+      {block + text("Time Integration", "fully-implicit") + numbers("Position", "3, 1") +
+       region("-0.5, -1", "-0.5, 1",
+              motion("sinusoid", numbers("Amplitude", "0, 0.2") + number("Frequency", "1") +
+                                     number("Angular Amplitude", "0.3") + number("Phase", "0.7")))},
+      {0, -1}));
+  const auto start = alone.solids.surface().vertices;
+  const auto rim = vertices_left_of(alone.solids, 2.51);
+  ASSERT_EQ(rim.size(), 3u);
+  const auto swing = [](double t) { return std::sin(2 * M_PI * t + 0.7) - std::sin(0.7); };
+  for (int i = 1; i <= 5; ++i) {
+    alone.step(0.03 * i);
+    const double s = swing(alone.time);
+    for (const int v : rim) {
+      const Point<2> expected =
+          Point<2>(3, 1 + 0.2 * s) + Eigen::Rotation2Dd(0.3 * s) * (start[v] - Point<2>(3, 1));
+      EXPECT_LE((alone.solids.surface().vertices[v] - expected).norm(), 1e-13);
+    }
+    // At the end of the step they have the velocity of that instant.
+    const double rate = 2 * M_PI * std::cos(2 * M_PI * alone.time + 0.7);
+    SurfacePoint<2> point;
+    for (std::size_t k = 0; k < alone.solids.surface().simplices.size(); ++k) {
+      const auto& s0 = alone.solids.surface().simplices[k];
+      if (s0[0] == rim[0]) {
+        point.simplex = static_cast<int>(k);
+        point.barycentric << 1, 0;
+      }
+    }
+    VelocityRow<2> row;
+    alone.solids.velocity_row(point, {}, row);
+    const Eigen::VectorXd velocity = dense(*alone.solids.velocity());
+    const Point<2> arm = alone.solids.surface().vertices[rim[0]] - Point<2>(3, 1 + 0.2 * s);
+    const Point<2> expected =
+        0.2 * rate * Point<2>(0, 1) + 0.3 * rate * Point<2>(-arm.y(), arm.x());
+    EXPECT_NEAR(velocity[row.dofs[0]], expected.x(), 1e-13);
+    EXPECT_NEAR(velocity[row.dofs[1]], expected.y(), 1e-13);
+  }
+}
+
+TEST(Constraints, ReleasedNodesKeepTheirVelocity) {
+  Alone<2> alone(
+      model<2>({block + region("-0.5, -1", "0.5, 1",
+                               number("Release Time", "0.2") +
+                                   motion("constant velocity", numbers("Velocity", "3, 0")))},
+               {0, -10}));
+  const double dt = 0.01;
+  EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(alone.solids.locked_dofs().size())), 30);
+  EXPECT_NEAR(alone.solids.states()[0].velocity.x(), 3, 1e-14);
+  for (int i = 0; i < 20; ++i)
+    alone.step(dt);
+  EXPECT_NEAR(alone.solids.states()[0].center_of_mass.x(), 0.6, 1e-13);
+  EXPECT_NEAR(alone.solids.states()[0].center_of_mass.y(), 0, 1e-14);
+  EXPECT_TRUE(alone.system.begin_step(alone.time, dt));
+  EXPECT_FALSE(alone.system.has_locks());
+  EXPECT_FALSE(alone.system.begin_step(alone.time, dt));
+  for (int i = 0; i < 10; ++i)
+    alone.step(dt);
+  EXPECT_NEAR(alone.solids.states()[0].velocity.x(), 3, 1e-12);
+  EXPECT_NEAR(alone.solids.states()[0].velocity.y(), -10 * 0.1, 1e-12);
+  EXPECT_NEAR(alone.solids.states()[0].center_of_mass.y(), -0.5 * 10 * 0.01, 1e-12);
+}
+
+TEST(Constraints, RegionsThatMoveDoNotOverlap) {
+  const auto two = [](const std::string& more) {
+    const std::string left = numbers("Lower", "-0.5, -1") + numbers("Upper", "-0.5, 1");
+    return block + list("Pinned", list("a", left) + list("b", left + more));
+  };
+  EXPECT_EQ(error([&] { body<2>(two("")); }), "");
+  EXPECT_EQ(error([&] { body<2>(two(texts("Directions", ""))); }), "");
+  EXPECT_THAT(error([&] { body<2>(two(number("Release Time", "1"))); }),
+              ::testing::HasSubstr("body/Pinned/b"));
+}
+
+/// A heavy net on a weak sheet, held at its upper edge: no edge grows by more than a tenth.
+TEST(Constraints, StrainIsLimited) {
+  Document document =
+      read_xml_string("<ParameterList>" +
+                          geometry("sheet", numbers("Size", "1, 0.6, 0") + text("Normal", "z") +
+                                                number("Mesh Spacing", "0.25")) +
+                          number("Young&apos;s Modulus", "100") + number("Thickness", "0.001") +
+                          number("Surface Density", "1") + number("Stretch Limit", "0.1") +
+                          region("-1, 0.3, -1", "1, 0.3, 1", "") + "</ParameterList>",
+                      "scene.xml");
+  validate(document, cloth_parameters<3>());
+  std::vector<DeformableBody<3>> bodies;
+  bodies.push_back(read_cloth<3>("net", document.list, 0.1));
+  const auto edges = bodies[0].limited_edges;
+  const auto surface = bodies[0].surface;
+  Alone<3> alone(std::make_unique<DeformableSolids<3>>("cloth", std::move(bodies),
+                                                       Point<3>(0, -10, 1), world()));
+  for (int i = 0; i < 40; ++i)
+    alone.step(0.01);
+  double worst = 0, lowest = 0;
+  for (std::size_t s = 0; s < surface.size(); ++s) {
+    for (int k = 0; k < 3; ++k) {
+      const auto& now = alone.solids.surface();
+      const int a = surface[s][k], b = surface[s][(k + 1) % 3];
+      const double length =
+          (now.vertices[now.simplices[s][k]] - now.vertices[now.simplices[s][(k + 1) % 3]]).norm();
+      for (const LimitedEdge& edge : edges) {
+        if (edge.corners == std::array<int, 2>{std::min(a, b), std::max(a, b)})
+          worst = std::max(worst, length / edge.longest);
+      }
+      lowest = std::min(lowest, now.vertices[now.simplices[s][k]].y());
+    }
+  }
+  EXPECT_LE(worst, 1.0011);
+  EXPECT_GE(worst, 0.99);  // it hangs in its limits
+  EXPECT_LE(lowest, -0.3);
+}
+
+/// Free, the limit gives no linear momentum, and it acts in S2 as in S1.
+TEST(Constraints, StrainLimitKeepsMomentum) {
+  Document document = read_xml_string(
+      "<ParameterList>" +
+          geometry("sheet", numbers("Size", "1, 1, 0") + text("Normal", "z") +
+                                number("Mesh Spacing", "0.3")) +
+          number("Young&apos;s Modulus", "1") + number("Thickness", "0.001") +
+          number("Surface Density", "1") + number("Stretch Limit", "0.05") +
+          numbers("Velocity", "1, 2, 3") + numbers("Stretch", "1.2, 1.2, 1") + "</ParameterList>",
+      "scene.xml");
+  validate(document, cloth_parameters<3>());
+  std::vector<DeformableBody<3>> bodies;
+  bodies.push_back(read_cloth<3>("sheet", document.list, 0.1));
+  Alone<3> alone(std::make_unique<DeformableSolids<3>>("cloth", std::move(bodies),
+                                                       Point<3>(0, 0, 0), world()));
+  for (int i = 0; i < 3; ++i) {
+    alone.step(0.1);
+    const auto state = alone.solids.states()[0];
+    EXPECT_LE((state.velocity - Point<3>(1, 2, 3)).norm(), 1e-13);
+    // An edge turns while its neighbours pull: angular momentum is kept approximately.
+    EXPECT_LE(state.angular_velocity.norm(), 0.03);
+  }
+  EXPECT_GT(alone.solids.states()[0].kinetic_energy, 7.1);  // 14/2, and what drew it together
+}
+
+TEST(SubSteps, AreAsFewAsTheStepNeeds) {
+  EXPECT_EQ(sub_steps_for(0.9, 1, 50).n, 1);
+  EXPECT_EQ(sub_steps_for(10, 1, 1).n, 1);
+  EXPECT_EQ(sub_steps_for(9.9, 1, 50).n, 20);
+  EXPECT_NEAR(sub_steps_for(9.9, 1, 50).length, 0.99, 1e-14);
+  EXPECT_EQ(longest_sub_stepped(0.3, 50), 7.5);
+  EXPECT_EQ(longest_sub_stepped(0.3, 1), 0.3);
+  for (const int n : {1, 2, 7}) {
+    double sum = 0;
+    for (int k = 0; k < n; ++k)
+      sum += SubSteps{n, 0}.weight(k);
+    EXPECT_NEAR(sum, 1, 1e-14);
+  }
+}
+
+/// Every node of a tethered block is one oscillator, of omega = 3: the force is its path's mean.
+TEST(SubSteps, ForceIsTheMeanOverThePath) {
+  const std::string tethered =
+      box("1, 0.5, 0.5", "0.25") + material("corotated") + number("Density", "4") + sub_steps("5");
+  const auto ends = numbers("Lower", "-1, -1, -1") + numbers("Upper", "1, 1, 1");
+  const auto solids =
+      model<3>({tethered + list("Tethers", list("all", ends + number("Stiffness", "9") +
+                                                           numbers("Offset", "0, 0.1, 0")))});
+  const double stable = solids->largest_stable_step() / 2.5;
+  const double dt = 2.2 * stable;
+  solids->begin_step(0, dt);
+  const SubSteps steps = sub_steps_for(dt, stable, 5);
+  ASSERT_EQ(steps.n, 5);
+  double x = -0.1, v = 0, mean = 0;
+  for (int k = 0; k < steps.n; ++k) {
+    mean += steps.weight(k) * 9 * -x;
+    v -= (k == 0 ? 0.5 : 1) * steps.length * 9 * x;
+    x += steps.length * v;
+  }
+  const auto before = make_vector(solids->dof_map()), after = make_vector(solids->dof_map());
+  solids->explicit_momentum(0, 0, *before);
+  solids->explicit_momentum(0, 0.01, *after);
+  after->update(-1, *before, 1);
+  // The block weighs 1; its anchors come after its nodes.
+  double impulse = 0;
+  const auto values = solids->nodes().owned(*after);
+  for (int i = 0; i < solids->nodes().n_owned(); ++i)
+    impulse += solids->nodes().original(i) < 45 ? values[i].y() : 0;
+  EXPECT_NEAR(sum_all(world(), impulse), 0.01 * mean, 1e-13);
+  EXPECT_LE(solids->momentum_of_each(*after)[0].linear.norm(), 1e-13);
+}
+
+TEST(SubSteps, StiffBodyIsStableAtTenTimesItsStep) {
+  for (const std::string integration : {"explicit", "semi-implicit"}) {
+    Alone<2> alone(
+        model<2>({box("1, 0.5", "0.125") + material("corotated", "1e4") + number("Density", "1") +
+                  numbers("Stretch", "1.02, 0.99") + numbers("Velocity", "1, 2") +
+                  text("Time Integration", integration) + sub_steps("40")}));
+    const auto energy = [&] {
+      const auto state = alone.solids.states()[0];
+      return state.elastic_energy + state.kinetic_energy;
+    };
+    const double before = energy();
+    const double dt = 10 / 20. * alone.solids.largest_stable_step();
+    for (int i = 0; i < 100; ++i) {
+      alone.step(dt);
+      EXPECT_LE(energy(), 1.2 * before) << i;
+    }
+    EXPECT_LE((alone.solids.states()[0].velocity - Point<2>(1, 2)).norm(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace lockstep
