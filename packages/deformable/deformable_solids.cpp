@@ -150,28 +150,26 @@ void DeformableSolids<dim>::update_forces() {
   Nodes force(space_.n_local(), Point<dim>::Zero());
   stiffness_.set_zero();
   damping_.set_zero();
-  std::vector<double> energies, clamped;
+  n_clamped_ = 0;
+  std::vector<double> energies;
   for (const Body& body : bodies_) {
     energies.push_back(0);
-    clamped.push_back(0);
     for (const auto& group : body.elements) {
       energies.back() += group->add_elastic_forces(x_, space_.n_owned(), force);
-      clamped.back() += group->add_stiffness(x_, stiffness_);
+      n_clamped_ += group->add_stiffness(x_, stiffness_);
       group->add_damping(x_, damping_);
     }
   }
   force.resize(space_.n_owned());
   elastic_force_ = std::move(force);
-  sum_all(comm_, clamped.data(), static_cast<int>(clamped.size()));
+  n_clamped_ = sum_all(comm_, n_clamped_);
   sum_all(comm_, energies.data(), static_cast<int>(energies.size()));
   Momentum<dim> load;
   for (int i = 0; i < space_.n_owned(); ++i)
     load.add(x_[i], node_mass_[i] * gravity_ + node_force_[i]);
   load_ = sum_over_ranks<dim>(load, comm_);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
     bodies_[b].elastic_energy = energies[b];
-    bodies_[b].n_clamped = std::llround(clamped[b]);
-  }
 }
 
 /// By Gershgorin's circles of M^-1 K and M^-1 B: omega dt <= sqrt 2, and for explicit damping
@@ -226,7 +224,6 @@ void DeformableSolids<dim>::update_states() {
     state.velocity = Eigen::Map<Point<dim>>(&first[b * n_first + dim], dim) / state.mass;
     state.kinetic_energy = 0.5 * first[b * n_first + 2 * dim];
     state.elastic_energy = bodies_[b].elastic_energy;
-    state.clamped_elements = bodies_[b].n_clamped;
     for (int s = solids_[b].simplex_begin; bodies_[b].closed && s < solids_[b].simplex_end; ++s) {
       std::array<Point<dim>, dim> corners;
       for (int k = 0; k < dim; ++k)

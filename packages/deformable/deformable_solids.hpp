@@ -56,6 +56,8 @@ class DeformableSolids : public SolidModel<dim> {
   void save(CheckpointWriter& writer) const override;
   void load(const CheckpointReader& reader) override;
 
+  /// Elements whose stiffness had to be made definite at the present positions, on all ranks.
+  GlobalIndex n_clamped() const { return n_clamped_; }
   /// Owned nodes: their numbers in the order of the bodies, positions [m] and elastic forces [N].
   const NodeSpace<dim>& nodes() const { return space_; }
   const std::vector<Point<dim>>& positions() const { return x_; }
@@ -71,8 +73,7 @@ class DeformableSolids : public SolidModel<dim> {
     double mass = 0;
     int node_begin = 0, node_end = 0;  ///< original numbers
     std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
-    double elastic_energy = 0;    ///< of all ranks
-    long long n_clamped = 0;  ///< elements made definite, of all ranks
+    double elastic_energy = 0;  ///< of all ranks
   };
 
   void add_body(DeformableBody<dim>& body, int node_begin);
@@ -112,6 +113,7 @@ class DeformableSolids : public SolidModel<dim> {
   std::vector<SolidState<dim>> states_;
   Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]
   double largest_stable_step_ = 1e300;
+  GlobalIndex n_clamped_ = 0;
 };
 
 }  // namespace lockstep

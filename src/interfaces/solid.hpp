@@ -29,8 +29,6 @@ struct SolidState {
   double mass = 0;                                                   ///< [kg]; 0 if prescribed
   double volume = 0;                                                 ///< [m^dim]; 0 for shells
   double kinetic_energy = 0, elastic_energy = 0;                     ///< [J]
-  /// Elements whose stiffness was made definite for the implicit forces.
-  long long clamped_elements = 0;
 };
 
 /// All solids of one kind (all rigid bodies, all deformables, ...): their unknowns, mass, forces

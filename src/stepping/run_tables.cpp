@@ -68,7 +68,6 @@ std::vector<HistoryColumn> history_columns() {
            {"f2_incompatibility", "1", "the same of F2"},
            {"contacts", "1", "contact points resolved for the positions"},
            {"deepest_overlap", "m", "before contact was resolved"},
-           {"clamped_elements", "1", "whose stiffness was made definite"},
            {"wall_seconds", "s", "wall time of the step"}}) {
     columns.push_back(column);
   }
@@ -128,7 +127,7 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
               residual(report.s1), residual(report.f2), residual(report.s2),
               report.incompatibility_s2, report.incompatibility_f2,
               static_cast<long long>(report.contact_position.n_contacts),
-              report.contact_position.deepest_overlap, report.clamped_elements, wall_seconds);
+              report.contact_position.deepest_overlap, wall_seconds);
   history_.append_row(row);
 
   std::vector<std::vector<HistoryValue>> rows;

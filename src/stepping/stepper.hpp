@@ -45,7 +45,6 @@ struct StepReport {
   /// momentum.
   Momentum<dim> transport_change;
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]
-  long long clamped_elements = 0;  ///< whose stiffness was made definite, of all solids
   double fluid_volume = 0;
   std::vector<Momentum<dim>> hydrodynamic_impulse;  ///< per solid over dt, angular about the origin
   ContactReport<dim> contact_position, contact_velocity;

@@ -142,11 +142,9 @@ TEST(TimeIntegration, InvertedBodyRecovers) {
     Alone<2> alone(model<2>({box("1, 1", "0.5") + material(law) + number("Density", "1") +
                              numbers("Stretch", "0.05, 1.1") + number("Stiffness Damping", "0.3") +
                              text("Time Integration", "fully-implicit")}));
-    EXPECT_GT(alone.solids.states()[0].clamped_elements, 0) << law;
     for (int i = 0; i < 40; ++i)
       alone.step(0.1);
     const auto state = alone.solids.states()[0];
-    EXPECT_EQ(state.clamped_elements, 0) << law;
     EXPECT_NEAR(state.volume, 1, 1e-3) << law;
     EXPECT_LE(state.elastic_energy, 1e-3) << law;
   }
