@@ -1,6 +1,7 @@
 #include "deformable/body_start.hpp"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "base/errors.hpp"
 #include "deformable/elements/shell_elements.hpp"
@@ -38,6 +39,22 @@ void declare_start(ParameterList& body) {
                  "Factors along the body's axes by which it is stretched at the start, before it "
                  "is turned [1].");
   set_positive(body, "Stretch");
+  ParameterList& vortices = declare_optional_list(
+      body, "Vortices",
+      "Velocity at the start on top: that of the fluid's initial state \"taylor green\".");
+  declare(vortices, "Amplitude", 1.0, "Largest velocity U [m/s].");
+  declare_positive(vortices, "Wavelength", 1.0, "Length of one period, 2 pi / k [m].");
+}
+
+template <int dim>
+void add_vortices(const ParameterList& list, DeformableBody<dim>& body) {
+  const double amplitude = list.get<double>("Amplitude");
+  const double k = 2 * M_PI / list.get<double>("Wavelength");
+  for (int n = 0; n < body.n_nodes(); ++n) {
+    const Point<dim>& x = body.position[n];
+    body.velocity[n][0] += amplitude * std::sin(k * x[0]) * std::cos(k * x[1]);
+    body.velocity[n][1] -= amplitude * std::cos(k * x[0]) * std::sin(k * x[1]);
+  }
 }
 
 template <int dim>
@@ -75,6 +92,8 @@ void place(const ParameterList& list, const std::vector<Point<dim>>& rest,
     body.position.push_back(origin + arm);
     body.velocity.push_back(velocity + rotate<dim>(angular_velocity, arm));
   }
+  if (list.isSublist("Vortices"))
+    add_vortices<dim>(list.sublist("Vortices"), body);
 }
 
 TimeIntegration read_integration(const ParameterList& list) {

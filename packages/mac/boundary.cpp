@@ -23,11 +23,13 @@ SideType side_type(const std::string& name) {
 }
 
 template <int dim>
-BoundarySide<dim> read_side(const ParameterList& list, int axis, int end) {
+BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, int axis, int end) {
   BoundarySide<dim> side;
   side.type = side_type(list.get<std::string>("Type"));
   side.velocity = point_value<dim>(list, "Velocity");
   side.ramp_time = list.get<double>("Ramp Time");
+  side.end_time = list.get<double>("End Time");
+  side.shape = read_inflow_shape<dim>(list, domain, axis, "Domain/Sides/" + side_name(axis, end));
   side.smoke = list.get<double>("Smoke");
   side.temperature = list.get<double>("Temperature");
   check_input(
@@ -65,6 +67,8 @@ ParameterList domain_parameters() {
                      "Velocity of the inflow, or of a wall along itself [m/s].");
       declare_at_least(side, "Ramp Time", 0.0, 0.0,
                        "Time during which \"Velocity\" grows linearly from 0 [s].");
+      declare(side, "End Time", 1e300, "After it \"Velocity\" is 0 [s].");
+      declare_inflow_shape<dim>(side);
       declare(side, "Smoke", 0.0, "Smoke density that an inflow carries [1].");
       declare(side, "Temperature", 0.0, "Temperature that an inflow carries [K].");
     }
@@ -104,7 +108,7 @@ DomainDescription<dim> read_domain(const ParameterList& list) {
         grid.spacing, h, axis_names[a]);
     for (int end = 0; end < 2; ++end)
       result.boundary.sides[a][end] =
-          read_side<dim>(list.sublist("Sides").sublist(side_name(a, end)), a, end);
+          read_side<dim>(list.sublist("Sides").sublist(side_name(a, end)), {lower, upper}, a, end);
     check_input(
         (result.boundary.side(a, 0).type == SideType::periodic) ==
             (result.boundary.side(a, 1).type == SideType::periodic),

@@ -6,6 +6,7 @@
 
 #include "base/types.hpp"
 #include "grid/tile_lattice.hpp"
+#include "mac/inflow_shape.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -24,13 +25,19 @@ struct BoundarySide {
   SideType type = SideType::wall;
   Point<dim> velocity = Point<dim>::Zero();  ///< of the wall (tangential only) or the inflow [m/s]
   double ramp_time = 0;    ///< the velocity grows linearly from 0 during this time [s]; 0: at once
+  double end_time = 1e300;  ///< after it the velocity is 0 [s]
+  InflowShape<dim> shape;
   double smoke = 0;        ///< carried by the inflow [1]
   double temperature = 0;  ///< carried by the inflow [K]
 
   bool closed() const { return type == SideType::wall || type == SideType::slip_wall; }
   bool prescribed() const { return closed() || type == SideType::inflow; }
-  Point<dim> velocity_at(double time) const {
-    return ramp_time > time ? Point<dim>(velocity * (std::max(time, 0.0) / ramp_time)) : velocity;
+  /// At `x` on this side, which is normal to `axis`.
+  Point<dim> velocity_at(int axis, const Point<dim>& x, double time) const {
+    if (time > end_time)
+      return Point<dim>::Zero();
+    const double ramp = ramp_time > time ? std::max(time, 0.0) / ramp_time : 1;
+    return velocity * (type == SideType::inflow ? ramp * shape.factor(axis, x) : ramp);
   }
 };
 

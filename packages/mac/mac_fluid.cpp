@@ -43,7 +43,8 @@ template <int dim>
 void MacFluid<dim>::set_prescribed(FaceField<dim>& velocity) const {
   for (const auto& [axis, cell] : geometry_.prescribed) {
     const int end = geometry_.state.cells[cell] == CellState::outside ? 1 : 0;
-    velocity[axis][cell] = domain_.boundary.side(axis, end).velocity_at(time_)[axis];
+    const Point<dim> x = domain_.grid.face_center(axis, cell);
+    velocity[axis][cell] = domain_.boundary.side(axis, end).velocity_at(axis, x, time_)[axis];
   }
   domain_.halo.fill(velocity);
 }
@@ -212,8 +213,9 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
       const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
       TransportSide<dim>& seen = setting.sides[axis][end];
       seen.inflow = side.type == SideType::inflow;
-      const Point<dim> velocity = side.velocity_at(time);
-      seen.velocity = [velocity](const Point<dim>&) { return velocity; };
+      seen.velocity = [&side, axis, time](const Point<dim>& x) {
+        return side.velocity_at(axis, x, time);
+      };
     }
   Transport<dim> transport(setting);
   transport.advect_faces(parameters_.advection, velocity_, prediction_);

@@ -42,8 +42,9 @@ std::unique_ptr<ViscousSystem<dim>> Viscosity<dim>::system(const FaceField<dim>&
 
 template <int dim>
 double Viscosity<dim>::side_velocity(const SideLink& side, double time) const {
-  const int axis = faces_[side.row].axis;
-  return domain_.boundary.side(side.axis, side.end).velocity_at(time)[axis];
+  const auto [axis, cell] = faces_[side.row];
+  const Point<dim> x = domain_.grid.face_center(axis, cell);
+  return domain_.boundary.side(side.axis, side.end).velocity_at(side.axis, x, time)[axis];
 }
 
 template <int dim>

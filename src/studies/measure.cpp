@@ -12,21 +12,19 @@ namespace lockstep {
 
 namespace {
 
-/// Mean frequency of the rises through the mean value [1/s].
+/// Mean frequency of the rises through 0 [1/s].
 double rise_frequency(const std::vector<double>& times, const std::vector<double>& values) {
-  const double mean =
-      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   int n_rises = 0;
   double first = 0, last = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i - 1] >= mean || values[i] < mean)
+    if (values[i - 1] >= 0 || values[i] < 0)
       continue;
-    const double part = (mean - values[i - 1]) / (values[i] - values[i - 1]);
+    const double part = values[i - 1] / (values[i - 1] - values[i]);
     last = times[i - 1] + part * (times[i] - times[i - 1]);
     if (n_rises++ == 0)
       first = last;
   }
-  check_input(n_rises > 1, "A frequency needs two rises through the mean, but there are {}.",
+  check_input(n_rises > 1, "A frequency needs two rises through 0, but there are {}.",
               n_rises);
   return (n_rises - 1) / (last - first);
 }

@@ -59,7 +59,7 @@ void declare_reduction(ParameterList& list) {
   declare_choice(list, "Over", "last",
                  {"last", "first", "max", "min", "mean", "rms", "amplitude", "frequency"},
                  "How the rows of a run become one number; every row counts the same. amplitude: "
-                 "half of max - min. frequency: of the rises through the mean [1/s].");
+                 "half of max - min. frequency: of the rises through 0 [1/s].");
   declare(list, "From Time", -1e300, "Rows before this time do not count [s].");
   declare_reference(list);
   declare_targets(list);

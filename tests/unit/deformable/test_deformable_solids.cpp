@@ -62,6 +62,20 @@ TEST(DeformableSolids, StatesAreThoseOfTheBodies) {
   EXPECT_NEAR(states[1].kinetic_energy, 0, 1e-20);
 }
 
+TEST(DeformableSolids, StartsWithTheVorticesOfTheFluid) {
+  const auto solids =
+      model<2>({box("0.5, 0.5", "0.25") + material("linear") + number("Density", "1") +
+                numbers("Position", "0.25, 0.25") + numbers("Velocity", "0.5, 0") +
+                list("Vortices", number("Amplitude", "2") + number("Wavelength", "1"))});
+  const auto velocity = solids->nodes().owned(*solids->velocity());
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const Point<2> angle = 2 * M_PI * solids->positions()[i];
+    const Point<2> expected(0.5 + 2 * std::sin(angle.x()) * std::cos(angle.y()),
+                            -2 * std::cos(angle.x()) * std::sin(angle.y()));
+    EXPECT_LE((velocity[i] - expected).norm(), 1e-14);
+  }
+}
+
 TEST(DeformableSolids, RowsAreBarycentric) {
   const auto solids = model<3>(pair_of_bodies);
   const Eigen::VectorXd velocity = dense(*solids->velocity());

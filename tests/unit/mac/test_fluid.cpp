@@ -98,6 +98,26 @@ TEST(Fluid, AChannelFillsFromTheInflow) {
   }
 }
 
+TEST(Fluid, AJetEntersThroughItsOpeningUntilItEnds) {
+  Case<2> scene({16, 8}, 0.125);
+  scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
+  scene.side("y lower", "slip wall").side("y upper", "slip wall");
+  ParameterList& jet = scene.domain.sublist("Sides").sublist("x lower");
+  jet.set("Profile", "parabolic").set("End Time", 1.0);
+  jet.sublist("Opening").set("Lower", numbers({0.0, 0.25})).set("Upper", numbers({0.0, 0.75}));
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  // Four faces of 0.125 m, at 1/8, 3/8, 5/8 and 7/8 of the opening.
+  const double flux = 2 * 0.125 * 6 * (7. / 64 + 15. / 64);
+  for (const double end : {0.5, 2.0}) {
+    fluid->begin_prediction();
+    fluid->add_forces(end - 0.1, 0.1);
+    project(*fluid);
+    fluid->accept();
+    EXPECT_NEAR(fluid->momentum().linear[0], end < 1 ? 1000 * flux * (2 - 0.0625) : 0, 1e-5);
+  }
+}
+
 TEST(Fluid, SourcesFeedSmokeAndAFrameShowsIt) {
   Case<2> scene({20, 12}, 0.1);
   scene.fluid.sublist("Smoke");
@@ -146,6 +166,11 @@ TEST(Fluid, RefusesDomainsThatCannotBe) {
   Case<2> piston({10, 10}, 0.1);
   piston.side("x lower", "wall", Point<2>(1, 0));
   expect_refused(piston, "a wall cannot move along x");
+  Case<2> slit({10, 10}, 0.1);
+  slit.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
+  ParameterList& opening = slit.domain.sublist("Sides").sublist("x lower").sublist("Opening");
+  opening.set("Lower", numbers({0.0, 1.5})).set("Upper", numbers({0.0, 2.0}));
+  expect_refused(slit, "\"Opening\" leaves nothing of the side");
   Case<2> vent({10, 10}, 0.1);
   vent.fluid.sublist("Sources").sublist("Vent").set("Shape", "ball").set("Smoke", 1.0);
   expect_refused(vent, "feeds smoke, but the fluid carries none");

@@ -95,7 +95,7 @@ TEST_F(Runs, SurfacesInTheFrames) {
   Quantity volume = corner;
   volume.expression = "volume / volume0";
   volume.over = Quantity::Over::min;
-  corner.expression = "x + 2 * (y - y0)";
+  corner.expression = "x + 2 * (y - y0) - 0.8";
   study_.quantities = {corner, corner, volume};
   study_.quantities[0].over = Quantity::Over::frequency;
   study_.quantities[1].over = Quantity::Over::amplitude;
