@@ -217,6 +217,28 @@ RCP<const LinearOperator> SolidSystem<dim>::solid_block(const RCP<const CrsMatri
 }
 
 template <int dim>
+NearNullSpace SolidSystem<dim>::near_null_space() const {
+  constexpr int n_motions = dim + n_rotations<dim>;
+  NearNullSpace all;
+  RCP<MultiVector> motions;
+  for (int m = 0; m < n_models(); ++m) {
+    const NearNullSpace part = model(m).near_null_space();
+    if (part.empty())
+      continue;
+    if (motions.is_null()) {
+      motions = rcp(new MultiVector(map_, n_motions));
+      all.body_of_row.assign(map_->getNodeNumElements(), -1);
+    }
+    motions->offsetViewNonConst(model(m).dof_map(), local_begin_[m])->update(1, *part.motions, 0);
+    for (std::size_t row = 0; row < part.body_of_row.size(); ++row)
+      all.body_of_row[local_begin_[m] + row] = all.n_bodies + part.body_of_row[row];
+    all.n_bodies += part.n_bodies;
+  }
+  all.motions = motions;
+  return all;
+}
+
+template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::unlocked_block(const RCP<const CrsMatrix>& added,
                                                            double dt) const {
   return block(added, dt, false);
@@ -270,6 +292,25 @@ template <int dim>
 void SolidSystem<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
   for (int m = 0; m < n_models(); ++m)
     model(m).add_midpoint_correction(dt, *part(momentum, m));
+}
+
+template <int dim>
+RCP<Vector> SolidSystem<dim>::implicit_impulse(double dt, const Vector& velocity) const {
+  const auto stacked = rcp(new Vector(map_));
+  for (int m = 0; m < n_models(); ++m) {
+    const RCP<const LinearOperator> force = model(m).implicit_force(dt);
+    if (!force.is_null())
+      apply(*force, *part(velocity, m), *part(*stacked, m), dt);
+  }
+  return stacked;
+}
+
+template <int dim>
+AngularVector<dim> SolidSystem<dim>::inner_torque() const {
+  AngularVector<dim> total = AngularVector<dim>::Zero();
+  for (const auto& solid_model : models_)
+    total += solid_model->inner_torque();
+  return total;
 }
 
 template <int dim>

@@ -41,6 +41,8 @@ class SolidSystem {
   /// M_S + added - dt D with unit rows for padding and, symmetrically eliminated, for locked dofs.
   /// Assembled if all models are, else matrix-free. `added` may be null. Collective.
   RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// The models' near null spaces on `map`.
+  NearNullSpace near_null_space() const;
   /// The same without eliminating locked dofs: for their reactions.
   RCP<const LinearOperator> unlocked_block(const RCP<const CrsMatrix>& added, double dt) const;
   /// M_S^-1 q: the velocities of a stacked generalized momentum. Collective.
@@ -56,6 +58,10 @@ class SolidSystem {
   void set_velocity(const Vector& velocity);
   RCP<Vector> explicit_momentum(double time, double dt) const;
   void add_midpoint_correction(double dt, Vector& momentum) const;
+  /// dt D V: what the implicit forces give in a step. Its sum is zero, but not its torque: forces
+  /// linearised at x act at x + dt V. Collective.
+  RCP<Vector> implicit_impulse(double dt, const Vector& velocity) const;
+  AngularVector<dim> inner_torque() const;  ///< of all models [N m]
   Momentum<dim> external_impulse(double time, double dt) const;
   void move(const Vector& velocity, double time, double dt);
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.

@@ -294,9 +294,16 @@ void Stepper<dim>::ledger_solve(const CoupledSolution& solution, double dt,
     return;
   const RCP<const Vector> reaction = system_.lock_reaction(dt, *solution.momentum, unknowns);
   report.ledger.add("locks", solids.momentum(*reaction));
+  report.lever_impulse =
+      components_.coupling->lever_impulse(solids, solution.coupled_before, coupled_after, unknowns);
+  report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lever_impulse});
+  const RCP<const Vector> implicit = solids.implicit_impulse(dt, *unknowns.solid);
+  report.linearisation_impulse = solids.momentum(*implicit).angular + dt * solids.inner_torque();
+  report.ledger.add("linearised forces", {Point<dim>::Zero(), report.linearisation_impulse});
   const RCP<Vector> gained = make_vector(solids.map());
   apply(*solids.mass(), *unknowns.solid, *gained);
   gained->update(-1, *solution.momentum, -1, *reaction, 1);
+  gained->update(-1, *implicit, 1);
   if (!viscous_impulse_.is_null())
     gained->update(1, *viscous_impulse_, 1);
   report.hydrodynamic_impulse = solids.momentum_of_each(*gained);

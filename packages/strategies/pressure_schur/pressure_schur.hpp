@@ -23,7 +23,7 @@ class PressureSchur : public MinresStrategy {
   RCP<const LinearOperator> schur_inverse(const BlockSystem& system);
 
   int largest_solid_;
-  ParameterList pressure_list_, solid_list_;
+  ParameterList pressure_list_;
   std::unique_ptr<Deflation> deflation_;  ///< null unless some solid is light
 };
 

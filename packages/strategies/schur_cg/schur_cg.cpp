@@ -3,6 +3,8 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include <algorithm>
+
 #include "linear/conjugate_gradients.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 
@@ -32,6 +34,12 @@ class Eliminated {
   const LinearOperator& solid_inverse_;
   Vector force_, velocity_;
 };
+
+/// Of C^-1 inside an iteration: what it leaves of S's symmetry and range is refined away.
+double inner_tolerance(double reduction) {
+  constexpr double loosest = 1e-6;
+  return std::min(loosest, 1e-2 * reduction);
+}
 
 class SchurKernels final : public ConjugateGradientKernels {
  public:
@@ -76,7 +84,9 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
                                      iteration_null_space(system), request.update_target};
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
-  Eliminated eliminated(system, *solid_inverse());
+  const RCP<const LinearOperator> inverse =
+      solid().to(inner_tolerance(request.target / request.residual_norm));
+  Eliminated eliminated(system, *inverse);
   if (layout() != nullptr) {
     SchurKernels kernels(*layout(), deflation_.get(), eliminated);
     if (!deflation_)
