@@ -18,11 +18,13 @@ struct ViscousResult {
 ///   [ dt K_sf         M̃_S - dt D + dt K_ss ] [ V_S ] = [ M_S V_S* + W^T M_F u*_F        ]
 /// The fluid keeps u; of the solid only its viscous impulse is used, so that its own forces are not
 /// applied twice. `lumped_momentum` is row 2 and `solid_block` is C; both null without unknowns.
+/// The preconditioner is the diagonal, of a stiff C (of this near null space) an inverse of it.
 /// Throws SolveError if CG does not reach `tolerance`. Collective.
 template <int dim>
 ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscretization<dim>& fluid,
                                  const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
+                                 const NearNullSpace& near_null_space,
                                  const RCP<const Vector>& lumped_momentum, double dt,
                                  double tolerance);
 

@@ -58,6 +58,11 @@ double stiffness_number(const CrsMatrix& c, const NearNullSpace& space) {
   return sums[1] > 0 ? sums[0] / sums[1] : 1;
 }
 
+bool is_stiff(const CrsMatrix& c, const NearNullSpace& space) {
+  constexpr double worth_a_cycle = 30;
+  return stiffness_number(c, space) > worth_a_cycle;
+}
+
 RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>& c,
                                                       const NearNullSpace& space,
                                                       const std::string& name) {

@@ -26,6 +26,10 @@ struct NearNullSpace {
 /// nothing; so this takes one product with C an axis, and is the reciprocal of a Rayleigh quotient
 /// of diag(C)^-1 C, whose condition number it bounds from below. 1 where D = 0. Collective.
 double stiffness_number(const CrsMatrix& c, const NearNullSpace& space);
+/// Whether dt D so outweighs M̃ that a multigrid cycle is worth its price: the condition number of
+/// diag(C)^-1 C is 30 or more, and conjugate gradients with the diagonal need a hundred iterations.
+/// Collective.
+bool is_stiff(const CrsMatrix& c, const NearNullSpace& space);
 
 /// M̃ of the nodes' rows, lumped (row sums); other rows 0 [kg]. Collective.
 RCP<Vector> lumped_mass(const CrsMatrix& c, const NearNullSpace& space);

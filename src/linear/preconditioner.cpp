@@ -154,4 +154,15 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
                          [inverse](const Vector& x, Vector& y) { apply(*inverse, x, y); });
 }
 
+RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
+                                           const NearNullSpace& near_null_space,
+                                           const std::string& name) {
+  const auto matrix = assembled(op);
+  if (matrix.is_null() || !is_stiff(*matrix, near_null_space))
+    return Teuchos::null;
+  ParameterList list;
+  list.set("Type", direct_is_cheap(*matrix) ? "Direct" : "MueLu");
+  return preconditioner_from_list(op, list, name, near_null_space);
+}
+
 }  // namespace lockstep

@@ -75,14 +75,18 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
   ScopedPhase phase(timers_, "viscosity");
   const std::unique_ptr<ViscousSystem<dim>> viscous = fluid.viscous_system();
   RCP<const LinearOperator> block;
+  NearNullSpace near_null_space;
   RCP<const Vector> row;
   if (coupled()) {
-    block = system_.blocks(dt).solid_block;
+    const BlockSystem& blocks = system_.blocks(dt);
+    block = blocks.solid_block;
+    near_null_space = blocks.near_null_space;
     const RCP<Vector> momentum = solids.explicit_momentum(time, dt);
     row = system_.lumped_momentum(*momentum);
   }
-  const ViscousResult<dim> result = solve_viscous<dim>(
-      *viscous, fluid, solids, *components_.coupling, block, row, dt, options_.viscous_tolerance);
+  const ViscousResult<dim> result =
+      solve_viscous<dim>(*viscous, fluid, solids, *components_.coupling, block, near_null_space,
+                         row, dt, options_.viscous_tolerance);
   viscous_impulse_ = result.solid_impulse;
   report.viscous_iterations += result.iterations;
   if (ledger)

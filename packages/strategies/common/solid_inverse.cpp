@@ -10,9 +10,6 @@ namespace lockstep {
 
 namespace {
 
-/// Above it a multigrid cycle is worth its price: diag(C)^-1 C has a condition number of this or
-/// more, and conjugate gradients need tens of iterations for each digit or two.
-constexpr double stiff = 30;
 constexpr double round_off = 1e-14;
 constexpr int most_iterations = 20000;
 
@@ -81,8 +78,7 @@ void SolidInverse::build_automatic(const BlockSystem& system, const std::string&
     ParameterList chosen;
     const auto matrix = assembled(op_);
     if (!matrix.is_null()) {
-      const bool multigrid = stiffness_number(*matrix, system.near_null_space) > stiff;
-      chosen.set("Type", multigrid ? "MueLu" : "Jacobi");
+      chosen.set("Type", is_stiff(*matrix, system.near_null_space) ? "MueLu" : "Jacobi");
       preconditioner_ = preconditioner_from_list(op_, chosen, name, system.near_null_space);
     }
     exact_ = iteration(round_off, most_iterations);
