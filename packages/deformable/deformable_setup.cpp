@@ -157,9 +157,9 @@ void DeformableSolids<dim>::assemble_mass(const std::vector<DeformableBody<dim>>
     }
   }
   for (int i = 0; i < space_.n_owned(); ++i) {
-    // Nodes without mass never move; the matrix must be definite all the same.
-    LOCKSTEP_ASSERT(node_mass_[i] > 0 || locked_[i][0]);
-    add(i, space_.original(i), node_mass_[i] > 0 ? 0 : 1);
+    // Anchors of tethers have no mass and never move; nodes of a massless body take the fluid's.
+    const bool is_anchor = node_mass_[i] == 0 && locked_[i][0];
+    add(i, space_.original(i), is_anchor ? 1 : 0);
   }
   mass_ = as_operator(matrix_from_rows(space_.dof_map(), rows));
 }
