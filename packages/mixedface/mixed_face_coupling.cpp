@@ -378,8 +378,11 @@ void MixedFaceCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidS
               link.direction, solids, row);
   } else {
     row.position = link.point.position;
-    share_row({{1, link.point, surface_->solid_of(link.point.simplex)}}, row.position,
-              link.direction, solids, row);
+    SurfaceShare<dim> whole;
+    whole.weight = 1;
+    whole.point = link.point;
+    whole.solid = surface_->solid_of(link.point.simplex);
+    share_row({whole}, row.position, link.direction, solids, row);
   }
 }
 

@@ -17,7 +17,7 @@ struct SurfaceShare {
   SurfacePoint<dim> point;
   int solid = -1;
   /// Carries the velocity of a soft solid from `point` to the face's centre; null: taken as it is.
-  std::shared_ptr<const LocalRotation<dim>> rotation = nullptr;
+  std::shared_ptr<const LocalRotation<dim>> rotation{};
 };
 
 /// The shares of every coupled control volume (Section 5): each simplex is clipped to the dual

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "coupling/stacked_operator.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/triplet_matrix.hpp"
 
@@ -168,18 +167,25 @@ void eliminate_masked(CrsMatrix& matrix, const Vector& mask) {
 }  // namespace
 
 template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& added, double dt,
-                                                  bool eliminate) const {
-  std::vector<StackedOperator::Part> parts;
-  bool all_assembled = true;
+std::vector<StackedOperator::Part> SolidSystem<dim>::parts(double dt) const {
+  std::vector<StackedOperator::Part> all;
   for (int m = 0; m < n_models(); ++m) {
     if (model(m).dof_map()->getGlobalNumElements() == 0)
       continue;
-    parts.push_back(
-        {model(m).mass(), model(m).implicit_force(dt), model(m).dof_map(), local_begin_[m]});
-    all_assembled = all_assembled && !assembled(parts.back().mass).is_null() &&
-                    (parts.back().implicit_force.is_null() ||
-                     !assembled(parts.back().implicit_force).is_null());
+    const auto force = dt == 0 ? RCP<const LinearOperator>() : model(m).implicit_force(dt);
+    all.push_back({model(m).mass(), force, model(m).dof_map(), local_begin_[m]});
+  }
+  return all;
+}
+
+template <int dim>
+RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& added, double dt,
+                                                  bool eliminate) const {
+  const std::vector<StackedOperator::Part> parts = this->parts(dt);
+  bool all_assembled = true;
+  for (const auto& part : parts) {
+    all_assembled = all_assembled && !assembled(part.mass).is_null() &&
+                    (part.implicit_force.is_null() || !assembled(part.implicit_force).is_null());
   }
   if (!all_assembled) {
     return as_thyra(
@@ -241,18 +247,19 @@ NearNullSpace SolidSystem<dim>::near_null_space() const {
 template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::unlocked_block(const RCP<const CrsMatrix>& added,
                                                            double dt) const {
-  return block(added, dt, false);
+  return as_thyra(rcp(new StackedOperator(parts(dt), dt, added, Teuchos::null, map_)));
 }
 
 template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::mass() const {
-  return block(Teuchos::null, 0, false);
+  return as_thyra(rcp(new StackedOperator(parts(0), 0, Teuchos::null, Teuchos::null, map_)));
 }
 
 template <int dim>
 RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& generalized_momentum) const {
   const auto velocity = make_vector(map_);
-  apply(*exact_inverse(mass(), "mass of the solids"), generalized_momentum, *velocity);
+  apply(*exact_inverse(block(Teuchos::null, 0, false), "mass of the solids"), generalized_momentum,
+        *velocity);
   return velocity;
 }
 

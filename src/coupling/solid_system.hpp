@@ -2,6 +2,7 @@
 #include <memory>
 #include <vector>
 
+#include "coupling/stacked_operator.hpp"
 #include "interfaces/solid.hpp"
 
 namespace lockstep {
@@ -41,13 +42,14 @@ class SolidSystem {
   /// M_S + added - dt D with unit rows for padding and, symmetrically eliminated, for locked dofs.
   /// Assembled if all models are, else matrix-free. `added` may be null. Collective.
   RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// The same without eliminating locked dofs, for their reactions; padding rows are zero. Applied
+  /// part by part.
+  RCP<const LinearOperator> unlocked_block(const RCP<const CrsMatrix>& added, double dt) const;
   /// The models' near null spaces on `map`.
   NearNullSpace near_null_space() const;
-  /// The same without eliminating locked dofs: for their reactions.
-  RCP<const LinearOperator> unlocked_block(const RCP<const CrsMatrix>& added, double dt) const;
   /// M_S^-1 q: the velocities of a stacked generalized momentum. Collective.
   RCP<Vector> velocity_of(const Vector& generalized_momentum) const;
-  /// M_S alone, locked dofs included.
+  /// M_S alone, locked dofs included; padding rows are zero. Applied part by part.
   RCP<const LinearOperator> mass() const;
   /// 1 for free dofs, 0 for locked and padding ones.
   RCP<const Vector> free_mask() const { return free_mask_; }
@@ -74,6 +76,7 @@ class SolidSystem {
   std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;
   RCP<const Vector> part(const Vector& stacked, int m) const;
   RCP<Vector> part(Vector& stacked, int m) const;
+  std::vector<StackedOperator::Part> parts(double dt) const;
   RCP<const LinearOperator> block(const RCP<const CrsMatrix>& added, double dt,
                                   bool eliminate) const;
 

@@ -12,40 +12,45 @@ namespace lockstep {
 
 namespace {
 
-/// What the elimination of V_S adds to A: B C^-1 B^T.
+/// What the elimination of V_S adds to A: B C^-1 B^T. Where C^-1 iterates, its tolerance follows
+/// the outer residual r: an error of C^-1 relative to what it is applied to may be the larger, the
+/// nearer |r| is to its target (Simoncini and Szyld 2003). What is left is refined away.
 class Eliminated {
  public:
-  Eliminated(const BlockSystem& system, const LinearOperator& solid_inverse)
+  Eliminated(const BlockSystem& system, const SolidInverse& solid, double target)
       : coupling_(*system.coupling_transposed),
-        solid_inverse_(solid_inverse),
+        solid_(solid),
+        target_(target),
         force_(coupling_.getRangeMap()),
         velocity_(coupling_.getRangeMap()) {}
+
+  void set_residual(double norm) {
+    constexpr double share = 1e-2, loosest = 1e-3;
+    inverse_ = solid_.to(std::min(loosest, share * target_ / norm));
+  }
 
   /// y += B C^-1 B^T x; returns x.B C^-1 B^T x.
   double add(const Vector& x, Vector& y) {
     coupling_.apply(x, force_);
-    apply(solid_inverse_, force_, velocity_);
+    apply(*inverse_, force_, velocity_);
     coupling_.apply(velocity_, y, Teuchos::TRANS, 1, 1);
     return force_.dot(velocity_);
   }
 
  private:
   const CrsMatrix& coupling_;
-  const LinearOperator& solid_inverse_;
+  const SolidInverse& solid_;
+  double target_;
+  RCP<const LinearOperator> inverse_;
   Vector force_, velocity_;
 };
-
-/// Of C^-1 inside an iteration: what it leaves of S's symmetry and range is refined away.
-double inner_tolerance(double reduction) {
-  constexpr double loosest = 1e-6;
-  return std::min(loosest, 1e-2 * reduction);
-}
 
 class SchurKernels final : public ConjugateGradientKernels {
  public:
   SchurKernels(ConjugateGradientKernels& pressure, Deflation* deflation, Eliminated& eliminated)
       : pressure_(pressure), deflation_(deflation), eliminated_(eliminated) {}
   double precondition(const Vector& r, double r_norm) override {
+    eliminated_.set_residual(r_norm);
     const double of_pressure = pressure_.precondition(r, r_norm);
     return of_pressure + (deflation_ == nullptr ? 0 : deflation_->correct(r));
   }
@@ -84,9 +89,8 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
                                      iteration_null_space(system), request.update_target};
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
-  const RCP<const LinearOperator> inverse =
-      solid().to(inner_tolerance(request.target / request.residual_norm));
-  Eliminated eliminated(system, *inverse);
+  Eliminated eliminated(system, solid(), request.target);
+  eliminated.set_residual(request.residual_norm);
   if (layout() != nullptr) {
     SchurKernels kernels(*layout(), deflation_.get(), eliminated);
     if (!deflation_)
