@@ -55,6 +55,15 @@ ParameterList default_muelu() {
   return list;
 }
 
+/// RILUK(0), which of a symmetric matrix is its incomplete Cholesky factorisation without fill.
+ParameterList default_ifpack2() {
+  ParameterList list;
+  list.set("Prec Type", "RILUK");
+  list.set("Overlap", 0);
+  list.sublist("Ifpack2 Settings").set("fact: iluk level-of-fill", 0);
+  return list;
+}
+
 ParameterList without_type(const ParameterList& list) {
   ParameterList rest(list);
   rest.remove("Type");
@@ -142,8 +151,8 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
   if (type == "Block Diagonal Mass")
     return block_diagonal_mass_inverse(matrix, near_null_space, name);
   ParameterList package = without_type(list);
-  if (type == "MueLu" && package.numParams() == 0)
-    package = default_muelu();
+  if (package.numParams() == 0)
+    package = type == "MueLu" ? default_muelu() : default_ifpack2();
   if (type == "MueLu" && !near_null_space.empty())
     return rigid_motion_multigrid(matrix, near_null_space, package, name);
   const auto inverse = stratimikos_preconditioner(as_operator(matrix), type, package, name);

@@ -9,7 +9,9 @@ namespace lockstep {
 /// A symmetric positive definite approximate inverse of one block (A or C), chosen by "Type":
 ///   "Ifpack2", "MueLu"      all other parameters go to that package unchanged; "MueLu" alone means
 ///                           smoothed aggregation with Chebyshev(2) and a coarse solver that is
-///                           right on several ranks; with a near null space, rigid_motion_multigrid
+///                           right on several ranks; with a near null space,
+///                           rigid_motion_multigrid; "Ifpack2" alone means RILUK(0), the incomplete
+///                           Cholesky factorisation
 ///   "Direct"                gathered KLU2
 ///   "Block Diagonal"        exact inverses of small dense blocks ("Largest Block", 24)
 ///   "Block Diagonal Mass"   the same of the mass in C = M̃ - dt D, see near_null_space.hpp
