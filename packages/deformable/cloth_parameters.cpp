@@ -135,7 +135,11 @@ ParameterList cloth_parameters() {
   declare_required_positive(list, "Thickness",
                             "Of the sheet [m]: membrane stiffness goes with it, bending stiffness "
                             "with its cube.");
-  declare_required_positive(list, "Surface Density", "As meshed [kg/m^2] (2D: [kg/m]).");
+  declare_required<double>(
+      list, "Surface Density",
+      "As meshed [kg/m^2] (2D: [kg/m]). 0: no mass but that of the fluid lumped "
+      "on it; then it must be fully implicit.");
+  set_at_least(list, "Surface Density", 0);
   ParameterList elements("finite element"), springs("mass-spring");
   declare_at_least(springs, "Shear Ratio", 0.5, 0.0,
                    "Stiffness of the springs across an edge over that of the edge's own [1].");
@@ -183,6 +187,11 @@ DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& lis
     body.mass_elements.nodes.insert(body.mass_elements.nodes.end(), simplex.begin(), simplex.end());
   }
   read_body_start<dim>(list, mesh.vertices, body);
+  check_input(
+      body.density > 0 || body.integration == TimeIntegration::fully_implicit,
+      "The cloth \"{}\" has no mass (\"Surface Density\" is 0), so that no explicit force may "
+      "act on it. Set its \"Time Integration\" to fully-implicit.",
+      name);
   return body;
 }
 

@@ -197,8 +197,11 @@ void DeformableSolids<dim>::assemble_mass(const std::vector<DeformableBody<dim>>
     }
   }
   for (int i = 0; i < space_.n_owned(); ++i) {
-    // Nodes without mass never move; the matrix must be definite all the same.
-    add(i, space_.original(i), node_mass_[i] > 0 ? 0 : 1);
+    // Anchors of tethers have no mass and never move; nodes of a massless body take the fluid's.
+    const int body = body_of_node_[i];
+    const bool is_held =
+        node_mass_[i] == 0 && bodies[body].locked[space_.original(i) - bodies_[body].node_begin][0];
+    add(i, space_.original(i), is_held ? 1 : 0);
   }
   mass_ = as_operator(matrix_from_rows(space_.dof_map(), rows));
 }

@@ -216,10 +216,13 @@ void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
   elastic_force_ = std::move(force);
   n_clamped_ = sum_all(comm_, n_clamped_);
   sum_all(comm_, energies.data(), static_cast<int>(energies.size()));
-  Momentum<dim> load;
-  for (int i = 0; i < space_.n_owned(); ++i)
+  Momentum<dim> load, inner;
+  for (int i = 0; i < space_.n_owned(); ++i) {
     load.add(x_[i], node_mass_[i] * gravity_ + node_force_[i]);
+    inner.add(x_[i], elastic_force_[i]);
+  }
   load_ = sum_over_ranks<dim>(load, comm_);
+  inner_torque_ = sum_over_ranks<dim>(inner, comm_).angular;
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     bodies_[b].elastic_energy = energies[b];
 }
@@ -234,11 +237,15 @@ void DeformableSolids<dim>::update_states() {
   const auto q = make_vector(space_.dof_map());
   apply(*mass_, *velocity_, *q);
   const Nodes momentum = space_.owned(*q), velocity = space_.owned(*velocity_);
+  // Of a massless body the means are those of its nodes.
+  const auto is_massless = [this](int i) { return bodies_[body_of_node_[i]].mass == 0; };
+  const auto weight = [&](int i) { return is_massless(i) ? 1 : node_mass_[i]; };
+  const auto weighted = [&](int i) { return is_massless(i) ? velocity[i] : momentum[i]; };
   std::vector<double> first(n_bodies * n_first, 0), second(n_bodies * n_second, 0);
   for (int i = 0; i < space_.n_owned(); ++i) {
     double* sum = &first[body_of_node_[i] * n_first];
-    Eigen::Map<Point<dim>>(sum, dim) += node_mass_[i] * x_[i];
-    Eigen::Map<Point<dim>>(sum + dim, dim) += momentum[i];
+    Eigen::Map<Point<dim>>(sum, dim) += weight(i) * x_[i];
+    Eigen::Map<Point<dim>>(sum + dim, dim) += weighted(i);
     sum[2 * dim] += momentum[i].dot(velocity[i]);
   }
   sum_all(comm_, first.data(), static_cast<int>(first.size()));
@@ -247,8 +254,9 @@ void DeformableSolids<dim>::update_states() {
     SolidState<dim>& state = states_[b];
     state.name = bodies_[b].name;
     state.mass = bodies_[b].mass;
-    state.center_of_mass = Eigen::Map<Point<dim>>(&first[b * n_first], dim) / state.mass;
-    state.velocity = Eigen::Map<Point<dim>>(&first[b * n_first + dim], dim) / state.mass;
+    const double total = state.mass > 0 ? state.mass : bodies_[b].node_end - bodies_[b].node_begin;
+    state.center_of_mass = Eigen::Map<Point<dim>>(&first[b * n_first], dim) / total;
+    state.velocity = Eigen::Map<Point<dim>>(&first[b * n_first + dim], dim) / total;
     state.kinetic_energy = 0.5 * first[b * n_first + 2 * dim];
     state.elastic_energy = bodies_[b].elastic_energy;
     for (int s = solids_[b].simplex_begin; bodies_[b].closed && s < solids_[b].simplex_end; ++s) {
@@ -262,11 +270,11 @@ void DeformableSolids<dim>::update_states() {
     const int b = body_of_node_[i];
     const Point<dim> arm = x_[i] - states_[b].center_of_mass;
     double* sum = &second[b * n_second];
-    Eigen::Map<AngularVector<dim>>(sum, n_turns) += cross<dim>(arm, momentum[i]);
+    Eigen::Map<AngularVector<dim>>(sum, n_turns) += cross<dim>(arm, weighted(i));
     Inertia inertia = arm.squaredNorm() * Inertia::Identity();
     if constexpr (dim == 3)
       inertia -= arm * arm.transpose();
-    Eigen::Map<Inertia>(sum + n_turns, n_turns, n_turns) += node_mass_[i] * inertia;
+    Eigen::Map<Inertia>(sum + n_turns, n_turns, n_turns) += weight(i) * inertia;
   }
   sum_all(comm_, second.data(), static_cast<int>(second.size()));
   for (int b = 0; b < n_bodies; ++b) {

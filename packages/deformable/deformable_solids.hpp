@@ -42,6 +42,7 @@ class DeformableSolids : public SolidModel<dim> {
   /// A CrsMatrix, or null if all bodies are explicit. Of rigid motions it is zero, but for the
   /// torque of fully implicit elasticity, which turns the present forces with the body.
   RCP<const LinearOperator> implicit_force(double dt) const override;
+  NearNullSpace near_null_space() const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
   Momentum<dim> external_impulse(double time, double dt) const override;
   void begin_step(double time, double dt) override;
@@ -58,6 +59,9 @@ class DeformableSolids : public SolidModel<dim> {
   void limit_motion(double dt, Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return states_; }
+  void add_frames(std::vector<SurfaceFrame>& frames) const override;
+  /// Of linear elasticity of turned bodies.
+  AngularVector<dim> inner_torque() const override { return inner_torque_; }
   double largest_stable_step() const override { return largest_stable_step_; }
 
   /// Bit for bit on the same ranks. Throws InputError if the checkpoint holds other bodies.
@@ -136,6 +140,7 @@ class DeformableSolids : public SolidModel<dim> {
   RCP<const Vector> velocity_;
   std::vector<SolidState<dim>> states_;
   Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]
+  AngularVector<dim> inner_torque_ = AngularVector<dim>::Zero();  ///< of elastic forces [N m]
   double largest_stable_step_ = 1e300;
   double step_ = 0;          ///< the present one [s]
   bool linearised_ = false;  ///< elsewhere than at x_

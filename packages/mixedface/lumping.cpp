@@ -227,8 +227,14 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
     rows.clear();
     for (const SurfaceShare<dim>& share : shares[f]) {
       Entries row{share.weight, solids.solids()[share.solid].rigid, {}, {}};
-      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch,
-                        row.dofs, row.values);
+      // Nodes take their masses by weights that are positive.
+      if (lumping == Lumping::consistent) {
+        carried_row<dim>(solids, share, volumes[f].center, volumes[f].direction, scratch, row.dofs,
+                         row.values);
+      } else {
+        directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch,
+                          row.dofs, row.values);
+      }
       if (!row.dofs.empty())
         rows.push_back(std::move(row));
     }

@@ -53,6 +53,8 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   surface_ = &surface;
   volumes_ = fluid.coupled_volumes();
   shares_ = surface_shares<dim>(volumes_, surface);
+  if (options_.carry_rotations)
+    add_local_rotations<dim>(volumes_, surface, shares_);
   masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass);
   prescribed_share_.assign(volumes_.size(), 0);
   prescribed_velocity_.assign(volumes_.size(), 0);
@@ -268,7 +270,7 @@ std::vector<double> MixedFaceCoupling<dim>::effective_velocity(
   std::vector<double> result(volumes_.size(), 0);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     for (const SurfaceShare<dim>& share : shares_[f]) {
-      const Point<dim> v = solids.effective_velocity(share.point, volumes_[f].center);
+      const Point<dim> v = carried_effective_velocity<dim>(solids, share, volumes_[f].center);
       result[f] += share.weight * v[volumes_[f].direction];
     }
   }
@@ -276,31 +278,63 @@ std::vector<double> MixedFaceCoupling<dim>::effective_velocity(
 }
 
 template <int dim>
-Momentum<dim> MixedFaceCoupling<dim>::prescribed_impulse(const std::vector<double>& velocity_before,
-                                                         const std::vector<double>& velocity_after,
-                                                         const Vector& scaled_pressure) const {
+std::vector<double> MixedFaceCoupling<dim>::pressure_jumps(const Vector& scaled_pressure) const {
   Vector beside(pressure_import_->getTargetMap());
   beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
   const auto pressure = beside.getData();
+  std::vector<double> jumps(volumes_.size(), 0);
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (int side = 0; side < 2; ++side) {
+      const GlobalIndex unknown = volumes_[f].sides[side].unknown;
+      if (unknown != no_index)
+        jumps[f] += (side == 0 ? -1 : 1) * pressure[beside.getMap()->getLocalElement(unknown)];
+    }
+  }
+  return jumps;
+}
+
+template <int dim>
+Momentum<dim> MixedFaceCoupling<dim>::prescribed_impulse(const std::vector<double>& velocity_before,
+                                                         const std::vector<double>& velocity_after,
+                                                         const Vector& scaled_pressure) const {
+  const std::vector<double> jumps = pressure_jumps(scaled_pressure);
   Momentum<dim> impulse;
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     if (prescribed_share_[f] == 0)
       continue;
-    double jump = 0;
-    for (int side = 0; side < 2; ++side) {
-      const GlobalIndex unknown = volumes_[f].sides[side].unknown;
-      if (unknown == no_index)
-        continue;
-      jump += (side == 0 ? -1 : 1) * pressure[beside.getMap()->getLocalElement(unknown)];
-    }
     const double share = prescribed_share_[f];
     const double after = options_.lumping == Lumping::consistent ? share * velocity_after[f]
                                                                  : prescribed_velocity_[f];
     impulse.add(
         volumes_[f].center, volumes_[f].direction,
-        masses_[f] * (after - share * velocity_before[f]) + share * volumes_[f].area * jump);
+        masses_[f] * (after - share * velocity_before[f]) + share * volumes_[f].area * jumps[f]);
   }
   return sum_over_ranks<dim>(impulse, pressure_import_->getSourceMap()->getComm());
+}
+
+template <int dim>
+AngularVector<dim> MixedFaceCoupling<dim>::lever_impulse(const SolidSystem<dim>& solids,
+                                                         const std::vector<double>& velocity_before,
+                                                         const std::vector<double>& velocity_after,
+                                                         const BlockVector& solution) const {
+  if (coupling_transposed_.is_null())
+    return AngularVector<dim>::Zero();
+  Vector taken(solids.map());
+  add_lumped_momentum(velocity_before, taken);
+  coupling_transposed_->apply(*solution.pressure, taken, Teuchos::NO_TRANS, -1, 1);
+  added_mass_->apply(*solution.solid, taken, Teuchos::NO_TRANS, -1, 1);
+  const std::vector<double> jumps = pressure_jumps(*solution.pressure);
+  Momentum<dim> given;
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const double share = 1 - prescribed_share_[f];
+    const double after = options_.lumping == Lumping::consistent
+                             ? share * velocity_after[f]
+                             : velocity_after[f] - prescribed_velocity_[f];
+    given.add(
+        volumes_[f].center, volumes_[f].direction,
+        masses_[f] * (share * velocity_before[f] - after) - share * volumes_[f].area * jumps[f]);
+  }
+  return solids.momentum(taken).angular - sum_over_ranks<dim>(given, solids.comm()).angular;
 }
 
 template <int dim>
@@ -319,8 +353,9 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
       continue;
     }
     dynamic_share += share.weight;
-    pulled += share.weight * (solids.solids()[share.solid].rigid ? x : share.point.position);
-    directed_row<dim>(solids, share.point, x, direction, scratch, dofs, values);
+    const bool at_x = solids.solids()[share.solid].rigid || share.rotation;
+    pulled += share.weight * (at_x ? x : share.point.position);
+    carried_row<dim>(solids, share, x, direction, scratch, dofs, values);
     for (std::size_t k = 0; k < dofs.size(); ++k) {
       row.dofs.push_back(dofs[k]);
       row.weights.push_back(share.weight * values[k]);
@@ -343,8 +378,11 @@ void MixedFaceCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidS
               link.direction, solids, row);
   } else {
     row.position = link.point.position;
-    share_row({{1, link.point, surface_->solid_of(link.point.simplex)}}, row.position,
-              link.direction, solids, row);
+    SurfaceShare<dim> whole;
+    whole.weight = 1;
+    whole.point = link.point;
+    whole.solid = surface_->solid_of(link.point.simplex);
+    share_row({whole}, row.position, link.direction, solids, row);
   }
 }
 

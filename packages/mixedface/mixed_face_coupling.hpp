@@ -16,6 +16,7 @@ enum class MixedRule {
 struct MixedFaceOptions {
   MixedRule rule = MixedRule::voxel;
   Lumping lumping = Lumping::diagonal;
+  bool carry_rotations = false;  ///< W of soft solids reproduces rigid motions (LocalRotation)
   bool whole_cell_mass = false;  ///< lump rho V instead of the fluid part
   bool balance = true;           ///< balanced masses (see balance_masses)
 };
@@ -48,6 +49,10 @@ class MixedFaceCoupling : public Coupling<dim> {
   Momentum<dim> prescribed_impulse(const std::vector<double>& velocity_before,
                                    const std::vector<double>& velocity_after,
                                    const Vector& scaled_pressure) const override;
+  AngularVector<dim> lever_impulse(const SolidSystem<dim>& solids,
+                                   const std::vector<double>& velocity_before,
+                                   const std::vector<double>& velocity_after,
+                                   const BlockVector& solution) const override;
   void add_unseen_buoyancy(const Point<dim>& gravity, double dt, Vector& rhs) const override;
   using LinkRow = typename Coupling<dim>::LinkRow;
   void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
@@ -57,6 +62,8 @@ class MixedFaceCoupling : public Coupling<dim> {
   /// Adds the rows of the shares, taken at x along one axis.
   void share_row(const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x, int direction,
                  const SolidSystem<dim>& solids, LinkRow& row) const;
+  /// p̂ above minus below each coupled volume; 0 where there is no unknown.
+  std::vector<double> pressure_jumps(const Vector& scaled_pressure) const;
   void assemble_blocks(const SolidSystem<dim>& solids);
   void assemble_unseen(const SolidSystem<dim>& solids, const SurfaceSnapshot<dim>& surface);
 

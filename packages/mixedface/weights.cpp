@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "geometry/clipping.hpp"
 
@@ -70,6 +71,23 @@ std::vector<std::vector<SurfaceShare<dim>>> surface_shares(
 }
 
 template <int dim>
+void add_local_rotations(const std::vector<ControlVolume<dim>>& volumes,
+                         const SurfaceSnapshot<dim>& surface,
+                         std::vector<std::vector<SurfaceShare<dim>>>& shares) {
+  for (std::size_t f = 0; f < shares.size(); ++f) {
+    std::map<int, std::shared_ptr<const LocalRotation<dim>>> of_solid;
+    for (SurfaceShare<dim>& share : shares[f]) {
+      if (surface.solids()[share.solid].rigid)
+        continue;
+      auto& rotation = of_solid[share.solid];
+      if (!rotation)
+        rotation = std::make_shared<LocalRotation<dim>>(volumes[f].box, share.solid, surface);
+      share.rotation = rotation;
+    }
+  }
+}
+
+template <int dim>
 void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point,
                   const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
                   std::vector<GlobalIndex>& dofs, std::vector<double>& values) {
@@ -83,6 +101,36 @@ void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point
     dofs.push_back(scratch.dofs[k]);
     values.push_back(value);
   }
+}
+
+template <int dim>
+void carried_row(const SolidSystem<dim>& solids, const SurfaceShare<dim>& share,
+                 const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
+                 std::vector<GlobalIndex>& dofs, std::vector<double>& values) {
+  directed_row<dim>(solids, share.point, x, direction, scratch, dofs, values);
+  if (!share.rotation)
+    return;
+  const auto add = [&](const SurfacePoint<dim>& vertex, const Point<dim>& coefficient) {
+    solids.velocity_row(vertex, x, scratch);
+    for (std::size_t k = 0; k < scratch.dofs.size(); ++k) {
+      dofs.push_back(scratch.dofs[k]);
+      values.push_back(coefficient.dot(scratch.coefficients[k]));
+    }
+  };
+  share.rotation->row(x - share.point.position, direction, add);
+}
+
+template <int dim>
+Point<dim> carried_effective_velocity(const SolidSystem<dim>& solids,
+                                      const SurfaceShare<dim>& share, const Point<dim>& x) {
+  Point<dim> velocity = solids.effective_velocity(share.point, x);
+  if (share.rotation) {
+    const auto of_vertex = [&](const SurfacePoint<dim>& vertex) {
+      return solids.effective_velocity(vertex, x);
+    };
+    velocity += share.rotation->velocity_at(x - share.point.position, of_vertex);
+  }
+  return velocity;
 }
 
 CouplingWeights weights_of_rows(int n_rows, const std::function<void(int, RowEntries&)>& entries) {
@@ -125,8 +173,8 @@ CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
   std::vector<double> values;
   return weights_of_rows(static_cast<int>(volumes.size()), [&](int f, RowEntries& row) {
     for (const SurfaceShare<dim>& share : shares[f]) {
-      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch, dofs,
-                        values);
+      carried_row<dim>(solids, share, volumes[f].center, volumes[f].direction, scratch, dofs,
+                       values);
       for (std::size_t k = 0; k < dofs.size(); ++k) {
         row.emplace_back(dofs[k], share.weight * values[k]);
       }
@@ -138,6 +186,13 @@ template std::vector<std::vector<SurfaceShare<2>>> surface_shares<2>(
     const std::vector<ControlVolume<2>>&, const SurfaceSnapshot<2>&, double);
 template void directed_row<2>(const SolidSystem<2>&, const SurfacePoint<2>&, const Point<2>&, int,
                               VelocityRow<2>&, std::vector<GlobalIndex>&, std::vector<double>&);
+template void add_local_rotations<2>(const std::vector<ControlVolume<2>>&,
+                                     const SurfaceSnapshot<2>&,
+                                     std::vector<std::vector<SurfaceShare<2>>>&);
+template void carried_row<2>(const SolidSystem<2>&, const SurfaceShare<2>&, const Point<2>&, int,
+                             VelocityRow<2>&, std::vector<GlobalIndex>&, std::vector<double>&);
+template Point<2> carried_effective_velocity<2>(const SolidSystem<2>&, const SurfaceShare<2>&,
+                                                const Point<2>&);
 template CouplingWeights coupling_weights<2>(const std::vector<ControlVolume<2>>&,
                                              const std::vector<std::vector<SurfaceShare<2>>>&,
                                              const SolidSystem<2>&);
@@ -145,6 +200,13 @@ template std::vector<std::vector<SurfaceShare<3>>> surface_shares<3>(
     const std::vector<ControlVolume<3>>&, const SurfaceSnapshot<3>&, double);
 template void directed_row<3>(const SolidSystem<3>&, const SurfacePoint<3>&, const Point<3>&, int,
                               VelocityRow<3>&, std::vector<GlobalIndex>&, std::vector<double>&);
+template void add_local_rotations<3>(const std::vector<ControlVolume<3>>&,
+                                     const SurfaceSnapshot<3>&,
+                                     std::vector<std::vector<SurfaceShare<3>>>&);
+template void carried_row<3>(const SolidSystem<3>&, const SurfaceShare<3>&, const Point<3>&, int,
+                             VelocityRow<3>&, std::vector<GlobalIndex>&, std::vector<double>&);
+template Point<3> carried_effective_velocity<3>(const SolidSystem<3>&, const SurfaceShare<3>&,
+                                                const Point<3>&);
 template CouplingWeights coupling_weights<3>(const std::vector<ControlVolume<3>>&,
                                              const std::vector<std::vector<SurfaceShare<3>>>&,
                                              const SolidSystem<3>&);

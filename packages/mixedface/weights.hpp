@@ -1,10 +1,12 @@
 #pragma once
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "coupling/solid_system.hpp"
 #include "interfaces/fluid.hpp"
+#include "mixedface/local_rotation.hpp"
 
 namespace lockstep {
 
@@ -14,6 +16,8 @@ struct SurfaceShare {
   double weight = 0;
   SurfacePoint<dim> point;
   int solid = -1;
+  /// Carries the velocity of a soft solid from `point` to the face's centre; null: taken as it is.
+  std::shared_ptr<const LocalRotation<dim>> rotation{};
 };
 
 /// The shares of every coupled control volume (Section 5): each simplex is clipped to the dual
@@ -24,6 +28,13 @@ template <int dim>
 std::vector<std::vector<SurfaceShare<dim>>> surface_shares(
     const std::vector<ControlVolume<dim>>& volumes, const SurfaceSnapshot<dim>& surface,
     double tolerance = 0.01);
+
+/// Gives every share of a soft solid its local rotation: the option of W that reproduces rigid
+/// motions at the faces' centres.
+template <int dim>
+void add_local_rotations(const std::vector<ControlVolume<dim>>& volumes,
+                         const SurfaceSnapshot<dim>& surface,
+                         std::vector<std::vector<SurfaceShare<dim>>>& shares);
 
 /// W restricted to dynamic solids, by rows of coupled control volumes: row f holds
 /// sum_s w_s (velocity row of s at R_f) . e_direction. Columns are local indices into `dofs`.
@@ -40,6 +51,16 @@ template <int dim>
 void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point,
                   const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
                   std::vector<GlobalIndex>& dofs, std::vector<double>& values);
+
+/// The same with the share's local rotation: the row of the velocity at x.
+template <int dim>
+void carried_row(const SolidSystem<dim>& solids, const SurfaceShare<dim>& share,
+                 const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
+                 std::vector<GlobalIndex>& dofs, std::vector<double>& values);
+/// The effective velocity of a share's surface, carried to x [m/s].
+template <int dim>
+Point<dim> carried_effective_velocity(const SolidSystem<dim>& solids,
+                                      const SurfaceShare<dim>& share, const Point<dim>& x);
 
 /// Rows from their entries (id of the solid map, value), in any order: equal ids are added.
 /// `entries(f, row)` appends those of row f.

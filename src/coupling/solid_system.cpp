@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "coupling/stacked_operator.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/triplet_matrix.hpp"
 
@@ -256,18 +255,25 @@ void eliminate_masked(CrsMatrix& matrix, const Vector& mask) {
 }  // namespace
 
 template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& added, double dt,
-                                                  bool eliminate) const {
-  std::vector<StackedOperator::Part> parts;
-  bool all_assembled = true;
+std::vector<StackedOperator::Part> SolidSystem<dim>::parts(double dt) const {
+  std::vector<StackedOperator::Part> all;
   for (int m = 0; m < n_models(); ++m) {
     if (model(m).dof_map()->getGlobalNumElements() == 0)
       continue;
-    parts.push_back(
-        {model(m).mass(), model(m).implicit_force(dt), model(m).dof_map(), local_begin_[m]});
-    all_assembled = all_assembled && !assembled(parts.back().mass).is_null() &&
-                    (parts.back().implicit_force.is_null() ||
-                     !assembled(parts.back().implicit_force).is_null());
+    const auto force = dt == 0 ? RCP<const LinearOperator>() : model(m).implicit_force(dt);
+    all.push_back({model(m).mass(), force, model(m).dof_map(), local_begin_[m]});
+  }
+  return all;
+}
+
+template <int dim>
+RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& added, double dt,
+                                                  bool eliminate) const {
+  const std::vector<StackedOperator::Part> parts = this->parts(dt);
+  bool all_assembled = true;
+  for (const auto& part : parts) {
+    all_assembled = all_assembled && !assembled(part.mass).is_null() &&
+                    (part.implicit_force.is_null() || !assembled(part.implicit_force).is_null());
   }
   if (!all_assembled) {
     check_input(
@@ -309,20 +315,45 @@ RCP<const LinearOperator> SolidSystem<dim>::solid_block(const RCP<const CrsMatri
 }
 
 template <int dim>
+NearNullSpace SolidSystem<dim>::near_null_space() const {
+  constexpr int n_motions = dim + n_rotations<dim>;
+  NearNullSpace all;
+  RCP<MultiVector> motions;
+  for (int m = 0; m < n_models(); ++m) {
+    const NearNullSpace part = model(m).near_null_space();
+    if (part.empty())
+      continue;
+    if (motions.is_null()) {
+      motions = rcp(new MultiVector(map_, n_motions));
+      all.body_of_row.assign(map_->getNodeNumElements(), -1);
+    }
+    motions->offsetViewNonConst(model(m).dof_map(), local_begin_[m])->update(1, *part.motions, 0);
+    for (std::size_t row = 0; row < part.body_of_row.size(); ++row)
+      all.body_of_row[local_begin_[m] + row] = all.n_bodies + part.body_of_row[row];
+    all.n_bodies += part.n_bodies;
+  }
+  all.motions = motions;
+  return all;
+}
+
+template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::unlocked_block(const RCP<const CrsMatrix>& added,
                                                            double dt) const {
-  return block(added, dt, false);
+  if (!attachments_.empty())
+    return block(added, dt, false);
+  return as_thyra(rcp(new StackedOperator(parts(dt), dt, added, Teuchos::null, map_)));
 }
 
 template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::mass() const {
-  return block(Teuchos::null, 0, false);
+  return unlocked_block(Teuchos::null, 0);
 }
 
 template <int dim>
 RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& generalized_momentum) const {
   const auto velocity = make_vector(map_);
-  apply(*exact_inverse(mass(), "mass of the solids"), generalized_momentum, *velocity);
+  apply(*exact_inverse(block(Teuchos::null, 0, false), "mass of the solids"), generalized_momentum,
+        *velocity);
   return velocity;
 }
 
@@ -366,6 +397,27 @@ template <int dim>
 void SolidSystem<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
   for (int m = 0; m < n_models(); ++m)
     model(m).add_midpoint_correction(dt, *part(momentum, m));
+}
+
+template <int dim>
+RCP<Vector> SolidSystem<dim>::implicit_impulse(double dt, const Vector& velocity) const {
+  Vector full(velocity, Teuchos::Copy);
+  attachments_.expand_velocity(full);
+  const auto stacked = rcp(new Vector(map_));
+  for (int m = 0; m < n_models(); ++m) {
+    const RCP<const LinearOperator> force = model(m).implicit_force(dt);
+    if (!force.is_null())
+      apply(*force, *part(std::as_const(full), m), *part(*stacked, m), dt);
+  }
+  return stacked;
+}
+
+template <int dim>
+AngularVector<dim> SolidSystem<dim>::inner_torque() const {
+  AngularVector<dim> total = AngularVector<dim>::Zero();
+  for (const auto& solid_model : models_)
+    total += solid_model->inner_torque();
+  return total;
 }
 
 template <int dim>

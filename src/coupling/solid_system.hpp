@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "coupling/attachments.hpp"
+#include "coupling/stacked_operator.hpp"
+#include "interfaces/solid.hpp"
 
 namespace lockstep {
 
@@ -42,11 +44,14 @@ class SolidSystem {
   /// M_S + added - dt D with unit rows for padding and, symmetrically eliminated, for locked dofs.
   /// Assembled if all models are, else matrix-free. `added` may be null. Collective.
   RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
-  /// The same without eliminating locked dofs: for their reactions.
+  /// The same without eliminating locked dofs, for their reactions; padding rows are zero. Applied
+  /// part by part.
   RCP<const LinearOperator> unlocked_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// The models' near null spaces on `map`.
+  NearNullSpace near_null_space() const;
   /// M_S^-1 q: the velocities of a stacked generalized momentum. Collective.
   RCP<Vector> velocity_of(const Vector& generalized_momentum) const;
-  /// M_S alone, locked dofs included.
+  /// M_S alone, locked dofs included; padding rows are zero. Applied part by part.
   RCP<const LinearOperator> mass() const;
   /// A step begins: true if other dofs are locked than before, on any rank. Collective.
   bool begin_step(double time, double dt);
@@ -62,6 +67,10 @@ class SolidSystem {
   void set_velocity(const Vector& velocity);
   RCP<Vector> explicit_momentum(double time, double dt) const;
   void add_midpoint_correction(double dt, Vector& momentum) const;
+  /// dt D V: what the implicit forces give in a step. Its sum is zero, but not its torque: forces
+  /// linearised at x act at x + dt V. Collective.
+  RCP<Vector> implicit_impulse(double dt, const Vector& velocity) const;
+  AngularVector<dim> inner_torque() const;  ///< of all models [N m]
   Momentum<dim> external_impulse(double time, double dt) const;
   bool linearise(double dt, const Vector& velocity);
   void limit_motion(double dt, Vector& velocity);
@@ -81,6 +90,7 @@ class SolidSystem {
   RCP<const Vector> part(const Vector& stacked, int m) const;
   RCP<Vector> part(Vector& stacked, int m) const;
   void make_free_mask();
+  std::vector<StackedOperator::Part> parts(double dt) const;
   RCP<const LinearOperator> block(const RCP<const CrsMatrix>& added, double dt,
                                   bool eliminate) const;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "linear/preconditioner.hpp"
 #include "linear/triplet_matrix.hpp"
 
 namespace lockstep {
@@ -152,17 +153,29 @@ Pair inverse_diagonal(const ViscousOperator<dim>& op, const Pair& shape) {
   return inverse;
 }
 
+struct Preconditioner {
+  Pair inverse_diagonal;
+  RCP<const LinearOperator> stiff;  ///< an inverse of a stiff C; null: the diagonal will do
+
+  Pair operator()(const Pair& residual) const {
+    Pair result = residual.scaled_by(inverse_diagonal);
+    if (!stiff.is_null())
+      lockstep::apply(*stiff, *residual.solid, *result.solid);
+    return result;
+  }
+};
+
 template <int dim>
-int conjugate_gradients(const ViscousOperator<dim>& op, const Pair& inverse, const Pair& rhs,
-                        Pair& x, double tolerance) {
+int conjugate_gradients(const ViscousOperator<dim>& op, const Preconditioner& precondition,
+                        const Pair& rhs, Pair& x, double tolerance) {
   const int most = 2000;
   Pair residual = rhs.same_shape(), direction, image = rhs.same_shape();
   op.apply_to(x, residual);
   residual.update(1, rhs, -1);
-  const double scale = std::sqrt(rhs.dot(rhs.scaled_by(inverse)));
+  const double scale = std::sqrt(rhs.dot(precondition(rhs)));
   if (scale == 0)
     return 0;
-  Pair z = residual.scaled_by(inverse);
+  Pair z = precondition(residual);
   double rz = residual.dot(z);
   direction = z;
   direction.fluid = rcp(new Vector(*z.fluid, Teuchos::Copy));
@@ -175,7 +188,7 @@ int conjugate_gradients(const ViscousOperator<dim>& op, const Pair& inverse, con
     const double step = rz / direction.dot(image);
     x.update(step, direction, 1);
     residual.update(-step, image, 1);
-    z = residual.scaled_by(inverse);
+    z = precondition(residual);
     const double next = residual.dot(z);
     direction.update(1, z, next / rz);
     rz = next;
@@ -211,6 +224,7 @@ template <int dim>
 ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscretization<dim>& fluid,
                                  const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
+                                 const NearNullSpace& near_null_space,
                                  const RCP<const Vector>& lumped_momentum, double dt,
                                  double tolerance, const RCP<const Vector>& locked_velocity) {
   const Links<dim> links = make_links<dim>(system, solids, coupling);
@@ -237,8 +251,10 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
     x.solid = op.masked(*solids.velocity());
   }
   ViscousResult<dim> result;
-  result.iterations =
-      conjugate_gradients<dim>(op, inverse_diagonal<dim>(op, rhs), rhs, x, tolerance);
+  Preconditioner precondition{inverse_diagonal<dim>(op, rhs), Teuchos::null};
+  if (solids.has_unknowns())
+    precondition.stiff = inverse_if_stiff(solid_block, near_null_space, "solids, viscous solve");
+  result.iterations = conjugate_gradients<dim>(op, precondition, rhs, x, tolerance);
 
   RCP<Vector> solid_velocity;
   if (solids.has_unknowns())
@@ -266,12 +282,12 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
 
 template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, FluidDiscretization<2>&,
                                            const SolidSystem<2>&, const Coupling<2>&,
-                                           const RCP<const LinearOperator>&,
+                                           const RCP<const LinearOperator>&, const NearNullSpace&,
                                            const RCP<const Vector>&, double, double,
                                            const RCP<const Vector>&);
 template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, FluidDiscretization<3>&,
                                            const SolidSystem<3>&, const Coupling<3>&,
-                                           const RCP<const LinearOperator>&,
+                                           const RCP<const LinearOperator>&, const NearNullSpace&,
                                            const RCP<const Vector>&, double, double,
                                            const RCP<const Vector>&);
 

@@ -20,11 +20,13 @@ struct ViscousResult {
 /// applied twice. `lumped_momentum` is row 2 and `solid_block` is C; both null without unknowns.
 /// `locked_velocity` is that of locked dofs that move (null: none do); its share of C V is taken
 /// from `lumped_momentum` already.
+/// The preconditioner is the diagonal, of a stiff C (of this near null space) an inverse of it.
 /// Throws SolveError if CG does not reach `tolerance`. Collective.
 template <int dim>
 ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscretization<dim>& fluid,
                                  const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
+                                 const NearNullSpace& near_null_space,
                                  const RCP<const Vector>& lumped_momentum, double dt,
                                  double tolerance,
                                  const RCP<const Vector>& locked_velocity = Teuchos::null);

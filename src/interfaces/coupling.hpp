@@ -1,6 +1,7 @@
 #pragma once
 #include "interfaces/fluid.hpp"
 #include "interfaces/solid.hpp"
+#include "interfaces/strategy.hpp"
 
 namespace lockstep {
 
@@ -56,6 +57,18 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
   virtual Momentum<dim> prescribed_impulse(const std::vector<double>& velocity_before,
                                            const std::vector<double>& velocity_after,
                                            const Vector& scaled_pressure) const = 0;
+
+  /// Angular impulse about the origin that a solve makes because soft solids take the impulses of
+  /// coupled volumes at their nodes, with diagonally lumped masses, and the fluid gives them at the
+  /// volumes' centres: taken minus given [kg m^2/s]. Zero (to round-off) where W reproduces rigid
+  /// motions and the lumping is consistent, as for rigid bodies. Named in the ledger. Global.
+  /// Collective.
+  virtual AngularVector<dim> lever_impulse(const SolidSystem<dim>&,
+                                           const std::vector<double>& /*velocity_before*/,
+                                           const std::vector<double>& /*velocity_after*/,
+                                           const BlockVector& /*solution*/) const {
+    return AngularVector<dim>::Zero();
+  }
 
   /// Row of the dynamic solids (ids of SolidSystem's map) and the prescribed velocity at a viscous
   /// link.

@@ -4,7 +4,7 @@
 #include "geometry/surface_snapshot.hpp"
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
-#include "linear/types.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
@@ -38,6 +38,7 @@ struct NodeAttachment {
   Point<dim> position = Point<dim>::Zero();  ///< present [m]
   std::string solid;                         ///< name of the rigid solid
 };
+struct SurfaceFrame;  // output/frames.hpp
 
 /// All solids of one kind (all rigid bodies, all deformables, ...): their unknowns, mass, forces
 /// and surfaces. Knows nothing of the fluid and nothing of other models.
@@ -73,6 +74,9 @@ class SolidModel : public PlugIn {
   virtual RCP<const LinearOperator> mass() const = 0;
   /// D(dt): symmetric negative semidefinite linearisation of the implicit forces [kg/s], or null.
   virtual RCP<const LinearOperator> implicit_force(double dt) const;
+  /// The motions at the present positions that D does not resist, on `dof_map`, of models with
+  /// nodes: solvers want them. Default: none. Collective.
+  virtual NearNullSpace near_null_space() const { return {}; }
   /// momentum = M_S V_S* = M_S V^n + dt (explicit forces, gravity included) [kg m/s]. Collective.
   virtual void explicit_momentum(double time, double dt, Vector& momentum) const = 0;
   /// S1 only, dt the half step: added to `explicit_momentum` so that its V_S* is the velocity at
@@ -117,6 +121,12 @@ class SolidModel : public PlugIn {
   /// asked for nodes attached to it. Default, for models without rigid solids: x. Local.
   virtual Point<dim> carried(int solid, const Point<dim>& x) const;
   virtual std::vector<SolidState<dim>> states() const = 0;  ///< one per solid, on every rank
+  /// Appends meshes with fields beyond the surface, for frames: what is inside, stress and strain.
+  /// Default: nothing. Collective.
+  virtual void add_frames(std::vector<SurfaceFrame>&) const {}
+  /// Torque about the origin of the explicit inner forces at the present positions [N m]: zero but
+  /// for laws that do not turn with the body. Global.
+  virtual AngularVector<dim> inner_torque() const { return AngularVector<dim>::Zero(); }
   /// Largest stable step of explicitly integrated forces [s]. Default: none.
   virtual double largest_stable_step() const;
 };

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "interfaces/plug_in.hpp"
-#include "linear/types.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
@@ -20,6 +20,7 @@ struct BlockSystem {
   RCP<const CrsMatrix>
       coupling_transposed;  ///< B^T, solid dofs x pressure unknowns. B is never stored.
   RCP<const LinearOperator> solid_block;  ///< C
+  NearNullSpace near_null_space;          ///< of dt D in C; empty without soft solids
   /// Orthonormal basis of the null space over (p̂, V_S = 0); empty for a regular system.
   std::vector<RCP<const Vector>> null_space;
   /// Null vectors of A alone (regions without a Dirichlet face), for preconditioners. Orthonormal.
@@ -51,6 +52,7 @@ struct SolveRequest {
 
 struct SolveReport {
   int iterations = 0;
+  int solid_iterations = 0;      ///< inner ones, on C
   double pressure_residual = 0;  ///< ||r_1|| / scale_1, recomputed from the solution
   double solid_residual = 0;     ///< ||r_2|| / scale_2
   double setup_seconds = 0, solve_seconds = 0;

@@ -127,7 +127,8 @@ Eigen::MatrixXd inverse_spd(const Eigen::MatrixXd& block) {
 std::string not_positive(const std::string& name, GlobalIndex row) {
   return fmt::format(
       "The {} is not positive definite at row {}: masses must be positive and D negative "
-      "semidefinite.",
+      "semidefinite. A node without mass that no mixed face sees needs a stiffness or damping that "
+      "is implicit: give its body a mass, bending stiffness or a coarser mesh.",
       name, row);
 }
 

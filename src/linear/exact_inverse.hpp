@@ -1,20 +1,37 @@
 #pragma once
+#include <memory>
 #include <string>
 
-#include "linear/types.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
 /// C^-1 to round-off for a symmetric positive definite C, by the cheapest way that is exact: dense
-/// blocks if C falls apart into blocks of at most 24 rows, a gathered direct solve up to 20 000
-/// rows, conjugate gradients to 1e-14 beyond that and for a matrix-free C. `name` is for messages.
-/// Throws SolveError if C is not positive definite. Collective, and so is every application.
+/// blocks if C falls apart into blocks of at most 24 rows, a gathered direct solve for small ones,
+/// conjugate gradients to 1e-14 else. `name` is for messages. Throws SolveError if C is not
+/// positive definite. Collective, and so is every application.
 RCP<const LinearOperator> exact_inverse(const RCP<const LinearOperator>& op,
                                         const std::string& name);
+/// The same where nothing need be iterated; else null.
+RCP<const LinearOperator> cheap_exact_inverse(const RCP<const LinearOperator>& op,
+                                              const std::string& name);
 
-/// The inverse by conjugate gradients with the diagonal as preconditioner (none for a matrix-free
-/// operator), to the relative residual `tolerance`. Applying it throws SolveError if that is not
-/// reached in `maximum_iterations`. Collective, and so is every application.
+/// Whether the factors of a gathered direct solve are cheap: few rows, or the few entries a row of
+/// a plane mesh or a surface.
+bool direct_is_cheap(const CrsMatrix& matrix);
+
+struct InnerSolve {
+  RCP<const LinearOperator> preconditioner;  ///< symmetric positive definite; null: none
+  double tolerance = 1e-10;                  ///< relative residual
+  int maximum_iterations = 1000;
+  std::string name;                  ///< for messages
+  std::shared_ptr<long> iterations;  ///< counted here, if given
+};
+/// The inverse by conjugate gradients. Applying it throws SolveError if the tolerance is not
+/// reached. Collective, and so is every application.
+RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOperator>& op,
+                                                     const InnerSolve& inner);
+/// The same with the diagonal as preconditioner (none for a matrix-free operator).
 RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOperator>& op,
                                                      double tolerance, int maximum_iterations,
                                                      const std::string& name);

@@ -10,6 +10,7 @@
 #include "linear/exact_inverse.hpp"
 #include "linear/gathered_direct.hpp"
 #include "linear/matrix_rows.hpp"
+#include "linear/rigid_motion_multigrid.hpp"
 #include "linear/solver_list.hpp"
 #include "linear/stratimikos.hpp"
 #include "parameters/suggestion.hpp"
@@ -20,8 +21,14 @@ namespace {
 
 using Teuchos::ParameterList;
 
-const std::vector<std::string> types = {
-    "Ifpack2", "MueLu", "Direct", "Block Diagonal", "Jacobi", "Conjugate Gradients", "Exact"};
+const std::vector<std::string> types = {"Ifpack2",
+                                        "MueLu",
+                                        "Direct",
+                                        "Block Diagonal",
+                                        "Block Diagonal Mass",
+                                        "Jacobi",
+                                        "Conjugate Gradients",
+                                        "Exact"};
 
 bool is_package(const std::string& type) {
   return type == "Ifpack2" || type == "MueLu";
@@ -48,6 +55,15 @@ ParameterList default_muelu() {
   return list;
 }
 
+/// RILUK(0), which of a symmetric matrix is its incomplete Cholesky factorisation without fill.
+ParameterList default_ifpack2() {
+  ParameterList list;
+  list.set("Prec Type", "RILUK");
+  list.set("Overlap", 0);
+  list.sublist("Ifpack2 Settings").set("fact: iluk level-of-fill", 0);
+  return list;
+}
+
 ParameterList without_type(const ParameterList& list) {
   ParameterList rest(list);
   rest.remove("Type");
@@ -60,10 +76,26 @@ T value_or(const ParameterList& list, const std::string& name, T standard) {
   return list.isParameter(name) ? list.get<T>(name) : standard;
 }
 
+RCP<const LinearOperator> inner_iteration(const RCP<const LinearOperator>& op,
+                                          const ParameterList& list, const std::string& name,
+                                          const NearNullSpace& near_null_space) {
+  const double tolerance = value_or(list, "Tolerance", 1e-10);
+  const int most = value_or(list, "Maximum Iterations", 1000);
+  if (!list.isSublist("Preconditioner"))
+    return conjugate_gradient_inverse(op, tolerance, most, name);
+  const auto inner =
+      preconditioner_from_list(op, list.sublist("Preconditioner"), name, near_null_space);
+  return conjugate_gradient_inverse(op, {inner, tolerance, most, name, nullptr});
+}
+
 void check_own(const ParameterList& list, const std::string& type, const std::string& where) {
   for (const auto& entry : list) {
     const std::string& name = entry.first;
     const bool is_int = entry.second.isType<int>(), is_double = entry.second.isType<double>();
+    if (type == "Conjugate Gradients" && name == "Preconditioner" && entry.second.isList()) {
+      check_preconditioner_list(list.sublist(name), where + ", \"Preconditioner\"");
+      continue;
+    }
     const bool fits = name == "Type" ||
                       (type == "Block Diagonal" && name == "Largest Block" && is_int) ||
                       (type == "Conjugate Gradients" && name == "Tolerance" && is_double) ||
@@ -72,7 +104,8 @@ void check_own(const ParameterList& list, const std::string& type, const std::st
                 where, name, type,
                 type == "Block Diagonal" ? "It takes \"Largest Block\" (int)."
                 : type == "Conjugate Gradients"
-                    ? "It takes \"Tolerance\" (double) and \"Maximum Iterations\" (int)."
+                    ? "It takes \"Tolerance\" (double), \"Maximum Iterations\" (int) and the list "
+                      "\"Preconditioner\"."
                     : "It takes none.");
   }
 }
@@ -94,14 +127,14 @@ void check_preconditioner_list(const ParameterList& list, const std::string& whe
 
 RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperator>& op,
                                                    const ParameterList& list,
-                                                   const std::string& name) {
+                                                   const std::string& name,
+                                                   const NearNullSpace& near_null_space) {
   check_preconditioner_list(list, "the inverse of the " + name);
   const std::string type = type_of(list, name);
   if (type == "Exact")
     return exact_inverse(op, name);
   if (type == "Conjugate Gradients")
-    return conjugate_gradient_inverse(op, value_or(list, "Tolerance", 1e-10),
-                                      value_or(list, "Maximum Iterations", 1000), name);
+    return inner_iteration(op, list, name, near_null_space);
   const auto matrix = assembled(op);
   check_solve(
       !matrix.is_null(),
@@ -115,15 +148,30 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
   if (type == "Block Diagonal")
     return as_operator(
         block_diagonal_inverse(matrix, value_or(list, "Largest Block", 24), name).inverse);
+  if (type == "Block Diagonal Mass")
+    return block_diagonal_mass_inverse(matrix, near_null_space, name);
   ParameterList package = without_type(list);
-  if (type == "MueLu" && package.numParams() == 0)
-    package = default_muelu();
+  if (package.numParams() == 0)
+    package = type == "MueLu" ? default_muelu() : default_ifpack2();
+  if (type == "MueLu" && !near_null_space.empty())
+    return rigid_motion_multigrid(matrix, near_null_space, package, name);
   const auto inverse = stratimikos_preconditioner(as_operator(matrix), type, package, name);
   if (type != "MueLu")
     return inverse;
   // MueLu's operator ignores the factors of y = alpha M x + beta y.
   return action_operator(domain_map(*op),
                          [inverse](const Vector& x, Vector& y) { apply(*inverse, x, y); });
+}
+
+RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
+                                           const NearNullSpace& near_null_space,
+                                           const std::string& name) {
+  const auto matrix = assembled(op);
+  if (matrix.is_null() || !is_stiff(*matrix, near_null_space))
+    return Teuchos::null;
+  ParameterList list;
+  list.set("Type", direct_is_cheap(*matrix) ? "Direct" : "MueLu");
+  return preconditioner_from_list(op, list, name, near_null_space);
 }
 
 }  // namespace lockstep

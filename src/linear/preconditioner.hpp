@@ -2,24 +2,35 @@
 #include <Teuchos_ParameterList.hpp>
 #include <string>
 
-#include "linear/types.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
 /// A symmetric positive definite approximate inverse of one block (A or C), chosen by "Type":
 ///   "Ifpack2", "MueLu"      all other parameters go to that package unchanged; "MueLu" alone means
 ///                           smoothed aggregation with Chebyshev(2) and a coarse solver that is
-///                           right on several ranks
+///                           right on several ranks; with a near null space,
+///                           rigid_motion_multigrid; "Ifpack2" alone means RILUK(0), the incomplete
+///                           Cholesky factorisation
 ///   "Direct"                gathered KLU2
 ///   "Block Diagonal"        exact inverses of small dense blocks ("Largest Block", 24)
+///   "Block Diagonal Mass"   the same of the mass in C = M̃ - dt D, see near_null_space.hpp
 ///   "Jacobi"                the diagonal
-///   "Conjugate Gradients"   inner iteration ("Tolerance", 1e-10; "Maximum Iterations", 1000)
+///   "Conjugate Gradients"   inner iteration ("Tolerance", 1e-10; "Maximum Iterations", 1000), with
+///                           the inverse that the sublist "Preconditioner" names (Jacobi)
 ///   "Exact"                 see exact_inverse
 /// `name` says what block it is ("pressure block of ..."). Throws InputError for a bad list,
 /// SolveError if the block does not allow it (matrix-free, singular, indefinite). Collective.
 RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperator>& op,
                                                    const Teuchos::ParameterList& list,
-                                                   const std::string& name);
+                                                   const std::string& name,
+                                                   const NearNullSpace& near_null_space = {});
+
+/// For a soft solid's C in a larger system: an approximate inverse, direct or "MueLu", if dt D
+/// outweighs its mass (is_stiff), else null, and the diagonal will do. Collective.
+RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
+                                           const NearNullSpace& near_null_space,
+                                           const std::string& name);
 
 /// Throws InputError unless the list is one that preconditioner_from_list takes. `where` is for
 /// messages.

@@ -179,9 +179,10 @@ void FrameWriter::write_surface(Hdf5File& file, const SurfaceFrame& surface) con
                                     field.name, surface.name, field.values.size(), n_entities),
                  static_cast<int>(ExitCode::output_failed));
     const std::string dataset = group + "/" + xdmf::stored_name(field.name);
-    const bool scalar = field.n_components == 1;
-    file.write_replicated(dataset, scalar ? field.values : padded(field.values, field.n_components),
-                          scalar ? 1 : 3, storage_.precision);
+    const bool is_vector = field.n_components == 2 || field.n_components == 3;
+    file.write_replicated(dataset,
+                          is_vector ? padded(field.values, field.n_components) : field.values,
+                          is_vector ? 3 : field.n_components, storage_.precision);
     file.write_attribute<std::string>(dataset, "unit", field.unit);
   }
 }

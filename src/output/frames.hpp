@@ -37,13 +37,14 @@ struct SurfaceField {
   enum class Place { vertices, simplices };
   std::string name;
   std::string unit;
-  int n_components;  ///< 1, or 2 or 3 for a vector (stored with three)
+  int n_components;  ///< 1, or 2 or 3 for a vector (stored with three), 6 for a symmetric tensor
+                     ///< (xx, xy, xz, yy, yz, zz)
   Place place;
   std::vector<double> values;  ///< the components of an entity together
 };
 
-/// A simplicial mesh with fields. Every rank passes the same names; the numbers of rank 0 are
-/// written.
+/// A mesh of surface or volume simplices with fields. Every rank passes the same names; the numbers
+/// of rank 0 are written.
 struct SurfaceFrame {
   std::string name;
   int dimension = 3;             ///< coordinates of a vertex

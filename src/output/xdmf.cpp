@@ -17,6 +17,19 @@ std::string data_item(const std::string& extents, const std::string& type, int b
       extents, type, bytes, where);
 }
 
+const char* attribute_type(int n_components) {
+  if (n_components == 1)
+    return "Scalar";
+  return n_components == 6 ? "Tensor6" : "Vector";
+}
+
+/// The last extent of a field's array; scalars have none.
+std::string components(int n_components) {
+  if (n_components == 1)
+    return "";
+  return n_components == 6 ? " 6" : " 3";
+}
+
 std::string attribute(const std::string& name, const std::string& unit, int n_components,
                       const std::string& center, const std::string& item) {
   return fmt::format(
@@ -24,7 +37,7 @@ std::string attribute(const std::string& name, const std::string& unit, int n_co
       "          <Information Name=\"unit\" Value=\"{}\"/>\n"
       "          {}\n"
       "        </Attribute>\n",
-      xml_escaped(name), n_components == 1 ? "Scalar" : "Vector", center, xml_escaped(unit), item);
+      xml_escaped(name), attribute_type(n_components), center, xml_escaped(unit), item);
 }
 
 int bytes_of(Precision precision) {
@@ -75,7 +88,7 @@ std::string box_grid(const BoxFrame& box, const std::string& file, Precision pre
     const std::string where =
         fmt::format("{}:/{}/{}", file, stored_name(box.name), stored_name(field.name));
     const std::string extents = fmt::format("{} {} {}{}", box.n_cells[2], box.n_cells[1],
-                                            box.n_cells[0], field.n_components == 1 ? "" : " 3");
+                                            box.n_cells[0], components(field.n_components));
     text += attribute(field.name, field.unit, field.n_components, "Cell",
                       data_item(extents, "Float", bytes_of(precision), where));
   }
@@ -103,8 +116,8 @@ std::string surface_grid(const SurfaceFrame& surface, const std::string& file,
       data_item(fmt::format("{} 3", n_vertices), "Float", 8, group + "vertices"));
   for (const SurfaceField& field : surface.fields) {
     const bool on_vertices = field.place == SurfaceField::Place::vertices;
-    const std::string extents = fmt::format("{}{}", on_vertices ? n_vertices : n_simplices,
-                                            field.n_components == 1 ? "" : " 3");
+    const std::string extents =
+        fmt::format("{}{}", on_vertices ? n_vertices : n_simplices, components(field.n_components));
     text += attribute(
         field.name, field.unit, field.n_components, on_vertices ? "Node" : "Cell",
         data_item(extents, "Float", bytes_of(precision), group + stored_name(field.name)));

@@ -55,7 +55,12 @@ std::vector<HistoryColumn> history_columns() {
                   "pressure and friction of walls and sides");
   add_vector<dim>(columns, "transport_change_", "kg m/s",
                   "advection, revalidation, occlusion resets, change of lumped masses");
+  add_rotation<dim>(columns, "lever_impulse_", "kg m^2/s",
+                    "soft solids take forces at their nodes, fluid gives them at its faces");
+  add_rotation<dim>(columns, "linearisation_impulse_", "kg m^2/s",
+                    "torque over dt of forces that were linearised");
   for (HistoryColumn column : std::vector<HistoryColumn>{
+           {"solid_iterations", "1", "inner ones on the solids' block, both solves"},
            {"momentum_error", "1", "audit: imbalance over the largest momentum or impulses"},
            {"angular_momentum_error", "1", "the same for angular momentum (0 if periodic)"},
            {"fluid_kinetic_energy", "J", ""},
@@ -119,6 +124,9 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
   append_values(row, report.solid_momentum.linear);
   append_values(row, report.boundary_impulse.linear);
   append_values(row, report.transport_change.linear);
+  append_values(row, report.lever_impulse);
+  append_values(row, report.linearisation_impulse);
+  append_each(row, static_cast<long long>(report.s1.solid_iterations + report.s2.solid_iterations));
   const auto residual = [](const SolveReport& solve) {
     return std::max(solve.pressure_residual, solve.solid_residual);
   };

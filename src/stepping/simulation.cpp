@@ -166,8 +166,11 @@ void Simulation<dim>::write_frame() {
   ScopedPhase phase(timers_, "frames");
   std::vector<BoxFrame> boxes;
   components_.fluid->add_frame(boxes);
-  frames_.write(step_, stepper_->time(), boxes,
-                surface_frames<dim>(*components_.solids, *stepper_->system().surface()));
+  std::vector<SurfaceFrame> meshes =
+      surface_frames<dim>(*components_.solids, *stepper_->system().surface());
+  for (int m = 0; m < components_.solids->n_models(); ++m)
+    components_.solids->model(m).add_frames(meshes);
+  frames_.write(step_, stepper_->time(), boxes, meshes);
   last_frame_ = stepper_->time();
 }
 

@@ -76,17 +76,20 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
   ScopedPhase phase(timers_, "viscosity");
   const std::unique_ptr<ViscousSystem<dim>> viscous = fluid.viscous_system();
   RCP<const LinearOperator> block;
+  NearNullSpace near_null_space;
   RCP<Vector> row;
   if (coupled()) {
-    block = system_.blocks(dt).solid_block;
+    const BlockSystem& blocks = system_.blocks(dt);
+    block = blocks.solid_block;
+    near_null_space = blocks.near_null_space;
     const RCP<Vector> momentum = solids.explicit_momentum(time, dt);
     row = system_.lumped_momentum(*momentum);
     if (!locked_velocity_.is_null())
       row->update(-1, *system_.unlocked_momentum(dt, *locked_velocity_), 1);
   }
   const ViscousResult<dim> result =
-      solve_viscous<dim>(*viscous, fluid, solids, *components_.coupling, block, row, dt,
-                         options_.viscous_tolerance, locked_velocity_);
+      solve_viscous<dim>(*viscous, fluid, solids, *components_.coupling, block, near_null_space,
+                         row, dt, options_.viscous_tolerance, locked_velocity_);
   viscous_impulse_ = result.solid_impulse;
   report.viscous_iterations += result.iterations;
   if (ledger)
@@ -337,9 +340,16 @@ void Stepper<dim>::ledger_solve(const CoupledSolution& solution, double dt,
     return;
   const RCP<const Vector> reaction = system_.lock_reaction(dt, *solution.momentum, unknowns);
   report.ledger.add("locks", solids.momentum(*reaction));
+  report.lever_impulse =
+      components_.coupling->lever_impulse(solids, solution.coupled_before, coupled_after, unknowns);
+  report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lever_impulse});
+  const RCP<const Vector> implicit = solids.implicit_impulse(dt, *unknowns.solid);
+  report.linearisation_impulse = solids.momentum(*implicit).angular + dt * solids.inner_torque();
+  report.ledger.add("linearised forces", {Point<dim>::Zero(), report.linearisation_impulse});
   const RCP<Vector> gained = make_vector(solids.map());
   apply(*solids.mass(), *unknowns.solid, *gained);
   gained->update(-1, *solution.momentum, -1, *reaction, 1);
+  gained->update(-1, *implicit, 1);
   if (!viscous_impulse_.is_null())
     gained->update(1, *viscous_impulse_, 1);
   report.hydrodynamic_impulse = solids.momentum_of_each(*gained);

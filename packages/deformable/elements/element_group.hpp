@@ -6,6 +6,14 @@
 
 namespace lockstep {
 
+/// Stress and strain of elements, for output. In 2D the entries of z are zero.
+struct ElementStates {
+  std::vector<int> corners;             ///< those of an element together
+  std::vector<Eigen::Matrix3d> stress;  ///< Cauchy's, of forces beside the damping [Pa]
+  std::vector<Eigen::Matrix3d> strain;  ///< Green's; of sheets turned into their planes [1]
+  std::vector<double> energy_density;   ///< per volume at rest [J/m^3]
+};
+
 /// Elements of one kind and law that pull on their corners, as one rank holds them. Positions,
 /// velocities and forces are indexed by local node number; of the nodes of other ranks (ghosts)
 /// only positions and velocities count, forces on them may be left anything.
@@ -24,6 +32,8 @@ class ElementGroup {
   /// Adds the elastic forces [N] and returns the energy [J] of the elements whose first corner is
   /// below `n_owned`.
   virtual double add_elastic_forces(const Nodes& x, int n_owned, Nodes& force) const = 0;
+  /// Appends the elements whose first corner is below `n_owned`; of springs nothing.
+  virtual void add_states(const Nodes&, int /*n_owned*/, ElementStates&) const {}
   /// Adds K = -d force / dx [N/m], made positive semidefinite element by element; returns how many
   /// elements (counted as above) had to be changed for it.
   virtual int add_stiffness(const Nodes& x, NodeMatrix<dim>& stiffness) const = 0;

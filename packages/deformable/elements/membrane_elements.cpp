@@ -97,6 +97,26 @@ class MembraneElements : public ElementList<dim, MembraneElement<dim>, MembraneE
     return energy;
   }
 
+  void add_states(const Nodes& x, int n_owned, ElementStates& states) const override {
+    for (const auto& element : elements_) {
+      if (element.corners[0] >= n_owned)
+        continue;
+      const SurfaceGradient<dim> f = gradient(element, x);
+      const SurfaceTensor<dim> strain = strain_of(f), s = stress(strain);
+      // F = Q U; Q turns the sheet into its plane.
+      const Eigen::SelfAdjointEigenSolver<SurfaceTensor<dim>> squared(f.transpose() * f);
+      const SurfaceGradient<dim> q = f * squared.operatorInverseSqrt();
+      const double stretch = squared.operatorSqrt().determinant();
+      Eigen::Matrix3d in_space = Eigen::Matrix3d::Zero(), turned = Eigen::Matrix3d::Zero();
+      in_space.topLeftCorner<dim, dim>() = f * s * f.transpose() / stretch;
+      turned.topLeftCorner<dim, dim>() = q * strain * q.transpose();
+      states.corners.insert(states.corners.end(), element.corners.begin(), element.corners.end());
+      states.stress.push_back(in_space);
+      states.strain.push_back(turned);
+      states.energy_density.push_back(0.5 * s.cwiseProduct(strain).sum());
+    }
+  }
+
   /// Compression counts as no stress: its geometric stiffness is what is not definite.
   int add_stiffness(const Nodes& x, NodeMatrix<dim>& stiffness) const override {
     int n_clamped = 0;

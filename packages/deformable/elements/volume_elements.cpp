@@ -1,6 +1,8 @@
 #include "deformable/elements/volume_elements.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 
 #include "deformable/elements/element_list.hpp"
 #include "deformable/materials/tensor_products.hpp"
@@ -54,6 +56,23 @@ class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElement
         energy += element.volume * material_->energy_density(f);
     }
     return energy;
+  }
+
+  void add_states(const Nodes& x, int n_owned, ElementStates& states) const override {
+    constexpr double flattest = 1e-6;  // an element that inverts has no stress per area
+    for (const auto& element : elements_) {
+      if (element.corners[0] >= n_owned)
+        continue;
+      const Tensor<dim> f = deformation_gradient(element, x);
+      Eigen::Matrix3d stress = Eigen::Matrix3d::Zero(), strain = Eigen::Matrix3d::Zero();
+      stress.topLeftCorner<dim, dim>() =
+          material_->stress(f) * f.transpose() / std::max(std::abs(f.determinant()), flattest);
+      strain.topLeftCorner<dim, dim>() = 0.5 * (f.transpose() * f - Tensor<dim>::Identity());
+      states.corners.insert(states.corners.end(), element.corners.begin(), element.corners.end());
+      states.stress.push_back(stress);
+      states.strain.push_back(strain);
+      states.energy_density.push_back(material_->energy_density(f));
+    }
   }
 
   int add_stiffness(const Nodes& x, NodeMatrix<dim>& stiffness) const override {

@@ -133,13 +133,7 @@ Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
 }
 
 Teuchos::ParameterList incomplete_cholesky_list(const Teuchos::ParameterList& given) {
-  Teuchos::ParameterList list = pressure_inverse_list(given, "Ifpack2");
-  if (list.get<std::string>("Type") == "Ifpack2" && list.numParams() == 1) {
-    list.set("Prec Type", "RILUK");
-    list.set("Overlap", 0);
-    list.sublist("Ifpack2 Settings").set("fact: iluk level-of-fill", 0);
-  }
-  return list;
+  return pressure_inverse_list(given, "Ifpack2");
 }
 
 bool is_multigrid(const Teuchos::ParameterList& list, const BlockSystem& system) {

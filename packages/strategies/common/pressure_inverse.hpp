@@ -15,8 +15,7 @@ void declare_pressure_inverse(Teuchos::ParameterList& list, const std::string& d
 /// The list given, checked, or `standard` if there is none. Throws InputError.
 Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
                                              const std::string& standard_type);
-/// The same for strategies whose standard is Ifpack2's RILUK(0), which of a symmetric matrix is its
-/// incomplete Cholesky factorisation without fill; "Ifpack2" without parameters means that too.
+/// The same for strategies whose standard is Ifpack2's RILUK(0), the incomplete Cholesky.
 Teuchos::ParameterList incomplete_cholesky_list(const Teuchos::ParameterList& list);
 
 /// Whether the list asks for the multigrid, of this system.

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "linear/exact_inverse.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
 #include "linear/symmetry_check.hpp"
@@ -110,9 +109,8 @@ bool RefinedStrategy::geometry_matches(const BlockSystem& system) const {
 }
 
 bool RefinedStrategy::solid_matches(const BlockSystem& system) const {
-  return !system.has_solid() ||
-         (!solid_inverse_.is_null() && prepared_.solid_stamp == system.solid_stamp &&
-          prepared_.solid_map->isSameAs(*domain_map(*system.solid_block)));
+  return !system.has_solid() || (solid_.is_built() && prepared_.solid_stamp == system.solid_stamp &&
+                                 prepared_.solid_map->isSameAs(*domain_map(*system.solid_block)));
 }
 
 RefinedStrategy::RefinedStrategy(const Teuchos::ParameterList& list,
@@ -121,6 +119,7 @@ RefinedStrategy::RefinedStrategy(const Teuchos::ParameterList& list,
     : maximum_iterations_(list.get<int>("Maximum Iterations")),
       check_symmetry_(list.get<bool>("Check Preconditioner Symmetry")),
       order_(order),
+      solid_(list),
       pressure_list_(std::move(pressure_list)) {}
 
 const std::vector<RCP<const Vector>>& RefinedStrategy::iteration_null_space(
@@ -182,14 +181,15 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
   const bool solid_changed = system.has_solid() && (geometry_changed || !solid_matches(system));
   is_prepared_ = false;
   if (geometry_changed) {
-    solid_inverse_ = Teuchos::null;
+    solid_.reset();
     relaid_ = relaid_pressure_ = {};
     if (pressure_list_)
       build_pressure_inverse(system);
   }
   if (solid_changed) {
-    solid_inverse_ = exact_inverse(system.solid_block, "solid block of the " + system.name);
-    solid_gain_ = gain(*system.coupling_transposed, *solid_inverse_);
+    constexpr double rough = 1e-3;
+    solid_.build(system);
+    solid_gain_ = gain(*system.coupling_transposed, *solid_.to(rough));
   }
   if (layout_)
     relay(system);
@@ -212,7 +212,7 @@ void RefinedStrategy::back_substitute(const BlockSystem& system, const BlockVect
     return;
   Vector right(*rhs.solid, Teuchos::Copy);
   system.coupling_transposed->apply(*solution.pressure, right, Teuchos::NO_TRANS, -1, 1);
-  apply(*solid_inverse_, right, *solution.solid);
+  apply(*solid_inverse(), right, *solution.solid);
 }
 
 SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector& rhs,
@@ -294,6 +294,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
 
   SolveReport report;
   report.iterations = done.n_iterations;
+  report.solid_iterations = solid_.take_iterations();
   report.pressure_residual = residual.relative_pressure();
   report.solid_residual = residual.relative_solid();
   report.solve_seconds = Teuchos::Time::wallTime() - start;

@@ -9,6 +9,7 @@
 #include "linear/block_residual.hpp"
 #include "multigrid/pressure_layout.hpp"
 #include "strategies/common/block_krylov.hpp"
+#include "strategies/common/solid_inverse.hpp"
 
 namespace lockstep {
 
@@ -79,7 +80,9 @@ class RefinedStrategy : public SolverStrategy {
   int pressure_cg(const BlockSystem& system, const CorrectionRequest& request,
                   Vector& correction) const;
   /// C^-1 to round-off; null without a solid block.
-  const RCP<const LinearOperator>& solid_inverse() const { return solid_inverse_; }
+  const RCP<const LinearOperator>& solid_inverse() const { return solid_.exact(); }
+  /// The same, and what "Solid Inverse" names to stand for it.
+  const SolidInverse& solid() const { return solid_; }
   bool check_symmetry() const { return check_symmetry_; }
   /// The same request for a Krylov method on both blocks. One that presumes a linear, symmetric
   /// inverse of A asks for no more than what single precision allows before a fresh start.
@@ -116,7 +119,7 @@ class RefinedStrategy : public SolverStrategy {
   bool is_single_precision_ = false;
   bool is_prepared_ = false;
   Prepared prepared_;
-  RCP<const LinearOperator> solid_inverse_;
+  SolidInverse solid_;
   double solid_gain_ = 0;  ///< |B C^-1|
   std::optional<Teuchos::ParameterList> pressure_list_;
   RCP<const LinearOperator> pressure_inverse_;

@@ -1,6 +1,7 @@
 #include "strategies/common/strategy_parameters.hpp"
 
 #include "linear/preconditioner.hpp"
+#include "strategies/common/solid_inverse.hpp"
 
 namespace lockstep {
 
@@ -14,6 +15,7 @@ ParameterList common_strategy_parameters() {
   declare(list, "Check Preconditioner Symmetry", false,
           "Debugging: check on random vectors that every preconditioner is symmetric positive "
           "definite");
+  declare_solid_inverse(list);
   return list;
 }
 
@@ -22,7 +24,7 @@ void declare_inverse(ParameterList& list, const std::string& name, const std::st
       list, name,
       doc +
           " \"Type\" is Ifpack2 or MueLu (the other parameters go to that package unchanged), "
-          "Direct, Block Diagonal, Jacobi, Conjugate Gradients or Exact.");
+          "Direct, Block Diagonal, Block Diagonal Mass, Jacobi, Conjugate Gradients or Exact.");
 }
 
 ParameterList inverse_list(const ParameterList& list, const std::string& name,

@@ -6,7 +6,7 @@
 namespace lockstep {
 
 /// The parameters that all strategies share: "Tolerance" (read by whoever makes the SolveRequest),
-/// "Maximum Iterations", "Check Preconditioner Symmetry".
+/// "Maximum Iterations", "Check Preconditioner Symmetry", "Solid Inverse".
 ParameterList common_strategy_parameters();
 
 /// Declares a sublist that preconditioner_from_list reads.

@@ -5,27 +5,23 @@
 #include <Thyra_PreconditionerFactoryHelpers.hpp>
 
 #include "strategies/common/pressure_inverse.hpp"
-#include "strategies/common/solid_preconditioner.hpp"
 
 namespace lockstep {
 
 ParameterList GaussSeidel::valid_parameters() {
-  ParameterList list = gmres_parameters();
-  declare_solid_inverse(list);
-  return list;
+  return gmres_parameters();
 }
 
 GaussSeidel::GaussSeidel(const ParameterList& given)
     : GmresStrategy(with_defaults(given, valid_parameters()),
-                    pressure_inverse_list(given, "Automatic")),
-      solid_list_(solid_inverse_list(given)) {}
+                    pressure_inverse_list(given, "Automatic")) {}
 
-RCP<const LinearOperator> GaussSeidel::make_preconditioner(const BlockSystem& system,
+RCP<const LinearOperator> GaussSeidel::make_preconditioner(const BlockSystem&,
                                                            const ScaledSystem& scaled) {
   const auto pressure = Thyra::scale<double>(1 / (scaled.s * scaled.s), pressure_inverse());
-  const auto solid = Thyra::scale<double>(
-      -1 / (scaled.t * scaled.t), solid_preconditioner(system, solid_list_, solid_inverse()));
-  const Teko::GaussSeidelPreconditionerFactory factory(Teko::GS_UseLowerTriangle, pressure, solid);
+  const auto solid_part = Thyra::scale<double>(-1 / (scaled.t * scaled.t), solid().approximate());
+  const Teko::GaussSeidelPreconditionerFactory factory(Teko::GS_UseLowerTriangle, pressure,
+                                                       solid_part);
   return Thyra::prec<double>(factory, scaled.op)->getUnspecifiedPrecOp();
 }
 

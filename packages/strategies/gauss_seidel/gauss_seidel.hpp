@@ -15,8 +15,6 @@ class GaussSeidel : public GmresStrategy {
  private:
   RCP<const LinearOperator> make_preconditioner(const BlockSystem& system,
                                                 const ScaledSystem& scaled) override;
-
-  ParameterList solid_list_;
 };
 
 }  // namespace lockstep

@@ -5,7 +5,6 @@
 
 #include "strategies/common/assembled_schur.hpp"
 #include "strategies/common/pressure_inverse.hpp"
-#include "strategies/common/solid_preconditioner.hpp"
 #include "strategies/common/solid_schur.hpp"
 
 namespace lockstep {
@@ -15,7 +14,6 @@ ParameterList PressureSchur::valid_parameters() {
   declare_pressure_inverse(list,
                            "Approximate inverse of the pressure block A, which is extended to one "
                            "of A + B C^-1 B^T. Default: Automatic.");
-  declare_solid_inverse(list);
   declare_positive(list, "Largest Solid", 18,
                    "With at most so many solid unknowns the inverse of A is extended by "
                    "Woodbury's formula, which stores a vector of pressures for each; with more, "
@@ -27,8 +25,7 @@ PressureSchur::PressureSchur(const ParameterList& given)
     : MinresStrategy(with_defaults(given, valid_parameters()),
                      pressure_inverse_list(given, "Automatic")),
       largest_solid_(with_defaults(given, valid_parameters()).get<int>("Largest Solid")),
-      pressure_list_(pressure_inverse_list(given, "Automatic")),
-      solid_list_(solid_inverse_list(given)) {}
+      pressure_list_(pressure_inverse_list(given, "Automatic")) {}
 
 RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system) {
   if (system.solid_block->domain()->dim() <= largest_solid_ &&
@@ -45,7 +42,7 @@ RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system
 }
 
 MinresStrategy::Preconditioners PressureSchur::make_preconditioners(const BlockSystem& system) {
-  return {schur_inverse(system), solid_preconditioner(system, solid_list_, solid_inverse())};
+  return {schur_inverse(system), solid().approximate()};
 }
 
 }  // namespace lockstep

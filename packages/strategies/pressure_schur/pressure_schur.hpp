@@ -22,7 +22,7 @@ class PressureSchur : public MinresStrategy {
   RCP<const LinearOperator> schur_inverse(const BlockSystem& system);
 
   int largest_solid_;
-  ParameterList pressure_list_, solid_list_;
+  ParameterList pressure_list_;
 };
 
 }  // namespace lockstep

@@ -3,6 +3,8 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include <algorithm>
+
 #include "linear/conjugate_gradients.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 
@@ -10,26 +12,36 @@ namespace lockstep {
 
 namespace {
 
-/// What the elimination of V_S adds to A: B C^-1 B^T.
+/// What the elimination of V_S adds to A: B C^-1 B^T. Where C^-1 iterates, its tolerance follows
+/// the outer residual r: an error of C^-1 relative to what it is applied to may be the larger, the
+/// nearer |r| is to its target (Simoncini and Szyld 2003). What is left is refined away.
 class Eliminated {
  public:
-  Eliminated(const BlockSystem& system, const LinearOperator& solid_inverse)
+  Eliminated(const BlockSystem& system, const SolidInverse& solid, double target)
       : coupling_(*system.coupling_transposed),
-        solid_inverse_(solid_inverse),
+        solid_(solid),
+        target_(target),
         force_(coupling_.getRangeMap()),
         velocity_(coupling_.getRangeMap()) {}
+
+  void set_residual(double norm) {
+    constexpr double share = 1e-2, loosest = 1e-3;
+    inverse_ = solid_.to(std::min(loosest, share * target_ / norm));
+  }
 
   /// y += B C^-1 B^T x; returns x.B C^-1 B^T x.
   double add(const Vector& x, Vector& y) {
     coupling_.apply(x, force_);
-    apply(solid_inverse_, force_, velocity_);
+    apply(*inverse_, force_, velocity_);
     coupling_.apply(velocity_, y, Teuchos::TRANS, 1, 1);
     return force_.dot(velocity_);
   }
 
  private:
   const CrsMatrix& coupling_;
-  const LinearOperator& solid_inverse_;
+  const SolidInverse& solid_;
+  double target_;
+  RCP<const LinearOperator> inverse_;
   Vector force_, velocity_;
 };
 
@@ -38,6 +50,7 @@ class SchurKernels final : public ConjugateGradientKernels {
   SchurKernels(ConjugateGradientKernels& pressure, Eliminated& eliminated)
       : pressure_(pressure), eliminated_(eliminated) {}
   double precondition(const Vector& r, double r_norm) override {
+    eliminated_.set_residual(r_norm);
     return pressure_.precondition(r, r_norm);
   }
   double advance_direction(double beta, Vector& d, Vector& q) override {
@@ -69,7 +82,8 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
                                      iteration_null_space(system), request.update_target};
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
-  Eliminated eliminated(system, *solid_inverse());
+  Eliminated eliminated(system, solid(), request.target);
+  eliminated.set_residual(request.residual_norm);
   if (layout() != nullptr) {
     SchurKernels kernels(*layout(), eliminated);
     return conjugate_gradients(kernels, *request.residual, correction, cg);

@@ -86,5 +86,32 @@ TEST(Input, Cloth) {
   EXPECT_FALSE(made.closed);
 }
 
+// H3: a reported condition, no division by zero.
+TEST(Input, MasslessCloth) {
+  const std::string massless = geometry("sheet", numbers("Size", "1, 0, 1") + text("Normal", "y") +
+                                                     number("Mesh Spacing", "0.25")) +
+                               number("Young&apos;s Modulus", "1e4") + number("Thickness", "1e-3") +
+                               number("Surface Density", "0") + text("Bending", "none");
+  const std::string refused = error([&] { cloth<3>(massless); });
+  EXPECT_THAT(refused, HasSubstr("fully-implicit"));
+  std::vector<DeformableBody<3>> bodies;
+  bodies.push_back(cloth<3>(massless + text("Time Integration", "fully-implicit") +
+                            numbers("Velocity", "1, 2, 3")));
+  Alone<3> alone(std::make_unique<DeformableSolids<3>>("cloth", std::move(bodies),
+                                                       Point<3>(0, -10, 0), world()));
+  const SolidState<3> state = alone.solids.states()[0];
+  EXPECT_EQ(state.mass, 0);
+  EXPECT_LT((state.velocity - Point<3>(1, 2, 3)).norm(), 1e-14);
+  EXPECT_LT(state.center_of_mass.norm(), 1e-14);
+  // Nothing holds a flat sheet across its plane: no fluid sees it here.
+  std::string reported;
+  try {
+    alone.step(0.1);
+  } catch (const SolveError& failure) {
+    reported = failure.what();
+  }
+  EXPECT_THAT(reported, HasSubstr("node without mass that no mixed face sees"));
+}
+
 }  // namespace
 }  // namespace lockstep

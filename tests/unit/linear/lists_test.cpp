@@ -136,6 +136,9 @@ TEST(Preconditioner, BadListsAreRefused) {
     return message_of<InputError>([&] { check_preconditioner_list(inverse(xml), "here"); });
   };
   EXPECT_THAT(complaint(typed("Jakobi")), HasSubstr("Did you mean \"Jacobi\"?"));
+  EXPECT_THAT(complaint(typed("Conjugate Gradients") + R"(<ParameterList name="Preconditioner">)" +
+                        typed("MueLoo") + "</ParameterList>"),
+              HasSubstr("here, \"Preconditioner\": there is no inverse of type \"MueLoo\""));
   EXPECT_THAT(complaint(""), HasSubstr("\"Type\" (string) is missing"));
   EXPECT_THAT(complaint(typed("Jacobi") + R"(<Parameter name="Omega" type="double" value="1"/>)"),
               HasSubstr("\"Omega\" is not a parameter"));

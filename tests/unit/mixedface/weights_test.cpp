@@ -81,6 +81,38 @@ TEST(Weights, RowsReproduceTranslationsAndRigidMotions3d) {
   check_rows_reproduce_motions<3>(0.25);
 }
 
+/// W with local rotations: rows reproduce rigid motions at the faces' centres, and their transposes
+/// hand on forces with their torques.
+template <int dim>
+void check_carried_rows(double radius) {
+  const int n_cells = dim == 2 ? 12 : 6;
+  const Point<dim> center = shifted_center<dim>(1, 1. / n_cells);
+  const FakeBody<dim> body = ball<dim>(radius, center, FakeBody<dim>::Kind::nodal);
+  MixedFaceOptions options;
+  options.carry_rotations = true;
+  CoupledCase<dim> c(unit_tank<dim>(n_cells), fake_solids<dim>({{body}}), options);
+  const GatheredFaces<dim> faces = gathered_faces(c);
+  ASSERT_GT(faces.volumes.size(), 10u);
+  for (std::size_t f = 0; f < faces.volumes.size(); ++f) {
+    Momentum<dim> taken;
+    for (std::size_t v = 0; v < body.surface.vertices.size(); ++v) {
+      taken.add(body.surface.vertices[v],
+                faces.weights.row(static_cast<int>(f)).segment<dim>(dim * v).transpose());
+    }
+    const auto& volume = faces.volumes[f];
+    const Point<dim> unit = Point<dim>::Unit(volume.direction);
+    EXPECT_LT((taken.linear - unit).norm(), 1e-12);
+    EXPECT_LT((taken.angular - cross<dim>(volume.center, unit)).norm(), 1e-12);
+  }
+}
+
+TEST(Weights, CarriedRowsReproduceRigidMotions2d) {
+  check_carried_rows<2>(0.22);
+}
+TEST(Weights, CarriedRowsReproduceRigidMotions3d) {
+  check_carried_rows<3>(0.25);
+}
+
 /// Moving a closed voxel surface rigidly changes no volume: B^T chi = 0 for the fluid around it.
 template <int dim>
 void check_voxel_surface_closes() {

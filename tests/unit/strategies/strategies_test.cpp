@@ -290,10 +290,28 @@ TEST(Strategies, EmptyRanks) {
               HasSubstr("owns no pressure unknown"));
 }
 
+TEST(Strategies, EverySolidInverseLeadsToTheSameSolution) {
+  const SaddleProblem problem(world(), {});
+  const Solved expected = solve(*make("direct"), problem);
+  for (const std::string strategy : {"schur-cg", "pressure-schur"}) {
+    for (const std::string type : {"Automatic", "Exact", "Jacobi", "Block Diagonal", "Direct",
+                                   "Block Diagonal Mass", "Conjugate Gradients", "Ifpack2"}) {
+      SCOPED_TRACE(strategy + ", " + type);
+      ParameterList list;
+      list.sublist("Solid Inverse").set("Type", type);
+      const Solved found = solve(*make(strategy, list), problem);
+      EXPECT_LT(relative_difference(*expected.solution.solid, *found.solution.solid), 1e-7);
+    }
+  }
+}
+
 TEST(Strategies, MisspeltInverseIsAnInputError) {
   ParameterList list = with_inverse("MueLu");
   list.sublist("Pressure Inverse").set("smother: type", "CHEBYSHEV");
   EXPECT_THROW(make("schur-cg", list), InputError);
+  ParameterList solid;
+  solid.sublist("Solid Inverse").set("Type", "Automtic");
+  EXPECT_THROW(make("schur-cg", solid), InputError);
 }
 
 }  // namespace lockstep::test

@@ -1,0 +1,55 @@
+#pragma once
+#include <memory>
+
+#include "interfaces/strategy.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// Declares "Solid Inverse", the list that names the approximate inverse of C. Its "Type" is
+///   "Automatic"  the default. Exact where that is cheap (see exact_inverse); else chosen by
+///                stiffness_number: the diagonal of C while M̃ dominates, MueLu with the rigid
+///                motions of the bodies where dt D does
+///   "Exact"      that to round-off, by conjugate gradients where it must iterate
+/// or one of linear/preconditioner.hpp.
+void declare_solid_inverse(ParameterList& list);
+
+/// C^-1 and what stands for it in preconditioners.
+class SolidInverse {
+ public:
+  /// Of no solid.
+  SolidInverse() = default;
+  /// `list` has "Solid Inverse" or leaves it out. Throws InputError for a bad sublist.
+  explicit SolidInverse(const ParameterList& list);
+
+  /// Builds all that follows from C. Throws SolveError if C does not allow it. Collective.
+  void build(const BlockSystem& system);
+  void reset();
+  bool is_built() const { return !exact_.is_null(); }
+
+  /// C^-1 to round-off. Null before `build`.
+  const RCP<const LinearOperator>& exact() const { return exact_; }
+  /// C^-1 to this relative residual, where it must iterate; else to round-off.
+  RCP<const LinearOperator> to(double tolerance) const;
+  /// What the list names: symmetric positive definite and, unless it iterates itself, linear.
+  const RCP<const LinearOperator>& approximate() const { return approximate_; }
+  /// "Automatic" and nothing more.
+  bool is_automatic() const { return type_ == "Automatic"; }
+  /// Inner iterations since the last call.
+  int take_iterations();
+
+ private:
+  void build_automatic(const BlockSystem& system, const std::string& name);
+  void build_named(const BlockSystem& system, const std::string& name);
+  RCP<const LinearOperator> iteration(double tolerance, int most) const;
+
+  ParameterList list_;
+  std::string type_ = "Automatic";
+  RCP<const LinearOperator> op_, exact_, approximate_;
+  RCP<const LinearOperator> preconditioner_;  ///< of the inner iteration; null: a direct method
+  bool iterates_ = false;
+  std::string name_;
+  std::shared_ptr<long> iterations_ = std::make_shared<long>(0);
+};
+
+}  // namespace lockstep

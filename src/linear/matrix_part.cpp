@@ -1,0 +1,93 @@
+#include "linear/matrix_part.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "linear/action_operator.hpp"
+#include "linear/block_diagonal.hpp"
+#include "linear/matrix_rows.hpp"
+
+namespace lockstep {
+
+namespace {
+
+constexpr int largest_block = 24;
+
+/// A vector on the row map, as every rank sees it on the columns.
+RCP<Vector> on_columns(const CrsMatrix& matrix, const Vector& rows) {
+  const auto columns = make_vector(matrix.getColMap());
+  const auto importer = matrix.getGraph()->getImporter();
+  if (importer.is_null())
+    columns->update(1, rows, 0);
+  else
+    columns->doImport(rows, *importer, Tpetra::INSERT);
+  return columns;
+}
+
+}  // namespace
+
+MatrixPart::MatrixPart(const CrsMatrix& matrix, const std::vector<bool>& is_inside) {
+  for (std::size_t row = 0; row < is_inside.size(); ++row) {
+    if (is_inside[row])
+      rows_.push_back(static_cast<int>(row));
+  }
+  map_ = make_map(static_cast<int>(rows_.size()), matrix.getComm());
+  Vector numbers(matrix.getRowMap());  // integers, which a double holds exactly
+  numbers.putScalar(-1);
+  {
+    const auto values = numbers.getDataNonConst();
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      values[rows_[i]] = static_cast<double>(map_->getGlobalElement(static_cast<int>(i)));
+  }
+  const auto numbers_of_columns = on_columns(matrix, numbers);
+  const auto number = numbers_of_columns->getData();
+  std::vector<std::vector<Entry>> entries(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Teuchos::ArrayView<const int> columns;
+    Teuchos::ArrayView<const double> values;
+    matrix.getLocalRowView(rows_[i], columns, values);
+    for (int k = 0; k < columns.size(); ++k) {
+      if (number[columns[k]] >= 0)
+        entries[i].push_back({static_cast<GlobalIndex>(number[columns[k]]), values[k]});
+    }
+  }
+  matrix_ = matrix_from_rows(map_, entries);
+}
+
+RCP<Vector> MatrixPart::restricted(const Vector& all) const {
+  const auto part = make_vector(map_);
+  const auto from = all.getData();
+  const auto to = part->getDataNonConst();
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    to[i] = from[rows_[i]];
+  return part;
+}
+
+void MatrixPart::prolong(const Vector& part, Vector& all) const {
+  const auto from = part.getData();
+  const auto to = all.getDataNonConst();
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    to[rows_[i]] = from[i];
+}
+
+RCP<const LinearOperator> inverse_by_parts(const MatrixPart& inside,
+                                           const RCP<const LinearOperator>& of_inside,
+                                           const MatrixPart& outside, const RCP<const Map>& map,
+                                           const std::string& name) {
+  RCP<const LinearOperator> of_outside;
+  if (!outside.empty()) {
+    of_outside = as_operator(block_diagonal_inverse(outside.matrix(), largest_block, name).inverse);
+  }
+  return action_operator(map, [=](const Vector& x, Vector& y) {
+    Vector result(inside.map());
+    apply(*of_inside, *inside.restricted(x), result);
+    inside.prolong(result, y);
+    if (of_outside.is_null())
+      return;
+    Vector other(outside.map());
+    apply(*of_outside, *outside.restricted(x), other);
+    outside.prolong(other, y);
+  });
+}
+
+}  // namespace lockstep

@@ -1,0 +1,95 @@
+#include "linear/near_null_space.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "base/errors.hpp"
+#include "linear/action_operator.hpp"
+#include "linear/block_diagonal.hpp"
+#include "linear/matrix_part.hpp"
+#include "linear/matrix_rows.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Rows of a node that no other row is tied to are held, or feel no D.
+std::vector<bool> tied_rows(const CrsMatrix& c, const NearNullSpace& space) {
+  std::vector<bool> tied(space.body_of_row.size(), false);
+  for_each_entry(c, [&](int row, GlobalIndex column, double value) {
+    if (value != 0 && column != c.getRowMap()->getGlobalElement(row))
+      tied[row] = space.body_of_row[row] >= 0;
+  });
+  return tied;
+}
+
+}  // namespace
+
+RCP<Vector> lumped_mass(const CrsMatrix& c, const NearNullSpace& space) {
+  const auto masses = make_vector(c.getRowMap());
+  const auto result = masses->getDataNonConst();
+  Vector sums(c.getRangeMap());
+  for (int a = 0; a < space.n_axes(); ++a) {
+    c.apply(*space.motions->getVector(a), sums);
+    const auto values = sums.getData();
+    const auto translation = space.motions->getData(a);
+    for (int row = 0; row < static_cast<int>(values.size()); ++row) {
+      if (translation[row] != 0)
+        result[row] = values[row];
+    }
+  }
+  return masses;
+}
+
+double stiffness_number(const CrsMatrix& c, const NearNullSpace& space) {
+  if (space.empty())
+    return 1;
+  const std::vector<bool> tied = tied_rows(c, space);
+  const RCP<const Vector> masses = lumped_mass(c, space), diagonal = diagonal_of(c);
+  const auto mass = masses->getData(), entry = diagonal->getData();
+  double sums[2] = {0, 0};
+  for (std::size_t row = 0; row < tied.size(); ++row) {
+    if (tied[row]) {
+      sums[0] += entry[row];
+      sums[1] += mass[row];
+    }
+  }
+  sum_all(c.getComm(), sums, 2);
+  return sums[1] > 0 ? sums[0] / sums[1] : 1;
+}
+
+bool is_stiff(const CrsMatrix& c, const NearNullSpace& space) {
+  constexpr double worth_a_cycle = 30;
+  return stiffness_number(c, space) > worth_a_cycle;
+}
+
+RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>& c,
+                                                      const NearNullSpace& space,
+                                                      const std::string& name) {
+  constexpr int largest_block = 24;
+  if (space.empty())
+    return as_operator(block_diagonal_inverse(c, largest_block, name).inverse);
+  std::vector<bool> is_node, is_other;
+  for (const int body : space.body_of_row) {
+    is_node.push_back(body >= 0);
+    is_other.push_back(body < 0);
+  }
+  const MatrixPart nodes(*c, is_node), others(*c, is_other);
+  const RCP<Vector> inverse = nodes.restricted(*lumped_mass(*c, space));
+  std::string failure;
+  for (double& value : inverse->getDataNonConst()) {
+    if (!(value > 0))
+      failure = fmt::format(
+          "The {} has a node without mass, its own or of fluid lumped on it: \"Block Diagonal "
+          "Mass\" cannot divide by it. Choose another \"Solid Inverse\".",
+          name);
+    value = 1 / value;
+  }
+  throw_on_all(c->getComm(), failure, static_cast<int>(ExitCode::solve_failed));
+  const auto of_nodes = action_operator(nodes.map(), [inverse](const Vector& x, Vector& y) {
+    y.elementWiseMultiply(1, *inverse, x, 0);
+  });
+  return inverse_by_parts(nodes, of_nodes, others, c->getRowMap(), name);
+}
+
+}  // namespace lockstep

@@ -1,0 +1,119 @@
+// Inverses of C = M - dt D of a soft solid, from a solid of mass to one that is nearly rigid.
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "linear/exact_inverse.hpp"
+#include "linear/matrix_rows.hpp"
+#include "linear/preconditioner.hpp"
+#include "linear/symmetry_check.hpp"
+
+namespace lockstep::test {
+
+namespace {
+
+/// n x n nodes of unit mass and distance, tied to their eight neighbours by springs of stiffness k,
+/// linear about rest; the nodes are dealt to the ranks row by row. A rigid dof of mass 3 follows on
+/// the last rank.
+struct Lattice {
+  Lattice(int n, double k) {
+    const Communicator comm = Tpetra::getDefaultComm();
+    const int n_nodes = n * n, rank = comm->getRank(), n_ranks = comm->getSize();
+    const int begin = n_nodes * rank / n_ranks, end = n_nodes * (rank + 1) / n_ranks;
+    const bool is_last = rank == n_ranks - 1;
+    const RCP<const Map> map = make_map(2 * (end - begin) + (is_last ? 1 : 0), comm);
+    std::vector<std::vector<Entry>> rows(map->getNodeNumElements());
+    const auto motions = rcp(new MultiVector(map, 3));
+    for (int node = begin; node < end; ++node) {
+      const int i = node % n, j = node / n, row = 2 * (node - begin);
+      for (int a = 0; a < 2; ++a) {
+        rows[row + a].push_back({2 * node + a, 1});
+        motions->replaceLocalValue(row + a, a, 1);
+        motions->replaceLocalValue(row + a, 2, a == 0 ? -j : i);
+        space.body_of_row.push_back(0);
+      }
+      for (int dj = -1; dj <= 1; ++dj) {
+        for (int di = -1; di <= 1; ++di) {
+          const bool inside = i + di >= 0 && i + di < n && j + dj >= 0 && j + dj < n;
+          if (inside && (di != 0 || dj != 0))
+            add_spring(node, node + di + n * dj, Point<2>(di, dj).normalized(), k, rows, row);
+        }
+      }
+    }
+    if (is_last) {
+      rows.back().push_back({2 * n_nodes, 3});
+      space.body_of_row.push_back(-1);
+    }
+    space.motions = motions;
+    space.n_bodies = 1;
+    c = matrix_from_rows(map, rows);
+  }
+
+  static void add_spring(int node, int other, const Point<2>& e, double k,
+                         std::vector<std::vector<Entry>>& rows, int row) {
+    for (int a = 0; a < 2; ++a) {
+      for (int b = 0; b < 2; ++b) {
+        rows[row + a].push_back({2 * node + b, k * e[a] * e[b]});
+        rows[row + a].push_back({2 * other + b, -k * e[a] * e[b]});
+      }
+    }
+  }
+
+  RCP<const CrsMatrix> c;
+  NearNullSpace space;
+};
+
+Teuchos::ParameterList type(const std::string& name) {
+  Teuchos::ParameterList list;
+  list.set("Type", name);
+  return list;
+}
+
+/// Iterations of conjugate gradients to 1e-10 with this inverse.
+long iterations(const Lattice& solid, const std::string& name) {
+  const auto op = as_operator(solid.c);
+  const auto inverse = preconditioner_from_list(op, type(name), "solid", solid.space);
+  EXPECT_NO_THROW(check_symmetric_positive(*inverse, "solid"));
+  const auto count = std::make_shared<long>(0);
+  const auto solver = conjugate_gradient_inverse(op, {inverse, 1e-10, 5000, "solid", count});
+  Vector rhs(solid.c->getRowMap()), x(solid.c->getRowMap()), residual(solid.c->getRowMap());
+  pseudo_random(rhs, 7);
+  apply(*solver, rhs, x);
+  solid.c->apply(x, residual);
+  residual.update(1, rhs, -1);
+  EXPECT_LT(residual.norm2(), 1e-6 * rhs.norm2());
+  return *count;
+}
+
+}  // namespace
+
+TEST(SoftSolid, StiffnessNumberComparesTheTraces) {
+  // Two nodes by two: each has springs along x and y (k e e^T: trace k each) and one diagonal.
+  const Lattice solid(2, 5);
+  EXPECT_NEAR(stiffness_number(*solid.c, solid.space), 1 + 0.5 * 3 * 5, 1e-12);
+  EXPECT_EQ(stiffness_number(*solid.c, {}), 1);
+  EXPECT_NEAR(stiffness_number(*Lattice(3, 0).c, Lattice(3, 0).space), 1, 1e-12);
+}
+
+TEST(SoftSolid, MassIsFoundInC) {
+  const Lattice solid(5, 1e3);
+  const auto inverse = block_diagonal_mass_inverse(solid.c, solid.space, "solid");
+  Vector ones(solid.c->getRowMap()), x(solid.c->getRowMap());
+  ones.putScalar(1);
+  apply(*inverse, ones, x);
+  const auto values = x.getData();
+  for (int row = 0; row < static_cast<int>(values.size()); ++row)
+    EXPECT_NEAR(values[row], solid.space.body_of_row[row] == 0 ? 1 : 1. / 3, 1e-10);
+}
+
+TEST(SoftSolid, MultigridIsFlatInStiffnessAndSize) {
+  const long soft = iterations(Lattice(24, 1), "MueLu");
+  for (const double k : {1e2, 1e4, 1e8})
+    EXPECT_LE(iterations(Lattice(24, k), "MueLu"), soft + 12) << k;
+  EXPECT_LE(iterations(Lattice(48, 1e4), "MueLu"), soft + 14);
+  EXPECT_GT(iterations(Lattice(48, 1e4), "Jacobi"), 8 * soft);
+}
+
+}  // namespace lockstep::test
