@@ -97,7 +97,7 @@ void check_carried_rows(double radius) {
     Momentum<dim> taken;
     for (std::size_t v = 0; v < body.surface.vertices.size(); ++v) {
       taken.add(body.surface.vertices[v],
-                faces.weights.row(static_cast<int>(f)).segment<dim>(dim * v).transpose());
+                faces.weights.row(static_cast<int>(f)).template segment<dim>(dim * v).transpose());
     }
     const auto& volume = faces.volumes[f];
     const Point<dim> unit = Point<dim>::Unit(volume.direction);
