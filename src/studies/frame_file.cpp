@@ -48,9 +48,9 @@ FrameFile::Values FrameFile::dataset(const std::string& name) const {
   result.extents.assign(extents.begin(), extents.end());
   result.values.resize(
       std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>()));
-  check_output(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                       result.values.data()) >= 0,
-               "Cannot read \"{}\" of '{}'.", name, path_);
+  check_output(
+      H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.values.data()) >= 0,
+      "Cannot read \"{}\" of '{}'.", name, path_);
   return result;
 }
 

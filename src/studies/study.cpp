@@ -139,9 +139,9 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
   using Norm = Quantity::Norm;
   Quantity quantity;
   quantity.name = name;
-  quantity.from = choice<From>(
-      list.get<std::string>("Type"),
-      {{"table", From::tables}, {"surface", From::surface}, {"field", From::field}});
+  quantity.from =
+      choice<From>(list.get<std::string>("Type"),
+                   {{"table", From::tables}, {"surface", From::surface}, {"field", From::field}});
   if (quantity.from == From::field) {
     quantity.expression = list.get<std::string>("Exact");
     quantity.field = list.get<std::string>("Field");

@@ -30,12 +30,12 @@ struct Quantity {
   enum class Norm { l1, l2, max };
   std::string name;
   From from = From::tables;
-  std::string expression;        ///< over the rows of a run, or exact value of the field
-  Over over = Over::last;        ///< how the rows of a run become one number
-  double from_time = 0;          ///< rows before it do not count [s]
-  std::string solid;             ///< whose surface
+  std::string expression;         ///< over the rows of a run, or exact value of the field
+  Over over = Over::last;         ///< how the rows of a run become one number
+  double from_time = 0;           ///< rows before it do not count [s]
+  std::string solid;              ///< whose surface
   std::array<double, 3> point{};  ///< that picks a vertex of the surface [m]
-  std::string field;             ///< dataset of the last frame
+  std::string field;              ///< dataset of the last frame
   int component = 0;
   Norm norm = Norm::l2;
   std::string reference;  ///< a formula, "self" or empty

@@ -22,9 +22,9 @@ Surface read_surface(const FrameFile& file, const std::string& solid) {
   const std::string group = "/solids/" + solid;
   const auto vertices = file.dataset(group + "/vertices");
   const auto simplices = file.dataset(group + "/simplices");
-  check_output(vertices.extents.size() == 2 && vertices.extents[1] == 3 &&
-                   simplices.extents.size() == 2,
-               "The surface of \"{}\" has an unknown shape.", solid);
+  check_output(
+      vertices.extents.size() == 2 && vertices.extents[1] == 3 && simplices.extents.size() == 2,
+      "The surface of \"{}\" has an unknown shape.", solid);
   Surface surface;
   for (std::size_t v = 0; v < vertices.extents[0]; ++v)
     surface.vertices.emplace_back(Eigen::Map<const Vector>(&vertices.values[3 * v]));
