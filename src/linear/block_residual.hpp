@@ -4,8 +4,7 @@
 namespace lockstep {
 
 /// Residuals of Eq. 16, and what they are measured against: per block the largest norm of the
-/// right-hand side and of the terms of its rows; for the pressure not less than 1e-6 |B| |V_S|, for
-/// the terms of B V_S may cancel.
+/// right-hand side and of the terms of its rows.
 struct BlockResidual {
   BlockVector vector;              ///< (rhs_1 - A p̂ + B V_S, -solid rhs + B^T p̂ + C V_S)
   double pressure = 0, solid = 0;  ///< 2-norms

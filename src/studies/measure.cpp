@@ -24,8 +24,7 @@ double rise_frequency(const std::vector<double>& times, const std::vector<double
     if (n_rises++ == 0)
       first = last;
   }
-  check_input(n_rises > 1, "A frequency needs two rises through 0, but there are {}.",
-              n_rises);
+  check_input(n_rises > 1, "A frequency needs two rises through 0, but there are {}.", n_rises);
   return (n_rises - 1) / (last - first);
 }
 
