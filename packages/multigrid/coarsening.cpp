@@ -291,8 +291,7 @@ Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
   coarse.complete(coarse_level);
   Transfer transfer = step.take_transfer();
   sort_by_slab(fine_level.grid, transfer);
-  transfer.moves_cells = !destinations.empty();
-  if (transfer.moves_cells)
+  if (!destinations.empty())
     transfer.leaves_rank = max_all(blocks.comm, transfer.leaves_rank ? 1.0 : 0.0) > 0;
   return transfer;
 }

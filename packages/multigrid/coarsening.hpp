@@ -22,7 +22,6 @@ struct Transfer {
   std::vector<MovedCell> moved;      ///< sorted by slab
   std::vector<std::size_t> in_slab;  ///< by slab: the first of `moved`; one more at the end
   bool leaves_rank = false;          ///< some rank moves a cell to a ghost
-  bool moves_cells = false;          ///< on any rank: the coarse problem may be too soft there
 };
 
 struct CoarseningFactors {

@@ -111,15 +111,6 @@ void Multigrid<dim>::set(const FaceCoefficients& coefficients) {
     unit *= dim == 3 ? 2 : 1;
   }
   invert_coarsest(fine_);
-  visits_twice_ = options_.is_w_cycle && may_visit_twice();
-}
-
-/// Two visits make 2 B - B A B of the cycle B below, which is positive only while B overshoots by
-/// less than two. Where cells behind thin walls were moved it may not.
-template <int dim>
-bool Multigrid<dim>::may_visit_twice() const {
-  return std::none_of(transfers_.begin(), transfers_.end(),
-                      [](const Transfer& transfer) { return transfer.moves_cells; });
 }
 
 template <int dim>
@@ -385,7 +376,7 @@ void Multigrid<dim>::cycle(int level, bool from_zero) {
   }
   smooth_and_restrict(level, from_zero);
   cycle(level + 1, true);
-  if (visits_twice_ && level + 2 < n_levels())
+  if (options_.is_w_cycle && level + 2 < n_levels())
     cycle(level + 1, false);
   prolong_and_smooth(level);
 }

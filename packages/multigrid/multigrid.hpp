@@ -48,7 +48,6 @@ class Multigrid {
 
   void copy_to_natural(const FaceCoefficients& coefficients, NaturalStencil& natural) const;
   void invert_coarsest(const NaturalStencil& stencil);
-  bool may_visit_twice() const;
   void solve_coarsest();
   void cycle(int level, bool from_zero);
   void smooth_and_restrict(int level, bool from_zero);
@@ -67,7 +66,6 @@ class Multigrid {
   MultigridOptions options_;
   std::vector<StencilLevel<dim>> stencils_;
   std::vector<Transfer> transfers_;
-  bool visits_twice_ = true;  ///< a W-cycle
   std::vector<Work> work_;
   std::vector<std::ptrdiff_t> coarsest_slots_;  ///< of its unknowns: colour * n_slots + slot
   Eigen::MatrixXd coarsest_inverse_;
