@@ -166,10 +166,8 @@ void Coarsening::add_face(const Cell& a, const Cell& b, float value) {
     if (a[d] != b[d])
       axis = d;
   }
-  if (distance != 1) {
-    transfer_.loses_coupling = transfer_.loses_coupling || distance > 1;
+  if (distance != 1)
     return;
-  }
   const Cell& upper = a[axis] > b[axis] ? a : b;
   if (is_stored(upper))
     coarse_.lower[axis][natural(upper)] += value;
@@ -188,8 +186,6 @@ void Coarsening::move_face(const Cell& upper, int axis, const std::vector<char>&
   add_face(parent(upper), parent(lower), -value);
   if (of_upper != destination::none && of_lower != destination::none)
     add_face(new_parent(upper, of_upper), new_parent(lower, of_lower), value);
-  else
-    transfer_.loses_coupling = true;
 }
 
 void Coarsening::move_cell(const Cell& cell, char destination) {
@@ -295,10 +291,8 @@ Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
   coarse.complete(coarse_level);
   Transfer transfer = step.take_transfer();
   sort_by_slab(fine_level.grid, transfer);
-  if (!destinations.empty()) {
+  if (!destinations.empty())
     transfer.leaves_rank = max_all(blocks.comm, transfer.leaves_rank ? 1.0 : 0.0) > 0;
-    transfer.loses_coupling = max_all(blocks.comm, transfer.loses_coupling ? 1.0 : 0.0) > 0;
-  }
   return transfer;
 }
 

@@ -22,8 +22,6 @@ struct Transfer {
   std::vector<MovedCell> moved;      ///< sorted by slab
   std::vector<std::size_t> in_slab;  ///< by slab: the first of `moved`; one more at the end
   bool leaves_rank = false;          ///< some rank moves a cell to a ghost
-  /// Some coupling of a moved cell has no coarse face: the coarse problem is too soft there.
-  bool loses_coupling = false;
 };
 
 struct CoarseningFactors {

@@ -111,19 +111,6 @@ void Multigrid<dim>::set(const FaceCoefficients& coefficients) {
     unit *= dim == 3 ? 2 : 1;
   }
   invert_coarsest(fine_);
-  choose_visits();
-}
-
-/// Two visits make 2 B - B A B of the cycle B below, which is positive only while B overshoots by
-/// less than two. Where a coarser problem is too soft it may not: such levels are visited once.
-template <int dim>
-void Multigrid<dim>::choose_visits() {
-  is_visited_twice_.assign(n_levels(), 0);
-  bool is_sound = options_.is_w_cycle;
-  for (int level = n_levels() - 2; level >= 0; --level) {
-    is_visited_twice_[level] = is_sound && level + 2 < n_levels() ? 1 : 0;
-    is_sound = is_sound && !transfers_[level].loses_coupling;
-  }
 }
 
 template <int dim>
@@ -389,7 +376,7 @@ void Multigrid<dim>::cycle(int level, bool from_zero) {
   }
   smooth_and_restrict(level, from_zero);
   cycle(level + 1, true);
-  if (is_visited_twice_[level])
+  if (options_.is_w_cycle && level + 2 < n_levels())
     cycle(level + 1, false);
   prolong_and_smooth(level);
 }

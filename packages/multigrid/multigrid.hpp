@@ -48,7 +48,6 @@ class Multigrid {
 
   void copy_to_natural(const FaceCoefficients& coefficients, NaturalStencil& natural) const;
   void invert_coarsest(const NaturalStencil& stencil);
-  void choose_visits();
   void solve_coarsest();
   void cycle(int level, bool from_zero);
   void smooth_and_restrict(int level, bool from_zero);
@@ -67,7 +66,6 @@ class Multigrid {
   MultigridOptions options_;
   std::vector<StencilLevel<dim>> stencils_;
   std::vector<Transfer> transfers_;
-  std::vector<char> is_visited_twice_;  ///< by level: the next coarser one
   std::vector<Work> work_;
   std::vector<std::ptrdiff_t> coarsest_slots_;  ///< of its unknowns: colour * n_slots + slot
   Eigen::MatrixXd coarsest_inverse_;
