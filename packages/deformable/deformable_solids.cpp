@@ -216,13 +216,11 @@ void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
   elastic_force_ = std::move(force);
   n_clamped_ = sum_all(comm_, n_clamped_);
   sum_all(comm_, energies.data(), static_cast<int>(energies.size()));
-  Momentum<dim> load, inner;
+  Momentum<dim> load;
   for (int i = 0; i < space_.n_owned(); ++i) {
     load.add(x_[i], node_mass_[i] * gravity_ + node_force_[i]);
-    inner.add(x_[i], elastic_force_[i]);
   }
   load_ = sum_over_ranks<dim>(load, comm_);
-  inner_torque_ = sum_over_ranks<dim>(inner, comm_).angular;
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     bodies_[b].elastic_energy = energies[b];
 }

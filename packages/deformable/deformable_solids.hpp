@@ -60,8 +60,8 @@ class DeformableSolids : public SolidModel<dim> {
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return states_; }
   void add_frames(std::vector<SurfaceFrame>& frames) const override;
-  /// Of linear elasticity of turned bodies.
-  AngularVector<dim> inner_torque() const override { return inner_torque_; }
+  /// Of linear elasticity of turned bodies, means over sub-steps, and the stretch limit of S1.
+  AngularVector<dim> inner_angular_impulse(double dt) const override;
   double largest_stable_step() const override { return largest_stable_step_; }
 
   /// Bit for bit on the same ranks. Throws InputError if the checkpoint holds other bodies.
@@ -140,7 +140,6 @@ class DeformableSolids : public SolidModel<dim> {
   RCP<const Vector> velocity_;
   std::vector<SolidState<dim>> states_;
   Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]
-  AngularVector<dim> inner_torque_ = AngularVector<dim>::Zero();  ///< of elastic forces [N m]
   double largest_stable_step_ = 1e300;
   double step_ = 0;          ///< the present one [s]
   bool linearised_ = false;  ///< elsewhere than at x_

@@ -94,12 +94,24 @@ typename DeformableSolids<dim>::Nodes DeformableSolids<dim>::averaged_forces() c
   return force;
 }
 
+template <int dim>
+AngularVector<dim> DeformableSolids<dim>::inner_angular_impulse(double dt) const {
+  const Nodes force = averaged_forces();
+  Momentum<dim> sum;
+  for (int i = 0; i < space_.n_owned(); ++i)
+    sum.add(x_[i], dt * force[i] + (limiting_impulse_.empty() ? Point<dim>(Point<dim>::Zero())
+                                                              : limiting_impulse_[i]));
+  return sum_over_ranks<dim>(sum, comm_).angular;
+}
+
 template void DeformableSolids<2>::update_largest_stable_step();
 template void DeformableSolids<3>::update_largest_stable_step();
 template double DeformableSolids<2>::least_mass(int) const;
 template double DeformableSolids<3>::least_mass(int) const;
 template std::vector<Point<2>> DeformableSolids<2>::averaged_forces() const;
 template std::vector<Point<3>> DeformableSolids<3>::averaged_forces() const;
+template AngularVector<2> DeformableSolids<2>::inner_angular_impulse(double) const;
+template AngularVector<3> DeformableSolids<3>::inner_angular_impulse(double) const;
 template void DeformableSolids<2>::average_forces(int, Nodes&) const;
 template void DeformableSolids<3>::average_forces(int, Nodes&) const;
 

@@ -218,7 +218,8 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
   VelocityRow<dim> scratch;
   struct Entries {
     double weight;
-    bool rigid;
+    bool is_rigid;
+    bool is_rigid_motion;  ///< that, or of an element with nodes attached to one
     std::vector<GlobalIndex> dofs;
     std::vector<double> values;
   };
@@ -226,7 +227,8 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
   for (std::size_t f = 0; f < volumes.size(); ++f) {
     rows.clear();
     for (const SurfaceShare<dim>& share : shares[f]) {
-      Entries row{share.weight, solids.solids()[share.solid].rigid, {}, {}};
+      const bool is_rigid = solids.solids()[share.solid].rigid;
+      Entries row{share.weight, is_rigid, is_rigid, {}, {}};
       // Nodes take their masses by weights that are positive.
       if (lumping == Lumping::consistent) {
         carried_row<dim>(solids, share, volumes[f].center, volumes[f].direction, scratch, row.dofs,
@@ -235,6 +237,9 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
         directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch,
                           row.dofs, row.values);
       }
+      row.is_rigid_motion =
+          is_rigid || std::any_of(row.dofs.begin(), row.dofs.end(),
+                                  [&](GlobalIndex dof) { return solids.carries_nodes(dof); });
       if (!row.dofs.empty())
         rows.push_back(std::move(row));
     }
@@ -248,9 +253,9 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
                    masses[f] * row.weight * row.values[i] * other.weight * other.values[j]});
             }
           }
-        } else if (row.rigid && lumping == Lumping::paper_diagonal) {
+        } else if (row.is_rigid && lumping == Lumping::paper_diagonal) {
           continue;  // done body by body
-        } else if (row.rigid) {
+        } else if (row.is_rigid_motion) {
           for (std::size_t j = 0; j < row.dofs.size(); ++j) {
             triplets.push_back(
                 {row.dofs[i], row.dofs[j], masses[f] * row.weight * row.values[i] * row.values[j]});

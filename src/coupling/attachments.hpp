@@ -26,6 +26,8 @@ class Attachments {
   /// `rows`: of each node, the velocity of its solid at its position.
   void set(std::vector<Node> nodes, const std::vector<VelocityRow<dim>>& rows);
 
+  /// True if the velocity of some node is a combination with this dof. Local.
+  bool is_carrier(GlobalIndex dof) const { return carriers_.count(dof) > 0; }
   /// Local.
   void reduce(VelocityRow<dim>& row) const;
   /// P^T K P + identity on the attached dofs of `map`. Local.

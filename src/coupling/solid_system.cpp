@@ -413,10 +413,10 @@ RCP<Vector> SolidSystem<dim>::implicit_impulse(double dt, const Vector& velocity
 }
 
 template <int dim>
-AngularVector<dim> SolidSystem<dim>::inner_torque() const {
+AngularVector<dim> SolidSystem<dim>::inner_angular_impulse(double dt) const {
   AngularVector<dim> total = AngularVector<dim>::Zero();
   for (const auto& solid_model : models_)
-    total += solid_model->inner_torque();
+    total += solid_model->inner_angular_impulse(dt);
   return total;
 }
 

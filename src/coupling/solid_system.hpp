@@ -58,6 +58,8 @@ class SolidSystem {
   /// 1 for free dofs, 0 for locked, attached and padding ones.
   RCP<const Vector> free_mask() const { return free_mask_; }
   bool has_locks() const { return has_locks_; }
+  /// True for dofs of a rigid solid that nodes are attached to. Local.
+  bool carries_nodes(GlobalIndex dof) const { return attachments_.is_carrier(dof); }
   /// The velocities at which dofs are locked, zero elsewhere (`SolidModel::locked_velocities`);
   /// null if all are zero. Collective.
   RCP<const Vector> locked_velocity(double begin, double end) const;
@@ -70,7 +72,7 @@ class SolidSystem {
   /// dt D V: what the implicit forces give in a step. Its sum is zero, but not its torque: forces
   /// linearised at x act at x + dt V. Collective.
   RCP<Vector> implicit_impulse(double dt, const Vector& velocity) const;
-  AngularVector<dim> inner_torque() const;  ///< of all models [N m]
+  AngularVector<dim> inner_angular_impulse(double dt) const;  ///< of all models [kg m^2/s]
   Momentum<dim> external_impulse(double time, double dt) const;
   bool linearise(double dt, const Vector& velocity);
   void limit_motion(double dt, Vector& velocity);

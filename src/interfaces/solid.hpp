@@ -124,9 +124,12 @@ class SolidModel : public PlugIn {
   /// Appends meshes with fields beyond the surface, for frames: what is inside, stress and strain.
   /// Default: nothing. Collective.
   virtual void add_frames(std::vector<SurfaceFrame>&) const {}
-  /// Torque about the origin of the explicit inner forces at the present positions [N m]: zero but
-  /// for laws that do not turn with the body. Global.
-  virtual AngularVector<dim> inner_torque() const { return AngularVector<dim>::Zero(); }
+  /// Angular momentum about the origin that the inner forces of `explicit_momentum` give at the
+  /// present positions [kg m^2/s]: zero but for laws that do not turn with the body, and forces
+  /// taken elsewhere on its path. Asked for before `set_velocity`. Global, collective.
+  virtual AngularVector<dim> inner_angular_impulse(double) const {
+    return AngularVector<dim>::Zero();
+  }
   /// Largest stable step of explicitly integrated forces [s]. Default: none.
   virtual double largest_stable_step() const;
 };

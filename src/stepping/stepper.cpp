@@ -344,7 +344,8 @@ void Stepper<dim>::ledger_solve(const CoupledSolution& solution, double dt,
       components_.coupling->lever_impulse(solids, solution.coupled_before, coupled_after, unknowns);
   report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lever_impulse});
   const RCP<const Vector> implicit = solids.implicit_impulse(dt, *unknowns.solid);
-  report.linearisation_impulse = solids.momentum(*implicit).angular + dt * solids.inner_torque();
+  report.linearisation_impulse =
+      solids.momentum(*implicit).angular + solids.inner_angular_impulse(dt);
   report.ledger.add("linearised forces", {Point<dim>::Zero(), report.linearisation_impulse});
   const RCP<Vector> gained = make_vector(solids.map());
   apply(*solids.mass(), *unknowns.solid, *gained);
