@@ -59,8 +59,8 @@ class LayoutStencil final : public LayoutOperator {
       with_ghosts_.resize(2 * level.grid().n_slots);
   }
 
-  /// y = A x; `before(slab)` is called for each slab before x is read there. Returns x.y of this
-  /// rank.
+  /// y = A x; `before(slab)` is called for each slab before x is read there. x must be zero in the
+  /// empty rows: their neighbours do not know that no face lies between. Returns x.y of this rank.
   template <typename Before>
   double multiply(const double* x, double* y, const Before& before) const {
     const int n_slabs = level_.grid().n_slabs();
@@ -88,6 +88,13 @@ class LayoutStencil final : public LayoutOperator {
 
  private:
   void apply_to(const double* x, double* y) const override {
+    std::vector<double> without_empty;
+    if (!empty_.empty()) {
+      without_empty.assign(x, x + 2 * level_.grid().n_slots);
+      for (const int entry : empty_)
+        without_empty[entry] = 0;
+      x = without_empty.data();
+    }
     multiply(x, y, [](int) {});
   }
 

@@ -67,8 +67,10 @@ double PressureLayoutOf<dim>::advance_direction(double beta, Vector& d, Vector& 
   const auto d_values = d.getDataNonConst(), q_values = q.getDataNonConst();
   double* direction = d_values.getRawPtr();
   std::vector<double> in_empty_rows;
-  for (const EmptyRow& row : inverse_->empty_rows())
+  for (const EmptyRow& row : inverse_->empty_rows()) {
     in_empty_rows.push_back(row.z + (beta == 0 ? 0 : beta * direction[row.entry]));
+    direction[row.entry] = 0;
+  }
   const double back = inverse_->back();
   const auto update_slab = [&](int slab) {
     inverse_->for_each_row(slab, [&](int colour, std::ptrdiff_t at, int n) {
@@ -85,7 +87,7 @@ double PressureLayoutOf<dim>::advance_direction(double beta, Vector& d, Vector& 
     });
   };
   const double sum = stencil_->multiply(direction, q_values.getRawPtr(), update_slab);
-  for (std::size_t i = 0; i < in_empty_rows.size(); ++i)  // A does not see them
+  for (std::size_t i = 0; i < in_empty_rows.size(); ++i)
     direction[inverse_->empty_rows()[i].entry] = in_empty_rows[i];
   return sum_all(layout_->blocks().comm, sum);
 }
