@@ -111,7 +111,7 @@ void declare_pressure_inverse(Teuchos::ParameterList& list, const std::string& d
   declare_inverse(list, list_name,
                   doc +
                       " \"Type\" may also be Automatic (Multigrid where the fluid allows it, else "
-                      "MueLu) or Multigrid (\"Sweeps\", 2; \"Cycle\", W).");
+                      "MueLu) or Multigrid (\"Sweeps\", 2; \"Cycle\", V).");
 }
 
 Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,

@@ -57,7 +57,7 @@ struct Solved {
 };
 
 template <int dim>
-Solved solve(const Problem<dim>& problem, const MultigridOptions& options = {}) {
+Solved solve(const Problem<dim>& problem, const MultigridOptions& options = {2, true}) {
   const auto layout = PressureLayout::make(problem.system, options, nullptr);
   const BlockSystem relaid = layout->relaid(problem.system);
   const auto rhs = right_hand_side(problem);
