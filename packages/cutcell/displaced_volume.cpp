@@ -59,20 +59,6 @@ void sum_over_ranks(std::vector<DisplacedOfSolid<dim>>& all, const Communicator&
     }
 }
 
-template <int dim>
-SurfaceMesh<dim> surface_of(const SurfaceSnapshot<dim>& surface, const SolidDescription& solid) {
-  SurfaceMesh<dim> mesh;
-  mesh.vertices.assign(surface.mesh().vertices.begin() + solid.vertex_begin,
-                       surface.mesh().vertices.begin() + solid.vertex_end);
-  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
-    auto simplex = surface.mesh().simplices[s];
-    for (int& vertex : simplex)
-      vertex -= solid.vertex_begin;
-    mesh.simplices.push_back(simplex);
-  }
-  return mesh;
-}
-
 /// The surface point in the middle of a simplex.
 template <int dim>
 SurfacePoint<dim> middle(const SurfaceSnapshot<dim>& surface, int simplex) {
@@ -96,20 +82,22 @@ void add_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point, con
   }
 }
 
-/// A rigid body takes the force and its moment; a deformable one the force, over its surface.
+}  // namespace
+
 template <int dim>
-AxisForce force_of(const SolidSystem<dim>& solids, const SurfaceSnapshot<dim>& surface,
-                   const SolidDescription& solid, int axis, const Point<dim>& center, double mass,
-                   const Point<dim>& moment) {
+AxisForce force_of(const DisplacedExcess<dim>& excess, const SolidSystem<dim>& solids,
+                   const SurfaceSnapshot<dim>& surface) {
+  const SolidDescription& solid = surface.solids()[excess.solid];
+  const Point<dim>& center = excess.center;
   AxisForce force;
-  force.axis = axis;
+  force.axis = excess.axis;
   if (solid.rigid) {
     const SurfacePoint<dim> point = middle<dim>(surface, solid.simplex_begin);
     const double length = surface.bounds(solid.simplex_begin).diagonal().norm();
-    const double strength = moment.norm() / length;
-    add_row<dim>(solids, point, center, mass, force);
+    const double strength = excess.moment.norm() / length;
+    add_row<dim>(solids, point, center, excess.mass, force);
     if (strength > 0) {  // a couple: rows of a rigid body are linear in x
-      add_row<dim>(solids, point, center + moment / strength, strength, force);
+      add_row<dim>(solids, point, center + excess.moment / strength, strength, force);
       add_row<dim>(solids, point, center, -strength, force);
     }
     return force;
@@ -120,28 +108,22 @@ AxisForce force_of(const SolidSystem<dim>& solids, const SurfaceSnapshot<dim>& s
   for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
     const SurfacePoint<dim> point = middle<dim>(surface, s);
     const double share = area_vector<dim>(surface.corners(s)).norm() / total;
-    add_row<dim>(solids, point, point.position, mass * share, force);
+    add_row<dim>(solids, point, point.position, excess.mass * share, force);
   }
   return force;
 }
 
-}  // namespace
-
 template <int dim>
-std::vector<AxisForce> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
-                                        const std::vector<FaceShares<dim>>& shares,
-                                        const std::vector<double>& lumped_masses,
-                                        const SolidSystem<dim>& solids,
-                                        const SurfaceSnapshot<dim>& surface, double density) {
-  const auto& descriptions = surface.solids();
-  const auto is_lifted = [&](int s) {
-    return descriptions[s].closed && !descriptions[s].prescribed;
-  };
-  const int n_solids = static_cast<int>(descriptions.size());
+std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
+                                                   const std::vector<FaceShares<dim>>& shares,
+                                                   const std::vector<double>& lumped_masses,
+                                                   const SurfaceSnapshot<dim>& surface,
+                                                   double density, const Communicator& comm) {
+  const int n_solids = static_cast<int>(surface.solids().size());
   std::vector<MassProperties<dim>> bodies(n_solids);
   for (int s = 0; s < n_solids; ++s)
-    if (is_lifted(s))
-      bodies[s] = volume_properties<dim>(surface_of<dim>(surface, descriptions[s]));
+    if (surface.solids()[s].closed)
+      bodies[s] = volume_properties<dim>(surface.mesh_of_solid(s));
 
   std::vector<DisplacedOfSolid<dim>> displaced(n_solids);
   for (std::size_t f = 0; f < volumes.size(); ++f) {
@@ -156,29 +138,33 @@ std::vector<AxisForce> displaced_excess(const std::vector<ControlVolume<dim>>& v
       displaced[share.solid][a].moment -= volume * arm;
     }
   }
-  sum_over_ranks<dim>(displaced, solids.comm());
+  sum_over_ranks<dim>(displaced, comm);
 
-  std::vector<AxisForce> forces;
+  std::vector<DisplacedExcess<dim>> all;
   for (int s = 0; s < n_solids; ++s)
-    for (int a = 0; is_lifted(s) && a < dim; ++a) {
+    for (int a = 0; surface.solids()[s].closed && a < dim; ++a) {
       const Displaced<dim>& d = displaced[s][a];
       if (std::abs(d.open_area) > 1e-6 * d.area)
         continue;
-      forces.push_back(force_of<dim>(solids, surface, descriptions[s], a, bodies[s].centroid,
-                                     density * (d.volume - bodies[s].measure), density * d.moment));
+      all.push_back(
+          {s, a, bodies[s].centroid, density * (d.volume - bodies[s].measure), density * d.moment});
     }
-  return forces;
+  return all;
 }
 
-template std::vector<AxisForce> displaced_excess<2>(const std::vector<ControlVolume<2>>&,
-                                                    const std::vector<FaceShares<2>>&,
-                                                    const std::vector<double>&,
-                                                    const SolidSystem<2>&,
-                                                    const SurfaceSnapshot<2>&, double);
-template std::vector<AxisForce> displaced_excess<3>(const std::vector<ControlVolume<3>>&,
-                                                    const std::vector<FaceShares<3>>&,
-                                                    const std::vector<double>&,
-                                                    const SolidSystem<3>&,
-                                                    const SurfaceSnapshot<3>&, double);
+template std::vector<DisplacedExcess<2>> displaced_excess<2>(const std::vector<ControlVolume<2>>&,
+                                                             const std::vector<FaceShares<2>>&,
+                                                             const std::vector<double>&,
+                                                             const SurfaceSnapshot<2>&, double,
+                                                             const Communicator&);
+template AxisForce force_of<2>(const DisplacedExcess<2>&, const SolidSystem<2>&,
+                               const SurfaceSnapshot<2>&);
+template std::vector<DisplacedExcess<3>> displaced_excess<3>(const std::vector<ControlVolume<3>>&,
+                                                             const std::vector<FaceShares<3>>&,
+                                                             const std::vector<double>&,
+                                                             const SurfaceSnapshot<3>&, double,
+                                                             const Communicator&);
+template AxisForce force_of<3>(const DisplacedExcess<3>&, const SolidSystem<3>&,
+                               const SurfaceSnapshot<3>&);
 
 }  // namespace lockstep

@@ -6,6 +6,28 @@
 
 namespace lockstep {
 
+/// On one axis the pressure of a fluid at rest lifts the volume V sum (1 - alpha_f) of a body, not
+/// quite its own; and it lifts it at another place. The difference, less the fluid lumped on the
+/// body, in masses of fluid: times gravity it is the force that the pressure gives too much
+/// (design: the flux form).
+template <int dim>
+struct DisplacedExcess {
+  int solid = -1;                          ///< closed; index in the snapshot
+  int axis = 0;                            ///< of the acceleration that it is weighed by
+  Point<dim> center = Point<dim>::Zero();  ///< the solid's centroid [m]
+  double mass = 0;                         ///< at the centroid [kg]
+  Point<dim> moment = Point<dim>::Zero();  ///< of mass about the centroid, across the axis [kg m]
+};
+
+/// Of every closed solid and axis; but not along axes on which a body reaches a wall, where it is
+/// not lifted. Every rank gets all. Collective.
+template <int dim>
+std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
+                                                   const std::vector<FaceShares<dim>>& shares,
+                                                   const std::vector<double>& lumped_masses,
+                                                   const SurfaceSnapshot<dim>& surface,
+                                                   double density, const Communicator& comm);
+
 /// The generalized force per unit of acceleration along one axis [kg], as entries of the solid map.
 struct AxisForce {
   int axis = 0;
@@ -13,16 +35,10 @@ struct AxisForce {
   std::vector<double> values;
 };
 
-/// On one axis the pressure of a fluid at rest lifts the volume V sum (1 - alpha_f) of a body, not
-/// quite its own; and it lifts it at another place. The differences, for every closed dynamic solid
-/// and axis: times gravity and the density of the fluid, they are the force that the pressure gives
-/// too much, less the fluid lumped on it (design: the flux form). Axes along which a body reaches a
-/// wall are left out: there it is not lifted. Every rank gets all. Collective.
+/// What a dynamic solid takes: a rigid body the force and its moment, a deformable one the force,
+/// over its surface.
 template <int dim>
-std::vector<AxisForce> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
-                                        const std::vector<FaceShares<dim>>& shares,
-                                        const std::vector<double>& lumped_masses,
-                                        const SolidSystem<dim>& solids,
-                                        const SurfaceSnapshot<dim>& surface, double density);
+AxisForce force_of(const DisplacedExcess<dim>& excess, const SolidSystem<dim>& solids,
+                   const SurfaceSnapshot<dim>& surface);
 
 }  // namespace lockstep

@@ -5,26 +5,12 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "linear/overlap.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "mixedface/lumping.hpp"
 
 namespace lockstep {
 namespace {
-
-RCP<Import> import_of(std::vector<GlobalIndex> wanted, const RCP<const Map>& owner) {
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  const auto map = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
-                               Teuchos::arrayViewFromVector(wanted), 0, owner->getComm()));
-  return rcp(new Import(owner, map));
-}
-
-/// rhs += the overlapping values, summed over ranks.
-void add_overlap(const Vector& overlap, const Import& import, Vector& rhs) {
-  Vector sum(rhs.getMap());
-  sum.doExport(overlap, import, Tpetra::ADD);
-  rhs.update(1, sum, 1);
-}
 
 /// result += weights times the dofs they touch.
 void add_rows(const CouplingWeights& weights, const Import& import, const Vector& dofs,
@@ -75,17 +61,29 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
 
   coupling_transposed_ = Teuchos::null;
   added_mass_ = Teuchos::null;
+  weigh_excess(fluid, solids);
+  if (solids.has_unknowns())
+    assemble_blocks(solids);
+}
+
+template <int dim>
+void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
+                                     const SolidSystem<dim>& solids) {
   excess_.clear();
-  if (!solids.has_unknowns())
+  held_excess_.clear();
+  if (!options_.correct_buoyancy || surface_->empty() || fluid.gravity().isZero())
     return;
-  if (options_.correct_buoyancy) {
-    double density = volumes_.empty() ? 0 : volumes_.front().density;
-    density = max_all(solids.comm(), density);
-    if (density == 0)
-      density = fluid.density(surface.bounds_of_solid(0).center());
-    excess_ = displaced_excess<dim>(volumes_, shares_, masses_, solids, surface, density);
+  double density = volumes_.empty() ? 0 : volumes_.front().density;
+  density = max_all(solids.comm(), density);
+  if (density == 0)
+    density = fluid.density(surface_->bounds_of_solid(0).center());
+  for (const auto& excess :
+       displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density, solids.comm())) {
+    if (surface_->solids()[excess.solid].prescribed)
+      held_excess_.push_back(excess);
+    else
+      excess_.push_back(force_of<dim>(excess, solids, *surface_));
   }
-  assemble_blocks(solids);
 }
 
 template <int dim>
@@ -125,13 +123,20 @@ void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
 }
 
 template <int dim>
-void FluxCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity, double dt,
-                                            Vector& rhs) const {
+std::vector<Momentum<dim>> FluxCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity,
+                                                                  double dt, Vector& rhs) const {
   const RCP<const Map> map = rhs.getMap();
   for (const AxisForce& force : excess_)
     for (std::size_t k = 0; k < force.dofs.size(); ++k)
       if (map->isNodeGlobalElement(force.dofs[k]))
         rhs.sumIntoGlobalValue(force.dofs[k], gravity[force.axis] * dt * force.values[k]);
+  std::vector<Momentum<dim>> on_prescribed(surface_->solids().size());
+  for (const DisplacedExcess<dim>& excess : held_excess_) {
+    const Point<dim> impulse = Point<dim>::Unit(excess.axis) * (gravity[excess.axis] * dt);
+    on_prescribed[excess.solid].add(excess.center, excess.mass * impulse);
+    on_prescribed[excess.solid].angular += cross<dim>(excess.moment, impulse);
+  }
+  return on_prescribed;
 }
 
 template <int dim>
@@ -211,13 +216,13 @@ std::vector<double> FluxCoupling<dim>::effective_velocity(const SolidSystem<dim>
 }
 
 template <int dim>
-Momentum<dim> FluxCoupling<dim>::prescribed_impulse(const std::vector<double>& velocity_before,
-                                                    const std::vector<double>&,
-                                                    const Vector& scaled_pressure) const {
+std::vector<Momentum<dim>> FluxCoupling<dim>::prescribed_impulses(
+    const std::vector<double>& velocity_before, const std::vector<double>&,
+    const Vector& scaled_pressure) const {
   Vector beside(pressure_import_->getTargetMap());
   beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
   const auto pressure = beside.getData();
-  Momentum<dim> impulse;
+  std::vector<Momentum<dim>> impulses(surface_->solids().size());
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
     double push_of_fluid = 0;
@@ -227,14 +232,28 @@ Momentum<dim> FluxCoupling<dim>::prescribed_impulse(const std::vector<double>& v
             push(f, side) * pressure[beside.getMap()->getLocalElement(volume.sides[side].unknown)];
     for (const FluxShare<dim>& share : shares_[f].all)
       if (surface_->solids()[share.solid].prescribed)
-        impulse.add(share.center, volume.direction, share.weight * push_of_fluid);
-    double thin_share = 0;
-    for (const SurfaceShare<dim>& share : shares_[f].of_thin)
-      thin_share += surface_->solids()[share.solid].prescribed ? share.weight : 0;
-    impulse.add(volume.center, volume.direction,
-                masses_[f] * (prescribed_thin_velocity_[f] - thin_share * velocity_before[f]));
+        impulses[share.solid].add(share.center, volume.direction, share.weight * push_of_fluid);
+    add_thin_impulses(f, velocity_before[f], impulses);
   }
-  return sum_over_ranks<dim>(impulse, pressure_import_->getSourceMap()->getComm());
+  sum_over_ranks(impulses, pressure_import_->getSourceMap()->getComm());
+  return impulses;
+}
+
+/// What prescribed thin parts give to the fluid lumped on them; where several solids share it, by
+/// their shares.
+template <int dim>
+void FluxCoupling<dim>::add_thin_impulses(std::size_t f, double velocity_before,
+                                          std::vector<Momentum<dim>>& impulses) const {
+  double prescribed_share = 0;
+  for (const SurfaceShare<dim>& share : shares_[f].of_thin)
+    prescribed_share += surface_->solids()[share.solid].prescribed ? share.weight : 0;
+  for (const SurfaceShare<dim>& share : shares_[f].of_thin) {
+    if (!surface_->solids()[share.solid].prescribed)
+      continue;
+    const double gained = prescribed_thin_velocity_[f] - prescribed_share * velocity_before;
+    impulses[share.solid].add(volumes_[f].center, volumes_[f].direction,
+                              share.weight / prescribed_share * masses_[f] * gained);
+  }
 }
 
 template <int dim>
@@ -251,6 +270,7 @@ void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, in
       row.prescribed +=
           share.weight * solids.prescribed_velocity(share.point, share.center)[direction];
       row.prescribed_share += share.weight;
+      row.prescribed_solid = share.solid;
       continue;
     }
     dynamic_share += share.weight;

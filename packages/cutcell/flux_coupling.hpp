@@ -49,10 +49,11 @@ class FluxCoupling : public Coupling<dim> {
 
   /// Zero but at thin parts.
   const std::vector<double>& fluid_mass() const override { return masses_; }
-  Momentum<dim> prescribed_impulse(const std::vector<double>& velocity_before,
-                                   const std::vector<double>& velocity_after,
-                                   const Vector& scaled_pressure) const override;
-  void add_unseen_buoyancy(const Point<dim>& gravity, double dt, Vector& rhs) const override;
+  std::vector<Momentum<dim>> prescribed_impulses(const std::vector<double>& velocity_before,
+                                                 const std::vector<double>& velocity_after,
+                                                 const Vector& scaled_pressure) const override;
+  std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
+                                                 Vector& rhs) const override;
   using LinkRow = typename Coupling<dim>::LinkRow;
   void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
                 LinkRow& row) const override;
@@ -63,7 +64,10 @@ class FluxCoupling : public Coupling<dim> {
     const double area = (1 - volumes_[face].open_fraction) * volumes_[face].area;
     return side == 0 ? -area : area;
   }
+  void weigh_excess(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids);
   void assemble_blocks(const SolidSystem<dim>& solids);
+  void add_thin_impulses(std::size_t f, double velocity_before,
+                         std::vector<Momentum<dim>>& impulses) const;
   void add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
                   const SolidSystem<dim>& solids, LinkRow& row) const;
 
@@ -80,7 +84,8 @@ class FluxCoupling : public Coupling<dim> {
   RCP<Import> solid_import_;       ///< solid map -> `weights_.dofs`
   RCP<Import> thin_solid_import_;  ///< solid map -> `thin_weights_.dofs`
   RCP<Import> pressure_import_;    ///< pressure map -> unknowns beside this rank's volumes
-  std::vector<AxisForce> excess_;
+  std::vector<AxisForce> excess_;  ///< on dynamic solids
+  std::vector<DisplacedExcess<dim>> held_excess_;  ///< on prescribed ones
 };
 
 }  // namespace lockstep

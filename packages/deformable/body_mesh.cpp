@@ -1,24 +1,15 @@
 #include "deformable/body_mesh.hpp"
 
-#include <algorithm>
-
 #include "base/errors.hpp"
-#include "deformable/list_values.hpp"
-#include "deformable/mesh/gmsh_file.hpp"
 #include "deformable/mesh/hollow_generators.hpp"
+#include "deformable/mesh/mesh_file.hpp"
 #include "deformable/mesh/volume_generators.hpp"
+#include "motion/list_values.hpp"
+#include "parameters/shape_sizes.hpp"
 
 namespace lockstep {
 
 namespace {
-
-using deformable_lists::vector_value;
-
-/// A shape and the parameters that only some shapes have.
-struct ShapeSizes {
-  std::string shape;
-  std::vector<std::string> needed;
-};
 
 const std::vector<ShapeSizes>& shapes() {
   static const std::vector<ShapeSizes> all{{"ball", {"Radius"}},
@@ -27,24 +18,8 @@ const std::vector<ShapeSizes>& shapes() {
                                            {"torus", {"Radius", "Tube Radius"}},
                                            {"hollow ball", {"Radius", "Thickness"}},
                                            {"tube", {"Radius", "Thickness", "Length"}},
-                                           {"file", {"File", "Scale"}}};
+                                           {"file", {"File"}, {"Scale"}}};
   return all;
-}
-
-void check_sizes(const ParameterList& list, const std::string& shape, const std::string& name) {
-  const auto found = std::find_if(shapes().begin(), shapes().end(),
-                                  [&](const ShapeSizes& sizes) { return sizes.shape == shape; });
-  const auto& needed = found->needed;
-  for (const char* size :
-       {"Radius", "Length", "Tube Radius", "Thickness", "Size", "File", "Scale"}) {
-    const bool given = list.isParameter(size);
-    const bool wanted = std::find(needed.begin(), needed.end(), size) != needed.end();
-    check_input(given || !wanted || std::string(size) == "Scale",
-                "In \"{}/Geometry\", the shape \"{}\" needs \"{}\".", name, shape, size);
-    check_input(!given || wanted,
-                "In \"{}/Geometry\", the shape \"{}\" has no \"{}\"; leave it out.", name, shape,
-                size);
-  }
 }
 
 template <int dim>
@@ -79,7 +54,7 @@ void declare_deformable_geometry(ParameterList& body) {
   }
   declare_required_choice(list, "Shape", names,
                           "ball, box, cylinder, torus; hollow ball: a ball with a thick wall (2D: "
-                          "a ring); tube: a pipe; file: a Gmsh mesh of triangles (2D) or "
+                          "a ring); tube: a pipe; file: a mesh of triangles (2D) or "
                           "tetrahedra (3D).");
   declare_optional<double>(list, "Radius",
                            "Of ball and cylinder, of the torus' centre line, outer one of hollow "
@@ -90,9 +65,10 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_optional<double>(list, "Tube Radius", "Of the section of a torus [m].");
   declare_optional<ParameterArray<double>>(list, "Size", "Edges of a box [m].");
   set_length(list, "Size", dim);
-  declare_optional<std::string>(
-      list, "File",
-      "Mesh: .msh of Gmsh, ASCII, version 2.2 or 4.1; relative to the folder of the scene.");
+  declare_optional<std::string>(list, "File",
+                                "Mesh: .msh of Gmsh (version 2.2 or 4.1) or legacy .vtk, both "
+                                "ASCII; relative to the folder of "
+                                "the scene.");
   declare_optional<double>(list, "Scale", "Factor on the coordinates of the file [1]; default 1.");
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest step of the lattice of a generated mesh [m]; default one grid "
@@ -110,10 +86,10 @@ template <int dim>
 VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacing,
                                const std::string& name) {
   const auto& shape = geometry.get<std::string>("Shape");
-  check_sizes(geometry, shape, name);
+  check_shape_sizes(geometry, shapes(), name);
   VolumeMesh<dim> mesh;
   if (shape == "file") {
-    mesh = read_gmsh_volume<dim>(geometry.get<std::string>("File"));
+    mesh = read_volume_mesh<dim>(geometry.get<std::string>("File"));
     const double scale = geometry.isParameter("Scale") ? geometry.get<double>("Scale") : 1;
     for (auto& vertex : mesh.vertices)
       vertex *= scale;

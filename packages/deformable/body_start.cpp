@@ -5,15 +5,13 @@
 
 #include "base/errors.hpp"
 #include "deformable/elements/shell_elements.hpp"
-#include "deformable/list_values.hpp"
 #include "deformable/node_region.hpp"
 #include "deformable/pinned_regions.hpp"
+#include "motion/list_values.hpp"
 
 namespace lockstep {
 
 namespace {
-
-using deformable_lists::vector_value;
 
 template <int dim>
 using Rotation = Eigen::Matrix<double, dim, dim>;
@@ -159,15 +157,15 @@ void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& r
   body.integration = read_integration(list);
   body.most_sub_steps = list.get<int>("Most Sub-Steps");
   body.consistent_mass = list.get<std::string>("Mass") == "consistent";
-  std::vector<double> node_mass(rest.size(), 0);
+  std::vector<double> node_measure(rest.size(), 0);
   const int n = body.mass_elements.n_corners;
   for (std::size_t k = 0; k < body.mass_elements.nodes.size(); ++k)
-    node_mass[body.mass_elements.nodes[k]] += body.element_mass[k / n] / n;
+    node_measure[body.mass_elements.nodes[k]] += body.element_measure[k / n] / n;
   place<dim>(list, rest, body);
   read_pinned<dim>(list, rest, vector_value<dim>(list, "Position"), body);
   read_attachments<dim>(list, rest, body);
-  body.force = read_loads<dim>(list, rest, node_mass, body.name);
-  add_tethers(read_tethers<dim>(list, rest, node_mass, body.name), body);
+  body.force = read_loads<dim>(list, rest, node_measure, body.name);
+  add_tethers(read_tethers<dim>(list, rest, node_measure, body.name), body);
 }
 
 template void declare_body_start<2>(ParameterList&);

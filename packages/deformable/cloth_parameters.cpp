@@ -1,26 +1,22 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 
 #include "base/errors.hpp"
 #include "deformable/body_start.hpp"
 #include "deformable/deformable_parameters.hpp"
 #include "deformable/elements/shell_elements.hpp"
-#include "deformable/list_values.hpp"
-#include "deformable/mesh/gmsh_file.hpp"
+#include "deformable/mesh/mesh_file.hpp"
 #include "geometry/generators.hpp"
-#include "geometry/mesh_files.hpp"
+#include "motion/list_values.hpp"
+#include "parameters/shape_sizes.hpp"
 
 namespace lockstep {
 
 namespace {
 
-using deformable_lists::vector_value;
-
-/// The shapes and the parameters that each needs.
-const std::vector<std::pair<std::string, std::vector<std::string>>>& shapes() {
-  static const std::vector<std::pair<std::string, std::vector<std::string>>> all{
+const std::vector<ShapeSizes>& shapes() {
+  static const std::vector<ShapeSizes> all{
       {"sheet", {"Size", "Normal"}},  {"bag", {"Size"}},
       {"ball", {"Radius"}},           {"open ball", {"Radius", "Opening Radius"}},
       {"tube", {"Radius", "Length"}}, {"file", {"File"}}};
@@ -35,7 +31,7 @@ void declare_cloth_geometry(ParameterList& body) {
   std::vector<std::string> names, axes{"x", "y", "z"};
   axes.resize(dim);
   for (const auto& shape : shapes())
-    names.push_back(shape.first);
+    names.push_back(shape.shape);
   declare_required_choice(
       list, "Shape", names,
       "sheet: flat. bag: a box without its lid (y is up). ball: a closed sphere "
@@ -49,35 +45,21 @@ void declare_cloth_geometry(ParameterList& body) {
   declare_optional<double>(list, "Radius", "Of ball, open ball and tube [m].");
   declare_optional<double>(list, "Opening Radius", "Of the hole of an open ball [m].");
   declare_optional<double>(list, "Length", "Of a tube [m].");
-  declare_optional<std::string>(list, "File",
-                                "Surface mesh: .obj, .off, .msh of Gmsh or (3D) .stl; relative to "
-                                "the folder of the scene.");
+  declare_optional<std::string>(
+      list, "File",
+      "Surface mesh: .obj, .off, .msh of Gmsh, .vtk or (3D) .stl; relative to "
+      "the folder of the scene.");
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest edge of a generated mesh [m]; default one grid cell.");
   for (const char* size : {"Radius", "Opening Radius", "Length", "Mesh Spacing"})
     set_positive(list, size);
 }
 
-void check_sizes(const ParameterList& list, const std::string& shape, const std::string& name) {
-  const auto found = std::find_if(shapes().begin(), shapes().end(),
-                                  [&](const auto& entry) { return entry.first == shape; });
-  for (const char* size : {"Size", "Normal", "Radius", "Opening Radius", "Length", "File"}) {
-    const bool wanted =
-        std::find(found->second.begin(), found->second.end(), size) != found->second.end();
-    const bool given = list.isParameter(size);
-    check_input(given || !wanted, "In \"{}/Geometry\", the shape \"{}\" needs \"{}\".", name, shape,
-                size);
-    check_input(!given || wanted,
-                "In \"{}/Geometry\", the shape \"{}\" has no \"{}\"; leave it out.", name, shape,
-                size);
-  }
-}
-
 template <int dim>
 SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
                                  const std::string& name) {
   const auto& shape = list.get<std::string>("Shape");
-  check_sizes(list, shape, name);
+  check_shape_sizes(list, shapes(), name);
   const double spacing =
       list.isParameter("Mesh Spacing") ? list.get<double>("Mesh Spacing") : grid_spacing;
   SurfaceMesh<dim> mesh;
@@ -94,9 +76,7 @@ SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
   } else if (shape == "tube") {
     mesh = tube_surface<dim>(list.get<double>("Radius"), list.get<double>("Length"), spacing);
   } else {
-    const auto& file = list.get<std::string>("File");
-    mesh = std::filesystem::path(file).extension() == ".msh" ? read_gmsh_surface<dim>(file)
-                                                             : read_surface<dim>(file);
+    mesh = read_shell_mesh<dim>(list.get<std::string>("File"));
   }
   check_surface(mesh, false, name);
   return mesh;
@@ -183,7 +163,7 @@ DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& lis
     std::array<Point<dim>, dim> corners;
     for (int k = 0; k < dim; ++k)
       corners[k] = mesh.vertices[simplex[k]];
-    body.element_mass.push_back(body.density * area_vector<dim>(corners).norm());
+    body.element_measure.push_back(area_vector<dim>(corners).norm());
     body.mass_elements.nodes.insert(body.mass_elements.nodes.end(), simplex.begin(), simplex.end());
   }
   read_body_start<dim>(list, mesh.vertices, body);

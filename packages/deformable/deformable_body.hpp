@@ -39,7 +39,8 @@ struct DeformableBody {
   std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
   /// Simplices of even mass. Nodes of none (the anchors of tethers) must be locked.
   ElementCorners mass_elements;
-  std::vector<double> element_mass;  ///< [kg], of each of them
+  /// Of each of them: volume (cloth: area) as meshed [m^dim, m^(dim-1)]; times density its mass.
+  std::vector<double> element_measure;
 
   std::vector<LimitedEdge> limited_edges;  ///< that may not stretch further
 

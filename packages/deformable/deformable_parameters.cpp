@@ -54,7 +54,7 @@ DeformableBody<dim> read_deformable_body(const std::string& name, const Paramete
       mesh, make_material<dim>(material.get<std::string>("Type"), lame), damping));
   body.mass_elements = body.elements.back()->corners();
   for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e)
-    body.element_mass.push_back(body.density * element_volume(mesh, e));
+    body.element_measure.push_back(element_volume(mesh, e));
 
   BoundarySurface<dim> boundary = extract_surface(mesh, name);
   check_surface(boundary.surface, true, name);

@@ -82,7 +82,8 @@ void DeformableSolids<dim>::add_body(DeformableBody<dim>& body, int node_begin) 
   part.consistent_mass = body.consistent_mass;
   part.integration = body.integration;
   part.most_sub_steps = body.most_sub_steps;
-  part.mass = std::accumulate(body.element_mass.begin(), body.element_mass.end(), 0.0);
+  part.measure = std::accumulate(body.element_measure.begin(), body.element_measure.end(), 0.0);
+  part.mass = body.density * part.measure;
   part.node_begin = node_begin;
   part.node_end = node_begin + body.n_nodes();
   bodies_.push_back(std::move(part));
@@ -169,6 +170,7 @@ template <int dim>
 void DeformableSolids<dim>::assemble_mass(const std::vector<DeformableBody<dim>>& bodies) {
   const auto& numbers = space_.numbers();
   node_mass_.assign(space_.n_owned(), 0);
+  node_share_.assign(space_.n_owned(), 0);
   std::vector<std::vector<Entry>> rows(dim * space_.n_owned());
   const auto add = [&](int row_node, int column_original, double mass) {
     for (int a = 0; a < dim; ++a) {
@@ -179,13 +181,14 @@ void DeformableSolids<dim>::assemble_mass(const std::vector<DeformableBody<dim>>
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const ElementCorners& corners = bodies[b].mass_elements;
     const int n = corners.n_corners, begin = bodies_[b].node_begin;
-    for (std::size_t e = 0; e < bodies[b].element_mass.size(); ++e) {
-      const double mass = bodies[b].element_mass[e];
+    for (std::size_t e = 0; e < bodies[b].element_measure.size(); ++e) {
+      const double mass = bodies[b].density * bodies[b].element_measure[e];
       for (int i = 0; i < n; ++i) {
         const int node = begin + corners.nodes[n * e + i], row = numbers.local[node];
         if (row < 0 || row >= space_.n_owned())
           continue;
         node_mass_[row] += mass / n;
+        node_share_[row] += bodies[b].element_measure[e] / (n * bodies_[b].measure);
         if (!bodies[b].consistent_mass) {
           add(row, node, mass / n);
           continue;
@@ -197,11 +200,9 @@ void DeformableSolids<dim>::assemble_mass(const std::vector<DeformableBody<dim>>
     }
   }
   for (int i = 0; i < space_.n_owned(); ++i) {
-    // Anchors of tethers have no mass and never move; nodes of a massless body take the fluid's.
-    const int body = body_of_node_[i];
-    const bool is_held =
-        node_mass_[i] == 0 && bodies[body].locked[space_.original(i) - bodies_[body].node_begin][0];
-    add(i, space_.original(i), is_held ? 1 : 0);
+    // Anchors of tethers belong to no element and never move; nodes of a massless body take the
+    // fluid's mass.
+    add(i, space_.original(i), node_share_[i] == 0 ? 1 : 0);
   }
   mass_ = as_operator(matrix_from_rows(space_.dof_map(), rows));
 }

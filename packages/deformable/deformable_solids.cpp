@@ -235,10 +235,12 @@ void DeformableSolids<dim>::update_states() {
   const auto q = make_vector(space_.dof_map());
   apply(*mass_, *velocity_, *q);
   const Nodes momentum = space_.owned(*q), velocity = space_.owned(*velocity_);
-  // Of a massless body the means are those of its nodes.
+  // Of a massless body the means are those of its surface.
   const auto is_massless = [this](int i) { return bodies_[body_of_node_[i]].mass == 0; };
-  const auto weight = [&](int i) { return is_massless(i) ? 1 : node_mass_[i]; };
-  const auto weighted = [&](int i) { return is_massless(i) ? velocity[i] : momentum[i]; };
+  const auto weight = [&](int i) { return is_massless(i) ? node_share_[i] : node_mass_[i]; };
+  const auto weighted = [&](int i) -> Point<dim> {
+    return is_massless(i) ? Point<dim>(node_share_[i] * velocity[i]) : momentum[i];
+  };
   std::vector<double> first(n_bodies * n_first, 0), second(n_bodies * n_second, 0);
   for (int i = 0; i < space_.n_owned(); ++i) {
     double* sum = &first[body_of_node_[i] * n_first];
@@ -252,7 +254,7 @@ void DeformableSolids<dim>::update_states() {
     SolidState<dim>& state = states_[b];
     state.name = bodies_[b].name;
     state.mass = bodies_[b].mass;
-    const double total = state.mass > 0 ? state.mass : bodies_[b].node_end - bodies_[b].node_begin;
+    const double total = state.mass > 0 ? state.mass : 1;
     state.center_of_mass = Eigen::Map<Point<dim>>(&first[b * n_first], dim) / total;
     state.velocity = Eigen::Map<Point<dim>>(&first[b * n_first + dim], dim) / total;
     state.kinetic_energy = 0.5 * first[b * n_first + 2 * dim];

@@ -68,8 +68,7 @@ class DeformableSolids : public SolidModel<dim> {
   void save(CheckpointWriter& writer) const override;
   void load(const CheckpointReader& reader) override;
 
-  /// Elements whose stiffness had to be made definite at the present positions, on all ranks.
-  GlobalIndex n_clamped() const { return n_clamped_; }
+  GlobalIndex n_clamped_elements() const override { return n_clamped_; }
   /// Owned nodes: their numbers in the order of the bodies, positions [m] and elastic forces [N].
   const NodeSpace<dim>& nodes() const { return space_; }
   const std::vector<Point<dim>>& positions() const { return x_; }
@@ -83,8 +82,8 @@ class DeformableSolids : public SolidModel<dim> {
     bool closed = true, consistent_mass = false;
     TimeIntegration integration = TimeIntegration::semi_implicit;
     int most_sub_steps = 1;
-    double elastic_step = 1e300;  ///< stable at the present positions, without sub-steps [s]
-    double mass = 0;
+    double elastic_step = 1e300;       ///< stable at the present positions, without sub-steps [s]
+    double mass = 0, measure = 0;      ///< [kg]; volume (cloth: area) as meshed
     int node_begin = 0, node_end = 0;  ///< original numbers
     std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
     double elastic_energy = 0;  ///< of all ranks
@@ -117,9 +116,10 @@ class DeformableSolids : public SolidModel<dim> {
   Point<dim> gravity_;
   std::vector<Body> bodies_;
   NodeSpace<dim> space_;
-  std::vector<int> body_of_node_;  ///< of the owned nodes
-  std::vector<double> node_mass_;  ///< lumped, of the owned nodes [kg]
-  Nodes node_force_;               ///< constant loads on them [N]
+  std::vector<int> body_of_node_;   ///< of the owned nodes
+  std::vector<double> node_mass_;   ///< lumped, of the owned nodes [kg]
+  std::vector<double> node_share_;  ///< of the owned nodes in their body's measure, sum 1
+  Nodes node_force_;                ///< constant loads on them [N]
   HeldNodes<dim> held_;
   std::vector<std::pair<int, std::string>> attached_;  ///< owned nodes and their carriers
 

@@ -3,13 +3,11 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "deformable/list_values.hpp"
+#include "motion/list_values.hpp"
 
 namespace lockstep {
 
 namespace {
-
-using deformable_lists::vector_value;
 
 template <int dim>
 std::vector<std::string> axes() {
@@ -79,17 +77,18 @@ void declare_loads_and_tethers(ParameterList& body) {
 
 template <int dim>
 std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<Point<dim>>& nodes,
-                                   const std::vector<double>& node_mass, const std::string& name) {
+                                   const std::vector<double>& node_measure,
+                                   const std::string& name) {
   std::vector<Point<dim>> force(nodes.size(), Point<dim>::Zero());
   const ParameterList& all = body.sublist("Loads");
   for (auto entry = all.begin(); entry != all.end(); ++entry) {
     const ParameterList& list = all.sublist(all.name(entry));
     const auto found = nodes_in_region<dim>(list, nodes, name + "/Loads/" + all.name(entry));
-    double mass = 0;
+    double measure = 0;
     for (const int n : found)
-      mass += node_mass[n];
+      measure += node_measure[n];
     for (const int n : found)
-      force[n] += node_mass[n] / mass * vector_value<dim>(list, "Force");
+      force[n] += node_measure[n] / measure * vector_value<dim>(list, "Force");
   }
   return force;
 }
@@ -97,19 +96,19 @@ std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<
 template <int dim>
 std::vector<Tether<dim>> read_tethers(const ParameterList& body,
                                       const std::vector<Point<dim>>& nodes,
-                                      const std::vector<double>& node_mass,
+                                      const std::vector<double>& node_measure,
                                       const std::string& name) {
   std::vector<Tether<dim>> tethers;
   const ParameterList& all = body.sublist("Tethers");
   for (auto entry = all.begin(); entry != all.end(); ++entry) {
     const ParameterList& list = all.sublist(all.name(entry));
     const auto found = nodes_in_region<dim>(list, nodes, name + "/Tethers/" + all.name(entry));
-    double mass = 0;
+    double measure = 0;
     for (const int n : found)
-      mass += node_mass[n];
+      measure += node_measure[n];
     for (const int n : found) {
       tethers.push_back({n, vector_value<dim>(list, "Offset"),
-                         list.get<double>("Stiffness") * node_mass[n] / mass});
+                         list.get<double>("Stiffness") * node_measure[n] / measure});
     }
   }
   return tethers;

@@ -22,10 +22,11 @@ template <int dim>
 void declare_loads_and_tethers(ParameterList& body);
 
 /// Reads them for nodes at these rest positions; `name` is the body's, for messages.
-/// Loads are spread over the nodes in proportion to `node_mass`.
+/// Loads are spread over the nodes in proportion to `node_measure`.
 template <int dim>
 std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<Point<dim>>& nodes,
-                                   const std::vector<double>& node_mass, const std::string& name);
+                                   const std::vector<double>& node_measure,
+                                   const std::string& name);
 
 /// A linear spring from a node to a fixed anchor.
 template <int dim>
@@ -34,11 +35,11 @@ struct Tether {
   Point<dim> offset = Point<dim>::Zero();  ///< of the anchor from where the node starts [m]
   double stiffness = 0;                    ///< [N/m]
 };
-/// Their stiffness is spread over the nodes in proportion to `node_mass`.
+/// Their stiffness is spread over the nodes in proportion to `node_measure`.
 template <int dim>
 std::vector<Tether<dim>> read_tethers(const ParameterList& body,
                                       const std::vector<Point<dim>>& nodes,
-                                      const std::vector<double>& node_mass,
+                                      const std::vector<double>& node_measure,
                                       const std::string& name);
 
 }  // namespace lockstep

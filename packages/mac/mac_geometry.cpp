@@ -169,6 +169,25 @@ void take_fraction(const MacDomain<dim>& domain, const OpenFractionRule<dim>& ru
   geometry.volumes.push_back(volume);
 }
 
+/// Faces in the plane where a periodic axis closes lie at its lower end, unless a solid sticks out
+/// at the upper one: it is not repeated, so that only there the face meets it.
+template <int dim>
+Point<dim> center_of_face(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry, int axis,
+                          int cell) {
+  const TiledGrid<dim>& grid = domain.grid;
+  Point<dim> center = grid.face_center(axis, cell);
+  if (!geometry.state.surface || !grid.description().periodic[axis] ||
+      grid.coordinates(cell)[axis] != 0)
+    return center;
+  const Point<dim> half = Point<dim>::Unit(axis) * (0.5 * grid.spacing());
+  const Point<dim> at_upper_end =
+      center + Point<dim>::Unit(axis) * (grid.n_cells()[axis] * grid.spacing());
+  const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
+  if (surface.inside(at_upper_end - half) >= 0 && surface.inside(center + half) < 0)
+    center = at_upper_end;
+  return center;
+}
+
 /// Owned tiles all of whose cells are fluid, with no surface near.
 template <int dim>
 std::vector<char> find_plain_tiles(const TiledGrid<dim>& grid, const MacGeometry<dim>& geometry) {
@@ -219,7 +238,7 @@ ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometr
   const double half = 0.5 * grid.spacing();
   ControlVolume<dim> volume;
   volume.direction = axis;
-  volume.center = grid.face_center(axis, cell);
+  volume.center = center_of_face(domain, geometry, axis, cell);
   volume.open_center = volume.center;
   volume.density = density;
   volume.area = domain.face_area();

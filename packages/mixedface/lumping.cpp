@@ -99,20 +99,6 @@ std::vector<SolidBalance<dim>> accumulate(const std::vector<ControlVolume<dim>>&
   return balances;
 }
 
-template <int dim>
-SurfaceMesh<dim> surface_of(const SurfaceSnapshot<dim>& surface, const SolidDescription& solid) {
-  SurfaceMesh<dim> mesh;
-  mesh.vertices.assign(surface.mesh().vertices.begin() + solid.vertex_begin,
-                       surface.mesh().vertices.begin() + solid.vertex_end);
-  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
-    auto simplex = surface.mesh().simplices[s];
-    for (int& vertex : simplex)
-      vertex -= solid.vertex_begin;
-    mesh.simplices.push_back(simplex);
-  }
-  return mesh;
-}
-
 /// True if `factor` keeps the masses of all faces of this solid and axis positive, on all ranks.
 template <int dim>
 bool stays_positive(const std::vector<ControlVolume<dim>>& volumes,
@@ -164,7 +150,7 @@ std::vector<UnseenMass<dim>> balance_masses(
     if (!solids[s].closed || solids[s].prescribed)
       continue;
     const MassProperties<dim> properties =
-        volume_properties<dim>(surface_of<dim>(surface, solids[s]));
+        volume_properties<dim>(surface.mesh_of_solid(static_cast<int>(s)));
     centers[s] = properties.centroid;
     solid_volumes[s] = properties.measure;
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "geometry/clipping.hpp"
+#include "linear/overlap.hpp"
 
 namespace lockstep {
 namespace {
@@ -17,21 +18,6 @@ bool cuts(const SurfaceSnapshot<dim>& surface, const Box<dim>& box) {
   return std::any_of(touching.begin(), touching.end(), [&](int simplex) {
     return clip_to_box<dim>(surface.corners(simplex), box).measure > 0;
   });
-}
-
-RCP<Import> import_of(std::vector<GlobalIndex> wanted, const RCP<const Map>& owner) {
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  const auto map = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
-                               Teuchos::arrayViewFromVector(wanted), 0, owner->getComm()));
-  return rcp(new Import(owner, map));
-}
-
-/// rhs += the overlapping values, summed over ranks.
-void add_overlap(const Vector& overlap, const Import& import, Vector& rhs) {
-  Vector sum(rhs.getMap());
-  sum.doExport(overlap, import, Tpetra::ADD);
-  rhs.update(1, sum, 1);
 }
 
 }  // namespace
@@ -176,8 +162,9 @@ void MixedFaceCoupling<dim>::assemble_unseen(const SolidSystem<dim>& solids,
 }
 
 template <int dim>
-void MixedFaceCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity, double dt,
-                                                 Vector& rhs) const {
+std::vector<Momentum<dim>> MixedFaceCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity,
+                                                                       double dt,
+                                                                       Vector& rhs) const {
   const RCP<const Map> map = rhs.getMap();
   for (std::size_t s = 0; s < unseen_.size(); ++s) {
     for (int a = 0; a < dim; ++a) {
@@ -190,6 +177,7 @@ void MixedFaceCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity, doub
       }
     }
   }
+  return std::vector<Momentum<dim>>(surface_->solids().size());
 }
 
 template <int dim>
@@ -293,23 +281,29 @@ std::vector<double> MixedFaceCoupling<dim>::pressure_jumps(const Vector& scaled_
   return jumps;
 }
 
+// Where several prescribed solids share a volume, by their shares.
 template <int dim>
-Momentum<dim> MixedFaceCoupling<dim>::prescribed_impulse(const std::vector<double>& velocity_before,
-                                                         const std::vector<double>& velocity_after,
-                                                         const Vector& scaled_pressure) const {
+std::vector<Momentum<dim>> MixedFaceCoupling<dim>::prescribed_impulses(
+    const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
+    const Vector& scaled_pressure) const {
   const std::vector<double> jumps = pressure_jumps(scaled_pressure);
-  Momentum<dim> impulse;
+  std::vector<Momentum<dim>> impulses(surface_->solids().size());
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     if (prescribed_share_[f] == 0)
       continue;
-    const double share = prescribed_share_[f];
-    const double after = options_.lumping == Lumping::consistent ? share * velocity_after[f]
+    const double share_of_all = prescribed_share_[f];
+    const double after = options_.lumping == Lumping::consistent ? share_of_all * velocity_after[f]
                                                                  : prescribed_velocity_[f];
-    impulse.add(
-        volumes_[f].center, volumes_[f].direction,
-        masses_[f] * (after - share * velocity_before[f]) + share * volumes_[f].area * jumps[f]);
+    const double impulse = masses_[f] * (after - share_of_all * velocity_before[f]) +
+                           share_of_all * volumes_[f].area * jumps[f];
+    for (const SurfaceShare<dim>& share : shares_[f]) {
+      if (surface_->solids()[share.solid].prescribed)
+        impulses[share.solid].add(volumes_[f].center, volumes_[f].direction,
+                                  share.weight / share_of_all * impulse);
+    }
   }
-  return sum_over_ranks<dim>(impulse, pressure_import_->getSourceMap()->getComm());
+  sum_over_ranks(impulses, pressure_import_->getSourceMap()->getComm());
+  return impulses;
 }
 
 template <int dim>
@@ -350,6 +344,7 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
     if (solids.solids()[share.solid].prescribed) {
       row.prescribed += share.weight * solids.prescribed_velocity(share.point, x)[direction];
       row.prescribed_share += share.weight;
+      row.prescribed_solid = share.solid;
       continue;
     }
     dynamic_share += share.weight;

@@ -46,14 +46,15 @@ class MixedFaceCoupling : public Coupling<dim> {
   void add_divergence(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
 
   const std::vector<double>& fluid_mass() const override { return masses_; }
-  Momentum<dim> prescribed_impulse(const std::vector<double>& velocity_before,
-                                   const std::vector<double>& velocity_after,
-                                   const Vector& scaled_pressure) const override;
+  std::vector<Momentum<dim>> prescribed_impulses(const std::vector<double>& velocity_before,
+                                                 const std::vector<double>& velocity_after,
+                                                 const Vector& scaled_pressure) const override;
   AngularVector<dim> lever_impulse(const SolidSystem<dim>& solids,
                                    const std::vector<double>& velocity_before,
                                    const std::vector<double>& velocity_after,
                                    const BlockVector& solution) const override;
-  void add_unseen_buoyancy(const Point<dim>& gravity, double dt, Vector& rhs) const override;
+  std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
+                                                 Vector& rhs) const override;
   using LinkRow = typename Coupling<dim>::LinkRow;
   void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
                 LinkRow& row) const override;

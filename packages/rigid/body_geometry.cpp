@@ -1,21 +1,14 @@
 #include "rigid/body_geometry.hpp"
 
-#include <algorithm>
-
 #include "base/errors.hpp"
 #include "geometry/generators.hpp"
 #include "geometry/mesh_files.hpp"
 #include "motion/list_values.hpp"
+#include "parameters/shape_sizes.hpp"
 
 namespace lockstep {
 
 namespace {
-
-/// A shape and the parameters that only some shapes have.
-struct ShapeSizes {
-  std::string shape;
-  std::vector<std::string> needed;
-};
 
 const std::vector<ShapeSizes>& shapes() {
   static const std::vector<ShapeSizes> all{{"ball", {"Radius"}},
@@ -25,23 +18,8 @@ const std::vector<ShapeSizes>& shapes() {
                                            {"torus", {"Radius", "Tube Radius"}},
                                            {"open box", {"Size"}},
                                            {"plate", {"Size", "Normal"}},
-                                           {"file", {"File", "Scale"}}};
+                                           {"file", {"File"}, {"Scale"}}};
   return all;
-}
-
-void check_sizes(const ParameterList& list, const std::string& shape, const std::string& name) {
-  const auto found = std::find_if(shapes().begin(), shapes().end(),
-                                  [&](const ShapeSizes& sizes) { return sizes.shape == shape; });
-  const auto& needed = found->needed;
-  for (const char* size : {"Radius", "Length", "Tube Radius", "Size", "Normal", "File", "Scale"}) {
-    const bool given = list.isParameter(size);
-    const bool wanted = std::find(needed.begin(), needed.end(), size) != needed.end();
-    check_input(given || !wanted || std::string(size) == "Scale",
-                "In \"{}/Geometry\", the shape \"{}\" needs \"{}\".", name, shape, size);
-    check_input(!given || wanted,
-                "In \"{}/Geometry\", the shape \"{}\" has no \"{}\"; leave it out.", name, shape,
-                size);
-  }
 }
 
 template <int dim>
@@ -113,7 +91,7 @@ template <int dim>
 BodyGeometry<dim> make_body_geometry(const ParameterList& geometry, double grid_spacing,
                                      const std::string& name) {
   const auto& shape = geometry.get<std::string>("Shape");
-  check_sizes(geometry, shape, name);
+  check_shape_sizes(geometry, shapes(), name);
   const double spacing = geometry.isParameter("Surface Spacing")
                              ? geometry.get<double>("Surface Spacing")
                              : 0.7 * grid_spacing;

@@ -1,6 +1,7 @@
 #include "coupling/attachments.hpp"
 
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
 namespace lockstep {
 
@@ -19,6 +20,12 @@ void Attachments<dim>::set(std::vector<Node> nodes, const std::vector<VelocityRo
       }
     }
   }
+}
+
+template <int dim>
+bool Attachments<dim>::holds_model(int model) const {
+  return std::any_of(nodes_.begin(), nodes_.end(),
+                     [&](const Node& node) { return node.model == model; });
 }
 
 template <int dim>

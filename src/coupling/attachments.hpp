@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "interfaces/solid.hpp"
@@ -17,12 +18,15 @@ class Attachments {
   /// An attached node, in ids of the stacked map and numbers of all solids.
   struct Node {
     std::array<GlobalIndex, dim> dofs;
-    int solid = -1;
+    int solid = -1;       ///< that carries it
+    int model = -1;       ///< that it belongs to
     Point<dim> position;  ///< [m]
   };
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<Node>& nodes() const { return nodes_; }
+  /// Does any node belong to this model?
+  bool holds_model(int model) const;
   /// `rows`: of each node, the velocity of its solid at its position.
   void set(std::vector<Node> nodes, const std::vector<VelocityRow<dim>>& rows);
 
@@ -48,5 +52,20 @@ class Attachments {
   std::map<GlobalIndex, Combination> rows_;      ///< of each attached dof
   std::map<GlobalIndex, std::size_t> carriers_;  ///< the dofs they are combinations of, counted
 };
+
+/// Where a model begins in the stack of all solids.
+struct ModelBegin {
+  int simplex = 0;     ///< in the surface of all
+  GlobalIndex id = 0;  ///< in the map of all unknowns
+  int local = 0;       ///< among this rank's rows
+};
+
+/// The attached nodes of all models and ranks at their present positions. Throws InputError if one
+/// names a solid that is not rigid and dynamic. Collective.
+template <int dim>
+Attachments<dim> find_attachments(const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
+                                  const std::vector<ModelBegin>& begin,
+                                  const std::vector<SolidDescription>& solids,
+                                  const Communicator& comm);
 
 }  // namespace lockstep

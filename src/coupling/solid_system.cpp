@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "coupling/stacked_matrix.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/triplet_matrix.hpp"
 
@@ -17,7 +18,7 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
   int n_simplices = 0, n_vertices = 0;
   std::vector<GlobalIndex> ids;
   for (int m = 0; m < n_models(); ++m) {
-    simplex_begin_.push_back(n_simplices);
+    begin_.push_back({n_simplices, n_unknowns_, static_cast<int>(ids.size())});
     int index = 0;
     for (SolidDescription solid : model(m).solids()) {
       solid.model = m;
@@ -30,8 +31,6 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
     }
     n_simplices += static_cast<int>(model(m).surface().simplices.size());
     n_vertices += static_cast<int>(model(m).surface().vertices.size());
-    id_begin_.push_back(n_unknowns_);
-    local_begin_.push_back(static_cast<int>(ids.size()));
     const RCP<const Map> map = model(m).dof_map();
     for (GlobalIndex id : map->getNodeElementList())
       ids.push_back(n_unknowns_ + id);
@@ -43,60 +42,8 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
     ids.push_back(first + i);
   map_ = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
                      Teuchos::arrayViewFromVector(ids), 0, comm));
-  find_attachments();
+  attachments_ = find_attachments(models_, begin_, solids_, comm_);
   make_free_mask();
-}
-
-template <int dim>
-int SolidSystem<dim>::carrier_named(const std::string& name, std::string& failure) const {
-  for (std::size_t s = 0; s < solids_.size(); ++s) {
-    if (solids_[s].name == name && solids_[s].rigid && !solids_[s].prescribed)
-      return static_cast<int>(s);
-  }
-  failure = fmt::format(
-      "Nodes are attached to \"{}\", which is no solid that is rigid and dynamic; name one, or pin "
-      "the nodes and give them a motion.",
-      name);
-  return 0;
-}
-
-/// Gathers the attached nodes of all models and ranks at their present positions. Collective.
-template <int dim>
-void SolidSystem<dim>::find_attachments() {
-  has_attached_nodes_.assign(n_models(), 0);
-  std::vector<double> mine;  // solid, dofs, position
-  std::string failure;
-  for (int m = 0; m < n_models(); ++m) {
-    for (const NodeAttachment<dim>& node : model(m).attachments()) {
-      mine.push_back(carrier_named(node.solid, failure));
-      for (const GlobalIndex dof : node.dofs)
-        mine.push_back(static_cast<double>(id_begin_[m] + dof));
-      mine.insert(mine.end(), node.position.data(), node.position.data() + dim);
-      has_attached_nodes_[m] = 1;
-    }
-  }
-  throw_on_all(comm_, failure, static_cast<int>(ExitCode::bad_input));
-  for (char& any : has_attached_nodes_)
-    any = static_cast<char>(max_all(comm_, double(any)));
-  const std::vector<double> all = gather_all(comm_, mine);
-  std::vector<typename Attachments<dim>::Node> nodes;
-  std::vector<VelocityRow<dim>> rows;
-  for (std::size_t k = 0; k < all.size(); k += 2 * dim + 1) {
-    typename Attachments<dim>::Node node;
-    node.solid = static_cast<int>(all[k]);
-    for (int a = 0; a < dim; ++a)
-      node.dofs[a] = static_cast<GlobalIndex>(all[k + 1 + a]);
-    node.position = Eigen::Map<const Point<dim>>(&all[k + 1 + dim]);
-    const int m = solids_[node.solid].model;
-    SurfacePoint<dim> point;
-    point.simplex = solids_[node.solid].simplex_begin - simplex_begin_[m];
-    rows.emplace_back();
-    model(m).velocity_row(point, node.position, rows.back());
-    for (GlobalIndex& id : rows.back().dofs)
-      id += id_begin_[m];
-    nodes.push_back(node);
-  }
-  attachments_.set(std::move(nodes), rows);
 }
 
 template <int dim>
@@ -109,7 +56,7 @@ void SolidSystem<dim>::make_free_mask() {
   GlobalIndex n_locked = 0;
   for (int m = 0; m < n_models(); ++m) {
     for (GlobalIndex id : model(m).locked_dofs()) {
-      free_mask_->replaceGlobalValue(id_begin_[m] + id, 0.);
+      free_mask_->replaceGlobalValue(begin_[m].id + id, 0.);
       ++n_locked;
     }
   }
@@ -122,7 +69,7 @@ bool SolidSystem<dim>::begin_step(double time, double dt) {
   for (const auto& solid_model : models_)
     solid_model->begin_step(time, dt);
   if (!attachments_.empty())
-    find_attachments();
+    attachments_ = find_attachments(models_, begin_, solids_, comm_);
   const RCP<const Vector> before = free_mask_;
   make_free_mask();
   Vector change(*free_mask_, Teuchos::Copy);
@@ -139,7 +86,7 @@ RCP<const Vector> SolidSystem<dim>::locked_velocity(double begin, double end) co
     const std::vector<GlobalIndex> dofs = model(m).locked_dofs();
     const std::vector<double> values = model(m).locked_velocities(begin, end);
     for (std::size_t k = 0; k < dofs.size(); ++k)
-      velocity->replaceGlobalValue(id_begin_[m] + dofs[k], values[k]);
+      velocity->replaceGlobalValue(begin_[m].id + dofs[k], values[k]);
   }
   return velocity->normInf() > 0 ? velocity : Teuchos::null;
 }
@@ -191,10 +138,12 @@ double SolidSystem<dim>::largest_surface_speed() const {
 
 template <int dim>
 std::pair<int, SurfacePoint<dim>> SolidSystem<dim>::in_model(const SurfacePoint<dim>& point) const {
-  const auto next = std::upper_bound(simplex_begin_.begin(), simplex_begin_.end(), point.simplex);
-  const int m = static_cast<int>(next - simplex_begin_.begin()) - 1;
+  const auto next = std::upper_bound(
+      begin_.begin(), begin_.end(), point.simplex,
+      [](int simplex, const ModelBegin& begin) { return simplex < begin.simplex; });
+  const int m = static_cast<int>(next - begin_.begin()) - 1;
   SurfacePoint<dim> local = point;
-  local.simplex -= simplex_begin_[m];
+  local.simplex -= begin_[m].simplex;
   return {m, local};
 }
 
@@ -204,7 +153,7 @@ void SolidSystem<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<
   const auto [m, local] = in_model(point);
   model(m).velocity_row(local, x, row);
   for (GlobalIndex& id : row.dofs)
-    id += id_begin_[m];
+    id += begin_[m].id;
   attachments_.reduce(row);
 }
 
@@ -222,46 +171,14 @@ Point<dim> SolidSystem<dim>::effective_velocity(const SurfacePoint<dim>& point,
   return model(m).effective_velocity(local, x);
 }
 
-namespace {
-void add_rows(const CrsMatrix& matrix, GlobalIndex shift, double factor,
-              std::vector<Triplet>& triplets) {
-  Teuchos::ArrayView<const int> columns;
-  Teuchos::ArrayView<const double> values;
-  for (int row = 0; row < static_cast<int>(matrix.getNodeNumRows()); ++row) {
-    matrix.getLocalRowView(row, columns, values);
-    for (int k = 0; k < columns.size(); ++k) {
-      triplets.push_back({matrix.getRowMap()->getGlobalElement(row) + shift,
-                          matrix.getColMap()->getGlobalElement(columns[k]) + shift,
-                          factor * values[k]});
-    }
-  }
-}
-
-/// mask K mask + (1 - mask), in place.
-void eliminate_masked(CrsMatrix& matrix, const Vector& mask) {
-  matrix.leftScale(mask);
-  matrix.rightScale(mask);
-  matrix.resumeFill();
-  const auto keep = mask.getData();
-  for (int row = 0; row < keep.size(); ++row) {
-    if (keep[row] != 0)
-      continue;
-    const GlobalIndex id = matrix.getRowMap()->getGlobalElement(row);
-    const double one = 1;
-    matrix.replaceGlobalValues(id, Teuchos::arrayView(&id, 1), Teuchos::arrayView(&one, 1));
-  }
-  matrix.fillComplete();
-}
-}  // namespace
-
 template <int dim>
-std::vector<StackedOperator::Part> SolidSystem<dim>::parts(double dt) const {
-  std::vector<StackedOperator::Part> all;
+std::vector<StackedPart> SolidSystem<dim>::parts(double dt) const {
+  std::vector<StackedPart> all;
   for (int m = 0; m < n_models(); ++m) {
     if (model(m).dof_map()->getGlobalNumElements() == 0)
       continue;
     const auto force = dt == 0 ? RCP<const LinearOperator>() : model(m).implicit_force(dt);
-    all.push_back({model(m).mass(), force, model(m).dof_map(), local_begin_[m]});
+    all.push_back({model(m).mass(), force, model(m).dof_map(), begin_[m].id, begin_[m].local});
   }
   return all;
 }
@@ -269,33 +186,18 @@ std::vector<StackedOperator::Part> SolidSystem<dim>::parts(double dt) const {
 template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& added, double dt,
                                                   bool eliminate) const {
-  const std::vector<StackedOperator::Part> parts = this->parts(dt);
-  bool all_assembled = true;
-  for (const auto& part : parts) {
-    all_assembled = all_assembled && !assembled(part.mass).is_null() &&
-                    (part.implicit_force.is_null() || !assembled(part.implicit_force).is_null());
-  }
-  if (!all_assembled) {
+  const std::vector<StackedPart> parts = this->parts(dt);
+  if (!all_assembled(parts)) {
     check_input(
         attachments_.empty(),
         "Nodes can only be attached to solids whose mass and forces are assembled matrices.");
     return as_thyra(
         rcp(new StackedOperator(parts, dt, added, eliminate ? free_mask_ : Teuchos::null, map_)));
   }
-  std::vector<Triplet> triplets;
-  std::size_t part = 0;
-  for (int m = 0; m < n_models(); ++m) {
-    if (model(m).dof_map()->getGlobalNumElements() == 0)
-      continue;
-    add_rows(*assembled(parts[part].mass), id_begin_[m], 1, triplets);
-    if (!parts[part].implicit_force.is_null()) {
-      add_rows(*assembled(parts[part].implicit_force), id_begin_[m], -dt, triplets);
-    }
-    ++part;
-  }
+  std::vector<Triplet> triplets = stacked_triplets(parts, dt);
   attachments_.reduce(triplets, *map_);
   if (!added.is_null())
-    add_rows(*added, 0, 1, triplets);
+    add_triplets(*added, 0, 1, triplets);
   // Padding rows must exist in the pattern; their value is set by the elimination.
   const int n_local = static_cast<int>(map_->getNodeNumElements());
   for (int i = 0; i < n_padding_; ++i) {
@@ -327,9 +229,9 @@ NearNullSpace SolidSystem<dim>::near_null_space() const {
       motions = rcp(new MultiVector(map_, n_motions));
       all.body_of_row.assign(map_->getNodeNumElements(), -1);
     }
-    motions->offsetViewNonConst(model(m).dof_map(), local_begin_[m])->update(1, *part.motions, 0);
+    motions->offsetViewNonConst(model(m).dof_map(), begin_[m].local)->update(1, *part.motions, 0);
     for (std::size_t row = 0; row < part.body_of_row.size(); ++row)
-      all.body_of_row[local_begin_[m] + row] = all.n_bodies + part.body_of_row[row];
+      all.body_of_row[begin_[m].local + row] = all.n_bodies + part.body_of_row[row];
     all.n_bodies += part.n_bodies;
   }
   all.motions = motions;
@@ -359,12 +261,12 @@ RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& generalized_momentum) co
 
 template <int dim>
 RCP<const Vector> SolidSystem<dim>::part(const Vector& stacked, int m) const {
-  return stacked.offsetView(model(m).dof_map(), local_begin_[m])->getVector(0);
+  return stacked.offsetView(model(m).dof_map(), begin_[m].local)->getVector(0);
 }
 
 template <int dim>
 RCP<Vector> SolidSystem<dim>::part(Vector& stacked, int m) const {
-  return stacked.offsetViewNonConst(model(m).dof_map(), local_begin_[m])->getVectorNonConst(0);
+  return stacked.offsetViewNonConst(model(m).dof_map(), begin_[m].local)->getVectorNonConst(0);
 }
 
 template <int dim>
@@ -431,7 +333,7 @@ Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
 template <int dim>
 void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
   for (int m = 0; m < n_models(); ++m) {
-    if (!has_attached_nodes_[m])
+    if (!attachments_.holds_model(m))
       model(m).move(*part(velocity, m), time, dt);
   }
   if (!attachments_.empty())
@@ -469,10 +371,10 @@ void SolidSystem<dim>::move_attached(const Vector& velocity, double time, double
     }
   }
   for (int m = 0; m < n_models(); ++m) {
-    if (has_attached_nodes_[m])
+    if (attachments_.holds_model(m))
       model(m).move(*part(std::as_const(full), m), time, dt);
   }
-  find_attachments();
+  attachments_ = find_attachments(models_, begin_, solids_, comm_);
 }
 
 template <int dim>
@@ -501,6 +403,14 @@ double SolidSystem<dim>::largest_stable_step() const {
   for (const auto& solid_model : models_)
     dt = std::min(dt, solid_model->largest_stable_step());
   return dt;
+}
+
+template <int dim>
+GlobalIndex SolidSystem<dim>::n_clamped_elements() const {
+  GlobalIndex n = 0;
+  for (const auto& solid_model : models_)
+    n += solid_model->n_clamped_elements();
+  return n;
 }
 
 template class SolidSystem<2>;

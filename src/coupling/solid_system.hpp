@@ -82,31 +82,26 @@ class SolidSystem {
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;
   Momentum<dim> momentum(const Vector& generalized_momentum) const;
   double largest_stable_step() const;
+  GlobalIndex n_clamped_elements() const;  ///< of all models, see SolidModel
 
  private:
-  bool has_dofs(int m) const { return model(m).dof_map()->getGlobalNumElements() > 0; }
-  void find_attachments();
-  int carrier_named(const std::string& name, std::string& failure) const;
   void move_attached(const Vector& velocity, double time, double dt);
   std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;
   RCP<const Vector> part(const Vector& stacked, int m) const;
   RCP<Vector> part(Vector& stacked, int m) const;
   void make_free_mask();
-  std::vector<StackedOperator::Part> parts(double dt) const;
+  std::vector<StackedPart> parts(double dt) const;
   RCP<const LinearOperator> block(const RCP<const CrsMatrix>& added, double dt,
                                   bool eliminate) const;
 
   Communicator comm_;
   std::vector<std::unique_ptr<SolidModel<dim>>> models_;
   std::vector<SolidDescription> solids_;
-  std::vector<int> simplex_begin_;  ///< of each model in the snapshot
   RCP<const Map> map_;
-  std::vector<GlobalIndex> id_begin_;  ///< of each model in the map
-  std::vector<int> local_begin_;       ///< of each model among this rank's rows
+  std::vector<ModelBegin> begin_;  ///< of each model
   GlobalIndex n_unknowns_ = 0;
   int n_padding_ = 0;  ///< local
   Attachments<dim> attachments_;
-  std::vector<char> has_attached_nodes_;  ///< of each model
   RCP<Vector> free_mask_;
   bool has_locks_ = false;
 };

@@ -6,8 +6,9 @@
 
 namespace lockstep {
 
-StackedOperator::StackedOperator(std::vector<Part> parts, double dt, RCP<const CrsMatrix> added,
-                                 RCP<const Vector> mask, RCP<const Map> map)
+StackedOperator::StackedOperator(std::vector<StackedPart> parts, double dt,
+                                 RCP<const CrsMatrix> added, RCP<const Vector> mask,
+                                 RCP<const Map> map)
     : parts_(std::move(parts)),
       dt_(dt),
       added_(std::move(added)),
@@ -16,7 +17,7 @@ StackedOperator::StackedOperator(std::vector<Part> parts, double dt, RCP<const C
 
 void StackedOperator::apply_to(const Vector& x, Vector& y) const {
   y.putScalar(0);
-  for (const Part& part : parts_) {
+  for (const StackedPart& part : parts_) {
     const RCP<const Vector> x_part = x.offsetView(part.map, part.local_begin)->getVector(0);
     const RCP<Vector> y_part =
         y.offsetViewNonConst(part.map, part.local_begin)->getVectorNonConst(0);

@@ -6,20 +6,22 @@
 
 namespace lockstep {
 
+/// What a model gives to the stack of all solids, and where it stands there.
+struct StackedPart {
+  RCP<const LinearOperator> mass;
+  RCP<const LinearOperator> implicit_force;  ///< D, or null
+  RCP<const Map> map;
+  GlobalIndex id_begin = 0;  ///< of the part's ids in those of the stack
+  int local_begin = 0;       ///< of its rows among this rank's
+};
+
 /// The solid block when a model gives no assembled matrix: mask (blockdiag(mass_m - dt D_m) +
-/// added) mask
-/// + (1 - mask), applied without forming anything. The parts' local rows follow one another in the
-/// map.
+/// added) mask + (1 - mask), applied without forming anything. The parts' local rows follow one
+/// another in the map.
 class StackedOperator : public Tpetra::Operator<double, int, GlobalIndex> {
  public:
-  struct Part {
-    RCP<const LinearOperator> mass;
-    RCP<const LinearOperator> implicit_force;  ///< D, or null
-    RCP<const Map> map;
-    int local_begin = 0;
-  };
   /// `added` and `mask` may be null (nothing added, nothing eliminated).
-  StackedOperator(std::vector<Part> parts, double dt, RCP<const CrsMatrix> added,
+  StackedOperator(std::vector<StackedPart> parts, double dt, RCP<const CrsMatrix> added,
                   RCP<const Vector> mask, RCP<const Map> map);
 
   RCP<const Map> getDomainMap() const override { return map_; }
@@ -31,7 +33,7 @@ class StackedOperator : public Tpetra::Operator<double, int, GlobalIndex> {
  private:
   void apply_to(const Vector& x, Vector& y) const;
 
-  std::vector<Part> parts_;
+  std::vector<StackedPart> parts_;
   double dt_;
   RCP<const CrsMatrix> added_;
   RCP<const Vector> mask_;

@@ -201,21 +201,23 @@ int conjugate_gradients(const ViscousOperator<dim>& op, const Preconditioner& pr
   return most;
 }
 
-/// What prescribed solids give the fluid through their links, and the couple of links whose two
-/// ends lie apart across their direction. This rank's part.
+/// The couple of links whose two ends lie apart across their direction, and what each prescribed
+/// solid gives the fluid through its links. This rank's part.
 template <int dim>
-Momentum<dim> link_impulse(const Links<dim>& links, const Vector& pull, double dt) {
-  Momentum<dim> impulse;
+Momentum<dim> link_impulse(const Links<dim>& links, const Vector& pull, double dt,
+                           std::vector<Momentum<dim>>& of_prescribed) {
+  Momentum<dim> couple;
   const auto values = pull.getData();
   for (std::size_t l = 0; l < links.list.size(); ++l) {
     const auto& link = links.list[l];
     const auto& end = links.ends[l];
     const Point<dim> on_fluid = -dt * values[l] * Point<dim>::Unit(link.direction);
-    impulse.add(link.position, end.prescribed_share * on_fluid);
-    impulse.angular +=
+    if (end.prescribed_share > 0)
+      of_prescribed[end.prescribed_solid].add(link.position, end.prescribed_share * on_fluid);
+    couple.angular +=
         (1 - end.prescribed_share) * cross<dim>(link.position - end.position, on_fluid);
   }
-  return impulse;
+  return couple;
 }
 
 }  // namespace
@@ -275,8 +277,12 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
   mass_inverse.reciprocal(*system.mass);
   velocity.elementWiseMultiply(1, mass_inverse, *residual.fluid, 1);
   result.boundary_impulse = fluid.accept_viscous(*x.fluid, velocity, dt);
-  result.boundary_impulse +=
-      sum_over_ranks<dim>(link_impulse<dim>(links, *pull, dt), solids.comm());
+  std::vector<Momentum<dim>> impulses(solids.solids().size());
+  impulses.push_back(link_impulse<dim>(links, *pull, dt, impulses));
+  sum_over_ranks(impulses, solids.comm());
+  result.boundary_impulse += total_of(impulses);
+  impulses.pop_back();
+  result.prescribed_impulses = std::move(impulses);
   return result;
 }
 

@@ -10,6 +10,9 @@ struct ViscousResult {
   RCP<Vector> solid_impulse;  ///< j_nu = -dt (K_sf u + K_ss V_S) [kg m/s] on the solid map; null
                               ///< without unknowns
   Momentum<dim> boundary_impulse;  ///< walls and prescribed solids on the fluid, global
+  /// Of each solid that is prescribed on the fluid, part of `boundary_impulse`; zero for dynamic
+  /// solids. Where several share a face, one of them has it all. Global.
+  std::vector<Momentum<dim>> prescribed_impulses;
   int iterations = 0;
 };
 

@@ -7,30 +7,11 @@
 
 #include "base/errors.hpp"
 #include "geometry/file_formats.hpp"
+#include "geometry/unused_vertices.hpp"
 
 namespace lockstep {
 
 namespace {
-
-/// Lone vertices would become nodes without mass: they go, the order of the others stays.
-template <int dim>
-void drop_unused_vertices(SurfaceMesh<dim>& mesh) {
-  std::vector<int> number(mesh.vertices.size(), -1);
-  for (const auto& simplex : mesh.simplices)
-    for (const int v : simplex)
-      number[v] = 0;
-  std::vector<Point<dim>> used;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] < 0)
-      continue;
-    number[v] = static_cast<int>(used.size());
-    used.push_back(mesh.vertices[v]);
-  }
-  mesh.vertices = std::move(used);
-  for (auto& simplex : mesh.simplices)
-    for (int& v : simplex)
-      v = number[v];
-}
 
 template <int dim>
 SurfaceMesh<dim> read_by_extension(const std::string& file, const std::string& extension) {

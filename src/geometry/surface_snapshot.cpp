@@ -360,6 +360,21 @@ LatticeCrossings<dim> SurfaceSnapshot<dim>::cross_lattice(const Lattice<dim>& la
   return result;
 }
 
+template <int dim>
+SurfaceMesh<dim> SurfaceSnapshot<dim>::mesh_of_solid(int solid) const {
+  const SolidDescription& range = solids()[solid];
+  SurfaceMesh<dim> part;
+  part.vertices.assign(mesh().vertices.begin() + range.vertex_begin,
+                       mesh().vertices.begin() + range.vertex_end);
+  part.simplices.assign(mesh().simplices.begin() + range.simplex_begin,
+                        mesh().simplices.begin() + range.simplex_end);
+  for (auto& simplex : part.simplices) {
+    for (int& vertex : simplex)
+      vertex -= range.vertex_begin;
+  }
+  return part;
+}
+
 template class SurfaceSnapshot<2>;
 template class SurfaceSnapshot<3>;
 

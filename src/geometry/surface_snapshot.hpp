@@ -85,6 +85,8 @@ class SurfaceSnapshot {
   std::array<Point<dim>, dim> corners(int simplex) const;
   Box<dim> bounds(int simplex) const;
   Box<dim> bounds_of_solid(int solid) const;
+  /// The surface of one solid, vertices numbered from 0.
+  SurfaceMesh<dim> mesh_of_solid(int solid) const;
 
   /// First simplex that the segment a -> b meets (within `tolerance` [m] of its ends and of the
   /// simplex' rim), or none. Touching counts as meeting, and so does running inside the plane of a

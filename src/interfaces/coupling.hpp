@@ -46,17 +46,19 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
 
   /// M_F per coupled volume, after volume subtraction and balancing [kg]. Local.
   virtual const std::vector<double>& fluid_mass() const = 0;
-  /// Buoyant impulse per dt on solids whose displaced volume the grid does not see right, as
-  /// generalized force for a given fluid acceleration field g [m/s^2]; external in the ledger.
+  /// Adds the buoyant impulse over dt on solids whose displaced volume the grid does not see right,
+  /// for a given acceleration g of the fluid [m/s^2]; external in the ledger. Returns that on
+  /// prescribed solids, one per solid of the snapshot, for the forces that are reported.
   /// Collective.
-  virtual void add_unseen_buoyancy(const Point<dim>& gravity, double dt, Vector& rhs) const = 0;
+  virtual std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
+                                                         Vector& rhs) const = 0;
 
-  /// Impulse that prescribed solids gave to the fluid of their share of the coupled volumes in a
-  /// solve, face by face: mass times velocity change plus area times pressure jump. Global.
-  /// Collective.
-  virtual Momentum<dim> prescribed_impulse(const std::vector<double>& velocity_before,
-                                           const std::vector<double>& velocity_after,
-                                           const Vector& scaled_pressure) const = 0;
+  /// Impulse that each prescribed solid gave to the fluid of its share of the coupled volumes in a
+  /// solve, face by face: mass times velocity change plus area times pressure jump. One per solid
+  /// of the snapshot, zero for dynamic ones. Global. Collective.
+  virtual std::vector<Momentum<dim>> prescribed_impulses(const std::vector<double>& velocity_before,
+                                                         const std::vector<double>& velocity_after,
+                                                         const Vector& scaled_pressure) const = 0;
 
   /// Angular impulse about the origin that a solve makes because soft solids take the impulses of
   /// coupled volumes at their nodes, with diagonally lumped masses, and the fluid gives them at the
@@ -77,6 +79,7 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
     std::vector<double> weights;
     double prescribed = 0;                     ///< velocity that prescribed solids contribute [m/s]
     double prescribed_share = 0;               ///< their part of the link, 0..1
+    int prescribed_solid = -1;                 ///< one of them: the last with a share
     Point<dim> position = Point<dim>::Zero();  ///< where the link pulls on the solid [m]
   };
   /// `assemble` and the surface it was given must still be valid. Local.

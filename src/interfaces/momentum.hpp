@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "base/communicator.hpp"
 #include "base/types.hpp"
 
@@ -33,20 +35,44 @@ struct Momentum {
   friend Momentum operator-(Momentum a, const Momentum& b) { return a -= b; }
 };
 
-/// Sum over all ranks, on every rank. Collective.
+/// Each summed over all ranks, on every rank. Collective.
+template <int dim>
+void sum_over_ranks(std::vector<Momentum<dim>>& momenta, const Communicator& comm) {
+  std::vector<double> values;
+  for (const Momentum<dim>& momentum : momenta) {
+    values.insert(values.end(), momentum.linear.begin(), momentum.linear.end());
+    values.insert(values.end(), momentum.angular.begin(), momentum.angular.end());
+  }
+  sum_all(comm, values.data(), static_cast<int>(values.size()));
+  auto value = values.cbegin();
+  for (Momentum<dim>& momentum : momenta) {
+    for (double& component : momentum.linear)
+      component = *value++;
+    for (double& component : momentum.angular)
+      component = *value++;
+  }
+}
+
+/// The same of one. Collective.
 template <int dim>
 Momentum<dim> sum_over_ranks(const Momentum<dim>& mine, const Communicator& comm) {
-  std::array<double, dim + n_rotations<dim>> values;
-  for (int a = 0; a < dim; ++a)
-    values[a] = mine.linear[a];
-  for (int r = 0; r < n_rotations<dim>; ++r)
-    values[dim + r] = mine.angular[r];
-  sum_all(comm, values.data(), static_cast<int>(values.size()));
+  std::vector<Momentum<dim>> one{mine};
+  sum_over_ranks(one, comm);
+  return one.front();
+}
+
+/// Adds one by one: as many as there are in `sums`.
+template <int dim>
+void add_each(const std::vector<Momentum<dim>>& momenta, std::vector<Momentum<dim>>& sums) {
+  for (std::size_t s = 0; s < sums.size(); ++s)
+    sums[s] += momenta[s];
+}
+
+template <int dim>
+Momentum<dim> total_of(const std::vector<Momentum<dim>>& momenta) {
   Momentum<dim> total;
-  for (int a = 0; a < dim; ++a)
-    total.linear[a] = values[a];
-  for (int r = 0; r < n_rotations<dim>; ++r)
-    total.angular[r] = values[dim + r];
+  for (const Momentum<dim>& momentum : momenta)
+    total += momentum;
   return total;
 }
 

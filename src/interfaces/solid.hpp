@@ -130,6 +130,9 @@ class SolidModel : public PlugIn {
   virtual AngularVector<dim> inner_angular_impulse(double) const {
     return AngularVector<dim>::Zero();
   }
+  /// Elements whose implicit forces were changed to keep C definite, in the last step that used
+  /// them; for the history. Global, local call.
+  virtual GlobalIndex n_clamped_elements() const { return 0; }
   /// Largest stable step of explicitly integrated forces [s]. Default: none.
   virtual double largest_stable_step() const;
 };

@@ -73,6 +73,7 @@ std::vector<HistoryColumn> history_columns() {
            {"f2_incompatibility", "1", "the same of F2"},
            {"contacts", "1", "contact points resolved for the positions"},
            {"deepest_overlap", "m", "before contact was resolved"},
+           {"clamped_elements", "1", "elements of soft solids whose forces were made definite"},
            {"wall_seconds", "s", "wall time of the step"}}) {
     columns.push_back(column);
   }
@@ -135,7 +136,8 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
               residual(report.s1), residual(report.f2), residual(report.s2),
               report.incompatibility_s2, report.incompatibility_f2,
               static_cast<long long>(report.contact_position.n_contacts),
-              report.contact_position.deepest_overlap, wall_seconds);
+              report.contact_position.deepest_overlap,
+              static_cast<long long>(report.n_clamped_elements), wall_seconds);
   history_.append_row(row);
 
   std::vector<std::vector<HistoryValue>> rows;

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "linear/null_space.hpp"
+#include "stepping/solve_audit.hpp"
 
 namespace lockstep {
 
@@ -70,7 +71,7 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
       ledger->add("body forces", impulse);
     }
   }
-  viscous_impulse_ = Teuchos::null;
+  viscous_ = {};
   if (!fluid.is_viscous())
     return;
   ScopedPhase phase(timers_, "viscosity");
@@ -87,13 +88,24 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
     if (!locked_velocity_.is_null())
       row->update(-1, *system_.unlocked_momentum(dt, *locked_velocity_), 1);
   }
-  const ViscousResult<dim> result =
+  viscous_ =
       solve_viscous<dim>(*viscous, fluid, solids, *components_.coupling, block, near_null_space,
                          row, dt, options_.viscous_tolerance, locked_velocity_);
-  viscous_impulse_ = result.solid_impulse;
-  report.viscous_iterations += result.iterations;
+  report.viscous_iterations += viscous_.iterations;
   if (ledger)
-    ledger->add("viscous boundaries", result.boundary_impulse);
+    ledger->add("viscous boundaries", viscous_.boundary_impulse);
+}
+
+/// On the dynamic solids. Users see it, and that on prescribed solids, among the forces of the
+/// fluid.
+template <int dim>
+RCP<const Vector> Stepper<dim>::unseen_buoyancy(double dt, StepReport<dim>& report) const {
+  const auto& solids = *components_.solids;
+  const auto buoyancy = make_vector(solids.map());
+  report.hydrodynamic_impulse =
+      components_.coupling->add_unseen_buoyancy(components_.fluid->gravity(), dt, *buoyancy);
+  add_each(solids.momentum_of_each(*buoyancy), report.hydrodynamic_impulse);
+  return buoyancy;
 }
 
 /// M_S V_S*: explicit forces, buoyancy the grid does not see, contact, viscous drag.
@@ -106,8 +118,7 @@ RCP<Vector> Stepper<dim>::solid_momentum(double time, double dt, MomentumLedger<
     solids.add_midpoint_correction(dt, *momentum);
   if (ledger)
     ledger->add("solid forces", solids.external_impulse(time, dt));
-  const auto buoyancy = make_vector(solids.map());
-  components_.coupling->add_unseen_buoyancy(components_.fluid->gravity(), dt, *buoyancy);
+  const RCP<const Vector> buoyancy = unseen_buoyancy(dt, report);
   momentum->update(1, *buoyancy, 1);
   if (ledger)
     ledger->add("unseen buoyancy", solids.momentum(*buoyancy));
@@ -116,8 +127,8 @@ RCP<Vector> Stepper<dim>::solid_momentum(double time, double dt, MomentumLedger<
     report.contact_velocity = contact_momentum(dt, *momentum);
     ledger->add("contact", report.contact_velocity.external_impulse);
   }
-  if (!viscous_impulse_.is_null())
-    momentum->update(1, *viscous_impulse_, 1);
+  if (!viscous_.solid_impulse.is_null())
+    momentum->update(1, *viscous_.solid_impulse, 1);
   return momentum;
 }
 
@@ -147,9 +158,8 @@ ContactReport<dim> Stepper<dim>::contact_momentum(double dt, Vector& momentum) {
 }
 
 template <int dim>
-typename Stepper<dim>::CoupledSolution Stepper<dim>::solve(double dt, const RCP<Vector>& momentum,
-                                                           const char* name, SolveReport& report,
-                                                           double& incompatibility) {
+CoupledSolution Stepper<dim>::solve(double dt, const RCP<Vector>& momentum, const char* name,
+                                    SolveReport& report, double& incompatibility) {
   components_.coupling->set_prescribed_motion(*components_.solids, Coupling<dim>::Motion::present);
   CoupledSolution solution;
   solution.momentum = momentum;
@@ -182,11 +192,8 @@ typename Stepper<dim>::CoupledSolution Stepper<dim>::solve(double dt, const RCP<
 /// Newton's method on the elastic forces at the positions that the solution reaches: every
 /// iteration is a coupled solve, whose explicit momentum differs from the last one's by theirs.
 template <int dim>
-typename Stepper<dim>::CoupledSolution Stepper<dim>::solve_newton(double dt,
-                                                                  const RCP<Vector>& momentum,
-                                                                  const char* name,
-                                                                  SolveReport& report,
-                                                                  double& incompatibility) {
+CoupledSolution Stepper<dim>::solve_newton(double dt, const RCP<Vector>& momentum, const char* name,
+                                           SolveReport& report, double& incompatibility) {
   auto& solids = *components_.solids;
   CoupledSolution solution = solve(dt, momentum, name, report, incompatibility);
   for (int k = 1; k < options_.newton_iterations && coupled(); ++k) {
@@ -267,25 +274,14 @@ Momentum<dim> Stepper<dim>::total_momentum() const {
   return total;
 }
 
-template <int dim>
-double Stepper<dim>::largest_divergence(const BlockSystem& blocks, const BlockVector& rhs,
-                                        const BlockVector& solution) const {
-  Vector residual(*rhs.pressure, Teuchos::Copy);
-  apply(*blocks.pressure_block, *solution.pressure, residual, -1, 1);
-  if (blocks.has_solid()) {
-    blocks.coupling_transposed->apply(*solution.solid, residual, Teuchos::TRANS, 1, 1);
-  }
-  return residual.normInf() / std::pow(components_.fluid->spacing(), dim);
-}
-
 /// F4 and the end of the audit.
 template <int dim>
 void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   auto& solids = *components_.solids;
   const BlockVector& unknowns = solution.unknowns;
-  report.max_divergence = largest_divergence(system_.blocks(dt), solution.rhs, unknowns);
-  ledger_solve(solution, dt, report);
+  report.max_divergence = largest_divergence(system_.blocks(dt), solution, fluid.spacing(), dim);
+  audit_solve<dim>(components_, system_, solution, viscous_, dt, report);
   fluid.project(*unknowns.pressure);
   RCP<Vector> velocity = unknowns.solid;
   if (velocity.is_null())
@@ -303,6 +299,7 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
     apply(*solids.mass(), *velocity, *after);
     report.solid_momentum = solids.momentum(*after);
   }
+  report.n_clamped_elements = solids.n_clamped_elements();
   report.ledger.close(report.fluid_momentum + report.solid_momentum);
   last_momentum_ = report.ledger.after();
   // sum m |u| >= sum m u^2 / max |u|
@@ -316,44 +313,6 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
     report.solid_kinetic_energy += state.kinetic_energy;
     report.elastic_energy += state.elastic_energy;
   }
-}
-
-/// The impulses of the S2 solve, each from its own pressure, and what the fluid gave to every
-/// solid.
-template <int dim>
-void Stepper<dim>::ledger_solve(const CoupledSolution& solution, double dt,
-                                StepReport<dim>& report) {
-  auto& solids = *components_.solids;
-  const BlockVector& unknowns = solution.unknowns;
-  const Momentum<dim> walls = components_.fluid->boundary_pressure_impulse(*unknowns.pressure);
-  report.ledger.add("walls", walls);
-  report.boundary_impulse = walls + report.ledger.impulse_of("viscous boundaries");
-  RCP<Vector> velocity = unknowns.solid;
-  if (velocity.is_null())
-    velocity = make_vector(solids.map());
-  const std::vector<double> coupled_after = components_.coupling->velocity(*velocity);
-  report.ledger.add("prescribed solids",
-                    components_.coupling->prescribed_impulse(solution.coupled_before, coupled_after,
-                                                             *unknowns.pressure));
-  report.hydrodynamic_impulse.assign(solids.solids().size(), {});
-  if (!coupled())
-    return;
-  const RCP<const Vector> reaction = system_.lock_reaction(dt, *solution.momentum, unknowns);
-  report.ledger.add("locks", solids.momentum(*reaction));
-  report.lever_impulse =
-      components_.coupling->lever_impulse(solids, solution.coupled_before, coupled_after, unknowns);
-  report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lever_impulse});
-  const RCP<const Vector> implicit = solids.implicit_impulse(dt, *unknowns.solid);
-  report.linearisation_impulse =
-      solids.momentum(*implicit).angular + solids.inner_angular_impulse(dt);
-  report.ledger.add("linearised forces", {Point<dim>::Zero(), report.linearisation_impulse});
-  const RCP<Vector> gained = make_vector(solids.map());
-  apply(*solids.mass(), *unknowns.solid, *gained);
-  gained->update(-1, *solution.momentum, -1, *reaction, 1);
-  gained->update(-1, *implicit, 1);
-  if (!viscous_impulse_.is_null())
-    gained->update(1, *viscous_impulse_, 1);
-  report.hydrodynamic_impulse = solids.momentum_of_each(*gained);
 }
 
 template <int dim>
@@ -404,6 +363,8 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
     RCP<Vector> momentum = make_vector(solids.map());
     if (coupled())
       momentum = solid_momentum(time_, dt, &report.ledger, report);
+    else
+      unseen_buoyancy(dt, report);
     const CoupledSolution solution =
         solve_newton(dt, momentum, "S2", report.s2, report.incompatibility_s2);
     finish(solution, dt, report);

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "geometry/text_lines.hpp"
+#include "geometry/unused_vertices.hpp"
 
 namespace lockstep {
 
@@ -14,12 +15,6 @@ namespace {
 constexpr int simplex_type(int n_corners) {
   return n_corners == 2 ? 1 : n_corners == 3 ? 2 : 4;
 }
-
-template <int dim, int n_corners>
-struct Simplices {
-  std::vector<Point<dim>> vertices;
-  std::vector<std::array<int, n_corners>> simplices;
-};
 
 /// Reads one file; `tags` are Gmsh's node numbers, which need not be consecutive.
 template <int dim, int n_corners>
@@ -64,10 +59,8 @@ class GmshReader {
     check_input(nodes && elements, "{}: the file has no {} section.", file_,
                 nodes ? "$Elements" : "$Nodes");
     check_input(!mesh_.simplices.empty(), "{}: the file holds no {}.", file_,
-                n_corners == 2   ? "segments"
-                : n_corners == 3 ? "triangles"
-                                 : "tetrahedra");
-    drop_unused();
+                simplex_name(n_corners));
+    drop_unused_vertices(mesh_);
     return std::move(mesh_);
   }
 
@@ -175,26 +168,6 @@ class GmshReader {
     }
   }
 
-  void drop_unused() {
-    std::vector<int> number(mesh_.vertices.size(), -1);
-    for (const auto& simplex : mesh_.simplices) {
-      for (const int v : simplex)
-        number[v] = 0;
-    }
-    std::vector<Point<dim>> used;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      if (number[v] < 0)
-        continue;
-      number[v] = static_cast<int>(used.size());
-      used.push_back(mesh_.vertices[v]);
-    }
-    mesh_.vertices = std::move(used);
-    for (auto& simplex : mesh_.simplices) {
-      for (int& v : simplex)
-        v = number[v];
-    }
-  }
-
   std::string file_;
   TextLines lines_;
   std::vector<std::string> words_;
@@ -204,27 +177,14 @@ class GmshReader {
 
 }  // namespace
 
-template <int dim>
-VolumeMesh<dim> read_gmsh_volume(const std::string& file) {
-  auto read = GmshReader<dim, dim + 1>(file).read();
-  VolumeMesh<dim> mesh;
-  mesh.vertices = std::move(read.vertices);
-  mesh.elements = std::move(read.simplices);
-  return mesh;
+template <int dim, int n_corners>
+Simplices<dim, n_corners> read_gmsh(const std::string& file) {
+  return GmshReader<dim, n_corners>(file).read();
 }
 
-template <int dim>
-SurfaceMesh<dim> read_gmsh_surface(const std::string& file) {
-  auto read = GmshReader<dim, dim>(file).read();
-  SurfaceMesh<dim> mesh;
-  mesh.vertices = std::move(read.vertices);
-  mesh.simplices = std::move(read.simplices);
-  return mesh;
-}
-
-template VolumeMesh<2> read_gmsh_volume<2>(const std::string&);
-template VolumeMesh<3> read_gmsh_volume<3>(const std::string&);
-template SurfaceMesh<2> read_gmsh_surface<2>(const std::string&);
-template SurfaceMesh<3> read_gmsh_surface<3>(const std::string&);
+template Simplices<2, 2> read_gmsh<2, 2>(const std::string&);
+template Simplices<2, 3> read_gmsh<2, 3>(const std::string&);
+template Simplices<3, 3> read_gmsh<3, 3>(const std::string&);
+template Simplices<3, 4> read_gmsh<3, 4>(const std::string&);
 
 }  // namespace lockstep

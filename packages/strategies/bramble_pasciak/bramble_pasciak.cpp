@@ -22,6 +22,8 @@ constexpr int n_lanczos_steps = 15;
 constexpr double margin = 0.8;
 /// What the residual must have been reduced by for a restart to be worth it.
 constexpr double restart_gain = 0.1;
+/// Iterations without a smaller residual after which the descent is taken to be at its end.
+constexpr int patience = 15;
 
 /// (p̂, V_S).
 struct Pair {
@@ -83,10 +85,18 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
   precondition_pressure(r.pressure, z.pressure);
 
   const BlockKrylovRequest goal = block_krylov(request, Presumes::symmetry);
-  double z_dot_z = 0;
-  int n_iterations = 0;
+  double z_dot_z = 0, smallest = request.residual_norm;
+  int n_iterations = 0, last_gain = 0;
   for (; n_iterations < request.maximum_iterations; ++n_iterations) {
-    if (r.pressure.norm2() <= goal.target && r.solid.norm2() <= goal.solid_target)
+    const double norm = r.pressure.norm2();
+    if (norm <= goal.target && r.solid.norm2() <= goal.solid_target)
+      break;
+    // Rounding of A_0^-1 can end the descent before its goal: start anew from the true residual.
+    if (norm < smallest) {
+      smallest = norm;
+      last_gain = n_iterations;
+    }
+    if (n_iterations - last_gain >= patience && norm < restart_gain * request.residual_norm)
       break;
     const double previous = z_dot_z;
     // z = [A_0, 0; -B^T, -S_0]^-1 r, and <z, z>_H.
@@ -97,8 +107,7 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
     z_dot_z = z.pressure.dot(a_z) - z.pressure.dot(r.pressure) + z.solid.dot(below);
     // Near the round-off of A_0^-1, which may be that of single precision, the difference of two
     // nearly equal energies loses its sign: start anew from the true residual.
-    if (n_iterations > 0 && !(z_dot_z > 0) &&
-        r.pressure.norm2() < restart_gain * request.residual_norm)
+    if (n_iterations > 0 && !(z_dot_z > 0) && norm < restart_gain * request.residual_norm)
       break;
     check_solve(std::isfinite(z_dot_z) && z_dot_z > 0,
                 "{}: A - A_0 is not positive definite (<z, z> = {:.3e} in iteration {}): the "

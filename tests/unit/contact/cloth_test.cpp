@@ -65,7 +65,7 @@ TYPED_TEST(ClothContacts, ABodyAndOneSimplexOfClothGoOnTogether) {
   const double half_thickness = 0.05 * h;
   DeformableBody<dim> simplex = cloth<dim>(one_simplex<dim>(2 * h));
   double mass = 0;
-  for (const double one : simplex.element_mass)
+  for (const double one : simplex.element_measure)
     mass += one;
   std::vector<DeformableBody<dim>> cloths;
   cloths.push_back(std::move(simplex));

@@ -29,7 +29,7 @@ DeformableBody<dim> cloth(const SurfaceMesh<dim>& mesh, double youngs_modulus = 
     std::array<Point<dim>, dim> corners;
     for (int k = 0; k < dim; ++k)
       corners[k] = mesh.vertices[simplex[k]];
-    body.element_mass.push_back(area_vector<dim>(corners).norm());
+    body.element_measure.push_back(area_vector<dim>(corners).norm());
     body.mass_elements.nodes.insert(body.mass_elements.nodes.end(), simplex.begin(), simplex.end());
   }
   return body;

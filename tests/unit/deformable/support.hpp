@@ -2,21 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Teuchos_DefaultComm.hpp>
 #include <string>
 
 #include "base/errors.hpp"
 #include "coupling/solid_system.hpp"
 #include "deformable/deformable_parameters.hpp"
 #include "deformable/deformable_solids.hpp"
-#include "parameters/strict_xml.hpp"
-#include "parameters/validate.hpp"
+#include "support/scene_text.hpp"
 
 namespace lockstep::test {
-
-inline Communicator world() {
-  return Teuchos::DefaultComm<int>::getComm();
-}
 
 /// The message of the InputError that `action` throws, or "".
 template <typename Action>
@@ -29,25 +23,6 @@ std::string error(const Action& action) {
   return "";
 }
 
-/// <Parameter .../> of the type that the value has in a scene file.
-inline std::string number(const std::string& name, const std::string& value) {
-  return "<Parameter name=\"" + name + "\" type=\"double\" value=\"" + value + "\"/>";
-}
-inline std::string numbers(const std::string& name, const std::string& value) {
-  return "<Parameter name=\"" + name + "\" type=\"Array(double)\" value=\"{" + value + "}\"/>";
-}
-inline std::string text(const std::string& name, const std::string& value) {
-  return "<Parameter name=\"" + name + "\" type=\"string\" value=\"" + value + "\"/>";
-}
-inline std::string texts(const std::string& name, const std::string& value) {
-  return "<Parameter name=\"" + name + "\" type=\"Array(string)\" value=\"{" + value + "}\"/>";
-}
-inline std::string list(const std::string& name, const std::string& content) {
-  return "<ParameterList name=\"" + name + "\">" + content + "</ParameterList>";
-}
-inline std::string geometry(const std::string& shape, const std::string& content) {
-  return list("Geometry", text("Shape", shape) + content);
-}
 inline std::string box(const std::string& size, const std::string& spacing) {
   return geometry("box", numbers("Size", size) + number("Mesh Spacing", spacing));
 }
@@ -65,10 +40,7 @@ inline std::string pinned(const std::string& lower, const std::string& upper,
 /// A body as a scene file has it.
 template <int dim>
 ParameterList body_list(const std::string& content) {
-  Document document =
-      read_xml_string("<ParameterList>" + content + "</ParameterList>", "scene.xml");
-  validate(document, deformable_body_parameters<dim>());
-  return document.list;
+  return scene_list(content, deformable_body_parameters<dim>());
 }
 template <int dim>
 DeformableBody<dim> body(const std::string& content, const std::string& name = "body") {

@@ -16,10 +16,7 @@ using namespace test;
 using testing::dense;
 
 ParameterList rigid_list(const std::string& content) {
-  Document document =
-      read_xml_string("<ParameterList>" + content + "</ParameterList>", "scene.xml");
-  validate(document, rigid_body_parameters<3>());
-  return document.list;
+  return scene_list(content, rigid_body_parameters<3>());
 }
 
 /// A beam of 1 x 0.25 x 0.25 whose left end is glued into a turning rigid box.

@@ -36,7 +36,7 @@ DeformableBody<2> flag(int n, double youngs_modulus, double stiffness_damping) {
                          {stiffness_damping * lame.mu, stiffness_damping * lame.lambda}));
   body.mass_elements = body.elements.back()->corners();
   for (std::size_t e = 0; e < mesh.elements.size(); ++e)
-    body.element_mass.push_back(1000 * element_volume(mesh, static_cast<int>(e)));
+    body.element_measure.push_back(element_volume(mesh, static_cast<int>(e)));
   const auto boundary = extract_surface(mesh, "flag");
   for (const auto& s : boundary.surface.simplices)
     body.surface.push_back({boundary.vertices[s[0]], boundary.vertices[s[1]]});

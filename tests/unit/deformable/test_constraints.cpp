@@ -112,17 +112,15 @@ TEST(Constraints, RegionsThatMoveDoNotOverlap) {
 
 /// A heavy net on a weak sheet, held at its upper edge: no edge grows by more than a tenth.
 TEST(Constraints, StrainIsLimited) {
-  Document document =
-      read_xml_string("<ParameterList>" +
-                          geometry("sheet", numbers("Size", "1, 0.6, 0") + text("Normal", "z") +
-                                                number("Mesh Spacing", "0.25")) +
-                          number("Young&apos;s Modulus", "100") + number("Thickness", "0.001") +
-                          number("Surface Density", "1") + number("Stretch Limit", "0.1") +
-                          region("-1, 0.3, -1", "1, 0.3, 1", "") + "</ParameterList>",
-                      "scene.xml");
-  validate(document, cloth_parameters<3>());
+  const ParameterList given =
+      scene_list(geometry("sheet", numbers("Size", "1, 0.6, 0") + text("Normal", "z") +
+                                       number("Mesh Spacing", "0.25")) +
+                     number("Young&apos;s Modulus", "100") + number("Thickness", "0.001") +
+                     number("Surface Density", "1") + number("Stretch Limit", "0.1") +
+                     region("-1, 0.3, -1", "1, 0.3, 1", ""),
+                 cloth_parameters<3>());
   std::vector<DeformableBody<3>> bodies;
-  bodies.push_back(read_cloth<3>("net", document.list, 0.1));
+  bodies.push_back(read_cloth<3>("net", given, 0.1));
   const auto edges = bodies[0].limited_edges;
   const auto surface = bodies[0].surface;
   Alone<3> alone(std::make_unique<DeformableSolids<3>>("cloth", std::move(bodies),
@@ -150,17 +148,15 @@ TEST(Constraints, StrainIsLimited) {
 
 /// Free, the limit gives no linear momentum, and it acts in S2 as in S1.
 TEST(Constraints, StrainLimitKeepsMomentum) {
-  Document document = read_xml_string(
-      "<ParameterList>" +
-          geometry("sheet", numbers("Size", "1, 1, 0") + text("Normal", "z") +
-                                number("Mesh Spacing", "0.3")) +
-          number("Young&apos;s Modulus", "1") + number("Thickness", "0.001") +
-          number("Surface Density", "1") + number("Stretch Limit", "0.05") +
-          numbers("Velocity", "1, 2, 3") + numbers("Stretch", "1.2, 1.2, 1") + "</ParameterList>",
-      "scene.xml");
-  validate(document, cloth_parameters<3>());
+  const ParameterList given =
+      scene_list(geometry("sheet", numbers("Size", "1, 1, 0") + text("Normal", "z") +
+                                       number("Mesh Spacing", "0.3")) +
+                     number("Young&apos;s Modulus", "1") + number("Thickness", "0.001") +
+                     number("Surface Density", "1") + number("Stretch Limit", "0.05") +
+                     numbers("Velocity", "1, 2, 3") + numbers("Stretch", "1.2, 1.2, 1"),
+                 cloth_parameters<3>());
   std::vector<DeformableBody<3>> bodies;
-  bodies.push_back(read_cloth<3>("sheet", document.list, 0.1));
+  bodies.push_back(read_cloth<3>("sheet", given, 0.1));
   Alone<3> alone(std::make_unique<DeformableSolids<3>>("cloth", std::move(bodies),
                                                        Point<3>(0, 0, 0), world()));
   for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Volume meshes: generators, surfaces, checks, Gmsh files.
+// Volume meshes: generators, surfaces, checks, Gmsh and VTK files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "base/errors.hpp"
-#include "deformable/mesh/gmsh_file.hpp"
 #include "deformable/mesh/hollow_generators.hpp"
+#include "deformable/mesh/mesh_file.hpp"
 #include "deformable/mesh/volume_generators.hpp"
 #include "support.hpp"
 
@@ -97,26 +97,34 @@ TEST(VolumeMesh, BadElementsAreNamed) {
   EXPECT_THAT(test::error([&] { extract_surface(mesh, "plate"); }), HasSubstr("share one side"));
 }
 
-class GmshFile : public ::testing::Test {
+class MeshFile : public ::testing::Test {
  protected:
+  explicit MeshFile(const std::string& extension)
+      : path_(::testing::TempDir() + "mesh" + std::to_string(test::world()->getRank()) +
+              extension) {}
   std::string write(const std::string& text) {
-    path_ = ::testing::TempDir() + "mesh" + std::to_string(test::world()->getRank()) + ".msh";
     std::ofstream(path_) << text;
     return path_;
   }
-  ~GmshFile() override { std::filesystem::remove(path_); }
+  ~MeshFile() override { std::filesystem::remove(path_); }
   std::string path_;
+};
+struct GmshFile : MeshFile {
+  GmshFile() : MeshFile(".msh") {}
+};
+struct VtkFile : MeshFile {
+  VtkFile() : MeshFile(".vtk") {}
 };
 
 TEST_F(GmshFile, Version2) {
-  const auto mesh = read_gmsh_volume<3>(
+  const auto mesh = read_volume_mesh<3>(
       write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body\"\n"
             "$EndPhysicalNames\n$Nodes\n5\n7 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n9 5 5 5\n$EndNodes\n"
             "$Elements\n2\n1 2 2 1 1 7 2 3\n2 4 2 1 1 7 2 3 4\n$EndElements\n"));
   ASSERT_EQ(mesh.elements.size(), 1u);
   ASSERT_EQ(mesh.vertices.size(), 4u);  // node 9 is used by nobody
   EXPECT_NEAR(mesh_volume(mesh), 1. / 6, 1e-15);
-  EXPECT_EQ(read_gmsh_surface<3>(path_).simplices.size(), 1u);
+  EXPECT_EQ(read_shell_mesh<3>(path_).simplices.size(), 1u);
 }
 
 const char* const square_of_version_4 =
@@ -125,25 +133,68 @@ const char* const square_of_version_4 =
     "$Elements\n2 3 1 3\n1 1 1 1\n1 1 2\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
 
 TEST_F(GmshFile, Version4) {
-  const auto mesh = read_gmsh_volume<2>(write(square_of_version_4));
+  const auto mesh = read_volume_mesh<2>(write(square_of_version_4));
   ASSERT_EQ(mesh.elements.size(), 2u);
   EXPECT_NEAR(mesh_volume(mesh), 1, 1e-15);
-  EXPECT_EQ(read_gmsh_surface<2>(path_).simplices.size(), 1u);
+  EXPECT_EQ(read_shell_mesh<2>(path_).simplices.size(), 1u);
 }
 
 TEST_F(GmshFile, ErrorsNameTheLine) {
-  EXPECT_THAT(test::error([&] { read_gmsh_volume<2>("no/such.msh"); }), HasSubstr("cannot open"));
+  EXPECT_THAT(test::error([&] { read_volume_mesh<2>("no/such.msh"); }), HasSubstr("cannot open"));
   EXPECT_THAT(
-      test::error([&] { read_gmsh_volume<2>(write("$MeshFormat\n2.2 1 8\n$EndMeshFormat\n")); }),
+      test::error([&] { read_volume_mesh<2>(write("$MeshFormat\n2.2 1 8\n$EndMeshFormat\n")); }),
       AllOf(HasSubstr("line 2"), HasSubstr("binary")));
-  EXPECT_THAT(test::error([&] { read_gmsh_volume<3>(write(square_of_version_4)); }),
+  EXPECT_THAT(test::error([&] { read_volume_mesh<3>(write(square_of_version_4)); }),
               HasSubstr("no tetrahedra"));
   std::string broken = square_of_version_4;
   broken.replace(broken.find("3 1 3 4"), 7, "3 1 3 8");
-  EXPECT_THAT(test::error([&] { read_gmsh_volume<2>(write(broken)); }),
+  EXPECT_THAT(test::error([&] { read_volume_mesh<2>(write(broken)); }),
               AllOf(HasSubstr("element 3"), HasSubstr("node 8")));
   broken.resize(broken.size() - 20);
-  EXPECT_THAT(test::error([&] { read_gmsh_volume<2>(write(broken)); }), HasSubstr("line 27"));
+  EXPECT_THAT(test::error([&] { read_volume_mesh<2>(write(broken)); }), HasSubstr("line 27"));
+}
+
+const std::string vtk_header = "# vtk DataFile Version 3.0\na title\nASCII\n";
+const std::string vtk_points =
+    "DATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0\n1 1 0 0 1 0 9 9 0\n";
+
+TEST_F(VtkFile, CountsBeforeCells) {
+  const auto mesh = read_volume_mesh<2>(
+      write(vtk_header + vtk_points +
+            "CELLS 3 11\n2 0 1\n3 0 1 2\n3 0 2 3\nCELL_TYPES 3\n3\n5 5\nPOINT_DATA 5\n"));
+  ASSERT_EQ(mesh.elements.size(), 2u);
+  ASSERT_EQ(mesh.vertices.size(), 4u);  // the fifth is used by nobody
+  EXPECT_NEAR(mesh_volume(mesh), 1, 1e-15);
+  EXPECT_EQ(read_shell_mesh<2>(path_).simplices.size(), 1u);
+}
+
+TEST_F(VtkFile, OffsetsOfVersion5) {
+  const auto mesh = read_volume_mesh<3>(
+      write("# vtk DataFile Version 5.1\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+            "0 0 0 1 0 0 0 1 0 0 0 1\nMETADATA\nINFORMATION 0\n\nCELLS 3 7\n"
+            "OFFSETS vtktypeint64\n0 3 7\nCONNECTIVITY vtktypeint64\n0 1 2 0 1 2 3\n"
+            "CELL_TYPES 2\n5\n10\n"));
+  ASSERT_EQ(mesh.elements.size(), 1u);
+  EXPECT_NEAR(mesh_volume(mesh), 1. / 6, 1e-15);
+  EXPECT_EQ(read_shell_mesh<3>(path_).simplices.size(), 1u);
+}
+
+TEST_F(VtkFile, ErrorsNameTheLine) {
+  const auto error_of = [&](const std::string& content) {
+    return test::error([&] { read_volume_mesh<2>(write(content)); });
+  };
+  EXPECT_THAT(error_of("<?xml version=\"1.0\"?>\n"), HasSubstr("no legacy VTK file"));
+  EXPECT_THAT(error_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("is binary"));
+  const std::string start = vtk_header + vtk_points;
+  EXPECT_THAT(error_of(start + "CELLS 1 4\n3 0 1 7\nCELL_TYPES 1\n5\n"),
+              HasSubstr("point 7, which is not there"));
+  EXPECT_THAT(error_of(start + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n9\n"),
+              AllOf(HasSubstr("line 11"), HasSubstr("VTK type 9"), HasSubstr("triangles")));
+  EXPECT_THAT(error_of(start + "CELLS 2 8\n3 0 1 2\n3 0 2 3\nCELL_TYPES 1\n5\n"),
+              HasSubstr("2 cells, but 1 types"));
+  EXPECT_THAT(error_of(start + "CELLS 1 4\n3 0 one 2\n"),
+              AllOf(HasSubstr("line 9"), HasSubstr("'one'")));
+  EXPECT_THAT(error_of(start + "CELLS 1 4\n3 0"), HasSubstr("ends too early"));
 }
 
 }  // namespace

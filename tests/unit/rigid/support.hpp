@@ -2,42 +2,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Teuchos_DefaultComm.hpp>
 #include <string>
 
-#include "parameters/strict_xml.hpp"
-#include "parameters/validate.hpp"
 #include "rigid/rigid_bodies.hpp"
 #include "rigid/rigid_parameters.hpp"
+#include "support/scene_text.hpp"
 
 namespace lockstep::test {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double grid_spacing = 0.1;
 
-inline Communicator world() {
-  return Teuchos::DefaultComm<int>::getComm();
-}
-
-/// <Parameter .../> of the type that the value has in a scene file.
-inline std::string number(const std::string& name, const std::string& value) {
-  return "<Parameter name=\"" + name + "\" type=\"double\" value=\"" + value + "\"/>";
-}
-inline std::string numbers(const std::string& name, const std::string& value) {
-  return "<Parameter name=\"" + name + "\" type=\"Array(double)\" value=\"{" + value + "}\"/>";
-}
-inline std::string text(const std::string& name, const std::string& value) {
-  return "<Parameter name=\"" + name + "\" type=\"string\" value=\"" + value + "\"/>";
-}
-inline std::string texts(const std::string& name, const std::string& value) {
-  return "<Parameter name=\"" + name + "\" type=\"Array(string)\" value=\"{" + value + "}\"/>";
-}
-inline std::string list(const std::string& name, const std::string& content) {
-  return "<ParameterList name=\"" + name + "\">" + content + "</ParameterList>";
-}
-inline std::string geometry(const std::string& shape, const std::string& content) {
-  return list("Geometry", text("Shape", shape) + content);
-}
 inline std::string motion(const std::string& type, const std::string& content = "") {
   return list("Motion", text("Type", type) + content);
 }
@@ -45,10 +20,7 @@ inline std::string motion(const std::string& type, const std::string& content = 
 /// A body as a scene file has it.
 template <int dim>
 ParameterList body_list(const std::string& content) {
-  Document document =
-      read_xml_string("<ParameterList>" + content + "</ParameterList>", "scene.xml");
-  validate(document, rigid_body_parameters<dim>());
-  return document.list;
+  return scene_list(content, rigid_body_parameters<dim>());
 }
 template <int dim>
 RigidBody<dim> body(const std::string& content, double spacing = grid_spacing) {

@@ -1,0 +1,22 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace lockstep {
+
+/// What a mesh file holds of one kind of simplex: with dim corners a surface, with one more a
+/// volume.
+template <int dim, int n_corners>
+struct Simplices {
+  std::vector<Point<dim>> vertices;
+  std::vector<std::array<int, n_corners>> simplices;
+};
+
+/// "segments", "triangles" or "tetrahedra".
+constexpr const char* simplex_name(int n_corners) {
+  return n_corners == 2 ? "segments" : n_corners == 3 ? "triangles" : "tetrahedra";
+}
+
+}  // namespace lockstep

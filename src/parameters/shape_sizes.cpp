@@ -1,0 +1,36 @@
+#include "parameters/shape_sizes.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+
+namespace {
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+}  // namespace
+
+void check_shape_sizes(const ParameterList& geometry, const std::vector<ShapeSizes>& shapes,
+                       const std::string& name) {
+  const auto& shape = geometry.get<std::string>("Shape");
+  const auto own = std::find_if(shapes.begin(), shapes.end(),
+                                [&](const ShapeSizes& sizes) { return sizes.shape == shape; });
+  check_input(own != shapes.end(), "In \"{}/Geometry\", there is no shape \"{}\".", name, shape);
+  for (const std::string& size : own->needed) {
+    check_input(geometry.isParameter(size), "In \"{}/Geometry\", the shape \"{}\" needs \"{}\".",
+                name, shape, size);
+  }
+  const auto refuse = [&](const std::string& size) {
+    check_input(
+        !geometry.isParameter(size) || contains(own->needed, size) || contains(own->optional, size),
+        "In \"{}/Geometry\", the shape \"{}\" has no \"{}\"; leave it out.", name, shape, size);
+  };
+  for (const ShapeSizes& other : shapes) {
+    std::for_each(other.needed.begin(), other.needed.end(), refuse);
+    std::for_each(other.optional.begin(), other.optional.end(), refuse);
+  }
+}
+
+}  // namespace lockstep

@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// A shape of a "Geometry" and the parameters that only some shapes have.
+struct ShapeSizes {
+  std::string shape;
+  std::vector<std::string> needed;
+  std::vector<std::string> optional = {};
+};
+
+/// Throws InputError if `geometry` lacks a size that its "Shape" needs, or has one that only others
+/// take. `name`: of the body, for the sentence.
+void check_shape_sizes(const ParameterList& geometry, const std::vector<ShapeSizes>& shapes,
+                       const std::string& name);
+
+}  // namespace lockstep

@@ -1,0 +1,31 @@
+#pragma once
+#include <vector>
+
+#include "coupling/coupled_system.hpp"
+#include "coupling/viscous_solve.hpp"
+#include "stepping/components.hpp"
+#include "stepping/step_report.hpp"
+
+namespace lockstep {
+
+/// A solve of Eq. 16 and what went into it.
+struct CoupledSolution {
+  BlockVector unknowns;
+  BlockVector rhs;
+  std::vector<double> coupled_before;  ///< u*_F
+  RCP<Vector> momentum;                ///< M_S V_S* as it entered row 2
+};
+
+/// Largest residual of row 1 per cell [1/s]. Collective.
+double largest_divergence(const BlockSystem& blocks, const CoupledSolution& solution,
+                          double spacing, int dim);
+
+/// Enters the impulses of the S2 solve into the ledger, each from its own pressure, and reports
+/// what the fluid gave to every solid, on top of the buoyancy that is there. `viscous`: empty for a
+/// fluid without viscosity. Collective.
+template <int dim>
+void audit_solve(const Components<dim>& components, CoupledSystem<dim>& system,
+                 const CoupledSolution& solution, const ViscousResult<dim>& viscous, double dt,
+                 StepReport<dim>& report);
+
+}  // namespace lockstep

@@ -1,0 +1,36 @@
+#pragma once
+#include <vector>
+
+#include "coupling/momentum_ledger.hpp"
+#include "interfaces/contact.hpp"
+#include "interfaces/strategy.hpp"
+
+namespace lockstep {
+
+/// What happened in one step.
+template <int dim>
+struct StepReport {
+  double time = 0, dt = 0;  ///< time at the end [s]
+  double cfl = 0;           ///< of u^n over dt
+  SolveReport s1, f2, s2;
+  int viscous_iterations = 0;
+  double max_divergence = 0;  ///< after F4, per cell [1/s]
+  double incompatibility_s1 = 0, incompatibility_f2 = 0,
+         incompatibility_s2 = 0;  ///< removed, relative
+  MomentumLedger<dim> ledger;
+  double momentum_error = 0, angular_momentum_error = 0;
+  Momentum<dim> fluid_momentum, solid_momentum, boundary_impulse;
+  /// What advection, revalidation, occlusion resets and the change of lumped masses did to the
+  /// momentum.
+  Momentum<dim> transport_change;
+  /// Numerical torques over dt, see Coupling::lever_impulse and SolidSystem::implicit_impulse.
+  AngularVector<dim> lever_impulse = AngularVector<dim>::Zero();
+  AngularVector<dim> linearisation_impulse = AngularVector<dim>::Zero();
+  double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]
+  double fluid_volume = 0;
+  GlobalIndex n_clamped_elements = 0;               ///< see SolidModel
+  std::vector<Momentum<dim>> hydrodynamic_impulse;  ///< per solid over dt, angular about the origin
+  ContactReport<dim> contact_position, contact_velocity;
+};
+
+}  // namespace lockstep
