@@ -103,13 +103,16 @@ class MembraneElements : public ElementList<dim, MembraneElement<dim>, MembraneE
         continue;
       const SurfaceGradient<dim> f = gradient(element, x);
       const SurfaceTensor<dim> strain = strain_of(f), s = stress(strain);
-      // F = Q U; Q turns the sheet into its plane.
-      const Eigen::SelfAdjointEigenSolver<SurfaceTensor<dim>> squared(f.transpose() * f);
-      const SurfaceGradient<dim> q = f * squared.operatorInverseSqrt();
-      const double stretch = squared.operatorSqrt().determinant();
       Eigen::Matrix3d in_space = Eigen::Matrix3d::Zero(), turned = Eigen::Matrix3d::Zero();
-      in_space.topLeftCorner<dim, dim>() = f * s * f.transpose() / stretch;
-      turned.topLeftCorner<dim, dim>() = q * strain * q.transpose();
+      const Eigen::SelfAdjointEigenSolver<SurfaceTensor<dim>> squared(f.transpose() * f);
+      // F = Q U; Q turns the sheet into its plane. An element without area has none.
+      constexpr double no_area = 1e-20;
+      if (squared.eigenvalues().minCoeff() > no_area) {
+        const SurfaceGradient<dim> q = f * squared.operatorInverseSqrt();
+        const double stretch = squared.operatorSqrt().determinant();
+        in_space.topLeftCorner<dim, dim>() = f * s * f.transpose() / stretch;
+        turned.topLeftCorner<dim, dim>() = q * strain * q.transpose();
+      }
       states.corners.insert(states.corners.end(), element.corners.begin(), element.corners.end());
       states.stress.push_back(in_space);
       states.strain.push_back(turned);
