@@ -22,8 +22,9 @@ constexpr int n_lanczos_steps = 15;
 constexpr double margin = 0.8;
 /// What the residual must have been reduced by for a restart to be worth it.
 constexpr double restart_gain = 0.1;
-/// Iterations without a smaller residual after which the descent is taken to be at its end.
-constexpr int patience = 15;
+/// Iterations without a residual smaller by this factor end a descent.
+constexpr int patience = 8;
+constexpr double least_gain = 0.8;
 
 /// (p̂, V_S).
 struct Pair {
@@ -92,7 +93,7 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
     if (norm <= goal.target && r.solid.norm2() <= goal.solid_target)
       break;
     // Rounding of A_0^-1 can end the descent before its goal: start anew from the true residual.
-    if (norm < smallest) {
+    if (norm < least_gain * smallest) {
       smallest = norm;
       last_gain = n_iterations;
     }
