@@ -16,13 +16,18 @@ struct Hinge {
   std::array<int, dim + 1> corners;
   double stiffness = 0;      ///< [N m]
   double angle_at_rest = 0;  ///< [rad]
+  double flattest = 0;       ///< least size of a side in `SideSizes`; what is less pushes less
 };
+
+/// Squared length (2D) or doubled area (3D) of the two sides of a hinge [m^2, m^4].
+using SideSizes = std::array<double, 2>;
 
 /// The angle by which a hinge is bent, in (-pi, pi], and its derivatives with respect to the
 /// corners.
 template <int dim>
 struct HingeAngle {
   double angle = 0;
+  SideSizes sizes;
   std::array<Point<dim>, dim + 1> gradient;
 };
 
@@ -34,6 +39,7 @@ HingeAngle<2> hinge_angle(const std::array<Point<2>, 3>& x) {
   result.gradient[0] = turned(u) / u.squaredNorm();
   result.gradient[2] = turned(v) / v.squaredNorm();
   result.gradient[1] = -result.gradient[0] - result.gradient[2];
+  result.sizes = {u.squaredNorm(), v.squaredNorm()};
   return result;
 }
 
@@ -48,6 +54,7 @@ HingeAngle<3> hinge_angle(const std::array<Point<3>, 4>& x) {
   result.gradient[3] = length * b;
   result.gradient[0] = (x[2] - x[1]).dot(edge) / length * a + (x[3] - x[1]).dot(edge) / length * b;
   result.gradient[1] = -result.gradient[0] - result.gradient[2] - result.gradient[3];
+  result.sizes = {left.squaredNorm(), right.squaredNorm()};
   return result;
 }
 
@@ -58,6 +65,22 @@ std::array<Point<dim>, dim + 1> corner_positions(const Hinge<dim>& hinge,
   for (int k = 0; k <= dim; ++k)
     corners[k] = x[hinge.corners[k]];
   return corners;
+}
+
+/// The same of the hinge at the positions x. Where a side has collapsed the angle turns at once
+/// when a node moves by nothing: there its gradient is bounded, all of it by one factor, so that
+/// forces still have neither sum nor torque.
+template <int dim>
+HingeAngle<dim> angle_of(const Hinge<dim>& hinge, const std::vector<Point<dim>>& x) {
+  HingeAngle<dim> bent = hinge_angle(corner_positions(hinge, x));
+  const double smallest = std::min(bent.sizes[0], bent.sizes[1]);
+  if (smallest >= hinge.flattest)
+    return bent;
+  for (Point<dim>& gradient : bent.gradient)
+    gradient *= smallest / hinge.flattest;
+  if (smallest == 0)
+    bent.gradient.fill(Point<dim>::Zero());
+  return bent;
 }
 
 template <int dim>
@@ -72,7 +95,7 @@ class BendingElements : public ElementList<dim, Hinge<dim>, BendingElements<dim>
   double add_elastic_forces(const Nodes& x, int n_owned, Nodes& force) const override {
     double energy = 0;
     for (const Hinge<dim>& hinge : elements_) {
-      const HingeAngle<dim> bent = hinge_angle(corner_positions(hinge, x));
+      const HingeAngle<dim> bent = angle_of(hinge, x);
       const double change = std::remainder(bent.angle - hinge.angle_at_rest, two_pi);
       if (hinge.corners[0] < n_owned)
         energy += 0.5 * hinge.stiffness * change * change;
@@ -101,7 +124,7 @@ class BendingElements : public ElementList<dim, Hinge<dim>, BendingElements<dim>
 
   void add(const Nodes& x, double factor, NodeMatrix<dim>& matrix) const {
     for (const Hinge<dim>& hinge : elements_) {
-      const HingeAngle<dim> bent = hinge_angle(corner_positions(hinge, x));
+      const HingeAngle<dim> bent = angle_of(hinge, x);
       for (int i = 0; i <= dim; ++i) {
         for (int j = 0; j <= dim; ++j) {
           matrix.add(hinge.corners[i], hinge.corners[j],
@@ -163,9 +186,12 @@ template <int dim>
 std::unique_ptr<ElementGroup<dim>> bending_elements(const SurfaceMesh<dim>& mesh,
                                                     const SheetMaterial& sheet, bool flat) {
   std::vector<Hinge<dim>> hinges = hinges_of(mesh, rigidity(sheet));
+  constexpr double flattest = 1e-6;  // squared: a thousandth of the height as meshed
   for (Hinge<dim>& hinge : hinges) {
+    const HingeAngle<dim> as_meshed = hinge_angle(corner_positions(hinge, mesh.vertices));
+    hinge.flattest = flattest * std::min(as_meshed.sizes[0], as_meshed.sizes[1]);
     if (!flat)
-      hinge.angle_at_rest = hinge_angle(corner_positions(hinge, mesh.vertices)).angle;
+      hinge.angle_at_rest = as_meshed.angle;
   }
   return std::make_unique<BendingElements<dim>>(std::move(hinges), sheet.damping);
 }

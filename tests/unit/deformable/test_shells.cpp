@@ -217,5 +217,37 @@ TEST(ShellElements, PreStrainAndSurfaceTensionAreTension) {
   EXPECT_NEAR(inwards, 2 * pi * 2 * 0.5 * (1.21 - 1) * 1.1, 1e-3);
 }
 
+template <int dim>
+void check_collapsed_hinges() {
+  // Half of a shell is squeezed to nothing: what is left must stay finite, and balanced.
+  const SurfaceMesh<dim> mesh = round_shell<dim>();
+  const auto group = bending_elements<dim>(mesh, sheet, true);
+  for (const double squeeze : {0., 1e-12, 1e-5}) {
+    SCOPED_TRACE(squeeze);
+    Nodes<dim> x = shaken<dim>(mesh.vertices, 1), force;
+    for (auto& point : x)
+      point[0] *= point[0] > 0 ? squeeze : 1;
+    energy_of<dim>(*group, x, force);
+    Point<dim> sum = Point<dim>::Zero();
+    AngularVector<dim> torque = AngularVector<dim>::Zero();
+    double largest = 0;
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      sum += force[n];
+      torque += cross<dim>(x[n], force[n]);
+      largest = std::max(largest, force[n].norm());
+    }
+    EXPECT_GT(largest, 0);
+    EXPECT_LT(sum.norm(), 1e-12 * largest);
+    EXPECT_LT(torque.norm(), 1e-12 * largest);
+    // Angles turn by pi within a thousandth of an edge at most.
+    EXPECT_LT(largest, 1e4 * pi * 100 * std::pow(sheet.thickness, 3));
+  }
+}
+
+TEST(ShellElements, CollapsedHingesPushFinitely) {
+  check_collapsed_hinges<2>();
+  check_collapsed_hinges<3>();
+}
+
 }  // namespace
 }  // namespace lockstep
