@@ -139,8 +139,10 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
     return;
   }
   passenger.forbid_correction(id);
-  const Ray<dim> ray = frame_.tracer->trace(x, -1);
-  if (ray.complete && ray.inflow_axis >= 0) {
+  Ray<dim> ray = frame_.tracer->trace(x, -1);
+  if (ray.complete)
+    frame_.tracer->mix_inflow(kind, ray);
+  if (ray.complete && ray.inflow_share == 1) {
     passenger.carried()[id] = passenger.field.inflow(ray);
     return;
   }
@@ -150,8 +152,11 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
     return;
   }
   const double* values = passenger.field.values;
-  passenger.carried()[id] = interpolate<dim>(stencil, values);
-  if (!passenger.corrects() || ray.clipped)
+  double& carried = passenger.carried()[id];
+  carried = interpolate<dim>(stencil, values);
+  if (ray.inflow_share > 0)
+    carried += ray.inflow_share * (passenger.field.inflow(ray) - carried);
+  if (!passenger.corrects() || ray.clipped || ray.inflow_share > 0)
     return;
   passenger.low[id] = std::numeric_limits<double>::infinity();
   passenger.high[id] = -passenger.low[id];

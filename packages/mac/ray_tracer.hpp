@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "mac/sample_lattice.hpp"
 
@@ -13,8 +14,9 @@ struct Ray {
   Point<dim> end = Point<dim>::Zero();
   bool complete = true;  ///< all samples on the way are stored here
   bool clipped = false;  ///< it would have left the domain
-  int inflow_axis = -1;  ///< it left through the inflow side of this axis
+  int inflow_axis = -1;  ///< it left through the inflow side of this axis, or ends beside it
   int inflow_side = 0;
+  double inflow_share = 0;  ///< what the inflow contributes at its end: 1 if it left
 };
 
 /// Follows the advection velocity over one step with the midpoint rule, away from surfaces.
@@ -34,6 +36,11 @@ class RayTracer {
   /// Cuts the segment x -> end at the domain: at an inflow side where it leaves, elsewhere it
   /// slides.
   void clip(const Point<dim>& x, Ray<dim>& ray) const;
+
+  /// Rays may end between an inflow side and the first samples, which lie half a cell inside: what
+  /// is found there is so much of the inflow, where fluid does enter. Samples of `kind` that lie on
+  /// the side itself have its values already.
+  void mix_inflow(SampleKind kind, Ray<dim>& ray) const;
 
   bool flows_in(int axis, int side) const { return inflow_[axis][side]; }
   const std::array<const double*, dim>& velocity() const { return velocity_; }
@@ -105,9 +112,35 @@ void RayTracer<dim>::clip(const Point<dim>& x, Ray<dim>& ray) const {
     ray.inflow_axis = a;
     ray.inflow_side = side;
   }
-  if (ray.inflow_axis >= 0)
+  if (ray.inflow_axis >= 0) {
     ray.end = x + fraction * (ray.end - x);
+    ray.inflow_share = 1;
+  }
   ray.clipped = clamp(ray.end) || ray.inflow_axis >= 0;
+}
+
+template <int dim>
+void RayTracer<dim>::mix_inflow(SampleKind kind, Ray<dim>& ray) const {
+  constexpr double depth = 0.5;
+  for (int a = 0; a < dim && ray.inflow_share == 0; ++a) {
+    for (int side = 0; side < 2 && a != kind; ++side) {
+      const double n = lattice_.n_cells()[a];
+      const double gap = side == 0 ? ray.end[a] : n - ray.end[a];
+      if (!inflow_[a][side] || gap >= depth)
+        continue;
+      Point<dim> place = ray.end;
+      place[a] = side * n;
+      Stencil<dim> face = lattice_.locate_faces(place)[a];
+      for (double& weight : face.weight)
+        weight = std::round(weight);  // the nearest: openings end between faces
+      const double velocity = face.complete() ? interpolate<dim>(face, velocity_[a]) : 0;
+      if ((side == 0 ? velocity : -velocity) <= 0)
+        continue;
+      ray.inflow_axis = a;
+      ray.inflow_side = side;
+      ray.inflow_share = 1 - gap / depth;
+    }
+  }
 }
 
 }  // namespace lockstep

@@ -141,6 +141,7 @@ Ray<dim> SurfaceTransport<dim>::trace(const Point<dim>& x, std::optional<Surface
     else
       ray.end = x;
     ray.inflow_axis = -1;
+    ray.inflow_share = 0;
   }
   return ray;
 }
@@ -156,13 +157,23 @@ template <int dim>
 std::optional<double> SurfaceTransport<dim>::carry(const CarriedField<dim>& field,
                                                    const Point<dim>& x) {
   std::optional<SurfacePoint<dim>> hit;
-  const Ray<dim> ray = trace(x, hit);
-  if (ray.inflow_axis >= 0)
+  Ray<dim> ray = trace(x, hit);
+  if (!hit)
+    tracer_.mix_inflow(field.kind, ray);
+  if (ray.inflow_share > 0 && ray.inflow_share < 1) {
+    Point<dim> entry = ray.end;
+    entry[ray.inflow_axis] = ray.inflow_side * lattice_.n_cells()[ray.inflow_axis];
+    if (hit_on_way(ray.end, entry))
+      ray.inflow_share = 0;
+  }
+  if (ray.inflow_share == 1)
     return field.inflow(ray);
   const bool is_long = (ray.end - x).cwiseAbs().maxCoeff() > short_ray_;
   if (is_long)
     interpolation_.look_around(ray.end);
   auto value = look_up(field, ray.end);
+  if (value && ray.inflow_share > 0)
+    *value += ray.inflow_share * (field.inflow(ray) - *value);
   if (value)
     return value;
   if (is_long)

@@ -135,6 +135,37 @@ TEST(Transport, InflowEntersAndLeavesThroughTheOpenSide) {
   });
 }
 
+TEST(Transport, SlowInflowEnters) {
+  // A quarter of a cell a step ends between the side and the first samples, half a cell inside.
+  GridDescription<2> description = cube<2>(16, false);
+  description.periodic[1] = true;
+  description.store_upper_face = {true, false};
+  FullTank<2> tank(description, world());
+  tank.sides[0][0] = {true, [](const Point<2>&) { return Point<2>(1, 4); }};
+  tank.set_velocity([](const Point<2>&) { return Point<2>(1, 0); });
+  for (const AdvectionScheme scheme : both_schemes) {
+    CellField s = tank.cells([](const Point<2>&) { return 0; }), next;
+    FaceField<2> u = tank.velocity, u_next;
+    Transport<2> transport(tank.setting(0.25 / 16));
+    for (int step = 0; step < 40; ++step) {
+      transport.advect_scalar(scheme, s, {{{3, -1}, {-1, -1}}}, next);
+      s.swap(next);
+      transport.advect_faces(scheme, u, u_next);
+      u.swap(u_next);
+    }
+    std::array<double, 2> entered{};  // a row's sum, over the value of the inflow: cells
+    tank.grid.for_each_owned_cell([&](int c) {
+      entered[0] += s[c] / 3 / 16;
+      entered[1] += u[1][c] / 4 / 16;
+      EXPECT_LE(s[c], 3 + 1e-12);
+      EXPECT_GE(s[c], -1e-12);
+    });
+    sum_all(world(), entered.data(), 2);
+    EXPECT_NEAR(entered[0], 10, 0.6);
+    EXPECT_NEAR(entered[1], 10, 0.6);
+  }
+}
+
 TEST(Transport, RangeHoldsBehindWallsAtAnyStep) {
   GridDescription<3> description = cube<3>(12, false);
   description.store_upper_face.fill(false);  // walls: the upper faces are zero
