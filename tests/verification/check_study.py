@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs a part of a study and holds its table against bounds that a broken code would miss.
 
-check_study.py CONVERGE STUDY OUTPUT [--rungs A:B] [--only SERIES ...]
+check_study.py CONVERGE STUDY OUTPUT [--rungs A:B]
                --expect "SERIES | QUANTITY | COLUMN | last|all|order | < | BOUND" ...
 
 SERIES and QUANTITY are regular expressions that must match whole names. `last` looks at the last rung, `all` at
