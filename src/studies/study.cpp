@@ -83,7 +83,8 @@ std::vector<TypedSchema> quantity_types() {
       surface, "Expression",
       "Formula of time; x, y, z, of that vertex, x0, y0, z0 at the start [m]; volume [m^3] (2D: "
       "[m^2]) inside the surface, or between an open one and its rim if the rim lies in a plane "
-      "(2D: line) with \"Point\"; area [m^2] (2D: [m]); volume0, area0; constants, parameters and "
+      "(2D: line) with \"Point\"; area [m^2] (2D: [m]); x_extent, y_extent, z_extent [m]; volume0, "
+      "area0 and so on; constants, parameters and "
       "h, dt, cells, ranks.");
   declare_reduction(surface);
   declare_required<std::string>(field, "Field", "Field of the last frame, such as \"velocity\".");

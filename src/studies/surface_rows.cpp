@@ -1,6 +1,7 @@
 #include "studies/surface_rows.hpp"
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include "base/errors.hpp"
 #include "studies/frame_file.hpp"
@@ -63,6 +64,15 @@ void add_sizes(const Surface& surface, const Vector& point, Variables& row) {
   row["area"] = area;
 }
 
+/// Of the box around the surface.
+void add_extents(const Surface& surface, Variables& row) {
+  Eigen::AlignedBox3d box;
+  for (const Vector& vertex : surface.vertices)
+    box.extend(vertex);
+  for (int a = 0; a < 3; ++a)
+    row[std::string("xyz").substr(a, 1) + "_extent"] = box.sizes()[a];
+}
+
 }  // namespace
 
 std::vector<Variables> read_surface_rows(const std::string& run_directory, const std::string& solid,
@@ -79,8 +89,9 @@ std::vector<Variables> read_surface_rows(const std::string& run_directory, const
     for (int a = 0; a < 3; ++a)
       row[std::string(1, "xyz"[a])] = surface.vertices.at(vertex)[a];
     add_sizes(surface, origin, row);
+    add_extents(surface, row);
     const Variables start = rows.empty() ? row : rows.front();
-    for (const char* name : {"x", "y", "z", "volume", "area"})
+    for (const char* name : {"x", "y", "z", "volume", "area", "x_extent", "y_extent", "z_extent"})
       row[std::string(name) + "0"] = start.at(name);
     row["time"] = file.attribute("/", "time");
     rows.push_back(std::move(row));

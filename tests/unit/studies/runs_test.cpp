@@ -96,14 +96,17 @@ TEST_F(Runs, SurfacesInTheFrames) {
   volume.expression = "volume / volume0";
   volume.over = Quantity::Over::min;
   corner.expression = "x + 2 * (y - y0) - 0.8";
-  study_.quantities = {corner, corner, volume};
+  Quantity extent = volume;
+  extent.expression = "x_extent / x_extent0 - 1 + z_extent";
+  study_.quantities = {corner, corner, volume, extent};
   study_.quantities[0].over = Quantity::Over::frequency;
   study_.quantities[1].over = Quantity::Over::amplitude;
   const auto rows = table();
-  ASSERT_EQ(rows.size(), 3u);
+  ASSERT_EQ(rows.size(), 4u);
   EXPECT_NEAR(rows[0].value, 2.5, 1e-12);
   EXPECT_NEAR(rows[1].value, 0.3, 1e-12);
   EXPECT_NEAR(rows[2].value, 0.81 / 1.21, 1e-12);  // of a cone from outside the square
+  EXPECT_NEAR(rows[3].value, 0.9 / 1.1 - 1, 1e-12);
   study_.quantities[0].solid = "Bell";
   EXPECT_THROW(table(), OutputError);
 }
