@@ -219,10 +219,12 @@ template <int dim>
 std::vector<Momentum<dim>> FluxCoupling<dim>::prescribed_impulses(
     const std::vector<double>& velocity_before, const std::vector<double>&,
     const Vector& scaled_pressure) const {
+  std::vector<Momentum<dim>> impulses(surface_->solids().size());
+  if (!any_prescribed(surface_->solids()))
+    return impulses;
   Vector beside(pressure_import_->getTargetMap());
   beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
   const auto pressure = beside.getData();
-  std::vector<Momentum<dim>> impulses(surface_->solids().size());
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
     double push_of_fluid = 0;

@@ -286,8 +286,10 @@ template <int dim>
 std::vector<Momentum<dim>> MixedFaceCoupling<dim>::prescribed_impulses(
     const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
     const Vector& scaled_pressure) const {
-  const std::vector<double> jumps = pressure_jumps(scaled_pressure);
   std::vector<Momentum<dim>> impulses(surface_->solids().size());
+  if (!any_prescribed(surface_->solids()))
+    return impulses;
+  const std::vector<double> jumps = pressure_jumps(scaled_pressure);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     if (prescribed_share_[f] == 0)
       continue;

@@ -182,6 +182,11 @@ CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
   });
 }
 
+bool any_prescribed(const std::vector<SolidDescription>& solids) {
+  return std::any_of(solids.begin(), solids.end(),
+                     [](const SolidDescription& solid) { return solid.prescribed; });
+}
+
 template std::vector<std::vector<SurfaceShare<2>>> surface_shares<2>(
     const std::vector<ControlVolume<2>>&, const SurfaceSnapshot<2>&, double);
 template void directed_row<2>(const SolidSystem<2>&, const SurfacePoint<2>&, const Point<2>&, int,

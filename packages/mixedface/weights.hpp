@@ -72,4 +72,7 @@ CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
                                  const std::vector<std::vector<SurfaceShare<dim>>>& shares,
                                  const SolidSystem<dim>& solids);
 
+/// Is any solid held or scripted? The same on every rank.
+bool any_prescribed(const std::vector<SolidDescription>& solids);
+
 }  // namespace lockstep

@@ -52,8 +52,8 @@ class VtkReader {
   explicit VtkReader(const std::string& file) : file_(file), lines_(file) {}
 
   Simplices<dim, n_corners> read() {
-    for (std::string word = next(); word != "ASCII";)
-      word = next();
+    while (next() != "ASCII") {
+    }
     expect("DATASET");
     expect("UNSTRUCTURED_GRID");
     bool types = false;

@@ -109,13 +109,23 @@ TEST(Transport, DoesNotDependOnTheNumberOfRanks) {
     }
 }
 
-TEST(Transport, InflowEntersAndLeavesThroughTheOpenSide) {
+/// 16 x 16 cells, open along x, periodic along y.
+GridDescription<2> duct() {
   GridDescription<2> description = cube<2>(16, false);
   description.periodic[1] = true;
   description.store_upper_face = {true, false};
-  FullTank<2> tank(description, world());
+  return description;
+}
+
+/// Fluid at (1, 4) enters where fluid at (1, 0) flows.
+void let_in(FullTank<2>& tank) {
   tank.sides[0][0] = {true, [](const Point<2>&) { return Point<2>(1, 4); }};
   tank.set_velocity([](const Point<2>&) { return Point<2>(1, 0); });
+}
+
+TEST(Transport, InflowEntersAndLeavesThroughTheOpenSide) {
+  FullTank<2> tank(duct(), world());
+  let_in(tank);
   CellField s = tank.cells([](const Point<2>&) { return 0; }), next;
   FaceField<2> u = tank.velocity, u_next;
   Transport<2> transport(tank.setting(1.0 / 16));
@@ -137,12 +147,8 @@ TEST(Transport, InflowEntersAndLeavesThroughTheOpenSide) {
 
 TEST(Transport, SlowInflowEnters) {
   // A quarter of a cell a step ends between the side and the first samples, half a cell inside.
-  GridDescription<2> description = cube<2>(16, false);
-  description.periodic[1] = true;
-  description.store_upper_face = {true, false};
-  FullTank<2> tank(description, world());
-  tank.sides[0][0] = {true, [](const Point<2>&) { return Point<2>(1, 4); }};
-  tank.set_velocity([](const Point<2>&) { return Point<2>(1, 0); });
+  FullTank<2> tank(duct(), world());
+  let_in(tank);
   for (const AdvectionScheme scheme : both_schemes) {
     CellField s = tank.cells([](const Point<2>&) { return 0; }), next;
     FaceField<2> u = tank.velocity, u_next;
