@@ -185,6 +185,7 @@ class LayoutInverse final : public LayoutOperator {
     return sum;
   }
   double back() const { return back_; }
+  std::ptrdiff_t n_slots() const { return multigrid_.finest().grid().n_slots; }
   const float* solution(int colour) const { return multigrid_.solution(colour); }
   const std::vector<EmptyRow>& empty_rows() const { return empty_rows_; }
 

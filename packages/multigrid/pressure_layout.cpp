@@ -7,7 +7,9 @@
 #include "base/errors.hpp"
 #include "linear/added_mass_diagonal.hpp"
 #include "linear/matrix_rows.hpp"
+#include "multigrid/layout_kernels.hpp"
 #include "multigrid/layout_operators.hpp"
+#include "multigrid/through_sheets.hpp"
 
 namespace lockstep {
 
@@ -16,7 +18,7 @@ template <int dim>
 class PressureLayoutOf final : public PressureLayout {
  public:
   PressureLayoutOf(std::shared_ptr<const LatticeLayout> layout, const MultigridOptions& options)
-      : multigrid_(layout, options) {
+      : options_(options), multigrid_(layout, options) {
     layout_ = std::move(layout);
     map_ = make_map(static_cast<int>(2 * layout_->finest().n_slots), layout_->blocks().comm);
   }
@@ -25,24 +27,40 @@ class PressureLayoutOf final : public PressureLayout {
     const FaceCoefficients& coefficients = *stencil_of(system.pressure_block);
     multigrid_.set(coefficients);
     number_rows(coefficients);
-    std::vector<EmptyRow> empty = empty_rows(system);
+    empty_rows_ = find_empty_rows();
     std::vector<int> entries;
-    for (const EmptyRow& row : empty)
-      entries.push_back(row.entry);
+    for (const int row : empty_rows_)
+      entries.push_back(entry_of_row_[row]);
     stencil_ = rcp(new LayoutStencil<dim>(map_, multigrid_.finest(), layout_->levels().front().halo,
                                           coefficients.unit, std::move(entries)));
-    inverse_ = rcp(new LayoutInverse<dim>(map_, multigrid_, layout_->blocks().comm,
-                                          coefficients.unit, std::move(empty)));
+    own_ = with_cycle_of(multigrid_, system);
+    of_schur_ = {};
   }
+  void build_schur_inverse(const BlockSystem& system) override {
+    const auto conducting = conducting_through_sheets(system, empty_rows_);
+    if (!conducting) {
+      schur_multigrid_.reset();
+      of_schur_ = own_;
+      return;
+    }
+    if (!schur_multigrid_)
+      schur_multigrid_ = std::make_unique<Multigrid<dim>>(layout_, options_);
+    schur_multigrid_->set(*conducting);
+    of_schur_ = with_cycle_of(*schur_multigrid_, system);
+  }
+  bool has_schur_inverse() const override { return !of_schur_.inverse.is_null(); }
   const std::shared_ptr<const LatticeLayout>& layout() const { return layout_; }
 
   RCP<const LinearOperator> pressure_block() const override { return as_thyra_operator(stencil_); }
-  RCP<const LinearOperator> inverse() const override { return as_thyra_operator(inverse_); }
-  double precondition(const Vector& r, double r_norm) override {
-    return sum_all(layout_->blocks().comm, inverse_->cycle(r.getData().getRawPtr(), r_norm));
+  RCP<const LinearOperator> inverse() const override { return as_thyra_operator(own_.inverse); }
+  RCP<const LinearOperator> schur_inverse() const override {
+    return as_thyra_operator(of_schur_.inverse);
   }
-  double advance_direction(double beta, Vector& d, Vector& q) override;
-  std::size_t bytes() const override { return multigrid_.bytes(); }
+  ConjugateGradientKernels& kernels() override { return *own_.kernels; }
+  ConjugateGradientKernels& schur_kernels() override { return *of_schur_.kernels; }
+  std::size_t bytes() const override {
+    return multigrid_.bytes() + (schur_multigrid_ ? schur_multigrid_->bytes() : 0);
+  }
   MessageCount sent() const override {
     MessageCount total;
     for (const LayoutLevel& level : layout_->levels()) {
@@ -54,43 +72,29 @@ class PressureLayoutOf final : public PressureLayout {
 
  private:
   void number_rows(const FaceCoefficients& coefficients);
-  std::vector<EmptyRow> empty_rows(const BlockSystem& system) const;
+  std::vector<int> find_empty_rows() const;
+  std::vector<EmptyRow> with_values(const BlockSystem& system) const;
 
-  Multigrid<dim> multigrid_;
-  RCP<LayoutStencil<dim>> stencil_;
-  RCP<LayoutInverse<dim>> inverse_;
-};
-
-template <int dim>
-double PressureLayoutOf<dim>::advance_direction(double beta, Vector& d, Vector& q) {
-  const std::ptrdiff_t n_slots = layout_->finest().n_slots;
-  const auto d_values = d.getDataNonConst(), q_values = q.getDataNonConst();
-  double* direction = d_values.getRawPtr();
-  std::vector<double> in_empty_rows;
-  for (const EmptyRow& row : inverse_->empty_rows()) {
-    in_empty_rows.push_back(row.z + (beta == 0 ? 0 : beta * direction[row.entry]));
-    direction[row.entry] = 0;
-  }
-  const double back = inverse_->back();
-  const auto update_slab = [&](int slab) {
-    inverse_->for_each_row(slab, [&](int colour, std::ptrdiff_t at, int n) {
-      const float* z = inverse_->solution(colour) + at;
-      double* to = direction + colour * n_slots + at;
-      if (beta == 0) {
-        for (int m = 0; m < n; ++m)
-          to[m] = back * z[m];
-      } else {
-#pragma GCC ivdep
-        for (int m = 0; m < n; ++m)
-          to[m] = back * z[m] + beta * to[m];
-      }
-    });
+  /// A multigrid's cycle, and conjugate gradients on A with it.
+  struct Preconditioned {
+    RCP<const LayoutInverse<dim>> inverse;
+    std::shared_ptr<LayoutKernels<dim>> kernels;
   };
-  const double sum = stencil_->multiply(direction, q_values.getRawPtr(), update_slab);
-  for (std::size_t i = 0; i < in_empty_rows.size(); ++i)
-    direction[inverse_->empty_rows()[i].entry] = in_empty_rows[i];
-  return sum_all(layout_->blocks().comm, sum);
-}
+  Preconditioned with_cycle_of(Multigrid<dim>& multigrid, const BlockSystem& system) const {
+    const RCP<const LayoutInverse<dim>> inverse =
+        rcp(new LayoutInverse<dim>(map_, multigrid, layout_->blocks().comm,
+                                   stencil_of(system.pressure_block)->unit, with_values(system)));
+    return {inverse,
+            std::make_shared<LayoutKernels<dim>>(stencil_, inverse, layout_->blocks().comm)};
+  }
+
+  MultigridOptions options_;
+  Multigrid<dim> multigrid_;
+  std::unique_ptr<Multigrid<dim>> schur_multigrid_;  ///< null: that of A serves
+  std::vector<int> empty_rows_;                      ///< local rows that A leaves empty
+  RCP<const LayoutStencil<dim>> stencil_;
+  Preconditioned own_, of_schur_;
+};
 
 template <int dim>
 void PressureLayoutOf<dim>::number_rows(const FaceCoefficients& coefficients) {
@@ -117,7 +121,7 @@ void PressureLayoutOf<dim>::number_rows(const FaceCoefficients& coefficients) {
 }
 
 template <int dim>
-std::vector<EmptyRow> PressureLayoutOf<dim>::empty_rows(const BlockSystem& system) const {
+std::vector<int> PressureLayoutOf<dim>::find_empty_rows() const {
   const std::ptrdiff_t n_slots = layout_->finest().n_slots;
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(entry_of_row_.size()); ++row) {
@@ -125,13 +129,18 @@ std::vector<EmptyRow> PressureLayoutOf<dim>::empty_rows(const BlockSystem& syste
     if (multigrid_.finest().diagonal(static_cast<int>(entry / n_slots))[entry % n_slots] == 0)
       rows.push_back(row);
   }
+  return rows;
+}
+
+template <int dim>
+std::vector<EmptyRow> PressureLayoutOf<dim>::with_values(const BlockSystem& system) const {
   std::vector<EmptyRow> result;
-  if (sum_all(layout_->blocks().comm, static_cast<GlobalIndex>(rows.size())) == 0)
+  if (sum_all(layout_->blocks().comm, static_cast<GlobalIndex>(empty_rows_.size())) == 0)
     return result;
   const auto added = added_mass_diagonal(system, domain_map(*system.pressure_block));
   const auto values = added->getData();
   const double unit = stencil_of(system.pressure_block)->unit;
-  for (const int row : rows)
+  for (const int row : empty_rows_)
     result.push_back({entry_of_row_[row], 1 / (values[row] > 0 ? values[row] : 2 * dim * unit)});
   return result;
 }

@@ -13,8 +13,9 @@ namespace lockstep {
 /// The pressure unknowns in the multigrid's own order: flat, split by colour, with zeros where
 /// there is no unknown. Krylov vectors live there during a solve, so that nothing is reordered
 /// between A and its inverse.
-class PressureLayout : public ConjugateGradientKernels {
+class PressureLayout {
  public:
+  virtual ~PressureLayout() = default;
   /// For the stencil of a system, which must have one (see `why_not`); `previous`, if any, gives
   /// its arrays and whatever else depends on the grid only. Collective.
   static std::shared_ptr<PressureLayout> make(const BlockSystem& system,
@@ -34,6 +35,17 @@ class PressureLayout : public ConjugateGradientKernels {
   /// One cycle of the multigrid. A row that A leaves empty is divided by its entry in the diagonal
   /// of B diag(C)^-1 B^T.
   virtual RCP<const LinearOperator> inverse() const = 0;
+  /// Conjugate gradients on A with that cycle.
+  virtual ConjugateGradientKernels& kernels() = 0;
+
+  /// Makes ready what follows, for the system in the fluid's own order. Collective.
+  virtual void build_schur_inverse(const BlockSystem& system) = 0;
+  virtual bool has_schur_inverse() const = 0;
+  /// As an approximate inverse of A + B C^-1 B^T: one cycle for A and what flows through soft
+  /// sheets (see through_sheets.hpp); where there are none, that of A.
+  virtual RCP<const LinearOperator> schur_inverse() const = 0;
+  /// Products with A alone, and that cycle.
+  virtual ConjugateGradientKernels& schur_kernels() = 0;
 
   virtual std::size_t bytes() const = 0;
   virtual MessageCount sent() const = 0;

@@ -124,15 +124,15 @@ Eigen::MatrixXd inverse_spd(const Eigen::MatrixXd& block) {
   return 0.5 * (inverse + inverse.transpose());
 }
 
-std::string not_positive(const std::string& name, GlobalIndex row) {
-  return fmt::format(
-      "The {} is not positive definite at row {}: masses must be positive and D negative "
-      "semidefinite. A node without mass that no mixed face sees needs a stiffness or damping that "
-      "is implicit: give its body a mass, bending stiffness or a coarser mesh.",
-      name, row);
-}
-
 }  // namespace
+
+std::string not_positive_definite(const std::string& name) {
+  return fmt::format(
+      "The {} is not positive definite: masses must be positive and D negative semidefinite. A "
+      "node without mass that no mixed face sees needs a stiffness or damping that is implicit: "
+      "give its body a mass, bending stiffness or a coarser mesh.",
+      name);
+}
 
 BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, int largest_block,
                                             const std::string& name) {
@@ -149,7 +149,7 @@ BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, 
     }
     const Eigen::MatrixXd inverse = inverse_spd(dense(rows, ids));
     if (inverse.size() == 0) {
-      failure = not_positive(name, ids.front());
+      failure = not_positive_definite(name);
       continue;
     }
     for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -166,7 +166,7 @@ BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, 
     if (!inverse_rows[row].empty())
       continue;
     if (!(values[row] > 0))
-      failure = not_positive(name, id);
+      failure = not_positive_definite(name);
     inverse_rows[row].push_back({id, 1 / values[row]});
   }
   throw_on_all(map->getComm(), failure, static_cast<int>(ExitCode::solve_failed));
@@ -182,7 +182,7 @@ RCP<const CrsMatrix> jacobi_inverse(const CrsMatrix& matrix, const std::string& 
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const GlobalIndex id = map->getGlobalElement(static_cast<int>(row));
     if (!(values[row] > 0))
-      failure = not_positive(name, id);
+      failure = not_positive_definite(name);
     rows[row].push_back({id, 1 / values[row]});
   }
   throw_on_all(map->getComm(), failure, static_cast<int>(ExitCode::solve_failed));

@@ -7,25 +7,10 @@
 #include "linear/action_operator.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/conjugate_gradients.hpp"
-#include "linear/gathered_direct.hpp"
+#include "linear/inverse_by_cost.hpp"
 #include "linear/matrix_rows.hpp"
 
 namespace lockstep {
-
-namespace {
-
-constexpr int largest_block = 24;
-
-}  // namespace
-
-bool direct_is_cheap(const CrsMatrix& matrix) {
-  // Fill grows like n log n for a plane mesh, whose rows have about 14 entries in 2D and 40 with
-  // the bending of cloth, and like n^(4/3) for a volume.
-  constexpr Tpetra::global_size_t few_rows = 3000, most_rows = 20000, entries_of_a_surface = 24;
-  const auto n_rows = matrix.getGlobalNumRows();
-  return n_rows <= few_rows ||
-         (n_rows <= most_rows && matrix.getGlobalNumEntries() <= entries_of_a_surface * n_rows);
-}
 
 RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOperator>& op,
                                                      const InnerSolve& inner) {
@@ -62,21 +47,12 @@ RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOpera
   return conjugate_gradient_inverse(op, {jacobi, tolerance, maximum_iterations, name, nullptr});
 }
 
-RCP<const LinearOperator> cheap_exact_inverse(const RCP<const LinearOperator>& op,
-                                              const std::string& name) {
-  const auto matrix = assembled(op);
-  if (matrix.is_null())
-    return Teuchos::null;
-  const auto blocks = block_diagonal_inverse(matrix, largest_block, name);
-  if (blocks.exact)
-    return as_operator(blocks.inverse);
-  return direct_is_cheap(*matrix) ? gathered_direct(matrix, name) : Teuchos::null;
-}
-
 RCP<const LinearOperator> exact_inverse(const RCP<const LinearOperator>& op,
                                         const std::string& name) {
-  const auto cheap = cheap_exact_inverse(op, name);
-  return cheap.is_null() ? conjugate_gradient_inverse(op, 1e-14, 20000, name) : cheap;
+  const InverseByCost split(op, name);
+  return split.with(split.is_complete()
+                        ? Teuchos::null
+                        : conjugate_gradient_inverse(split.rest(), 1e-14, 20000, name));
 }
 
 }  // namespace lockstep

@@ -6,19 +6,11 @@
 
 namespace lockstep {
 
-/// C^-1 to round-off for a symmetric positive definite C, by the cheapest way that is exact: dense
-/// blocks if C falls apart into blocks of at most 24 rows, a gathered direct solve for small ones,
-/// conjugate gradients to 1e-14 else. `name` is for messages. Throws SolveError if C is not
-/// positive definite. Collective, and so is every application.
+/// C^-1 to round-off for a symmetric positive definite C: direct where that is cheap (see
+/// inverse_by_cost.hpp), conjugate gradients to 1e-14 else. `name` is for messages. Throws
+/// SolveError if C is not positive definite. Collective, and so is every application.
 RCP<const LinearOperator> exact_inverse(const RCP<const LinearOperator>& op,
                                         const std::string& name);
-/// The same where nothing need be iterated; else null.
-RCP<const LinearOperator> cheap_exact_inverse(const RCP<const LinearOperator>& op,
-                                              const std::string& name);
-
-/// Whether the factors of a gathered direct solve are cheap: few rows, or the few entries a row of
-/// a plane mesh or a surface.
-bool direct_is_cheap(const CrsMatrix& matrix);
 
 struct InnerSolve {
   RCP<const LinearOperator> preconditioner;  ///< symmetric positive definite; null: none

@@ -56,11 +56,15 @@ MatrixPart::MatrixPart(const CrsMatrix& matrix, const std::vector<bool>& is_insi
 
 RCP<Vector> MatrixPart::restricted(const Vector& all) const {
   const auto part = make_vector(map_);
+  restrict_to(all, *part);
+  return part;
+}
+
+void MatrixPart::restrict_to(const Vector& all, Vector& part) const {
   const auto from = all.getData();
-  const auto to = part->getDataNonConst();
+  const auto to = part.getDataNonConst();
   for (std::size_t i = 0; i < rows_.size(); ++i)
     to[i] = from[rows_[i]];
-  return part;
 }
 
 void MatrixPart::prolong(const Vector& part, Vector& all) const {
@@ -70,24 +74,26 @@ void MatrixPart::prolong(const Vector& part, Vector& all) const {
     to[rows_[i]] = from[i];
 }
 
-RCP<const LinearOperator> inverse_by_parts(const MatrixPart& inside,
-                                           const RCP<const LinearOperator>& of_inside,
-                                           const MatrixPart& outside, const RCP<const Map>& map,
-                                           const std::string& name) {
-  RCP<const LinearOperator> of_outside;
-  if (!outside.empty()) {
-    of_outside = as_operator(block_diagonal_inverse(outside.matrix(), largest_block, name).inverse);
-  }
-  return action_operator(map, [=](const Vector& x, Vector& y) {
-    Vector result(inside.map());
-    apply(*of_inside, *inside.restricted(x), result);
-    inside.prolong(result, y);
-    if (of_outside.is_null())
-      return;
-    Vector other(outside.map());
-    apply(*of_outside, *outside.restricted(x), other);
-    outside.prolong(other, y);
+RCP<const LinearOperator> inverse_by_parts(const RCP<const Map>& map,
+                                           const std::vector<PartInverse>& parts) {
+  struct Piece {
+    PartInverse of;
+    RCP<Vector> x, y;
+  };
+  std::vector<Piece> pieces;
+  for (const PartInverse& part : parts)
+    pieces.push_back({part, make_vector(part.part->map()), make_vector(part.part->map())});
+  return action_operator(map, [pieces](const Vector& x, Vector& y) {
+    for (const Piece& piece : pieces) {
+      piece.of.part->restrict_to(x, *piece.x);
+      apply(*piece.of.inverse, *piece.x, *piece.y);
+      piece.of.part->prolong(*piece.y, y);
+    }
   });
+}
+
+PartInverse part_of_blocks(const std::shared_ptr<const MatrixPart>& part, const std::string& name) {
+  return {part, as_operator(block_diagonal_inverse(part->matrix(), largest_block, name).inverse)};
 }
 
 }  // namespace lockstep

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,12 @@ class MatrixPart {
   MatrixPart(const CrsMatrix& matrix, const std::vector<bool>& is_inside);
 
   const RCP<const Map>& map() const { return map_; }
+  const std::vector<int>& rows() const { return rows_; }  ///< local, of the whole matrix
   const RCP<CrsMatrix>& matrix() const { return matrix_; }
   bool empty() const { return map_->getGlobalNumElements() == 0; }
 
   RCP<Vector> restricted(const Vector& all) const;
+  void restrict_to(const Vector& all, Vector& part) const;
   void prolong(const Vector& part, Vector& all) const;  ///< other rows of `all` stay
 
  private:
@@ -25,11 +28,18 @@ class MatrixPart {
   RCP<CrsMatrix> matrix_;
 };
 
-/// diag(of_inside on the rows of `inside`, the inverse of small dense blocks or of the diagonal on
-/// those of `outside`); together they are all rows of `map`. Collective.
-RCP<const LinearOperator> inverse_by_parts(const MatrixPart& inside,
-                                           const RCP<const LinearOperator>& of_inside,
-                                           const MatrixPart& outside, const RCP<const Map>& map,
-                                           const std::string& name);
+/// The inverse of a matrix on some of its rows.
+struct PartInverse {
+  std::shared_ptr<const MatrixPart> part;
+  RCP<const LinearOperator> inverse;
+};
+
+/// Each of them on its own rows; together they are all rows of `map`. Where two have a row, the
+/// later one counts.
+RCP<const LinearOperator> inverse_by_parts(const RCP<const Map>& map,
+                                           const std::vector<PartInverse>& parts);
+
+/// The inverse of small dense blocks, and of the diagonal where they are not small.
+PartInverse part_of_blocks(const std::shared_ptr<const MatrixPart>& part, const std::string& name);
 
 }  // namespace lockstep

@@ -59,7 +59,7 @@ double stiffness_number(const CrsMatrix& c, const NearNullSpace& space) {
 }
 
 bool is_stiff(const CrsMatrix& c, const NearNullSpace& space) {
-  constexpr double worth_a_cycle = 30;
+  constexpr double worth_a_cycle = 150;
   return stiffness_number(c, space) > worth_a_cycle;
 }
 
@@ -74,7 +74,9 @@ RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>
     is_node.push_back(body >= 0);
     is_other.push_back(body < 0);
   }
-  const MatrixPart nodes(*c, is_node), others(*c, is_other);
+  const auto node_part = std::make_shared<const MatrixPart>(*c, is_node);
+  const auto others = std::make_shared<const MatrixPart>(*c, is_other);
+  const MatrixPart& nodes = *node_part;
   const RCP<Vector> inverse = nodes.restricted(*lumped_mass(*c, space));
   std::string failure;
   for (double& value : inverse->getDataNonConst()) {
@@ -89,7 +91,10 @@ RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>
   const auto of_nodes = action_operator(nodes.map(), [inverse](const Vector& x, Vector& y) {
     y.elementWiseMultiply(1, *inverse, x, 0);
   });
-  return inverse_by_parts(nodes, of_nodes, others, c->getRowMap(), name);
+  std::vector<PartInverse> parts{{node_part, of_nodes}};
+  if (!others->empty())
+    parts.push_back(part_of_blocks(others, name));
+  return inverse_by_parts(c->getRowMap(), parts);
 }
 
 }  // namespace lockstep

@@ -9,6 +9,7 @@
 #include "linear/block_diagonal.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/gathered_direct.hpp"
+#include "linear/inverse_by_cost.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/rigid_motion_multigrid.hpp"
 #include "linear/solver_list.hpp"
@@ -169,9 +170,13 @@ RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
   const auto matrix = assembled(op);
   if (matrix.is_null() || !is_stiff(*matrix, near_null_space))
     return Teuchos::null;
+  const InverseByCost split(op, name);
+  if (split.is_complete())
+    return split.with(Teuchos::null);
   ParameterList list;
-  list.set("Type", direct_is_cheap(*matrix) ? "Direct" : "MueLu");
-  return preconditioner_from_list(op, list, name, near_null_space);
+  list.set("Type", "MueLu");
+  return split.with(
+      preconditioner_from_list(split.rest(), list, name, split.of_rest(near_null_space)));
 }
 
 }  // namespace lockstep

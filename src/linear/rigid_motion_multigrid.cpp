@@ -100,7 +100,9 @@ RCP<const LinearOperator> rigid_motion_multigrid(const RCP<const CrsMatrix>& c,
     if (body >= 0)
       bodies.push_back(body);
   }
-  const MatrixPart nodes(*c, is_node), others(*c, is_other);
+  const auto node_part = std::make_shared<const MatrixPart>(*c, is_node);
+  const auto others = std::make_shared<const MatrixPart>(*c, is_other);
+  const MatrixPart& nodes = *node_part;
   const auto motions = rcp(new MultiVector(nodes.map(), space.motions->getNumVectors()));
   for (std::size_t j = 0; j < motions->getNumVectors(); ++j)
     motions->getVectorNonConst(j)->update(1, *nodes.restricted(*space.motions->getVector(j)), 0);
@@ -111,7 +113,10 @@ RCP<const LinearOperator> rigid_motion_multigrid(const RCP<const CrsMatrix>& c,
     apply(*multigrid, x, y);
     rigid->add(x, y);
   });
-  return inverse_by_parts(nodes, of_nodes, others, c->getRowMap(), name);
+  std::vector<PartInverse> parts{{node_part, of_nodes}};
+  if (!others->empty())
+    parts.push_back(part_of_blocks(others, name));
+  return inverse_by_parts(c->getRowMap(), parts);
 }
 
 }  // namespace lockstep

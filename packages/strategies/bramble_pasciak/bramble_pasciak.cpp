@@ -85,7 +85,7 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
   r.pressure.update(1, *request.residual, 0);
   precondition_pressure(r.pressure, z.pressure);
 
-  const BlockKrylovRequest goal = block_krylov(request, Presumes::symmetry);
+  const BlockKrylovRequest goal = block_krylov(system, request, Presumes::symmetry);
   double z_dot_z = 0, smallest = request.residual_norm;
   int n_iterations = 0, last_gain = 0;
   for (; n_iterations < request.maximum_iterations; ++n_iterations) {

@@ -32,7 +32,8 @@ int GmresStrategy::correct(const BlockSystem& system, const CorrectionRequest& r
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
   return solve_by_flexible_gmres(scaled_, *request.residual,
-                                 block_krylov(request, Presumes::nothing), restart_, correction);
+                                 block_krylov(system, request, Presumes::nothing), restart_,
+                                 correction);
 }
 
 }  // namespace lockstep

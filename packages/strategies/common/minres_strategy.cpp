@@ -33,8 +33,8 @@ int MinresStrategy::correct(const BlockSystem& system, const CorrectionRequest& 
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
   return solve_by_minres(minres_, system, *request.residual,
-                         block_krylov(request, Presumes::symmetry), preconditioners_.pressure,
-                         preconditioners_.solid, correction);
+                         block_krylov(system, request, Presumes::symmetry),
+                         preconditioners_.pressure, preconditioners_.solid, correction);
 }
 
 }  // namespace lockstep

@@ -67,6 +67,16 @@ void check_compatible(const std::string& name, double removed, const BlockResidu
               name, removed / residual.pressure_scale, tolerance);
 }
 
+/// V_S = C^-1 (solid rhs - B^T p̂); nothing without a solid.
+void back_substitute(const BlockSystem& system, const BlockVector& rhs,
+                     const RCP<const LinearOperator>& solid_inverse, BlockVector& solution) {
+  if (!system.has_solid())
+    return;
+  Vector right(*rhs.solid, Teuchos::Copy);
+  system.coupling_transposed->apply(*solution.pressure, right, Teuchos::NO_TRANS, -1, 1);
+  apply(*solid_inverse, right, *solution.solid);
+}
+
 /// The norm of B C^-1, by a few steps of the power method.
 double gain(const CrsMatrix& coupling_transposed, const LinearOperator& solid_inverse) {
   constexpr int n_steps = 4;
@@ -95,7 +105,7 @@ int RefinedStrategy::pressure_cg(const BlockSystem& system, const CorrectionRequ
   const ConjugateGradientsRequest cg{request.name, request.target, request.maximum_iterations,
                                      iteration_null_space(system), request.update_target};
   if (layout_)
-    return conjugate_gradients(*layout_, *request.residual, correction, cg);
+    return conjugate_gradients(layout_->kernels(), *request.residual, correction, cg);
   return conjugate_gradients(
       [&](const Vector& x, Vector& y) { apply(*system.pressure_block, x, y); },
       [&](const Vector& x, Vector& y) { apply(*pressure_inverse_, x, y); }, *request.residual,
@@ -144,14 +154,20 @@ void RefinedStrategy::build_pressure_inverse(const BlockSystem& system) {
                              symmetry_tolerance());
 }
 
-BlockKrylovRequest RefinedStrategy::block_krylov(const CorrectionRequest& request,
-                                                 Presumes presumes) const {
+BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
+                                                 const CorrectionRequest& request,
+                                                 Presumes presumes) {
+  constexpr double rough = 1e-3;
+  if (solid_gain_ < 0)
+    solid_gain_ = gain(*system.coupling_transposed, *solid_.to(rough));
+  // Below round-off of row 2 nothing can be asked; what that leaves is for the next correction.
+  const double solid_target = std::max(
+      solid_gain_ > 0 ? request.target / solid_gain_ : request.target, request.solid_round_off);
   const double least = presumes == Presumes::symmetry && is_single_precision_
                            ? strongest_single_reduction * request.residual_norm
                            : 0;
   const double relief = std::max(1.0, least / request.target);
-  return {request.name, relief * request.target, relief * request.solid_target,
-          request.maximum_iterations};
+  return {request.name, relief * request.target, relief * solid_target, request.maximum_iterations};
 }
 
 void RefinedStrategy::refuse_region_closed_by_solid(const BlockSystem& system) const {
@@ -187,12 +203,14 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
       build_pressure_inverse(system);
   }
   if (solid_changed) {
-    constexpr double rough = 1e-3;
     solid_.build(system);
-    solid_gain_ = gain(*system.coupling_transposed, *solid_.to(rough));
+    solid_gain_ = -1;
   }
-  if (layout_)
+  if (layout_) {
     relay(system);
+    if (inverts_schur() && system.has_solid() && !layout_->has_schur_inverse())
+      layout_->build_schur_inverse(system);
+  }
   build(working(system), geometry_changed, solid_changed);
   prepared_.system_name = system.name;
   prepared_.geometry_stamp = system.geometry_stamp;
@@ -204,15 +222,6 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
   is_prepared_ = true;
   ++n_builds_;
   setup_seconds_ += Teuchos::Time::wallTime() - start;
-}
-
-void RefinedStrategy::back_substitute(const BlockSystem& system, const BlockVector& rhs,
-                                      BlockVector& solution) const {
-  if (!system.has_solid())
-    return;
-  Vector right(*rhs.solid, Teuchos::Copy);
-  system.coupling_transposed->apply(*solution.pressure, right, Teuchos::NO_TRANS, -1, 1);
-  apply(*solid_inverse(), right, *solution.solid);
 }
 
 SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector& rhs,
@@ -240,10 +249,11 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
   BlockResidual residual;
   double previous = 0;
   project_out(system.null_space, *solution.pressure);
+  constexpr double of_a_scale = 1e-3;
   const std::function<double(const Vector&)> update_target = [&](const Vector& x) {
     BlockVector corrected{rcp(new Vector(*solution.pressure, Teuchos::Copy)), solution.solid};
     corrected.pressure->update(1, x, 1);
-    back_substitute(system, rhs, corrected);
+    back_substitute(system, rhs, solid_.to(of_a_scale), corrected);
     return safety *
            std::max(request.tolerance * block_residual(system, rhs, corrected).pressure_scale,
                     request.negligible_pressure_residual);
@@ -251,7 +261,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
   const std::function<double(const Vector&)> no_update;
   const double rhs_norm = norm(*rhs.pressure);
   while (true) {
-    back_substitute(system, rhs, solution);
+    back_substitute(system, rhs, solid_inverse(), solution);
     residual = block_residual(system, rhs, solution);
     check_finite(name, residual);
     const double removed = project_out(system.null_space, *residual.vector.pressure);
@@ -277,12 +287,9 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
       give_up(name, residual, done, request.tolerance, maximum_iterations_);
     previous = solvable;
     const double aim = is_settled ? safety * target / 1.5 : safety * target;
-    // Below round-off of row 2 nothing can be asked; what that leaves is for the next correction.
-    const double solid_target =
-        std::max(solid_gain_ > 0 ? aim / solid_gain_ : aim, 1e-15 * residual.solid_scale);
     done.n_iterations +=
         correct(system,
-                {name, residual.vector.pressure.get(), solvable, aim, solid_target,
+                {name, residual.vector.pressure.get(), solvable, aim, 1e-15 * residual.solid_scale,
                  maximum_iterations_ - done.n_iterations, is_settled ? no_update : update_target},
                 correction);
     project_out(system.null_space, correction);

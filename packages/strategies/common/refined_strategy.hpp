@@ -47,7 +47,7 @@ class RefinedStrategy : public SolverStrategy {
     const Vector* residual;  ///< r_1, free of null vectors
     double residual_norm;    ///< |r_1|
     double target;           ///< what |r_1| should become
-    double solid_target;     ///< of |r_2| where V_S is iterated on, see BlockKrylovRequest
+    double solid_round_off;  ///< what |r_2| cannot be asked to fall below
     int maximum_iterations;
     /// `target` for the solution that this correction would give: the scales move with it.
     std::function<double(const Vector& correction)> update_target;
@@ -59,6 +59,8 @@ class RefinedStrategy : public SolverStrategy {
   /// False if, at unchanged operators, something is missing for this system (with or without
   /// solid).
   virtual bool is_built_for(const BlockSystem&) const { return true; }
+  /// Whether the strategy uses the layout's approximate inverse of A + B C^-1 B^T.
+  virtual bool inverts_schur() const { return false; }
   /// Entries of the matrices that the strategy has assembled for itself; 0 if it does not count.
   virtual long stored_nonzeros() const { return 0; }
   /// An approximate solution p̂ of Eq. 16 with right-hand side (r_1, 0), written to `correction`;
@@ -87,7 +89,8 @@ class RefinedStrategy : public SolverStrategy {
   /// The same request for a Krylov method on both blocks. One that presumes a linear, symmetric
   /// inverse of A asks for no more than what single precision allows before a fresh start.
   enum class Presumes { nothing, symmetry };
-  BlockKrylovRequest block_krylov(const CorrectionRequest& request, Presumes presumes) const;
+  BlockKrylovRequest block_krylov(const BlockSystem& system, const CorrectionRequest& request,
+                                  Presumes presumes);
   /// Throws SolveError where a dynamic solid closes a region of fluid: A alone is singular there,
   /// and a strategy that solves for the fluid alone cannot go on.
   void refuse_region_closed_by_solid(const BlockSystem& system) const;
@@ -107,8 +110,6 @@ class RefinedStrategy : public SolverStrategy {
   void relay(const BlockSystem& system);
   SolveReport refine(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
                      const SolveRequest& request);
-  void back_substitute(const BlockSystem& system, const BlockVector& rhs,
-                       BlockVector& solution) const;
   bool is_ready(const BlockSystem& system) const;
   bool geometry_matches(const BlockSystem& system) const;
   bool solid_matches(const BlockSystem& system) const;
@@ -120,7 +121,7 @@ class RefinedStrategy : public SolverStrategy {
   bool is_prepared_ = false;
   Prepared prepared_;
   SolidInverse solid_;
-  double solid_gain_ = 0;  ///< |B C^-1|
+  double solid_gain_ = -1;  ///< |B C^-1|; negative: not known yet
   std::optional<Teuchos::ParameterList> pressure_list_;
   RCP<const LinearOperator> pressure_inverse_;
   std::shared_ptr<PressureLayout> layout_;  ///< null: pressures stay in the fluid's order

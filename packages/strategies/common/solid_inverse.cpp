@@ -1,5 +1,6 @@
 #include "strategies/common/solid_inverse.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "linear/exact_inverse.hpp"
@@ -47,58 +48,65 @@ SolidInverse::SolidInverse(const ParameterList& list) {
 }
 
 void SolidInverse::reset() {
-  op_ = exact_ = approximate_ = preconditioner_ = Teuchos::null;
+  iterated_ = exact_ = approximate_ = preconditioner_ = Teuchos::null;
+  split_.reset();
 }
 
 int SolidInverse::take_iterations() {
   return static_cast<int>(std::exchange(*iterations_, 0));
 }
 
-RCP<const LinearOperator> SolidInverse::iteration(double tolerance, int most) const {
-  return conjugate_gradient_inverse(op_, {preconditioner_, tolerance, most, name_, iterations_});
-}
-
 RCP<const LinearOperator> SolidInverse::to(double tolerance) const {
-  return iterates_ && tolerance > round_off ? iteration(tolerance, most_iterations) : exact_;
+  if (!iterates_)
+    return exact_;
+  const auto iteration = conjugate_gradient_inverse(
+      iterated_,
+      {preconditioner_, std::max(tolerance, round_off), most_iterations, name_, iterations_});
+  return split_ ? split_->with(iteration) : iteration;
 }
 
 void SolidInverse::build(const BlockSystem& system) {
-  op_ = system.solid_block;
   name_ = "solid block of the " + system.name;
   if (type_ == "Automatic" || type_ == "Exact")
-    build_automatic(system, name_);
+    build_automatic(system);
   else
-    build_named(system, name_);
+    build_named(system);
+  if (iterates_)
+    exact_ = to(round_off);
+  if (approximate_.is_null())
+    approximate_ = exact_;
 }
 
-void SolidInverse::build_automatic(const BlockSystem& system, const std::string& name) {
-  exact_ = cheap_exact_inverse(op_, name);
-  iterates_ = exact_.is_null();
-  if (iterates_) {
-    ParameterList chosen;
-    const auto matrix = assembled(op_);
-    if (!matrix.is_null()) {
-      chosen.set("Type", is_stiff(*matrix, system.near_null_space) ? "MueLu" : "Jacobi");
-      preconditioner_ = preconditioner_from_list(op_, chosen, name, system.near_null_space);
-    }
-    exact_ = iteration(round_off, most_iterations);
-  }
-  const bool is_linear = type_ == "Automatic" && !preconditioner_.is_null();
-  approximate_ = iterates_ && is_linear ? preconditioner_ : exact_;
-}
-
-void SolidInverse::build_named(const BlockSystem& system, const std::string& name) {
-  approximate_ = preconditioner_from_list(op_, list_, name, system.near_null_space);
-  iterates_ = type_ != "Direct";
+void SolidInverse::build_automatic(const BlockSystem& system) {
+  split_.emplace(system.solid_block, name_);
+  iterates_ = !split_->is_complete();
   if (!iterates_) {
-    exact_ = approximate_;
+    exact_ = split_->with(Teuchos::null);
     return;
   }
-  preconditioner_ =
-      type_ == "Conjugate Gradients"
-          ? preconditioner_from_list(op_, of_inner_iteration(list_), name, system.near_null_space)
-          : approximate_;
-  exact_ = iteration(round_off, most_iterations);
+  iterated_ = split_->rest();
+  const auto matrix = assembled(iterated_);
+  if (matrix.is_null())
+    return;
+  const NearNullSpace motions = split_->of_rest(system.near_null_space);
+  ParameterList chosen;
+  chosen.set("Type", is_stiff(*matrix, motions) ? "MueLu" : "Jacobi");
+  preconditioner_ = preconditioner_from_list(iterated_, chosen, name_, motions);
+  if (type_ == "Automatic")
+    approximate_ = split_->with(preconditioner_);
+}
+
+void SolidInverse::build_named(const BlockSystem& system) {
+  iterated_ = system.solid_block;
+  approximate_ = preconditioner_from_list(iterated_, list_, name_, system.near_null_space);
+  iterates_ = type_ != "Direct";
+  if (!iterates_)
+    exact_ = approximate_;
+  else
+    preconditioner_ = type_ == "Conjugate Gradients"
+                          ? preconditioner_from_list(iterated_, of_inner_iteration(list_), name_,
+                                                     system.near_null_space)
+                          : approximate_;
 }
 
 }  // namespace lockstep

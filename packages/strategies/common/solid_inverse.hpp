@@ -1,15 +1,17 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "interfaces/strategy.hpp"
+#include "linear/inverse_by_cost.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
 
 /// Declares "Solid Inverse", the list that names the approximate inverse of C. Its "Type" is
-///   "Automatic"  the default. Exact where that is cheap (see exact_inverse); else chosen by
-///                stiffness_number: the diagonal of C while M̃ dominates, MueLu with the rigid
-///                motions of the bodies where dt D does
+///   "Automatic"  the default. Exact for the bodies where that is cheap (see
+///                inverse_by_cost.hpp); else chosen by stiffness_number: the diagonal of C while M̃
+///                dominates, MueLu with the rigid motions of the bodies where dt D does
 ///   "Exact"      that to round-off, by conjugate gradients where it must iterate
 /// or one of linear/preconditioner.hpp.
 void declare_solid_inverse(ParameterList& list);
@@ -39,15 +41,16 @@ class SolidInverse {
   int take_iterations();
 
  private:
-  void build_automatic(const BlockSystem& system, const std::string& name);
-  void build_named(const BlockSystem& system, const std::string& name);
-  RCP<const LinearOperator> iteration(double tolerance, int most) const;
+  void build_automatic(const BlockSystem& system);
+  void build_named(const BlockSystem& system);
 
   ParameterList list_;
   std::string type_ = "Automatic";
-  RCP<const LinearOperator> op_, exact_, approximate_;
-  RCP<const LinearOperator> preconditioner_;  ///< of the inner iteration; null: a direct method
+  RCP<const LinearOperator> exact_, approximate_;
+  std::optional<InverseByCost> split_;  ///< of "Automatic" and "Exact"
   bool iterates_ = false;
+  RCP<const LinearOperator> iterated_;        ///< C, or what of it is not cheap
+  RCP<const LinearOperator> preconditioner_;  ///< of that; null: none
   std::string name_;
   std::shared_ptr<long> iterations_ = std::make_shared<long>(0);
 };

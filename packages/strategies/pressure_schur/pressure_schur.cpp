@@ -34,7 +34,7 @@ RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system
                             SolidSchur::Keep::columns)
         ->woodbury();
   if (layout() != nullptr)
-    return pressure_inverse();
+    return layout()->schur_inverse();
   BlockSystem schur = system;
   schur.pressure_block = as_operator(schur_with_diagonal(system));
   schur.pressure_null_space = system.null_space;

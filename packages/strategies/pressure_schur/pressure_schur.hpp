@@ -8,7 +8,8 @@ namespace lockstep {
 /// [-1.618, -1] and [0.618, 1] (Murphy, Golub and Wathen 2000): iterations depend neither on the
 /// density nor on h nor dt, and Ŝ is positive definite for closed balloons, where A is not. Ŝ^-1 is
 /// - for at most "Largest Solid" solid unknowns, that of A updated by Woodbury's formula;
-/// - for more, with multigrid: that of A, a little worse the lighter the solids are;
+/// - for more, with multigrid: that of A and what flows through soft sheets, a little worse the
+///   lighter other solids are;
 /// - for more, with other inverses: that of the assembled A + B diag(C)^-1 B^T, which is sparse for
 ///   the nodes of deformable solids.
 class PressureSchur : public MinresStrategy {
@@ -18,6 +19,7 @@ class PressureSchur : public MinresStrategy {
   std::string name() const override { return "pressure-schur"; }
 
  private:
+  bool inverts_schur() const override { return true; }
   Preconditioners make_preconditioners(const BlockSystem& system) override;
   RCP<const LinearOperator> schur_inverse(const BlockSystem& system);
 

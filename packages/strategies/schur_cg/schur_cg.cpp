@@ -25,7 +25,7 @@ class Eliminated {
         velocity_(coupling_.getRangeMap()) {}
 
   void set_residual(double norm) {
-    constexpr double share = 1e-2, loosest = 1e-3;
+    constexpr double share = 1e-1, loosest = 1e-2;
     inverse_ = solid_.to(std::min(loosest, share * target_ / norm));
   }
 
@@ -85,7 +85,7 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
   Eliminated eliminated(system, solid(), request.target);
   eliminated.set_residual(request.residual_norm);
   if (layout() != nullptr) {
-    SchurKernels kernels(*layout(), eliminated);
+    SchurKernels kernels(layout()->schur_kernels(), eliminated);
     return conjugate_gradients(kernels, *request.residual, correction, cg);
   }
   return conjugate_gradients(

@@ -5,8 +5,9 @@
 namespace lockstep {
 
 /// Eliminates V_S: conjugate gradients on the Schur complement S = A + B C^-1 B^T, never assembled,
-/// preconditioned by an approximate inverse of A. The fastest of the three while C^-1 is cheap
-/// (rigid bodies, small deformables). Right on ranks that own no row of a block.
+/// preconditioned by an approximate inverse of A, which with multigrid also knows what flows
+/// through soft sheets. The fastest of the three while C^-1 is cheap (rigid bodies, small
+/// deformables). Right on ranks that own no row of a block.
 class SchurCg : public RefinedStrategy {
  public:
   /// `list` as valid_parameters() describes it; what it leaves out takes its default. Throws
@@ -16,6 +17,7 @@ class SchurCg : public RefinedStrategy {
   std::string name() const override { return "schur-cg"; }
 
  private:
+  bool inverts_schur() const override { return true; }
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) override;
 };

@@ -4,8 +4,12 @@
 #include <Tpetra_Core.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
+#include "base/errors.hpp"
+#include "linear/component_cholesky.hpp"
 #include "linear/exact_inverse.hpp"
+#include "linear/inverse_by_cost.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/preconditioner.hpp"
 #include "linear/symmetry_check.hpp"
@@ -114,6 +118,71 @@ TEST(SoftSolid, MultigridIsFlatInStiffnessAndSize) {
     EXPECT_LE(iterations(Lattice(24, k), "MueLu"), soft + 12) << k;
   EXPECT_LE(iterations(Lattice(48, 1e4), "MueLu"), soft + 14);
   EXPECT_GT(iterations(Lattice(48, 1e4), "Jacobi"), 8 * soft);
+}
+
+/// |C x - b| / |b| for this inverse.
+double error_of(const LinearOperator& inverse, const CrsMatrix& c) {
+  Vector rhs(c.getRowMap()), x(c.getRowMap()), residual(c.getRowMap());
+  pseudo_random(rhs, 5);
+  apply(inverse, rhs, x);
+  c.apply(x, residual);
+  residual.update(1, rhs, -1);
+  return residual.norm2() / rhs.norm2();
+}
+
+TEST(SoftSolid, ComponentsAreFoundAcrossRanks) {
+  const Lattice solid(12, 1);
+  const auto components = components_of_rows(*solid.c);
+  const GlobalIndex n_rows = 2 * 12 * 12;
+  for (std::size_t row = 0; row < components.size(); ++row) {
+    const bool is_node = solid.space.body_of_row[row] == 0;
+    EXPECT_EQ(components[row].id, is_node ? 0 : n_rows);
+    EXPECT_EQ(components[row].n_rows, is_node ? n_rows : 1);
+  }
+  // Without springs every dof is alone.
+  const Lattice loose(3, 0);
+  for (const RowComponent& component : components_of_rows(*loose.c))
+    EXPECT_EQ(component.n_rows, 1);
+}
+
+TEST(SoftSolid, CholeskyOfCheapComponentsOnly) {
+  const Lattice solid(12, 1e4);
+  const auto components = components_of_rows(*solid.c);
+  const auto all = cheap_component_cholesky(solid.c, components, 1e9, "solid");
+  EXPECT_EQ(std::count(all.is_factored.begin(), all.is_factored.end(), false), 0);
+  EXPECT_LT(error_of(*all.inverse, *solid.c), 1e-9);
+  // The lone dof takes one multiplication, the lattice thousands.
+  const auto one = cheap_component_cholesky(solid.c, components, 10, "solid");
+  for (std::size_t row = 0; row < components.size(); ++row)
+    EXPECT_EQ(one.is_factored[row], solid.space.body_of_row[row] < 0);
+  Vector rhs(solid.c->getRowMap()), x(solid.c->getRowMap());
+  rhs.putScalar(6);
+  apply(*one.inverse, rhs, x);
+  const auto values = x.getData();
+  for (std::size_t row = 0; row < components.size(); ++row)
+    EXPECT_NEAR(values[row], one.is_factored[row] ? 2 : 0, 1e-14);
+}
+
+TEST(SoftSolid, IndefiniteMatricesHaveNoCholeskyFactors) {
+  const Lattice solid(6, -1);
+  const auto components = components_of_rows(*solid.c);
+  EXPECT_THROW(cheap_component_cholesky(solid.c, components, 1e9, "solid"), SolveError);
+}
+
+TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
+  const InverseByCost cheap(as_operator(Lattice(20, 1e3).c), "solid");
+  EXPECT_TRUE(cheap.is_complete());
+
+  const Lattice solid(110, 10);  // 24 200 rows and one
+  const InverseByCost split(as_operator(solid.c), "solid");
+  ASSERT_FALSE(split.is_complete());
+  const auto rest = assembled(split.rest());
+  EXPECT_EQ(rest->getGlobalNumRows(), 2 * 110 * 110);
+  const NearNullSpace motions = split.of_rest(solid.space);
+  EXPECT_EQ(std::count(motions.body_of_row.begin(), motions.body_of_row.end(), -1), 0);
+  EXPECT_NEAR(lumped_mass(*rest, motions)->norm1(), 2 * 110 * 110, 1e-6);
+  const auto inverse = split.with(conjugate_gradient_inverse(split.rest(), 1e-12, 5000, "rest"));
+  EXPECT_LT(error_of(*inverse, *solid.c), 1e-11);
 }
 
 }  // namespace lockstep::test

@@ -10,6 +10,7 @@
 #include "linear/null_space.hpp"
 #include "linear/symmetry_check.hpp"
 #include "multigrid/pressure_layout.hpp"
+#include "multigrid/through_sheets.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -243,6 +244,125 @@ TEST(Multigrid, ChambersJoinedByAGap) {
   apply(*layout->inverse(), u, mu);
   EXPECT_GT(u.dot(mu), 0);
   expect_few_iterations(problem, 14);
+}
+
+/// A row of the pressures for every closed face across x between two cells.
+struct ClosedFace {
+  std::size_t upper_cell;
+  GlobalIndex lower, upper;
+};
+
+template <int dim>
+std::vector<ClosedFace> closed_faces(const FaceCoefficients& a) {
+  const LatticeBlocks& blocks = *a.blocks;
+  Vector ids(a.map);
+  std::vector<std::array<int, 3>> cells;
+  const int depth = dim == 3 ? blocks.width : 1;
+  for (const auto& begin : blocks.begins) {
+    for (int k = 0; k < depth; ++k)
+      for (int j = 0; j < blocks.width; ++j)
+        for (int i = 0; i < blocks.width; ++i)
+          cells.push_back({begin[0] + i, begin[1] + j, begin[2] + k});
+  }
+  const auto number = [&](const std::array<int, 3>& at) {
+    return at[0] + blocks.n_cells[0] * (at[1] + blocks.n_cells[1] * at[2]);
+  };
+  std::vector<double> row_of_cell(number({0, 0, blocks.n_cells[2]}), 0);  // plus 1, on all ranks
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    if (a.row[cell] >= 0)
+      row_of_cell[number(cells[cell])] = 1. + a.map->getGlobalElement(a.row[cell]);
+  }
+  sum_all(a.map->getComm(), row_of_cell.data(), static_cast<int>(row_of_cell.size()));
+  std::vector<ClosedFace> faces;
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    if (a.row[cell] < 0 || cells[cell][0] == 0 || a.lower[0][cell] != 0)
+      continue;
+    const auto upper = static_cast<GlobalIndex>(row_of_cell[number(cells[cell])]) - 1;
+    const auto lower = static_cast<GlobalIndex>(row_of_cell[number(cells[cell]) - 1]) - 1;
+    if (lower >= 0)
+      faces.push_back({cell, lower, upper});
+  }
+  return faces;
+}
+
+/// Makes a sheet of the closed faces of a plate: each a node of its own that moves along x, of such
+/// a mass that the sheet gives way just as the fluid does.
+enum class Sides { one, both };
+template <int dim>
+std::vector<ClosedFace> make_sheet(Problem<dim>& problem, Sides sides = Sides::both) {
+  constexpr double b = 0.7;
+  const FaceCoefficients& a = *stencil_of(problem.system.pressure_block);
+  const std::vector<ClosedFace> faces = closed_faces<dim>(a);
+  const auto n = static_cast<int>(faces.size());
+  const auto map = make_map(n, a.map->getComm());
+  std::vector<std::vector<Entry>> coupling(n), mass(n);
+  for (int face = 0; face < n; ++face) {
+    coupling[face] = {{faces[face].lower, b}};
+    if (sides == Sides::both)
+      coupling[face].push_back({faces[face].upper, -b});
+    mass[face] = {{map->getGlobalElement(face), b * b / a.unit}};
+  }
+  problem.system.coupling_transposed = matrix_from_rows(map, coupling, a.map, map);
+  problem.system.solid_block = as_operator(RCP<const CrsMatrix>(matrix_from_rows(map, mass)));
+  const auto motions = rcp(new MultiVector(map, dim == 2 ? 3 : 6));
+  motions->getVectorNonConst(0)->putScalar(1);
+  problem.system.near_null_space = {motions, std::vector<int>(n, 0), 1};
+  return faces;
+}
+
+/// Iterations of conjugate gradients on A + B C^-1 B^T of the sheet.
+template <int dim>
+int iterations_with(const Problem<dim>& problem, const PressureLayout& layout,
+                    const RCP<const LinearOperator>& preconditioner) {
+  const BlockSystem relaid = layout.relaid(problem.system);
+  const CrsMatrix& coupling = *relaid.coupling_transposed;
+  const double unit = stencil_of(problem.system.pressure_block)->unit;
+  Vector b(layout.map()), x(layout.map()), force(coupling.getRangeMap());
+  layout.to_layout(*right_hand_side(problem), b);
+  const ConjugateGradientsRequest request{"test", 1e-8 * b.norm2(), 200, {}};
+  return conjugate_gradients(
+      [&](const Vector& u, Vector& v) {
+        apply(*relaid.pressure_block, u, v);
+        coupling.apply(u, force);
+        force.scale(unit / (0.7 * 0.7));
+        coupling.apply(force, v, Teuchos::TRANS, 1, 1);
+      },
+      [&](const Vector& u, Vector& v) { apply(*preconditioner, u, v); }, b, x, request);
+}
+
+/// A sheet of the fluid's own inertia: A + B C^-1 B^T is the operator of the box without it.
+TEST(Multigrid, ASheetThatGivesWay) {
+  Case<3> scene(cube<3>(32), 1.0 / 32);
+  Problem<3> problem(scene, plate<3>(1.0 / 32, 13.1 / 32));
+  const std::vector<ClosedFace> faces = make_sheet(problem);
+  const FaceCoefficients& a = *stencil_of(problem.system.pressure_block);
+  ASSERT_GT(sum_all(a.map->getComm(), static_cast<GlobalIndex>(faces.size())), 300);
+  const auto conducting = conducting_through_sheets(problem.system, {});
+  ASSERT_TRUE(conducting.has_value());
+  double difference = 0;  // of all faces: those of the sheet open, others as they were
+  FaceCoefficients expected = a;
+  for (const ClosedFace& face : faces)
+    expected.lower[0][face.upper_cell] = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t cell = 0; cell < a.row.size(); ++cell)
+      difference += std::abs(expected.lower[axis][cell] - conducting->lower[axis][cell]);
+  }
+  EXPECT_EQ(difference, 0);
+
+  const auto layout = PressureLayout::make(problem.system, {}, nullptr);
+  EXPECT_FALSE(layout->has_schur_inverse());
+  layout->build_schur_inverse(problem.system);
+  const int n_aware = iterations_with(problem, *layout, layout->schur_inverse());
+  const int n_unaware = iterations_with(problem, *layout, layout->inverse());
+  EXPECT_LE(n_aware, 12);
+  EXPECT_GE(n_unaware, 2 * n_aware);
+}
+
+TEST(Multigrid, SolidsWithFluidOnOneSideConductNothing) {
+  Case<3> scene(cube<3>(16), 1.0 / 16);
+  Problem<3> problem(scene, plate<3>(1.0 / 16, 7.1 / 16));
+  make_sheet(problem, Sides::one);
+  EXPECT_FALSE(conducting_through_sheets(problem.system, {}).has_value());
 }
 
 TEST(Multigrid, RefusesWhatItCannotHalve) {

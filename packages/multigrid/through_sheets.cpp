@@ -1,0 +1,170 @@
+#include "multigrid/through_sheets.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_MultiVector.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "linear/matrix_rows.hpp"
+#include "linear/near_null_space.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// An entry of a node's row of B^T, by where its cell lies: its line along the node's axis, and its
+/// place on the line.
+struct Touched {
+  long line = 0;
+  int place = 0;
+  double value = 0;
+  int column = 0;
+};
+
+/// A face between two cells of a line: the upper cell's column, and |b_f|.
+struct TouchedFace {
+  int upper = 0;
+  double weight = 0;
+};
+
+/// The faces whose differences of pressures make up a row; none if the row does not cancel along
+/// its lines, that is, if the fluid is on one side only.
+std::vector<TouchedFace> faces_of(std::vector<Touched>& row) {
+  std::sort(row.begin(), row.end(), [](const Touched& a, const Touched& b) {
+    return a.line != b.line ? a.line < b.line : a.place < b.place;
+  });
+  double largest = 0;
+  for (const Touched& entry : row)
+    largest = std::max(largest, std::abs(entry.value));
+  const double round_off = 1e-8 * largest;
+  std::vector<TouchedFace> faces;
+  double sum = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (std::abs(sum) > round_off) {
+      if (row[i].line != row[i - 1].line || row[i].place != row[i - 1].place + 1)
+        return {};
+      faces.push_back({row[i].column, std::abs(sum)});
+    }
+    sum += row[i].value;
+  }
+  return std::abs(sum) > round_off ? std::vector<TouchedFace>() : faces;
+}
+
+/// The lattice's number of the cell of every local row; -1 for the rows to leave alone.
+RCP<Vector> cell_numbers(const FaceCoefficients& coefficients, const std::vector<int>& empty_rows) {
+  const LatticeBlocks& blocks = *coefficients.blocks;
+  const auto result = make_vector(coefficients.map);
+  const auto values = result->getDataNonConst();
+  const int depth = blocks.dimension == 3 ? blocks.width : 1;
+  std::size_t cell = 0;
+  for (const auto& begin : blocks.begins) {
+    for (int k = 0; k < depth; ++k) {
+      for (int j = 0; j < blocks.width; ++j) {
+        for (int i = 0; i < blocks.width; ++i, ++cell) {
+          if (coefficients.row[cell] >= 0)
+            values[coefficients.row[cell]] =
+                begin[0] + i +
+                static_cast<double>(blocks.n_cells[0]) *
+                    (begin[1] + j + static_cast<double>(blocks.n_cells[1]) * (begin[2] + k));
+        }
+      }
+    }
+  }
+  for (const int row : empty_rows)
+    values[row] = -1;
+  return result;
+}
+
+/// The axis that a node's row of C belongs to; -1: no node's.
+std::vector<int> axes_of_rows(const NearNullSpace& space) {
+  std::vector<int> axes(space.body_of_row.size(), -1);
+  for (int axis = 0; axis < space.n_axes(); ++axis) {
+    const auto translation = space.motions->getData(axis);
+    for (std::size_t row = 0; row < axes.size(); ++row) {
+      if (translation[row] != 0)
+        axes[row] = axis;
+    }
+  }
+  return axes;
+}
+
+/// b_f sum_g b_g / m by axis of the face, on the columns of B^T that are its upper cell.
+MultiVector conductances(const BlockSystem& system, const Vector& numbers,
+                         const std::array<int, 3>& n_cells) {
+  const CrsMatrix& coupling = *system.coupling_transposed;
+  const std::vector<int> axes = axes_of_rows(system.near_null_space);
+  std::vector<std::vector<Touched>> rows(axes.size());
+  const std::array<long, 3> stride{1, n_cells[0], static_cast<long>(n_cells[0]) * n_cells[1]};
+  const auto number = numbers.getData();
+  for_each_entry(coupling, [&](int row, GlobalIndex global_column, double value) {
+    const int column = coupling.getColMap()->getLocalElement(global_column);
+    const int axis = axes[row];
+    if (axis < 0 || value == 0)
+      return;
+    // Cells to be left alone stand on lines of their own, where nothing cancels.
+    const long cell = static_cast<long>(number[column]);
+    const int place = cell < 0 ? 0 : static_cast<int>(cell / stride[axis] % n_cells[axis]);
+    const long line = cell < 0 ? -1 - column : cell - place * stride[axis];
+    rows[row].push_back({line, place, value, column});
+  });
+  const auto lumped = lumped_mass(*assembled(system.solid_block), system.near_null_space);
+  const auto masses = lumped->getData();
+  MultiVector result(coupling.getColMap(), system.near_null_space.n_axes());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (rows[row].empty() || !(masses[row] > 0))
+      continue;
+    const std::vector<TouchedFace> faces = faces_of(rows[row]);
+    double sum = 0;
+    for (const TouchedFace& face : faces)
+      sum += face.weight;
+    for (const TouchedFace& face : faces)
+      result.sumIntoLocalValue(face.upper, axes[row], face.weight * sum / masses[row]);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& system,
+                                                          const std::vector<int>& empty_rows) {
+  if (!system.has_solid() || system.near_null_space.empty() ||
+      assembled(system.solid_block).is_null())
+    return {};
+  const FaceCoefficients& a = *stencil_of(system.pressure_block);
+  const CrsMatrix& coupling = *system.coupling_transposed;
+  const auto importer = coupling.getGraph()->getImporter();
+  const RCP<Vector> by_row = cell_numbers(a, empty_rows);
+  RCP<Vector> by_column = by_row;
+  if (!importer.is_null()) {
+    by_column = make_vector(coupling.getColMap());
+    by_column->doImport(*by_row, *importer, Tpetra::INSERT);
+  }
+  const MultiVector on_columns = conductances(system, *by_column, a.blocks->n_cells);
+  MultiVector added(a.map, on_columns.getNumVectors());
+  if (importer.is_null())
+    added.update(1, on_columns, 0);
+  else
+    added.doExport(on_columns, *importer, Tpetra::ADD);
+
+  // Rounded: the sums over nodes come in another order on other numbers of ranks.
+  constexpr double steps = 1 << 12;
+  FaceCoefficients result = a;
+  double n_opened = 0;
+  for (std::size_t axis = 0; axis < added.getNumVectors(); ++axis) {
+    const auto values = added.getData(axis);
+    for (std::size_t cell = 0; cell < a.row.size(); ++cell) {
+      const double value = a.row[cell] < 0 ? 0 : values[a.row[cell]];
+      if (value == 0)
+        continue;
+      result.lower[axis][cell] += static_cast<float>(std::round(steps * value / a.unit) / steps);
+      ++n_opened;
+    }
+  }
+  if (max_all(a.map->getComm(), n_opened) == 0)
+    return {};
+  return result;
+}
+
+}  // namespace lockstep

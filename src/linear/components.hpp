@@ -1,0 +1,18 @@
+#pragma once
+#include <vector>
+
+#include "linear/types.hpp"
+
+namespace lockstep {
+
+/// A connected component of the nonzeros of a matrix, as a row of it sees it.
+struct RowComponent {
+  GlobalIndex id = 0;      ///< the lowest row of the component
+  GlobalIndex n_rows = 0;  ///< on all ranks
+};
+
+/// The components of a matrix of symmetric pattern that stores its diagonal, by local row, wherever
+/// their rows live. Collective.
+std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix);
+
+}  // namespace lockstep
