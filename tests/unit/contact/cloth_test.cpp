@@ -169,12 +169,14 @@ TYPED_TEST(ClothContacts, WildMotionDoesNotCross) {
   }
 }
 
-/// Two sheets, one of them pinned at a side, and rigid bodies, in a box with walls.
+/// Two sheets, one of them pinned at a side, and rigid bodies, in a box with walls. Bodies and
+/// sheets are not in line: which of two contacts comes first must not be for round-off to say.
 template <int dim>
 ClothWorld<dim> crowd(const Communicator& comm) {
   std::vector<DeformableBody<dim>> cloths;
   for (int i = 0; i < 2; ++i) {
-    cloths.push_back(sheet<dim>(8 * h, Point<dim>::Constant(5 * h) + up<dim>(2 * i * h), 1.3 * h));
+    Point<dim> center = Point<dim>::Constant((5 + 0.083 * i) * h) + up<dim>(2 * i * h);
+    cloths.push_back(sheet<dim>(8 * h, center, 1.3 * h));
     cloths.back().friction = 0.4;
     cloths.back().consistent_mass = i == 1;
   }
@@ -185,7 +187,8 @@ ClothWorld<dim> crowd(const Communicator& comm) {
   std::vector<RigidBody<dim>> bodies;
   for (int i = 0; i < 2; ++i) {
     Point<dim> position = Point<dim>::Constant(5 * h) + up<dim>((i == 0 ? -2 : 5) * h);
-    position[0] += i * h;
+    for (int a = 0; a < dim; ++a)
+      position[a] += (0.137 + 0.053 * a + 1.071 * i) * h;
     bodies.push_back(rough(moving<dim>(ball<dim>(1.5 * h, position), up<dim>(i == 0 ? 4 : -4),
                                        AngularVector<dim>::Constant(5)),
                            0.4));
@@ -197,8 +200,9 @@ TYPED_TEST(ClothContactsOnRanks, ImpulsesBalanceAndDoNotDependOnTheNumberOfRanks
   constexpr int dim = TypeParam::value;
   ClothWorld<dim> together = crowd<dim>(world_communicator()),
                   alone = crowd<dim>(own_communicator());
-  int n_contacts = 0;
+  int n_contacts = 0, n_compared = 0;
   double given = 0;
+  bool alike = true;
   for (int i = 0; i < 30; ++i) {
     together.step(0.01);
     alone.step(0.01);
@@ -213,15 +217,17 @@ TYPED_TEST(ClothContactsOnRanks, ImpulsesBalanceAndDoNotDependOnTheNumberOfRanks
     n_contacts += together.velocity_report.n_contacts;
     given += external.linear.norm();
     ASSERT_EQ(n_crossings(*together.solids), 0) << "step " << i;
-    for (int k = 0; k < 4; ++k) {
-      // What sums in another order change grows in contact, some tenfold in five steps.
-      if (i < 20) {
-        EXPECT_LT((together.state(k).center_of_mass - alone.state(k).center_of_mass).norm(),
-                  1e-7 * h)
-            << "step " << i;
-      }
+    // Sums in another order may take an iteration across its tolerance one step earlier; from there
+    // on the two worlds differ by that tolerance, which contact then lets grow.
+    alike = alike && together.velocity_report.iterations == alone.velocity_report.iterations &&
+            together.position_report.iterations == alone.position_report.iterations;
+    n_compared += alike;
+    for (int k = 0; alike && k < 4; ++k) {
+      EXPECT_LT((together.state(k).center_of_mass - alone.state(k).center_of_mass).norm(), 1e-9 * h)
+          << "step " << i;
     }
   }
+  EXPECT_GE(n_compared, 10);
   EXPECT_GT(n_contacts, 50);
   EXPECT_GT(given, 0);
 }
