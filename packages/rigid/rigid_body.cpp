@@ -33,7 +33,8 @@ Inertia<dim> world_inertia(const RigidBody<dim>& body, const Orientation<dim>& o
     return body.inertia;
   } else {
     const Eigen::Matrix3d rotation = orientation.toRotationMatrix();
-    return rotation * body.inertia * rotation.transpose();
+    const Inertia<3> inertia = rotation * body.inertia * rotation.transpose();
+    return 0.5 * (inertia + inertia.transpose());  // symmetric without round-off
   }
 }
 

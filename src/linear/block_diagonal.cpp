@@ -80,20 +80,48 @@ class KnownRows {
   std::map<GlobalIndex, Row> rows_;
 };
 
-/// The components of this rank's rows; fetches what is missing. Collective.
+/// Joins components that share rows. They do where round-off has left a zero in one of two entries
+/// that symmetry makes equal: then one row's component holds the other's, but not the reverse.
+std::vector<Component> disjoint(std::vector<Component> components) {
+  std::vector<Component> result;
+  std::map<GlobalIndex, std::size_t> place_of;
+  for (Component& component : components) {
+    std::set<std::size_t> met;
+    for (const GlobalIndex id : component) {
+      if (const auto found = place_of.find(id); found != place_of.end())
+        met.insert(found->second);
+    }
+    for (const std::size_t place : met) {
+      component.insert(result[place].begin(), result[place].end());
+      result[place].clear();
+    }
+    for (const GlobalIndex id : component)
+      place_of[id] = result.size();
+    result.push_back(std::move(component));
+  }
+  return result;
+}
+
+/// The components of this rank's rows, at most those up to `limit` whole; fetches what is missing.
+/// Collective.
 std::vector<Component> find_components(KnownRows& rows, const Map& map, int limit) {
   while (true) {
-    std::vector<Component> components;
+    std::vector<Component> small, large;
     Component missing, done;
     for (const GlobalIndex id : map.getNodeElementList()) {
       if (done.count(id) > 0)
         continue;
-      components.push_back(rows.component(id, limit, missing));
-      if (static_cast<int>(components.back().size()) <= limit)
-        done.insert(components.back().begin(), components.back().end());
+      Component component = rows.component(id, limit, missing);
+      const bool is_small = static_cast<int>(component.size()) <= limit;
+      if (is_small)
+        done.insert(component.begin(), component.end());
+      (is_small ? small : large).push_back(std::move(component));
     }
-    if (max_all(map.getComm(), static_cast<GlobalIndex>(missing.size())) == 0)
-      return components;
+    if (max_all(map.getComm(), static_cast<GlobalIndex>(missing.size())) == 0) {
+      std::vector<Component> all = disjoint(std::move(small));
+      all.insert(all.end(), large.begin(), large.end());
+      return all;
+    }
     rows.fetch({missing.begin(), missing.end()});
   }
 }
@@ -142,6 +170,8 @@ BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, 
   std::string failure;
   bool exact = true;
   for (const Component& component : find_components(rows, *map, largest_block)) {
+    if (component.empty())
+      continue;
     std::vector<GlobalIndex> ids(component.begin(), component.end());
     if (static_cast<int>(ids.size()) > largest_block) {
       exact = false;

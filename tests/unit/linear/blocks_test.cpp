@@ -129,6 +129,20 @@ TEST(GatheredDirect, RefusesASingularMatrix) {
   EXPECT_THROW(gathered_direct(matrix_from_rows(map, rows), "test"), SolveError);
 }
 
+/// As in the mass matrix of a turned body, where R J R^T is symmetric up to round-off only.
+TEST(BlockDiagonal, AZeroOnOneSideOfTheDiagonalCountsNothingTwice) {
+  for (const auto& [above, below] : {std::pair(0., 1e-17), std::pair(1e-17, 0.)}) {
+    const auto map = make_map(is_root(world()) ? 3 : 0, world());
+    std::vector<std::vector<Entry>> rows;
+    if (is_root(world()))
+      rows = {{{0, 2}, {1, above}}, {{0, below}, {1, 4}, {2, above}}, {{1, below}, {2, 5}}};
+    const auto matrix = matrix_from_rows(map, rows);
+    const auto blocks = block_diagonal_inverse(matrix, 24, "test");
+    EXPECT_TRUE(blocks.exact);
+    EXPECT_LT(inverse_error(*as_operator(matrix), *as_operator(blocks.inverse)), 1e-14);
+  }
+}
+
 TEST(BlockDiagonal, InvertsBlocksThatSpanRanks) {
   const SaddleProblem problem(world(), {});
   const auto solid = assembled(problem.system.solid_block);
