@@ -142,6 +142,10 @@ std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& sys
     by_column->doImport(*by_row, *importer, Tpetra::INSERT);
   }
   const MultiVector on_columns = conductances(system, *by_column, a.blocks->n_cells);
+  std::vector<double> largest(on_columns.getNumVectors());
+  on_columns.normInf(Teuchos::arrayViewFromVector(largest));
+  if (*std::max_element(largest.begin(), largest.end()) == 0)
+    return {};
   MultiVector added(a.map, on_columns.getNumVectors());
   if (importer.is_null())
     added.update(1, on_columns, 0);
@@ -151,19 +155,14 @@ std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& sys
   // Rounded: the sums over nodes come in another order on other numbers of ranks.
   constexpr double steps = 1 << 12;
   FaceCoefficients result = a;
-  double n_opened = 0;
   for (std::size_t axis = 0; axis < added.getNumVectors(); ++axis) {
     const auto values = added.getData(axis);
     for (std::size_t cell = 0; cell < a.row.size(); ++cell) {
       const double value = a.row[cell] < 0 ? 0 : values[a.row[cell]];
-      if (value == 0)
-        continue;
-      result.lower[axis][cell] += static_cast<float>(std::round(steps * value / a.unit) / steps);
-      ++n_opened;
+      if (value != 0)
+        result.lower[axis][cell] += static_cast<float>(std::round(steps * value / a.unit) / steps);
     }
   }
-  if (max_all(a.map->getComm(), n_opened) == 0)
-    return {};
   return result;
 }
 

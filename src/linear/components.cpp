@@ -5,7 +5,6 @@
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <set>
 
