@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,6 +10,21 @@
 #include "multigrid/level_halo.hpp"
 
 namespace lockstep {
+
+/// Calls visit(cell, lattice coordinates) for the cells of this rank's blocks, in their order.
+template <typename Visit>
+void for_each_cell(const LatticeBlocks& blocks, const Visit& visit) {
+  const int depth = blocks.dimension == 3 ? blocks.width : 1;
+  std::size_t cell = 0;
+  for (const auto& begin : blocks.begins) {
+    for (int k = 0; k < depth; ++k) {
+      for (int j = 0; j < blocks.width; ++j) {
+        for (int i = 0; i < blocks.width; ++i, ++cell)
+          visit(cell, std::array<int, 3>{begin[0] + i, begin[1] + j, begin[2] + k});
+      }
+    }
+  }
+}
 
 /// One level's storage and exchange.
 struct LayoutLevel {

@@ -99,25 +99,15 @@ class PressureLayoutOf final : public PressureLayout {
 template <int dim>
 void PressureLayoutOf<dim>::number_rows(const FaceCoefficients& coefficients) {
   const LevelGrid& grid = layout_->finest();
-  const LatticeBlocks& blocks = layout_->blocks();
   entry_of_row_.resize(coefficients.map->getNodeNumElements());
-  std::size_t cell = 0;
-  const int depth = dim == 3 ? blocks.width : 1;
-  for (const auto& begin : blocks.begins) {
-    for (int k = 0; k < depth; ++k) {
-      for (int j = 0; j < blocks.width; ++j) {
-        for (int i = 0; i < blocks.width; ++i, ++cell) {
-          const int row = coefficients.row[cell];
-          if (row < 0)
-            continue;
-          const int x = begin[0] + i - grid.begin[0], y = begin[1] + j - grid.begin[1],
-                    z = begin[2] + k - grid.begin[2];
-          entry_of_row_[row] = static_cast<int>(LevelGrid::colour(x, y, z) * grid.n_slots +
-                                                grid.slot_of_cell(x, y, z));
-        }
-      }
-    }
-  }
+  for_each_cell(layout_->blocks(), [&](std::size_t cell, const std::array<int, 3>& at) {
+    const int row = coefficients.row[cell];
+    if (row < 0)
+      return;
+    const int x = at[0] - grid.begin[0], y = at[1] - grid.begin[1], z = at[2] - grid.begin[2];
+    entry_of_row_[row] =
+        static_cast<int>(LevelGrid::colour(x, y, z) * grid.n_slots + grid.slot_of_cell(x, y, z));
+  });
 }
 
 template <int dim>

@@ -9,6 +9,7 @@
 
 #include "linear/matrix_rows.hpp"
 #include "linear/near_null_space.hpp"
+#include "multigrid/lattice_layout.hpp"
 
 namespace lockstep {
 
@@ -54,24 +55,14 @@ std::vector<TouchedFace> faces_of(std::vector<Touched>& row) {
 
 /// The lattice's number of the cell of every local row; -1 for the rows to leave alone.
 RCP<Vector> cell_numbers(const FaceCoefficients& coefficients, const std::vector<int>& empty_rows) {
-  const LatticeBlocks& blocks = *coefficients.blocks;
+  const auto& n = coefficients.blocks->n_cells;
   const auto result = make_vector(coefficients.map);
   const auto values = result->getDataNonConst();
-  const int depth = blocks.dimension == 3 ? blocks.width : 1;
-  std::size_t cell = 0;
-  for (const auto& begin : blocks.begins) {
-    for (int k = 0; k < depth; ++k) {
-      for (int j = 0; j < blocks.width; ++j) {
-        for (int i = 0; i < blocks.width; ++i, ++cell) {
-          if (coefficients.row[cell] >= 0)
-            values[coefficients.row[cell]] =
-                begin[0] + i +
-                static_cast<double>(blocks.n_cells[0]) *
-                    (begin[1] + j + static_cast<double>(blocks.n_cells[1]) * (begin[2] + k));
-        }
-      }
-    }
-  }
+  for_each_cell(*coefficients.blocks, [&](std::size_t cell, const std::array<int, 3>& at) {
+    if (coefficients.row[cell] >= 0)
+      values[coefficients.row[cell]] =
+          at[0] + static_cast<double>(n[0]) * (at[1] + static_cast<double>(n[1]) * at[2]);
+  });
   for (const int row : empty_rows)
     values[row] = -1;
   return result;

@@ -252,18 +252,11 @@ struct ClosedFace {
   GlobalIndex lower, upper;
 };
 
-template <int dim>
 std::vector<ClosedFace> closed_faces(const FaceCoefficients& a) {
   const LatticeBlocks& blocks = *a.blocks;
   Vector ids(a.map);
   std::vector<std::array<int, 3>> cells;
-  const int depth = dim == 3 ? blocks.width : 1;
-  for (const auto& begin : blocks.begins) {
-    for (int k = 0; k < depth; ++k)
-      for (int j = 0; j < blocks.width; ++j)
-        for (int i = 0; i < blocks.width; ++i)
-          cells.push_back({begin[0] + i, begin[1] + j, begin[2] + k});
-  }
+  for_each_cell(blocks, [&](std::size_t, const std::array<int, 3>& at) { cells.push_back(at); });
   const auto number = [&](const std::array<int, 3>& at) {
     return at[0] + blocks.n_cells[0] * (at[1] + blocks.n_cells[1] * at[2]);
   };
@@ -294,7 +287,7 @@ std::vector<ClosedFace> make_sheet(Problem<dim>& problem, int faces_per_node = 1
                                    Sides sides = Sides::both) {
   constexpr double b = 0.7;
   const FaceCoefficients& a = *stencil_of(problem.system.pressure_block);
-  const std::vector<ClosedFace> faces = closed_faces<dim>(a);
+  const std::vector<ClosedFace> faces = closed_faces(a);
   const int n_faces = static_cast<int>(faces.size());
   const int n_nodes = (n_faces + faces_per_node - 1) / faces_per_node;
   const auto map = make_map(n_nodes, a.map->getComm());
