@@ -77,7 +77,8 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
   const Communicator comm = map->getComm();
   Vector r(rhs, Teuchos::Copy), d(map), q(map);
   x.putScalar(0);
-  double r_norm = norm(r);
+  constexpr double trusted_fall = 1e-3;
+  double r_norm = norm(r), true_norm = r_norm;
   double r_dot_z = 0;
   int iteration = 0;
   double target = request.target;
@@ -98,6 +99,10 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
         request.name, curvature, iteration, r_norm);
     r_norm = std::sqrt(sum_all(comm, advance(r_dot_z / curvature, d, q, x, r)));
     ++iteration;
+    if (request.true_residual && r_norm <= trusted_fall * true_norm) {
+      request.true_residual(x, r);
+      r_norm = true_norm = norm(r);
+    }
     if (r_norm <= target && request.update_target)
       target = std::min(target, request.update_target(x));
   }

@@ -19,6 +19,10 @@ struct ConjugateGradientsRequest {
   /// Asked when the target is reached: the target for this x, if it depends on x. The iteration
   /// goes on if the new one is not reached yet. Collective.
   std::function<double(const Vector& x)> update_target = {};
+  /// r = rhs - (operator) x, where the operator that the iteration applies is a rounded one: asked
+  /// whenever |r| has fallen by another 1e-3, so that rounding never shows ("reliable updates",
+  /// Clark et al. 2010). Collective.
+  std::function<void(const Vector& x, Vector& r)> true_residual = {};
 };
 
 /// What an iteration does to its vectors, in as few passes over memory as the operators allow. The

@@ -20,11 +20,20 @@ RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOpera
     else
       apply(*m, x, y);
   };
+  const auto iterated = inner.rounded.is_null() ? op : inner.rounded;
   return action_operator(domain_map(*op), [=](const Vector& rhs, Vector& solution) {
     const double norm = rhs.norm2();
-    const int iterations = conjugate_gradients(
-        [&op](const Vector& x, Vector& y) { apply(*op, x, y); }, precondition, rhs, solution,
-        {inner.name, inner.tolerance * norm, inner.maximum_iterations, {}});
+    ConjugateGradientsRequest request{
+        inner.name, inner.tolerance * norm, inner.maximum_iterations, {}};
+    if (!inner.rounded.is_null()) {
+      request.true_residual = [&](const Vector& x, Vector& r) {
+        r.update(1, rhs, 0);
+        apply(*op, x, r, -1, 1);
+      };
+    }
+    const int iterations =
+        conjugate_gradients([&](const Vector& x, Vector& y) { apply(*iterated, x, y); },
+                            precondition, rhs, solution, request);
     if (inner.iterations)
       *inner.iterations += iterations;
     if (iterations < inner.maximum_iterations)
@@ -44,7 +53,8 @@ RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOpera
   RCP<const LinearOperator> jacobi;
   if (const auto matrix = assembled(op); !matrix.is_null())
     jacobi = as_operator(jacobi_inverse(*matrix, name));
-  return conjugate_gradient_inverse(op, {jacobi, tolerance, maximum_iterations, name, nullptr});
+  return conjugate_gradient_inverse(
+      op, {jacobi, Teuchos::null, tolerance, maximum_iterations, name, nullptr});
 }
 
 RCP<const LinearOperator> exact_inverse(const RCP<const LinearOperator>& op,

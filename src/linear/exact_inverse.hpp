@@ -14,7 +14,8 @@ RCP<const LinearOperator> exact_inverse(const RCP<const LinearOperator>& op,
 
 struct InnerSolve {
   RCP<const LinearOperator> preconditioner;  ///< symmetric positive definite; null: none
-  double tolerance = 1e-10;                  ///< relative residual
+  RCP<const LinearOperator> rounded;  ///< `op` in less precision, to iterate with; null: itself
+  double tolerance = 1e-10;           ///< relative residual
   int maximum_iterations = 1000;
   std::string name;                  ///< for messages
   std::shared_ptr<long> iterations;  ///< counted here, if given

@@ -86,7 +86,7 @@ RCP<const LinearOperator> inner_iteration(const RCP<const LinearOperator>& op,
     return conjugate_gradient_inverse(op, tolerance, most, name);
   const auto inner =
       preconditioner_from_list(op, list.sublist("Preconditioner"), name, near_null_space);
-  return conjugate_gradient_inverse(op, {inner, tolerance, most, name, nullptr});
+  return conjugate_gradient_inverse(op, {inner, Teuchos::null, tolerance, most, name, nullptr});
 }
 
 void check_own(const ParameterList& list, const std::string& type, const std::string& where) {

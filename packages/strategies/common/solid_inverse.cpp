@@ -5,6 +5,7 @@
 
 #include "linear/exact_inverse.hpp"
 #include "linear/preconditioner.hpp"
+#include "linear/single_precision.hpp"
 #include "strategies/common/strategy_parameters.hpp"
 
 namespace lockstep {
@@ -48,7 +49,7 @@ SolidInverse::SolidInverse(const ParameterList& list) {
 }
 
 void SolidInverse::reset() {
-  iterated_ = exact_ = approximate_ = preconditioner_ = Teuchos::null;
+  iterated_ = exact_ = approximate_ = preconditioner_ = rounded_ = Teuchos::null;
   split_.reset();
 }
 
@@ -60,8 +61,8 @@ RCP<const LinearOperator> SolidInverse::to(double tolerance) const {
   if (!iterates_)
     return exact_;
   const auto iteration = conjugate_gradient_inverse(
-      iterated_,
-      {preconditioner_, std::max(tolerance, round_off), most_iterations, name_, iterations_});
+      iterated_, {preconditioner_, rounded_, std::max(tolerance, round_off), most_iterations, name_,
+                  iterations_});
   return split_ ? split_->with(iteration) : iteration;
 }
 
@@ -92,6 +93,8 @@ void SolidInverse::build_automatic(const BlockSystem& system) {
   ParameterList chosen;
   chosen.set("Type", is_stiff(*matrix, motions) ? "MueLu" : "Jacobi");
   preconditioner_ = preconditioner_from_list(iterated_, chosen, name_, motions);
+  if (!motions.empty())
+    rounded_ = single_precision_copy(matrix, motions.n_axes());
   if (type_ == "Automatic")
     approximate_ = split_->with(preconditioner_);
 }

@@ -51,6 +51,7 @@ class SolidInverse {
   bool iterates_ = false;
   RCP<const LinearOperator> iterated_;        ///< C, or what of it is not cheap
   RCP<const LinearOperator> preconditioner_;  ///< of that; null: none
+  RCP<const LinearOperator> rounded_;         ///< the same in single precision; null: not had
   std::string name_;
   std::shared_ptr<long> iterations_ = std::make_shared<long>(0);
 };

@@ -10,8 +10,10 @@
 #include "linear/component_cholesky.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/inverse_by_cost.hpp"
+#include "linear/matrix_part.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/preconditioner.hpp"
+#include "linear/single_precision.hpp"
 #include "linear/symmetry_check.hpp"
 
 namespace lockstep::test {
@@ -81,7 +83,8 @@ long iterations(const Lattice& solid, const std::string& name) {
   const auto inverse = preconditioner_from_list(op, type(name), "solid", solid.space);
   EXPECT_NO_THROW(check_symmetric_positive(*inverse, "solid"));
   const auto count = std::make_shared<long>(0);
-  const auto solver = conjugate_gradient_inverse(op, {inverse, 1e-10, 5000, "solid", count});
+  const auto solver =
+      conjugate_gradient_inverse(op, {inverse, Teuchos::null, 1e-10, 5000, "solid", count});
   Vector rhs(solid.c->getRowMap()), x(solid.c->getRowMap()), residual(solid.c->getRowMap());
   pseudo_random(rhs, 7);
   apply(*solver, rhs, x);
@@ -183,6 +186,61 @@ TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
   EXPECT_NEAR(lumped_mass(*rest, motions)->norm1(), 2 * 110 * 110, 1e-6);
   const auto inverse = split.with(conjugate_gradient_inverse(split.rest(), 1e-12, 5000, "rest"));
   EXPECT_LT(error_of(*inverse, *solid.c), 1e-11);
+}
+
+RCP<const CrsMatrix> nodes_only(const Lattice& solid) {
+  std::vector<bool> is_node;
+  for (const int body : solid.space.body_of_row)
+    is_node.push_back(body >= 0);
+  return MatrixPart(*solid.c, is_node).matrix();
+}
+
+TEST(SoftSolid, SinglePrecisionCopyIsTheMatrixRounded) {
+  const auto c = nodes_only(Lattice(12, 1e3 / 3));
+  const auto copy = single_precision_copy(c, 2);
+  ASSERT_FALSE(copy.is_null());
+  EXPECT_LT(symmetry_defect(*copy), 1e-15);
+  Vector x(c->getRowMap()), exact(c->getRowMap()), rounded(c->getRowMap());
+  pseudo_random(x, 3);
+  c->apply(x, exact);
+  apply(*copy, x, rounded);
+  rounded.update(-1, exact, 1);
+  const double error = rounded.norm2() / exact.norm2();
+  EXPECT_LT(error, 1e-7);
+  EXPECT_GT(error, 1e-10);
+}
+
+RCP<const CrsMatrix> diagonal(int n) {
+  const auto map = make_map(n, Tpetra::getDefaultComm());
+  std::vector<std::vector<Entry>> rows;
+  for (int row = 0; row < n; ++row)
+    rows.push_back({{map->getGlobalElement(row), 2}});
+  return matrix_from_rows(map, rows);
+}
+
+TEST(SoftSolid, ThereIsNoSinglePrecisionCopyWithoutBlocks) {
+  const Lattice solid(6, 1);
+  EXPECT_TRUE(single_precision_copy(solid.c, 2).is_null());  // the lone dof
+  EXPECT_TRUE(single_precision_copy(nodes_only(solid), 1).is_null());
+  EXPECT_TRUE(single_precision_copy(diagonal(24), 2).is_null());                  // half empty
+  EXPECT_TRUE(single_precision_copy(nodes_only(Lattice(6, 1e39)), 2).is_null());  // too large
+}
+
+TEST(SoftSolid, IterationOnARoundedMatrixReachesRoundOff) {
+  const auto c = nodes_only(Lattice(24, 1e3 / 3));
+  const auto op = as_operator(c);
+  const auto jacobi = preconditioner_from_list(op, type("Jacobi"), "solid");
+  const auto to = [&](double tolerance, const RCP<const LinearOperator>& rounded) {
+    const auto count = std::make_shared<long>(0);
+    const auto inverse =
+        conjugate_gradient_inverse(op, {jacobi, rounded, tolerance, 5000, "solid", count});
+    EXPECT_LT(error_of(*inverse, *c), 2 * tolerance);
+    return static_cast<double>(*count);
+  };
+  // What is lost where the residual is replaced is less than what an iteration gains.
+  const auto rounded = single_precision_copy(c, 2);
+  for (const double tolerance : {1e-2, 1e-5, 1e-9, 1e-13})
+    EXPECT_LT(to(tolerance, rounded) / to(tolerance, Teuchos::null), 1.5) << tolerance;
 }
 
 }  // namespace lockstep::test
