@@ -14,7 +14,8 @@ namespace lockstep {
 enum class TimeIntegration {
   explicit_forces,  ///< D = 0: elasticity and damping at the present state
   semi_implicit,    ///< D = -B: elasticity at the present positions, implicit damping
-  fully_implicit    ///< D(dt) = -(B + dt K): both linearised at the present positions
+  fully_implicit,   ///< D(dt) = -(B + dt K): both linearised at the present positions
+  second_order      ///< the same in S1; in S2 D(dt) = -(B + dt/2 K), both linearised halfway
 };
 
 /// One deformable body at the start, in nodes of its own: what the model is made of.

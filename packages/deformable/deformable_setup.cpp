@@ -113,9 +113,9 @@ void DeformableSolids<dim>::distribute(std::vector<DeformableBody<dim>>& bodies,
       ++b;
     const int n = original - bodies_[b].node_begin;
     x_[i] = bodies[b].position[n];
+    body_of_node_.push_back(static_cast<int>(b));
     if (i >= space_.n_owned())
       continue;
-    body_of_node_.push_back(static_cast<int>(b));
     node_force_.push_back(bodies[b].force[n]);
     velocity[i] = bodies[b].velocity[n];
   }

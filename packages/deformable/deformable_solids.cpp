@@ -35,6 +35,13 @@ Point<dim> DeformableSolids<dim>::effective_velocity(const SurfacePoint<dim>& po
 }
 
 template <int dim>
+double DeformableSolids<dim>::elastic_share(const Body& body) const {
+  if (body.integration == TimeIntegration::second_order)
+    return before_.empty() ? 1 : 0.5;
+  return body.integration == TimeIntegration::fully_implicit ? 1 : 0;
+}
+
+template <int dim>
 RCP<const LinearOperator> DeformableSolids<dim>::implicit_force(double dt) const {
   NodeMatrix<dim> sum = stiffness_;
   sum.set_zero();
@@ -48,8 +55,8 @@ RCP<const LinearOperator> DeformableSolids<dim>::implicit_force(double dt) const
     if (integration == TimeIntegration::explicit_forces)
       continue;
     sum.add_row(i, -1, damping_);
-    if (integration == TimeIntegration::fully_implicit)
-      sum.add_row(i, -dt, stiffness_);
+    if (const double share = elastic_share(bodies_[body_of_node_[i]]); share > 0)
+      sum.add_row(i, -share * dt, stiffness_);
   }
   return as_operator(space_.matrix(sum));
 }
@@ -135,33 +142,28 @@ template <int dim>
 void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   velocity_ = rcp(new Vector(velocity, Teuchos::Copy));
   limiting_impulse_.clear();
+  before_.clear();
   if (linearised_)
     update_forces();
-  linearised_ = false;
   update_states();
 }
 
 /// With x* = x + dt V the force of the next V' is f(x*) - dt K(x*) (V' - V): explicit is f + dt K
-/// V.
+/// V. Of second order, in S2: x and dt are those at the start and half of the step.
 template <int dim>
 bool DeformableSolids<dim>::linearise(double dt, const Vector& velocity) {
-  const auto implicit = [](const Body& body) {
-    return body.integration == TimeIntegration::fully_implicit;
-  };
-  if (std::none_of(bodies_.begin(), bodies_.end(), implicit))
+  const auto share = [this](int node) { return elastic_share(bodies_[body_of_node_[node]]); };
+  if (std::none_of(bodies_.begin(), bodies_.end(),
+                   [this](const Body& body) { return elastic_share(body) > 0; }))
     return false;
   const Nodes v = space_.with_ghosts(velocity);
-  Nodes x = x_;
-  for (const Body& body : bodies_) {
-    for (int i = 0; implicit(body) && i < space_.n_local(); ++i) {
-      if (space_.original(i) >= body.node_begin && space_.original(i) < body.node_end)
-        x[i] += dt * v[i];
-    }
-  }
+  Nodes x = before_.empty() ? x_ : before_;
+  for (int i = 0; i < space_.n_local(); ++i)
+    x[i] += share(i) * dt * v[i];
   assemble_forces(x);
   for (int i = 0; i < space_.n_owned(); ++i) {
-    if (implicit(bodies_[body_of_node_[i]]))
-      elastic_force_[i] += dt * stiffness_.row_times(i, v);
+    if (share(i) > 0)
+      elastic_force_[i] += share(i) * dt * stiffness_.row_times(i, v);
   }
   linearised_ = true;
   return true;
@@ -170,10 +172,39 @@ bool DeformableSolids<dim>::linearise(double dt, const Vector& velocity) {
 template <int dim>
 void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
   const Nodes change = space_.with_ghosts(velocity);
-  for (int i = 0; i < space_.n_local(); ++i)
+  const auto is_second_order = [](const Body& body) {
+    return body.integration == TimeIntegration::second_order;
+  };
+  if (std::any_of(bodies_.begin(), bodies_.end(), is_second_order))
+    before_ = x_;
+  for (int i = 0; i < space_.n_local(); ++i) {
     x_[i] += dt * change[i];
+    if (!before_.empty() && !is_second_order(bodies_[body_of_node_[i]]))
+      before_[i] = x_[i];
+  }
   surface_velocity_ = surface_values(change);
   update_geometry();
+}
+
+/// At the present positions; of second-order bodies that have moved, those of S2: halfway, for
+/// dt V / 2 = x - x(halfway) of the motion.
+template <int dim>
+void DeformableSolids<dim>::update_forces() {
+  linearised_ = !before_.empty();
+  if (!linearised_) {
+    assemble_forces(x_);
+    return;
+  }
+  Nodes halfway = x_, rest = x_;
+  for (int i = 0; i < space_.n_local(); ++i) {
+    halfway[i] = 0.5 * (before_[i] + x_[i]);
+    rest[i] -= halfway[i];
+  }
+  assemble_forces(halfway);
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    if (bodies_[body_of_node_[i]].integration == TimeIntegration::second_order)
+      elastic_force_[i] += stiffness_.row_times(i, rest);
+  }
 }
 
 template <int dim>
@@ -190,7 +221,6 @@ std::vector<Point<dim>> DeformableSolids<dim>::surface_values(const Nodes& owned
 
 template <int dim>
 void DeformableSolids<dim>::update_geometry() {
-  linearised_ = false;
   surface_.vertices = surface_values(x_);
   update_forces();
   update_largest_stable_step();

@@ -16,8 +16,10 @@ namespace lockstep {
 ///
 /// Elastic forces are those at the present positions. Together with the step they make, for one
 /// mode of stiffness m omega^2 and a = omega dt, b = 1 + a^2/4, the fully implicit map
-/// x' = (1 - a^2/(2 b)) x + (dt/b) v, v' = (v - dt omega^2 x')/(1 + a^2); the other two are stable
-/// up to a = sqrt 2.
+/// x' = (1 - a^2/(2 b)) x + (dt/b) v, v' = (v - dt omega^2 x')/(1 + a^2), whose energy falls by
+/// 3/2 a^2 of itself a step. Second order has the same x' and v' = (v - dt omega^2 x)/(1 + a^2/2),
+/// the force at x + v' dt/2, whose energy falls by a^4/8 where a is small. Explicit and
+/// semi-implicit are stable up to a = sqrt 2.
 template <int dim>
 class DeformableSolids : public SolidModel<dim> {
  public:
@@ -97,7 +99,10 @@ class DeformableSolids : public SolidModel<dim> {
   void distribute_surface(const std::vector<DeformableBody<dim>>& bodies);
   /// After the positions have changed: surface, forces, linearisation, states.
   void update_geometry();
-  void update_forces() { assemble_forces(x_); }
+  void update_forces();
+  /// The part of the step [1] after which the elastic forces that the coming solve solves for are
+  /// taken: all of it, or half; 0 where D has no elasticity.
+  double elastic_share(const Body& body) const;
   /// Forces, stiffness and damping at positions x of all local nodes.
   void assemble_forces(const Nodes& x);
   void update_largest_stable_step();
@@ -116,7 +121,7 @@ class DeformableSolids : public SolidModel<dim> {
   Point<dim> gravity_;
   std::vector<Body> bodies_;
   NodeSpace<dim> space_;
-  std::vector<int> body_of_node_;   ///< of the owned nodes
+  std::vector<int> body_of_node_;   ///< of the local nodes
   std::vector<double> node_mass_;   ///< lumped, of the owned nodes [kg]
   std::vector<double> node_share_;  ///< of the owned nodes in their body's measure, sum 1
   Nodes node_force_;                ///< constant loads on them [N]
@@ -135,7 +140,9 @@ class DeformableSolids : public SolidModel<dim> {
 
   RCP<const LinearOperator> mass_;
   NodeMatrix<dim> stiffness_, damping_;
-  Nodes x_;              ///< of all local nodes [m]
+  Nodes x_;       ///< of all local nodes [m]
+  Nodes before_;  ///< from `move` to the end of the step, if bodies are of second order: x_, theirs
+                  ///< at the start [m]
   Nodes elastic_force_;  ///< of the owned nodes [N]
   RCP<const Vector> velocity_;
   std::vector<SolidState<dim>> states_;

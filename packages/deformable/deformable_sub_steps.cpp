@@ -18,7 +18,8 @@ void DeformableSolids<dim>::update_largest_stable_step() {
   for (int i = 0; i < space_.n_owned(); ++i) {
     const int b = body_of_node_[i];
     const TimeIntegration integration = bodies_[b].integration;
-    if (integration == TimeIntegration::fully_implicit || node_mass_[i] == 0)
+    if (integration == TimeIntegration::fully_implicit ||
+        integration == TimeIntegration::second_order || node_mass_[i] == 0)
       continue;
     Point<dim> elastic = Point<dim>::Zero(), viscous = Point<dim>::Zero();
     for (int k = stiffness_.row_begin(i); k < stiffness_.row_end(i); ++k) {
