@@ -1,8 +1,11 @@
 #include "contact/impact_zones.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 
 namespace lockstep {
@@ -48,8 +51,17 @@ struct Node {
 template <int dim>
 struct Zone {
   std::vector<Node<dim>> nodes;
-  std::set<int> rigid;  ///< solids
-  bool held = false;
+  std::set<int> rigid;                          ///< solids
+  std::array<std::optional<double>, dim> held;  ///< velocities of locked nodes, by axis [m/s]
+  bool disagrees = false;                       ///< they differ
+
+  bool is_held() const {
+    return std::any_of(held.begin(), held.end(), [](const auto& v) { return v.has_value(); });
+  }
+  void hold(int axis, double velocity) {
+    disagrees = disagrees || held[axis].value_or(velocity) != velocity;
+    held[axis] = velocity;
+  }
 };
 
 template <int dim>
@@ -70,6 +82,10 @@ class ImpactZones {
         solid_of_[v] = i;
         if (solid.rigid)
           sets_.join(v, solid.vertex_begin);
+      }
+      if (solid.rigid && !solid.prescribed && solid.simplex_begin < solid.simplex_end) {
+        for (const GlobalIndex dof : row_of(solid.simplex_begin).dofs)
+          rigid_of_dof_[dof] = i;
       }
     }
   }
@@ -92,6 +108,14 @@ class ImpactZones {
  private:
   const Point<dim>& x(int vertex) const { return shapes_.mesh().vertices[vertex]; }
 
+  VelocityRow<dim> row_of(int simplex) const {
+    SurfacePoint<dim> point;
+    point.simplex = simplex;
+    VelocityRow<dim> row;
+    system_.velocity_row(point, Point<dim>::Zero(), row);
+    return row;
+  }
+
   void add_to(Zone<dim>& zone, int vertex) const {
     const int solid = solid_of_[vertex];
     if (shapes_.solids()[solid].rigid) {
@@ -103,10 +127,18 @@ class ImpactZones {
     node.solid = solid;
     const SurfacePoint<dim> point = shapes_.at_vertex(vertex);
     system_.velocity_row(point, point.position, node.row);
-    for (const GlobalIndex dof : node.row.dofs) {
+    for (std::size_t k = 0; k < node.row.dofs.size(); ++k) {
+      const GlobalIndex dof = node.row.dofs[k];
+      if (const auto carrier = rigid_of_dof_.find(dof); carrier != rigid_of_dof_.end()) {
+        zone.rigid.insert(carrier->second);  // an attached node: it has no dofs of its own
+        return;
+      }
+      int axis = 0;
+      node.row.coefficients[k].cwiseAbs().maxCoeff(&axis);
       const auto& inverse = inverse_mass_.rows[dof];
-      zone.held = zone.held || inverse.empty();
-      if (!inverse.empty())
+      if (inverse.empty())
+        zone.hold(axis, velocity_[dof]);
+      else
         node.mass = 1 / inverse.front().second;
     }
     zone.nodes.push_back(node);
@@ -120,9 +152,11 @@ class ImpactZones {
   }
 
   void move(const Zone<dim>& zone, const SolidMotion<dim>& motion) {
-    if (zone.rigid.empty() && !zone.held) {
+    if (zone.rigid.empty() && !zone.is_held()) {
       move_rigidly(zone, motion);
-    } else if (zone.rigid.size() == 1 && !zone.held) {
+    } else if (zone.rigid.empty() && !zone.disagrees) {
+      move_along(zone, motion);
+    } else if (zone.rigid.size() == 1 && !zone.is_held()) {
       for (const Node<dim>& node : zone.nodes) {
         const Point<dim> end = motion.end_of_point(*zone.rigid.begin(), x(node.vertex), dt_);
         set_velocity(node, (end - x(node.vertex)) / dt_);
@@ -160,17 +194,30 @@ class ImpactZones {
     }
   }
 
+  /// Without turning: at the velocity of the locked nodes along their axes, at the mean of all
+  /// along the others.
+  void move_along(const Zone<dim>& zone, const SolidMotion<dim>& motion) {
+    double mass = 0;
+    Point<dim> velocity = Point<dim>::Zero();
+    for (const Node<dim>& node : zone.nodes) {
+      mass += node.mass;
+      velocity += node.mass * motion.of_vertex(node.solid, node.vertex);
+    }
+    if (mass > 0)
+      velocity /= mass;
+    for (int a = 0; a < dim; ++a)
+      velocity[a] = zone.held[a].value_or(velocity[a]);
+    for (const Node<dim>& node : zone.nodes)
+      set_velocity(node, velocity);
+  }
+
   void stop(const Zone<dim>& zone) {
     for (const Node<dim>& node : zone.nodes)
       set_velocity(node, Point<dim>::Zero());
-    VelocityRow<dim> row;
     for (const int solid : zone.rigid) {
       if (shapes_.solids()[solid].prescribed)
         continue;
-      SurfacePoint<dim> point;
-      point.simplex = shapes_.solids()[solid].simplex_begin;
-      system_.velocity_row(point, Point<dim>::Zero(), row);
-      for (const GlobalIndex dof : row.dofs)
+      for (const GlobalIndex dof : row_of(shapes_.solids()[solid].simplex_begin).dofs)
         velocity_[dof] = 0;
     }
   }
@@ -182,6 +229,7 @@ class ImpactZones {
   std::vector<double>& velocity_;
   Sets sets_;
   std::vector<int> solid_of_;
+  std::map<GlobalIndex, int> rigid_of_dof_;
   std::set<int> members_;
 };
 
