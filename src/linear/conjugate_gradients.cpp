@@ -91,7 +91,7 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
         "|r| = {:.3e}). Choose another sub-block inverse.",
         request.name, r_dot_z, iteration, r_norm);
     const double curvature =
-        kernels.advance_direction(iteration == 0 ? 0 : r_dot_z / previous, d, q);
+        kernels.advance_direction(previous == 0 ? 0 : r_dot_z / previous, d, q);
     check_solve(
         std::isfinite(curvature) && curvature > 0,
         "{}: the operator is not positive definite (d . S d = {:.3e} in iteration {}, |r| = "
@@ -100,8 +100,13 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
     r_norm = std::sqrt(sum_all(comm, advance(r_dot_z / curvature, d, q, x, r)));
     ++iteration;
     if (request.true_residual && r_norm <= trusted_fall * true_norm) {
-      request.true_residual(x, r);
-      r_norm = true_norm = norm(r);
+      if (!request.true_residual(x, r))
+        break;
+      // Where the recurrence has lost the residual, its directions are of no use any more.
+      true_norm = norm(r);
+      if (true_norm > 2 * r_norm)
+        r_dot_z = 0;
+      r_norm = true_norm;
     }
     if (r_norm <= target && request.update_target)
       target = std::min(target, request.update_target(x));

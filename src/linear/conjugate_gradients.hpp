@@ -21,8 +21,8 @@ struct ConjugateGradientsRequest {
   std::function<double(const Vector& x)> update_target = {};
   /// r = rhs - (operator) x, where the operator that the iteration applies is a rounded one: asked
   /// whenever |r| has fallen by another 1e-3, so that rounding never shows ("reliable updates",
-  /// Clark et al. 2010). Collective.
-  std::function<void(const Vector& x, Vector& r)> true_residual = {};
+  /// Clark et al. 2010). False ends the iteration. Collective.
+  std::function<bool(const Vector& x, Vector& r)> true_residual = {};
 };
 
 /// What an iteration does to its vectors, in as few passes over memory as the operators allow. The

@@ -2,6 +2,7 @@
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "linear/action_operator.hpp"
@@ -12,28 +13,56 @@
 
 namespace lockstep {
 
-RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOperator>& op,
-                                                     const InnerSolve& inner) {
-  const Action precondition = [m = inner.preconditioner](const Vector& x, Vector& y) {
-    if (m.is_null())
+namespace {
+
+Action action_of(const RCP<const LinearOperator>& op) {
+  return [op](const Vector& x, Vector& y) {
+    if (op.is_null())
       y.update(1, x, 0);
     else
-      apply(*m, x, y);
+      apply(*op, x, y);
   };
-  const auto iterated = inner.rounded.is_null() ? op : inner.rounded;
+}
+
+/// On the rounded operator as far as its rounding lets the true residual fall, and from there on
+/// with the operator itself. Returns the iterations.
+int iterate(const LinearOperator& op, const InnerSolve& inner, const Vector& rhs,
+            Vector& solution) {
+  const double target = inner.tolerance * rhs.norm2();
+  const Action exact = [&op](const Vector& x, Vector& y) { apply(op, x, y); };
+  const Action precondition = action_of(inner.preconditioner);
+  ConjugateGradientsRequest request{inner.name, target, inner.maximum_iterations, {}};
+  if (inner.rounded.is_null())
+    return conjugate_gradients(exact, precondition, rhs, solution, request);
+  Vector residual(rhs, Teuchos::Copy);
+  double norm = rhs.norm2();
+  bool falls = true;
+  request.true_residual = [&](const Vector& x, Vector& r) {
+    r.update(1, rhs, 0);
+    apply(op, x, r, -1, 1);
+    residual.update(1, r, 0);
+    const double before = std::exchange(norm, r.norm2());
+    falls = norm < 0.5 * before;
+    return falls;
+  };
+  const int n_rounded =
+      conjugate_gradients(action_of(inner.rounded), precondition, rhs, solution, request);
+  if (falls)
+    return n_rounded;
+  Vector correction(rhs.getMap());
+  request.true_residual = {};
+  request.maximum_iterations -= n_rounded;
+  const int n_exact = conjugate_gradients(exact, precondition, residual, correction, request);
+  solution.update(1, correction, 1);
+  return n_rounded + n_exact;
+}
+
+}  // namespace
+
+RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOperator>& op,
+                                                     const InnerSolve& inner) {
   return action_operator(domain_map(*op), [=](const Vector& rhs, Vector& solution) {
-    const double norm = rhs.norm2();
-    ConjugateGradientsRequest request{
-        inner.name, inner.tolerance * norm, inner.maximum_iterations, {}};
-    if (!inner.rounded.is_null()) {
-      request.true_residual = [&](const Vector& x, Vector& r) {
-        r.update(1, rhs, 0);
-        apply(*op, x, r, -1, 1);
-      };
-    }
-    const int iterations =
-        conjugate_gradients([&](const Vector& x, Vector& y) { apply(*iterated, x, y); },
-                            precondition, rhs, solution, request);
+    const int iterations = iterate(*op, inner, rhs, solution);
     if (inner.iterations)
       *inner.iterations += iterations;
     if (iterations < inner.maximum_iterations)
@@ -43,7 +72,7 @@ RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOpera
     throw SolveError(fmt::format(
         "The inner conjugate gradients on the {} stopped at a relative residual of {:.1e} after {} "
         "iterations, but {:.1e} is required. Choose a stronger \"Solid Inverse\".",
-        inner.name, residual.norm2() / norm, iterations, inner.tolerance));
+        inner.name, residual.norm2() / rhs.norm2(), iterations, inner.tolerance));
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "linear/action_operator.hpp"
+#include "linear/additive_multilevel.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/gathered_direct.hpp"
@@ -28,6 +29,7 @@ const std::vector<std::string> types = {"Ifpack2",
                                         "Block Diagonal",
                                         "Block Diagonal Mass",
                                         "Jacobi",
+                                        "Additive Multilevel",
                                         "Conjugate Gradients",
                                         "Exact"};
 
@@ -146,6 +148,8 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
     return gathered_direct(matrix, name);
   if (type == "Jacobi")
     return as_operator(jacobi_inverse(*matrix, name));
+  if (type == "Additive Multilevel")
+    return additive_multilevel_inverse(matrix, near_null_space, name);
   if (type == "Block Diagonal")
     return as_operator(
         block_diagonal_inverse(matrix, value_or(list, "Largest Block", 24), name).inverse);

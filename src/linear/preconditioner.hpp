@@ -16,6 +16,8 @@ namespace lockstep {
 ///   "Block Diagonal"        exact inverses of small dense blocks ("Largest Block", 24)
 ///   "Block Diagonal Mass"   the same of the mass in C = M̃ - dt D, see near_null_space.hpp
 ///   "Jacobi"                the diagonal
+///   "Additive Multilevel"   the same on coarser and coarser aggregates of nodes besides, see
+///                           additive_multilevel_inverse
 ///   "Conjugate Gradients"   inner iteration ("Tolerance", 1e-10; "Maximum Iterations", 1000), with
 ///                           the inverse that the sublist "Preconditioner" names (Jacobi)
 ///   "Exact"                 see exact_inverse

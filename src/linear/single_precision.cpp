@@ -5,12 +5,11 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include "linear/action_operator.hpp"
+#include "linear/matrix_rows.hpp"
 
 namespace lockstep {
 
@@ -25,7 +24,7 @@ class NodeBlocks {
 
   bool pays() const {
     const double n_places = static_cast<double>(columns_.size()) * block * block;
-    return is_representable_ && n_entries_ > 0.6 * n_places;
+    return n_entries_ > 0.6 * n_places;
   }
   void apply(const Vector& x, Vector& y) const;
 
@@ -40,7 +39,6 @@ class NodeBlocks {
   std::vector<float> values_;       ///< column by column; one beyond the last may be read
   std::vector<int> place_;          ///< while building: by column of blocks
   std::size_t n_entries_ = 0;
-  bool is_representable_ = true;
 };
 
 template <int block>
@@ -59,7 +57,6 @@ NodeBlocks<block>::NodeBlocks(const RCP<const CrsMatrix>& matrix)
 
 template <int block>
 void NodeBlocks<block>::add_row_of_blocks(int row) {
-  constexpr double largest = std::numeric_limits<float>::max();
   for (int a = 0; a < block; ++a) {
     typename CrsMatrix::local_inds_host_view_type indices;
     typename CrsMatrix::values_host_view_type values;
@@ -72,7 +69,6 @@ void NodeBlocks<block>::add_row_of_blocks(int row) {
         columns_.push_back(indices(k) / block);
         values_.resize(values_.size() + block * block);
       }
-      is_representable_ = is_representable_ && std::abs(values(k)) < largest;
       values_[static_cast<std::size_t>(place) * block * block + indices(k) % block * block + a] =
           static_cast<float>(values(k));
     }
@@ -126,12 +122,26 @@ RCP<const LinearOperator> copy_in_blocks(const RCP<const CrsMatrix>& matrix) {
                          [copy](const Vector& x, Vector& y) { copy->apply(x, y); });
 }
 
+/// Of the nodes' rows, the largest C_ii over the mass. Collective.
+double largest_stiffness(const CrsMatrix& c, const NearNullSpace& space) {
+  const RCP<const Vector> masses = lumped_mass(c, space), diagonal = diagonal_of(c);
+  const auto mass = masses->getData(), entry = diagonal->getData();
+  double largest = 0;
+  for (std::size_t row = 0; row < space.body_of_row.size(); ++row) {
+    if (space.body_of_row[row] >= 0)
+      largest = std::max(largest, mass[row] > 0 ? entry[row] / mass[row] : 1e300);
+  }
+  return max_all(c.getComm(), largest);
+}
+
 }  // namespace
 
-RCP<const LinearOperator> single_precision_copy(const RCP<const CrsMatrix>& matrix, int block) {
-  return block == 3   ? copy_in_blocks<3>(matrix)
-         : block == 2 ? copy_in_blocks<2>(matrix)
-                      : Teuchos::null;
+RCP<const LinearOperator> single_precision_copy(const RCP<const CrsMatrix>& c,
+                                                const NearNullSpace& space) {
+  constexpr double most_stiffness = 1e4;
+  if (space.empty() || largest_stiffness(*c, space) > most_stiffness)
+    return Teuchos::null;
+  return space.n_axes() == 3 ? copy_in_blocks<3>(c) : copy_in_blocks<2>(c);
 }
 
 }  // namespace lockstep

@@ -20,15 +20,28 @@ bool is_own_type(const ParameterList& list) {
          (list.get<std::string>("Type") == "Automatic" || list.get<std::string>("Type") == "Exact");
 }
 
+/// For inner iterations, where a cheap step counts: on a ball of 8 200 nodes "Additive Multilevel"
+/// takes half the time of MueLu at a stiffness number of 800, and .8 of it at 8000; below 20 its
+/// coarse levels save less than they cost.
+std::string inner_type(double stiffness_number) {
+  if (stiffness_number <= 20)
+    return "Jacobi";
+  return stiffness_number <= 5000 ? "Additive Multilevel" : "MueLu";
+}
+
+ParameterList list_of(const std::string& type) {
+  ParameterList list;
+  list.set("Type", type);
+  return list;
+}
+
 /// The list that names the preconditioner of an inner iteration.
 ParameterList of_inner_iteration(const ParameterList& list) {
   if (list.get<std::string>("Type") != "Conjugate Gradients")
     return list;
   if (list.isSublist("Preconditioner"))
     return list.sublist("Preconditioner");
-  ParameterList jacobi;
-  jacobi.set("Type", "Jacobi");
-  return jacobi;
+  return list_of("Jacobi");
 }
 
 }  // namespace
@@ -50,6 +63,8 @@ SolidInverse::SolidInverse(const ParameterList& list) {
 
 void SolidInverse::reset() {
   iterated_ = exact_ = approximate_ = preconditioner_ = rounded_ = Teuchos::null;
+  preconditioner_type_.clear();
+  motions_ = {};
   split_.reset();
 }
 
@@ -67,6 +82,7 @@ RCP<const LinearOperator> SolidInverse::to(double tolerance) const {
 }
 
 void SolidInverse::build(const BlockSystem& system) {
+  reset();
   name_ = "solid block of the " + system.name;
   if (type_ == "Automatic" || type_ == "Exact")
     build_automatic(system);
@@ -74,8 +90,6 @@ void SolidInverse::build(const BlockSystem& system) {
     build_named(system);
   if (iterates_)
     exact_ = to(round_off);
-  if (approximate_.is_null())
-    approximate_ = exact_;
 }
 
 void SolidInverse::build_automatic(const BlockSystem& system) {
@@ -89,14 +103,27 @@ void SolidInverse::build_automatic(const BlockSystem& system) {
   const auto matrix = assembled(iterated_);
   if (matrix.is_null())
     return;
-  const NearNullSpace motions = split_->of_rest(system.near_null_space);
-  ParameterList chosen;
-  chosen.set("Type", is_stiff(*matrix, motions) ? "MueLu" : "Jacobi");
-  preconditioner_ = preconditioner_from_list(iterated_, chosen, name_, motions);
-  if (!motions.empty())
-    rounded_ = single_precision_copy(matrix, motions.n_axes());
-  if (type_ == "Automatic")
-    approximate_ = split_->with(preconditioner_);
+  motions_ = split_->of_rest(system.near_null_space);
+  preconditioner_type_ = inner_type(stiffness_number(*matrix, motions_));
+  preconditioner_ =
+      preconditioner_from_list(iterated_, list_of(preconditioner_type_), name_, motions_);
+  rounded_ = single_precision_copy(matrix, motions_);
+}
+
+/// In a preconditioner of the outer iteration it counts to be close to C.
+const RCP<const LinearOperator>& SolidInverse::approximate() const {
+  if (!approximate_.is_null() || exact_.is_null())
+    return approximate_;
+  if (type_ != "Automatic" || preconditioner_type_.empty()) {
+    approximate_ = exact_;
+    return approximate_;
+  }
+  const bool is_close =
+      preconditioner_type_ == "MueLu" || !is_stiff(*assembled(iterated_), motions_);
+  approximate_ = split_->with(
+      is_close ? preconditioner_
+               : preconditioner_from_list(iterated_, list_of("MueLu"), name_, motions_));
+  return approximate_;
 }
 
 void SolidInverse::build_named(const BlockSystem& system) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "linear/aggregation.hpp"
 #include "linear/component_cholesky.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/inverse_by_cost.hpp"
@@ -188,21 +189,35 @@ TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
   EXPECT_LT(error_of(*inverse, *solid.c), 1e-11);
 }
 
-RCP<const CrsMatrix> nodes_only(const Lattice& solid) {
-  std::vector<bool> is_node;
-  for (const int body : solid.space.body_of_row)
-    is_node.push_back(body >= 0);
-  return MatrixPart(*solid.c, is_node).matrix();
-}
+/// Without the lone dof.
+struct Nodes {
+  Nodes(int n, double k) {
+    const Lattice solid(n, k);
+    std::vector<bool> is_node;
+    for (const int body : solid.space.body_of_row)
+      is_node.push_back(body >= 0);
+    const MatrixPart part(*solid.c, is_node);
+    c = part.matrix();
+    const auto motions = rcp(new MultiVector(part.map(), 3));
+    for (int j = 0; j < 3; ++j)
+      part.restrict_to(*solid.space.motions->getVector(j), *motions->getVectorNonConst(j));
+    space.motions = motions;
+    space.n_bodies = 1;
+    space.body_of_row.assign(part.rows().size(), 0);
+  }
+
+  RCP<const CrsMatrix> c;
+  NearNullSpace space;
+};
 
 TEST(SoftSolid, SinglePrecisionCopyIsTheMatrixRounded) {
-  const auto c = nodes_only(Lattice(12, 1e3 / 3));
-  const auto copy = single_precision_copy(c, 2);
+  const Nodes solid(12, 1e3 / 3);
+  const auto copy = single_precision_copy(solid.c, solid.space);
   ASSERT_FALSE(copy.is_null());
   EXPECT_LT(symmetry_defect(*copy), 1e-15);
-  Vector x(c->getRowMap()), exact(c->getRowMap()), rounded(c->getRowMap());
+  Vector x(solid.c->getRowMap()), exact(solid.c->getRowMap()), rounded(solid.c->getRowMap());
   pseudo_random(x, 3);
-  c->apply(x, exact);
+  solid.c->apply(x, exact);
   apply(*copy, x, rounded);
   rounded.update(-1, exact, 1);
   const double error = rounded.norm2() / exact.norm2();
@@ -210,37 +225,79 @@ TEST(SoftSolid, SinglePrecisionCopyIsTheMatrixRounded) {
   EXPECT_GT(error, 1e-10);
 }
 
-RCP<const CrsMatrix> diagonal(int n) {
-  const auto map = make_map(n, Tpetra::getDefaultComm());
-  std::vector<std::vector<Entry>> rows;
-  for (int row = 0; row < n; ++row)
-    rows.push_back({{map->getGlobalElement(row), 2}});
-  return matrix_from_rows(map, rows);
-}
-
-TEST(SoftSolid, ThereIsNoSinglePrecisionCopyWithoutBlocks) {
-  const Lattice solid(6, 1);
-  EXPECT_TRUE(single_precision_copy(solid.c, 2).is_null());  // the lone dof
-  EXPECT_TRUE(single_precision_copy(nodes_only(solid), 1).is_null());
-  EXPECT_TRUE(single_precision_copy(diagonal(24), 2).is_null());                  // half empty
-  EXPECT_TRUE(single_precision_copy(nodes_only(Lattice(6, 1e39)), 2).is_null());  // too large
+TEST(SoftSolid, ThereIsNoSinglePrecisionCopyWhereItWouldNotServe) {
+  const Lattice with_lone_dof(6, 1);
+  EXPECT_TRUE(single_precision_copy(with_lone_dof.c, with_lone_dof.space).is_null());
+  const Nodes unknown(6, 1), loose(6, 0), stiff(6, 1e5);
+  EXPECT_TRUE(single_precision_copy(unknown.c, {}).is_null());
+  EXPECT_TRUE(single_precision_copy(stiff.c, stiff.space).is_null());
 }
 
 TEST(SoftSolid, IterationOnARoundedMatrixReachesRoundOff) {
-  const auto c = nodes_only(Lattice(24, 1e3 / 3));
-  const auto op = as_operator(c);
+  const Nodes solid(24, 1e3 / 3);
+  const auto op = as_operator(solid.c);
   const auto jacobi = preconditioner_from_list(op, type("Jacobi"), "solid");
   const auto to = [&](double tolerance, const RCP<const LinearOperator>& rounded) {
     const auto count = std::make_shared<long>(0);
     const auto inverse =
         conjugate_gradient_inverse(op, {jacobi, rounded, tolerance, 5000, "solid", count});
-    EXPECT_LT(error_of(*inverse, *c), 2 * tolerance);
+    EXPECT_LT(error_of(*inverse, *solid.c), 2 * tolerance);
     return static_cast<double>(*count);
   };
   // What is lost where the residual is replaced is less than what an iteration gains.
-  const auto rounded = single_precision_copy(c, 2);
+  const auto rounded = single_precision_copy(solid.c, solid.space);
+  ASSERT_FALSE(rounded.is_null());
   for (const double tolerance : {1e-2, 1e-5, 1e-9, 1e-13})
     EXPECT_LT(to(tolerance, rounded) / to(tolerance, Teuchos::null), 1.5) << tolerance;
+  // Further than round-off lets the true residual fall.
+  const auto inverse = conjugate_gradient_inverse(op, {jacobi, rounded, 1e-16, 1000, "solid", {}});
+  EXPECT_LT(error_of(*inverse, *solid.c), 1e-13);
+}
+
+TEST(SoftSolid, AggregatesAreNodesAndTheirNeighbors) {
+  // 9 x 9 nodes with eight neighbours each.
+  const Nodes solid(9, 1);
+  if (solid.c->getComm()->getSize() > 1)
+    GTEST_SKIP() << "Aggregates do not cross ranks.";
+  RowsOfNodes nodes{2, {}, {}};
+  for (int node = 0; node < 81; ++node) {
+    nodes.first.push_back(2 * node);
+    nodes.of_row.insert(nodes.of_row.end(), 2, node);
+  }
+  const Aggregates aggregates = aggregate(*solid.c, nodes);
+  std::vector<int> sizes(aggregates.n, 0);
+  for (const int a : aggregates.of_node)
+    ++sizes.at(a);
+  EXPECT_GE(*std::min_element(sizes.begin(), sizes.end()), 3);
+  EXPECT_LE(aggregates.n, 81 / 5);
+  EXPECT_EQ(aggregates.of_node[0], aggregates.of_node[10]);
+  EXPECT_NE(aggregates.of_node[0], aggregates.of_node[80]);
+}
+
+TEST(SoftSolid, CoarseMatrixIsThatOfTranslations) {
+  // All nodes in one aggregate a rank: only the mass is left, and the springs between ranks.
+  const Nodes solid(8, 7);
+  const Communicator comm = solid.c->getComm();
+  std::vector<int> place;
+  for (std::size_t row = 0; row < solid.space.body_of_row.size(); ++row)
+    place.push_back(static_cast<int>(row) % 2);
+  const auto coarse = coarse_matrix(*solid.c, place, make_map(2, comm));
+  Vector ones(coarse->getRowMap()), sums(coarse->getRowMap());
+  ones.putScalar(1);
+  coarse->apply(ones, sums);
+  for (const double sum : sums.getData())
+    EXPECT_NEAR(sum, static_cast<double>(place.size()) / 2, 1e-9);
+}
+
+TEST(SoftSolid, CoarseLevelsSaveIterations) {
+  const Lattice soft(60, 20), stiff(60, 1e3);  // stiffness numbers of 79 and 3900
+  EXPECT_LT(iterations(soft, "Additive Multilevel"), 0.65 * iterations(soft, "Jacobi"));
+  EXPECT_LT(iterations(stiff, "Additive Multilevel"), 0.4 * iterations(stiff, "Jacobi"));
+  // Of one node alone it is the inverse.
+  const Lattice one(1, 1);
+  const auto inverse =
+      preconditioner_from_list(as_operator(one.c), type("Additive Multilevel"), "solid", one.space);
+  EXPECT_LT(error_of(*inverse, *one.c), 1e-15);
 }
 
 }  // namespace lockstep::test
