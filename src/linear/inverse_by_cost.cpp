@@ -14,9 +14,9 @@ namespace lockstep {
 namespace {
 
 constexpr int largest_block = 24;
-/// Components of more rows are not even analysed: a volume's factors would cost too much, and even
-/// a surface's come near the limit.
-constexpr GlobalIndex most_rows = 20000;
+/// Components of more entries are not even analysed: a volume's factors would cost too much, and
+/// even a surface's come near the limit.
+constexpr double most_entries = 800000;
 /// About half a second, which pays where the iteration takes a hundred steps an application and is
 /// applied a few dozen times.
 constexpr double most_operations = 1e9;
@@ -64,8 +64,11 @@ void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const std::string&
     whole_ = as_operator(block_diagonal_inverse(matrix, largest_block, name).inverse);
     return;
   }
-  const auto is_medium =
-      rows_where(components, [](GlobalIndex n) { return n > largest_block && n <= most_rows; });
+  const double entries_of_row = static_cast<double>(matrix->getGlobalNumEntries()) /
+                                static_cast<double>(matrix->getGlobalNumRows());
+  const auto is_medium = rows_where(components, [&](GlobalIndex n) {
+    return n > largest_block && static_cast<double>(n) * entries_of_row <= most_entries;
+  });
   if (any(is_medium, comm)) {
     const auto part = std::make_shared<const MatrixPart>(*matrix, is_medium);
     const ComponentCholesky cholesky = cheap_component_cholesky(

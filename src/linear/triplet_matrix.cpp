@@ -4,16 +4,53 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "base/errors.hpp"
 
 namespace lockstep {
 namespace {
 
+/// Where the triplets of each row begin, rows counted from `first`, and the end.
+std::vector<std::size_t> begins_of_rows(const std::vector<Triplet>& triplets, GlobalIndex first,
+                                        GlobalIndex n_rows) {
+  std::vector<std::size_t> begins(n_rows + 1, 0);
+  for (const Triplet& t : triplets)
+    ++begins[t.row - first + 1];
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  return begins;
+}
+
+/// By row and column; those of one place keep their order, so that sums do not depend on chance.
+/// Rows are counted into place, as long as there are not many more ids than triplets.
+void sort(std::vector<Triplet>& triplets) {
+  const auto by_row = [](const Triplet& a, const Triplet& b) { return a.row < b.row; };
+  const auto by_column = [](const Triplet& a, const Triplet& b) { return a.column < b.column; };
+  if (triplets.empty())
+    return;
+  const auto [lowest, highest] = std::minmax_element(triplets.begin(), triplets.end(), by_row);
+  const GlobalIndex first = lowest->row, n_rows = highest->row - first + 1;
+  if (n_rows > 10 * static_cast<GlobalIndex>(triplets.size())) {
+    std::stable_sort(triplets.begin(), triplets.end(), [](const Triplet& a, const Triplet& b) {
+      return std::tie(a.row, a.column) < std::tie(b.row, b.column);
+    });
+    return;
+  }
+  const std::vector<std::size_t> begins = begins_of_rows(triplets, first, n_rows);
+  std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
+  std::vector<Triplet> sorted(triplets.size());
+  for (const Triplet& t : triplets)
+    sorted[next[t.row - first]++] = t;
+  for (GlobalIndex row = 0; row < n_rows; ++row) {
+    const auto begin = sorted.begin() + begins[row], end = sorted.begin() + begins[row + 1];
+    if (!std::is_sorted(begin, end, by_column))
+      std::stable_sort(begin, end, by_column);
+  }
+  triplets = std::move(sorted);
+}
+
 void sort_and_merge(std::vector<Triplet>& triplets) {
-  std::stable_sort(triplets.begin(), triplets.end(), [](const Triplet& a, const Triplet& b) {
-    return std::tie(a.row, a.column) < std::tie(b.row, b.column);
-  });
+  sort(triplets);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < triplets.size(); ++i) {
     if (kept > 0 && triplets[kept - 1].row == triplets[i].row &&

@@ -177,14 +177,14 @@ TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
   const InverseByCost cheap(as_operator(Lattice(20, 1e3).c), "solid");
   EXPECT_TRUE(cheap.is_complete());
 
-  const Lattice solid(110, 10);  // 24 200 rows and one
+  const Lattice solid(160, 10);  // 51 200 rows and one
   const InverseByCost split(as_operator(solid.c), "solid");
   ASSERT_FALSE(split.is_complete());
   const auto rest = assembled(split.rest());
-  EXPECT_EQ(rest->getGlobalNumRows(), 2 * 110 * 110);
+  EXPECT_EQ(rest->getGlobalNumRows(), 2 * 160 * 160);
   const NearNullSpace motions = split.of_rest(solid.space);
   EXPECT_EQ(std::count(motions.body_of_row.begin(), motions.body_of_row.end(), -1), 0);
-  EXPECT_NEAR(lumped_mass(*rest, motions)->norm1(), 2 * 110 * 110, 1e-6);
+  EXPECT_NEAR(lumped_mass(*rest, motions)->norm1(), 2 * 160 * 160, 1e-6);
   const auto inverse = split.with(conjugate_gradient_inverse(split.rest(), 1e-12, 5000, "rest"));
   EXPECT_LT(error_of(*inverse, *solid.c), 1e-11);
 }
