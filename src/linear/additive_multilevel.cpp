@@ -48,13 +48,10 @@ class Level {
  public:
   Level(const RCP<const CrsMatrix>& matrix, const RowsOfNodes& nodes, const Aggregates& aggregates,
         const std::string& name)
-      : diagonal_inverse_(make_vector(matrix->getRowMap())),
+      : diagonal_inverse_(inverse_diagonal(*matrix, name)),
         coarse_rhs_(
             make_vector(make_map(nodes.n_axes * aggregates.n, matrix->getRowMap()->getComm()))),
         coarse_solution_(make_vector(coarse_rhs_->getMap())) {
-    Vector ones(matrix->getRowMap());
-    ones.putScalar(1);
-    jacobi_inverse(*matrix, name)->apply(ones, *diagonal_inverse_);
     for (std::size_t row = 0; row < nodes.of_row.size(); ++row) {
       const int node = nodes.of_row[row];
       const int axis = node < 0 ? 0 : static_cast<int>(row) - nodes.first[node];
@@ -85,7 +82,7 @@ class Level {
     }
   }
 
-  RCP<Vector> diagonal_inverse_;
+  RCP<const Vector> diagonal_inverse_;
   std::vector<int> place_;  ///< by row: that of the coarse vector; -1: no node's
   RCP<Vector> coarse_rhs_, coarse_solution_;
   RCP<const LinearOperator> coarse_;

@@ -203,19 +203,25 @@ BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, 
   return {matrix_from_rows(map, inverse_rows), min_all(map->getComm(), exact ? 1.0 : 0.0) > 0};
 }
 
+RCP<Vector> inverse_diagonal(const CrsMatrix& matrix, const std::string& name) {
+  const auto result = diagonal_of(matrix);
+  std::string failure;
+  for (double& value : result->getDataNonConst()) {
+    if (!(value > 0))
+      failure = not_positive_definite(name);
+    value = 1 / value;
+  }
+  throw_on_all(matrix.getComm(), failure, static_cast<int>(ExitCode::solve_failed));
+  return result;
+}
+
 RCP<const CrsMatrix> jacobi_inverse(const CrsMatrix& matrix, const std::string& name) {
   const auto map = matrix.getRowMap();
-  const auto diagonal = diagonal_of(matrix);
+  const RCP<const Vector> diagonal = inverse_diagonal(matrix, name);
   const auto values = diagonal->getData();
-  std::string failure;
   std::vector<Row> rows(map->getNodeNumElements());
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const GlobalIndex id = map->getGlobalElement(static_cast<int>(row));
-    if (!(values[row] > 0))
-      failure = not_positive_definite(name);
-    rows[row].push_back({id, 1 / values[row]});
-  }
-  throw_on_all(map->getComm(), failure, static_cast<int>(ExitCode::solve_failed));
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    rows[row].push_back({map->getGlobalElement(static_cast<int>(row)), values[row]});
   return matrix_from_rows(map, rows);
 }
 

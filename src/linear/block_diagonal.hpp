@@ -21,7 +21,9 @@ BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, 
 /// The sentence for a C = M̃ - dt D without a Cholesky factor; `name` is its name in messages.
 std::string not_positive_definite(const std::string& name);
 
-/// The inverse of the diagonal. Throws SolveError if an entry is not positive. Collective.
+/// One over the diagonal. Throws SolveError if an entry is not positive. Collective.
+RCP<Vector> inverse_diagonal(const CrsMatrix& matrix, const std::string& name);
+/// The same as a matrix. Throws SolveError if an entry is not positive. Collective.
 RCP<const CrsMatrix> jacobi_inverse(const CrsMatrix& matrix, const std::string& name);
 
 }  // namespace lockstep

@@ -48,11 +48,7 @@ std::vector<std::vector<Entry>> rows_of(const CrsMatrix& matrix) {
 
 RCP<Vector> diagonal_of(const CrsMatrix& matrix) {
   const auto diagonal = make_vector(matrix.getRowMap());
-  const auto values = diagonal->getDataNonConst();
-  for_each_entry(matrix, [&](int row, GlobalIndex column, double value) {
-    if (matrix.getRowMap()->getGlobalElement(row) == column)
-      values[row] += value;
-  });
+  matrix.getLocalDiagCopy(*diagonal);
   return diagonal;
 }
 
