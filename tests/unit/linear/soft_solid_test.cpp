@@ -228,7 +228,7 @@ TEST(SoftSolid, SinglePrecisionCopyIsTheMatrixRounded) {
 TEST(SoftSolid, ThereIsNoSinglePrecisionCopyWhereItWouldNotServe) {
   const Lattice with_lone_dof(6, 1);
   EXPECT_TRUE(single_precision_copy(with_lone_dof.c, with_lone_dof.space).is_null());
-  const Nodes unknown(6, 1), loose(6, 0), stiff(6, 1e5);
+  const Nodes unknown(6, 1), stiff(6, 1e5);
   EXPECT_TRUE(single_precision_copy(unknown.c, {}).is_null());
   EXPECT_TRUE(single_precision_copy(stiff.c, stiff.space).is_null());
 }
