@@ -10,8 +10,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr int largest_block = 24;
-
 /// Row, column, value of this rank's nonzeros.
 std::vector<double> triplets_of(const CrsMatrix& matrix) {
   std::vector<double> triplets;
@@ -112,7 +110,7 @@ InverseMass replicated_inverse_mass(const SolidSystem<dim>& system) {
     result.exact = false;
     triplets = lumped_triplets(*mass, system.map());
   } else {
-    const auto blocks = block_diagonal_inverse(matrix, largest_block, "mass of the solids");
+    const auto blocks = block_diagonal_inverse(matrix, largest_dense_block, "mass of the solids");
     result.exact = blocks.exact;
     triplets = triplets_of(*blocks.inverse);
     if (!result.exact)

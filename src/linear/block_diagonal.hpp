@@ -5,6 +5,10 @@
 
 namespace lockstep {
 
+/// Rows of a dense block that is inverted as one: four times the 6 of a rigid body, for some tied
+/// together.
+inline constexpr int largest_dense_block = 24;
+
 struct BlockDiagonalInverse {
   RCP<const CrsMatrix> inverse;
   /// Whether it is the exact inverse: no block was larger than the limit.

@@ -13,7 +13,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr int largest_block = 24;
 /// Components of more entries are not even analysed: a volume's factors would cost too much, and
 /// even a surface's come near the limit.
 constexpr double most_entries = 800000;
@@ -58,16 +57,17 @@ InverseByCost::InverseByCost(const RCP<const LinearOperator>& op, const std::str
 void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const std::string& name) {
   const Communicator comm = map_->getComm();
   const std::vector<RowComponent> components = components_of_rows(*matrix);
-  const auto is_small = rows_where(components, [](GlobalIndex n) { return n <= largest_block; });
-  auto is_rest = rows_where(components, [](GlobalIndex n) { return n > largest_block; });
+  const auto is_small =
+      rows_where(components, [](GlobalIndex n) { return n <= largest_dense_block; });
+  auto is_rest = rows_where(components, [](GlobalIndex n) { return n > largest_dense_block; });
   if (!any(is_rest, comm)) {
-    whole_ = as_operator(block_diagonal_inverse(matrix, largest_block, name).inverse);
+    whole_ = as_operator(block_diagonal_inverse(matrix, largest_dense_block, name).inverse);
     return;
   }
   const double entries_of_row = static_cast<double>(matrix->getGlobalNumEntries()) /
                                 static_cast<double>(matrix->getGlobalNumRows());
   const auto is_medium = rows_where(components, [&](GlobalIndex n) {
-    return n > largest_block && static_cast<double>(n) * entries_of_row <= most_entries;
+    return n > largest_dense_block && static_cast<double>(n) * entries_of_row <= most_entries;
   });
   if (any(is_medium, comm)) {
     const auto part = std::make_shared<const MatrixPart>(*matrix, is_medium);

@@ -11,8 +11,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr int largest_block = 24;
-
 /// A vector on the row map, as every rank sees it on the columns.
 RCP<Vector> on_columns(const CrsMatrix& matrix, const Vector& rows) {
   const auto columns = make_vector(matrix.getColMap());
@@ -93,7 +91,8 @@ RCP<const LinearOperator> inverse_by_parts(const RCP<const Map>& map,
 }
 
 PartInverse part_of_blocks(const std::shared_ptr<const MatrixPart>& part, const std::string& name) {
-  return {part, as_operator(block_diagonal_inverse(part->matrix(), largest_block, name).inverse)};
+  return {part,
+          as_operator(block_diagonal_inverse(part->matrix(), largest_dense_block, name).inverse)};
 }
 
 }  // namespace lockstep

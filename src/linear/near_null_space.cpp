@@ -70,9 +70,8 @@ bool is_stiff(const CrsMatrix& c, const NearNullSpace& space) {
 RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>& c,
                                                       const NearNullSpace& space,
                                                       const std::string& name) {
-  constexpr int largest_block = 24;
   if (space.empty())
-    return as_operator(block_diagonal_inverse(c, largest_block, name).inverse);
+    return as_operator(block_diagonal_inverse(c, largest_dense_block, name).inverse);
   std::vector<bool> is_node, is_other;
   for (const int body : space.body_of_row) {
     is_node.push_back(body >= 0);

@@ -152,7 +152,8 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
     return additive_multilevel_inverse(matrix, near_null_space, name);
   if (type == "Block Diagonal")
     return as_operator(
-        block_diagonal_inverse(matrix, value_or(list, "Largest Block", 24), name).inverse);
+        block_diagonal_inverse(matrix, value_or(list, "Largest Block", largest_dense_block), name)
+            .inverse);
   if (type == "Block Diagonal Mass")
     return block_diagonal_mass_inverse(matrix, near_null_space, name);
   ParameterList package = without_type(list);

@@ -10,8 +10,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr int largest_block = 24;
-
 RCP<const CrsMatrix> need_assembled(const RCP<const LinearOperator>& op, const char* block,
                                     const BlockSystem& system) {
   const auto matrix = assembled(op);
@@ -39,13 +37,14 @@ RCP<const CrsMatrix> sum(const CrsMatrix& a, const CrsMatrix& coupling_transpose
 RCP<const CrsMatrix> assembled_schur(const BlockSystem& system) {
   const auto a = need_assembled(system.pressure_block, "pressure block", system);
   const auto c = need_assembled(system.solid_block, "solid block", system);
-  const auto blocks = block_diagonal_inverse(c, largest_block, "solid block of the " + system.name);
+  const auto blocks =
+      block_diagonal_inverse(c, largest_dense_block, "solid block of the " + system.name);
   check_solve(
       blocks.exact,
       "The solid block of the {} does not fall apart into blocks of at most {} unknowns, so "
       "that its inverse, and with it the Schur complement, is dense. Choose the strategy "
       "schur-cg.",
-      system.name, largest_block);
+      system.name, largest_dense_block);
   return sum(*a, *system.coupling_transposed, *blocks.inverse);
 }
 
