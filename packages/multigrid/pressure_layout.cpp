@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "linear/added_mass_diagonal.hpp"
 #include "linear/matrix_rows.hpp"
+#include "linear/overlap.hpp"
 #include "multigrid/layout_kernels.hpp"
 #include "multigrid/layout_operators.hpp"
 #include "multigrid/through_sheets.hpp"
@@ -213,13 +214,8 @@ BlockSystem PressureLayout::relaid(const BlockSystem& system) const {
     for (std::size_t row = 0; row < entry_of_row_.size(); ++row)
       values[row] = static_cast<double>(map_->getGlobalElement(entry_of_row_[row]));
   }
-  const auto importer = coupling.getGraph()->getImporter();
-  Vector column_ids(coupling.getColMap());
-  if (importer.is_null())
-    column_ids.update(1, ids, 0);
-  else
-    column_ids.doImport(ids, *importer, Tpetra::INSERT);
-  const auto new_ids = column_ids.getData();
+  const RCP<const Vector> column_ids = on_columns(coupling, ids);
+  const auto new_ids = column_ids->getData();
   std::vector<std::vector<Entry>> rows(coupling.getNodeNumRows());
   for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
     const int local = coupling.getColMap()->getLocalElement(column);

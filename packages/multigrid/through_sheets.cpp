@@ -9,6 +9,7 @@
 
 #include "linear/matrix_rows.hpp"
 #include "linear/near_null_space.hpp"
+#include "linear/overlap.hpp"
 #include "multigrid/lattice_layout.hpp"
 
 namespace lockstep {
@@ -127,21 +128,17 @@ std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& sys
   const CrsMatrix& coupling = *system.coupling_transposed;
   const auto importer = coupling.getGraph()->getImporter();
   const RCP<Vector> by_row = cell_numbers(a, empty_rows);
-  RCP<Vector> by_column = by_row;
-  if (!importer.is_null()) {
-    by_column = make_vector(coupling.getColMap());
-    by_column->doImport(*by_row, *importer, Tpetra::INSERT);
-  }
-  const MultiVector on_columns = conductances(system, *by_column, a.blocks->n_cells);
-  std::vector<double> largest(on_columns.getNumVectors());
-  on_columns.normInf(Teuchos::arrayViewFromVector(largest));
+  const MultiVector by_face =
+      conductances(system, *on_columns(coupling, *by_row), a.blocks->n_cells);
+  std::vector<double> largest(by_face.getNumVectors());
+  by_face.normInf(Teuchos::arrayViewFromVector(largest));
   if (*std::max_element(largest.begin(), largest.end()) == 0)
     return {};
-  MultiVector added(a.map, on_columns.getNumVectors());
+  MultiVector added(a.map, by_face.getNumVectors());
   if (importer.is_null())
-    added.update(1, on_columns, 0);
+    added.update(1, by_face, 0);
   else
-    added.doExport(on_columns, *importer, Tpetra::ADD);
+    added.doExport(by_face, *importer, Tpetra::ADD);
 
   // Rounded: the sums over nodes come in another order on other numbers of ranks.
   constexpr double steps = 1 << 12;

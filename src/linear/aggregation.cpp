@@ -1,12 +1,12 @@
 #include "linear/aggregation.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
-#include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <utility>
 
 #include "linear/matrix_rows.hpp"
+#include "linear/overlap.hpp"
 
 namespace lockstep {
 
@@ -47,7 +47,7 @@ std::vector<std::vector<int>> neighbors_of_nodes(const CrsMatrix& matrix,
 /// By local column of A: the id of its row in the coarse matrix, or -1. Collective.
 std::vector<GlobalIndex> coarse_ids(const CrsMatrix& matrix, const std::vector<int>& place_of_row,
                                     const Map& map) {
-  Vector of_rows(matrix.getRowMap()), of_columns(matrix.getColMap());
+  Vector of_rows(matrix.getRowMap());
   {
     const auto ids = of_rows.getDataNonConst();
     for (std::size_t row = 0; row < place_of_row.size(); ++row) {
@@ -55,13 +55,8 @@ std::vector<GlobalIndex> coarse_ids(const CrsMatrix& matrix, const std::vector<i
       ids[row] = place < 0 ? -1.0 : static_cast<double>(map.getGlobalElement(place));
     }
   }
-  const auto importer = matrix.getGraph()->getImporter();
-  if (importer.is_null())
-    of_columns.assign(of_rows);
-  else
-    of_columns.doImport(of_rows, *importer, Tpetra::INSERT);
   std::vector<GlobalIndex> result;
-  for (const double id : of_columns.getData())
+  for (const double id : on_columns(matrix, of_rows)->getData())
     result.push_back(static_cast<GlobalIndex>(id));
   return result;
 }

@@ -6,23 +6,9 @@
 #include "linear/action_operator.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/matrix_rows.hpp"
+#include "linear/overlap.hpp"
 
 namespace lockstep {
-
-namespace {
-
-/// A vector on the row map, as every rank sees it on the columns.
-RCP<Vector> on_columns(const CrsMatrix& matrix, const Vector& rows) {
-  const auto columns = make_vector(matrix.getColMap());
-  const auto importer = matrix.getGraph()->getImporter();
-  if (importer.is_null())
-    columns->update(1, rows, 0);
-  else
-    columns->doImport(rows, *importer, Tpetra::INSERT);
-  return columns;
-}
-
-}  // namespace
 
 MatrixPart::MatrixPart(const CrsMatrix& matrix, const std::vector<bool>& is_inside) {
   for (std::size_t row = 0; row < is_inside.size(); ++row) {

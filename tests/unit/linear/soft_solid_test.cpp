@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "linear/action_operator.hpp"
 #include "linear/aggregation.hpp"
 #include "linear/component_cholesky.hpp"
 #include "linear/exact_inverse.hpp"
@@ -231,6 +232,11 @@ TEST(SoftSolid, ThereIsNoSinglePrecisionCopyWhereItWouldNotServe) {
   const Nodes unknown(6, 1), stiff(6, 1e5);
   EXPECT_TRUE(single_precision_copy(unknown.c, {}).is_null());
   EXPECT_TRUE(single_precision_copy(stiff.c, stiff.space).is_null());
+  const auto map = unknown.c->getRowMap();
+  std::vector<std::vector<Entry>> diagonal;
+  for (const GlobalIndex id : map->getNodeElementList())
+    diagonal.push_back({{id, 2}});
+  EXPECT_TRUE(single_precision_copy(matrix_from_rows(map, diagonal), unknown.space).is_null());
 }
 
 TEST(SoftSolid, IterationOnARoundedMatrixReachesRoundOff) {
@@ -252,6 +258,17 @@ TEST(SoftSolid, IterationOnARoundedMatrixReachesRoundOff) {
   // Further than round-off lets the true residual fall.
   const auto inverse = conjugate_gradient_inverse(op, {jacobi, rounded, 1e-16, 1000, "solid", {}});
   EXPECT_LT(error_of(*inverse, *solid.c), 1e-13);
+}
+
+TEST(SoftSolid, WhatIsRoundedTooMuchIsFinishedWithTheMatrixItself) {
+  // At .4 C the true residual grows by half with every correction.
+  const Nodes solid(12, 10);
+  const auto op = as_operator(solid.c);
+  const auto far_off = action_operator(solid.c->getRowMap(),
+                                       [op](const Vector& x, Vector& y) { apply(*op, x, y, 0.4); });
+  const auto jacobi = preconditioner_from_list(op, type("Jacobi"), "solid");
+  const auto inverse = conjugate_gradient_inverse(op, {jacobi, far_off, 1e-10, 1000, "solid", {}});
+  EXPECT_LT(error_of(*inverse, *solid.c), 1e-9);
 }
 
 TEST(SoftSolid, AggregatesAreNodesAndTheirNeighbors) {
