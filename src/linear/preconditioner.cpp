@@ -10,6 +10,7 @@
 #include "linear/block_diagonal.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/gathered_direct.hpp"
+#include "linear/incomplete_cholesky.hpp"
 #include "linear/inverse_by_cost.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/rigid_motion_multigrid.hpp"
@@ -25,6 +26,7 @@ using Teuchos::ParameterList;
 
 const std::vector<std::string> types = {"Ifpack2",
                                         "MueLu",
+                                        "Incomplete Cholesky",
                                         "Direct",
                                         "Block Diagonal",
                                         "Block Diagonal Mass",
@@ -55,15 +57,6 @@ ParameterList default_muelu() {
   ParameterList& coarse = list.sublist("coarse: params");
   coarse.set("relaxation: type", "Symmetric Gauss-Seidel");
   coarse.set("relaxation: sweeps", 8);
-  return list;
-}
-
-/// RILUK(0), which of a symmetric matrix is its incomplete Cholesky factorisation without fill.
-ParameterList default_ifpack2() {
-  ParameterList list;
-  list.set("Prec Type", "RILUK");
-  list.set("Overlap", 0);
-  list.sublist("Ifpack2 Settings").set("fact: iluk level-of-fill", 0);
   return list;
 }
 
@@ -122,6 +115,10 @@ void check_preconditioner_list(const ParameterList& list, const std::string& whe
               "{}: there is no inverse of type \"{}\".{} There are: {}.", where, type,
               nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest),
               fmt::join(types, ", "));
+  check_input(type != "Ifpack2" || list.isParameter("Prec Type"),
+              "{}: type \"Ifpack2\" needs the parameter \"Prec Type\" (string), one of its "
+              "preconditioners; \"Incomplete Cholesky\" needs none.",
+              where);
   if (is_package(type) && list.numParams() > 1)
     check_package_list(type, without_type(list), where);
   else
@@ -146,6 +143,8 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
       type, name);
   if (type == "Direct")
     return gathered_direct(matrix, name);
+  if (type == "Incomplete Cholesky")
+    return incomplete_cholesky_inverse(matrix, name);
   if (type == "Jacobi")
     return as_operator(jacobi_inverse(*matrix, name));
   if (type == "Additive Multilevel")
@@ -157,8 +156,8 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
   if (type == "Block Diagonal Mass")
     return block_diagonal_mass_inverse(matrix, near_null_space, name);
   ParameterList package = without_type(list);
-  if (package.numParams() == 0)
-    package = type == "MueLu" ? default_muelu() : default_ifpack2();
+  if (type == "MueLu" && package.numParams() == 0)
+    package = default_muelu();
   if (type == "MueLu" && !near_null_space.empty())
     return rigid_motion_multigrid(matrix, near_null_space, package, name);
   const auto inverse = stratimikos_preconditioner(as_operator(matrix), type, package, name);

@@ -10,8 +10,9 @@ namespace lockstep {
 ///   "Ifpack2", "MueLu"      all other parameters go to that package unchanged; "MueLu" alone means
 ///                           smoothed aggregation with Chebyshev(2) and a coarse solver that is
 ///                           right on several ranks; with a near null space,
-///                           rigid_motion_multigrid; "Ifpack2" alone means RILUK(0), the incomplete
-///                           Cholesky factorisation
+///                           rigid_motion_multigrid; "Ifpack2" needs its "Prec Type"
+///   "Incomplete Cholesky"   without fill, on the overlapping parts of ranks, see
+///                           incomplete_cholesky_inverse
 ///   "Direct"                gathered KLU2
 ///   "Block Diagonal"        exact inverses of small dense blocks ("Largest Block", 24)
 ///   "Block Diagonal Mass"   the same of the mass in C = M̃ - dt D, see near_null_space.hpp

@@ -13,7 +13,7 @@ ParameterList BlockElimination::valid_parameters() {
   ParameterList list = common_strategy_parameters();
   declare_pressure_inverse(list,
                            "Approximate inverse of the assembled Schur complement, and of A where "
-                           "there is no solid; not Multigrid. Default: Ifpack2's RILUK(0).");
+                           "there is no solid; not Multigrid. Default: Incomplete Cholesky.");
   return list;
 }
 
@@ -24,7 +24,7 @@ BlockElimination::BlockElimination(const ParameterList& given)
   check_input(
       type != "Multigrid" && type != "Automatic",
       "\"Pressure Inverse\": block-elimination assembles its matrix, which type \"{}\" does "
-      "not take. Choose Ifpack2 or MueLu.",
+      "not take. Choose Incomplete Cholesky, Ifpack2 or MueLu.",
       type);
 }
 

@@ -133,7 +133,7 @@ Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
 }
 
 Teuchos::ParameterList incomplete_cholesky_list(const Teuchos::ParameterList& given) {
-  return pressure_inverse_list(given, "Ifpack2");
+  return pressure_inverse_list(given, "Incomplete Cholesky");
 }
 
 bool is_multigrid(const Teuchos::ParameterList& list, const BlockSystem& system) {
@@ -169,7 +169,7 @@ RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
   auto op = system.pressure_block;
   if (const auto a = assembled(op); !a.is_null()) {
     const std::string type = type_of(list);
-    const bool factors = type == "Ifpack2" || type == "Direct";
+    const bool factors = type == "Incomplete Cholesky" || type == "Ifpack2" || type == "Direct";
     const auto regular = shifted(a, diagonal_shift(system, *a, factors));
     if (regular != a)
       op = as_operator(regular);

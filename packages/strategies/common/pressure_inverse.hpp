@@ -15,7 +15,7 @@ void declare_pressure_inverse(Teuchos::ParameterList& list, const std::string& d
 /// The list given, checked, or `standard` if there is none. Throws InputError.
 Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
                                              const std::string& standard_type);
-/// The same for strategies whose standard is Ifpack2's RILUK(0), the incomplete Cholesky.
+/// The same for strategies whose standard is incomplete Cholesky.
 Teuchos::ParameterList incomplete_cholesky_list(const Teuchos::ParameterList& list);
 
 /// Whether the list asks for the multigrid, of this system.
@@ -28,7 +28,8 @@ RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
 /// Any other inverse that a list names, made positive definite where A is not:
 /// - a cell all of whose faces are mixed has an empty row in A; its diagonal becomes that of
 ///   B diag(C)^-1 B^T;
-/// - with "Ifpack2" and "Direct", which factor, the first cell of each null vector of A alone is
+/// - with "Incomplete Cholesky", "Ifpack2" and "Direct", which factor, the first cell of each null
+/// vector of A alone is
 ///   pinned by adding its diagonal once more. Multigrid and Jacobi take a singular A.
 /// Throws InputError for a bad list, SolveError if the set-up fails. Collective.
 RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,

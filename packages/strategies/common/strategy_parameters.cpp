@@ -24,7 +24,8 @@ void declare_inverse(ParameterList& list, const std::string& name, const std::st
       list, name,
       doc +
           " \"Type\" is Ifpack2 or MueLu (the other parameters go to that package unchanged), "
-          "Direct, Block Diagonal, Block Diagonal Mass, Jacobi, Conjugate Gradients or Exact.");
+          "Incomplete Cholesky, Direct, Block Diagonal, Block Diagonal Mass, Jacobi, Additive "
+          "Multilevel, Conjugate Gradients or Exact.");
 }
 
 ParameterList inverse_list(const ParameterList& list, const std::string& name,

@@ -7,8 +7,8 @@ namespace lockstep {
 ParameterList Paper::valid_parameters() {
   ParameterList list = minres_parameters("Belos MINRES");
   declare_pressure_inverse(list,
-                           "Approximate inverse of the pressure block A. Default: Ifpack2's "
-                           "RILUK(0), which is the paper's incomplete Cholesky.");
+                           "Approximate inverse of the pressure block A. Default: Incomplete "
+                           "Cholesky, as in the paper.");
   return list;
 }
 

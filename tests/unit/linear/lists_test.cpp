@@ -103,6 +103,7 @@ TEST(Preconditioner, EveryTypeIsSymmetricPositiveDefinite) {
       typed("Jacobi"),
       typed("Exact"),
       typed("Conjugate Gradients"),
+      typed("Incomplete Cholesky"),
       ifpack2("RILUK", R"(<Parameter name="fact: iluk level-of-fill" type="int" value="0"/>)"),
       ifpack2("CHEBYSHEV", R"(<Parameter name="chebyshev: degree" type="int" value="4"/>)"),
       ifpack2(
@@ -136,6 +137,7 @@ TEST(Preconditioner, BadListsAreRefused) {
     return message_of<InputError>([&] { check_preconditioner_list(inverse(xml), "here"); });
   };
   EXPECT_THAT(complaint(typed("Jakobi")), HasSubstr("Did you mean \"Jacobi\"?"));
+  EXPECT_THAT(complaint(typed("Ifpack2")), HasSubstr("needs the parameter \"Prec Type\""));
   EXPECT_THAT(complaint(typed("Conjugate Gradients") + R"(<ParameterList name="Preconditioner">)" +
                         typed("MueLoo") + "</ParameterList>"),
               HasSubstr("here, \"Preconditioner\": there is no inverse of type \"MueLoo\""));

@@ -212,6 +212,15 @@ TEST(Strategies, IterationsDoNotDependOnTheNumberOfRanks) {
               2);
 }
 
+TEST(Strategies, IncompleteCholeskyDependsLittleOnTheNumberOfRanks) {
+  SaddleOptions options;
+  options.n = 64;
+  const SaddleProblem problem(world(), options);
+  const int on_one_rank = 149;
+  EXPECT_NEAR(solve(*make("paper"), problem, 1e-8).report.iterations, on_one_rank,
+              0.1 * on_one_rank);
+}
+
 TEST(Strategies, NonConvergenceCarriesTheNumbers) {
   const SaddleProblem problem(world(), {});
   for (const std::string name : {"schur-cg", "paper"}) {
@@ -294,8 +303,9 @@ TEST(Strategies, EverySolidInverseLeadsToTheSameSolution) {
   const SaddleProblem problem(world(), {});
   const Solved expected = solve(*make("direct"), problem);
   for (const std::string strategy : {"schur-cg", "pressure-schur"}) {
-    for (const std::string type : {"Automatic", "Exact", "Jacobi", "Block Diagonal", "Direct",
-                                   "Block Diagonal Mass", "Conjugate Gradients", "Ifpack2"}) {
+    for (const std::string type :
+         {"Automatic", "Exact", "Jacobi", "Block Diagonal", "Direct", "Block Diagonal Mass",
+          "Conjugate Gradients", "Incomplete Cholesky"}) {
       SCOPED_TRACE(strategy + ", " + type);
       ParameterList list;
       list.sublist("Solid Inverse").set("Type", type);
