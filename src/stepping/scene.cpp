@@ -19,6 +19,11 @@ void declare_time(ParameterList& scene) {
       "Cells that the fastest fluid crosses in a step (sum over the axes) [1]; any value is "
       "stable.");
   declare_positive(time, "Largest Step", 0.1, "Bound of the CFL-chosen step [s].");
+  declare_choice(
+      time, "Pressure Correction", "incremental", {"incremental", "non-incremental"},
+      "Whether the viscous solve of a step reads the pressure of the last one. non-incremental: as "
+      "in the paper; then fluid slips at walls and solids by what pressure gradients make of it in "
+      "a step. No difference without viscosity.");
   declare_at_least(time, "Steps", 0, 0, "Stop after this many steps; 0: no limit.");
 }
 
@@ -147,6 +152,8 @@ SceneOptions scene_options(const ParameterList& scene) {
   options.time.cfl = time.get<double>("CFL");
   options.time.largest_step = time.get<double>("Largest Step");
   options.time.most_steps = time.get<int>("Steps");
+  options.stepper.incremental_pressure =
+      time.get<std::string>("Pressure Correction") == "incremental";
   check_input(options.time.end > options.time.start,
               "In \"Time\", \"End\" ({} s) must be later than \"Start\" ({} s).", options.time.end,
               options.time.start);

@@ -97,6 +97,15 @@ ContactReport<dim> Stepper<dim>::contact_momentum(double dt, Vector& momentum) {
   return report;
 }
 
+/// p̂ = dt p of the last step's pressure p; zero before the first one.
+template <int dim>
+RCP<Vector> Stepper<dim>::last_pressure(double dt) const {
+  const RCP<Vector> pressure = components_.fluid->last_scaled_pressure();
+  if (last_dt_ > 0)
+    pressure->scale(dt / last_dt_);
+  return pressure;
+}
+
 template <int dim>
 CoupledSolution Stepper<dim>::solve(double dt, const RCP<Vector>& momentum, const char* name,
                                     SolveReport& report, double& incompatibility) {
@@ -109,9 +118,7 @@ CoupledSolution Stepper<dim>::solve(double dt, const RCP<Vector>& momentum, cons
     solution.rhs = system_.right_hand_side(*momentum, incompatibility, dt, locked_velocity_);
   }
   const BlockSystem& blocks = system_.blocks(dt);
-  solution.unknowns.pressure = components_.fluid->last_scaled_pressure();
-  if (last_dt_ > 0)
-    solution.unknowns.pressure->scale(dt / last_dt_);  // p̂ = dt p
+  solution.unknowns.pressure = last_pressure(dt);
   project_out(blocks.null_space, *solution.unknowns.pressure);
   if (coupled()) {
     solution.unknowns.solid = make_vector(components_.solids->map());

@@ -15,6 +15,7 @@ struct StepperOptions {
   double tolerance = 1e-8;           ///< of the S1, F2 and S2 solves, per block
   double viscous_tolerance = 1e-10;  ///< relative, of the viscous CG
   int newton_iterations = 1;         ///< coupled solves each of S1 and S2 takes
+  bool incremental_pressure = true;  ///< the viscous solve reads the last step's pressure
   double length = 1;                 ///< size of the domain [m], scales the angular audit
   bool audit_angular = true;  ///< false with periodic sides, where torque has no common origin
 };
@@ -39,6 +40,9 @@ class Stepper {
   void freeze();
   bool coupled() const { return components_.solids->has_unknowns(); }
   void predict_forces(double time, double dt, MomentumLedger<dim>* ledger, StepReport<dim>& report);
+  void predict_viscosity(double time, double dt, StepReport<dim>& report);
+  RCP<const Vector> expected_pressure(double time, double dt, StepReport<dim>& report);
+  RCP<Vector> last_pressure(double dt) const;
   void reset_unseen_faces();
   RCP<const Vector> unseen_buoyancy(double dt, StepReport<dim>& report) const;
   RCP<Vector> solid_momentum(double time, double dt, MomentumLedger<dim>* ledger,

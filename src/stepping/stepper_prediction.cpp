@@ -1,3 +1,4 @@
+#include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
 #include "stepping/stepper.hpp"
@@ -29,7 +30,6 @@ template <int dim>
 void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* ledger,
                                   StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
-  auto& solids = *components_.solids;
   {
     ScopedPhase phase(timers_, "forces");
     Momentum<dim> impulse = fluid.add_forces(time, dt);
@@ -42,8 +42,36 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
   viscous_ = {};
   if (!fluid.is_viscous())
     return;
+  predict_viscosity(time, dt, report);
+  if (ledger)
+    ledger->add("viscous boundaries", viscous_.boundary_impulse);
+}
+
+/// p̂ that the viscous solve reads: that of the last step, before the first one that of a solve
+/// without viscosity.
+template <int dim>
+RCP<const Vector> Stepper<dim>::expected_pressure(double time, double dt, StepReport<dim>& report) {
+  if (last_dt_ > 0)
+    return last_pressure(dt);
+  const RCP<Vector> momentum = coupled() ? solid_momentum(time, dt, nullptr, report)
+                                         : make_vector(components_.solids->map());
+  SolveReport ignored;
+  return solve(dt, momentum, "first pressure", ignored, report.incompatibility_s2)
+      .unknowns.pressure;
+}
+
+/// Implicit viscosity in the incremental form of pressure correction (Guermond, Minev and Shen
+/// 2006): fluid and solids feel the expected pressure while they feel viscosity, and give it back
+/// before S1 or S2 finds the pressure, whole. Their velocities then are nearly those at the end of
+/// the step, so that forces that the pressure holds (weight, mean gradients) do not shear the fluid
+/// at walls and solids; a steady state does not depend on dt.
+template <int dim>
+void Stepper<dim>::predict_viscosity(double time, double dt, StepReport<dim>& report) {
+  auto& fluid = *components_.fluid;
+  RCP<const Vector> pressure;
+  if (options_.incremental_pressure)
+    pressure = expected_pressure(time, dt, report);
   ScopedPhase phase(timers_, "viscosity");
-  const std::unique_ptr<ViscousSystem<dim>> viscous = fluid.viscous_system();
   RCP<const LinearOperator> block;
   NearNullSpace near_null_space;
   RCP<Vector> row;
@@ -51,17 +79,27 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
     const BlockSystem& blocks = system_.blocks(dt);
     block = blocks.solid_block;
     near_null_space = blocks.near_null_space;
-    const RCP<Vector> momentum = solids.explicit_momentum(time, dt);
+    const RCP<Vector> momentum = components_.solids->explicit_momentum(time, dt);
+    if (!pressure.is_null())
+      components_.coupling->add_unseen_buoyancy(fluid.gravity(), dt, *momentum);
     row = system_.lumped_momentum(*momentum);
+    if (!pressure.is_null())
+      blocks.coupling_transposed->apply(*pressure, *row, Teuchos::NO_TRANS, -1, 1);
     if (!locked_velocity_.is_null())
       row->update(-1, *system_.unlocked_momentum(dt, *locked_velocity_), 1);
   }
+  if (!pressure.is_null())
+    fluid.project(*pressure);
+  const std::unique_ptr<ViscousSystem<dim>> viscous = fluid.viscous_system();
   viscous_ =
-      solve_viscous<dim>(*viscous, fluid, solids, *components_.coupling, block, near_null_space,
-                         row, dt, options_.viscous_tolerance, locked_velocity_);
+      solve_viscous<dim>(*viscous, fluid, *components_.solids, *components_.coupling, block,
+                         near_null_space, row, dt, options_.viscous_tolerance, locked_velocity_);
   report.viscous_iterations += viscous_.iterations;
-  if (ledger)
-    ledger->add("viscous boundaries", viscous_.boundary_impulse);
+  if (!pressure.is_null()) {
+    Vector back(*pressure, Teuchos::Copy);
+    back.scale(-1);
+    fluid.project(back);
+  }
 }
 
 template void Stepper<2>::reset_unseen_faces();
