@@ -19,6 +19,8 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
       velocity_(initial_velocity<dim>(domain_.grid, fluid.sublist("Initial State"))) {
   domain_.halo.fill(velocity_);
   prediction_ = velocity_;
+  if (parameters_.order_in_time == 2)
+    history_.emplace(domain_.grid);
 }
 
 template <int dim>
@@ -116,6 +118,22 @@ void MacFluid<dim>::set_coupled_velocity(const std::vector<double>& velocity) {
 template <int dim>
 void MacFluid<dim>::begin_prediction() {
   prediction_ = velocity_;
+}
+
+template <int dim>
+void MacFluid<dim>::begin_advection_velocity(double dt) {
+  begin_prediction();
+  if (history_)
+    history_->extrapolate(dt, prediction_);
+}
+
+template <int dim>
+void MacFluid<dim>::accept() {
+  if (history_)
+    history_->accept(velocity_, prediction_, geometry_.state, last_step_);
+  velocity_ = prediction_;
+  accepted_pressure_ = scaled_pressure_;
+  accepted_cells_ = geometry_.state.cells;
 }
 
 template <int dim>
@@ -218,7 +236,14 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
       };
     }
   Transport<dim> transport(setting);
-  transport.advect_faces(parameters_.advection, velocity_, prediction_);
+  if (history_) {
+    FaceField<dim> start = velocity_;
+    history_->add_acceleration(dt / 2, start);
+    transport.advect_faces(parameters_.advection, start, prediction_);
+    history_->add_acceleration(-dt / 2, prediction_);
+  } else {
+    transport.advect_faces(parameters_.advection, velocity_, prediction_);
+  }
   domain_.halo.fill(prediction_);
   for (Scalar& scalar : scalars_.all()) {
     SideValues<dim> inflow;
@@ -235,14 +260,16 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
 
 template <int dim>
 void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
-  if (!geometry_.state.surface)
-    return;
-  revalidate_faces<dim>(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
-                        prediction_);
-  for (Scalar& scalar : scalars_.all())
-    revalidate_scalar(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
-                      scalar.ambient, scalar.values);
-  invalid_ = {};
+  if (geometry_.state.surface) {
+    revalidate_faces<dim>(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
+                          prediction_);
+    for (Scalar& scalar : scalars_.all())
+      revalidate_scalar(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
+                        scalar.ambient, scalar.values);
+    invalid_ = {};
+  }
+  if (history_)
+    history_->set_advected(prediction_);
 }
 
 template <int dim>

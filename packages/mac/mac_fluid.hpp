@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "interfaces/fluid.hpp"
 #include "mac/forces.hpp"
@@ -9,6 +10,7 @@
 #include "mac/revalidation.hpp"
 #include "mac/scalars.hpp"
 #include "mac/transport.hpp"
+#include "mac/velocity_history.hpp"
 #include "mac/viscosity.hpp"
 #include "parameters/parameter_list.hpp"
 
@@ -21,6 +23,7 @@ struct MacParameters {
   ViscosityParameters viscosity;
   ForceParameters<dim> forces;
   AdvectionScheme advection = AdvectionScheme::semi_lagrangian;
+  int order_in_time = 1;  ///< of the splitting of advection from all else
 };
 
 /// Schema of the "Fluid" list, without "Type".
@@ -61,6 +64,7 @@ class MacFluid : public FluidDiscretization<dim> {
   void set_coupled_velocity(const std::vector<double>& velocity) override;
 
   void begin_prediction() override;
+  void begin_advection_velocity(double dt) override;
   Momentum<dim> add_forces(double time, double dt) override;
   std::vector<double> coupled_force(double time, double dt) const override;
   bool is_viscous() const override { return parameters_.viscosity.viscosity > 0; }
@@ -69,11 +73,7 @@ class MacFluid : public FluidDiscretization<dim> {
   void adopt_advection_velocity() override { advection_ = prediction_; }
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;
   void revalidate(const MovingSurface<dim>& surface) override;
-  void accept() override {
-    velocity_ = prediction_;
-    accepted_pressure_ = scaled_pressure_;
-    accepted_cells_ = geometry_.state.cells;
-  }
+  void accept() override;
 
   double largest_cell_crossing_rate() const override;
   double spacing() const override { return domain_.spacing(); }
@@ -120,9 +120,10 @@ class MacFluid : public FluidDiscretization<dim> {
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
   FaceField<dim> velocity_, prediction_, advection_;
-  CellField scaled_pressure_;              ///< of the last projection
-  CellField accepted_pressure_;            ///< of the last accepted step
-  std::vector<CellState> accepted_cells_;  ///< which cells had one
+  std::optional<VelocityHistory<dim>> history_;  ///< none: first order in time
+  CellField scaled_pressure_;                    ///< of the last projection
+  CellField accepted_pressure_;                  ///< of the last accepted step
+  std::vector<CellState> accepted_cells_;        ///< which cells had one
   InvalidSamples<dim> invalid_;
   double time_ = 0;       ///< of walls and inflows
   double last_step_ = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures

@@ -113,12 +113,18 @@ template <int dim>
 void MacFluid<dim>::save(CheckpointWriter& checkpoint) const {
   const std::vector<int> cells = saved_cells(domain_.grid);
   const std::vector<GlobalIndex> ids = numbers_of(domain_.grid, cells);
-  std::vector<double> values(cells.size() * dim);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    for (int axis = 0; axis < dim; ++axis)
-      values[i * dim + axis] = velocity_[axis][cells[i]];
-  checkpoint.write_distributed("fluid/velocity", ids, values, dim);
-  values.resize(cells.size());
+  const auto write_faces = [&](const std::string& name, const FaceField<dim>& field) {
+    std::vector<double> values;
+    for (const int cell : cells)
+      for (int axis = 0; axis < dim; ++axis)
+        values.push_back(field[axis][cell]);
+    checkpoint.write_distributed("fluid/" + name, ids, values, dim);
+  };
+  write_faces("velocity", velocity_);
+  if (history_)
+    for (const auto& [name, field] : history_->fields())
+      write_faces(name, *field);
+  std::vector<double> values(cells.size());
   for (const Scalar& scalar : scalars_.all()) {
     for (std::size_t i = 0; i < cells.size(); ++i)
       values[i] = scalar.values[cells[i]];
@@ -138,11 +144,17 @@ template <int dim>
 void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
   const std::vector<int> cells = saved_cells(domain_.grid);
   const std::vector<GlobalIndex> ids = numbers_of(domain_.grid, cells);
-  const auto velocity = checkpoint.read_distributed<double>("fluid/velocity", ids);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    for (int axis = 0; axis < dim; ++axis)
-      velocity_[axis][cells[i]] = velocity[i * dim + axis];
-  domain_.halo.fill(velocity_);
+  const auto read_faces = [&](const std::string& name, FaceField<dim>& field) {
+    const auto values = checkpoint.read_distributed<double>("fluid/" + name, ids);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (int axis = 0; axis < dim; ++axis)
+        field[axis][cells[i]] = values[i * dim + axis];
+    domain_.halo.fill(field);
+  };
+  read_faces("velocity", velocity_);
+  if (history_)
+    for (const auto& [name, field] : history_->fields())
+      read_faces(name, *field);
   prediction_ = velocity_;
   for (Scalar& scalar : scalars_.all()) {
     const auto values = checkpoint.read_distributed<double>("fluid/" + scalar.name, ids);

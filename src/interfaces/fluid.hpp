@@ -134,6 +134,9 @@ class FluidDiscretization : public PlugIn {
   // The phases of a step.
 
   virtual void begin_prediction() = 0;  ///< u* := u^n
+  /// u* := the velocity to carry things over a step of dt, before F2 makes it free of divergence:
+  /// u^n, or nearer to the middle of the step.
+  virtual void begin_advection_velocity(double /*dt*/) { begin_prediction(); }
   /// u* += dt f on all velocities outside solids; returns the impulse given to the free ones,
   /// global.
   virtual Momentum<dim> add_forces(double time, double dt) = 0;

@@ -191,7 +191,7 @@ template <int dim>
 void Stepper<dim>::make_advection_velocity(StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   auto& coupling = *components_.coupling;
-  fluid.begin_prediction();
+  fluid.begin_advection_velocity(report.dt);
   if (components_.solids->empty() && last_dt_ > 0) {
     fluid.adopt_advection_velocity();  // u^n is divergence-free already
     return;

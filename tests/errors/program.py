@@ -19,6 +19,8 @@ SCENE = """<ParameterList name="Scene">
   </ParameterList>
   <ParameterList name="Fluid">
     <Parameter name="Density" type="double" value="1000"/>
+    <Parameter name="Viscosity" type="double" value="0.5"/>
+    <Parameter name="Order in Time" type="int" value="2"/>
     <Parameter name="Gravity" type="Array(double)" value="{0, -9.8}"/>
   </ParameterList>
   <ParameterList name="Solids">

@@ -52,6 +52,43 @@ TEST(Fluid, BuoyancyByHand) {
   EXPECT_NEAR(impulse.angular[0], impulse.linear[1], 1e-12);
 }
 
+TEST(Fluid, HistoryByHand) {
+  Case<2> scene({4, 4}, 0.5);
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  const MacState<2>& state = fluid->geometry().state;
+  const TiledGrid<2>& grid = fluid->domain().grid;
+  VelocityHistory<2> history(grid);
+  const auto constant = [&](double value) {
+    FaceField<2> field;
+    field[0].assign(grid.n_stored_cells(), value);
+    field[1] = field[0];
+    return field;
+  };
+  // In steps of 0.1 s from 1 to 3 m/s, 2.5 of it advected; before that an impulse, which is left
+  // out.
+  history.set_advected(constant(-50));
+  history.accept(constant(-100), constant(1), state, 0.1);
+  FaceField<2> untouched = constant(1);
+  history.add_acceleration(1, untouched);
+  history.extrapolate(1, untouched);
+  history.set_advected(constant(2.5));
+  history.accept(constant(1), constant(3), state, 0.1);
+  FaceField<2> middle = constant(3), start = constant(3);
+  history.extrapolate(0.2, middle);
+  history.add_acceleration(0.1, start);
+  int n_free = 0;
+  for (int axis = 0; axis < 2; ++axis)
+    grid.for_each_owned_face(axis, [&](int cell) {
+      const bool free = state.faces[axis][cell] == FaceState::free;
+      n_free += free;
+      EXPECT_EQ(untouched[axis][cell], 1);
+      EXPECT_NEAR(middle[axis][cell], free ? 3 + 0.1 * 20 : 3, 1e-12);
+      EXPECT_NEAR(start[axis][cell], free ? 3 + 0.1 * 5 : 3, 1e-12);
+    });
+  EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(n_free)), 24);
+}
+
 TEST(Fluid, AVortexAtRestInTheMeanStaysOneInAStep) {
   Case<2> scene({32, 32}, 1.0 / 32);
   scene.all_periodic();
