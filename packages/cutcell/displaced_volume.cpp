@@ -127,6 +127,8 @@ std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolu
 
   std::vector<DisplacedOfSolid<dim>> displaced(n_solids);
   for (std::size_t f = 0; f < volumes.size(); ++f) {
+    if (volumes[f].at_closed_side)
+      continue;  // a column that ends there lifts nothing
     const int a = volumes[f].direction;
     for (const FluxShare<dim>& share : shares[f].all)
       add_face<dim>(volumes[f], share, bodies[share.solid].centroid, displaced[share.solid][a]);

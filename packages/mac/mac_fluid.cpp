@@ -98,16 +98,17 @@ double MacFluid<dim>::accepted_pressure_around(int cell) const {
 template <int dim>
 std::vector<double> MacFluid<dim>::coupled_velocity() const {
   std::vector<double> result;
-  result.reserve(geometry_.coupled.size());
+  result.reserve(geometry_.volumes.size());
   for (const auto& [axis, cell] : geometry_.coupled)
     result.push_back(prediction_[axis][cell]);
+  result.resize(geometry_.volumes.size(), 0);
   return result;
 }
 
 template <int dim>
 void MacFluid<dim>::set_coupled_velocity(const std::vector<double>& velocity) {
-  LOCKSTEP_ASSERT(velocity.size() == geometry_.coupled.size());
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
+  LOCKSTEP_ASSERT(velocity.size() == geometry_.volumes.size());
+  for (std::size_t i = 0; i < geometry_.coupled.size(); ++i) {
     const auto [axis, cell] = geometry_.coupled[i];
     if (geometry_.state.faces[axis][cell] == FaceState::coupled)
       prediction_[axis][cell] = velocity[i];
@@ -149,7 +150,7 @@ template <int dim>
 template <typename Velocity>
 AngularVector<dim> MacFluid<dim>::moment_of_shifts(const Velocity& velocity) const {
   AngularVector<dim> moment = AngularVector<dim>::Zero();
-  for (std::size_t i = 0; i < geometry_.volumes.size(); ++i) {
+  for (std::size_t i = 0; i < geometry_.coupled.size(); ++i) {
     const ControlVolume<dim>& volume = geometry_.volumes[i];
     if (volume.open_fraction == 0)
       continue;
@@ -195,9 +196,10 @@ template <int dim>
 std::vector<double> MacFluid<dim>::coupled_force(double, double dt) const {
   const ForceField<dim> force(domain_, geometry_, parameters_.forces, scalars_);
   std::vector<double> result;
-  result.reserve(geometry_.coupled.size());
+  result.reserve(geometry_.volumes.size());
   for (const auto& [axis, cell] : geometry_.coupled)
     result.push_back(dt * force(axis, cell));
+  result.resize(geometry_.volumes.size(), 0);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 
+#include "mac/covered_sides.hpp"
 #include "mac/surface_marks.hpp"
 
 namespace lockstep {
@@ -150,15 +151,13 @@ Point<dim> place_in_fluid(const ControlVolume<dim>& volume, const SurfaceSnapsho
 
 /// Takes an open fraction below one for a face near the surface that would be free otherwise.
 template <int dim>
-void take_fraction(const MacDomain<dim>& domain, const OpenFractionRule<dim>& rule, int axis,
-                   int cell, ControlVolume<dim> volume, MacGeometry<dim>& geometry) {
+void take_fraction(const OpenFractionRule<dim>& rule, int axis, int cell, ControlVolume<dim> volume,
+                   MacGeometry<dim>& geometry) {
   if (volume.open_fraction >= 1)
     return;
   const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
   if (volume.open_fraction > 0) {
-    if (geometry.partial[axis].empty())
-      geometry.partial[axis].assign(domain.grid.n_stored_cells(), 1.0);
-    geometry.partial[axis][cell] = volume.open_fraction;
+    geometry.set_partial(axis, cell, volume.open_fraction);
     volume.open_center = rule.open_center(volume, surface);
     geometry.state.open_centers[axis][cell] = place_in_fluid(volume, surface);
   } else {
@@ -295,7 +294,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
         volume.open_fraction =
             cut ? fractions[axis][cell]
                 : ask_rule(rule, volume, geometry, face, (marks.blocked[cell] >> axis & 1) != 0);
-        take_fraction(domain, rule, axis, cell, volume, geometry);
+        take_fraction(rule, axis, cell, volume, geometry);
       }
       if (result == FaceState::prescribed)
         geometry.prescribed.push_back({axis, cell});
@@ -305,6 +304,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
     if (grid.comm()->getSize() > 1)
       fill_flags(domain.full_halo, state.faces[axis]);
   }
+  if (cut)
+    add_covered_sides(domain, density, rule, geometry);
   share_open_fractions(domain, geometry);
   return geometry;
 }

@@ -14,11 +14,12 @@ struct MacGeometry {
   RCP<const Map> pressure_map;
   /// Pressure unknown of each owned cell and its neighbours, or no_index.
   std::vector<GlobalIndex> unknown;
-  /// Open fractions of free faces; empty unless some face is partly open.
+  /// Open fractions of free and prescribed faces; empty unless some face is partly open.
   std::array<CellField, dim> partial;
   /// Cells so near to a surface that a link from their faces may meet it; empty without surface.
   std::vector<char> near;
-  /// Owned faces with open fraction < 1 and fluid on at least one side, and their control volumes.
+  /// Owned faces with open fraction < 1 and fluid on at least one side, and their control volumes;
+  /// behind them volumes at closed sides (add_covered_sides).
   std::vector<FaceId> coupled;
   std::vector<ControlVolume<dim>> volumes;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows
@@ -29,6 +30,15 @@ struct MacGeometry {
     if (state.faces[axis][cell] != FaceState::free)
       return 0;
     return partial[axis].empty() ? 1 : partial[axis][cell];
+  }
+  /// The part of the face of an inflow that no solid covers.
+  double open_part_of_prescribed(int axis, int cell) const {
+    return partial[axis].empty() ? 1 : partial[axis][cell];
+  }
+  void set_partial(int axis, int cell, double fraction) {
+    if (partial[axis].empty())
+      partial[axis].assign(state.cells.size(), 1.0);
+    partial[axis][cell] = fraction;
   }
   bool near_surface(int cell) const { return !near.empty() && near[cell] != 0; }
 };

@@ -16,7 +16,7 @@ double flux_fraction(const MacGeometry<dim>& geometry, int axis, int face) {
   if (face < 0)
     return 0;
   if (geometry.state.faces[axis][face] == FaceState::prescribed)
-    return 1;
+    return geometry.open_part_of_prescribed(axis, face);
   return geometry.open_fraction(axis, face);
 }
 }  // namespace
@@ -95,6 +95,17 @@ Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeome
         impulse.add(x, axis, (end == 0 ? area : -area) * pressure);
       }
   });
+  // What solids cover of a side they push on themselves; only the rest is the side's.
+  const GlobalIndex first_unknown =
+      values.size() > 0 ? geometry.pressure_map->getMinGlobalIndex() : 0;
+  for (std::size_t i = geometry.coupled.size(); i < geometry.volumes.size(); ++i) {
+    const ControlVolume<dim>& volume = geometry.volumes[i];
+    const int end = volume.sides[0].unknown == no_index ? 0 : 1;
+    const double push =
+        (end == 0 ? area : -area) * values[volume.sides[1 - end].unknown - first_unknown];
+    impulse.add(volume.center, volume.direction, -push);
+    impulse.add(volume.open_center, volume.direction, volume.open_fraction * push);
+  }
   return sum_over_ranks(impulse, grid.comm());
 }
 

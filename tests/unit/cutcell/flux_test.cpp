@@ -113,6 +113,11 @@ TEST(Flux, OfEveryCellIsThatOfTheSurfaceInsideIt) {
   check_cells_against_surface<3>(12, ball<3>(0.27, {0.52, 0.47, 0.51}, 0.09));
 }
 
+TEST(Flux, OfABodyOnItsWayThroughSides) {
+  check_cells_against_surface<2>(24, ball<2>(0.23, {0.93, 0.06}, 0.03));
+  check_cells_against_surface<3>(12, ball<3>(0.27, {0.07, 0.91, 0.51}, 0.09));
+}
+
 // A box of 0.4 x 0.3, its corners in the middle of cells of width 0.1.
 TEST(Flux, OfABoxByHand) {
   FakeBody<2> body;
