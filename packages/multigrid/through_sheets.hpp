@@ -16,9 +16,10 @@ namespace lockstep {
 /// coefficient b_f sum_g b_g / m. It leaves out the forces inside the sheet, and is therefore never
 /// too small for an even jump.
 ///
-/// Counts the nodes whose rows of B^T cancel along the lattice, as those of sheets do: fluid on
-/// both sides, no periodic seam, and no cell of `empty_rows`, the local rows that A leaves empty.
-/// Nothing if no face of any rank opens. Collective.
+/// Counts the nodes that are soft in one direction at least, and whose rows of B^T cancel along the
+/// lattice, as those of sheets do: fluid on both sides, no periodic seam, and no cell of
+/// `empty_rows`, the local rows that A leaves empty. Nothing if no face of any rank opens.
+/// Collective.
 std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& system,
                                                           const std::vector<int>& empty_rows);
 

@@ -366,6 +366,24 @@ TEST(Multigrid, SolidsWithFluidOnOneSideConductNothing) {
   EXPECT_FALSE(conducting_through_sheets(problem.system, {}).has_value());
 }
 
+TEST(Multigrid, StiffVolumesConductNothing) {
+  Case<3> scene(cube<3>(16), 1.0 / 16);
+  Problem<3> problem(scene, plate<3>(1.0 / 16, 7.1 / 16));
+  make_sheet(problem);
+  // Springs between the nodes, which translations do not feel.
+  const CrsMatrix& mass = *assembled(problem.system.solid_block);
+  auto rows = rows_of(mass);
+  for (std::size_t node = 0; node + 1 < rows.size(); ++node) {
+    const GlobalIndex one = rows[node].front().column, other = rows[node + 1].front().column;
+    const double stiffness = 1e4 * rows[node].front().value;
+    rows[node].insert(rows[node].end(), {{one, stiffness}, {other, -stiffness}});
+    rows[node + 1].insert(rows[node + 1].end(), {{one, -stiffness}, {other, stiffness}});
+  }
+  problem.system.solid_block =
+      as_operator(RCP<const CrsMatrix>(matrix_from_rows(mass.getRowMap(), rows)));
+  EXPECT_FALSE(conducting_through_sheets(problem.system, {}).has_value());
+}
+
 TEST(Multigrid, RefusesWhatItCannotHalve) {
   Case<2> scene({40, 40}, 1.0 / 40);
   scene.all_periodic();
