@@ -3,6 +3,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "mac/extended_pressure.hpp"
 #include "mac/face_moments.hpp"
 #include "mac/initial_state.hpp"
 
@@ -65,34 +66,19 @@ void MacFluid<dim>::project(const Vector& scaled_pressure) {
 
 template <int dim>
 RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
-  const RCP<Vector> guess = make_vector(geometry_.pressure_map);
-  if (accepted_pressure_.empty())
-    return guess;
-  const auto values = guess->getDataNonConst();
+  const RCP<Vector> result = make_vector(geometry_.pressure_map);
+  if (accepted_step_ == 0)
+    return result;  // no step yet; ranks without cells have no pressures ever
+  const Point<dim> at_rest = parameters_.density * accepted_step_ * parameters_.forces.gravity;
+  const CellField pressure = extended_pressure<dim>(domain_, geometry_.state.cells, accepted_cells_,
+                                                    accepted_pressure_, at_rest);
+  const auto values = result->getDataNonConst();
   int row = 0;
   domain_.grid.for_each_owned_cell([&](int cell) {
     if (geometry_.state.cells[cell] == CellState::fluid)
-      values[row++] = accepted_pressure_around(cell);
+      values[row++] = pressure[cell];
   });
-  return guess;
-}
-
-template <int dim>
-double MacFluid<dim>::accepted_pressure_around(int cell) const {
-  if (accepted_cells_[cell] == CellState::fluid)
-    return accepted_pressure_[cell];
-  double sum = 0;
-  int n = 0;
-  for (int axis = 0; axis < dim; ++axis) {
-    for (int side = 0; side < 2; ++side) {
-      const int other = domain_.grid.neighbor(cell, axis, side);
-      if (other < 0 || accepted_cells_[other] != CellState::fluid)
-        continue;
-      sum += accepted_pressure_[other];
-      ++n;
-    }
-  }
-  return n > 0 ? sum / n : 0;
+  return result;
 }
 
 template <int dim>
@@ -135,6 +121,7 @@ void MacFluid<dim>::accept() {
   velocity_ = prediction_;
   accepted_pressure_ = scaled_pressure_;
   accepted_cells_ = geometry_.state.cells;
+  accepted_step_ = last_step_;
 }
 
 template <int dim>

@@ -95,8 +95,6 @@ class MacFluid : public FluidDiscretization<dim> {
   void set_prediction(const std::function<Point<dim>(const Point<dim>&)>& velocity);
 
  private:
-  /// p̂ of a cell that is fluid now: its own, or the mean of its neighbours if a solid was there.
-  double accepted_pressure_around(int cell) const;
   bool moves(int axis, int cell) const {
     const FaceState state = geometry_.state.faces[axis][cell];
     return state == FaceState::free || state == FaceState::coupled;
@@ -124,6 +122,7 @@ class MacFluid : public FluidDiscretization<dim> {
   CellField scaled_pressure_;                    ///< of the last projection
   CellField accepted_pressure_;                  ///< of the last accepted step
   std::vector<CellState> accepted_cells_;        ///< which cells had one
+  double accepted_step_ = 0;                     ///< its dt
   InvalidSamples<dim> invalid_;
   double time_ = 0;       ///< of walls and inflows
   double last_step_ = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures

@@ -175,6 +175,7 @@ void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
   fill_flags<dim>(domain_.halo, accepted_cells_);
   time_ = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
+  accepted_step_ = last_step_;
 }
 
 template void MacFluid<2>::add_frame(std::vector<BoxFrame>&) const;

@@ -174,8 +174,8 @@ class FluidDiscretization : public PlugIn {
   /// Impulse of walls and open sides through their own pressure [kg m/s], global.
   virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
   virtual double fluid_volume() const = 0;  ///< of active cells [m^dim], global
-  /// p̂ of the last accepted step on the present unknowns, 0 where there was none: the initial guess
-  /// of the solves. Default: zero.
+  /// p̂ of the last accepted step on the present unknowns, carried on to those where there was none:
+  /// the initial guess of the solves, and what the viscous solve reads. Default: zero.
   virtual RCP<Vector> last_scaled_pressure() const;
   /// Adds its cell-centred fields to a frame. Default: none.
   virtual void add_frame(std::vector<BoxFrame>& boxes) const;

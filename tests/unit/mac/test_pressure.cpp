@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <cmath>
 
+#include "mac/extended_pressure.hpp"
 #include "mac_cases.hpp"
 
 namespace lockstep::test {
@@ -170,6 +171,31 @@ TEST(Pressure, DivergenceCountsInflowAndSkipsCoupledFaces) {
   EXPECT_LT(rhs->normInf(), 1e-15);
   EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(fluid->coupled_volumes().size())), 4);
   EXPECT_EQ(fluid->regions().n_regions, 2);
+}
+
+/// A fluid at rest: cells two layers deep get its pressure back.
+TEST(Pressure, IsCarriedOnToCellsThatSolidsLeft) {
+  Case<2> scene({12, 12}, 0.25);
+  const auto fluid = scene.make();
+  const MacDomain<2>& domain = fluid->domain();
+  const Point<2> gradient(2, -3);
+  const int n = domain.grid.n_stored_cells();
+  std::vector<CellState> now(n, CellState::outside), before = now;
+  CellField pressure(n, 0.0);
+  domain.grid.for_each_stored_cell([&](int cell) {
+    const Point<2> x = domain.grid.center(cell);
+    now[cell] = CellState::fluid;
+    const bool was_solid = (x - Point<2>(1.5, 1.5)).cwiseAbs().maxCoeff() < 0.7;  // 5 x 5 or more
+    before[cell] = was_solid ? CellState::solid : CellState::fluid;
+    pressure[cell] = was_solid ? 1e3 : 7 + gradient.dot(x);
+  });
+  const CellField result = extended_pressure<2>(domain, now, before, pressure, gradient);
+  int n_new = 0;
+  domain.grid.for_each_owned_cell([&](int cell) {
+    n_new += before[cell] == CellState::solid;
+    EXPECT_NEAR(result[cell], 7 + gradient.dot(domain.grid.center(cell)), 1e-12);
+  });
+  EXPECT_GE(sum_all(world(), static_cast<GlobalIndex>(n_new)), 25);
 }
 
 }  // namespace
