@@ -325,7 +325,10 @@ std::string Simulation<dim>::explain() {
   line("ranks", std::to_string(comm_->getSize()));
   line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(), fluid.spacing(),
                             fluid.pressure_map()->getGlobalNumElements()));
-  line("viscous solve", components_.fluid->is_viscous() ? "on (viscosity > 0)" : "off (inviscid)");
+  const bool reads_pressure = scene_options_.stepper.incremental_pressure;
+  line("viscous solve", !fluid.is_viscous() ? "off (inviscid)"
+                        : reads_pressure    ? "on (viscosity > 0), reads the last pressure"
+                                            : "on (viscosity > 0), without pressure");
   int n_prescribed = 0, n_shells = 0;
   for (const auto& solid : solids.solids()) {
     n_prescribed += solid.prescribed ? 1 : 0;
