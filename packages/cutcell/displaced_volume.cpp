@@ -127,7 +127,7 @@ std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolu
 
   std::vector<DisplacedOfSolid<dim>> displaced(n_solids);
   for (std::size_t f = 0; f < volumes.size(); ++f) {
-    if (volumes[f].at_closed_side)
+    if (volumes[f].at_prescribed_side)
       continue;  // a column that ends there lifts nothing
     const int a = volumes[f].direction;
     for (const FluxShare<dim>& share : shares[f].all)

@@ -113,6 +113,8 @@ Box<dim> face_of(const ControlVolume<dim>& volume) {
 template <int dim>
 std::vector<int> thin_between(const ControlVolume<dim>& volume,
                               const SurfaceSnapshot<dim>& surface) {
+  if (volume.at_prescribed_side)
+    return {};  // one pressure point
   const int axis = volume.direction;
   const Point<dim> from = volume.sides[0].center, to = volume.sides[1].center;
   std::vector<int> found;
@@ -142,7 +144,7 @@ double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<
   // of the stencils, rows of A must add up to zero.
   constexpr double steps = 1 << 20;
   const double open = std::round(steps * std::max(0., 1 - closed)) / steps;
-  if (open < smallest || (!volume.at_closed_side && !thin_between<dim>(volume, surface).empty()))
+  if (open < smallest || !thin_between<dim>(volume, surface).empty())
     return 0;
   return open;
 }
@@ -162,7 +164,7 @@ FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnaps
   const auto parts = parts_of<dim>(volume, surface, weights);
   const bool is_closed = volume.open_fraction == 0;
   std::vector<int> thin;
-  if (is_closed && !volume.at_closed_side)
+  if (is_closed)
     thin = thin_between<dim>(volume, surface);
   double closed = 0;
   for (const ClosedPart<dim>& part : parts)

@@ -16,7 +16,7 @@ ControlVolume<dim> volume_at_side(const MacDomain<dim>& domain, const MacGeometr
   volume.open_center = volume.center;
   volume.density = density;
   volume.area = domain.face_area();
-  volume.at_closed_side = true;
+  volume.at_prescribed_side = true;
   volume.sides[1 - end].unknown = geometry.unknown[cell];
   volume.sides[1 - end].center = inner;
   volume.sides[end].center = volume.center;

@@ -9,19 +9,21 @@ CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<Cell
                             const std::vector<CellState>& before, CellField pressure,
                             const Point<dim>& gradient) {
   const TiledGrid<dim>& grid = domain.grid;
-  std::vector<char> known(before.size());
-  for (std::size_t cell = 0; cell < before.size(); ++cell)
-    known[cell] = before[cell] == CellState::fluid;
   std::vector<int> missing;
   grid.for_each_owned_cell([&](int cell) {
-    if (now[cell] == CellState::fluid && !known[cell])
+    if (now[cell] == CellState::fluid && before[cell] != CellState::fluid)
       missing.push_back(cell);
   });
-
-  const double h = grid.spacing();
   const auto n_over_ranks = [&](std::size_t n) {
     return sum_all(grid.comm(), static_cast<GlobalIndex>(n));
   };
+  if (n_over_ranks(missing.size()) == 0)
+    return pressure;
+
+  const double h = grid.spacing();
+  std::vector<char> known(before.size());
+  for (std::size_t cell = 0; cell < before.size(); ++cell)
+    known[cell] = before[cell] == CellState::fluid;
   while (n_over_ranks(missing.size()) > 0) {
     std::vector<std::pair<int, double>> front;
     std::vector<int> behind;

@@ -19,7 +19,7 @@ struct MacGeometry {
   /// Cells so near to a surface that a link from their faces may meet it; empty without surface.
   std::vector<char> near;
   /// Owned faces with open fraction < 1 and fluid on at least one side, and their control volumes;
-  /// behind them volumes at closed sides (add_covered_sides).
+  /// behind them volumes at prescribed sides (add_covered_sides).
   std::vector<FaceId> coupled;
   std::vector<ControlVolume<dim>> volumes;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows

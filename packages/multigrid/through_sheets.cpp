@@ -87,34 +87,28 @@ std::vector<int> axes_of_rows(const NearNullSpace& space) {
 /// took four times the iterations; in between it makes no difference.
 constexpr double stiffest_sheet = 1000;
 
-/// How much more than its mass a node's own block of C resists in its softest direction, for every
-/// row of C. Across a cloth that is little, whatever its elasticity; inside a volume it is much.
-std::vector<double> least_stiffness(const CrsMatrix& c, const std::vector<int>& axes,
-                                    const Teuchos::ArrayRCP<const double>& masses) {
-  const int n_rows = static_cast<int>(axes.size());
-  std::vector<double> result(n_rows, 1);
+/// How much more than its mass the own block of a row's node in C resists in its softest direction.
+/// Across a cloth that is little, whatever its elasticity; inside a volume it is much.
+double least_stiffness(const CrsMatrix& c, const std::vector<int>& axes, int row, double mass) {
+  const int first = row - axes[row];
+  int n_axes = 1;
+  while (first + n_axes < static_cast<int>(axes.size()) && axes[first + n_axes] == n_axes)
+    ++n_axes;
   CrsMatrix::local_inds_host_view_type columns;
   CrsMatrix::values_host_view_type values;
-  for (int first = 0; first < n_rows; ++first) {
-    if (axes[first] != 0 || !(masses[first] > 0))
-      continue;
-    int n_axes = 1;
-    while (first + n_axes < n_rows && axes[first + n_axes] == n_axes)
-      ++n_axes;
-    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(n_axes, n_axes);
-    for (int a = 0; a < n_axes; ++a) {
-      c.getLocalRowView(first + a, columns, values);
-      for (std::size_t k = 0; k < columns.size(); ++k) {
-        const GlobalIndex column = c.getColMap()->getGlobalElement(columns[k]);
-        const int b = c.getRowMap()->getLocalElement(column) - first;
-        if (b >= 0 && b < n_axes)
-          block(a, b) += values[k];
-      }
+  using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+  Block block = Block::Zero(n_axes, n_axes);
+  for (int a = 0; a < n_axes; ++a) {
+    c.getLocalRowView(first + a, columns, values);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const GlobalIndex column = c.getColMap()->getGlobalElement(columns[k]);
+      const int b = c.getRowMap()->getLocalElement(column) - first;
+      if (b >= 0 && b < n_axes)
+        block(a, b) += values[k];
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(block, Eigen::EigenvaluesOnly);
-    std::fill_n(result.begin() + first, n_axes, solver.eigenvalues()[0] / masses[first]);
   }
-  return result;
+  return Eigen::SelfAdjointEigenSolver<Block>(block, Eigen::EigenvaluesOnly).eigenvalues()[0] /
+         mass;
 }
 
 /// b_f sum_g b_g / m by axis of the face, on the columns of B^T that are its upper cell.
@@ -136,14 +130,17 @@ MultiVector conductances(const BlockSystem& system, const Vector& numbers,
     const long line = cell < 0 ? -1 - column : cell - place * stride[axis];
     rows[row].push_back({line, place, value, column});
   });
-  const auto lumped = lumped_mass(*assembled(system.solid_block), system.near_null_space);
+  const auto solid_block = assembled(system.solid_block);
+  const CrsMatrix& c = *solid_block;
+  const auto lumped = lumped_mass(c, system.near_null_space);
   const auto masses = lumped->getData();
-  const auto stiffness = least_stiffness(*assembled(system.solid_block), axes, masses);
   MultiVector result(coupling.getColMap(), system.near_null_space.n_axes());
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    if (rows[row].empty() || !(masses[row] > 0) || stiffness[row] > stiffest_sheet)
+  for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
+    if (rows[row].empty() || !(masses[row] > 0))
       continue;
     const std::vector<TouchedFace> faces = faces_of(rows[row]);
+    if (faces.empty() || least_stiffness(c, axes, row, masses[row]) > stiffest_sheet)
+      continue;
     double sum = 0;
     for (const TouchedFace& face : faces)
       sum += face.weight;

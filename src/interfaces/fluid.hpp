@@ -36,7 +36,7 @@ struct ControlVolume {
   Point<dim> open_center = Point<dim>::Zero();  ///< where its fluid moves: R_f unless partly open
   bool seen_by_fluid = true;  ///< a fluid cell beside it sees its centre without crossing a surface
   /// On a wall or an inflow: the velocity of its open part is prescribed, no fluid moves in it.
-  bool at_closed_side = false;
+  bool at_prescribed_side = false;
   GlobalIndex id = no_index;  ///< the fluid's own number; the same on any number of ranks
 };
 

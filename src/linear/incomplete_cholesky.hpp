@@ -10,9 +10,8 @@ namespace lockstep {
 /// D = diag(1 / k_i):
 ///   D^1/2 (sum over ranks R^T (L L^T)^-1 R) D^1/2
 /// is symmetric positive definite, like the sum alone (additive Schwarz), but does not count rows
-/// twice: some 5 % more iterations on 4 ranks than on one, where the sum takes 75 % more and parts
-/// without overlap take 20 %. Throws SolveError if Ifpack2 cannot build it; `name` is for messages.
-/// Collective.
+/// twice: fewer iterations than the sum, and than parts without overlap. Throws SolveError if
+/// Ifpack2 cannot build it; `name` is for messages. Collective.
 RCP<const LinearOperator> incomplete_cholesky_inverse(const RCP<const CrsMatrix>& matrix,
                                                       const std::string& name);
 

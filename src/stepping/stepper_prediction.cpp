@@ -55,9 +55,9 @@ RCP<const Vector> Stepper<dim>::expected_pressure(double time, double dt, StepRe
     return last_pressure(dt);
   const RCP<Vector> momentum = coupled() ? solid_momentum(time, dt, nullptr, report)
                                          : make_vector(components_.solids->map());
-  SolveReport ignored;
-  return solve(dt, momentum, "first pressure", ignored, report.incompatibility_s2)
-      .unknowns.pressure;
+  SolveReport iterations;
+  double incompatibility = 0;
+  return solve(dt, momentum, "first pressure", iterations, incompatibility).unknowns.pressure;
 }
 
 /// Implicit viscosity in the incremental form of pressure correction (Guermond, Minev and Shen
