@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Arguments {
-  std::string study_file, rungs;
+  std::string study_file, rungs, series;
   RunnerOptions runner;
   bool list = false, parameters = false;
   std::string format = "text";
@@ -134,6 +134,7 @@ int run(int argc, char** argv) {
   app.add_option("--output", arguments.runner.output_directory,
                  "output folder; default: the name of the study");
   app.add_option("--rungs", arguments.rungs, "part of the ladder, counted from 1: first:last");
+  app.add_option("--series", arguments.series, "only series whose names match this expression");
   app.add_option("--jobs", arguments.runner.n_jobs, "cases at a time; times suffer")
       ->check(CLI::PositiveNumber);
   app.add_flag("--fresh", arguments.runner.fresh, "run everything again");
@@ -163,7 +164,10 @@ int run(int argc, char** argv) {
     arguments.runner.output_directory = fs::path(arguments.study_file).stem();
 
   // 2. The study file, read strictly.
-  return run_study(read_study(arguments.study_file), arguments);
+  Study study = read_study(arguments.study_file);
+  if (!arguments.series.empty())
+    keep_series(arguments.series, study);
+  return run_study(study, arguments);
 }
 
 }  // namespace

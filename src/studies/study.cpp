@@ -1,6 +1,7 @@
 #include "studies/study.hpp"
 
 #include <algorithm>
+#include <regex>
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
@@ -297,6 +298,26 @@ Study read_study(const std::string& file) {
   check_input(!study.quantities.empty(), "{}: the study measures nothing; name a quantity.", file);
   check_input(!study.ladder_values.empty(), "{}: the ladder has no \"Values\".", file);
   return study;
+}
+
+void keep_series(const std::string& pattern, Study& study) {
+  std::regex expression;
+  try {
+    expression = pattern;
+  } catch (const std::regex_error& error) {
+    throw InputError(
+        fmt::format("--series: \"{}\" is no regular expression ({}).", pattern, error.what()));
+  }
+  std::vector<Series> kept;
+  std::string names;
+  for (Series& series : study.series) {
+    names += (names.empty() ? "" : "; ") + series.name;
+    if (std::regex_match(series.name, expression))
+      kept.push_back(std::move(series));
+  }
+  check_input(!kept.empty(), "--series: no series matches \"{}\" as a whole. The study has: {}.",
+              pattern, names);
+  study.series = std::move(kept);
 }
 
 }  // namespace lockstep

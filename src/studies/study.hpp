@@ -74,4 +74,8 @@ ParameterList study_parameters();
 /// Reads and validates a study file. Throws InputError. Not collective, and needs no MPI.
 Study read_study(const std::string& file);
 
+/// Drops the series whose names do not match this regular expression (ECMAScript) as a whole.
+/// Throws InputError if it is none, or if no series is left.
+void keep_series(const std::string& pattern, Study& study);
+
 }  // namespace lockstep

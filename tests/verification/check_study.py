@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs a part of a study and holds its table against bounds that a broken code would miss.
 
-check_study.py CONVERGE STUDY OUTPUT [--rungs A:B]
+check_study.py CONVERGE STUDY OUTPUT [--rungs A:B] [--series REGEX]
                --expect "SERIES | QUANTITY | COLUMN | last|all|order | < | BOUND" ...
 
 SERIES and QUANTITY are regular expressions that must match whole names. `last` looks at the last rung, `all` at
@@ -51,11 +51,14 @@ def main():
     parser.add_argument("study")
     parser.add_argument("output")
     parser.add_argument("--rungs")
+    parser.add_argument("--series")
     parser.add_argument("--expect", action="append", required=True)
     arguments = parser.parse_args()
     command = [arguments.converge, arguments.study, "--output", arguments.output, "--fresh"]
     if arguments.rungs:
         command += ["--rungs", arguments.rungs]
+    if arguments.series:
+        command += ["--series", arguments.series]
     code = subprocess.run(command).returncode
     if code != 0:
         sys.exit(f"converge ended with exit code {code}")

@@ -49,6 +49,15 @@ TEST(Cases, PartOfTheLadder) {
     EXPECT_THROW(parse_rungs(wrong), InputError) << wrong;
 }
 
+TEST(Cases, SomeOfTheSeries) {
+  Study study = two_series();
+  keep_series(".*ranks", study);
+  ASSERT_EQ(study.series.size(), 1u);
+  EXPECT_EQ(study.series[0].name, "two ranks");
+  for (const char* wrong : {"ranks", "light one", "(", ""})
+    EXPECT_THROW(keep_series(wrong, study), InputError) << wrong;
+}
+
 TEST(Cases, ALadderOfRanks) {
   Study study = two_series();
   study.series.resize(1);
