@@ -43,6 +43,8 @@ double DeformableSolids<dim>::elastic_share(const Body& body) const {
 
 template <int dim>
 RCP<const LinearOperator> DeformableSolids<dim>::implicit_force(double dt) const {
+  if (!implicit_force_.is_null() && implicit_force_dt_ == dt)
+    return implicit_force_;
   NodeMatrix<dim> sum = stiffness_;
   sum.set_zero();
   bool any = false;
@@ -58,7 +60,9 @@ RCP<const LinearOperator> DeformableSolids<dim>::implicit_force(double dt) const
     if (const double share = elastic_share(bodies_[body_of_node_[i]]); share > 0)
       sum.add_row(i, -share * dt, stiffness_);
   }
-  return as_operator(space_.matrix(sum));
+  implicit_force_ = as_operator(space_.matrix(sum));
+  implicit_force_dt_ = dt;
+  return implicit_force_;
 }
 
 template <int dim>
@@ -143,6 +147,7 @@ void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   velocity_ = rcp(new Vector(velocity, Teuchos::Copy));
   limiting_impulse_.clear();
   before_.clear();
+  implicit_force_ = Teuchos::null;
   if (linearised_)
     update_forces();
   update_states();
@@ -230,6 +235,7 @@ void DeformableSolids<dim>::update_geometry() {
 template <int dim>
 void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
   Nodes force(space_.n_local(), Point<dim>::Zero());
+  implicit_force_ = Teuchos::null;
   stiffness_.set_zero();
   damping_.set_zero();
   n_clamped_ = 0;

@@ -1,13 +1,9 @@
 #include "coupling/solid_system.hpp"
 
-#include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "coupling/stacked_matrix.hpp"
-#include "linear/exact_inverse.hpp"
-#include "linear/triplet_matrix.hpp"
 
 namespace lockstep {
 
@@ -169,94 +165,6 @@ Point<dim> SolidSystem<dim>::effective_velocity(const SurfacePoint<dim>& point,
                                                 const Point<dim>& x) const {
   const auto [m, local] = in_model(point);
   return model(m).effective_velocity(local, x);
-}
-
-template <int dim>
-std::vector<StackedPart> SolidSystem<dim>::parts(double dt) const {
-  std::vector<StackedPart> all;
-  for (int m = 0; m < n_models(); ++m) {
-    if (model(m).dof_map()->getGlobalNumElements() == 0)
-      continue;
-    const auto force = dt == 0 ? RCP<const LinearOperator>() : model(m).implicit_force(dt);
-    all.push_back({model(m).mass(), force, model(m).dof_map(), begin_[m].id, begin_[m].local});
-  }
-  return all;
-}
-
-template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& added, double dt,
-                                                  bool eliminate) const {
-  const std::vector<StackedPart> parts = this->parts(dt);
-  if (!all_assembled(parts)) {
-    check_input(
-        attachments_.empty(),
-        "Nodes can only be attached to solids whose mass and forces are assembled matrices.");
-    return as_thyra(
-        rcp(new StackedOperator(parts, dt, added, eliminate ? free_mask_ : Teuchos::null, map_)));
-  }
-  std::vector<Triplet> triplets = stacked_triplets(parts, dt);
-  attachments_.reduce(triplets, *map_);
-  if (!added.is_null())
-    add_triplets(*added, 0, 1, triplets);
-  // Padding rows must exist in the pattern; their value is set by the elimination.
-  const int n_local = static_cast<int>(map_->getNodeNumElements());
-  for (int i = 0; i < n_padding_; ++i) {
-    const GlobalIndex id = map_->getGlobalElement(n_local - 1 - i);
-    triplets.push_back({id, id, 1});
-  }
-  const RCP<CrsMatrix> matrix = assemble_triplets(std::move(triplets), map_, map_);
-  if (eliminate && has_locks_)
-    eliminate_masked(*matrix, *free_mask_);
-  return as_operator(matrix);
-}
-
-template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::solid_block(const RCP<const CrsMatrix>& added,
-                                                        double dt) const {
-  return block(added, dt, true);
-}
-
-template <int dim>
-NearNullSpace SolidSystem<dim>::near_null_space() const {
-  constexpr int n_motions = dim + n_rotations<dim>;
-  NearNullSpace all;
-  RCP<MultiVector> motions;
-  for (int m = 0; m < n_models(); ++m) {
-    const NearNullSpace part = model(m).near_null_space();
-    if (part.empty())
-      continue;
-    if (motions.is_null()) {
-      motions = rcp(new MultiVector(map_, n_motions));
-      all.body_of_row.assign(map_->getNodeNumElements(), -1);
-    }
-    motions->offsetViewNonConst(model(m).dof_map(), begin_[m].local)->update(1, *part.motions, 0);
-    for (std::size_t row = 0; row < part.body_of_row.size(); ++row)
-      all.body_of_row[begin_[m].local + row] = all.n_bodies + part.body_of_row[row];
-    all.n_bodies += part.n_bodies;
-  }
-  all.motions = motions;
-  return all;
-}
-
-template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::unlocked_block(const RCP<const CrsMatrix>& added,
-                                                           double dt) const {
-  if (!attachments_.empty())
-    return block(added, dt, false);
-  return as_thyra(rcp(new StackedOperator(parts(dt), dt, added, Teuchos::null, map_)));
-}
-
-template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::mass() const {
-  return unlocked_block(Teuchos::null, 0);
-}
-
-template <int dim>
-RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& generalized_momentum) const {
-  const auto velocity = make_vector(map_);
-  apply(*exact_inverse(block(Teuchos::null, 0, false), "mass of the solids"), generalized_momentum,
-        *velocity);
-  return velocity;
 }
 
 template <int dim>

@@ -91,6 +91,9 @@ class SolidSystem {
   RCP<Vector> part(Vector& stacked, int m) const;
   void make_free_mask();
   std::vector<StackedPart> parts(double dt) const;
+  std::vector<int> padding_rows() const;
+  RCP<CrsMatrix> reduced_matrix(const std::vector<StackedPart>& parts, double dt,
+                                const RCP<const CrsMatrix>& added) const;
   RCP<const LinearOperator> block(const RCP<const CrsMatrix>& added, double dt,
                                   bool eliminate) const;
 

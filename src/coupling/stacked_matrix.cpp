@@ -4,6 +4,8 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "linear/matrix_sum.hpp"
+
 namespace lockstep {
 
 bool all_assembled(const std::vector<StackedPart>& parts) {
@@ -11,6 +13,20 @@ bool all_assembled(const std::vector<StackedPart>& parts) {
     return !assembled(part.mass).is_null() &&
            (part.implicit_force.is_null() || !assembled(part.implicit_force).is_null());
   });
+}
+
+RCP<CrsMatrix> stacked_matrix(const std::vector<StackedPart>& parts, double dt,
+                              const RCP<const CrsMatrix>& added, const RCP<const Map>& map,
+                              const std::vector<int>& unit_rows) {
+  std::vector<Summand> summands;
+  for (const StackedPart& part : parts) {
+    summands.push_back({assembled(part.mass), part.id_begin, 1});
+    if (!part.implicit_force.is_null())
+      summands.push_back({assembled(part.implicit_force), part.id_begin, -dt});
+  }
+  if (!added.is_null())
+    summands.push_back({added, 0, 1});
+  return sum_of(summands, map, unit_rows);
 }
 
 void add_triplets(const CrsMatrix& matrix, GlobalIndex shift, double factor,

@@ -8,8 +8,6 @@
 #include <numeric>
 #include <set>
 
-#include "linear/matrix_rows.hpp"
-
 namespace lockstep {
 
 namespace {
@@ -78,11 +76,17 @@ std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix) {
     return column_map->getLocalElement(row_map->getGlobalElement(row));
   };
   ColumnSets sets(matrix);
-  for_each_entry(matrix, [&](int row, GlobalIndex column, double value) {
-    if (value != 0)
-      sets.join(column_of(row), column_map->getLocalElement(column));
-  });
   const auto n_rows = static_cast<int>(row_map->getNodeNumElements());
+  for (int row = 0; row < n_rows; ++row) {
+    const int own = column_of(row);
+    typename CrsMatrix::local_inds_host_view_type columns;
+    typename CrsMatrix::values_host_view_type values;
+    matrix.getLocalRowView(row, columns, values);
+    for (std::size_t k = 0; k < columns.extent(0); ++k) {
+      if (values(k) != 0)
+        sets.join(own, columns(k));
+    }
+  }
   const auto importer = matrix.getGraph()->getImporter();
   for (bool changed = !importer.is_null(); changed;) {
     Vector lowest(row_map), seen(column_map);  // integers, which a double holds exactly

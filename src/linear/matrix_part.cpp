@@ -5,7 +5,7 @@
 
 #include "linear/action_operator.hpp"
 #include "linear/block_diagonal.hpp"
-#include "linear/matrix_rows.hpp"
+#include "linear/local_rows.hpp"
 #include "linear/overlap.hpp"
 
 namespace lockstep {
@@ -25,17 +25,27 @@ MatrixPart::MatrixPart(const CrsMatrix& matrix, const std::vector<bool>& is_insi
   }
   const auto numbers_of_columns = on_columns(matrix, numbers);
   const auto number = numbers_of_columns->getData();
-  std::vector<std::vector<Entry>> entries(rows_.size());
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    Teuchos::ArrayView<const int> columns;
-    Teuchos::ArrayView<const double> values;
-    matrix.getLocalRowView(rows_[i], columns, values);
-    for (int k = 0; k < columns.size(); ++k) {
-      if (number[columns[k]] >= 0)
-        entries[i].push_back({static_cast<GlobalIndex>(number[columns[k]]), values[k]});
-    }
+  std::vector<GlobalIndex> ids;
+  for (const double id : number) {
+    if (id >= 0)
+      ids.push_back(static_cast<GlobalIndex>(id));
   }
-  matrix_ = matrix_from_rows(map_, entries);
+  const LocalColumns columns(map_, ids);
+  std::vector<int> column_of;
+  for (const double id : number)
+    column_of.push_back(id < 0 ? -1 : columns.local(static_cast<GlobalIndex>(id)));
+  LocalRows part(columns);
+  for (const int row : rows_) {
+    typename CrsMatrix::local_inds_host_view_type indices;
+    typename CrsMatrix::values_host_view_type values;
+    matrix.getLocalRowView(row, indices, values);
+    for (std::size_t k = 0; k < indices.extent(0); ++k) {
+      if (column_of[indices(k)] >= 0)
+        part.add(column_of[indices(k)], values(k));
+    }
+    part.end_row();
+  }
+  matrix_ = part.matrix();
 }
 
 RCP<Vector> MatrixPart::restricted(const Vector& all) const {
