@@ -16,6 +16,15 @@ struct BlockResidual {
   double norm() const { return pressure + solid; }
 };
 
+/// Row 2 alone.
+struct SolidResidual {
+  RCP<Vector> vector;  ///< -solid rhs + B^T p̂ + C V_S
+  double scale = 0;    ///< as in BlockResidual
+};
+
+/// Of a system with solid. Collective.
+SolidResidual solid_row_residual(const BlockSystem& system, const BlockVector& rhs,
+                                 const BlockVector& solution);
 /// Collective.
 BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
                              const BlockVector& solution);

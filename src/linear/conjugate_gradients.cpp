@@ -44,6 +44,22 @@ double advance(double step, const Vector& d, const Vector& q, Vector& x, Vector&
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
+/// d = z + beta d; with beta 0 the old d may be anything.
+void turn(double beta, const Vector& z, Vector& d) {
+  const auto z_values = z.getData();
+  const auto d_values = d.getDataNonConst();
+  const double* z_data = z_values.getRawPtr();
+  double* d_data = d_values.getRawPtr();
+  const std::ptrdiff_t n = z_values.size();
+  if (beta == 0) {
+    std::copy(z_data, z_data + n, d_data);
+    return;
+  }
+#pragma GCC ivdep
+  for (std::ptrdiff_t i = 0; i < n; ++i)
+    d_data[i] = z_data[i] + beta * d_data[i];
+}
+
 /// Kernels made of two operators.
 class Actions final : public ConjugateGradientKernels {
  public:
@@ -54,12 +70,12 @@ class Actions final : public ConjugateGradientKernels {
   double precondition(const Vector& r, double) override {
     preconditioner_(r, z_);
     project_out(null_space_, z_);
-    return r.dot(z_);
+    return dot(r, z_);
   }
   double advance_direction(double beta, Vector& d, Vector& q) override {
-    d.update(1, z_, beta);
+    turn(beta, z_, d);
     op_(d, q);
-    return d.dot(q);
+    return dot(d, q);
   }
 
  private:

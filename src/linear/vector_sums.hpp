@@ -23,8 +23,9 @@ double sum_of_products(const A* a, const B* b, std::ptrdiff_t n) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-/// The 2-norm over all ranks, as fast as memory: Kokkos Kernels' adds one term at a time.
-/// Collective.
+/// x . y over all ranks, as fast as memory: Kokkos Kernels' adds one term at a time. Collective.
+double dot(const Vector& x, const Vector& y);
+/// The 2-norm likewise. Collective.
 double norm(const Vector& x);
 
 }  // namespace lockstep

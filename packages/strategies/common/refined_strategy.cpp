@@ -21,6 +21,10 @@ constexpr double safety = 0.5;
 /// A correction that gains less than this factor is no progress; two of them in a row end the
 /// solve.
 constexpr double least_progress = 0.5;
+/// A strategy that iterates on C within every iteration aims at this reduction of r_1 and starts
+/// afresh: what C^-1 is asked for then is relative to what is left of an error, not to the
+/// solution. V_S is taken along to these parts of r_2, and to round-off in the end.
+constexpr double of_a_stage = 1e-2, of_stage_velocity = 1e-3, of_first_velocity = 1e-5;
 /// What a Krylov method with short recurrences may reduce a residual by before the round-off of an
 /// inverse of A in single precision, 1e-7 of the first vectors, is felt.
 constexpr double strongest_single_reduction = 1e-5;
@@ -67,14 +71,21 @@ void check_compatible(const std::string& name, double removed, const BlockResidu
               name, removed / residual.pressure_scale, tolerance);
 }
 
-/// V_S = C^-1 (solid rhs - B^T p̂); nothing without a solid.
-void back_substitute(const BlockSystem& system, const BlockVector& rhs,
-                     const RCP<const LinearOperator>& solid_inverse, BlockVector& solution) {
+/// V_S -= C^-1 r_2, which leaves `reduction` of r_2 or round-off, whichever is more; nothing
+/// without a solid.
+void back_substitute(const BlockSystem& system, const BlockVector& rhs, const SolidInverse& inverse,
+                     double reduction, BlockVector& solution) {
   if (!system.has_solid())
     return;
-  Vector right(*rhs.solid, Teuchos::Copy);
-  system.coupling_transposed->apply(*solution.pressure, right, Teuchos::NO_TRANS, -1, 1);
-  apply(*solid_inverse, right, *solution.solid);
+  constexpr double round_off = 1e-14, loosest = 1e-2;
+  const SolidResidual row = solid_row_residual(system, rhs, solution);
+  const double size = norm(*row.vector);
+  if (size == 0)
+    return;
+  Vector change(row.vector->getMap());
+  apply(*inverse.to(std::min(loosest, std::max(reduction, round_off * row.scale / size))),
+        *row.vector, change);
+  solution.solid->update(-1, change, 1);
 }
 
 /// The norm of B C^-1, by a few steps of the power method.
@@ -249,11 +260,17 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
   BlockResidual residual;
   double previous = 0;
   project_out(system.null_space, *solution.pressure);
+  if (system.has_solid())
+    solution.solid->putScalar(0);
+  const bool in_stages = system.has_solid() && works_in_stages();
+  double reduction = in_stages ? of_first_velocity : 0;
   constexpr double of_a_scale = 1e-3;
   const std::function<double(const Vector&)> update_target = [&](const Vector& x) {
-    BlockVector corrected{rcp(new Vector(*solution.pressure, Teuchos::Copy)), solution.solid};
+    BlockVector corrected{rcp(new Vector(*solution.pressure, Teuchos::Copy)), Teuchos::null};
     corrected.pressure->update(1, x, 1);
-    back_substitute(system, rhs, solid_.to(of_a_scale), corrected);
+    if (system.has_solid())
+      corrected.solid = rcp(new Vector(*solution.solid, Teuchos::Copy));
+    back_substitute(system, rhs, solid_, of_a_scale, corrected);
     return safety *
            std::max(request.tolerance * block_residual(system, rhs, corrected).pressure_scale,
                     request.negligible_pressure_residual);
@@ -261,7 +278,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
   const std::function<double(const Vector&)> no_update;
   const double rhs_norm = norm(*rhs.pressure);
   while (true) {
-    back_substitute(system, rhs, solid_inverse(), solution);
+    back_substitute(system, rhs, solid_, reduction, solution);
     residual = block_residual(system, rhs, solution);
     check_finite(name, residual);
     const double removed = project_out(system.null_space, *residual.vector.pressure);
@@ -269,12 +286,13 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
       done.initial_pressure = residual.relative_pressure();
       done.initial_solid = residual.relative_solid();
     }
-    if (residual.relative_pressure() <= request.tolerance ||
-        residual.pressure <= request.negligible_pressure_residual)
-      break;
     const double solvable = norm(*residual.vector.pressure);
     const double target =
         std::max(request.tolerance * residual.pressure_scale, request.negligible_pressure_residual);
+    if (std::min(solvable, residual.pressure) <= target && std::exchange(reduction, 0) > 0)
+      continue;
+    if (residual.pressure <= target)
+      break;
     // The scale of any solution is at least |rhs|: near that nothing need be asked again.
     const bool is_settled = residual.pressure_scale <= 1.5 * rhs_norm;
     if (solvable <= target || done.n_stalls > 1)
@@ -287,11 +305,14 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
       give_up(name, residual, done, request.tolerance, maximum_iterations_);
     previous = solvable;
     const double aim = is_settled ? safety * target / 1.5 : safety * target;
-    done.n_iterations +=
-        correct(system,
-                {name, residual.vector.pressure.get(), solvable, aim, 1e-15 * residual.solid_scale,
-                 maximum_iterations_ - done.n_iterations, is_settled ? no_update : update_target},
-                correction);
+    const bool is_stage = in_stages && aim < of_a_stage * solvable;
+    reduction = is_stage ? of_stage_velocity : 0;
+    done.n_iterations += correct(
+        system,
+        {name, residual.vector.pressure.get(), solvable, is_stage ? of_a_stage * solvable : aim,
+         1e-15 * residual.solid_scale, maximum_iterations_ - done.n_iterations,
+         is_settled || is_stage ? no_update : update_target},
+        correction);
     project_out(system.null_space, correction);
     solution.pressure->update(1, correction, 1);
     ++done.n_corrections;

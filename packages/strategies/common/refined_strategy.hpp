@@ -61,6 +61,9 @@ class RefinedStrategy : public SolverStrategy {
   virtual bool is_built_for(const BlockSystem&) const { return true; }
   /// Whether the strategy uses the layout's approximate inverse of A + B C^-1 B^T.
   virtual bool inverts_schur() const { return false; }
+  /// Whether `correct` iterates on C so often that it should aim at a part of what is asked only,
+  /// and be called again.
+  virtual bool works_in_stages() const { return false; }
   /// Entries of the matrices that the strategy has assembled for itself; 0 if it does not count.
   virtual long stored_nonzeros() const { return 0; }
   /// An approximate solution p̂ of Eq. 16 with right-hand side (r_1, 0), written to `correction`;

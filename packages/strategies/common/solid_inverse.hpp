@@ -30,6 +30,8 @@ class SolidInverse {
   void build(const BlockSystem& system);
   void reset();
   bool is_built() const { return !exact_.is_null(); }
+  /// Whether C^-1 is an iteration, whose cost depends on what it is asked for.
+  bool iterates() const { return iterates_; }
 
   /// C^-1 to round-off. Null before `build`.
   const RCP<const LinearOperator>& exact() const { return exact_; }

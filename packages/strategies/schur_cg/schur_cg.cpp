@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "linear/conjugate_gradients.hpp"
+#include "linear/vector_sums.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 
 namespace lockstep {
@@ -25,7 +26,7 @@ class Eliminated {
         velocity_(coupling_.getRangeMap()) {}
 
   void set_residual(double norm) {
-    constexpr double share = 1e-1, loosest = 1e-2;
+    constexpr double share = 0.3, loosest = 1e-1;
     inverse_ = solid_.to(std::min(loosest, share * target_ / norm));
   }
 
@@ -34,7 +35,7 @@ class Eliminated {
     coupling_.apply(x, force_);
     apply(*inverse_, force_, velocity_);
     coupling_.apply(velocity_, y, Teuchos::TRANS, 1, 1);
-    return force_.dot(velocity_);
+    return dot(force_, velocity_);
   }
 
  private:

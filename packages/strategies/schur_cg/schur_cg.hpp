@@ -18,6 +18,7 @@ class SchurCg : public RefinedStrategy {
 
  private:
   bool inverts_schur() const override { return true; }
+  bool works_in_stages() const override { return solid().iterates(); }
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) override;
 };

@@ -311,6 +311,7 @@ TEST(Strategies, EverySolidInverseLeadsToTheSameSolution) {
       list.sublist("Solid Inverse").set("Type", type);
       const Solved found = solve(*make(strategy, list), problem);
       EXPECT_LT(relative_difference(*expected.solution.solid, *found.solution.solid), 1e-7);
+      EXPECT_LT(found.report.solid_residual, 1e-13) << "momentum is not exact";
     }
   }
 }
