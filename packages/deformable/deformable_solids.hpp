@@ -142,7 +142,7 @@ class DeformableSolids : public SolidModel<dim> {
   NodeMatrix<dim> stiffness_, damping_;
   mutable RCP<const LinearOperator> implicit_force_;  ///< of these; null: not asked for yet
   mutable double implicit_force_dt_ = 0;              ///< [s]
-  Nodes x_;       ///< of all local nodes [m]
+  Nodes x_;                                           ///< of all local nodes [m]
   Nodes before_;  ///< from `move` to the end of the step, if bodies are of second order: x_, theirs
                   ///< at the start [m]
   Nodes elastic_force_;  ///< of the owned nodes [N]

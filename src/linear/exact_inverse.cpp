@@ -88,10 +88,9 @@ RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOpera
 
 RCP<const LinearOperator> exact_inverse(const RCP<const LinearOperator>& op,
                                         const std::string& name) {
-  const InverseByCost split(op, name);
-  return split.with(split.is_complete()
-                        ? Teuchos::null
-                        : conjugate_gradient_inverse(split.rest(), 1e-14, 20000, name));
+  return InverseByCost(op, {}, name).with([&](const InverseByCost::Rest& rest) {
+    return conjugate_gradient_inverse(rest.op, 1e-14, 20000, name);
+  });
 }
 
 }  // namespace lockstep

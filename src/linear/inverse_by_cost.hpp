@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,33 +9,47 @@
 
 namespace lockstep {
 
+struct RowComponent;
+
 /// The inverse of a symmetric positive definite C, component by component of its nonzeros: exact
 /// where that is cheap (dense blocks for the 6 x 6 of rigid bodies, sparse Cholesky factors for
-/// cloths and small volumes), while the rest is left to an iteration, which then need not suffer
-/// from what the others are like.
+/// cloths and small volumes), while the rest is left to iterations, one for each large component,
+/// so that none suffers from what the others are like.
 class InverseByCost {
  public:
-  /// `name` is for messages. Throws SolveError if C is not positive definite. Collective.
-  InverseByCost(const RCP<const LinearOperator>& op, const std::string& name);
+  /// Rows left to an iteration.
+  struct Rest {
+    RCP<const LinearOperator> op;            ///< C on them, numbered anew
+    NearNullSpace motions;                   ///< the rigid motions of bodies in them
+    std::shared_ptr<const MatrixPart> part;  ///< null: all rows
+  };
+  using InverseOfRest = std::function<RCP<const LinearOperator>(const Rest&)>;
 
-  /// Nothing is left: `with` needs no inverse of the rest.
-  bool is_complete() const { return rest_.is_null(); }
-  /// What is left, on rows of its own; C itself if nothing was cheap. Null if `is_complete`.
-  const RCP<const LinearOperator>& rest() const { return rest_; }
-  /// The rigid motions of bodies in it.
-  NearNullSpace of_rest(const NearNullSpace& all) const;
+  /// Where `space` tells how stiff a large component is, it is factored only if an iteration would
+  /// be slow. `name` is for messages. Throws SolveError if C is not positive definite. Collective.
+  InverseByCost(const RCP<const LinearOperator>& op, const NearNullSpace& space,
+                const std::string& name);
 
-  /// C^-1 with this inverse of `rest`, on the rows of C. Applying it is collective.
-  RCP<const LinearOperator> with(const RCP<const LinearOperator>& of_rest) const;
+  /// Nothing is left.
+  bool is_complete() const { return rests_.empty(); }
+  const std::vector<Rest>& rests() const { return rests_; }
+  /// C^-1 with these inverses of what is left, on the rows of C. Applying it is collective.
+  RCP<const LinearOperator> with(const InverseOfRest& inverse_of_rest) const;
 
  private:
-  void split(const RCP<const CrsMatrix>& matrix, const std::string& name);
+  void split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space,
+             const std::string& name);
+  void take_small(const CrsMatrix& matrix, const NearNullSpace& space,
+                  const std::vector<RowComponent>& components, std::vector<bool> is_small,
+                  const std::string& name);
+  void take_large(const CrsMatrix& matrix, const NearNullSpace& space,
+                  const std::vector<bool>& rows, const std::string& name);
+  void leave(const std::shared_ptr<const MatrixPart>& part, const NearNullSpace& space);
 
   RCP<const Map> map_;
   RCP<const LinearOperator> whole_;  ///< C^-1, if one method serves all of it
   std::vector<PartInverse> cheap_;
-  std::shared_ptr<const MatrixPart> rest_part_;  ///< null: all rows
-  RCP<const LinearOperator> rest_;
+  std::vector<Rest> rests_;
 };
 
 }  // namespace lockstep

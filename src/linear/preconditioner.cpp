@@ -174,13 +174,11 @@ RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
   const auto matrix = assembled(op);
   if (matrix.is_null() || !is_stiff(*matrix, near_null_space))
     return Teuchos::null;
-  const InverseByCost split(op, name);
-  if (split.is_complete())
-    return split.with(Teuchos::null);
   ParameterList list;
   list.set("Type", "MueLu");
-  return split.with(
-      preconditioner_from_list(split.rest(), list, name, split.of_rest(near_null_space)));
+  return InverseByCost(op, near_null_space, name).with([&](const InverseByCost::Rest& rest) {
+    return preconditioner_from_list(rest.op, list, name, rest.motions);
+  });
 }
 
 }  // namespace lockstep

@@ -62,9 +62,8 @@ SolidInverse::SolidInverse(const ParameterList& list) {
 }
 
 void SolidInverse::reset() {
-  iterated_ = exact_ = approximate_ = preconditioner_ = rounded_ = Teuchos::null;
-  preconditioner_type_.clear();
-  motions_ = {};
+  exact_ = approximate_ = Teuchos::null;
+  iterated_.clear();
   split_.reset();
 }
 
@@ -72,13 +71,20 @@ int SolidInverse::take_iterations() {
   return static_cast<int>(std::exchange(*iterations_, 0));
 }
 
+RCP<const LinearOperator> SolidInverse::iteration(const Iterated& iterated,
+                                                  double tolerance) const {
+  return conjugate_gradient_inverse(
+      iterated.op, {iterated.preconditioner, iterated.rounded, std::max(tolerance, round_off),
+                    most_iterations, name_, iterations_});
+}
+
 RCP<const LinearOperator> SolidInverse::to(double tolerance) const {
-  if (!iterates_)
+  if (!iterates())
     return exact_;
-  const auto iteration = conjugate_gradient_inverse(
-      iterated_, {preconditioner_, rounded_, std::max(tolerance, round_off), most_iterations, name_,
-                  iterations_});
-  return split_ ? split_->with(iteration) : iteration;
+  if (!split_)
+    return iteration(iterated_.front(), tolerance);
+  auto next = iterated_.begin();
+  return split_->with([&](const auto&) { return iteration(*next++, tolerance); });
 }
 
 void SolidInverse::build(const BlockSystem& system) {
@@ -88,55 +94,63 @@ void SolidInverse::build(const BlockSystem& system) {
     build_automatic(system);
   else
     build_named(system);
-  if (iterates_)
+  if (iterates())
     exact_ = to(round_off);
 }
 
-void SolidInverse::build_automatic(const BlockSystem& system) {
-  split_.emplace(system.solid_block, name_);
-  iterates_ = !split_->is_complete();
-  if (!iterates_) {
-    exact_ = split_->with(Teuchos::null);
-    return;
-  }
-  iterated_ = split_->rest();
-  const auto matrix = assembled(iterated_);
+SolidInverse::Iterated SolidInverse::prepared(const InverseByCost::Rest& rest) const {
+  Iterated result{rest.op, Teuchos::null, Teuchos::null, "", rest.motions};
+  const auto matrix = assembled(rest.op);
   if (matrix.is_null())
-    return;
-  motions_ = split_->of_rest(system.near_null_space);
-  preconditioner_type_ = inner_type(stiffness_number(*matrix, motions_));
-  preconditioner_ =
-      preconditioner_from_list(iterated_, list_of(preconditioner_type_), name_, motions_);
-  rounded_ = single_precision_copy(matrix, motions_);
+    return result;
+  result.preconditioner_type = inner_type(stiffness_number(*matrix, rest.motions));
+  result.preconditioner =
+      preconditioner_from_list(rest.op, list_of(result.preconditioner_type), name_, rest.motions);
+  result.rounded = single_precision_copy(matrix, rest.motions);
+  return result;
+}
+
+void SolidInverse::build_automatic(const BlockSystem& system) {
+  split_.emplace(system.solid_block, system.near_null_space, name_);
+  for (const InverseByCost::Rest& rest : split_->rests())
+    iterated_.push_back(prepared(rest));
+  if (!iterates())
+    exact_ = split_->with({});
 }
 
 /// In a preconditioner of the outer iteration it counts to be close to C.
 const RCP<const LinearOperator>& SolidInverse::approximate() const {
   if (!approximate_.is_null() || exact_.is_null())
     return approximate_;
-  if (type_ != "Automatic" || preconditioner_type_.empty()) {
+  const bool is_matrix_free = iterates() && iterated_.front().preconditioner_type.empty();
+  if (type_ != "Automatic" || !iterates() || is_matrix_free) {
     approximate_ = exact_;
     return approximate_;
   }
-  const bool is_close =
-      preconditioner_type_ == "MueLu" || !is_stiff(*assembled(iterated_), motions_);
-  approximate_ = split_->with(
-      is_close ? preconditioner_
-               : preconditioner_from_list(iterated_, list_of("MueLu"), name_, motions_));
+  auto next = iterated_.begin();
+  approximate_ = split_->with([&](const auto&) {
+    const Iterated& iterated = *next++;
+    const bool is_close = iterated.preconditioner_type == "MueLu" ||
+                          !is_stiff(*assembled(iterated.op), iterated.motions);
+    return is_close
+               ? iterated.preconditioner
+               : preconditioner_from_list(iterated.op, list_of("MueLu"), name_, iterated.motions);
+  });
   return approximate_;
 }
 
 void SolidInverse::build_named(const BlockSystem& system) {
-  iterated_ = system.solid_block;
-  approximate_ = preconditioner_from_list(iterated_, list_, name_, system.near_null_space);
-  iterates_ = type_ != "Direct";
-  if (!iterates_)
+  const RCP<const LinearOperator>& c = system.solid_block;
+  approximate_ = preconditioner_from_list(c, list_, name_, system.near_null_space);
+  if (type_ == "Direct") {
     exact_ = approximate_;
-  else
-    preconditioner_ = type_ == "Conjugate Gradients"
-                          ? preconditioner_from_list(iterated_, of_inner_iteration(list_), name_,
-                                                     system.near_null_space)
-                          : approximate_;
+    return;
+  }
+  const auto preconditioner =
+      type_ == "Conjugate Gradients"
+          ? preconditioner_from_list(c, of_inner_iteration(list_), name_, system.near_null_space)
+          : approximate_;
+  iterated_.push_back({c, preconditioner, Teuchos::null, "", {}});
 }
 
 }  // namespace lockstep

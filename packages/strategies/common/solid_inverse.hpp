@@ -31,7 +31,7 @@ class SolidInverse {
   void reset();
   bool is_built() const { return !exact_.is_null(); }
   /// Whether C^-1 is an iteration, whose cost depends on what it is asked for.
-  bool iterates() const { return iterates_; }
+  bool iterates() const { return !iterated_.empty(); }
 
   /// C^-1 to round-off. Null before `build`.
   const RCP<const LinearOperator>& exact() const { return exact_; }
@@ -46,20 +46,26 @@ class SolidInverse {
   int take_iterations();
 
  private:
+  /// C, or a part of it that is not cheap.
+  struct Iterated {
+    RCP<const LinearOperator> op;
+    RCP<const LinearOperator> preconditioner;  ///< of that; null: none
+    RCP<const LinearOperator> rounded;         ///< it in single precision; null: not had
+    std::string preconditioner_type;           ///< of "Automatic"
+    NearNullSpace motions;
+  };
+
   void build_automatic(const BlockSystem& system);
   void build_named(const BlockSystem& system);
+  Iterated prepared(const InverseByCost::Rest& rest) const;
+  RCP<const LinearOperator> iteration(const Iterated& iterated, double tolerance) const;
 
   ParameterList list_;
   std::string type_ = "Automatic";
   RCP<const LinearOperator> exact_;
   mutable RCP<const LinearOperator> approximate_;
   std::optional<InverseByCost> split_;  ///< of "Automatic" and "Exact"
-  bool iterates_ = false;
-  RCP<const LinearOperator> iterated_;        ///< C, or what of it is not cheap
-  RCP<const LinearOperator> preconditioner_;  ///< of that; null: none
-  RCP<const LinearOperator> rounded_;         ///< C in single precision; null: not had
-  std::string preconditioner_type_;           ///< of "Automatic" where it iterates
-  NearNullSpace motions_;                     ///< of what is iterated on
+  std::vector<Iterated> iterated_;      ///< of "Automatic" and "Exact" in the order of their rests
   std::string name_;
   std::shared_ptr<long> iterations_ = std::make_shared<long>(0);
 };

@@ -14,6 +14,7 @@
 #include "linear/inverse_by_cost.hpp"
 #include "linear/matrix_part.hpp"
 #include "linear/matrix_rows.hpp"
+#include "linear/matrix_sum.hpp"
 #include "linear/preconditioner.hpp"
 #include "linear/single_precision.hpp"
 #include "linear/symmetry_check.hpp"
@@ -175,19 +176,61 @@ TEST(SoftSolid, IndefiniteMatricesHaveNoCholeskyFactors) {
 }
 
 TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
-  const InverseByCost cheap(as_operator(Lattice(20, 1e3).c), "solid");
-  EXPECT_TRUE(cheap.is_complete());
+  const Lattice small(20, 1e3);
+  EXPECT_TRUE(InverseByCost(as_operator(small.c), small.space, "solid").is_complete());
+  // 5 000 rows: factored where an iteration would be slow, or no motions tell.
+  const Lattice soft(50, 10), stiff(50, 1e4);
+  EXPECT_FALSE(InverseByCost(as_operator(soft.c), soft.space, "solid").is_complete());
+  EXPECT_TRUE(InverseByCost(as_operator(stiff.c), stiff.space, "solid").is_complete());
+  EXPECT_TRUE(InverseByCost(as_operator(soft.c), {}, "solid").is_complete());
 
   const Lattice solid(160, 10);  // 51 200 rows and one
-  const InverseByCost split(as_operator(solid.c), "solid");
-  ASSERT_FALSE(split.is_complete());
-  const auto rest = assembled(split.rest());
+  const InverseByCost split(as_operator(solid.c), solid.space, "solid");
+  ASSERT_EQ(split.rests().size(), 1u);
+  const auto rest = assembled(split.rests()[0].op);
   EXPECT_EQ(rest->getGlobalNumRows(), 2 * 160 * 160);
-  const NearNullSpace motions = split.of_rest(solid.space);
+  const NearNullSpace& motions = split.rests()[0].motions;
   EXPECT_EQ(std::count(motions.body_of_row.begin(), motions.body_of_row.end(), -1), 0);
   EXPECT_NEAR(lumped_mass(*rest, motions)->norm1(), 2 * 160 * 160, 1e-6);
-  const auto inverse = split.with(conjugate_gradient_inverse(split.rest(), 1e-12, 5000, "rest"));
+  const auto inverse = split.with([](const InverseByCost::Rest& one) {
+    return conjugate_gradient_inverse(one.op, 1e-12, 5000, "rest");
+  });
   EXPECT_LT(error_of(*inverse, *solid.c), 1e-11);
+}
+
+TEST(SoftSolid, LargePartsAreIteratedOnOneByOne) {
+  const Lattice one(40, 10), other(40, 50);
+  const Map& part = *one.c->getRowMap();
+  const auto n = static_cast<GlobalIndex>(part.getGlobalNumElements());
+  std::vector<GlobalIndex> ids;
+  for (const GlobalIndex shift : {GlobalIndex(0), n}) {
+    for (const GlobalIndex id : part.getNodeElementList())
+      ids.push_back(id + shift);
+  }
+  const RCP<const Map> map =
+      rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                  Teuchos::arrayViewFromVector(ids), 0, Tpetra::getDefaultComm()));
+  const RCP<const CrsMatrix> both = sum_of({{one.c, 0, 1}, {other.c, n, 1}}, map);
+  NearNullSpace space;
+  space.n_bodies = 2;
+  const auto motions = rcp(new MultiVector(map, 3));
+  for (const auto* solid : {&one, &other}) {
+    const std::size_t begin = space.body_of_row.size();
+    for (const int body : solid->space.body_of_row)
+      space.body_of_row.push_back(body < 0 ? -1 : solid == &other);
+    motions->offsetViewNonConst(one.c->getRowMap(), begin)->update(1, *solid->space.motions, 0);
+  }
+  space.motions = motions;
+
+  const InverseByCost split(as_operator(both), space, "solids");
+  ASSERT_EQ(split.rests().size(), 2u);
+  const double first = stiffness_number(*assembled(split.rests()[0].op), split.rests()[0].motions);
+  const double second = stiffness_number(*assembled(split.rests()[1].op), split.rests()[1].motions);
+  EXPECT_NEAR((second - 1) / (first - 1), 5, 1e-9);
+  const auto inverse = split.with([](const InverseByCost::Rest& rest) {
+    return conjugate_gradient_inverse(rest.op, 1e-12, 5000, "rest");
+  });
+  EXPECT_LT(error_of(*inverse, *both), 1e-11);
 }
 
 /// Without the lone dof.
