@@ -3,9 +3,6 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numeric>
 
 #include "linear/vector_sums.hpp"
 
@@ -19,28 +16,7 @@ constexpr double least_flux = 1e-6;
 
 /// residual += sign term; `scale` becomes |term| if that is more.
 void add_term(Vector& residual, const Vector& term, double sign, double& scale) {
-  const auto term_values = term.getData();
-  const auto residual_values = residual.getDataNonConst();
-  const double* from = term_values.getRawPtr();
-  double* to = residual_values.getRawPtr();
-  constexpr std::ptrdiff_t n_lanes = 16;  // so that no addition waits for the one before it
-  std::array<double, n_lanes> squares{};
-  const std::ptrdiff_t n = term_values.size();
-  std::ptrdiff_t i = 0;
-  for (; i + n_lanes <= n; i += n_lanes) {
-#pragma GCC ivdep
-    for (std::ptrdiff_t lane = 0; lane < n_lanes; ++lane) {
-      const double value = from[i + lane];
-      to[i + lane] += sign * value;
-      squares[lane] += value * value;
-    }
-  }
-  for (; i < n; ++i) {
-    to[i] += sign * from[i];
-    squares[0] += from[i] * from[i];
-  }
-  const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
-  scale = std::max(scale, std::sqrt(sum_all(term.getMap()->getComm(), sum)));
+  scale = std::max(scale, add_and_measure(sign, term, residual));
 }
 }  // namespace
 

@@ -27,5 +27,7 @@ double sum_of_products(const A* a, const B* b, std::ptrdiff_t n) {
 double dot(const Vector& x, const Vector& y);
 /// The 2-norm likewise. Collective.
 double norm(const Vector& x);
+/// y += factor x; returns |x|. One pass over both. Collective.
+double add_and_measure(double factor, const Vector& x, Vector& y);
 
 }  // namespace lockstep

@@ -289,8 +289,10 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
     const double solvable = norm(*residual.vector.pressure);
     const double target =
         std::max(request.tolerance * residual.pressure_scale, request.negligible_pressure_residual);
-    if (std::min(solvable, residual.pressure) <= target && std::exchange(reduction, 0) > 0)
+    if (reduction > 0 && std::min(solvable, residual.pressure) <= target) {
+      reduction = 0;  // V_S to round-off, and another look
       continue;
+    }
     if (residual.pressure <= target)
       break;
     // The scale of any solution is at least |rhs|: near that nothing need be asked again.
