@@ -18,15 +18,11 @@ namespace {
 constexpr GlobalIndex few_rows = 300;
 
 RowsOfNodes nodes_of(const NearNullSpace& space) {
-  const int n_rows = static_cast<int>(space.body_of_row.size());
-  RowsOfNodes nodes{space.n_axes(), {}, std::vector<int>(n_rows, -1)};
-  for (int row = 0; row < n_rows; ++row) {
-    if (space.body_of_row[row] < 0)
-      continue;
+  RowsOfNodes nodes{space.n_axes(), first_rows_of_nodes(space),
+                    std::vector<int>(space.body_of_row.size(), -1)};
+  for (std::size_t node = 0; node < nodes.first.size(); ++node) {
     for (int a = 0; a < nodes.n_axes; ++a)
-      nodes.of_row[row + a] = static_cast<int>(nodes.first.size());
-    nodes.first.push_back(row);
-    row += nodes.n_axes - 1;
+      nodes.of_row[nodes.first[node] + a] = static_cast<int>(node);
   }
   return nodes;
 }

@@ -69,7 +69,7 @@ std::vector<GlobalIndex> occurrences(const std::vector<GlobalIndex>& ids,
 
 }  // namespace
 
-std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix) {
+std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const NearNullSpace& space) {
   const auto row_map = matrix.getRowMap();
   const auto column_map = matrix.getColMap();
   const auto column_of = [&](int row) {
@@ -86,6 +86,10 @@ std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix) {
       if (values(k) != 0)
         sets.join(own, columns(k));
     }
+  }
+  for (const int first : first_rows_of_nodes(space)) {
+    for (int axis = 1; axis < space.n_axes(); ++axis)
+      sets.join(column_of(first), column_of(first + axis));
   }
   const auto importer = matrix.getGraph()->getImporter();
   for (bool changed = !importer.is_null(); changed;) {

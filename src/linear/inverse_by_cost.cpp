@@ -105,7 +105,7 @@ InverseByCost::InverseByCost(const RCP<const LinearOperator>& op, const NearNull
 void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space,
                           const std::string& name) {
   const Communicator comm = map_->getComm();
-  const std::vector<RowComponent> components = components_of_rows(*matrix);
+  const std::vector<RowComponent> components = components_of_rows(*matrix, space);
   const auto is_block = rows_where(
       components, [](const RowComponent& one) { return one.n_rows <= largest_dense_block; });
   if (!any(rows_where(components,

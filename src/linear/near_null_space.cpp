@@ -29,6 +29,19 @@ std::vector<bool> tied_rows(const CrsMatrix& c, const NearNullSpace& space) {
 
 }  // namespace
 
+std::vector<int> first_rows_of_nodes(const NearNullSpace& space) {
+  std::vector<int> rows;
+  const int n_rows = static_cast<int>(space.body_of_row.size());
+  for (int row = 0; row < n_rows; ++row) {
+    if (space.body_of_row[row] < 0)
+      continue;
+    LOCKSTEP_ASSERT(row + space.n_axes() <= n_rows);
+    rows.push_back(row);
+    row += space.n_axes() - 1;
+  }
+  return rows;
+}
+
 RCP<Vector> lumped_mass(const CrsMatrix& c, const NearNullSpace& space) {
   const auto masses = make_vector(c.getRowMap());
   const auto result = masses->getDataNonConst();

@@ -21,6 +21,9 @@ struct NearNullSpace {
   int n_axes() const { return motions->getNumVectors() == 3 ? 2 : 3; }
 };
 
+/// Of each node the local row of its first axis; the other axes follow.
+std::vector<int> first_rows_of_nodes(const NearNullSpace& space);
+
 /// How much stiffer than heavy soft solids are in this step: trace(C) / trace(M̃) over the nodes'
 /// rows that are not held. The row sums of C along an axis are those of M̃, for translations cost
 /// nothing; so this takes one product with C an axis, and is the reciprocal of a Rayleigh quotient

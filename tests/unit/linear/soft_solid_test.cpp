@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "linear/action_operator.hpp"
+#include "linear/additive_multilevel.hpp"
 #include "linear/aggregation.hpp"
 #include "linear/component_cholesky.hpp"
 #include "linear/exact_inverse.hpp"
@@ -196,6 +197,26 @@ TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
     return conjugate_gradient_inverse(one.op, 1e-12, 5000, "rest");
   });
   EXPECT_LT(error_of(*inverse, *solid.c), 1e-11);
+}
+
+/// What moves in the plane of a flat cloth and what moves out of it is tied by nothing but nodes.
+TEST(SoftSolid, NodesAreNotTornApart) {
+  const Lattice solid(40, 10);
+  const Map& map = *solid.c->getRowMap();
+  std::vector<std::vector<Entry>> rows(map.getNodeNumElements());
+  for_each_entry(*solid.c, [&](int row, GlobalIndex column, double value) {
+    const GlobalIndex id = map.getGlobalElement(row);
+    if (id % 2 == column % 2 || solid.space.body_of_row[row] < 0)
+      rows[row].push_back({column, value});
+  });
+  const auto flat = matrix_from_rows(solid.c->getRowMap(), rows);
+  EXPECT_EQ(components_of_rows(*flat)[0].n_rows, 40 * 40);
+  const InverseByCost split(as_operator(RCP<const CrsMatrix>(flat)), solid.space, "cloth");
+  ASSERT_EQ(split.rests().size(), 1u);
+  const InverseByCost::Rest& rest = split.rests()[0];
+  EXPECT_EQ(assembled(rest.op)->getGlobalNumRows(), 2 * 40 * 40);
+  const auto levels = additive_multilevel_inverse(assembled(rest.op), rest.motions, "cloth");
+  EXPECT_NO_THROW(check_symmetric_positive(*levels, "levels", 1e-10));
 }
 
 TEST(SoftSolid, LargePartsAreIteratedOnOneByOne) {
