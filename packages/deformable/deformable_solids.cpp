@@ -147,7 +147,6 @@ void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   velocity_ = rcp(new Vector(velocity, Teuchos::Copy));
   limiting_impulse_.clear();
   before_.clear();
-  implicit_force_ = Teuchos::null;
   if (linearised_)
     update_forces();
   update_states();

@@ -132,8 +132,7 @@ MultiVector conductances(const BlockSystem& system, const Vector& numbers,
   });
   const auto solid_block = assembled(system.solid_block);
   const CrsMatrix& c = *solid_block;
-  const auto lumped = lumped_mass(c, system.near_null_space);
-  const auto masses = lumped->getData();
+  const auto masses = system.near_null_space.mass->getData();
   MultiVector result(coupling.getColMap(), system.near_null_space.n_axes());
   for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
     if (rows[row].empty() || !(masses[row] > 0))

@@ -36,7 +36,7 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   blocks_.pressure_block = fluid_.pressure_block();
   blocks_.coupling_transposed = transposed;
   blocks_.solid_block = Teuchos::null;
-  blocks_.near_null_space = solids_.near_null_space();
+  blocks_.near_null_space = solids_.near_null_space(coupling_.added_mass());
   blocks_.null_space = null_space.coupled;
   blocks_.pressure_null_space = null_space.pressure;
   block_dt_ = -1;

@@ -72,7 +72,7 @@ RCP<const LinearOperator> SolidSystem<dim>::solid_block(const RCP<const CrsMatri
 }
 
 template <int dim>
-NearNullSpace SolidSystem<dim>::near_null_space() const {
+NearNullSpace SolidSystem<dim>::near_null_space(const RCP<const CrsMatrix>& added) const {
   constexpr int n_motions = dim + n_rotations<dim>;
   NearNullSpace all;
   RCP<MultiVector> motions;
@@ -90,6 +90,17 @@ NearNullSpace SolidSystem<dim>::near_null_space() const {
     all.n_bodies += part.n_bodies;
   }
   all.motions = motions;
+  if (all.empty())
+    return all;
+  const auto mass = lumped_mass(
+      *as_thyra(rcp(new StackedOperator(parts(0), 0, added, Teuchos::null, map_))), all);
+  const auto values = mass->getDataNonConst();
+  const auto is_free = free_mask_->getData();
+  for (std::size_t row = 0; row < all.body_of_row.size(); ++row) {
+    if (all.body_of_row[row] >= 0 && is_free[row] == 0)
+      values[row] = 1;
+  }
+  all.mass = mass;
   return all;
 }
 
@@ -116,14 +127,14 @@ RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& generalized_momentum) co
 
 template RCP<const LinearOperator> SolidSystem<2>::solid_block(const RCP<const CrsMatrix>&,
                                                                double) const;
-template NearNullSpace SolidSystem<2>::near_null_space() const;
+template NearNullSpace SolidSystem<2>::near_null_space(const RCP<const CrsMatrix>&) const;
 template RCP<const LinearOperator> SolidSystem<2>::unlocked_block(const RCP<const CrsMatrix>&,
                                                                   double) const;
 template RCP<const LinearOperator> SolidSystem<2>::mass() const;
 template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&) const;
 template RCP<const LinearOperator> SolidSystem<3>::solid_block(const RCP<const CrsMatrix>&,
                                                                double) const;
-template NearNullSpace SolidSystem<3>::near_null_space() const;
+template NearNullSpace SolidSystem<3>::near_null_space(const RCP<const CrsMatrix>&) const;
 template RCP<const LinearOperator> SolidSystem<3>::unlocked_block(const RCP<const CrsMatrix>&,
                                                                   double) const;
 template RCP<const LinearOperator> SolidSystem<3>::mass() const;

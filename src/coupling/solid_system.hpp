@@ -47,8 +47,8 @@ class SolidSystem {
   /// The same without eliminating locked dofs, for their reactions; padding rows are zero. Applied
   /// part by part.
   RCP<const LinearOperator> unlocked_block(const RCP<const CrsMatrix>& added, double dt) const;
-  /// The models' near null spaces on `map`.
-  NearNullSpace near_null_space() const;
+  /// The models' near null spaces on `map`, with the masses M_S + added. Collective.
+  NearNullSpace near_null_space(const RCP<const CrsMatrix>& added) const;
   /// M_S^-1 q: the velocities of a stacked generalized momentum. Collective.
   RCP<Vector> velocity_of(const Vector& generalized_momentum) const;
   /// M_S alone, locked dofs included; padding rows are zero. Applied part by part.

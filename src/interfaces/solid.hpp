@@ -75,7 +75,7 @@ class SolidModel : public PlugIn {
   /// D(dt): symmetric negative semidefinite linearisation of the implicit forces [kg/s], or null.
   virtual RCP<const LinearOperator> implicit_force(double dt) const;
   /// The motions at the present positions that D does not resist, on `dof_map`, of models with
-  /// nodes: solvers want them. Default: none. Collective.
+  /// nodes, without `mass`: solvers want them. Default: none. Collective.
   virtual NearNullSpace near_null_space() const { return {}; }
   /// momentum = M_S V_S* = M_S V^n + dt (explicit forces, gravity included) [kg m/s]. Collective.
   virtual void explicit_momentum(double time, double dt, Vector& momentum) const = 0;

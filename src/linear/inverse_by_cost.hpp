@@ -21,6 +21,7 @@ class InverseByCost {
   struct Rest {
     RCP<const LinearOperator> op;            ///< C on them, numbered anew
     NearNullSpace motions;                   ///< the rigid motions of bodies in them
+    double stiffness = 1;                    ///< stiffness_number; 1 where C is matrix-free
     std::shared_ptr<const MatrixPart> part;  ///< null: all rows
   };
   using InverseOfRest = std::function<RCP<const LinearOperator>(const Rest&)>;
@@ -44,7 +45,6 @@ class InverseByCost {
                   const std::string& name);
   void take_large(const CrsMatrix& matrix, const NearNullSpace& space,
                   const std::vector<bool>& rows, const std::string& name);
-  void leave(const std::shared_ptr<const MatrixPart>& part, const NearNullSpace& space);
 
   RCP<const Map> map_;
   RCP<const LinearOperator> whole_;  ///< C^-1, if one method serves all of it

@@ -42,12 +42,12 @@ std::vector<int> first_rows_of_nodes(const NearNullSpace& space) {
   return rows;
 }
 
-RCP<Vector> lumped_mass(const CrsMatrix& c, const NearNullSpace& space) {
-  const auto masses = make_vector(c.getRowMap());
+RCP<Vector> lumped_mass(const LinearOperator& mass, const NearNullSpace& space) {
+  const auto masses = make_vector(space.motions->getMap());
   const auto result = masses->getDataNonConst();
-  Vector sums(c.getRangeMap());
+  Vector sums(space.motions->getMap());
   for (int a = 0; a < space.n_axes(); ++a) {
-    c.apply(*space.motions->getVector(a), sums);
+    apply(mass, *space.motions->getVector(a), sums);
     const auto values = sums.getData();
     const auto translation = space.motions->getData(a);
     for (int row = 0; row < static_cast<int>(values.size()); ++row) {
@@ -62,8 +62,8 @@ double stiffness_number(const CrsMatrix& c, const NearNullSpace& space) {
   if (space.empty())
     return 1;
   const std::vector<bool> tied = tied_rows(c, space);
-  const RCP<const Vector> masses = lumped_mass(c, space), diagonal = diagonal_of(c);
-  const auto mass = masses->getData(), entry = diagonal->getData();
+  const RCP<const Vector> diagonal = diagonal_of(c);
+  const auto mass = space.mass->getData(), entry = diagonal->getData();
   double sums[2] = {0, 0};
   for (std::size_t row = 0; row < tied.size(); ++row) {
     if (tied[row]) {
@@ -75,9 +75,9 @@ double stiffness_number(const CrsMatrix& c, const NearNullSpace& space) {
   return sums[1] > 0 ? sums[0] / sums[1] : 1;
 }
 
-bool is_stiff(const CrsMatrix& c, const NearNullSpace& space) {
+bool is_stiff(double stiffness_number) {
   constexpr double worth_a_cycle = 150;
-  return stiffness_number(c, space) > worth_a_cycle;
+  return stiffness_number > worth_a_cycle;
 }
 
 RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>& c,
@@ -93,7 +93,7 @@ RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>
   const auto node_part = std::make_shared<const MatrixPart>(*c, is_node);
   const auto others = std::make_shared<const MatrixPart>(*c, is_other);
   const MatrixPart& nodes = *node_part;
-  const RCP<Vector> inverse = nodes.restricted(*lumped_mass(*c, space));
+  const RCP<Vector> inverse = nodes.restricted(*space.mass);
   std::string failure;
   for (double& value : inverse->getDataNonConst()) {
     if (!(value > 0))

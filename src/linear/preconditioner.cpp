@@ -172,7 +172,7 @@ RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
                                            const NearNullSpace& near_null_space,
                                            const std::string& name) {
   const auto matrix = assembled(op);
-  if (matrix.is_null() || !is_stiff(*matrix, near_null_space))
+  if (matrix.is_null() || !is_stiff(stiffness_number(*matrix, near_null_space)))
     return Teuchos::null;
   ParameterList list;
   list.set("Type", "MueLu");

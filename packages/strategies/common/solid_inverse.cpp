@@ -99,11 +99,11 @@ void SolidInverse::build(const BlockSystem& system) {
 }
 
 SolidInverse::Iterated SolidInverse::prepared(const InverseByCost::Rest& rest) const {
-  Iterated result{rest.op, Teuchos::null, Teuchos::null, "", rest.motions};
+  Iterated result{rest.op, Teuchos::null, Teuchos::null, "", rest.motions, rest.stiffness};
   const auto matrix = assembled(rest.op);
   if (matrix.is_null())
     return result;
-  result.preconditioner_type = inner_type(stiffness_number(*matrix, rest.motions));
+  result.preconditioner_type = inner_type(rest.stiffness);
   result.preconditioner =
       preconditioner_from_list(rest.op, list_of(result.preconditioner_type), name_, rest.motions);
   result.rounded = single_precision_copy(matrix, rest.motions);
@@ -130,8 +130,7 @@ const RCP<const LinearOperator>& SolidInverse::approximate() const {
   auto next = iterated_.begin();
   approximate_ = split_->with([&](const auto&) {
     const Iterated& iterated = *next++;
-    const bool is_close = iterated.preconditioner_type == "MueLu" ||
-                          !is_stiff(*assembled(iterated.op), iterated.motions);
+    const bool is_close = iterated.preconditioner_type == "MueLu" || !is_stiff(iterated.stiffness);
     return is_close
                ? iterated.preconditioner
                : preconditioner_from_list(iterated.op, list_of("MueLu"), name_, iterated.motions);
@@ -150,7 +149,7 @@ void SolidInverse::build_named(const BlockSystem& system) {
       type_ == "Conjugate Gradients"
           ? preconditioner_from_list(c, of_inner_iteration(list_), name_, system.near_null_space)
           : approximate_;
-  iterated_.push_back({c, preconditioner, Teuchos::null, "", {}});
+  iterated_.push_back({c, preconditioner, Teuchos::null, "", {}, 1});
 }
 
 }  // namespace lockstep

@@ -53,6 +53,7 @@ class SolidInverse {
     RCP<const LinearOperator> rounded;         ///< it in single precision; null: not had
     std::string preconditioner_type;           ///< of "Automatic"
     NearNullSpace motions;
+    double stiffness = 1;
   };
 
   void build_automatic(const BlockSystem& system);

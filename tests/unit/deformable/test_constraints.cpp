@@ -99,6 +99,20 @@ TEST(Constraints, ReleasedNodesKeepTheirVelocity) {
   EXPECT_NEAR(alone.solids.states()[0].center_of_mass.y(), -0.5 * 10 * 0.01, 1e-12);
 }
 
+/// Beside held nodes the rows of C do not sum to the mass: they lack the columns of what is held.
+TEST(Constraints, HeldNodesDoNotHideHowStiffABodyIs) {
+  const double dt = 0.1;
+  const auto elasticity_over_mass = [dt](const std::string& youngs_modulus) {
+    const Alone<2> alone(model<2>(
+        {box("1, 0.5", "0.125") + material("corotated", youngs_modulus) + number("Density", "2") +
+         text("Time Integration", "fully-implicit") + pinned("-0.5, -1", "-0.5, 1", "x, y")}));
+    const auto c = assembled(alone.system.solid_block(Teuchos::null, dt));
+    return stiffness_number(*c, alone.system.near_null_space(Teuchos::null)) - 1;
+  };
+  const double soft = elasticity_over_mass("1");
+  EXPECT_NEAR(elasticity_over_mass("1e8"), 1e8 * soft, 1e-4 * 1e8 * soft);
+}
+
 TEST(Constraints, RegionsThatMoveDoNotOverlap) {
   const auto two = [](const std::string& more) {
     const std::string left = numbers("Lower", "-0.5, -1") + numbers("Upper", "-0.5, 1");

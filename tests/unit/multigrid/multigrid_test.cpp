@@ -303,7 +303,9 @@ std::vector<ClosedFace> make_sheet(Problem<dim>& problem, int faces_per_node = 1
   problem.system.solid_block = as_operator(RCP<const CrsMatrix>(matrix_from_rows(map, mass)));
   const auto motions = rcp(new MultiVector(map, dim == 2 ? 3 : 6));
   motions->getVectorNonConst(0)->putScalar(1);
-  problem.system.near_null_space = {motions, std::vector<int>(n_nodes, 0), 1};
+  problem.system.near_null_space = {motions, std::vector<int>(n_nodes, 0), 1, Teuchos::null};
+  problem.system.near_null_space.mass =
+      lumped_mass(*problem.system.solid_block, problem.system.near_null_space);
   return faces;
 }
 
