@@ -1,5 +1,4 @@
 #include <Tpetra_MultiVector.hpp>
-#include <algorithm>
 
 #include "deformable/deformable_solids.hpp"
 
@@ -7,12 +6,7 @@ namespace lockstep {
 
 template <int dim>
 NearNullSpace DeformableSolids<dim>::near_null_space() const {
-  const bool any = std::any_of(bodies_.begin(), bodies_.end(), [](const Body& body) {
-    return body.integration != TimeIntegration::explicit_forces;
-  });
   NearNullSpace space;
-  if (!any)
-    return space;
   space.n_bodies = static_cast<int>(bodies_.size());
   const auto motions = rcp(new MultiVector(space_.dof_map(), dim + n_rotations<dim>));
   for (int j = 0; j < dim + n_rotations<dim>; ++j) {

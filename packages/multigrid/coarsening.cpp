@@ -148,6 +148,10 @@ void Coarsening::sum_rows() {
       add_pairs(
           fine_.dirichlet.data() + row, owned, n, [factor](float value) { return factor * value; },
           coarse_.dirichlet.data() + to);
+      if (!fine_.reaction.empty())
+        add_pairs(
+            fine_.reaction.data() + row, owned, n, [](float value) { return value; },
+            coarse_.reaction.data() + to);
       add_even(fine_.lower[0].data() + row, owned, n, face_part_, coarse_.lower[0].data() + to);
       if ((j & 1) == 0)
         add_pairs(fine_.lower[1].data() + row, owned, n, face_part_, coarse_.lower[1].data() + to);
@@ -193,9 +197,15 @@ void Coarsening::move_cell(const Cell& cell, char destination) {
   const Cell from = parent(cell), to = new_parent(cell, destination);
   const float dirichlet = dirichlet_factor_ * fine_.dirichlet[at];
   coarse_.dirichlet[natural(from)] -= dirichlet;
+  const float reaction = fine_.reaction.empty() ? 0 : fine_.reaction[at];
+  if (reaction != 0)
+    coarse_.reaction[natural(from)] -= reaction;
   const bool stays = destination != destination::none && is_stored(to);
-  if (stays)
+  if (stays) {
     coarse_.dirichlet[natural(to)] += dirichlet;
+    if (reaction != 0)
+      coarse_.reaction[natural(to)] += reaction;
+  }
   if (LevelGrid::colour(cell[0], cell[1], cell[2]) != 0)
     return;
   MovedCell moved;
@@ -254,6 +264,8 @@ void sort_by_slab(const LevelGrid& fine, Transfer& transfer) {
 void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_all_ranks, bool moved,
              NaturalStencil& coarse) {
   std::vector<std::vector<float>*> arrays{&coarse.dirichlet};
+  if (!coarse.reaction.empty())
+    arrays.push_back(&coarse.reaction);
   for (int axis = 0; axis < level.grid.dimension; ++axis)
     arrays.push_back(&coarse.lower[axis]);
   for (std::vector<float>* values : arrays) {
@@ -280,7 +292,7 @@ void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_al
 Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
                  const LayoutLevel& coarse_level, const LatticeBlocks& blocks,
                  const CoarseningFactors& factors, NaturalStencil& coarse) {
-  coarse.resize(coarse_level.grid);
+  coarse.resize(coarse_level.grid, !fine.reaction.empty());
   Coarsening step(fine_level, fine, coarse_level, factors, coarse);
   step.sum_rows();
   const auto destinations = destinations_behind_thin_walls(fine_level, fine, blocks.comm);

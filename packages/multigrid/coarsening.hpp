@@ -31,8 +31,9 @@ struct CoarseningFactors {
 
 /// The coarse stencil: a coarse face is the sum of its fine faces, each in series with half a
 /// regular one on either side (half of it, if it is regular itself: its area over twice the
-/// distance); a Dirichlet part is the sum of the fine ones times `factors.dirichlet`. Cells behind
-/// thin walls are moved first. Everything of `coarse` is overwritten. Collective.
+/// distance); a Dirichlet part is the sum of the fine ones times `factors.dirichlet`, a reaction
+/// the sum. Cells behind thin walls are moved first. Everything of `coarse` is overwritten.
+/// Collective.
 Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
                  const LayoutLevel& coarse_level, const LatticeBlocks& blocks,
                  const CoarseningFactors& factors, NaturalStencil& coarse);

@@ -10,7 +10,7 @@
 #include "linear/overlap.hpp"
 #include "multigrid/layout_kernels.hpp"
 #include "multigrid/layout_operators.hpp"
-#include "multigrid/through_sheets.hpp"
+#include "multigrid/schur_stencil.hpp"
 
 namespace lockstep {
 
@@ -37,16 +37,20 @@ class PressureLayoutOf final : public PressureLayout {
     own_ = with_cycle_of(multigrid_, system);
     of_schur_ = {};
   }
-  void build_schur_inverse(const BlockSystem& system) override {
-    const auto conducting = conducting_through_sheets(system, empty_rows_);
-    if (!conducting) {
+  void build_schur_inverse(const BlockSystem& system,
+                           const LinearOperator& solid_inverse) override {
+    if (has_schur_inverse() && !schur_depends_on_solid_block_)
+      return;
+    const auto schur = schur_stencil(system, solid_inverse, empty_rows_);
+    schur_depends_on_solid_block_ = schur && !schur->reaction.empty();
+    if (!schur) {
       schur_multigrid_.reset();
       of_schur_ = own_;
       return;
     }
     if (!schur_multigrid_)
       schur_multigrid_ = std::make_unique<Multigrid<dim>>(layout_, options_);
-    schur_multigrid_->set(*conducting);
+    schur_multigrid_->set(*schur);
     of_schur_ = with_cycle_of(*schur_multigrid_, system);
   }
   bool has_schur_inverse() const override { return !of_schur_.inverse.is_null(); }
@@ -92,7 +96,8 @@ class PressureLayoutOf final : public PressureLayout {
   MultigridOptions options_;
   Multigrid<dim> multigrid_;
   std::unique_ptr<Multigrid<dim>> schur_multigrid_;  ///< null: that of A serves
-  std::vector<int> empty_rows_;                      ///< local rows that A leaves empty
+  bool schur_depends_on_solid_block_ = false;
+  std::vector<int> empty_rows_;  ///< local rows that A leaves empty
   RCP<const LayoutStencil<dim>> stencil_;
   Preconditioned own_, of_schur_;
 };

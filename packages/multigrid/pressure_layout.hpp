@@ -38,11 +38,13 @@ class PressureLayout {
   /// Conjugate gradients on A with that cycle.
   virtual ConjugateGradientKernels& kernels() = 0;
 
-  /// Makes ready what follows, for the system in the fluid's own order. Collective.
-  virtual void build_schur_inverse(const BlockSystem& system) = 0;
+  /// Makes ready what follows, for the system in the fluid's own order; `solid_inverse` is C^-1,
+  /// roughly. Once for a geometry, and anew for another C where it depends on C. Collective.
+  virtual void build_schur_inverse(const BlockSystem& system,
+                                   const LinearOperator& solid_inverse) = 0;
   virtual bool has_schur_inverse() const = 0;
-  /// As an approximate inverse of A + B C^-1 B^T: one cycle for A and what flows through soft
-  /// sheets (see through_sheets.hpp); where there are none, that of A.
+  /// As an approximate inverse of A + B C^-1 B^T: one cycle for A and what gives way of soft solids
+  /// (see schur_stencil.hpp); where there are none, that of A.
   virtual RCP<const LinearOperator> schur_inverse() const = 0;
   /// Products with A alone, and that cycle.
   virtual ConjugateGradientKernels& schur_kernels() = 0;

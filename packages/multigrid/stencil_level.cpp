@@ -31,10 +31,11 @@ inline Value weighted_sum(const Neighbors<float>& face, const Neighbors<Value>& 
 
 }  // namespace
 
-void NaturalStencil::resize(const LevelGrid& grid) {
+void NaturalStencil::resize(const LevelGrid& grid, bool has_reaction) {
   for (int axis = 0; axis < grid.dimension; ++axis)
     lower[axis].assign(grid.n_natural, 0);
   dirichlet.assign(grid.n_natural, 0);
+  reaction.assign(has_reaction ? grid.n_natural : 0, 0);
   diagonal.assign(grid.n_natural, 0);
   active.assign(grid.n_natural, 0);
 }
@@ -50,6 +51,10 @@ void NaturalStencil::complete(const LayoutLevel& level) {
       const float* e = dirichlet.data() + row;
       for (int i = 0; i < grid.n[0]; ++i)
         d[i] = e[i];
+      if (!reaction.empty()) {
+        for (int i = 0; i < grid.n[0]; ++i)
+          d[i] += reaction[row + i];
+      }
       for (int axis = 0; axis < grid.dimension; ++axis) {
         const float* f = lower[axis].data() + row;
         const std::ptrdiff_t next = grid.natural_stride[axis];

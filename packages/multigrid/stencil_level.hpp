@@ -12,10 +12,11 @@ namespace lockstep {
 struct NaturalStencil {
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;
-  std::vector<float> diagonal;  ///< sum of an owned cell's faces and its Dirichlet part, else 0
+  std::vector<float> reaction;  ///< empty: none, on any rank
+  std::vector<float> diagonal;  ///< sum of an owned cell's faces and those two, else 0
   std::vector<char> active;     ///< the cell is an unknown, here or, of ghosts, on its own rank
 
-  void resize(const LevelGrid& grid);
+  void resize(const LevelGrid& grid, bool has_reaction);
   /// Fills `diagonal`, `active` and the ghosts of `lower` from the owned values. Collective.
   void complete(const LayoutLevel& level);
 };

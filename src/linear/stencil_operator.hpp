@@ -22,7 +22,7 @@ struct LatticeBlocks {
 };
 
 /// A pressure block as a stencil: on the row of cell c
-///   (A p)_c = unit * [ sum over faces a (p_c - p_neighbour) + dirichlet_c p_c ].
+///   (A p)_c = unit * [ sum over faces a (p_c - p_neighbour) + (dirichlet_c + reaction_c) p_c ].
 /// The coefficients are exact in single precision: what cannot be, belongs rounded into `unit`
 /// or into the fluid's own open fractions, so that the fluid and its solver see the same operator.
 struct FaceCoefficients {
@@ -33,6 +33,8 @@ struct FaceCoefficients {
   /// By cell: coefficient of the face to its lower neighbour along each axis, 0 without coupling.
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;  ///< by cell: what fixed pressures beside it add to the diagonal
+  /// By cell: what gives way to the pressure in it. Empty: none, on any rank. A fluid has none.
+  std::vector<float> reaction;
 };
 
 /// A pressure block that can be applied without a matrix, seen as a stencil, and assembled when

@@ -28,6 +28,8 @@ constexpr double of_a_stage = 1e-2, of_stage_velocity = 1e-3, of_first_velocity 
 /// What a Krylov method with short recurrences may reduce a residual by before the round-off of an
 /// inverse of A in single precision, 1e-7 of the first vectors, is felt.
 constexpr double strongest_single_reduction = 1e-5;
+/// Of C^-1 where only a size is asked for.
+constexpr double rough = 1e-3;
 
 struct Refinement {
   int n_corrections = 0, n_stalls = 0, n_iterations = 0;
@@ -168,7 +170,6 @@ void RefinedStrategy::build_pressure_inverse(const BlockSystem& system) {
 BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
                                                  const CorrectionRequest& request,
                                                  Presumes presumes) {
-  constexpr double rough = 1e-3;
   if (solid_gain_ < 0)
     solid_gain_ = gain(*system.coupling_transposed, *solid_.to(rough));
   // Below round-off of row 2 nothing can be asked; what that leaves is for the next correction.
@@ -219,8 +220,8 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
   }
   if (layout_) {
     relay(system);
-    if (inverts_schur() && system.has_solid() && !layout_->has_schur_inverse())
-      layout_->build_schur_inverse(system);
+    if (inverts_schur() && system.has_solid() && (solid_changed || !layout_->has_schur_inverse()))
+      layout_->build_schur_inverse(system, *solid_.to(rough));
   }
   build(working(system), geometry_changed, solid_changed);
   prepared_.system_name = system.name;
