@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "linear/matrix_rows.hpp"
 #include "linear/vector_sums.hpp"
 
 namespace lockstep {
@@ -13,6 +14,18 @@ namespace {
 /// The least scale of the pressure rows, as a part of what the fluxes would be without that: with
 /// it the usual tolerances stay above round-off.
 constexpr double least_flux = 1e-6;
+/// The same of stiff solids, whose elastic forces cancel where they move rigidly.
+constexpr double least_force = 1e-6;
+
+/// |diag(C) V|, which is what elastic forces would be if they did not cancel; 0 if C is no matrix.
+double gross_force(const RCP<const LinearOperator>& solid_block, const Vector& velocity) {
+  const auto c = assembled(solid_block);
+  if (c.is_null())
+    return 0;
+  Vector force(c->getRowMap());
+  force.elementWiseMultiply(1, *diagonal_of(*c), velocity, 0);
+  return norm(force);
+}
 
 /// residual += sign term; `scale` becomes |term| if that is more.
 void add_term(Vector& residual, const Vector& term, double sign, double& scale) {
@@ -50,7 +63,8 @@ BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
 
     const SolidResidual row = solid_row_residual(system, rhs, solution);
     result.vector.solid = row.vector;
-    result.solid_scale = row.scale;
+    result.solid_scale =
+        std::max(row.scale, least_force * gross_force(system.solid_block, *solution.solid));
     result.solid = norm(*row.vector);
   }
   result.pressure = norm(*r1);

@@ -4,7 +4,8 @@
 namespace lockstep {
 
 /// Residuals of Eq. 16, and what they are measured against: per block the largest norm of the
-/// right-hand side and of the terms of its rows.
+/// right-hand side and of the terms of its rows, and no less than what round-off makes of fluxes or
+/// elastic forces that cancel.
 struct BlockResidual {
   BlockVector vector;              ///< (rhs_1 - A p̂ + B V_S, -solid rhs + B^T p̂ + C V_S)
   double pressure = 0, solid = 0;  ///< 2-norms

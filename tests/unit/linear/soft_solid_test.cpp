@@ -10,6 +10,7 @@
 #include "linear/action_operator.hpp"
 #include "linear/additive_multilevel.hpp"
 #include "linear/aggregation.hpp"
+#include "linear/block_residual.hpp"
 #include "linear/component_cholesky.hpp"
 #include "linear/exact_inverse.hpp"
 #include "linear/inverse_by_cost.hpp"
@@ -258,6 +259,33 @@ TEST(SoftSolid, LargePartsAreIteratedOnOneByOne) {
     return conjugate_gradient_inverse(rest.op, 1e-12, 5000, "rest");
   });
   EXPECT_LT(error_of(*inverse, *both), 1e-11);
+}
+
+/// What elastic forces leave when they cancel is round-off, and no strategy can do better.
+TEST(SoftSolid, ResidualsAreNotMeasuredBelowRoundOff) {
+  for (const double k : {1e2, 1e10}) {
+    const Lattice solid(12, k);
+    BlockSystem system;
+    const auto pressures = make_map(1, Tpetra::getDefaultComm());
+    const auto nothing = [&](const RCP<const Map>& rows) {
+      return matrix_from_rows(rows, std::vector<std::vector<Entry>>(rows->getNodeNumElements()),
+                              pressures, rows);
+    };
+    system.pressure_block = as_operator(RCP<const CrsMatrix>(nothing(pressures)));
+    system.coupling_transposed = nothing(solid.c->getRowMap());
+    system.solid_block = as_operator(solid.c);
+    const auto velocity = make_vector(solid.c->getRowMap()),
+               momentum = make_vector(velocity->getMap());
+    velocity->update(1, *solid.space.motions->getVector(0), 3, *solid.space.motions->getVector(1),
+                     0);
+    momentum->elementWiseMultiply(1, *solid.space.mass, *velocity, 0);
+    const BlockResidual residual = block_residual(system, {make_vector(pressures), momentum},
+                                                  {make_vector(pressures), velocity});
+    EXPECT_LT(residual.relative_solid(), 1e-9);
+    if (k < 1e6) {
+      EXPECT_NEAR(residual.solid_scale, momentum->norm2(), 1e-8 * momentum->norm2());
+    }
+  }
 }
 
 /// Without the lone dof.
