@@ -2,7 +2,9 @@
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "multigrid/through_sheets.hpp"
 

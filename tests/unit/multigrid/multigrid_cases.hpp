@@ -1,0 +1,66 @@
+#pragma once
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "../mac/mac_cases.hpp"
+#include "linear/null_space.hpp"
+
+namespace lockstep::test {
+
+/// A fluid with its pressure block as a system without solid.
+template <int dim>
+struct Problem {
+  std::unique_ptr<MacFluid<dim>> fluid;
+  BlockSystem system;
+
+  Problem(Case<dim>& scene, const std::shared_ptr<const SurfaceSnapshot<dim>>& surface)
+      : fluid(scene.make()) {
+    fluid->set_geometry(surface, BlockedFaces<dim>());
+    system.pressure_block = fluid->pressure_block();
+    const PressureRegions& regions = fluid->regions();
+    for (int region = 0; region < regions.n_regions; ++region) {
+      if (regions.has_dirichlet[region])
+        continue;
+      const auto indicator = make_vector(fluid->pressure_map());
+      for (std::size_t row = 0; row < regions.of_unknown.size(); ++row) {
+        if (regions.of_unknown[row] == region)
+          indicator->replaceLocalValue(static_cast<int>(row), 1.0);
+      }
+      indicator->scale(1 / indicator->norm2());
+      system.pressure_null_space.push_back(indicator);
+    }
+    system.null_space = system.pressure_null_space;
+  }
+};
+
+/// A right-hand side in the range of A with smooth and rough parts.
+template <int dim>
+RCP<Vector> right_hand_side(const Problem<dim>& problem) {
+  const auto rhs = pressure_vector<dim>(*problem.fluid, [](const Point<dim>& x) {
+    return wavy<dim>(x) + 0.3 * std::sin(1e3 * x[0] + 3e3 * x[1]) +
+           0.1 * std::cos(2e3 * x[dim - 1]);
+  });
+  project_out(problem.system.null_space, *rhs);
+  return rhs;
+}
+
+template <int dim>
+Index<dim> cube(int n) {
+  Index<dim> cells;
+  cells.fill(n);
+  return cells;
+}
+
+/// A plate along a plane of cell faces of odd number, so that it cuts coarse cells of the first
+/// level, with a gap around it.
+template <int dim>
+std::shared_ptr<const SurfaceSnapshot<dim>> plate(double h, double where) {
+  Solids<dim> solids;
+  Point<dim> size = Point<dim>::Constant(0.7);
+  Point<dim> center = Point<dim>::Constant(0.5);
+  center[0] = where;
+  solids.add(plate_surface<dim>(size, 0, h), center, false);
+  return solids.snapshot();
+}
+
+}  // namespace lockstep::test
