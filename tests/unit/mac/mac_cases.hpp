@@ -21,6 +21,14 @@ inline ParameterArray<double> numbers(std::initializer_list<double> values) {
   return ParameterArray<double>(values.begin(), values.end());
 }
 
+/// So many cells along every axis.
+template <int dim>
+Index<dim> cube(int n) {
+  Index<dim> cells;
+  cells.fill(n);
+  return cells;
+}
+
 /// The voxel rule: a face is closed where the surface blocks it.
 template <int dim>
 struct BlockedFaces : OpenFractionRule<dim> {

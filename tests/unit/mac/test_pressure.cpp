@@ -55,13 +55,6 @@ std::shared_ptr<const SurfaceSnapshot<dim>> ball_and_plate(double h) {
 }
 
 template <int dim>
-Index<dim> cube(int n) {
-  Index<dim> cells;
-  cells.fill(n);
-  return cells;
-}
-
-template <int dim>
 void expect_symmetric_without_row_sums() {
   Case<dim> scene(cube<dim>(20), 0.05);
   const auto fluid = scene.make();

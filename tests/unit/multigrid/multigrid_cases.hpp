@@ -44,13 +44,6 @@ RCP<Vector> right_hand_side(const Problem<dim>& problem) {
   return rhs;
 }
 
-template <int dim>
-Index<dim> cube(int n) {
-  Index<dim> cells;
-  cells.fill(n);
-  return cells;
-}
-
 /// A plate along a plane of cell faces of odd number, so that it cuts coarse cells of the first
 /// level, with a gap around it.
 template <int dim>
