@@ -37,6 +37,30 @@ endif()
 install(TARGETS lockstep_flags EXPORT LockstepTargets)
 add_library(Lockstep::lockstep_flags ALIAS lockstep_flags)
 
+# One precompiled header for all that includes Tpetra, whose headers are half of what such a file takes
+# to compile. Headers of other projects only: a change of ours must not compile everything anew.
+# Whoever uses it is compiled with -fPIC, as the header is.
+add_library(lockstep_precompiled STATIC "${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp")
+target_link_libraries(lockstep_precompiled PRIVATE lockstep_flags Eigen3::Eigen fmt::fmt Lockstep::trilinos)
+set_target_properties(lockstep_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+if(LOCKSTEP_PRECOMPILED)
+  target_precompile_headers(lockstep_precompiled PRIVATE
+    <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory>
+    <numeric> <optional> <set> <sstream> <string> <utility> <vector>
+    <Eigen/Dense> <fmt/format.h> <Teuchos_ParameterList.hpp> <Thyra_VectorSpaceBase.hpp>
+    <Tpetra_CrsMatrix.hpp> <Tpetra_Import.hpp> <Tpetra_MultiVector.hpp> <Tpetra_Vector.hpp>)
+endif()
+function(lockstep_precompile target)
+  get_target_property(type ${target} TYPE)
+  if(LOCKSTEP_PRECOMPILED)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    if(type STREQUAL "EXECUTABLE")
+      target_compile_options(${target} PRIVATE -fPIC)
+    endif()
+    target_precompile_headers(${target} REUSE_FROM lockstep_precompiled)
+  endif()
+endfunction()
+
 # lockstep_library(NAME SOURCES a.cpp... DEPENDS targets...): one static library per room. Headers
 # (*.hpp beside the CMakeLists.txt) are installed under include/lockstep/ROOM.
 function(lockstep_library name)
@@ -47,6 +71,7 @@ function(lockstep_library name)
     target_link_libraries(${target} PUBLIC lockstep_flags ${ARG_DEPENDS})
     target_compile_options(${target} PRIVATE ${LOCKSTEP_WARNINGS})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    lockstep_precompile(${target})
   else()
     add_library(${target} INTERFACE)
     target_link_libraries(${target} INTERFACE lockstep_flags ${ARG_DEPENDS})
@@ -98,6 +123,7 @@ function(lockstep_test name)
   add_executable(test_${name} ${ARG_SOURCES})
   target_link_libraries(test_${name} PRIVATE lockstep_test_main ${ARG_DEPENDS})
   target_compile_options(test_${name} PRIVATE ${LOCKSTEP_WARNINGS})
+  lockstep_precompile(test_${name})
   foreach(ranks IN LISTS ARG_RANKS)
     if(ranks EQUAL 1)
       add_test(NAME ${name} COMMAND test_${name})

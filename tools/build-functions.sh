@@ -5,7 +5,10 @@
 # Objects are found again after the tree moved or was cloned anew.
 export CCACHE_BASEDIR=$root
 export CCACHE_NOHASHDIR=1
-export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-time_macros}
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-time_macros,pch_defines}
+
+# All cores for builds and tests. Asked before OMP_NUM_THREADS is set, because nproc obeys it.
+n_cores=$(env -u OMP_NUM_THREADS nproc)
 
 # Open MPI refuses root, and more ranks than cores, unless told; Kokkos' threads would fight the ranks.
 if ((EUID == 0)); then
@@ -35,6 +38,6 @@ build() {
     echo "$processor" > "$directory/processor"
   fi
   # Looking up the commit runs in every build and "no work" is no news: both unsaid.
-  cmake --build "$directory" -j "$(nproc)" --target "$@" |
+  cmake --build "$directory" -j "$n_cores" --target "$@" |
     { grep --line-buffered -v -e git_hash -e 'no work to do' || true; }
 }
