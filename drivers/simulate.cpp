@@ -18,6 +18,7 @@
 #include "parameters/strict_xml.hpp"
 #include "parameters/validate.hpp"
 #include "parameters/write.hpp"
+#include "scenes/expand_scene.hpp"
 #include "shipped/shipped_plug_ins.hpp"
 #include "stepping/scene_file.hpp"
 #include "stepping/simulation.hpp"
@@ -36,6 +37,16 @@ struct Arguments {
   bool quiet = false;
 };
 
+/// A scene of a hundred bodies must not scroll away what matters.
+void print_differences(const std::vector<std::string>& lines, const Log& log) {
+  constexpr std::size_t most_lines = 40;
+  const std::size_t shown = std::min(lines.size(), most_lines);
+  for (std::size_t i = 0; i < shown; ++i)
+    log.normal("  {}", lines[i]);
+  if (lines.size() > shown)
+    log.normal("  ... and {} more; used-parameters.xml has all.", lines.size() - shown);
+}
+
 template <int dim>
 int simulate(Document document, const Arguments& arguments, const Communicator& comm) {
   // 3. The plug-ins, and what a scene may say about them.
@@ -49,9 +60,7 @@ int simulate(Document document, const Arguments& arguments, const Communicator& 
   const Log log(comm, std::cout, arguments.quiet ? LogLevel::quiet : LogLevel::normal);
   if (!arguments.validate && !arguments.explain) {
     log.normal("{}", banner(comm, arguments.run.command_line));
-    for (const std::string& line : differences_from_default(document.list, valid)) {
-      log.normal("  {}", line);
-    }
+    print_differences(differences_from_default(document.list, valid), log);
   }
   Simulation<dim> simulation(registries, document.list, arguments.run, comm, log);
   if (arguments.validate || arguments.explain) {
@@ -64,8 +73,9 @@ int simulate(Document document, const Arguments& arguments, const Communicator& 
 }
 
 void print_reference(const Arguments& arguments) {
-  const ParameterList valid = arguments.dimension == 2 ? scene_parameters<2>(shipped_plug_ins<2>())
-                                                       : scene_parameters<3>(shipped_plug_ins<3>());
+  ParameterList valid = arguments.dimension == 2 ? scene_parameters<2>(shipped_plug_ins<2>())
+                                                 : scene_parameters<3>(shipped_plug_ins<3>());
+  declare_scene_language(valid, arguments.dimension);
   std::cout << (arguments.format == "markdown"
                     ? reference_markdown(fmt::format("Parameters of a scene in {} dimensions",
                                                      arguments.dimension),
@@ -137,8 +147,9 @@ int run(int argc, char** argv, const Communicator& comm) {
   check_input(!arguments.run.scene_file.empty(),
               "Which scene? Name a file, for example xml-params/scenes/buoyant-spheres.xml.");
 
-  // 2. The scene file, read strictly.
-  Document document = read_xml(arguments.run.scene_file, comm);
+  // 2. The scene file, read strictly: what it includes, its constants, defaults and copies.
+  Document document = read_xml(arguments.run.scene_file, comm, FormulaPolicy::kept);
+  expand_scene(document, arguments.settings, comm);
   return scene_dimension(document) == 2 ? simulate<2>(std::move(document), arguments, comm)
                                         : simulate<3>(std::move(document), arguments, comm);
 }

@@ -28,7 +28,8 @@ BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, i
   side.type = side_type(list.get<std::string>("Type"));
   side.velocity = point_value<dim>(list, "Velocity");
   side.ramp_time = list.get<double>("Ramp Time");
-  side.end_time = list.get<double>("End Time");
+  if (list.isParameter("End Time"))
+    side.end_time = list.get<double>("End Time");
   side.shape = read_inflow_shape<dim>(list, domain, axis, "Domain/Sides/" + side_name(axis, end));
   side.smoke = list.get<double>("Smoke");
   side.temperature = list.get<double>("Temperature");
@@ -67,7 +68,7 @@ ParameterList domain_parameters() {
                      "Velocity of the inflow, or of a wall along itself [m/s].");
       declare_at_least(side, "Ramp Time", 0.0, 0.0,
                        "Time during which \"Velocity\" grows linearly from 0 [s].");
-      declare(side, "End Time", 1e300, "After it \"Velocity\" is 0 [s].");
+      declare_optional<double>(side, "End Time", "After it \"Velocity\" is 0 [s].");
       declare_inflow_shape<dim>(side);
       declare(side, "Smoke", 0.0, "Smoke density that an inflow carries [1].");
       declare(side, "Temperature", 0.0, "Temperature that an inflow carries [K].");

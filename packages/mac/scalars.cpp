@@ -50,7 +50,8 @@ ScalarSource<dim> read_source(const ParameterList& list) {
   ScalarSource<dim> source;
   source.shape = read_shape<dim>(list);
   source.begin_time = list.get<double>("Begin Time");
-  source.end_time = list.get<double>("End Time");
+  if (list.isParameter("End Time"))
+    source.end_time = list.get<double>("End Time");
   for (const std::string name : {"Smoke", "Temperature"}) {
     const std::string scalar = name == "Smoke" ? "smoke" : "temperature";
     if (list.isParameter(name))
@@ -80,7 +81,7 @@ void declare_scalars(ParameterList& fluid) {
       source, "Velocity", "Velocity given to the fluid inside at every step [m/s].");
   set_length(source, "Velocity", dim);
   declare(source, "Begin Time", 0.0, "When the source starts [s].");
-  declare(source, "End Time", 1e300, "When it stops [s].");
+  declare_optional<double>(source, "End Time", "When it stops [s]; never if it is left out.");
   declare_named_sublists(fluid, "Sources", "Boxes and balls that feed smoke, heat and momentum.",
                          source);
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "parameters/formula.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 #include "parameters/validate.hpp"
@@ -24,11 +25,11 @@ std::vector<std::string> split(const std::string& path) {
 /// Walks the given list and its schema down the path together.
 class Setter {
  public:
-  Setter(Document& document, const std::string& assignment, const ParameterList& valid)
+  Setter(Document& document, const std::string& assignment, const ParameterList* valid)
       : document_(document),
         place_(fmt::format("--set \"{}\"", assignment)),
         list_(&document.list),
-        valid_(&valid) {
+        valid_(valid) {
     const std::size_t equals = assignment.find('=');
     check_input(equals != std::string::npos && equals > 0,
                 "{}: write a path and a value, as in --set \"List/Sub list/Name=value\".", place_);
@@ -125,7 +126,7 @@ class Setter {
                 "{}: {}, \"{}\" is a list; name one of its parameters, \"{}/...\".", place_,
                 in_list(path_), name, join_path(path_, name));
     try {
-      list_->setEntry(name, declared ? parse_as(value_type(*declared)) : infer_value(value_));
+      list_->setEntry(name, declared ? parse_as(final_type(*declared)) : infer_value(value_));
     } catch (const InputError& error) {
       throw InputError(
           fmt::format("{}: {}, \"{}\" {}.", place_, in_list(path_), name, error.what()));
@@ -154,7 +155,11 @@ class Setter {
 
 void set_from_command_line(Document& document, const std::string& assignment,
                            const ParameterList& valid) {
-  Setter(document, assignment, valid).run();
+  Setter(document, assignment, &valid).run();
+}
+
+void set_unchecked(Document& document, const std::string& assignment) {
+  Setter(document, assignment, nullptr).run();
 }
 
 }  // namespace lockstep

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "parameters/formula.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 
@@ -25,8 +26,10 @@ using Attributes = std::map<std::string, std::string>;
 /// first failure is kept and stops the parser.
 class Reader {
  public:
-  explicit Reader(const std::string& name)
-      : parser_(XML_ParserCreate(nullptr), XML_ParserFree), document_{ParameterList(name), {}} {
+  Reader(const std::string& name, FormulaPolicy formulas)
+      : formulas_(formulas),
+        parser_(XML_ParserCreate(nullptr), XML_ParserFree),
+        document_{ParameterList(name), {}} {
     document_.source.file = name;
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(parser_.get(), on_start, on_end);
@@ -156,7 +159,10 @@ class Reader {
                 name, type_text, known_type_names());
     claim("Parameter", name);
     try {
-      ParameterEntry entry = parse_value(*type, attributes.at("value"));
+      const std::string& text = attributes.at("value");
+      const bool later = formulas_ == FormulaPolicy::kept && is_formula(*type, text);
+      ParameterEntry entry =
+          later ? ParameterEntry(Formula{*type, text}) : parse_value(*type, text);
       if (attributes.count("docString"))
         entry.setDocString(attributes.at("docString"));
       open_.back().list->setEntry(name, entry);
@@ -200,6 +206,7 @@ class Reader {
     return path;
   }
 
+  FormulaPolicy formulas_;
   std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
   Document document_;
   std::vector<OpenList> open_;
@@ -233,11 +240,11 @@ std::string read_bytes(const std::string& file, std::string& failure) {
 
 }  // namespace
 
-Document read_xml_string(const std::string& text, const std::string& name) {
-  return Reader(name).read(text);
+Document read_xml_string(const std::string& text, const std::string& name, FormulaPolicy formulas) {
+  return Reader(name, formulas).read(text);
 }
 
-Document read_xml(const std::string& file, const Communicator& comm) {
+Document read_xml(const std::string& file, const Communicator& comm, FormulaPolicy formulas) {
   std::string text, failure;
   if (is_root(comm))
     text = read_bytes(file, failure);
@@ -251,7 +258,7 @@ Document read_xml(const std::string& file, const Communicator& comm) {
   MPI_Bcast(&size, 1, MPI_INT, 0, mpi);
   text.resize(size);
   MPI_Bcast(text.data(), size, MPI_CHAR, 0, mpi);
-  return read_xml_string(text, file);
+  return read_xml_string(text, file, formulas);
 }
 
 }  // namespace lockstep

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "parameters/expression.hpp"
 #include "parameters/parameter_list.hpp"
-#include "studies/expression.hpp"
 
 namespace lockstep {
 

@@ -61,7 +61,7 @@ void declare_reduction(ParameterList& list) {
                  {"last", "first", "max", "min", "mean", "rms", "amplitude", "frequency"},
                  "How the rows of a run become one number; every row counts the same. amplitude: "
                  "half of max - min. frequency: of the rises through 0 [1/s].");
-  declare(list, "From Time", -1e300, "Rows before this time do not count [s].");
+  declare_optional<double>(list, "From Time", "Rows before this time do not count [s].");
   declare_reference(list);
   declare_targets(list);
   declare(list, "Extrapolate", false,
@@ -219,7 +219,8 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
                                                                {"frequency", Over::frequency}});
   if (quantity.from == From::surface)
     read_vertex(list, name, quantity);
-  quantity.from_time = list.get<double>("From Time");
+  if (list.isParameter("From Time"))
+    quantity.from_time = list.get<double>("From Time");
   quantity.reference = list.get<std::string>("Reference");
   quantity.relative = list.get<bool>("Relative");
   quantity.extrapolate = list.get<bool>("Extrapolate");

@@ -1,12 +1,13 @@
 #pragma once
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "parameters/expression.hpp"
 #include "parameters/source.hpp"
-#include "studies/expression.hpp"
 
 namespace lockstep {
 
@@ -30,10 +31,10 @@ struct Quantity {
   enum class Norm { l1, l2, max };
   std::string name;
   From from = From::tables;
-  std::string expression;         ///< over the rows of a run, or exact value of the field
-  Over over = Over::last;         ///< how the rows of a run become one number
-  double from_time = 0;           ///< rows before it do not count [s]
-  std::string solid;              ///< whose surface
+  std::string expression;  ///< over the rows of a run, or exact value of the field
+  Over over = Over::last;  ///< how the rows of a run become one number
+  double from_time = std::numeric_limits<double>::lowest();  ///< rows before do not count [s]
+  std::string solid;                                         ///< whose surface
   std::array<double, 3> point{};  ///< that picks a vertex of the surface [m]
   std::string field;              ///< dataset of the last frame
   int component = 0;

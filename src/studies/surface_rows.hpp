@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/expression.hpp"
+#include "parameters/expression.hpp"
 
 namespace lockstep {
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "base/errors.hpp"
-#include "studies/expression.hpp"
+#include "parameters/expression.hpp"
 #include "studies/run_results.hpp"
 #include "studies/study_cases.hpp"
 

@@ -1,4 +1,4 @@
-#include "studies/expression.hpp"
+#include "parameters/expression.hpp"
 
 #include <muParser.h>
 

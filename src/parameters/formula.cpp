@@ -1,0 +1,48 @@
+#include "parameters/formula.hpp"
+
+#include <ostream>
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+
+bool operator==(const Formula& a, const Formula& b) {
+  return a.type == b.type && a.text == b.text;
+}
+
+std::ostream& operator<<(std::ostream& out, const Formula& formula) {
+  return out << formula.text;
+}
+
+bool is_formula(ValueType type, const std::string& text) {
+  const bool numeric = type == ValueType::real || type == ValueType::integer ||
+                       type == ValueType::reals || type == ValueType::integers;
+  return numeric && text.find('[') != std::string::npos;
+}
+
+ValueType final_type(const ParameterEntry& entry) {
+  return entry.isType<Formula>() ? Teuchos::getValue<Formula>(entry).type : value_type(entry);
+}
+
+void evaluate_formulas(ParameterList& list, const Variables& variables, const Source& source,
+                       const std::string& path) {
+  for (const auto& [name, entry] : entries(list)) {
+    if (entry.isList()) {
+      evaluate_formulas(list.sublist(name), variables, source, join_path(path, name));
+    } else if (entry.isType<Formula>()) {
+      const Formula formula = Teuchos::getValue<Formula>(entry);
+      const std::string where =
+          fmt::format("{}: {}, \"{}\"", source.place(join_path(path, name)), in_list(path), name);
+      try {
+        list.setEntry(name, parse_value(formula.type, substitute(formula.text, variables, where)));
+      } catch (const InputError& error) {
+        const std::string message = error.what();
+        throw InputError(message.rfind(where, 0) == 0
+                             ? message
+                             : fmt::format("{} = \"{}\" {}.", where, formula.text, message));
+      }
+    }
+  }
+}
+
+}  // namespace lockstep

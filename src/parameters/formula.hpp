@@ -1,0 +1,33 @@
+#pragma once
+#include <iosfwd>
+#include <string>
+
+#include "parameters/expression.hpp"
+#include "parameters/source.hpp"
+#include "parameters/strict_values.hpp"
+
+namespace lockstep {
+
+/// A number, or an array of them, that a scene gives by formulas in brackets: "[2*R]" or
+/// "{[R], 0.5}". A list that was read with FormulaPolicy::kept holds it in place of the value until
+/// `evaluate_formulas` puts the value there.
+struct Formula {
+  ValueType type;    ///< of the value: real, integer, reals or integers
+  std::string text;  ///< as written
+};
+bool operator==(const Formula& a, const Formula& b);
+std::ostream& operator<<(std::ostream& out, const Formula& formula);
+
+/// Whether a value of this type written like this is a formula. Brackets in strings are text.
+bool is_formula(ValueType type, const std::string& text);
+
+/// The type that an entry has, or will have once its formula is evaluated.
+ValueType final_type(const ParameterEntry& entry);
+
+/// Puts values in the place of all formulas in `list`, which stands at `path`, and in its sublists.
+/// Throws InputError with the place for bad syntax, unknown names, and results that are not finite
+/// or, where an int is asked for, not whole.
+void evaluate_formulas(ParameterList& list, const Variables& variables, const Source& source,
+                       const std::string& path = "");
+
+}  // namespace lockstep

@@ -1,0 +1,92 @@
+#include "scenes/defaults.hpp"
+
+#include "base/errors.hpp"
+#include "parameters/parameter_rule.hpp"
+
+namespace lockstep {
+namespace {
+
+const std::string solids_path = "Solids";
+const std::string defaults_path = "Defaults";
+
+bool says_otherwise(const ParameterList& given, const ParameterList& defaults, const char* key) {
+  return given.isType<std::string>(key) && defaults.isType<std::string>(key) &&
+         given.get<std::string>(key) != defaults.get<std::string>(key);
+}
+
+void fill_in(ParameterList& given, const std::string& path, const ParameterList& defaults,
+             const std::string& from, Source& source) {
+  for (const auto& [name, entry] : entries(defaults)) {
+    const std::string here = join_path(path, name), there = join_path(from, name);
+    if (!entry.isList()) {
+      if (given.isParameter(name))
+        continue;
+      given.setEntry(name, entry);
+      source.places[here] = source.place(there);
+      continue;
+    }
+    const ParameterList& part = defaults.sublist(name);
+    check_input(!given.isParameter(name) || given.isSublist(name),
+                "{}: {}, \"{}\" is a parameter, but {} has a list of this name.",
+                source.place(here), in_list(path), name, source.place(there));
+    if (!given.isSublist(name)) {
+      given.sublist(name);
+      source.places[here] = source.place(there);
+    } else if (says_otherwise(given.sublist(name), part, "Type") ||
+               says_otherwise(given.sublist(name), part, "Shape")) {
+      continue;
+    }
+    fill_in(given.sublist(name), here, part, there, source);
+  }
+}
+
+/// Lists of the defaults that bear the name of a type of solids.
+bool names_a_type(const ParameterList& defaults, const std::string& name,
+                  const ParameterList& solids) {
+  for (const auto& [solid, entry] : entries(solids)) {
+    if (entry.isList() && solids.sublist(solid).isType<std::string>("Type") &&
+        solids.sublist(solid).get<std::string>("Type") == name)
+      return defaults.isSublist(name);
+  }
+  return false;
+}
+
+}  // namespace
+
+void apply_defaults(Document& document) {
+  ParameterList& list = document.list;
+  if (!list.isParameter(defaults_path))
+    return;
+  check_input(list.isSublist(defaults_path), "{}: \"Defaults\" must be a list.",
+              document.source.place(defaults_path));
+  check_input(list.isSublist(solids_path),
+              "{}: \"Defaults\" are for the list \"Solids\", which is missing.",
+              document.source.place(defaults_path));
+  const ParameterList defaults = list.sublist(defaults_path);
+  ParameterList& solids = list.sublist(solids_path);
+  ParameterList general = defaults;
+  for (const auto& [name, entry] : entries(defaults)) {
+    if (entry.isList() && names_a_type(defaults, name, solids))
+      general.remove(name);
+  }
+  for (const auto& [name, entry] : entries(solids)) {
+    if (!entry.isList())
+      continue;
+    ParameterList& solid = solids.sublist(name);
+    const std::string path = join_path(solids_path, name);
+    if (!solid.isParameter("Type") && general.isParameter("Type")) {
+      solid.setEntry("Type", *general.getEntryPtr("Type"));
+      document.source.places[join_path(path, "Type")] =
+          document.source.place(join_path(defaults_path, "Type"));
+    }
+    const std::string type =
+        solid.isType<std::string>("Type") ? solid.get<std::string>("Type") : "";
+    if (!type.empty() && names_a_type(defaults, type, solids)) {
+      fill_in(solid, path, defaults.sublist(type), join_path(defaults_path, type), document.source);
+    }
+    fill_in(solid, path, general, defaults_path, document.source);
+  }
+  list.remove(defaults_path);
+}
+
+}  // namespace lockstep

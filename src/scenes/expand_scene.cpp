@@ -1,0 +1,106 @@
+#include "scenes/expand_scene.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "parameters/command_line.hpp"
+#include "parameters/formula.hpp"
+#include "scenes/copies.hpp"
+#include "scenes/defaults.hpp"
+#include "scenes/include.hpp"
+
+namespace lockstep {
+namespace {
+
+bool concerns_the_language(const std::string& setting) {
+  const std::string path = setting.substr(0, setting.find('='));
+  return path.rfind("Constants/", 0) == 0 || path.rfind("Defaults/", 0) == 0 ||
+         (path.rfind("Solids/", 0) == 0 && path.find("/Copies/") != std::string::npos);
+}
+
+/// A number, or a formula: in brackets like those of the scene, or a string as in studies.
+double constant_value(const ParameterEntry& entry, const Variables& known,
+                      const std::string& where) {
+  switch (final_type(entry)) {
+    case ValueType::text:
+      return evaluate(Teuchos::getValue<std::string>(entry), known, where);
+    case ValueType::integer:
+    case ValueType::real:
+      if (entry.isType<Formula>()) {
+        const std::string text = Teuchos::getValue<Formula>(entry).text;
+        return Teuchos::getValue<double>(
+            parse_value(ValueType::real, substitute(text, known, where)));
+      }
+      return entry.isType<int>() ? Teuchos::getValue<int>(entry) : Teuchos::getValue<double>(entry);
+    default:
+      throw InputError(
+          fmt::format("{} must be a double, an int, or a string with a formula.", where));
+  }
+}
+
+/// Constants in the order of the file; each may use those before it.
+Variables take_constants(Document& document) {
+  Variables constants;
+  ParameterList& list = document.list;
+  if (!list.isParameter("Constants"))
+    return constants;
+  const Source& source = document.source;
+  check_input(list.isSublist("Constants"), "{}: \"Constants\" must be a list.",
+              source.place("Constants"));
+  const ParameterList given = list.sublist("Constants");
+  for (const auto& [name, entry] : entries(given)) {
+    const std::string where = fmt::format("{}: in \"Constants\", \"{}\"",
+                                          source.place(join_path("Constants", name)), name);
+    check_input(name == variable_name(name) && name != "copy",
+                "{} cannot be the name of a number; use letters, digits and _, no digit first, and "
+                "not \"copy\".",
+                where);
+    constants[name] = constant_value(entry, constants, where);
+  }
+  list.remove("Constants");
+  return constants;
+}
+
+int dimension_of(const Document& document) {
+  const ParameterList& list = document.list;
+  const int dimension = list.isType<int>("Dimension") ? list.get<int>("Dimension") : 0;
+  check_input(dimension == 2 || dimension == 3, "{}: \"Dimension\" (int) must be 2 or 3.",
+              document.source.place("Dimension"));
+  return dimension;
+}
+
+}  // namespace
+
+void expand_scene(Document& document, std::vector<std::string>& settings,
+                  const Communicator& comm) {
+  include_scenes(document, comm);
+  const auto others =
+      std::stable_partition(settings.begin(), settings.end(), concerns_the_language);
+  for (auto setting = settings.begin(); setting != others; ++setting)
+    set_unchecked(document, *setting);
+  settings.erase(settings.begin(), others);
+  const Variables constants = take_constants(document);
+  apply_defaults(document);
+  make_copies(document, dimension_of(document), constants);
+  evaluate_formulas(document.list, constants, document.source);
+}
+
+void declare_scene_language(ParameterList& scene, int dimension) {
+  declare_optional<std::string>(
+      scene, "Include",
+      "Another scene file, relative to this one, whose parameters hold where this file is silent; "
+      "an Array(string) names several.");
+  declare_free_sublist(
+      scene, "Constants",
+      "Named numbers (double or int). Any number of the scene may be a formula of them in "
+      "brackets, "
+      "value=\"[2*R]\" or \"{[R], 0}\", in the syntax of muParser; a constant of those before it.");
+  declare_free_sublist(
+      scene, "Defaults",
+      "What holds for all solids that do not say otherwise; a list that bears the name of a type, "
+      "\"rigid body\", for those of that type.");
+  declare_copies(declare_list(scene, "(any solid)", "What every solid may have beside its own."),
+                 dimension);
+}
+
+}  // namespace lockstep

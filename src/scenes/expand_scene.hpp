@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/communicator.hpp"
+#include "parameters/source.hpp"
+
+namespace lockstep {
+
+/// Turns a scene as written (read with FormulaPolicy::kept) into one of plain parameters: merges
+/// the scenes that it includes, takes the `--set` assignments that concern "Constants", "Defaults"
+/// and "Copies" out of `settings`, gives solids their defaults, makes their copies, and puts
+/// numbers in the place of all formulas. The lists "Include", "Constants", "Defaults" and "Copies"
+/// are gone then. Throws InputError. Collective.
+void expand_scene(Document& document, std::vector<std::string>& settings, const Communicator& comm);
+
+/// Adds to the schema of a scene, for the reference only, what `expand_scene` takes away.
+void declare_scene_language(ParameterList& scene, int dimension);
+
+}  // namespace lockstep

@@ -1,0 +1,64 @@
+"""Runs what the pages "write a scene" and "write a study" tell to write, as a reader would.
+
+Usage: test_written_scenes.py ROOT SIMULATE CONVERGE
+"""
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT, SIMULATE, CONVERGE = (Path(argument).resolve() for argument in sys.argv[1:4])
+del sys.argv[1:]
+END = "</ParameterList>\n"
+
+
+def blocks(page):
+    text = (ROOT / "docs" / "tutorials" / page).read_text()
+    return re.findall(r"```xml\n(.*?)```", text, re.DOTALL)
+
+
+def with_lists(scene, *lists):
+    assert scene.endswith(END)
+    return scene[: -len(END)] + "".join(lists) + END
+
+
+class WrittenScenes(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def write(self, name, text):
+        path = Path(self.folder.name) / name
+        path.write_text(text)
+        return path
+
+    def run_program(self, *arguments):
+        result = subprocess.run([str(argument) for argument in arguments], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, text=True, cwd=self.folder.name, timeout=120)
+        self.assertEqual(result.returncode, 0, result.stdout)
+        return result.stdout
+
+    def test_scene(self):
+        box, body, constants, many, like_another = blocks("write-a-scene.md")
+        numbers = constants[: constants.index("  ...")]
+        self.assertIn("valid", self.run_program(SIMULATE, self.write("box.xml", box), "--validate"))
+        self.run_program(SIMULATE, self.write("body.xml", with_lists(box, body)), "--validate")
+        self.run_program(SIMULATE, self.write("many.xml", with_lists(box, numbers, many)), "--steps", "1", "--output", "many")
+        bodies = (Path(self.folder.name) / "many" / "bodies.csv").read_text()
+        self.assertIn("Ball 20", bodies)
+        scene = str(ROOT / "xml-params" / "scenes" / "buoyant-spheres.xml")
+        self.run_program(SIMULATE, self.write("finer.xml", like_another.replace("buoyant-spheres.xml", scene)),
+                         "--validate", "--set", "Domain/Cells={32, 12, 8}")
+
+    def test_study(self):
+        box, body, *_ = blocks("write-a-scene.md")
+        time_and_output, study = blocks("write-a-study.md")
+        self.write("rise-scene.xml", with_lists(box, body, time_and_output))
+        self.run_program(CONVERGE, self.write("rise.xml", study), "--output", "rise", "--rungs", "1:2")
+        self.assertIn("acceleration", (Path(self.folder.name) / "rise" / "table.md").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
