@@ -37,7 +37,7 @@ Point<dim> DeformableSolids<dim>::effective_velocity(const SurfacePoint<dim>& po
 template <int dim>
 double DeformableSolids<dim>::elastic_share(const Body& body) const {
   if (body.integration == TimeIntegration::second_order)
-    return before_.empty() ? 1 : 0.5;
+    return before_ ? 0.5 : 1;
   return body.integration == TimeIntegration::fully_implicit ? 1 : 0;
 }
 
@@ -70,11 +70,10 @@ void DeformableSolids<dim>::explicit_momentum(double, double dt, Vector& momentu
   apply(*mass_, *velocity_, momentum);
   if (dt == 0)
     return;
-  Nodes velocity;
-  for (const Body& body : bodies_) {
-    if (body.integration == TimeIntegration::explicit_forces && velocity.empty())
-      velocity = space_.with_ghosts(*velocity_);
-  }
+  const bool any_explicit = std::any_of(bodies_.begin(), bodies_.end(), [](const Body& body) {
+    return body.integration == TimeIntegration::explicit_forces;
+  });
+  const Nodes velocity = any_explicit ? space_.with_ghosts(*velocity_) : Nodes();
   const Nodes elastic = averaged_forces();
   const auto values = momentum.getDataNonConst();
   for (int i = 0; i < space_.n_owned(); ++i) {
@@ -146,7 +145,7 @@ template <int dim>
 void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   velocity_ = rcp(new Vector(velocity, Teuchos::Copy));
   limiting_impulse_.clear();
-  before_.clear();
+  before_.reset();
   if (linearised_)
     update_forces();
   update_states();
@@ -161,7 +160,7 @@ bool DeformableSolids<dim>::linearise(double dt, const Vector& velocity) {
                    [this](const Body& body) { return elastic_share(body) > 0; }))
     return false;
   const Nodes v = space_.with_ghosts(velocity);
-  Nodes x = before_.empty() ? x_ : before_;
+  Nodes x = before_ ? *before_ : x_;
   for (int i = 0; i < space_.n_local(); ++i)
     x[i] += share(i) * dt * v[i];
   assemble_forces(x);
@@ -183,8 +182,8 @@ void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
     before_ = x_;
   for (int i = 0; i < space_.n_local(); ++i) {
     x_[i] += dt * change[i];
-    if (!before_.empty() && !is_second_order(bodies_[body_of_node_[i]]))
-      before_[i] = x_[i];
+    if (before_ && !is_second_order(bodies_[body_of_node_[i]]))
+      (*before_)[i] = x_[i];
   }
   surface_velocity_ = surface_values(change);
   update_geometry();
@@ -194,14 +193,14 @@ void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
 /// dt V / 2 = x - x(halfway) of the motion.
 template <int dim>
 void DeformableSolids<dim>::update_forces() {
-  linearised_ = !before_.empty();
+  linearised_ = before_.has_value();
   if (!linearised_) {
     assemble_forces(x_);
     return;
   }
   Nodes halfway = x_, rest = x_;
   for (int i = 0; i < space_.n_local(); ++i) {
-    halfway[i] = 0.5 * (before_[i] + x_[i]);
+    halfway[i] = 0.5 * ((*before_)[i] + x_[i]);
     rest[i] -= halfway[i];
   }
   assemble_forces(halfway);

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -143,8 +144,9 @@ class DeformableSolids : public SolidModel<dim> {
   mutable RCP<const LinearOperator> implicit_force_;  ///< of these; null: not asked for yet
   mutable double implicit_force_dt_ = 0;              ///< [s]
   Nodes x_;                                           ///< of all local nodes [m]
-  Nodes before_;  ///< from `move` to the end of the step, if bodies are of second order: x_, theirs
-                  ///< at the start [m]
+  /// From `move` to the end of the step, if bodies are of second order: x_, theirs at the start
+  /// [m]. Null on all ranks or on none, with nodes or without.
+  std::optional<Nodes> before_;
   Nodes elastic_force_;  ///< of the owned nodes [N]
   RCP<const Vector> velocity_;
   std::vector<SolidState<dim>> states_;

@@ -65,7 +65,7 @@ void DeformableSolids<dim>::load(const CheckpointReader& reader) {
   velocity_ =
       space_.vector(points_of<dim>(reader.read_distributed<double>(type_ + "/velocities", ids)));
   surface_velocity_ = points_of<dim>(file.read_all<double>(type_ + "/surface velocities"));
-  before_.clear();
+  before_.reset();
   update_geometry();
 }
 

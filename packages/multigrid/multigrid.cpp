@@ -69,7 +69,7 @@ void Multigrid<dim>::copy_to_natural(const FaceCoefficients& coefficients,
                                      NaturalStencil& natural) const {
   const LevelGrid& grid = layout_->finest();
   const LatticeBlocks& blocks = layout_->blocks();
-  natural.resize(grid, !coefficients.reaction.empty());
+  natural.resize(grid, coefficients.reaction.has_value());
   const int width = blocks.width;
   for (std::size_t block = 0; block < blocks.begins.size(); ++block) {
     std::array<int, 3> n{1, 1, 1}, low{};
@@ -87,8 +87,8 @@ void Multigrid<dim>::copy_to_natural(const FaceCoefficients& coefficients,
                       natural.lower[axis].data() + to);
         std::copy_n(coefficients.dirichlet.data() + from, std::max(n[0], 0),
                     natural.dirichlet.data() + to);
-        if (!natural.reaction.empty())
-          std::copy_n(coefficients.reaction.data() + from, std::max(n[0], 0),
+        if (coefficients.reaction)
+          std::copy_n(coefficients.reaction->data() + from, std::max(n[0], 0),
                       natural.reaction.data() + to);
       }
     }

@@ -42,7 +42,7 @@ class PressureLayoutOf final : public PressureLayout {
     if (has_schur_inverse() && !schur_depends_on_solid_block_)
       return;
     const auto schur = schur_stencil(system, solid_inverse, empty_rows_);
-    schur_depends_on_solid_block_ = schur && !schur->reaction.empty();
+    schur_depends_on_solid_block_ = schur && schur->reaction;
     if (!schur) {
       schur_multigrid_.reset();
       of_schur_ = own_;

@@ -36,10 +36,10 @@ RCP<const Vector> flow_from_even_pressure(const BlockSystem& system,
   return pressure;
 }
 
-/// By cell, in the unit of A; empty if it is next to nothing on all ranks.
-std::vector<float> reaction_of_solids(const BlockSystem& system,
-                                      const LinearOperator& solid_inverse,
-                                      const std::vector<int>& empty_rows) {
+/// By cell, in the unit of A; null if it is next to nothing on all ranks.
+std::optional<std::vector<float>> reaction_of_solids(const BlockSystem& system,
+                                                     const LinearOperator& solid_inverse,
+                                                     const std::vector<int>& empty_rows) {
   const RCP<const Vector> flow = flow_from_even_pressure(system, solid_inverse);
   if (flow.is_null())
     return {};
@@ -59,7 +59,9 @@ std::vector<float> reaction_of_solids(const BlockSystem& system,
     reaction[cell] = static_cast<float>(std::round(steps * values[row] / a.unit) / steps);
     largest = std::max(largest, reaction[cell]);
   }
-  return max_all(a.map->getComm(), largest) > 0 ? reaction : std::vector<float>();
+  if (max_all(a.map->getComm(), largest) == 0)
+    return {};
+  return reaction;
 }
 
 }  // namespace
@@ -70,8 +72,8 @@ std::optional<FaceCoefficients> schur_stencil(const BlockSystem& system,
   if (!system.has_solid() || system.near_null_space.empty())
     return {};
   std::optional<FaceCoefficients> result = conducting_through_sheets(system, empty_rows);
-  std::vector<float> reaction = reaction_of_solids(system, solid_inverse, empty_rows);
-  if (!result && reaction.empty())
+  auto reaction = reaction_of_solids(system, solid_inverse, empty_rows);
+  if (!result && !reaction)
     return {};
   if (!result)
     result = *stencil_of(system.pressure_block);

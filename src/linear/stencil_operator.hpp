@@ -2,6 +2,7 @@
 #include <Tpetra_Operator.hpp>
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "linear/types.hpp"
@@ -33,8 +34,9 @@ struct FaceCoefficients {
   /// By cell: coefficient of the face to its lower neighbour along each axis, 0 without coupling.
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;  ///< by cell: what fixed pressures beside it add to the diagonal
-  /// By cell: what gives way to the pressure in it. Empty: none, on any rank. A fluid has none.
-  std::vector<float> reaction;
+  /// By cell: what gives way to the pressure in it. Null on all ranks or on none: a rank without
+  /// cells has an empty one. A fluid has none.
+  std::optional<std::vector<float>> reaction;
 };
 
 /// A pressure block that can be applied without a matrix, seen as a stencil, and assembled when

@@ -1,0 +1,103 @@
+"""Ranks that own no tile of the grid, or no node of a soft solid, take part in every collective call: scenes of one
+tile, and bodies of few nodes, end on any number of ranks, with the answer of one."""
+import csv
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
+N_STEPS = 3
+SECONDS = 120  # of a run; a second is usual
+
+
+def xml(name, content):
+    """A parameter list as text: dictionaries become sublists."""
+    lines = [f'<ParameterList name="{name}">']
+    for key, value in content.items():
+        if isinstance(value, dict):
+            lines.append(xml(key, value))
+            continue
+        kind = {str: "string", int: "int", float: "double"}.get(type(value))
+        if isinstance(value, tuple):
+            kind = f"Array({'int' if isinstance(value[0], int) else 'double'})"
+            value = "{" + ", ".join(map(str, value)) + "}"
+        lines.append(f'<Parameter name="{key}" type="{kind}" value="{value}"/>')
+    return "\n".join([*lines, "</ParameterList>"])
+
+
+def box(dimension, size, **more):
+    return {"Type": "deformable body", "Geometry": {"Shape": "box", "Size": (size,) * dimension},
+            "Material": {"Young's Modulus": 1e4}, "Density": 2000., "Position": (.5,) * dimension, **more}
+
+
+def pinned(dimension, height):
+    return {"Pinned": {"p": {"Lower": (-1.,) * dimension, "Upper": (1., height, 1.)[:dimension]}}}
+
+
+def ball(dimension, **more):
+    return {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .15}, "Density": 500.,
+            "Position": (.5,) * dimension, **more}
+
+
+def segment(y, integration):
+    """A cloth of two nodes."""
+    return {"Type": "cloth", "Geometry": {"Shape": "sheet", "Size": (.1, 0.), "Normal": "y", "Mesh Spacing": .2},
+            "Young's Modulus": 1e3, "Thickness": .01, "Surface Density": 50., "Position": (.5, y),
+            "Time Integration": integration}
+
+
+def scene(dimension, solids, coupling, viscosity=0.):
+    n_cells = {2: 16, 3: 8}[dimension]  # one tile
+    return xml("Scene", {
+        "Dimension": dimension, "Domain": {"Cells": (n_cells,) * dimension},
+        "Fluid": {"Density": 1000., "Gravity": (0., -9.8, 0.)[:dimension], "Viscosity": viscosity},
+        "Solids": solids, "Coupling": {"Type": coupling}, "Time": {"End": 1., "Fixed Step": .005}})
+
+
+def run(text, ranks):
+    """The last states of the bodies, or what went wrong."""
+    with tempfile.TemporaryDirectory() as folder:
+        file, output = Path(folder) / "scene.xml", Path(folder) / "output"
+        file.write_text(text)
+        command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
+        command += [SIMULATE, str(file), "--output", str(output), "--steps", str(N_STEPS), "--quiet"]
+        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS)
+        assert result.returncode == 0, result.stdout
+        lines = (output / "bodies.csv").read_text().splitlines()
+    return [row for row in csv.DictReader(line for line in lines if not line.startswith("#"))
+            if row["step"] == str(N_STEPS)]
+
+
+SOFT_2D = box(2, .3, **{"Time Integration": "fully-implicit"}, **pinned(2, -.14))
+CASES = [  # name, dimension, solids, ranks, more
+    ("soft", 2, {"Soft": SOFT_2D}, (2, 3), {}),
+    ("soft, 3D", 3, {"Soft": box(3, .4, **pinned(3, -.2))}, (2,), {}),
+    ("rigid", 2, {"Ball": ball(2)}, (2, 3), {"viscosity": 1.}),
+    ("rigid, 3D", 3, {"Ball": ball(3)}, (3,), {}),
+    ("both", 2, {"Soft": SOFT_2D, "Ball": ball(2, Position=(.5, .8))}, (3,), {"viscosity": 1.}),
+    ("two nodes, which ranks beyond own none of", 2, {"Cloth": segment(.5, "second-order")}, (3,), {}),
+    ("several explicit bodies", 2, {"A": segment(.3, "explicit"), "B": segment(.6, "explicit")}, (5,), {}),
+]
+
+
+class FewTiles(unittest.TestCase):
+    def test_ranks_without_tiles(self):
+        for name, dimension, solids, ranks, more in CASES:
+            for coupling in ("mixed face", "flux"):
+                text = scene(dimension, solids, coupling, **more)
+                expected = run(text, 1)
+                for n in ranks:
+                    with self.subTest(f"{name}, {coupling}, {n} ranks"):
+                        self.compare(run(text, n), expected)
+
+    def compare(self, found, expected):
+        self.assertEqual(len(found), len(expected))
+        for one, other in zip(found, expected):
+            for column in ("x", "y", "vx", "vy"):
+                self.assertAlmostEqual(float(one[column]), float(other[column]), delta=1e-6, msg=column)
+
+
+if __name__ == "__main__":
+    unittest.main()
