@@ -82,7 +82,9 @@ def violations(root):
     packages = rooms(root, "packages")
     for path in source_files(root, {".cpp", ".hpp"}):
         yield from code_violations(path, root, packages)
-    top = [path for path in sorted(root.iterdir()) if path.is_file() and path.suffix in TEXT_SUFFIXES]
+    # In a worktree .git is a file that holds a path.
+    top = [path for path in sorted(root.iterdir())
+           if path.is_file() and path.suffix in TEXT_SUFFIXES and path.name != ".git"]
     for path in [*source_files(root, TEXT_SUFFIXES, TEXT_FOLDERS), *top]:
         yield from text_violations(path, root)
 
