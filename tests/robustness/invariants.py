@@ -1,0 +1,179 @@
+"""What holds for every valid scene. Each check gives sentences, `class: numbers`; none if all is well.
+
+| class | bound |
+|---|---|
+| momentum, angular momentum | LEDGER of the step's scale (docs/method.md, the ledger) |
+| divergence | DIVERGENCE of the largest speed over a cell |
+| finite | every number of history.csv, bodies.csv and of all frames |
+| scalar | smoke and temperature between their least and most initial, inflowing and held values |
+| energy | kinetic and elastic, at most GROWTH times the start's and gravity's work, where nothing else does work |
+| ranks | bodies and energies equal on 1, 2 and 3 ranks to RANKS of their scale, until contact decides by inequalities |
+| restart | tables and last frame bit for bit |
+"""
+import math
+
+import h5py
+import numpy
+
+from runs import read_table
+
+LEDGER = 1e-11
+DIVERGENCE = 1e-6
+RANKS = 1e-6
+RANKS_IN_CONTACT = 1e-2
+# The largest amplification of a mode's energy by the scheme's own map in any number of steps: implicit schemes at any
+# step; explicit ones at 0.9 of their stable step. A twentieth more for the clamped interpolation of advection.
+GROWTH = 1.15 * 1.05
+GROWTH_EXPLICIT = 2.07 * 1.05
+ROUND_OFF = 1e-9
+# Where a number's size says nothing of an error.
+COUNTS = ("step", "time", "name", "wall_seconds", "contacts", "deepest_overlap", "clamped_elements")
+
+
+def columns(rows, prefix):
+    """The components of a vector, a list for each row."""
+    names = [f"{prefix}_{a}" for a in "xyz" if f"{prefix}_{a}" in rows[0]]
+    return numpy.array([[float(row[name]) for name in names] for row in rows])
+
+
+def number(rows, name):
+    return numpy.array([float(row[name]) for row in rows])
+
+
+class Tables:
+    """history.csv and bodies.csv of a finished run."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.history = read_table(folder / "history.csv")
+        self.bodies = read_table(folder / "bodies.csv")
+
+    def energy(self):
+        return sum(number(self.history, f"{kind}_energy") for kind in ("fluid_kinetic", "solid_kinetic", "elastic"))
+
+
+def scales(scene, tables):
+    """What positions, velocities, turns and energies of a scene are compared with."""
+    domain = scene.content["Domain"]
+    length = max(b - a for a, b in zip(domain["Lower"], domain["Upper"]))
+    h = length / max(domain["Cells"])
+    speed = (number(tables.history, "cfl") * h / number(tables.history, "dt")).max()
+    bodies = tables.bodies
+    for c in ("vx", "vy", "vz"):
+        if bodies and c in bodies[0]:
+            speed = max(speed, abs(number(bodies, c)).max())
+    gravity = math.hypot(*scene.content["Fluid"].get("Gravity", [0.0]))
+    speed = max(speed, 1e-3 * h / scene.dt, gravity * scene.dt)
+    return length, h, speed
+
+
+def check_tables(scene, tables):
+    history = tables.history
+    steps = [int(row["step"]) for row in history]
+    if steps != list(range(1, len(steps) + 1)) or len(steps) != scene.n_steps:
+        yield f"tables: steps {steps} of {scene.n_steps}"
+        return
+    for name, rows in (("history", history), ("bodies", tables.bodies)):
+        for row in rows:
+            bad = [c for c, text in row.items() if c != "name" and not math.isfinite(float(text))]
+            if bad:
+                yield f"finite: {bad} of {name}.csv in step {row['step']}"
+                return
+    if scene.facts.exact_momentum:
+        for kind in ("momentum", "angular_momentum"):
+            worst = number(history, f"{kind}_error").max()
+            if worst > LEDGER:
+                yield f"{kind.replace('_', ' ')}: error {worst:.1e}"
+    _, h, speed = scales(scene, tables)
+    worst = number(history, "max_divergence").max() * h / speed
+    if worst > DIVERGENCE:
+        yield f"divergence: {worst:.1e} of the speed over a cell"
+
+
+def check_frames(scene, tables):
+    """All fields of all frames."""
+    lowest, highest = {}, {}
+    with h5py.File(tables.folder / "frames.h5") as file:
+        frames = sorted(name for name in file if name.startswith("frame-"))
+        if len(frames) != len(tables.history) + 1:
+            yield f"tables: {len(frames)} frames of {len(tables.history)} steps"
+        for frame in frames:
+            found = {}
+            file[frame].visititems(lambda name, item: found.update({name: item[...]})
+                                   if isinstance(item, h5py.Dataset) else None)
+            for name, values in found.items():
+                if values.dtype.kind == "f" and not numpy.isfinite(values).all():
+                    yield f"finite: {name} of {frame}"
+                    return
+            for name in scene.facts.scalar_range:
+                inside = found[f"fluid/{name}"][found["fluid/fluid"] > 0] if "fluid/fluid" in found else []
+                if len(inside):
+                    lowest[name] = min(lowest.get(name, math.inf), inside.min())
+                    highest[name] = max(highest.get(name, -math.inf), inside.max())
+    for name, (least, most) in scene.facts.scalar_range.items():
+        slack = ROUND_OFF * max(abs(least), abs(most))
+        if name in lowest and (lowest[name] < least - slack or highest[name] > most + slack):
+            yield f"scalar: {name} from {lowest[name]:.6g} to {highest[name]:.6g}, not in [{least:.6g}, {most:.6g}]"
+
+
+def has_energy_bound(scene):
+    return not (scene.facts.works or scene.facts.open_sides)
+
+
+def check_energy(scene, tables, start_energy):
+    """`start_energy` is that of a run with a tiny step. Gravity's work is bounded by its impulse on the momentum at
+    both ends of each step."""
+    gravity = numpy.array(scene.content["Fluid"].get("Gravity", [0.0] * scene.content["Dimension"]))
+    momentum = columns(tables.history, "fluid_momentum") + columns(tables.history, "solid_momentum")
+    power = numpy.maximum(momentum @ gravity, 0)
+    power = numpy.maximum(power, numpy.concatenate([[power[0]], power[:-1]]))
+    work = numpy.cumsum(power * number(tables.history, "dt"))
+    allowed = (GROWTH_EXPLICIT if scene.facts.explicit else GROWTH) * (start_energy + work)
+    energy = tables.energy()
+    worst = int(numpy.argmax(energy - allowed))
+    if energy[worst] > allowed[worst] * (1 + ROUND_OFF):
+        yield (f"energy: {energy[worst]:.4g} J after step {worst + 1}, of {start_energy:.4g} J at the start and "
+               f"{work[worst]:.3g} J of gravity")
+
+
+def check_ranks(scene, one, other, ranks):
+    """Bodies and energies; forces and residuals are differences of these and carry the solver's tolerance over dt."""
+    length, h, speed = scales(scene, one)
+    energy = max(one.energy().max(), 1e-300)
+    compared = [("history", c, energy) for c in ("fluid_kinetic_energy", "solid_kinetic_energy", "elastic_energy")]
+    compared += [("history", "dt", scene.dt)]
+    for c in "xyz":
+        compared += [("bodies", c, h), ("bodies", "v" + c, speed), ("bodies", "w" + c, speed / h)]
+    touched = any(int(row["contacts"]) for tables in (one, other) for row in tables.history)
+    bound = RANKS_IN_CONTACT if touched else RANKS
+    for table, column, scale in compared:
+        mine, theirs = getattr(one, table), getattr(other, table)
+        if len(mine) != len(theirs):
+            yield f"ranks: {len(theirs)} rows of {table}.csv on {ranks}, {len(mine)} on 1"
+            return
+        if not mine or column not in mine[0]:
+            continue
+        apart = abs(number(mine, column) - number(theirs, column)).max() / scale
+        if not apart <= bound:
+            yield f"ranks: {column} of {table}.csv differs by {apart:.1e} on {ranks}"
+            return
+
+
+def check_restart(straight, restarted):
+    """Text for text, and the last frame bit for bit."""
+    for table in ("history", "bodies"):
+        mine, theirs = ([{c: text for c, text in row.items() if c != "wall_seconds"} for row in getattr(t, table)]
+                        for t in (straight, restarted))
+        if mine != theirs:
+            different = sorted({c for a, b in zip(mine, theirs) for c in a if a[c] != b[c]})
+            yield f"restart: {table}.csv differs in {different or 'its rows'}"
+            return
+    fields = []
+    for tables in (straight, restarted):
+        with h5py.File(tables.folder / "frames.h5") as file:
+            last, found = sorted(name for name in file if name.startswith("frame-"))[-1], {}
+            file[last].visititems(lambda name, item: found.update({name: item[...].tobytes()})
+                                  if isinstance(item, h5py.Dataset) else None)
+            fields.append(found)
+    if fields[0] != fields[1]:
+        yield "restart: the last frame differs"

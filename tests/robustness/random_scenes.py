@@ -1,0 +1,134 @@
+#!/usr/bin/python3
+"""Random valid scenes and what must hold for them.
+
+  tests/robustness/random_scenes.py --seeds 0-39                    as ./check does
+  tests/robustness/random_scenes.py --seeds 0-999 --jobs 2 --keep output/random --report docs/results/robustness.md
+  tests/robustness/random_scenes.py --print 17                      the scene of a seed
+
+Each seed runs on 1, 2 and 3 ranks, again from a checkpoint, and once with a tiny step for the energy of the start.
+Prints a line for each failing seed; with --keep its scene stays in DIR/SEED. Exit code 1 if any failed.
+"""
+import argparse
+import concurrent.futures
+import random
+import re
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import report
+from invariants import (Tables, check_energy, check_frames, check_ranks, check_restart, check_tables,
+                        has_energy_bound)
+from runs import program, run
+from scenes import random_scene
+
+REFUSALS = re.compile(r"some rank owns no (pressure|solid) unknown")
+
+
+class Seed:
+    """The runs of one seed, in a folder of its own."""
+
+    def __init__(self, seed, folder, seconds):
+        self.scene, self.folder, self.seconds = random_scene(seed), folder, seconds
+        self.failures, self.core_seconds, self.refused = [], 0, 0
+        (folder / "scene.xml").write_text(self.scene.xml)
+        for name, text in self.scene.files.items():
+            (folder / name).write_text(text)
+
+    def simulate(self, output, *arguments, ranks=1):
+        """Tables of a run, or nothing if it failed."""
+        result = run([program("simulate"), self.folder / "scene.xml", "--output", self.folder / output, "--quiet",
+                      *arguments], self.seconds, ranks)
+        self.core_seconds += result.core_seconds
+        if ranks > 1 and self.scene.facts.needs_full_ranks and result.code == 3 and REFUSALS.search(result.errors):
+            self.refused += 1
+            return None
+        if result.failure():
+            self.failures.append(f"run {output}: {result.failure()}")
+            return None
+        return Tables(self.folder / output)
+
+    def check(self, ranks):
+        one = self.simulate("one")
+        if not one:
+            return
+        self.failures += [*check_tables(self.scene, one), *check_frames(self.scene, one)]
+        if has_energy_bound(self.scene):
+            start = self.simulate("start", "--steps", 1, "--set", f"Time/Fixed Step={1e-7 * self.scene.dt!r}")
+            if start:
+                self.failures += check_energy(self.scene, one, start.energy()[0])
+        others = {n: self.simulate(f"ranks-{n}", ranks=n) for n in ranks}
+        for n, other in others.items():
+            if other:
+                self.failures += [*check_ranks(self.scene, one, other, n), *check_tables(self.scene, other)]
+        self.check_restart(others)
+
+    def check_restart(self, others):
+        """From a random checkpoint, on a random one of the numbers of ranks."""
+        rng = random.Random(f"lockstep restart {self.scene.seed}")
+        ranks = rng.choice([1, 1, 2])
+        name = "one" if ranks == 1 else f"ranks-{ranks}"
+        if ranks > 1 and not others.get(ranks):
+            return
+        step = rng.randint(1, self.scene.n_steps - 1)
+        shutil.copytree(self.folder / name, self.folder / "restarted")
+        again = self.simulate("restarted", "--restart", self.folder / name / f"checkpoint-{step:06}.h5", ranks=ranks)
+        if again:
+            self.failures += check_restart(Tables(self.folder / name), again)
+
+
+def check_seed(seed, arguments):
+    with tempfile.TemporaryDirectory() as folder:
+        runs = Seed(seed, Path(folder), arguments.timeout)
+        try:
+            ranks = [n for n in arguments.ranks if n > 1]
+            runs.check([ranks[seed % len(ranks)]] if arguments.quick else ranks)
+        except Exception as error:  # a file that a run should have written
+            runs.failures.append(f"files: {type(error).__name__} {error}")
+        if runs.failures and arguments.keep:
+            kept = Path(arguments.keep) / str(seed)
+            shutil.rmtree(kept, ignore_errors=True)
+            kept.mkdir(parents=True)
+            for name in ("scene.xml", *runs.scene.files):
+                shutil.copy(Path(folder) / name, kept)
+            (kept / "failures.txt").write_text("\n".join(runs.failures) + "\n")
+        return runs
+
+
+def seed_range(text):
+    first, _, last = text.partition("-")
+    return range(int(first), int(last or first) + 1)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=seed_range, default=seed_range("0-39"), metavar="A-B")
+    parser.add_argument("--jobs", type=int, default=1, help="seeds at a time")
+    parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 3])
+    parser.add_argument("--quick", action="store_true", help="one of the other numbers of ranks, by turns")
+    parser.add_argument("--timeout", type=float, default=120, help="seconds of a run")
+    parser.add_argument("--keep", metavar="DIR", help="where the scenes of failing seeds go")
+    parser.add_argument("--report", metavar="FILE", help="page whose section on random scenes is written")
+    parser.add_argument("--print", type=int, metavar="SEED", help="print a scene; nothing runs")
+    arguments = parser.parse_args()
+    if arguments.print is not None:
+        sys.exit(print(random_scene(arguments.print).xml, end=""))
+    begin, results = time.monotonic(), []
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        for runs in pool.map(lambda seed: check_seed(seed, arguments), arguments.seeds):
+            results.append(runs)
+            for failure in runs.failures:
+                print(f"seed {runs.scene.seed}: {failure}", flush=True)
+    n_failed = sum(bool(runs.failures) for runs in results)
+    core_seconds = sum(runs.core_seconds for runs in results)
+    print(f"{len(results)} scenes, {n_failed} failed, {sum(runs.refused for runs in results)} runs refused for ranks "
+          f"without unknowns; {core_seconds:.0f} s of a core, {time.monotonic() - begin:.0f} s")
+    if arguments.report:
+        report.write_scenes(Path(arguments.report), arguments.seeds, results)
+    sys.exit(1 if n_failed else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,100 @@
+"""Writes the sections of docs/results/robustness.md; each command replaces its own."""
+import collections
+import datetime
+import re
+import subprocess
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+TITLE = "# robustness\n\nRandom scenes and damaged files, and whether what must hold for every one of them holds.\n"
+# Solids, and how often each thing that a scene may say was drawn.
+FEATURES = {
+    "3D": lambda c: c["Dimension"] == 3,
+    "rigid bodies": lambda c: has_type(c, "rigid body"),
+    "deformable bodies": lambda c: has_type(c, "deformable body"),
+    "cloth": lambda c: has_type(c, "cloth"),
+    "meshes from files": lambda c: any(b["Geometry"]["Shape"] == "file" for b in c["Solids"].values()),
+    "scripted or moved": lambda c: any("Motion" in str(b) for b in c["Solids"].values()),
+    "pins": lambda c: any("Pinned" in b for b in c["Solids"].values()),
+    "attachments": lambda c: any("Attachments" in b for b in c["Solids"].values()),
+    "pivots and locks": lambda c: any("Pivot" in b or "Locked" in b for b in c["Solids"].values()),
+    "coupling flux": lambda c: c["Coupling"]["Type"] == "flux",
+    "every cut cell": lambda c: c["Coupling"].get("Mixed Rule") == "every cut cell",
+    "contact": lambda c: c["Contact"]["Type"] != "none",
+    "viscosity": lambda c: "Viscosity" in c["Fluid"],
+    "order 2 in time": lambda c: c["Fluid"]["Order in Time"] == 2,
+    "smoke or temperature": lambda c: "Smoke" in c["Fluid"] or "Temperature" in c["Fluid"],
+    "inflows": lambda c: side_is(c, "inflow"),
+    "periodic sides": lambda c: side_is(c, "periodic"),
+    "strategies but schur-cg": lambda c: c["Solver"]["Strategy"]["Type"] != "schur-cg",
+}
+
+
+def has_type(content, kind):
+    return any(body["Type"] == kind for body in content["Solids"].values())
+
+
+def side_is(content, kind):
+    return any(side["Type"] == kind for side in content["Domain"]["Sides"].values())
+
+
+def write_section(page, heading, body):
+    """Replaces the section of this heading, or adds it."""
+    text = page.read_text() if page.exists() else TITLE
+    section = f"## {heading}\n\n{body.strip()}\n"
+    pattern = re.compile(rf"^## {re.escape(heading)}\n.*?(?=^## |\Z)", re.MULTILINE | re.DOTALL)
+    text = pattern.sub(lambda _: section + "\n", text) if pattern.search(text) else f"{text.rstrip()}\n\n{section}"
+    page.write_text(text.rstrip() + "\n")
+
+
+def table(heads, rows):
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+
+
+def made_by(command):
+    commit = subprocess.run(["git", "-C", SOURCE, "describe", "--always", "--dirty"], capture_output=True, text=True)
+    return f"Made by `{command}` on {datetime.date.today()} from {commit.stdout.strip() or 'an unknown commit'}."
+
+
+def write_scenes(page, seeds, results):
+    """What was drawn, what failed, and the largest of what is bounded."""
+    failures = collections.Counter()
+    for runs in results:
+        failures.update({failure.partition(":")[0] for failure in runs.failures})
+    failing = {runs.scene.seed for runs in results if runs.failures}
+    rows = []
+    for name, has in FEATURES.items():
+        drawn = [runs.scene.seed for runs in results if has(runs.scene.content)]
+        rows.append([name, len(drawn), len(failing.intersection(drawn))])
+    classes = "".join(f"\n- {name}: {n} scenes" for name, n in failures.most_common())
+    named = f"\nFailing seeds: {', '.join(map(str, sorted(failing)))}.\n" if failing else ""
+    body = f"""\
+{len(results)} scenes, seeds {seeds[0]} to {seeds[-1]}: {len(failing)} fail. Each of 3 to 5 steps on 1, 2 and 3 ranks, mostly more than there
+are tiles, and again from a checkpoint. What is checked, with its bounds: the head of `tests/robustness/invariants.py`.
+{classes}
+{named}
+{table(["scenes with", "drawn", "failing"], rows)}
+
+{sum(runs.core_seconds for runs in results):.0f} s of a core. {made_by(f"tests/robustness/random_scenes.py --seeds {seeds[0]}-{seeds[-1]} --report docs/results/robustness.md")}"""
+    write_section(page, "Random scenes", body)
+
+
+def write_mutations(page, numbers, results):
+    """Exit codes and failures by kind of file."""
+    rows = []
+    for kind in dict.fromkeys(mutation.kind for mutation in results):
+        those = [mutation for mutation in results if mutation.kind == kind]
+        codes = collections.Counter(mutation.code for mutation in those)
+        rows.append([kind, len(those), *(codes[code] for code in (0, 2, 3, 4)),
+                     sum(bool(mutation.failure) for mutation in those)])
+    failing = [str(mutation.number) for mutation in results if mutation.failure]
+    named = f"\nFailing: {', '.join(failing)}.\n" if failing else ""
+    body = f"""\
+{len(results)} damaged files: {len(failing)} end as no program should. It must end with 0, 2, 3 or 4, in time and by no signal, with one message if
+not 0, with nothing written if 2; what it wrote can be read and is finite. 0: the damage left a file that says something valid.
+{named}
+{table(["file", "mutations", "exit 0", "exit 2", "exit 3", "exit 4", "failing"], rows)}
+
+{sum(mutation.core_seconds for mutation in results):.0f} s of a core. {made_by(f"tests/robustness/mutations.py --mutations {numbers[0]}-{numbers[-1]} --report docs/results/robustness.md")}"""
+    write_section(page, "Damaged files", body)

@@ -1,0 +1,345 @@
+"""Random valid scenes: `random_scene(seed)` is a pure function, so a seed names a scene for ever.
+
+Every scene is valid by docs/parameters: no inflow without an open side, no overlap at the start but where nodes are
+glued to a body, no strategy outside its domain (docs/solvers.md). Sizes follow from the grid: speeds from the cells
+crossed in a step, stiffnesses from the cells that a wave crosses, densities from that of the fluid.
+"""
+import dataclasses
+import math
+import random
+
+from parameter_list import to_xml
+from rigid_solids import rigid_body
+from soft_solids import carried, cloth, deformable_body
+
+AXES = "xyz"
+NAMES = ["Ball", "Body 2", "x,y 1", "A & B", "Körper", "Körper 2", "b-3", "Zelt"]
+TOLERANCE = 1e-10
+# Strategies that can solve every scene; the others are drawn where docs/solvers.md says they can.
+GENERAL_STRATEGIES = ["schur-cg"] * 8 + ["pressure-schur", "direct", "paper"]
+BELOS_STRATEGIES = {"block-lu", "gauss-seidel", "simple"}
+
+
+@dataclasses.dataclass
+class Facts:
+    """What the invariants must know of a scene."""
+    works: bool = False  # something besides gravity does work on it
+    open_sides: bool = False
+    periodic: bool = False
+    explicit: bool = False  # elastic forces of the present positions
+    soft: bool = False
+    springs: bool = False
+    attached: bool = False
+    closed_shell: bool = False
+    dynamic_rigid: bool = False
+    exact_momentum: bool = True
+    needs_full_ranks: bool = False  # Belos' inner products want unknowns on every rank
+    scalar_range: dict = dataclasses.field(default_factory=dict)  # smoke, temperature: [least, most]
+    lightest: float = math.inf  # density of a solid over that of the fluid
+
+
+@dataclasses.dataclass
+class Scene:
+    seed: int
+    xml: str
+    files: dict  # name -> text, beside the scene
+    facts: Facts
+    content: dict
+    n_steps: int
+    dt: float
+
+
+class World:
+    """The scales of a scene, and what its parts draw from."""
+
+    def __init__(self, seed):
+        rng = self.rng = random.Random(f"lockstep scene {seed}")
+        self.facts, self.files, self.names = Facts(), {}, rng.sample(NAMES, len(NAMES))
+        self.dimension = 2 if rng.random() < 0.6 else 3
+        self.cells = ([rng.randint(8, 36), rng.randint(8, 20)] if self.dimension == 2 else
+                      [rng.randint(7, 17), rng.randint(7, 9), rng.randint(7, 9)])
+        rng.shuffle(self.cells)
+        size = 1.0 if rng.random() < 0.5 else 10 ** rng.uniform(-2, 2)
+        self.h = size / max(self.cells)
+        self.lower = [rng.choice([0.0, 0.0, rng.uniform(-2, 2) * size]) for _ in self.cells]
+        self.upper = [a + n * self.h for a, n in zip(self.lower, self.cells)]
+        self.density = rng.choice([1.0, 1000.0, 10 ** rng.uniform(-1, 4)])
+        self.speed = 10 ** rng.uniform(-1, 0.5) * size
+        self.cfl = rng.choice([0.2, 0.5, 0.9, 2.0])
+        self.dt = self.cfl * self.h / self.speed
+        self.n_steps = rng.randint(3, 5)
+        self.start = rng.choice([0.0, 0.0, 0.0, self.dt, -0.5 * self.dt])
+
+    def vector(self, length):
+        """Of at most this length, in a random direction."""
+        direction = [self.rng.gauss(0, 1) for _ in range(self.dimension)]
+        scale = length * self.rng.uniform(0.2, 1) / math.hypot(*direction)
+        return [scale * x for x in direction]
+
+    def rotation(self, rate):
+        """A number in 2D, a vector in 3D."""
+        return self.rng.uniform(-rate, rate) if self.dimension == 2 else self.vector(rate)
+
+    def density_ratio(self):
+        ratio = self.rng.choice([1.0, 10 ** self.rng.uniform(-2, 2), 10 ** self.rng.uniform(-1, 1)])
+        self.facts.lightest = min(self.facts.lightest, ratio)
+        return ratio
+
+    def add_file(self, extension, text):
+        name = f"mesh-{len(self.files) + 1}.{extension}"
+        self.files[name] = text
+        return name
+
+    def new_name(self):
+        return self.names.pop()
+
+
+def sides(world):
+    """Pairs of closed, periodic, open sides and inflows; an inflow has an open side to leave through."""
+    rng, lists = world.rng, {}
+    kinds = {}
+    for axis in range(world.dimension):
+        kind = rng.choice(["closed"] * 4 + ["periodic", "open", "stream"])
+        names = [f"{AXES[axis]} lower", f"{AXES[axis]} upper"]
+        if kind == "periodic":
+            kinds.update({name: {"Type": "periodic"} for name in names})
+        elif kind == "open":
+            rng.shuffle(names)
+            kinds[names[0]] = {"Type": "open"}
+            kinds[names[1]] = {"Type": rng.choice(["open", "wall", "slip wall"])}
+        elif kind == "stream":
+            end = rng.randrange(2)
+            kinds[names[end]] = inflow(world, axis, end)
+            kinds[names[1 - end]] = {"Type": "open"}
+        else:
+            kinds.update({name: {"Type": rng.choice(["wall", "wall", "slip wall"])} for name in names})
+    for name, side in kinds.items():
+        axis = AXES.index(name[0])
+        if side["Type"] == "wall" and rng.random() < 0.15:
+            side["Velocity"] = world.vector(0.5 * world.speed)
+            side["Velocity"][axis] = 0.0
+            if rng.random() < 0.3:
+                side["Ramp Time"] = rng.uniform(0, 2) * world.dt
+            if rng.random() < 0.2:
+                side["End Time"] = world.start + rng.uniform(0, 4) * world.dt
+            world.facts.works = True
+        lists[name] = side
+    world.facts.open_sides = any(side["Type"] in ("open", "inflow") for side in kinds.values())
+    world.facts.periodic = any(side["Type"] == "periodic" for side in kinds.values())
+    return lists
+
+
+def inflow(world, axis, end):
+    rng = world.rng
+    velocity = [0.0] * world.dimension
+    velocity[axis] = (1 if end == 0 else -1) * rng.uniform(0.2, 1) * world.speed
+    side = {"Type": "inflow", "Velocity": velocity}
+    if rng.random() < 0.3:
+        side["Profile"] = "parabolic"
+    if rng.random() < 0.3:
+        side["Ramp Time"] = rng.uniform(0, 3) * world.dt
+    if rng.random() < 0.3:
+        middle = [(a + b) / 2 for a, b in zip(world.lower, world.upper)]
+        half = [rng.uniform(0.25, 0.45) * (b - a) for a, b in zip(world.lower, world.upper)]
+        half[axis] = world.upper[axis] - world.lower[axis]
+        side["Opening"] = {"Lower": [m - x for m, x in zip(middle, half)],
+                           "Upper": [m + x for m, x in zip(middle, half)]}
+    world.facts.works = True
+    return side
+
+
+def region(world):
+    """A box or a ball in the domain."""
+    rng = world.rng
+    point = [rng.uniform(a, b) for a, b in zip(world.lower, world.upper)]
+    if rng.random() < 0.5:
+        return {"Shape": "ball", "Center": point, "Radius": rng.uniform(1, 4) * world.h}
+    return {"Shape": "box", "Lower": [x - rng.uniform(1, 4) * world.h for x in point],
+            "Upper": [x + rng.uniform(1, 4) * world.h for x in point]}
+
+
+def scalars(world, fluid, side_lists):
+    """Smoke and temperature with their regions, sources and weights; Facts.scalar_range without rates."""
+    rng = world.rng
+    for name, weight in (("Smoke", "Smoke Weight"), ("Temperature", "Thermal Expansion")):
+        if rng.random() > 0.3:
+            continue
+        ambient = rng.choice([0.0, rng.uniform(-1, 1)])
+        values = [ambient]
+        fluid[name] = {"Ambient": ambient}
+        if rng.random() < 0.7:
+            values.append(rng.uniform(0, 2))
+            fluid[name]["Regions"] = {"Puff": {**region(world), "Value": values[-1]}}
+        for side in side_lists.values():
+            if side["Type"] == "inflow":
+                side[name] = rng.uniform(0, 1)
+                values.append(side[name])
+        values.append(0.0)  # what an open side lets in
+        if rng.random() < 0.5:
+            source = {**region(world), name: rng.uniform(0, 2)}
+            values.append(source[name])
+            if rng.random() < 0.4:
+                source["Velocity"] = world.vector(0.3 * world.speed)
+                world.facts.works = True
+            if rng.random() < 0.3:
+                source["Begin Time"] = world.start + world.dt
+            fluid.setdefault("Sources", {})[f"Source of {name}"] = source
+        if rng.random() < 0.2:
+            rate = rng.uniform(0, 1) / world.dt
+            fluid.setdefault("Sources", {})[f"Rate of {name}"] = {**region(world), f"{name} Rate": rate}
+            values.append(max(values) + rate * world.dt * world.n_steps)
+        if rng.random() < 0.5:
+            fluid[weight] = rng.uniform(0, 0.3) * (1 if name == "Temperature" else rng.choice([-1, 1]))
+            world.facts.works = True
+        world.facts.scalar_range[name.lower()] = [min(values), max(values)]
+
+
+def fluid(world, side_lists):
+    rng = world.rng
+    chosen = {"Type": "mac", "Density": world.density, "Advection": rng.choice(["semi-lagrangian", "maccormack"]),
+              "Order in Time": rng.choice([1, 2])}
+    if rng.random() < 0.5:
+        chosen["Viscosity"] = world.density * world.h ** 2 / world.dt * 10 ** rng.uniform(-3, 1)
+    if rng.random() < 0.2:
+        chosen["Smallest Link"] = rng.uniform(0.05, 1)
+    if rng.random() < 0.6:
+        chosen["Gravity"] = world.vector(world.speed / world.dt / 5)
+    if rng.random() < 0.15:
+        chosen["Body Force"] = world.vector(world.speed / world.dt / 10)
+        world.facts.works = True
+    scalars(world, chosen, side_lists)
+    state = rng.choice(["at rest", "at rest", "uniform", "taylor green", "rotation"])
+    chosen["Initial State"] = {"Type": state}
+    length = max(b - a for a, b in zip(world.lower, world.upper))
+    if state == "uniform":
+        chosen["Initial State"]["Velocity"] = world.vector(world.speed)
+    elif state == "taylor green":
+        chosen["Initial State"].update({"Amplitude": 0.7 * world.speed, "Wavelength": length / rng.choice([1, 2])})
+    elif state == "rotation":
+        rate = world.rotation(world.speed / length)
+        chosen["Initial State"].update({"Angular Velocity": [rate] if world.dimension == 2 else rate,
+                                        "Center": [(a + b) / 2 for a, b in zip(world.lower, world.upper)]})
+    return chosen
+
+
+def slots(world, n):
+    """Centres and half widths of n equal parts of the domain along its longest axis, a margin inside them."""
+    axis = world.cells.index(max(world.cells))
+    n = min(n, world.cells[axis] // 7)
+    if n == 0:
+        return
+    part = (world.upper[axis] - world.lower[axis]) / n
+    narrowest = min(part, *(b - a for a, b in zip(world.lower, world.upper)))
+    reach = narrowest / 2 - 1.2 * world.h
+    for k in range(n):
+        center = [(a + b) / 2 for a, b in zip(world.lower, world.upper)]
+        center[axis] = world.lower[axis] + (k + 0.5) * part
+        yield [x + world.rng.uniform(-0.2, 0.2) * world.h for x in center], reach
+
+
+def solids(world):
+    rng, lists = world.rng, {}
+    for center, reach in slots(world, rng.choice([0, 1, 1, 1, 2, 2, 3])):
+        kind = rng.choice(["rigid"] * 4 + ["soft"] * 3 + ["cloth"] * 3 + ["carried"])
+        if kind == "carried":
+            lists.update(carried(world, center, reach))
+        else:
+            make = {"rigid": rigid_body, "soft": deformable_body, "cloth": cloth}[kind]
+            lists[world.new_name()] = make(world, center, reach)
+    for body in lists.values():
+        if rng.random() < 0.3:
+            body.update({"Restitution": rng.uniform(0, 1), "Friction": rng.uniform(0, 1)})
+    return lists
+
+
+def coupling(world):
+    rng = world.rng
+    if rng.random() < 0.4:
+        chosen = {"Type": "flux", "Weights": rng.choice(["face fractions", "volume fractions"])}
+        if rng.random() < 0.3:
+            chosen["Smallest Open Fraction"] = 10 ** rng.uniform(-6, -0.5)
+        if rng.random() < 0.2:
+            chosen["Correct Buoyancy"] = False
+        return chosen
+    lumping = rng.choice(["diagonal"] * 4 + ["consistent"] * 3 + ["paper diagonal"])
+    if lumping == "paper diagonal":
+        world.facts.exact_momentum = False
+    return {"Type": "mixed face", "Mixed Rule": rng.choice(["voxel", "voxel", "every cut cell"]), "Lumping": lumping,
+            "Soft Weights": rng.choice(["barycentric", "rigid motions"]),
+            "Fluid Mass": rng.choice(["fluid part", "fluid part", "whole cell"]), "Balance Masses": rng.random() < 0.8}
+
+
+def contact(world, solid_lists):
+    """None where nodes are glued: those bodies overlap from the start."""
+    rng = world.rng
+    if world.facts.attached or rng.random() < 0.4:
+        return {"Type": "none"}
+    chosen = {"Type": "gauss seidel"}
+    if rng.random() < 0.3:
+        chosen.update({"Margin": rng.uniform(0.05, 0.3), "Shell Thickness": rng.uniform(0.05, 0.2),
+                       "Self-Contact": rng.random() < 0.5})
+    if rng.random() < 0.2:
+        chosen.update({"Wall Friction": rng.uniform(0, 1), "Wall Restitution": rng.uniform(0, 1)})
+    if solid_lists and rng.random() < 0.2:
+        chosen["Skins"] = {rng.choice(sorted(solid_lists)): {"Thickness": rng.uniform(0.05, 0.2) * world.h}}
+    return chosen
+
+
+def strategy(world, coupling_list, solid_lists):
+    """A strategy and inverses of its blocks; those of limited use only in their domain."""
+    rng, facts = world.rng, world.facts
+    names = list(GENERAL_STRATEGIES)
+    rigid_only = facts.dynamic_rigid and not (facts.soft or facts.attached or facts.closed_shell)
+    if rigid_only and coupling_list["Type"] == "mixed face":
+        names += ["solid-schur", "block-lu", "bramble-pasciak", "block-elimination", "simple"]
+        if facts.lightest >= 1:
+            names.append("gauss-seidel")
+        if facts.lightest >= 20:
+            names += ["uzawa"] * 3
+    name = rng.choice(names)
+    chosen = {"Type": name, "Maximum Iterations": 5000}
+    facts.needs_full_ranks = name in BELOS_STRATEGIES
+    if name == "paper":
+        chosen["Krylov Method"] = rng.choice(["Belos MINRES", "Lockstep MINRES"])
+        facts.needs_full_ranks = chosen["Krylov Method"] == "Belos MINRES"
+    if name in ("schur-cg", "pressure-schur") and rng.random() < 0.25:
+        kind = rng.choice(["MueLu", "Incomplete Cholesky", "Multigrid"])  # the last wants whole tiles along periodic axes
+        chosen["Pressure Inverse"] = {"Type": "Automatic" if kind == "Multigrid" and world.facts.periodic else kind}
+    if name in ("schur-cg", "pressure-schur") and solid_lists and rng.random() < 0.25:
+        kinds = ["Exact", "Jacobi", "Additive Multilevel", "MueLu"] if facts.soft else ["Exact", "Block Diagonal"]
+        chosen["Solid Inverse"] = {"Type": rng.choice(kinds)}
+    return chosen
+
+
+def solver(world, coupling_list, solid_lists):
+    chosen = {"Tolerance": TOLERANCE, "Strategy": strategy(world, coupling_list, solid_lists)}
+    chosen["Viscous Tolerance"] = 1e-12
+    if world.facts.soft and world.rng.random() < 0.25:
+        chosen["Newton Iterations"] = world.rng.randint(2, 3)
+    return chosen
+
+
+def time(world):
+    rng = world.rng
+    chosen = {"Start": world.start, "End": world.start + 100 * world.dt, "Steps": world.n_steps,
+              "Pressure Correction": rng.choice(["incremental", "incremental", "non-incremental"])}
+    if rng.random() < 0.6:
+        chosen["Fixed Step"] = world.dt
+    else:
+        chosen.update({"CFL": world.cfl, "Largest Step": world.dt})
+    return chosen
+
+
+def random_scene(seed):
+    """The scene that this seed names, as a Scene."""
+    world = World(seed)
+    side_lists = sides(world)
+    content = {"Dimension": world.dimension, "Title": f"Random scene {seed}",
+               "Domain": {"Lower": world.lower, "Upper": world.upper, "Cells": world.cells, "Sides": side_lists},
+               "Fluid": fluid(world, side_lists), "Solids": solids(world)}
+    content["Coupling"] = coupling(world)
+    content["Contact"] = contact(world, content["Solids"])
+    content["Solver"] = solver(world, content["Coupling"], content["Solids"])
+    content["Time"] = time(world)
+    content["Output"] = {"Precision": "double", "Checkpoint Interval": 1e-9 * world.dt, "Keep Checkpoints": 10}
+    return Scene(seed, to_xml("Scene", content), world.files, world.facts, content, world.n_steps, world.dt)
