@@ -10,6 +10,9 @@ import h5py
 import numpy
 
 
+ELEMENTS = " elements"  # the mesh of the solid "Flag" is "Flag elements"
+
+
 class FramesError(Exception):
     """The run's folder lacks something; the message says what and where."""
 
@@ -36,10 +39,11 @@ class Array:
 
 @dataclass
 class Grid:
-    """A fluid box (cell values in fields) or a solid's surface (simplices over vertices)."""
+    """A fluid box (cell values in fields) or a solid's surface or volume (simplices over vertices)."""
     name: str
     is_box: bool
     dim: int
+    n_corners: int = 0                          # of a simplex
     fields: dict = field(default_factory=dict)  # name -> (Array, "Cell" or "Node", is a vector)
     origin: numpy.ndarray = None                # of a box, in x, y, z order
     spacing: numpy.ndarray = None
@@ -59,7 +63,17 @@ class Frame:
 
     @property
     def surfaces(self):
-        return [grid for grid in self.grids if not grid.is_box]
+        """Of all solids, one each: not the elements of deformable ones, whose surfaces are there too."""
+        return [grid for grid in self.grids if not grid.is_box and not self._is_elements(grid)]
+
+    @property
+    def elements(self):
+        """The elements of deformable solids, by the name of the solid."""
+        return {grid.name[:-len(ELEMENTS)]: grid for grid in self.grids if self._is_elements(grid)}
+
+    def _is_elements(self, grid):
+        names = [other.name for other in self.grids]
+        return grid.name.endswith(ELEMENTS) and grid.name[:-len(ELEMENTS)] in names
 
 
 def index_path(output_directory):
@@ -108,7 +122,8 @@ def _grid(element, folder):
         grid.n_cells = [max(n - 1, 1) for n in reversed(nodes)] + [1] * (3 - len(nodes))
         grid.dim = 2 if grid.n_cells[2] == 1 else 3
     else:
-        grid.dim = 3 if kind == "Triangle" else 2
+        grid.n_corners = {"Polyline": 2, "Triangle": 3, "Tetrahedron": 4}[kind]
+        grid.dim = 2 if grid.n_corners == 2 else 3
         grid.vertices = _array(items[0], folder)
         grid.simplices = _array(topology.find("DataItem"), folder)
     for attribute in element.findall("Attribute"):

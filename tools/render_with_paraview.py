@@ -36,9 +36,14 @@ def show_fluid(job, view):
     bounds = fluid.GetDataInformation().GetBounds()
     shown, representation = fluid, "Surface"
     if job["volume"]:
-        # Volumes are drawn from one image with values at its points.
-        shown = simple.ResampleToImage(Input=simple.CellDatatoPointData(Input=fluid))
-        shown.SamplingDimensions = [128, 128, 128]
+        # Volumes are drawn from one image with values at its points: some in each cell, which have its value and
+        # are not interpolated. Interpolated, smoke would show on both sides of a wall that holds it.
+        per_cell = max(1, min(4, 240 // max(job["n_cells"])))
+        half = [0.5 * spacing / per_cell for spacing in job["spacing"]]
+        shown = simple.ResampleToImage(Input=fluid)
+        shown.UseInputBounds = 0
+        shown.SamplingBounds = [bounds[i] + half[i // 2] * (1 - 2 * (i % 2)) for i in range(6)]
+        shown.SamplingDimensions = [per_cell * n for n in job["n_cells"]]
         representation = "Volume"
     elif job["dim"] == 3:
         centre = [0.5 * (bounds[2 * i] + bounds[2 * i + 1]) for i in range(3)]
@@ -49,6 +54,8 @@ def show_fluid(job, view):
         shown.SliceType.Normal = [float(i == job["axis"]) for i in range(3)]
     display = simple.Show(shown, view)
     display.SetRepresentationType(representation)
+    if job["volume"]:
+        display.InterpolationType = "Nearest"
     display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the bar, without shading
     where = "POINTS" if job["volume"] else "CELLS"
     simple.ColorBy(display, (where, job["field"], "Magnitude") if job["is_vector"] else (where, job["field"]))

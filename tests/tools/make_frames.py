@@ -1,5 +1,5 @@
 """Writes a small output folder as a run would: two frames of a box of 8 x 6 x 4 cells (8 x 6 in 2D) with
-smoke = x and a velocity, and one body: a tetrahedron (a square in 2D). Usage: make_frames.py DIR DIM"""
+smoke = x and a velocity, and one soft body: a tetrahedron (a square in 2D), as surface and as elements. Usage: make_frames.py DIR DIM"""
 import sys
 from pathlib import Path
 
@@ -37,6 +37,21 @@ def write_fluid(file, group, dim, time):
    </Grid>"""
 
 
+def write_elements(file, group, n_vertices, dim):
+    elements = numpy.array([(0, 2, 1, 3)] if dim == 3 else [(0, 1, 2), (0, 2, 3)], "i4")
+    file[f"{group}/elements"] = elements
+    kind = "Tetrahedron" if dim == 3 else "Triangle"
+    return f"""
+   <Grid Name="body elements" GridType="Uniform">
+    <Topology TopologyType="{kind}" NumberOfElements="{len(elements)}">
+     <DataItem Dimensions="{len(elements)} {dim + 1}" NumberType="Int" Format="HDF">frames.h5:{group}/elements</DataItem>
+    </Topology>
+    <Geometry GeometryType="XYZ">
+     <DataItem Dimensions="{n_vertices} 3" NumberType="Float" Precision="8" Format="HDF">frames.h5:{group}/vertices</DataItem>
+    </Geometry>
+   </Grid>"""
+
+
 def write_body(file, group, dim):
     if dim == 3:
         vertices = numpy.array([(1.25, 0.25, -0.2), (1.75, 0.25, -0.2), (1.5, 0.6, -0.2), (1.5, 0.4, 0.2)])
@@ -56,7 +71,7 @@ def write_body(file, group, dim):
     <Geometry GeometryType="XYZ">
      <DataItem Dimensions="{len(vertices)} 3" NumberType="Float" Precision="8" Format="HDF">frames.h5:{group}/vertices</DataItem>
     </Geometry>
-   </Grid>"""
+   </Grid>""" + write_elements(file, group, len(vertices), dim)
 
 
 def main(folder, dim):

@@ -7,6 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import h5py
 import numpy
 from matplotlib.image import imread
 
@@ -17,6 +18,16 @@ sys.path.insert(0, str(TOOLS))
 loader = importlib.machinery.SourceFileLoader("plot_frame", str(TOOLS / "plot-frame"))
 plot_frame = importlib.util.module_from_spec(importlib.util.spec_from_loader("plot_frame", loader))
 loader.exec_module(plot_frame)
+
+
+class FixedArray:
+    """In place of an array in a file."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def read(self):
+        return self.values
 
 
 class Pictures(unittest.TestCase):
@@ -56,6 +67,38 @@ class PlotFrame(Pictures):
         self.assertEqual(plot_frame.slice_of(frame.boxes[0], "smoke", 2, 0.0).shape, (6, 8))
         self.assertEqual(plot_frame.outline(frame.surfaces[0], 2, 0.0).shape, (4, 2, 2))
 
+    def test_elements_are_no_surfaces(self):
+        for dim in (2, 3):
+            frame = self.make(dim)[0]
+            self.assertEqual([surface.name for surface in frame.surfaces], ["body"])
+            self.assertEqual(frame.elements["body"].n_corners, dim + 1)
+
+    def test_tetrahedra_are_drawn_by_their_boundary(self):
+        body = self.make(3)[0].elements["body"]
+        self.assertEqual(plot_frame.boundary(body).shape, (4, 3, 3))
+        # A second one on the side (0, 1, 3): its three other sides take the place of that one.
+        vertices = numpy.vstack((body.vertices.read(), [(1.5, 0.1, 0.0)]))
+        body.vertices = FixedArray(vertices)
+        body.simplices = FixedArray(numpy.array([(0, 2, 1, 3), (0, 1, 4, 3)]))
+        self.assertEqual(plot_frame.boundary(body).shape, (6, 3, 3))
+
+    def test_lit_bodies_hide_their_far_side(self):
+        # Of a cube seen along each axis, the two triangles nearest the viewer come last and cover the others.
+        low, high = numpy.array((0.0, 0.0, 0.0)), numpy.array((1.0, 1.0, 1.0))
+        vertices = numpy.array([[(low, high)[k >> a & 1][a] for a in range(3)] for k in range(8)])
+        tetrahedra = numpy.array([(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)])
+        cube = self.make(3)[0].elements["body"]
+        cube.vertices, cube.simplices = FixedArray(vertices), FixedArray(tetrahedra)
+        for axis, nearest in ((0, 1.0), (1, 0.0), (2, 1.0)):
+            corners = plot_frame.boundary(cube)
+            triangles, colours = plot_frame.lit(cube, axis, (1.0, 0.5, 0.2))
+            self.assertEqual(triangles.shape, (12, 3, 2))
+            keep = [i for i in range(3) if i != axis]
+            front = corners[(corners[..., axis] == nearest).all(axis=1)][..., keep]
+            self.assertEqual({triangle.tobytes() for triangle in triangles[-2:]},
+                             {triangle.tobytes() for triangle in front})
+            self.assertGreater(colours[-1][0], 0.8)     # it faces the viewer and the light
+
     def test_program(self):
         for dim in (2, 3):
             self.make(dim)
@@ -86,6 +129,20 @@ class Render(Pictures):
                 # The scalar bar alone covers less than a tenth of the picture.
                 coloured = numpy.ptp(picture[..., :3], axis=2) > 0.15
                 self.assertGreater(coloured.mean(), 0.1)
+
+    def test_a_cloud_ends_with_its_cells(self):
+        # Smoke of 1 in the cells x < 1.5, of 0 in the others: no colour but those of 0, which is clear, and 1.
+        self.make(3)
+        with h5py.File(Path(self.folder.name) / "frames.h5", "r+") as file:
+            for frame in file.values():
+                frame["fluid/smoke"][...] = numpy.arange(8) < 4
+        result = self.run_tool("render", "--volume", "--field", "smoke", "--size", "480x360")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        picture = imread(Path(self.folder.name) / "render.png")[:, :300, :3]    # without the bar
+        red, green, blue = picture[..., 0], picture[..., 1], picture[..., 2]
+        self.assertGreater(((red > 0.8) & (green > 0.7) & (blue < 0.6)).mean(), 0.05)
+        greenish = (green > red + 0.1) & (green > blue + 0.05)              # the middle of the colours
+        self.assertLess(greenish.mean(), 0.001)
 
     def test_movie(self):
         self.make(3)
