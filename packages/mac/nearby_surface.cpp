@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "geometry/simplex_queries.hpp"
 
@@ -12,6 +11,7 @@ template <int dim>
 NearbySurface<dim>::NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid)
     : snapshot_(snapshot && !snapshot->empty() ? std::move(snapshot) : nullptr),
       lower_(grid.lower()),
+      spacing_(grid.spacing()),
       tolerance_(1e-6 * grid.spacing()) {
   for (int a = 0; a < dim; ++a)
     period_[a] = grid.description().periodic[a] ? grid.n_cells()[a] * grid.spacing() : 0;
@@ -47,14 +47,8 @@ template <int dim>
 bool NearbySurface<dim>::touches(const Box<dim>& box) const {
   if (empty())
     return false;
-  if (entered_.contains(box))
-    return any_image(box, [&](const Point<dim>& shift) {
-      const Box<dim> there(box.min() - shift, box.max() - shift);
-      for (std::size_t n = 0; n < near_.size(); ++n)
-        if (boxes_[n].intersects(there) && near_[n].shift == shift)
-          return true;
-      return false;
-    });
+  if (entered_.box.contains(box))
+    return entered_.bins.any_touches(box);
   return any_image(box, [&](const Point<dim>& shift) {
     return snapshot_->touches(Box<dim>(box.min() - shift, box.max() - shift));
   });
@@ -76,82 +70,85 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>&
 }
 
 template <int dim>
-void NearbySurface<dim>::fetch(const Box<dim>& box) {
-  near_.clear();
-  boxes_.clear();
+void NearbySurface<dim>::list_all() {
+  Box<dim> region;
+  for (int s = 0; s < snapshot_->n_simplices(); ++s) {
+    all_bounds_.push_back(snapshot_->bounds(s));
+    region.extend(all_bounds_.back());
+  }
+  all_.build(all_bounds_, region, spacing_);
+}
+
+template <int dim>
+void NearbySurface<dim>::fetch(const Box<dim>& box, Place& place) {
+  if (all_bounds_.empty())
+    list_all();
+  place.box = box;
+  place.simplices.clear();
+  place.bounds.clear();
   any_image(box, [&](const Point<dim>& shift) {
-    snapshot_->touching(Box<dim>(box.min() - shift, box.max() - shift), found_);
+    all_.touching(Box<dim>(box.min() - shift, box.max() - shift), found_);
+    std::sort(found_.begin(), found_.end());
     for (const int s : found_) {
       Near near;
       near.simplex = s;
       near.corners = snapshot_->corners(s);
+      Box<dim> bounds;
       for (Point<dim>& corner : near.corners) {
         corner += shift;
-        near.bounds.extend(corner);
+        bounds.extend(corner);
       }
       near.normal = area_vector<dim>(near.corners);
       near.normal.normalize();
-      near.bounds = widened<dim>(near.bounds, 2 * tolerance_);
       near.shift = shift;
-      near_.push_back(near);
-      boxes_.push_back(snapshot_->bounds(s));
+      place.simplices.push_back(near);
+      place.bounds.push_back(widened<dim>(bounds, 2 * tolerance_));
     }
     return false;
   });
+  place.bins.build(place.bounds, box, spacing_);
 }
 
 template <int dim>
 void NearbySurface<dim>::enter(const Box<dim>& box) {
-  gathered_.clear();
   focused_.clear();
-  if (empty())
-    return;
-  entered_ = box;
-  fetch(box);
+  gathered_ = &entered_;
+  if (!empty())
+    fetch(box, entered_);
 }
 
 template <int dim>
 void NearbySurface<dim>::gather(const Box<dim>& box) {
-  gathered_.clear();
   focused_.clear();
   if (empty())
     return;
   const Box<dim> wide = widened<dim>(box, tolerance_);
-  if (!entered_.contains(wide)) {
-    entered_.setEmpty();
-    fetch(wide);
-    gathered_.resize(near_.size());
-    std::iota(gathered_.begin(), gathered_.end(), 0);
-    return;
-  }
-  any_image(wide, [&](const Point<dim>& shift) {
-    const Box<dim> there(wide.min() - shift, wide.max() - shift);
-    for (int n = 0; n < static_cast<int>(near_.size()); ++n)
-      if (boxes_[n].intersects(there) && near_[n].shift == shift)
-        gathered_.push_back(n);
-    return false;
-  });
+  gathered_ = entered_.box.contains(wide) ? &entered_ : &elsewhere_;
+  if (!gathered_->box.contains(wide))
+    fetch(wide, elsewhere_);
 }
 
 template <int dim>
 void NearbySurface<dim>::focus(const Box<dim>& box) {
   focused_.clear();
   const Point<dim> center = box.center(), half = 0.5 * box.sizes();
-  for (const int n : gathered_) {
-    const Near& near = near_[n];
-    if (!near.bounds.intersects(box))
-      continue;
+  gathered_->bins.touching(box, found_);
+  for (const int n : found_) {
     // No segment in the box meets a simplex whose plane passes by.
+    const Near& near = gathered_->simplices[n];
     const double height = std::abs(near.normal.dot(center - near.corners[0]));
     if (height <= near.normal.cwiseAbs().dot(half) + 3 * tolerance_)
       focused_.push_back(n);
   }
+  std::sort(focused_.begin(), focused_.end());  // of equally near hits the first counts
 }
 
 template <int dim>
 std::optional<SurfacePoint<dim>> NearbySurface<dim>::near_hit(const Point<dim>& a,
                                                               const Point<dim>& b) const {
-  return hit_among(gathered_, a, b);
+  gathered_->bins.touching(span(a, b), found_);
+  std::sort(found_.begin(), found_.end());
+  return found_.empty() ? std::nullopt : hit_among(found_, a, b);
 }
 
 template <int dim>
@@ -163,9 +160,9 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::hit_among(const std::vector
   // A segment shorter than the tolerance has no direction to speak of.
   const bool is_point = (b - a).norm() <= tolerance_;
   for (const int n : among) {
-    const Near& near = near_[n];
-    if (!near.bounds.intersects(box))
+    if (!gathered_->bounds[n].intersects(box))
       continue;
+    const Near& near = gathered_->simplices[n];
     const double from = near.normal.dot(a - near.corners[0]);
     const double to = near.normal.dot(b - near.corners[0]);
     if (std::min(from, to) > 3 * tolerance_ || std::max(from, to) < -3 * tolerance_)

@@ -5,6 +5,7 @@
 
 #include "geometry/surface_snapshot.hpp"
 #include "grid/tiled_grid.hpp"
+#include "mac/box_bins.hpp"
 
 namespace lockstep {
 
@@ -18,6 +19,8 @@ class NearbySurface {
 
   /// The snapshot may be null: no surface.
   NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid);
+  NearbySurface(const NearbySurface&) = delete;
+  NearbySurface& operator=(const NearbySurface&) = delete;
 
   bool empty() const { return !snapshot_; }
   const SurfaceSnapshot<dim>& snapshot() const { return *snapshot_; }
@@ -32,11 +35,11 @@ class NearbySurface {
   /// Remembers what touches the box [m], so that `touches` and `gather` for boxes inside it are
   /// fast; forgets what was gathered.
   void enter(const Box<dim>& box);
-  /// Picks the simplices that touch the box [m]; replaces what was gathered before.
+  /// Makes `near_hit` and `focus` know what touches the box [m].
   void gather(const Box<dim>& box);
-  /// First of the gathered simplices that the segment, inside the box, meets.
+  /// First simplex that the segment, inside the box gathered, meets.
   std::optional<SurfacePoint<dim>> near_hit(const Point<dim>& a, const Point<dim>& b) const;
-  /// Picks the gathered simplices that touch a smaller box, for many segments inside it.
+  /// Picks the simplices that touch a smaller box, for many segments inside it.
   void focus(const Box<dim>& box);
   std::optional<SurfacePoint<dim>> focused_hit(const Point<dim>& a, const Point<dim>& b) const {
     return focused_.empty() ? std::nullopt : hit_among(focused_, a, b);
@@ -47,11 +50,17 @@ class NearbySurface {
     int simplex;
     std::array<Point<dim>, dim> corners;  ///< of the image
     Point<dim> normal;                    ///< of length one; zero if the simplex is degenerate
-    Box<dim> bounds;                      ///< of the image, widened by the tolerance
     Point<dim> shift;                     ///< from the real place to the image
   };
-  /// Puts the images of simplices that touch the box into `near_`.
-  void fetch(const Box<dim>& box);
+  /// All images of simplices that touch a box.
+  struct Place {
+    Box<dim> box;                  ///< empty: of nothing
+    std::vector<Near> simplices;   ///< ascending by image and simplex
+    std::vector<Box<dim>> bounds;  ///< of the images, widened by the tolerance
+    BoxBins<dim> bins;             ///< of `bounds`
+  };
+  void fetch(const Box<dim>& box, Place& place);
+  void list_all();
   /// Calls f(shift) for each period by which the surface may have to be moved to touch the box,
   /// until f returns true.
   template <typename Function>
@@ -59,17 +68,19 @@ class NearbySurface {
   static Box<dim> span(const Point<dim>& a, const Point<dim>& b) {
     return {a.cwiseMin(b), a.cwiseMax(b)};
   }
-  /// `among`: places in `near_`.
+  /// `among`: indices of simplices in the place gathered.
   std::optional<SurfacePoint<dim>> hit_among(const std::vector<int>& among, const Point<dim>& a,
                                              const Point<dim>& b) const;
 
   Snapshot snapshot_;
   Point<dim> lower_, period_;  ///< period 0: not periodic
-  double tolerance_;
-  Box<dim> entered_;                             ///< what touches it is in near_
-  std::vector<Near> near_;                       ///< ascending by image and simplex
-  std::vector<Box<dim>> boxes_;                  ///< of the simplices in near_, at their real place
-  std::vector<int> gathered_, focused_, found_;  ///< gathered_, focused_: places in near_
+  double spacing_, tolerance_;
+  std::vector<Box<dim>> all_bounds_;
+  BoxBins<dim> all_;                   ///< of `all_bounds_`; made when first needed
+  Place entered_, elsewhere_;          ///< what `enter` and `gather` last asked for
+  const Place* gathered_ = &entered_;  ///< one of the two
+  std::vector<int> focused_;           ///< indices of simplices in the place gathered
+  mutable std::vector<int> found_;
 };
 
 /// The box widened by a distance on all sides.
