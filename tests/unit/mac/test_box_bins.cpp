@@ -25,7 +25,7 @@ void compare_with_looking_at_all(int n_boxes) {
   std::mt19937 engine(n_boxes);
   std::vector<Box<dim>> boxes;
   for (int i = 0; i < n_boxes; ++i)
-    boxes.push_back(random_box<dim>(engine, 0.15));
+    boxes.push_back(random_box<dim>(engine, n_boxes < 50 ? 0.8 : 0.15));
   BoxBins<dim> bins;
   bins.build(boxes, Box<dim>(Point<dim>::Zero(), Point<dim>::Ones()), 0.1);
   int n_found = 0;
