@@ -37,6 +37,14 @@ class PressureLayoutOf final : public PressureLayout {
     own_ = with_cycle_of(multigrid_, system);
     of_schur_ = {};
   }
+  bool update_empty_rows(const BlockSystem& system) override {
+    if (!some_row_is_empty())
+      return false;
+    own_ = with_cycle_of(multigrid_, system);
+    if (has_schur_inverse())
+      of_schur_ = schur_multigrid_ ? with_cycle_of(*schur_multigrid_, system) : own_;
+    return true;
+  }
   void build_schur_inverse(const BlockSystem& system,
                            const LinearOperator& solid_inverse) override {
     if (has_schur_inverse() && !schur_depends_on_solid_block_)
@@ -78,6 +86,9 @@ class PressureLayoutOf final : public PressureLayout {
  private:
   void number_rows(const FaceCoefficients& coefficients);
   std::vector<int> find_empty_rows() const;
+  bool some_row_is_empty() const {
+    return sum_all(layout_->blocks().comm, static_cast<GlobalIndex>(empty_rows_.size())) > 0;
+  }
   std::vector<EmptyRow> with_values(const BlockSystem& system) const;
 
   /// A multigrid's cycle, and conjugate gradients on A with it.
@@ -131,7 +142,7 @@ std::vector<int> PressureLayoutOf<dim>::find_empty_rows() const {
 template <int dim>
 std::vector<EmptyRow> PressureLayoutOf<dim>::with_values(const BlockSystem& system) const {
   std::vector<EmptyRow> result;
-  if (sum_all(layout_->blocks().comm, static_cast<GlobalIndex>(empty_rows_.size())) == 0)
+  if (!some_row_is_empty())
     return result;
   const auto added = added_mass_diagonal(system, domain_map(*system.pressure_block));
   const auto values = added->getData();

@@ -35,6 +35,9 @@ class PressureLayout {
   /// One cycle of the multigrid. A row that A leaves empty is divided by its entry in the diagonal
   /// of B diag(C)^-1 B^T.
   virtual RCP<const LinearOperator> inverse() const = 0;
+  /// For another C on the same geometry: what divides the rows that A leaves empty. Returns whether
+  /// there are any; the inverses and kernels are new ones then. Collective.
+  virtual bool update_empty_rows(const BlockSystem& system) = 0;
   /// Conjugate gradients on A with that cycle.
   virtual ConjugateGradientKernels& kernels() = 0;
 

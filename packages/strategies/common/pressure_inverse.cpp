@@ -36,25 +36,35 @@ std::vector<int> pinned_rows(const BlockSystem& system, const RCP<const Map>& ma
   return rows;
 }
 
+/// The local rows whose diagonal vanishes beside the largest.
+std::vector<int> empty_rows(const Vector& diagonal) {
+  const double least = 1e-14 * diagonal.normInf();
+  const auto values = diagonal.getData();
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(values.size()); ++row) {
+    if (!(values[row] > least))
+      rows.push_back(row);
+  }
+  return rows;
+}
+
+bool is_any(const RCP<const Map>& map, const std::vector<int>& rows) {
+  return sum_all(map->getComm(), static_cast<GlobalIndex>(rows.size())) > 0;
+}
+
 /// The values to add to the diagonal of A before it is inverted approximately.
 std::vector<double> diagonal_shift(const BlockSystem& system, const CrsMatrix& a, bool pin) {
   const auto map = a.getRowMap();
   const auto diagonal = diagonal_of(a);
-  const double largest = diagonal->normInf();
   const auto values = diagonal->getData();
   std::vector<double> shift(values.size(), 0.0);
-  const auto is_empty = [&](std::size_t row) { return !(values[row] > 1e-14 * largest); };
-  GlobalIndex n_empty = 0;
-  for (std::size_t row = 0; row < shift.size(); ++row) {
-    n_empty += is_empty(row);
-  }
-  if (sum_all(map->getComm(), n_empty) > 0) {
+  const std::vector<int> empty = empty_rows(*diagonal);
+  if (is_any(map, empty)) {
+    const double largest = diagonal->normInf();
     const auto added = added_mass_diagonal(system, map);
     const auto added_values = added->getData();
-    for (std::size_t row = 0; row < shift.size(); ++row) {
-      if (is_empty(row))
-        shift[row] = added_values[row] > 0 ? added_values[row] : largest;
-    }
+    for (const int row : empty)
+      shift[row] = added_values[row] > 0 ? added_values[row] : largest;
   }
   if (pin) {
     for (const int row : pinned_rows(system, map)) {
@@ -159,6 +169,11 @@ RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
     apply(*layout->inverse(), *r_layout, *z_layout);
     layout->from_layout(*z_layout, z);
   });
+}
+
+bool leaves_rows_empty(const RCP<const LinearOperator>& pressure_block) {
+  const auto a = assembled(pressure_block);
+  return !a.is_null() && is_any(a->getRowMap(), empty_rows(*diagonal_of(*a)));
 }
 
 RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,

@@ -25,6 +25,10 @@ MultigridOptions multigrid_options(const Teuchos::ParameterList& list);
 RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
                                                    const MultigridOptions& options);
 
+/// Whether some cell's row of A is empty, all of its faces being mixed: then the inverse of A
+/// depends on C. Collective.
+bool leaves_rows_empty(const RCP<const LinearOperator>& pressure_block);
+
 /// Any other inverse that a list names, made positive definite where A is not:
 /// - a cell all of whose faces are mixed has an empty row in A; its diagonal becomes that of
 ///   B diag(C)^-1 B^T;

@@ -167,6 +167,20 @@ void RefinedStrategy::build_pressure_inverse(const BlockSystem& system) {
                              symmetry_tolerance());
 }
 
+/// C stands in for A in the rows that A leaves empty. Without this a solve would depend on which C
+/// the geometry was first seen with, and a restarted run not equal the straight one.
+bool RefinedStrategy::update_pressure_inverse(const BlockSystem& system) {
+  if (layout_) {
+    const bool is_another = layout_->update_empty_rows(system);
+    pressure_inverse_ = layout_->inverse();
+    return is_another;
+  }
+  if (!leaves_rows_empty(system.pressure_block))
+    return false;
+  build_pressure_inverse(system);
+  return true;
+}
+
 BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
                                                  const CorrectionRequest& request,
                                                  Presumes presumes) {
@@ -214,6 +228,8 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
     if (pressure_list_)
       build_pressure_inverse(system);
   }
+  const bool inverse_changed =
+      geometry_changed || (solid_changed && pressure_list_ && update_pressure_inverse(system));
   if (solid_changed) {
     solid_.build(system);
     solid_gain_ = -1;
@@ -223,7 +239,7 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
     if (inverts_schur() && system.has_solid() && (solid_changed || !layout_->has_schur_inverse()))
       layout_->build_schur_inverse(system, *solid_.to(rough));
   }
-  build(working(system), geometry_changed, solid_changed);
+  build(working(system), inverse_changed, solid_changed);
   prepared_.system_name = system.name;
   prepared_.geometry_stamp = system.geometry_stamp;
   prepared_.pressure_map = domain_map(*system.pressure_block);

@@ -110,6 +110,8 @@ class RefinedStrategy : public SolverStrategy {
     return layout_ ? (system.has_solid() ? relaid_ : relaid_pressure_) : system;
   }
   void build_pressure_inverse(const BlockSystem& system);
+  /// For another C on the same geometry; returns whether the inverse is another now.
+  bool update_pressure_inverse(const BlockSystem& system);
   void relay(const BlockSystem& system);
   SolveReport refine(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
                      const SolveRequest& request);
