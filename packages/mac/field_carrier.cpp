@@ -68,6 +68,10 @@ template <int dim>
 void FieldCarrier<dim>::carry(std::vector<Passenger<dim>>& passengers) {
   for (Passenger<dim>& passenger : passengers)
     begin(passenger);
+  if (passengers.front().field.kind != cell_centers)
+    for (Passenger<dim>& passenger : passengers)
+      for (const Passenger<dim>& other : passengers)
+        passenger.field.velocity[other.field.kind] = other.field.values;
   for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
     const bool by_rows = frame_.plans[tile].by_rows && carry_rows(passengers, tile);
     if (frame_.plans[tile].near_surface)
@@ -222,7 +226,7 @@ bool FieldCarrier<dim>::carry_open_part(Passenger<dim>& passenger, int id, const
   const TiledGrid<dim>& grid = frame_.setting.grid;
   const Point<dim> shift = (place->second - grid.face_center(kind, id)) / grid.spacing();
   passenger.carried()[id] =
-      (*passenger.start)[id] + near_surface.change(passenger.field, x + shift);
+      near_surface.carry_beside(passenger.field, x + shift, (*passenger.start)[id]);
   passenger.forbid_correction(id);
   return true;
 }

@@ -214,7 +214,10 @@ Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
   TransportSetting<dim> setting{
-      domain_.grid, geometry_.state, surface, advection_, ray_halo_, {}, dt};
+      domain_.grid, geometry_.state,
+      surface,      advection_,
+      ray_halo_,    {},
+      dt,           parameters_.viscosity.viscosity / parameters_.density};
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = domain_.boundary.side(axis, end);

@@ -22,11 +22,11 @@ SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
                                         const RayTracer<dim>& tracer,
                                         const UsableSamples<dim>& usable,
                                         const MovingSurface<dim>& surface,
-                                        double largest_displacement)
+                                        double largest_displacement, double friction_speed)
     : lattice_(lattice),
       tracer_(tracer),
       surface_(surface),
-      interpolation_(grid, lattice, usable, surface) {
+      interpolation_(grid, lattice, usable, surface, friction_speed) {
   if (interpolation_.nearby().empty())
     return;
   const SurfaceSnapshot<dim>& before = *surface.before;
@@ -150,14 +150,21 @@ template <int dim>
 std::optional<double> SurfaceTransport<dim>::look_up(const CarriedField<dim>& field,
                                                      const Point<dim>& x) {
   return field.kind == cell_centers ? interpolation_.scalar(x, field.values)
-                                    : interpolation_.velocity(field.kind, x, field.values);
+                                    : interpolation_.velocity(field.kind, x, field.velocity);
 }
 
 template <int dim>
 std::optional<double> SurfaceTransport<dim>::carry(const CarriedField<dim>& field,
                                                    const Point<dim>& x) {
   std::optional<SurfacePoint<dim>> hit;
-  Ray<dim> ray = trace(x, hit);
+  const Ray<dim> ray = trace(x, hit);
+  return fetch(field, x, ray, hit);
+}
+
+template <int dim>
+std::optional<double> SurfaceTransport<dim>::fetch(const CarriedField<dim>& field,
+                                                   const Point<dim>& x, Ray<dim> ray,
+                                                   const std::optional<SurfacePoint<dim>>& hit) {
   if (!hit)
     tracer_.mix_inflow(field.kind, ray);
   if (ray.inflow_share > 0 && ray.inflow_share < 1) {
@@ -185,11 +192,18 @@ std::optional<double> SurfaceTransport<dim>::carry(const CarriedField<dim>& fiel
 }
 
 template <int dim>
-double SurfaceTransport<dim>::change(const CarriedField<dim>& field, const Point<dim>& x) {
-  const auto carried = carry(field, x);
+double SurfaceTransport<dim>::carry_beside(const CarriedField<dim>& field, const Point<dim>& x,
+                                           double own) {
+  std::optional<SurfacePoint<dim>> hit;
+  const Ray<dim> ray = trace(x, hit);
+  const auto carried = fetch(field, x, ray, hit);
   interpolation_.look_around(x);
-  const auto here = look_up(field, x);
-  return carried && here ? *carried - *here : 0;
+  const auto seen = look_up(field, x);
+  // In a gap that no sample sees, what flows comes to rest at the surface.
+  const double here = seen ? *seen : interpolation_.nearest_surface_velocity(x)[field.kind];
+  const double way =
+      std::max((ray.end - x).norm(), tracer_.cells_per_velocity() * std::abs(own - here));
+  return (carried ? *carried : here) + std::max(0.0, 1 - way) * (own - here);
 }
 
 template class SurfaceTransport<2>;

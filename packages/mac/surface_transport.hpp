@@ -13,6 +13,8 @@ template <int dim>
 struct CarriedField {
   SampleKind kind = cell_centers;
   const double* values = nullptr;
+  /// Of a velocity component: itself among the others, which surfaces mix.
+  std::array<const double*, dim> velocity{};
   /// Its value where a ray leaves through an inflow side.
   std::function<double(const Ray<dim>&)> inflow;
 };
@@ -21,10 +23,12 @@ struct CarriedField {
 template <int dim>
 class SurfaceTransport {
  public:
-  /// `largest_displacement` of a ray along an axis, in cells. References must outlive this object.
+  /// `largest_displacement` of a ray along an axis, in cells; `friction_speed` [m/s] is what
+  /// friction takes off the speed at which fluid slips. References must outlive this object.
   SurfaceTransport(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
                    const RayTracer<dim>& tracer, const UsableSamples<dim>& usable,
-                   const MovingSurface<dim>& surface, double largest_displacement);
+                   const MovingSurface<dim>& surface, double largest_displacement,
+                   double friction_speed);
 
   /// True if a surface may come into the way of a ray from a sample of the owned cell, forth or
   /// back, or sweep over it.
@@ -42,14 +46,18 @@ class SurfaceTransport {
   bool clear(const Box<dim>& points, bool during_step) const;
   /// The value carried to the sample at x; none if it sees no valid sample.
   std::optional<double> carry(const CarriedField<dim>& field, const Point<dim>& x);
-  /// By how much the value at x, any place in the fluid, changes; zero where nothing is seen.
-  double change(const CarriedField<dim>& field, const Point<dim>& x);
+  /// A velocity `own` of the sample whose fluid is at x, beside it: changes as what is seen at x
+  /// does, and becomes that as fluid passes, so that nothing gathers in it.
+  double carry_beside(const CarriedField<dim>& field, const Point<dim>& x, double own);
 
  private:
   /// Where the fluid of x came from, as far as it can be seen; sets `hit` if a surface is in the
   /// way.
   Ray<dim> trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit);
   std::optional<SurfacePoint<dim>> hit_on_way(const Point<dim>& x, const Point<dim>& end) const;
+  /// Looks up the value at the end of a ray from x.
+  std::optional<double> fetch(const CarriedField<dim>& field, const Point<dim>& x, Ray<dim> ray,
+                              const std::optional<SurfacePoint<dim>>& hit);
   std::optional<double> look_up(const CarriedField<dim>& field, const Point<dim>& x);
 
   const SampleLattice<dim>& lattice_;

@@ -10,6 +10,8 @@ namespace lockstep {
 namespace {
 
 constexpr double largest_sensible_displacement = 1e6;  // [cells]
+/// Of a cell and its slip: up to this one the fluid comes to rest at a surface within the cell.
+constexpr double resolved_reynolds_number = 4;
 
 /// Along an axis, over all ranks, in cells.
 template <int dim>
@@ -69,7 +71,8 @@ Transport<dim>::Implementation::Implementation(const TransportSetting<dim>& sett
   frame.tracer = std::make_unique<RayTracer<dim>>(*frame.lattice, inflow, velocity,
                                                   setting.dt / setting.grid.spacing());
   frame.near_surface = std::make_unique<SurfaceTransport<dim>>(
-      samples, *frame.lattice, *frame.tracer, usable, setting.surface, frame.largest_displacement);
+      samples, *frame.lattice, *frame.tracer, usable, setting.surface, frame.largest_displacement,
+      resolved_reynolds_number * setting.kinematic_viscosity / setting.grid.spacing());
   if (reach <= TileBlock<dim>::longest_reach)
     frame.block = std::make_unique<TileBlock<dim>>(*frame.lattice, *frame.tracer, reach);
   for (int tile = 0; tile < setting.grid.n_owned_tiles(); ++tile)

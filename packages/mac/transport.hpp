@@ -37,6 +37,7 @@ struct TransportSetting {
   RayHalo<dim>& halo;                        ///< of `grid`
   std::array<std::array<TransportSide<dim>, 2>, dim> sides;  ///< [axis][0 lower, 1 upper]
   double dt = 0;                                             ///< [s]
+  double kinematic_viscosity = 0;                            ///< [m^2/s]
 };
 
 /// Samples without a meaningful value after transport, by cell id (1: invalid): inactive or inside
@@ -51,11 +52,13 @@ struct InvalidSamples {
 
 /// Carries fields over one step along u_ADV (F3), without anything passing through a surface: a ray
 /// from a sample back to where its fluid came from stops at the first surface it meets, and what it
-/// finds there is interpolated from samples that are visible from that point alone. For velocities
-/// a hidden sample is replaced by the velocity of the surface that hides it.
+/// finds there is interpolated from samples that are visible from that point alone. Of a velocity a
+/// hidden sample has what the surface that hides it makes of the visible ones: the normal part is
+/// the surface's, the tangential part theirs, less friction.
 ///
-/// Constant fields stay exactly constant, and a result never leaves the range of the field, the
-/// surface velocities and the inflow values. Results do not depend on the number of ranks.
+/// Constant fields stay exactly constant. A scalar never leaves the range of the field and the
+/// inflow values, a velocity grows no longer than the fastest of field, surfaces and inflows.
+/// Results do not depend on the number of ranks.
 template <int dim>
 class Transport {
  public:

@@ -213,8 +213,9 @@ TEST(TransportNearSurfaces, ASolidThatTravelsWithTheStreamLeavesNoTrace) {
 }
 
 /// A plate across x = 4.3 h that has the velocity (0.5, 2). Fluid moves to the right by h/2; behind
-/// the plate v = 1, before it v = 5.
-TEST(TransportNearSurfaces, RaysStopAndHiddenSamplesTakeTheSurfaceVelocity) {
+/// the plate u = (0.7, 1), before it (0.7, 5): it slips along the plate, or is slowed down along it
+/// by up to 4 nu/h.
+TEST(TransportNearSurfaces, RaysStopAndFluidSlips) {
   GridDescription<2> description = cube<2>(16, false);
   description.spacing = 1;
   FullTank<2> tank(description, world());
@@ -223,24 +224,32 @@ TEST(TransportNearSurfaces, RaysStopAndHiddenSamplesTakeTheSurfaceVelocity) {
   move<2>(tank, surface, surface, 1);
   tank.surface.velocity = [](const SurfacePoint<2>&) { return Point<2>(0.5, 2); };
   tank.set_velocity([](const Point<2>&) { return Point<2>(0.5, 0); });
-  FaceField<2> u = tank.velocity, moved;
+  FaceField<2> u, moved;
+  u[0] = tank.faces(0, [](const Point<2>&) { return 0.7; });
   u[1] = tank.faces(1, [](const Point<2>& x) { return x[0] < 4.3 ? 1.0 : 5.0; });
   CellField s = tank.cells([](const Point<2>&x) { return x[0] < 4.3 ? x[0] : 100; }), s_moved;
-  Transport<2> transport(tank.setting(1));
-  transport.advect_faces(AdvectionScheme::maccormack, u, moved);
-  transport.advect_scalar(AdvectionScheme::semi_lagrangian, s, {}, s_moved);
-  tank.grid.for_each_owned_cell([&](int c) {
-    const int i = tank.grid.coordinates(c)[0];
-    if (i == 4) {
-      // The ray from 4.5 stops at 4.301, where samples at 4.5 (5) and 3.5 (hidden: 2) meet.
-      EXPECT_NEAR(moved[1][c], 0.801 * 5 + 0.199 * 2, 1e-12);
-    } else {
-      EXPECT_NEAR(moved[1][c], i < 4 ? 1 : 5, 1e-12);
-    }
-    // Half a cell downstream: 3.5 takes the mean of 2.5 and 3.5.
-    EXPECT_NEAR(s_moved[c], i >= 4 ? 100 : i == 0 ? 0.5 : i, 1e-12);
-    EXPECT_EQ(transport.invalid().cells[c], 0);
-  });
+  for (const auto& [viscosity, hidden] :
+       {std::pair(0.0, 5.0), std::pair(0.25, 4.0), std::pair(9.0, 2.0)}) {
+    TransportSetting<2> setting = tank.setting(1);
+    setting.kinematic_viscosity = viscosity;
+    Transport<2> transport(setting);
+    transport.advect_faces(AdvectionScheme::maccormack, u, moved);
+    transport.advect_scalar(AdvectionScheme::semi_lagrangian, s, {}, s_moved);
+    tank.grid.for_each_owned_cell([&](int c) {
+      const int i = tank.grid.coordinates(c)[0];
+      // The ray from 5 ends at 4.5, where samples at 4 (hidden: 0.5, the plate's) and 5 meet.
+      EXPECT_NEAR(moved[0][c], i == 5 ? 0.6 : 0.7, 1e-12);
+      if (i == 4) {
+        // The ray from 4.5 stops at 4.301, where samples at 4.5 (5) and 3.5 (hidden) meet.
+        EXPECT_NEAR(moved[1][c], 0.801 * 5 + 0.199 * hidden, 1e-12);
+      } else {
+        EXPECT_NEAR(moved[1][c], i < 4 ? 1 : 5, 1e-12);
+      }
+      // Half a cell downstream: 3.5 takes the mean of 2.5 and 3.5.
+      EXPECT_NEAR(s_moved[c], i >= 4 ? 100 : i == 0 ? 0.5 : i, 1e-12);
+      EXPECT_EQ(transport.invalid().cells[c], 0);
+    });
+  }
 }
 
 /// The plate moves from 4.3 h to 6.3 h: the centres at 4.5 h and 5.5 h are swept over, and filled
