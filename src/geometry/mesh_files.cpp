@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 
 #include "base/errors.hpp"
+#include "base/regular_file.hpp"
 #include "geometry/file_formats.hpp"
 #include "geometry/unused_vertices.hpp"
 
@@ -36,8 +36,10 @@ SurfaceMesh<dim> read_by_extension(const std::string& file, const std::string& e
 
 template <int dim>
 SurfaceMesh<dim> read_surface(const std::string& file) {
-  check_input(std::filesystem::is_regular_file(file) && std::ifstream(file).good(),
-              "{}: cannot open this surface file; check its path and permissions.", file);
+  const std::string refusal = refusal_to_read(file);
+  check_input(refusal.empty(),
+              "{}: cannot open this surface file ({}); check its path and permissions.", file,
+              refusal);
   std::string extension = std::filesystem::path(file).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -7,7 +7,22 @@ namespace lockstep {
 
 namespace {
 
-/// What tinyobjloader lets pass: coordinates that are no numbers, indices of no vertex.
+/// The numbers of a corner: "vertex", "vertex/texture", "vertex//normal" or all three. Gives the
+/// vertex.
+long vertex_of(const std::string& word, const TextLines& lines) {
+  const std::size_t slash = word.find('/');
+  for (std::size_t begin = slash; begin != std::string::npos;) {
+    const std::size_t end = word.find('/', begin + 1);
+    const std::string part = word.substr(begin + 1, end - begin - 1);
+    if (!part.empty() || end == std::string::npos)
+      lines.integer(part, word);
+    begin = end;
+  }
+  return lines.integer(word.substr(0, slash), word);
+}
+
+/// What tinyobjloader lets pass: coordinates that are no numbers, which it reads as 0, and indices
+/// of no vertex.
 void check_records(const std::string& file) {
   TextLines lines(file);
   std::vector<std::string> words;
@@ -16,7 +31,7 @@ void check_records(const std::string& file) {
   while (lines.next(words)) {
     if (words[0] == "v") {
       check_input(words.size() >= 4, "{}: a vertex needs three coordinates.", lines.where());
-      for (int k = 1; k <= 3; ++k)
+      for (std::size_t k = 1; k < words.size(); ++k)
         lines.number(words[k]);
       ++n_vertices;
     } else if (words[0] == "f" || words[0] == "l") {
@@ -24,7 +39,7 @@ void check_records(const std::string& file) {
       check_input(words.size() > n_needed, "{}: a record '{}' needs at least {} vertices.",
                   lines.where(), words[0], n_needed);
       for (std::size_t k = 1; k < words.size(); ++k) {
-        const long v = lines.integer(words[k].substr(0, words[k].find('/')));
+        const long v = vertex_of(words[k], lines);
         check_input(v > 0 || (v < 0 && v >= -n_vertices),
                     "{}: vertex {} does not exist (vertices count from 1, or from -1 backwards).",
                     lines.where(), v);

@@ -44,16 +44,18 @@ SurfaceMesh<dim> read_off(const std::string& file) {
   check_input(words.size() >= 2, "{}: expected the numbers of vertices, faces and edges.",
               lines.where());
   const long n_vertices = lines.integer(words[0]), n_faces = lines.integer(words[1]);
+  check_input(n_vertices >= 0 && n_faces >= 0, "{}: {} vertices and {} faces cannot be.",
+              lines.where(), n_vertices, n_faces);
 
   SurfaceMesh<dim> mesh;
   for (long v = 0; v < n_vertices; ++v) {
     check_input(lines.next(words), "{}: the file ends after {} of {} vertices.", file, v,
                 n_vertices);
     check_input(words.size() >= 3, "{}: a vertex needs three coordinates.", lines.where());
-    Point<dim> x;
-    for (int a = 0; a < dim; ++a)
+    Point<3> x;
+    for (int a = 0; a < 3; ++a)
       x[a] = lines.number(words[a]);
-    mesh.vertices.push_back(x);
+    mesh.vertices.push_back(x.template head<dim>());
   }
   for (long f = 0; f < n_faces; ++f) {
     check_input(lines.next(words), "{}: the file ends after {} of {} faces.", file, f, n_faces);

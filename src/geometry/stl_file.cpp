@@ -49,7 +49,8 @@ SurfaceMesh<3> read_binary(const std::string& file, std::uint32_t n_facets) {
       for (int a = 0; a < 3; ++a) {
         corners[k][a] = values[3 + 3 * k + a];
         check_input(std::isfinite(corners[k][a]),
-                    "{}: facet {} has a corner that is not a finite point.", file, f);
+                    "{}: facet {} of {} has the coordinate {}, which is not a finite number.", file,
+                    f + 1, n_facets, corners[k][a]);
       }
     merger.add_triangle(corners);
   }
@@ -100,7 +101,7 @@ class AsciiReader {
     for (std::size_t k = 0; same && k < expected.size(); ++k)
       same = words_[k] == expected[k];
     check_input(same, "{}: expected '{}', but found '{}'.", lines_.where(),
-                fmt::join(expected, " "), words_[0]);
+                fmt::join(expected, " "), shortened(words_[0]));
   }
 
   std::string file_;

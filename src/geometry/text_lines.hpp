@@ -1,10 +1,15 @@
 #pragma once
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/errors.hpp"
+#include "base/shortened.hpp"
 
 namespace lockstep {
 
@@ -31,18 +36,28 @@ class TextLines {
   /// "file, line n", for messages.
   std::string where() const { return fmt::format("{}, line {}", file_, number_); }
 
+  /// A finite number in decimal notation.
   double number(const std::string& word) const {
     char* end = nullptr;
     const double value = std::strtod(word.c_str(), &end);
-    check_input(end != word.c_str() && *end == '\0', "{}: expected a number, but found '{}'.",
-                where(), word);
+    const bool whole = end != word.c_str() && *end == '\0';
+    const bool decimal = word.find_first_of("xXpP") == std::string::npos;
+    check_input(whole && decimal, "{}: expected a number, but found '{}'.", where(),
+                shortened(word));
+    check_input(std::isfinite(value), "{}: expected a finite number, but found '{}'.", where(),
+                shortened(word));
     return value;
   }
-  long integer(const std::string& word) const {
+  long integer(const std::string& word) const { return integer(word, word); }
+  /// The same of a part of a word; the message shows all of it.
+  long integer(const std::string& part, const std::string& word) const {
     char* end = nullptr;
-    const long value = std::strtol(word.c_str(), &end, 10);
-    check_input(end != word.c_str() && *end == '\0', "{}: expected a whole number, but found '{}'.",
-                where(), word);
+    errno = 0;
+    const long value = std::strtol(part.c_str(), &end, 10);
+    check_input(end != part.c_str() && *end == '\0', "{}: expected a whole number, but found '{}'.",
+                where(), shortened(word));
+    check_input(errno == 0 && std::abs(value) <= std::numeric_limits<int>::max(),
+                "{}: the number '{}' is too large.", where(), shortened(word));
     return value;
   }
 

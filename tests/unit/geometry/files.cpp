@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -112,6 +113,8 @@ TEST_F(SurfaceFiles, ErrorsNameFileAndLine) {
               AllOf(HasSubstr("line 4"), HasSubstr("vertex 4")));
   EXPECT_THAT(error_of<3>("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"), HasSubstr("line 4"));
   EXPECT_THAT(error_of<3>("a.obj", "v 0 0 0\n"), HasSubstr("holds no triangles"));
+  EXPECT_THAT(error_of<3>("a.obj", "v 0 " + std::string(10000, 'x') + " 0\n"),
+              AllOf(HasSubstr("line 1"), HasSubstr("x...'"), testing::SizeIs(testing::Lt(300u))));
   EXPECT_THAT(error_of<3>("a.off", "OFT\n"), HasSubstr("word OFF"));
   EXPECT_THAT(error_of<3>("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"),
               AllOf(HasSubstr("line 6"), HasSubstr("vertex 7")));
@@ -121,6 +124,41 @@ TEST_F(SurfaceFiles, ErrorsNameFileAndLine) {
   EXPECT_THAT(error_of<2>("a.stl", "solid\n"), HasSubstr("segments"));
   EXPECT_THAT(error_of<3>("a.ply", "ply\n"), HasSubstr("'.ply'"));
   EXPECT_THROW(read_surface<3>((folder_ / "missing.obj").string()), InputError);
+}
+
+TEST_F(SurfaceFiles, NumbersMustBeFiniteAndIndicesSmall) {
+  const std::string face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf ";
+  for (const char* wrong : {"nan", "inf", "-inf", "NaN", "1e999", "0x10", "1,5", "1.5.", "e5"}) {
+    const std::string found = std::string("'") + wrong + "'";
+    for (const char* vertex : {"v W 0 0", "v 0 W 0", "v 0 0 W"}) {
+      std::string text = vertex;
+      text.replace(text.find('W'), 1, wrong);
+      EXPECT_THAT(error_of<3>("n.obj", "# one\n" + text + "\n" + face + "1 2 3\n"),
+                  AllOf(HasSubstr("n.obj, line 2"), HasSubstr(found)));
+      EXPECT_THAT(error_of<2>("n.off", "OFF 3 1 0\n" + text.substr(2) + "\n"),
+                  AllOf(HasSubstr("n.off, line 2"), HasSubstr(found)));
+      EXPECT_THAT(error_of<3>("n.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex" +
+                                           text.substr(1) + "\n"),
+                  AllOf(HasSubstr("n.stl, line 4"), HasSubstr(found)));
+    }
+  }
+  for (const char* wrong :
+       {"99999999999999999999", "4294967297", "1.5", "/1", "1/x", "1//", "x", "0x1"})
+    EXPECT_THAT(error_of<3>("n.obj", face + "2 3 " + wrong + "\n"),
+                AllOf(HasSubstr("n.obj, line 4"), HasSubstr(std::string("'") + wrong + "'")))
+        << wrong;
+  EXPECT_THAT(error_of<3>("n.off", "OFF\n-3 1 0\n"), HasSubstr("line 2"));
+  EXPECT_THAT(error_of<3>("n.off", "OFF\n99999999999999999999 1 0\n"), HasSubstr("line 2"));
+  std::string binary(80, ' ');
+  const std::uint32_t n_facets = 1;
+  binary.append(reinterpret_cast<const char*>(&n_facets), 4);
+  for (int k = 0; k < 12; ++k) {
+    const float value = k == 7 ? NAN : static_cast<float>(k);
+    binary.append(reinterpret_cast<const char*>(&value), 4);
+  }
+  EXPECT_THAT(error_of<3>("n.stl", binary + "  "), AllOf(HasSubstr("facet 1"), HasSubstr("nan")));
+  std::filesystem::create_directories(folder_ / "folder.obj");
+  EXPECT_THROW(read_surface<3>((folder_ / "folder.obj").string()), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,11 @@
+#pragma once
+#include <exception>
+#include <string>
+
+namespace lockstep {
+
+/// What an exception of another library says, fit for the middle of a sentence: on one line, of
+/// bounded length, without the places in its sources that Trilinos puts first.
+std::string library_message(const std::exception& error);
+
+}  // namespace lockstep
