@@ -17,11 +17,14 @@
 #include <iostream>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
+#include "base/shortened.hpp"
 #include "output/atomic_file.hpp"
 #include "output/build_information.hpp"
 #include "parameters/reference.hpp"
 #include "studies/child_process.hpp"
 #include "studies/curves.hpp"
+#include "studies/expression_check.hpp"
 #include "studies/extrapolation.hpp"
 #include "studies/study_table.hpp"
 #include "studies/work_precision.hpp"
@@ -78,6 +81,7 @@ int run_study(const Study& study, const Arguments& arguments) {
   // 3. The cases.
   const std::vector<StudyCase> cases =
       study_cases(study, arguments.rungs.empty() ? RungRange() : parse_rungs(arguments.rungs));
+  check_expressions(study, cases);
   if (arguments.list) {
     for (const StudyCase& one : cases) {
       std::cout << fmt::format("{} ({} ranks)\n", one.directory, one.ranks);
@@ -148,7 +152,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0)
       return app.exit(error);
-    throw InputError(std::string(error.what()) + " (see converge --help).");
+    throw InputError(shortened(error.what(), 200) + " (see converge --help).");
   }
   if (arguments.parameters) {
     std::cout << (arguments.format == "markdown"
@@ -178,8 +182,8 @@ int main(int argc, char** argv) {
   } catch (const Failure& failure) {
     std::cerr << failure.what() << std::endl;
     return static_cast<int>(failure.exit_code());
-  } catch (const fs::filesystem_error& error) {
-    std::cerr << error.what() << std::endl;
+  } catch (const std::exception& error) {
+    std::cerr << fmt::format("The study cannot go on: {}.", library_message(error)) << std::endl;
     return static_cast<int>(ExitCode::output_failed);
   }
 }

@@ -2,27 +2,10 @@
 
 #include <algorithm>
 
+#include "output/run_columns.hpp"
+
 namespace lockstep {
 namespace {
-
-const char* const axes[] = {"x", "y", "z"};
-
-/// name_x, name_y(, name_z)
-template <int dim>
-void add_vector(std::vector<HistoryColumn>& columns, const std::string& name,
-                const std::string& unit, const std::string& description) {
-  for (int a = 0; a < dim; ++a)
-    columns.push_back({name + axes[a], unit, description});
-}
-
-/// wz in 2D, wx wy wz in 3D
-template <int dim>
-void add_rotation(std::vector<HistoryColumn>& columns, const std::string& name,
-                  const std::string& unit, const std::string& description) {
-  for (int r = 0; r < n_rotations<dim>; ++r) {
-    columns.push_back({name + axes[dim == 2 ? 2 : r], unit, description});
-  }
-}
 
 template <typename Values>
 void append_values(std::vector<HistoryValue>& row, const Values& values) {
@@ -34,63 +17,6 @@ void append_values(std::vector<HistoryValue>& row, const Values& values) {
 template <typename... Values>
 void append_each(std::vector<HistoryValue>& row, const Values&... values) {
   (row.emplace_back(values), ...);
-}
-
-template <int dim>
-std::vector<HistoryColumn> history_columns() {
-  std::vector<HistoryColumn> columns = {
-      {"step", "1", "number of the step"},
-      {"time", "s", "at the end of the step"},
-      {"dt", "s", "time step"},
-      {"cfl", "1", "dt times the largest sum of |u|/h at the start of the step"},
-      {"s1_iterations", "1", "coupled solve for the positions"},
-      {"f2_iterations", "1", "Poisson solve of the advection velocity"},
-      {"s2_iterations", "1", "coupled solve for the velocities"},
-      {"viscous_iterations", "1", "implicit viscosity, both solves"},
-      {"max_divergence", "1/s", "largest divergence of a cell after the step"},
-      {"liquid_volume", dim == 2 ? "m^2" : "m^3", "of the fluid cells"}};
-  add_vector<dim>(columns, "fluid_momentum_", "kg m/s", "fluid, lumped fluid included");
-  add_vector<dim>(columns, "solid_momentum_", "kg m/s", "all dynamic solids");
-  add_vector<dim>(columns, "boundary_impulse_", "kg m/s",
-                  "pressure and friction of walls and sides");
-  add_vector<dim>(columns, "transport_change_", "kg m/s",
-                  "advection, revalidation, occlusion resets, change of lumped masses");
-  add_rotation<dim>(columns, "lever_impulse_", "kg m^2/s",
-                    "soft solids take forces at their nodes, fluid gives them at its faces");
-  add_rotation<dim>(columns, "linearisation_impulse_", "kg m^2/s",
-                    "torque over dt of forces that were linearised");
-  for (HistoryColumn column : std::vector<HistoryColumn>{
-           {"solid_iterations", "1", "inner ones on the solids' block, both solves"},
-           {"momentum_error", "1", "audit: imbalance over the largest momentum or impulses"},
-           {"angular_momentum_error", "1", "the same for angular momentum (0 if periodic)"},
-           {"fluid_kinetic_energy", "J", ""},
-           {"solid_kinetic_energy", "J", ""},
-           {"elastic_energy", "J", ""},
-           {"s1_residual", "1", "largest block residual of S1"},
-           {"f2_residual", "1", "residual of F2"},
-           {"s2_residual", "1", "largest block residual of S2"},
-           {"incompatibility", "1", "part of the S2 right-hand side removed as incompatible"},
-           {"f2_incompatibility", "1", "the same of F2"},
-           {"contacts", "1", "contact points resolved for the positions"},
-           {"deepest_overlap", "m", "before contact was resolved"},
-           {"clamped_elements", "1", "elements of soft solids whose forces were made definite"},
-           {"wall_seconds", "s", "wall time of the step"}}) {
-    columns.push_back(column);
-  }
-  return columns;
-}
-
-template <int dim>
-std::vector<HistoryColumn> body_columns() {
-  std::vector<HistoryColumn> columns = {{"step", "1", "number of the step"},
-                                        {"time", "s", "at the end of the step"},
-                                        {"name", "1", "of the solid"}};
-  add_vector<dim>(columns, "", "m", "centre of mass");
-  add_vector<dim>(columns, "v", "m/s", "velocity of the centre of mass");
-  add_rotation<dim>(columns, "w", "rad/s", "angular velocity");
-  add_vector<dim>(columns, "f", "N", "hydrodynamic force, mean over the step");
-  add_rotation<dim>(columns, "t", "N m", "hydrodynamic torque about the centre of mass");
-  return columns;
 }
 
 }  // namespace

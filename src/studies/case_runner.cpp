@@ -9,7 +9,9 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "studies/case_files.hpp"
 #include "studies/child_process.hpp"
+#include "studies/folder_lock.hpp"
 
 namespace lockstep {
 
@@ -33,7 +35,7 @@ std::string case_key(const StudyCase& study_case, const std::string& common) {
   std::string key = fmt::format("{} ranks\n", study_case.ranks);
   for (const std::string& assignment : study_case.assignments)
     key += assignment + "\n";
-  return key + common + read_whole_file(study_case.scene_file);
+  return key + common + checksums_of_inputs(study_case);
 }
 
 bool is_finished(const std::string& directory, const std::string& key) {
@@ -66,6 +68,17 @@ std::string complaint(const std::string& error_file) {
   return text.empty() ? "it said nothing" : text;
 }
 
+/// What is removed for a new run must not lie elsewhere.
+void check_no_link(const std::string& output_directory, const fs::path& below) {
+  fs::path path = output_directory;
+  for (const fs::path& part : below) {
+    path /= part;
+    check_output(!fs::is_symlink(path),
+                 "'{}' is a link, but must be a folder: remove it or choose another --output.",
+                 path.string());
+  }
+}
+
 CaseOutcome run_case(const StudyCase& study_case, const RunnerOptions& options,
                      const std::string& common_key) {
   CaseOutcome outcome;
@@ -75,8 +88,10 @@ CaseOutcome run_case(const StudyCase& study_case, const RunnerOptions& options,
     outcome.done = outcome.reused = true;
     return outcome;
   }
+  check_no_link(options.output_directory, fs::path("runs") / study_case.directory);
   std::error_code error;
   fs::remove_all(outcome.directory, error);
+  check_output(!error, "Cannot remove the folder '{}': {}.", outcome.directory, error.message());
   fs::create_directories(outcome.directory, error);
   check_output(!error, "Cannot create the folder '{}': {}.", outcome.directory, error.message());
   const std::string errors = outcome.directory + "/errors.txt";
@@ -103,6 +118,8 @@ std::vector<CaseOutcome> run_cases(
     const std::vector<StudyCase>& cases, const RunnerOptions& options,
     const std::function<void(std::size_t, const CaseOutcome&)>& report) {
   const std::string key = executable_key(options.simulate);
+  fs::create_directories(options.output_directory);
+  const FolderLock folder_lock(options.output_directory, options.seconds_to_wait);
   std::vector<CaseOutcome> outcomes(cases.size());
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};

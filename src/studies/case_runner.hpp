@@ -12,6 +12,7 @@ struct RunnerOptions {
   std::string output_directory;  ///< runs go to its folder "runs"
   int n_jobs = 1;                ///< cases at a time
   bool fresh = false;            ///< do not re-use runs
+  double seconds_to_wait = 10;   ///< for runs that a killed study has left behind
 };
 
 /// How a case went.
@@ -23,9 +24,11 @@ struct CaseOutcome {
   std::string message;    ///< what the child complained about
 };
 
-/// Runs every case that has no finished run of the same scene, assignments, ranks and executable. A
-/// failed case does not stop the others, unless its input was bad: then no further one is started.
-/// `report` is called after each case with its number and outcome, by one thread at a time.
+/// Runs every case that has no finished run of the same scene, files that it names, assignments,
+/// ranks and executable. One call at a time in a folder: throws OutputError if another works there.
+/// A failed case does not stop the others, unless its input was bad: then no further one is
+/// started. `report` is called after each case with its number and outcome, by one thread at a
+/// time.
 std::vector<CaseOutcome> run_cases(
     const std::vector<StudyCase>& cases, const RunnerOptions& options,
     const std::function<void(std::size_t, const CaseOutcome&)>& report);

@@ -2,7 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -51,25 +51,57 @@ class ListedChild {
   std::atomic<pid_t>* place_ = nullptr;
 };
 
-/// Redirections of a child; owns the object of the system.
-class FileActions {
- public:
-  FileActions() { posix_spawn_file_actions_init(&actions_); }
-  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
-  FileActions(const FileActions&) = delete;
-  FileActions& operator=(const FileActions&) = delete;
-  void write_to(int descriptor, const std::string& file) {
-    posix_spawn_file_actions_addopen(&actions_, descriptor, file.c_str(),
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  }
-  void read_nothing() {
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  }
-  const posix_spawn_file_actions_t* get() const { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_;
+/// What a child needs, made before the fork: nothing may be allocated after it.
+struct ChildPlan {
+  char* const* arguments;
+  char* const* environment;
+  const char* output_file;
+  const char* error_file;
+  int last_signal;  ///< to the child, should this program be killed
+  pid_t parent;
 };
+
+/// In the child: never returns. An errno goes back through the pipe.
+[[noreturn]] void become(const ChildPlan& plan, int pipe_end) {
+  const auto redirect = [](const char* file, int flags, int descriptor) {
+    const int opened = open(file, flags, 0644);
+    if (opened < 0 || opened == descriptor)
+      return opened >= 0;
+    const bool done = dup2(opened, descriptor) >= 0;
+    close(opened);
+    return done;
+  };
+  constexpr int writing = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW;
+  const int output_flags = std::strcmp(plan.output_file, "/dev/null") == 0 ? O_WRONLY : writing;
+  prctl(PR_SET_PDEATHSIG, plan.last_signal);
+  if (getppid() != plan.parent)
+    _exit(127);  // the parent is gone already
+  if (redirect("/dev/null", O_RDONLY, STDIN_FILENO) &&
+      redirect(plan.output_file, output_flags, STDOUT_FILENO) &&
+      redirect(plan.error_file, writing, STDERR_FILENO)) {
+    execvpe(plan.arguments[0], plan.arguments, plan.environment);
+  }
+  const int reason = errno;
+  static_cast<void>(!write(pipe_end, &reason, sizeof reason));
+  _exit(127);
+}
+
+/// Starts the child; 0, or the errno of what failed.
+int start(const ChildPlan& plan, pid_t& child) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    return errno;
+  child = fork();
+  if (child == 0)
+    become(plan, ends[1]);
+  int reason = child < 0 ? errno : 0;
+  close(ends[1]);
+  // Nothing comes if the other program could be started.
+  if (child > 0 && read(ends[0], &reason, sizeof reason) == static_cast<ssize_t>(sizeof reason))
+    waitpid(child, nullptr, 0);
+  close(ends[0]);
+  return reason;
+}
 
 std::vector<std::string> child_environment() {
   std::vector<std::string> environment;
@@ -95,15 +127,15 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 ChildResult run_child(const std::vector<std::string>& command, const std::string& output_file,
                       const std::string& error_file) {
   using Clock = std::chrono::steady_clock;
-  FileActions actions;
-  actions.read_nothing();
-  actions.write_to(STDOUT_FILENO, output_file);
-  actions.write_to(STDERR_FILENO, error_file);
-  std::vector<std::string> arguments = command, environment = child_environment();
+  std::vector<std::string> words = command, variables = child_environment();
+  const std::vector<char*> arguments = pointers(words), environment = pointers(variables);
+  // mpirun needs a moment to end its ranks; a run alone does not.
+  const int last_signal = command.front() == "mpirun" ? SIGTERM : SIGKILL;
   pid_t child = 0;
-  const auto start = Clock::now();
-  const int failure = posix_spawnp(&child, arguments.front().c_str(), actions.get(), nullptr,
-                                   pointers(arguments).data(), pointers(environment).data());
+  const auto start_time = Clock::now();
+  const int failure = start({arguments.data(), environment.data(), output_file.c_str(),
+                             error_file.c_str(), last_signal, getpid()},
+                            child);
   check_output(failure == 0, "Cannot start '{}': {}.", command.front(), std::strerror(failure));
   const ListedChild listed(child);
   int status = 0;
@@ -111,7 +143,7 @@ ChildResult run_child(const std::vector<std::string>& command, const std::string
     check_output(errno == EINTR, "Lost '{}' while waiting for it: {}.", command.front(),
                  std::strerror(errno));
   }
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_time).count();
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), seconds};
 }
 

@@ -12,7 +12,8 @@ struct ChildResult {
 
 /// Runs a program (found through PATH unless its name has a '/') and waits for it. What it prints
 /// goes to the two files; its environment is ours plus what Open MPI needs to start as root and on
-/// more ranks than cores, and one thread a rank. Throws OutputError if it cannot be started.
+/// more ranks than cores, and one thread a rank. It ends if this program is killed. Throws
+/// OutputError if it cannot be started.
 ChildResult run_child(const std::vector<std::string>& command, const std::string& output_file,
                       const std::string& error_file);
 

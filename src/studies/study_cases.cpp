@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/errors.hpp"
 #include "parameters/strict_values.hpp"
@@ -34,14 +35,20 @@ void add_assignments(StudyCase& result, const std::vector<std::string>& assignme
     result.assignments.push_back(substitute(assignment, result.constants, where));
 }
 
-/// A name for a folder: no blanks, slashes or other surprises.
+/// A name for a folder: no slashes or other surprises. Different names stay different, but for a
+/// blank and '-'.
 std::string folder_name(const std::string& text) {
-  std::string result = text;
-  for (char& c : result) {
+  std::string result;
+  for (const char c : text) {
     const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-                      std::string("-+._=").find(c) != std::string::npos;
-    if (!kept)
-      c = '-';
+                      std::string("-+._=,").find(c) != std::string::npos;
+    if (c == ' ') {
+      result += '-';
+    } else if (kept && !(c == '.' && result.empty())) {
+      result += c;
+    } else {
+      result += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
   }
   return result;
 }
@@ -77,6 +84,19 @@ StudyCase make_case(const Study& study, int series_number, int rung, int sample,
   if (study.n_samples > 1)
     result.directory += fmt::format("/sample-{}", sample);
   return result;
+}
+
+/// No two cases may write to the same place.
+void check_folders(const Study& study, const std::vector<StudyCase>& cases) {
+  std::map<std::string, const StudyCase*> of_folder;
+  for (const StudyCase& one : cases) {
+    const auto [known, is_new] = of_folder.emplace(one.directory, &one);
+    check_input(
+        is_new,
+        "The series \"{}\" and \"{}\" both have a case in the folder \"{}\": give them other "
+        "names, and each rung of a ladder another value.",
+        study.series[known->second->series].name, study.series[one.series].name, one.directory);
+  }
 }
 
 }  // namespace
@@ -119,6 +139,7 @@ std::vector<StudyCase> study_cases(const Study& study, const RungRange& rungs) {
         cases.push_back(make_case(study, s, r, k, values[r]));
     }
   }
+  check_folders(study, cases);
   check_input(!cases.empty(), "--rungs {}:{}: no ladder of this study has such rungs.", rungs.first,
               rungs.last);
   return cases;

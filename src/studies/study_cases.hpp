@@ -24,7 +24,7 @@ struct RungRange {
 RungRange parse_rungs(const std::string& text);
 
 /// All cases, series by series, rung by rung, sample by sample. Throws InputError for formulas that
-/// cannot be evaluated and rungs that do not exist.
+/// cannot be evaluated, rungs that do not exist and cases that would share a folder.
 std::vector<StudyCase> study_cases(const Study& study, const RungRange& rungs);
 
 /// Component `axis` of the offset of a sample, in [-1/2, 1/2): sample 0 is at the centre, and any

@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <fstream>
+#include <set>
 
 #include "base/errors.hpp"
+#include "studies/expression_check.hpp"
 #include "studies/series_product.hpp"
 #include "studies/study_cases.hpp"
 
@@ -37,6 +40,67 @@ TEST(Cases, SeriesTimesRungsTimesSamples) {
   EXPECT_EQ(cases[4].ranks, 2);
   EXPECT_EQ(cases[4].assignments[1], "Solids/Ball/Density=10");
   EXPECT_EQ(cases[5].directory, "two-ranks/n=64/sample-1");
+}
+
+TEST(Cases, EachHasAFolderOfItsOwn) {
+  Study study = two_series();
+  study.series[0].name = "a b";
+  study.series[1].name = "a/b";
+  study.series[1].values.clear();
+  study.series.push_back(study.series[1]);
+  study.series[2].name = "..";
+  std::set<std::string> folders;
+  for (const StudyCase& one : study_cases(study, {})) {
+    EXPECT_TRUE(folders.insert(one.directory).second) << one.directory;
+    EXPECT_EQ(std::count(one.directory.begin(), one.directory.end(), '/'), 2) << one.directory;
+    EXPECT_NE(one.directory.front(), '.') << one.directory;
+  }
+  EXPECT_EQ(folders.count("a-b/n=8/sample-0"), 1u);
+  study.series[1].name = "a-b";
+  EXPECT_THROW(study_cases(study, {}), InputError);
+  study.series[1].name = "c";
+  study.ladder_values = {8, 8};
+  EXPECT_THROW(study_cases(study, {}), InputError);
+}
+
+TEST(Cases, FormulasAreCheckedBeforeAnythingRuns) {
+  const std::string scene = "studies-test-scene.xml";
+  std::ofstream(scene) << R"xml(<ParameterList name="Scene">
+  <ParameterList name="Solids"><ParameterList name="Ball 1"/></ParameterList>
+</ParameterList>)xml";
+  Study study = two_series();
+  for (Series& series : study.series)
+    series.scene_file = scene;
+  study.abscissa = "h";
+  study.parameters = {{"viscosity", "Fluid/Viscosity"}};
+  const auto complaint = [&](const std::string& expression) -> std::string {
+    study.quantities.resize(1);
+    study.quantities[0].name = "speed";
+    study.quantities[0].expression = expression;
+    try {
+      check_expressions(study, study_cases(study, {}));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint("2.5e-3*Ball_1.vx / max(density, viscosity) + time*summary.wall_seconds"),
+            "");
+  EXPECT_THAT(complaint("Ball.vx"), testing::HasSubstr("Did you mean \"Ball_1.vx\"?"));
+  EXPECT_THAT(complaint("Ball_1.vx +"), testing::HasSubstr("Quantity \"speed\""));
+  EXPECT_THAT(complaint("tim"), testing::HasSubstr("cannot evaluate"));
+  study.curves = {{"curve", "time", "densty"}};
+  EXPECT_THAT(complaint("time"), testing::HasSubstr("Curve \"curve\""));
+  study.curves.clear();
+  study.abscissa = "hh";
+  EXPECT_THAT(complaint("time"), testing::HasSubstr("Abscissa"));
+  study.abscissa = "h";
+  complaint("time");
+  study.quantities[0].reference = "g";
+  EXPECT_THROW(check_expressions(study, study_cases(study, {})), InputError);
+  study.quantities[0].reference = " self";
+  EXPECT_NO_THROW(check_expressions(study, study_cases(study, {})));
+  std::filesystem::remove(scene);
 }
 
 TEST(Cases, PartOfTheLadder) {
@@ -106,7 +170,9 @@ TEST(Cases, EveryShippedStudyCanBeExpanded) {
     for (const Series& series : study.series)
       EXPECT_TRUE(std::filesystem::exists(series.scene_file)) << series.scene_file;
     EXPECT_FALSE(study.title.empty()) << name;
-    EXPECT_GT(study_cases(study, {}).size(), 1u) << name;
+    const auto cases = study_cases(study, {});
+    EXPECT_GT(cases.size(), 1u) << name;
+    EXPECT_NO_THROW(check_expressions(study, cases)) << name;
   }
   EXPECT_GE(n_studies, 12);
 }

@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "studies/folder_lock.hpp"
 #include "studies/study_table.hpp"
 
 namespace lockstep::test {
@@ -133,6 +134,47 @@ TEST_F(Runs, FinishedRunsAreUsedAgainOnlyIfNothingChanged) {
   EXPECT_TRUE(run()[2].reused);
   options_.fresh = true;
   EXPECT_FALSE(run()[0].reused);
+}
+
+TEST_F(Runs, EveryFileThatACaseReadsCounts) {
+  const auto write = [&](const std::string& name, const std::string& parameter,
+                         const std::string& value) {
+    std::ofstream(folder_ + "/" + name)
+        << "<ParameterList name=\"a\"><Parameter name=\"" << parameter
+        << "\" type=\"string\" value=\"" << value << "\"/></ParameterList>";
+  };
+  fs::create_directories(folder_ + "/solvers");
+  write("scene.xml", "Include", "included.xml");
+  write("included.xml", "File", "solvers/first.xml");
+  write("solvers/first.xml", "File", "mesh.obj");
+  std::ofstream(folder_ + "/solvers/mesh.obj") << "v 0 0 0";
+  std::ofstream(folder_ + "/other.obj") << "v 0 0 0";
+  study_.assignments.push_back("Solids/Ball/Geometry/File=other.obj");
+  EXPECT_FALSE(run()[0].reused);
+  EXPECT_TRUE(run()[0].reused);
+  for (const char* name : {"solvers/mesh.obj", "other.obj", "solvers/first.xml", "included.xml"}) {
+    std::ofstream(folder_ + "/" + name, std::ios::app) << " ";
+    EXPECT_FALSE(run()[0].reused) << name;
+    EXPECT_TRUE(run()[0].reused) << name;
+  }
+}
+
+TEST_F(Runs, OneStudyAtATimeInAFolder) {
+  options_.seconds_to_wait = 0;
+  {
+    const FolderLock lock(folder_, 0);
+    EXPECT_THROW(run(), OutputError);
+  }
+  EXPECT_TRUE(run()[0].done);
+}
+
+TEST_F(Runs, LinksAreNotFollowed) {
+  const std::string elsewhere = folder_ + "/elsewhere";
+  fs::create_directories(elsewhere + "/all/n=4");
+  std::ofstream(elsewhere + "/all/n=4/precious") << "text";
+  fs::create_directory_symlink(fs::absolute(elsewhere), folder_ + "/runs");
+  EXPECT_THROW(run(), OutputError);
+  EXPECT_TRUE(fs::exists(elsewhere + "/all/n=4/precious"));
 }
 
 TEST_F(Runs, AFailureLeavesTheRest) {

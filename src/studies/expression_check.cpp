@@ -1,0 +1,145 @@
+#include "studies/expression_check.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "base/errors.hpp"
+#include "base/regular_file.hpp"
+#include "output/run_columns.hpp"
+#include "parameters/strict_values.hpp"
+#include "parameters/strict_xml.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Names that stand in a formula, functions and numbers among them.
+std::vector<std::string> names_in(const std::string& formula) {
+  const auto is_part = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+  };
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    const std::size_t begin = i;
+    while (i < formula.size() && is_part(formula[i]))
+      ++i;
+    if (i > begin)
+      names.push_back(formula.substr(begin, i - begin));
+  }
+  return names;
+}
+
+/// The solids of a scene, as far as the file itself says.
+struct Bodies {
+  std::set<std::string> names;
+  bool complete = false;
+};
+
+Bodies bodies_of(const std::string& scene_file) {
+  Bodies bodies;
+  std::string failure;
+  const std::string text = read_regular_file(scene_file, failure);
+  check_input(failure.empty(), "Cannot read the scene '{}': {}.", scene_file, failure);
+  try {
+    ParameterList scene = read_xml_string(text, scene_file, FormulaPolicy::kept).list;
+    bodies.complete = !scene.isParameter("Include") && !scene.isParameter("Copies");
+    for (const auto& [name, entry] : entries(scene.sublist("Solids")))
+      bodies.names.insert(variable_name(name));
+  } catch (const InputError&) {
+    bodies.complete = false;  // simulate will say what is wrong with it
+  }
+  return bodies;
+}
+
+/// Names known to every formula of a run, all with the value 1.
+Variables names_of_run(const Study& study, const StudyCase& study_case) {
+  Variables variables;
+  for (const char* name : {"h", "dt", "cells", "ranks"})
+    variables[name] = 1;
+  for (const auto& [name, path] : study.parameters)
+    variables[name] = 1;
+  for (const auto& [name, value] : study_case.constants)
+    variables[name] = value;
+  return variables;
+}
+
+/// Adds the columns of history.csv, and those of bodies.csv that the formula names.
+void add_columns(const std::string& formula, const Bodies& bodies, Variables& variables) {
+  for (const auto& columns : {history_columns<2>(), history_columns<3>()}) {
+    for (const HistoryColumn& column : columns)
+      variables[column.name] = 1;
+  }
+  const std::vector<HistoryColumn> columns = body_columns<3>();
+  const auto add_body = [&](const std::string& body) {
+    for (const HistoryColumn& column : columns) {
+      if (column.name != "step" && column.name != "time" && column.name != "name")
+        variables[body + "." + column.name] = 1;
+    }
+  };
+  std::for_each(bodies.names.begin(), bodies.names.end(), add_body);
+  for (const std::string& name : names_in(formula)) {
+    const std::size_t point = name.rfind('.');
+    const bool is_number = std::isdigit(static_cast<unsigned char>(name.front())) != 0;
+    if (!bodies.complete && !is_number && point != std::string::npos && point > 0)
+      add_body(name.substr(0, point));
+  }
+}
+
+/// What the formula names of summary.json is only known after a run.
+void add_summary(const std::string& formula, Variables& variables) {
+  for (const std::string& name : names_in(formula)) {
+    if (name.rfind("summary.", 0) == 0)
+      variables[name] = 1;
+  }
+}
+
+void check_formula(const std::string& formula, Variables variables, const std::string& where) {
+  add_summary(formula, variables);
+  const Expression parsed(formula, variables, where);
+}
+
+void check_quantity(const Quantity& quantity, const Bodies& bodies, const Variables& common) {
+  const std::string where = fmt::format("Quantity \"{}\"", quantity.name);
+  Variables variables = common;
+  if (quantity.from == Quantity::From::tables) {
+    add_columns(quantity.expression, bodies, variables);
+  } else if (quantity.from == Quantity::From::surface) {
+    check_input(!bodies.complete || bodies.names.count(variable_name(quantity.solid)) != 0,
+                "{}: the scene has no solid \"{}\".", where, quantity.solid);
+    for (const char* name : {"x", "y", "z", "volume", "area", "x_extent", "y_extent", "z_extent"})
+      variables[name] = variables[std::string(name) + "0"] = 1;
+    variables["time"] = 1;
+  } else {
+    for (const char* name : {"x", "y", "z", "t"})
+      variables[name] = 1;
+  }
+  check_formula(quantity.expression, variables, where);
+  if (!quantity.reference.empty() && trimmed(quantity.reference) != "self")
+    check_formula(quantity.reference, common, fmt::format("Reference of \"{}\"", quantity.name));
+}
+
+}  // namespace
+
+void check_expressions(const Study& study, const std::vector<StudyCase>& cases) {
+  int last_series = -1;
+  for (const StudyCase& one : cases) {
+    if (one.series == last_series)
+      continue;  // the names are the same for all its rungs
+    last_series = one.series;
+    const Bodies bodies = bodies_of(one.scene_file);
+    const Variables common = names_of_run(study, one);
+    check_formula(study.abscissa, common, "\"Ladder/Abscissa\"");
+    for (const Quantity& quantity : study.quantities)
+      check_quantity(quantity, bodies, common);
+    for (const Curve& curve : study.curves) {
+      for (const std::string& formula : {curve.expression, curve.exact}) {
+        Variables variables = common;
+        add_columns(formula, bodies, variables);
+        if (!formula.empty())
+          check_formula(formula, variables, fmt::format("Curve \"{}\"", curve.name));
+      }
+    }
+  }
+}
+
+}  // namespace lockstep

@@ -1,0 +1,112 @@
+"""Studies: mistakes are found before anything runs, and a killed study leaves nothing that disturbs the next."""
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from program import CONVERGE, SCENE
+
+STUDY = """<ParameterList name="Study">
+  <Parameter name="Scene" type="string" value="scene.xml"/>
+  <Parameter name="Set" type="string" value="Time/Steps=1; Output/Frames=false"/>
+  <ParameterList name="Ladder">
+    <Parameter name="Name" type="string" value="step"/>
+    <Parameter name="Values" type="Array(double)" value="{0.01}"/>
+  </ParameterList>
+  <ParameterList name="Quantities">
+    <ParameterList name="speed">
+      <Parameter name="Expression" type="string" value="Ball.vy"/>
+    </ParameterList>
+  </ParameterList>
+</ParameterList>
+"""
+
+# Stands in for simulate: tells who it is, then works for a long time.
+SLEEPER = f"""#!{sys.executable}
+import os, sys, time
+folder = sys.argv[sys.argv.index("--output") + 1]
+open(folder + "/child", "w").write(str(os.getpid()))
+time.sleep(300)
+"""
+
+
+def lives(process):
+    """Whether a process with this number works still; a dead one that nobody has waited for does not."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] not in ("Z", "X")
+    except OSError:
+        return False
+
+
+class Studies(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = Path(scratch.name)
+        (self.folder / "scene.xml").write_text(SCENE)
+
+    def command(self, *arguments, study=STUDY):
+        (self.folder / "study.xml").write_text(study)
+        return [CONVERGE, str(self.folder / "study.xml"), "--output", str(self.folder / "results"), *arguments]
+
+    def converge(self, *arguments, study=STUDY):
+        return subprocess.run(self.command(*arguments, study=study), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True, timeout=300)
+
+    def test_expressions_are_checked_first(self):
+        for wrong, expected in [("Bal.vy", "Did you mean \"Ball.vy\""), ("Ball.vy +", "Quantity \"speed\"")]:
+            with self.subTest(wrong=wrong):
+                result = self.converge(study=STUDY.replace("Ball.vy", wrong))
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn(expected, result.stderr)
+                self.assertFalse((self.folder / "results").exists(), "nothing may have run")
+
+    def test_a_changed_solver_file_is_noticed(self):
+        solver = self.folder / "solver.xml"
+        solver.write_text('<ParameterList name="s"><Parameter name="Type" type="string" value="direct"/></ParameterList>')
+        study = STUDY.replace("Time/Steps=1", "Time/Steps=1; Solver/File=solver.xml")
+        for expected in ("done", "used again"):
+            result = self.converge(study=study)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(f": {expected}", result.stdout)
+        solver.write_text(solver.read_text() + "\n")
+        self.assertIn(": done", self.converge(study=study).stdout)
+
+    def test_a_killed_study(self):
+        sleeper = self.folder / "sleeper"
+        sleeper.write_text(SLEEPER)
+        sleeper.chmod(0o755)
+        child_file = self.folder / "results" / "runs" / "all" / "step=0.01" / "child"
+        with subprocess.Popen(self.command("--simulate", str(sleeper)), stdout=subprocess.DEVNULL) as study:
+            end = time.monotonic() + 60
+            while not (child_file.exists() and child_file.read_text()):
+                self.assertLess(time.monotonic(), end, "the study does not start")
+                time.sleep(0.02)
+            child = int(child_file.read_text())
+            study.send_signal(signal.SIGKILL)
+        end = time.monotonic() + 10
+        while lives(child) and time.monotonic() < end:
+            time.sleep(0.02)
+        outlived = lives(child)
+        if outlived:
+            os.kill(child, signal.SIGKILL)
+        self.assertFalse(outlived, "the run of a killed study works on")
+        result = self.converge()
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_input_that_never_ends(self):
+        os.mkfifo(self.folder / "pipe.xml")
+        result = subprocess.run([CONVERGE, str(self.folder / "pipe.xml")], stderr=subprocess.PIPE, text=True,
+                                timeout=60)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("pipe, not a file", result.stderr)
+
+
+if __name__ == "__main__":
+    if not Path(CONVERGE).exists():
+        raise SystemExit(f"{CONVERGE} is missing; set LOCKSTEP_CONVERGE to the program to test.")
+    unittest.main()
