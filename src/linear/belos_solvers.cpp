@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 #include "linear/minres.hpp"
 #include "linear/thyra_vectors.hpp"
 
@@ -47,7 +48,7 @@ class MinresManager : public BelosSolver {
     try {
       list->validateParametersAndSetDefaults(*getValidParameters());
     } catch (const std::exception& error) {
-      throw InputError(fmt::format("\"Lockstep MINRES\": {}", error.what()));
+      throw InputError(fmt::format("\"Lockstep MINRES\": {}", library_message(error)));
     }
     list_ = list;
   }
@@ -129,7 +130,8 @@ RCP<BelosSolver> belos_solver(const std::string& name,
   try {
     return factory.create(name, list.is_null() ? Teuchos::parameterList() : list);
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("There is no Belos solver \"{}\": {}", name, error.what()));
+    throw InputError(
+        fmt::format("There is no Belos solver \"{}\": {}", name, library_message(error)));
   }
 }
 

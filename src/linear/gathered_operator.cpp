@@ -5,6 +5,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 
 namespace lockstep {
 
@@ -29,7 +30,7 @@ class GatheredOperator : public Tpetra::Operator<double, int, GlobalIndex> {
       try {
         solve_ = factor(gathered);
       } catch (const std::exception& error) {
-        message = failure + " " + error.what();
+        message = failure + " " + library_message(error);
       }
     }
     throw_on_all(comm, message, static_cast<int>(ExitCode::solve_failed));

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 #include "linear/action_operator.hpp"
 #include "linear/overlap.hpp"
 
@@ -36,7 +37,7 @@ RCP<const Factors> sum_of_overlapping_parts(const RCP<const CrsMatrix>& matrix,
     return sum;
   } catch (const std::exception& error) {
     throw SolveError(fmt::format("Ifpack2 cannot build incomplete Cholesky factors of the {}: {}",
-                                 name, error.what()));
+                                 name, library_message(error)));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 #include "linear/action_operator.hpp"
 
 namespace lockstep {
@@ -23,8 +24,8 @@ RCP<const LinearOperator> muelu_multigrid(const RCP<CrsMatrix>& matrix, int n_eq
     return action_operator(matrix->getRowMap(),
                            [inverse](const Vector& x, Vector& y) { inverse->apply(x, y); });
   } catch (const std::exception& error) {
-    throw SolveError(
-        fmt::format("MueLu cannot build a preconditioner for the {}: {}", name, error.what()));
+    throw SolveError(fmt::format("MueLu cannot build a preconditioner for the {}: {}", name,
+                                 library_message(error)));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 #include "linear/block_residual.hpp"
 #include "linear/stratimikos.hpp"
 #include "linear/thyra_vectors.hpp"
@@ -31,7 +32,7 @@ StratimikosReport solve_with_stratimikos(const BlockSystem& system, const BlockV
       throw SolveError(
           fmt::format("Belos broke down on the {}: {}. MINRES needs a symmetric positive "
                       "definite preconditioner.",
-                      system.name, error.what()));
+                      system.name, library_message(error)));
     }
     if (!status.extraParameters.is_null())
       report.iterations = status.extraParameters->get("Iteration Count", 0);

@@ -8,6 +8,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 #include "linear/solver_list.hpp"
 #include "linear/stratimikos_registration.hpp"
 
@@ -48,8 +49,8 @@ RCP<const LinearOperator> stratimikos_preconditioner(const RCP<const LinearOpera
     const auto factory = builder.createPreconditioningStrategy("");
     return Thyra::prec<double>(*factory, op)->getUnspecifiedPrecOp();
   } catch (const std::exception& error) {
-    throw SolveError(
-        fmt::format("{} cannot build a preconditioner for the {}: {}", type, name, error.what()));
+    throw SolveError(fmt::format("{} cannot build a preconditioner for the {}: {}", type, name,
+                                 library_message(error)));
   }
 }
 
@@ -72,7 +73,7 @@ RCP<Thyra::LinearOpWithSolveBase<double>> linear_op_with_solve(const RCP<const L
         fmt::format("Stratimikos cannot set up the solver \"{}\": {}. Values of the wrong type (a "
                     "double where an "
                     "int is wanted) inside the lists of Ifpack2 and MueLu end here as well.",
-                    list.name(), error.what()));
+                    list.name(), library_message(error)));
   }
 }
 

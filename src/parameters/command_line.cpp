@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "base/shortened.hpp"
 #include "parameters/formula.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
@@ -27,7 +28,7 @@ class Setter {
  public:
   Setter(Document& document, const std::string& assignment, const ParameterList* valid)
       : document_(document),
-        place_(fmt::format("--set \"{}\"", assignment)),
+        place_(fmt::format("--set \"{}\"", shortened(assignment, 100))),
         list_(&document.list),
         valid_(valid) {
     const std::size_t equals = assignment.find('=');

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "base/errors.hpp"
+#include "base/shortened.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 
@@ -95,12 +96,12 @@ std::string ValueRule::violation(const ParameterEntry& entry) const {
   const int length = array_length(entry);
   if (n_components > 0 && length != n_components) {
     return fmt::format("has {} component{}, {}, but needs {}", length, length == 1 ? "" : "s",
-                       value_text(entry), n_components);
+                       shortened(value_text(entry)), n_components);
   }
   for (const double number : numbers(entry)) {
     const bool low = lower && (lower_excluded ? !(number > *lower) : !(number >= *lower));
     if (low || (upper && !(number <= *upper))) {
-      return fmt::format("is {}, but must be {}", value_text(entry), bounds());
+      return fmt::format("is {}, but must be {}", shortened(value_text(entry)), bounds());
     }
   }
   for (const std::string& word : words(entry)) {
@@ -109,7 +110,7 @@ std::string ValueRule::violation(const ParameterEntry& entry) const {
     }
     const std::string nearest = nearest_name(word, choices);
     return fmt::format(
-        "is \"{}\", but must be {}{}", word,
+        "is \"{}\", but must be {}{}", shortened(word),
         choices.size() == 1 ? quoted_list(choices) : "one of " + quoted_list(choices),
         nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/shortened.hpp"
 
 namespace lockstep {
 
@@ -39,11 +40,12 @@ double parse_real(const std::string& text) {
   check_input(!text.empty(), "is empty, but must be a number");
   double value = 0;
   const std::errc error = read_number(text, value);
-  check_input(error != std::errc::result_out_of_range, "is \"{}\", which no double can hold", text);
+  check_input(error != std::errc::result_out_of_range, "is \"{}\", which no double can hold",
+              shortened(text));
   const bool comma = text.find(',') != std::string::npos;
-  check_input(error == std::errc(), "is \"{}\", which is not a number{}", text,
+  check_input(error == std::errc(), "is \"{}\", which is not a number{}", shortened(text),
               comma ? " (the decimal mark is a point)" : "");
-  check_input(std::isfinite(value), "is \"{}\", but must be finite", text);
+  check_input(std::isfinite(value), "is \"{}\", but must be finite", shortened(text));
   return value;
 }
 
@@ -51,13 +53,14 @@ int parse_integer(const std::string& text) {
   check_input(!text.empty(), "is empty, but must be an integer");
   int value = 0;
   const std::errc error = read_number(text, value);
-  check_input(error != std::errc::result_out_of_range, "is \"{}\", which no int can hold", text);
+  check_input(error != std::errc::result_out_of_range, "is \"{}\", which no int can hold",
+              shortened(text));
   if (error == std::errc())
     return value;
   double real = 0;
   const bool whole = read_number(text, real) == std::errc() && std::isfinite(real) &&
                      std::abs(real) < 2e9 && real == std::floor(real);
-  throw InputError(fmt::format("is \"{}\", which is not an integer{}", text,
+  throw InputError(fmt::format("is \"{}\", which is not an integer{}", shortened(text),
                                whole ? fmt::format(" (write {})", std::lround(real)) : ""));
 }
 
@@ -70,7 +73,7 @@ bool parse_boolean(const std::string& text) {
     if (text == word)
       return false;
   }
-  throw InputError(fmt::format("is \"{}\", but a bool is true or false", text));
+  throw InputError(fmt::format("is \"{}\", but a bool is true or false", shortened(text)));
 }
 
 std::string parse_word(const std::string& text) {
@@ -81,18 +84,18 @@ std::string parse_word(const std::string& text) {
 template <typename T, typename Parse>
 ParameterEntry parse_array(const std::string& text, Parse parse) {
   check_input(text.size() >= 2 && text.front() == '{' && text.back() == '}',
-              "is \"{}\", but an array is written in braces: {{1, 2, 3}}", text);
+              "is \"{}\", but an array is written in braces: {{1, 2, 3}}", shortened(text));
   const std::string inside = trimmed(text.substr(1, text.size() - 2));
   check_input(inside.find_first_of("{}") == std::string::npos, "is \"{}\": arrays do not nest",
-              text);
+              shortened(text));
   ParameterArray<T> array;
   for (std::size_t start = 0; !inside.empty() && start != std::string::npos;) {
     const std::size_t comma = inside.find(',', start);
     try {
       array.push_back(parse(trimmed(inside.substr(start, comma - start))));
     } catch (const InputError& error) {
-      throw InputError(
-          fmt::format("is \"{}\", whose component {} {}", text, array.size() + 1, error.what()));
+      throw InputError(fmt::format("is \"{}\", whose component {} {}", shortened(text),
+                                   array.size() + 1, error.what()));
     }
     start = comma == std::string::npos ? comma : comma + 1;
   }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "base/shortened.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 
@@ -133,7 +134,7 @@ std::string unknown_name(const std::string& place, const std::string& path, cons
                                      : fmt::format(" Did you mean \"{}\" ({})?", nearest,
                                                    description(*valid.getEntryPtr(nearest)));
   return fmt::format("{}: {}, \"{}\" is not a parameter.{}\nValid here: {}.", place, in_list(path),
-                     name, suggestion, names.empty() ? "nothing" : quoted_list(names));
+                     shortened(name), suggestion, names.empty() ? "nothing" : quoted_list(names));
 }
 
 const ParameterList& chosen_schema(const ListRule& rule, const ParameterList& given,

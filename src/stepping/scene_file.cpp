@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
+#include <new>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 #include "parameters/command_line.hpp"
 #include "parameters/strict_xml.hpp"
 #include "parameters/validate.hpp"
@@ -51,8 +54,16 @@ int run_and_report(const Communicator& comm, const std::function<int()>& body) {
   } catch (const Failure& failure) {
     message = failure.what();
     code = static_cast<int>(failure.exit_code());
+  } catch (const std::bad_alloc&) {
+    message = "There is not enough memory for this scene: take fewer cells, or more machines.";
+    code = static_cast<int>(ExitCode::solve_failed);
+  } catch (const std::filesystem::filesystem_error& error) {
+    message = fmt::format("Files cannot be worked with: {}.", library_message(error));
+    code = static_cast<int>(ExitCode::output_failed);
   } catch (const std::exception& error) {
-    message = std::string("Unexpected failure: ") + error.what();
+    message = fmt::format(
+        "A library that Lockstep builds on failed ({}). Please report it, with the scene.",
+        library_message(error));
     code = static_cast<int>(ExitCode::solve_failed);
   }
   // Failures are raised on all ranks alike; if this one is alone, the others cannot be reached any

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 #include "linear/belos_solvers.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/symmetry_check.hpp"
@@ -80,7 +81,7 @@ int solve_by_flexible_gmres(const ScaledSystem& system, const Vector& rhs,
     throw;
   } catch (const std::exception& error) {
     throw SolveError(
-        fmt::format("{}: flexible GMRES broke down ({}).", request.name, error.what()));
+        fmt::format("{}: flexible GMRES broke down ({}).", request.name, library_message(error)));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 #include "linear/minres.hpp"
 #include "linear/thyra_vectors.hpp"
 #include "linear/vector_sums.hpp"
@@ -77,7 +78,7 @@ int belos_minres(const BlockSystem& system, const Vector& rhs, const BlockKrylov
     throw SolveError(fmt::format(
         "{}: MINRES broke down ({}). Its preconditioner must be symmetric positive definite; set "
         "\"Check Preconditioner Symmetry\".",
-        request.name, error.what()));
+        request.name, library_message(error)));
   }
 }
 
