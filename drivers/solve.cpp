@@ -16,6 +16,7 @@
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"
+#include "base/shortened.hpp"
 #include "linear/system_file.hpp"
 #include "output/on_root.hpp"
 #include "output/run_record.hpp"
@@ -163,7 +164,7 @@ int run(int argc, char** argv, const Communicator& comm) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0)
       return is_root(comm) ? app.exit(error) : 0;
-    throw InputError(std::string(error.what()) + " (see solve --help).");
+    throw InputError(shortened(error.what(), 200) + " (see solve --help).");
   }
 
   // 2. The strategies there are, the system, its exact solution.

@@ -3,11 +3,15 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "base/errors.hpp"
+#include "base/regular_file.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/triplet_matrix.hpp"
+#include "output/checksum.hpp"
 #include "output/hdf5_file.hpp"
+#include "output/hdf5_probe.hpp"
 
 namespace lockstep {
 
@@ -67,22 +71,104 @@ RCP<const Map> even_map(GlobalIndex n, const Communicator& comm) {
   return make_map(static_cast<int>(end - begin), comm);
 }
 
-std::vector<Triplet> read_entries(const Hdf5File& file, const std::string& group) {
-  const auto [begin, end] = share(file.shape(group + "/values").at(0), file.communicator());
+[[noreturn]] void refuse(const Hdf5File& file, const std::string& reason) {
+  throw InputError(
+      fmt::format("'{}' holds no proper block system: {}. Write one with simulate --dump-system.",
+                  file.path(), reason));
+}
+
+/// Throws on all ranks if any of them found something wrong.
+void agree(const Hdf5File& file, const std::string& failure) {
+  throw_on_all(file.communicator(),
+               failure.empty()
+                   ? ""
+                   : fmt::format("'{}' holds no proper block system: {}. Write one with simulate "
+                                 "--dump-system.",
+                                 file.path(), failure),
+               static_cast<int>(ExitCode::bad_input));
+}
+
+/// Number of entries of a table of places and values, whose shapes must fit each other. A place has
+/// n_columns numbers, one of them without an extent of its own.
+GlobalIndex n_entries(const Hdf5File& file, const std::string& group, GlobalIndex n_columns) {
+  for (const char* name : {"/places", "/values"}) {
+    if (!file.exists(group + name))
+      refuse(file, fmt::format("'{}{}' is missing", group, name));
+  }
+  const std::vector<GlobalIndex> values = file.shape(group + "/values");
+  std::vector<GlobalIndex> expected = values;
+  if (n_columns > 1)
+    expected.push_back(n_columns);
+  if (values.size() != 1 || file.shape(group + "/places") != expected)
+    refuse(file, fmt::format("the shapes of places and values in '{}' do not fit", group));
+  return values.front();
+}
+
+/// Numbers of rows, an attribute of the file.
+GlobalIndex n_unknowns(const Hdf5File& file, const std::string& name, GlobalIndex least) {
+  constexpr GlobalIndex most = GlobalIndex{1} << 40;
+  const auto n = file.read_attribute<long long>("/", name);
+  if (n < least || n > most)
+    refuse(file, fmt::format("the number of {} is {}", name, n));
+  return n;
+}
+
+std::vector<Triplet> read_entries(const Hdf5File& file, const std::string& group,
+                                  GlobalIndex n_rows, GlobalIndex n_columns) {
+  const auto [begin, end] = share(n_entries(file, group, 2), file.communicator());
   const auto places = file.read_rows<long long>(group + "/places", begin, end - begin);
   const auto values = file.read_rows<double>(group + "/values", begin, end - begin);
   std::vector<Triplet> entries(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    entries[i] = {places[2 * i], places[2 * i + 1], values[i]};
+  std::string failure;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Triplet entry{places[2 * i], places[2 * i + 1], values[i]};
+    if (entry.row < 0 || entry.row >= n_rows || entry.column < 0 || entry.column >= n_columns) {
+      failure = fmt::format("'{}' has an entry in row {} and column {}, but {} rows and {} columns",
+                            group, entry.row, entry.column, n_rows, n_columns);
+    } else if (!std::isfinite(entry.value)) {
+      failure = fmt::format("'{}' has the entry {} in row {} and column {}", group, entry.value,
+                            entry.row, entry.column);
+    }
+    entries[i] = entry;
+  }
+  agree(file, failure);
   return entries;
 }
 
-RCP<Vector> read_vector(const Hdf5File& file, const std::string& group, const RCP<const Map>& map) {
+/// A square block, each of whose rows needs an entry on the diagonal.
+std::vector<Triplet> read_square(const Hdf5File& file, const std::string& group, GlobalIndex n) {
+  const GlobalIndex n_stored = n_entries(file, group, 2);
+  if (n_stored < n)
+    refuse(file, fmt::format("'{}' has {} entries in {} rows", group, n_stored, n));
+  std::vector<Triplet> entries = read_entries(file, group, n, n);
+  const auto diagonal = std::count_if(entries.begin(), entries.end(), [](const Triplet& entry) {
+    return entry.row == entry.column && entry.value > 0;
+  });
+  const GlobalIndex n_diagonal = sum_all(file.communicator(), static_cast<GlobalIndex>(diagonal));
+  if (n_diagonal != n)
+    refuse(file,
+           fmt::format("'{}' has {} positive entries on a diagonal of {}", group, n_diagonal, n));
+  return entries;
+}
+
+/// n values are stored, one for each place.
+RCP<Vector> read_vector(const Hdf5File& file, const std::string& group, GlobalIndex n,
+                        const RCP<const Map>& map) {
+  if (n_entries(file, group, 1) != n)
+    refuse(file, fmt::format("'{}' does not have {} values", group, n));
   // A vector is short beside the matrices: each rank reads all and keeps its own.
   const auto places = file.read_all<long long>(group + "/places");
   const auto values = file.read_all<double>(group + "/values");
   const auto vector = make_vector(map);
+  std::vector<bool> set(places.size(), false);
   for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool inside = places[i] >= 0 && places[i] < n;
+    if (!inside || set[static_cast<std::size_t>(places[i])])
+      refuse(file, fmt::format("'{}' has a value at {}, outside or for the second time", group,
+                               places[i]));
+    if (!std::isfinite(values[i]))
+      refuse(file, fmt::format("'{}' has the value {} at {}", group, values[i], places[i]));
+    set[static_cast<std::size_t>(places[i])] = true;
     if (map->isNodeGlobalElement(places[i]))
       vector->replaceGlobalValue(places[i], values[i]);
   }
@@ -90,17 +176,26 @@ RCP<Vector> read_vector(const Hdf5File& file, const std::string& group, const RC
 }
 
 std::vector<RCP<const Vector>> read_vectors(const Hdf5File& file, const std::string& group,
-                                            const RCP<const Map>& map) {
+                                            GlobalIndex n, const RCP<const Map>& map) {
+  if (!file.exists(group))
+    refuse(file, fmt::format("'{}' is missing", group));
+  const auto n_vectors = file.read_attribute<long long>(group, "size");
+  if (n_vectors != static_cast<long long>(file.names(group).size()))
+    refuse(file, fmt::format("'{}' does not hold {} vectors", group, n_vectors));
   std::vector<RCP<const Vector>> vectors;
-  for (long long i = 0; i < file.read_attribute<long long>(group, "size"); ++i)
-    vectors.push_back(read_vector(file, fmt::format("{}/{}", group, i), map));
+  for (long long i = 0; i < n_vectors; ++i) {
+    const std::string name = fmt::format("{}/{}", group, i);
+    vectors.push_back(read_vector(file, name, n, map));
+    if (!(vectors.back()->norm2() > 0))
+      refuse(file, fmt::format("'{}' is zero", name));
+  }
   return vectors;
 }
 
 /// Reads C, and gives each unknown that is added the largest entry found, so that scales stay.
 RCP<const CrsMatrix> read_solid_block(const Hdf5File& file, GlobalIndex n_stored,
                                       const RCP<const Map>& map) {
-  std::vector<Triplet> entries = read_entries(file, "/C");
+  std::vector<Triplet> entries = read_square(file, "/C", n_stored);
   double largest = 0;
   for (const Triplet& entry : entries)
     largest = std::max(largest, entry.value);
@@ -111,6 +206,56 @@ RCP<const CrsMatrix> read_solid_block(const Hdf5File& file, GlobalIndex n_stored
       entries.push_back({row, row, largest});
   }
   return assemble_triplets(std::move(entries), map, map);
+}
+
+/// Damaged files are found before HDF5, which may crash on them, reads them.
+void check_is_readable(const std::string& path, const Communicator& comm) {
+  std::string failure;
+  if (is_root(comm))
+    failure = refusal_to_read(path);
+  const auto fail_together = [&] {
+    throw_on_all(
+        comm, failure.empty() ? "" : fmt::format("Cannot read the system '{}': {}.", path, failure),
+        static_cast<int>(ExitCode::bad_input));
+  };
+  fail_together();
+  const ChecksumState state = check_checksum(comm, path);
+  if (state == ChecksumState::broken)
+    failure = "it is damaged, its bytes do not have the checksum that was written with them";
+  if (state == ChecksumState::absent && is_root(comm))
+    failure = refusal_of_hdf5(path);
+  fail_together();
+}
+
+StoredSystem read_parts(const Hdf5File& file) {
+  const Communicator comm = file.communicator();
+  if (!file.has_attribute("/", "kind") ||
+      file.read_attribute<std::string>("/", "kind") != file_kind)
+    refuse(file, "it is of another kind");
+  StoredSystem stored;
+  BlockSystem& system = stored.system;
+  system.name = file.read_attribute<std::string>("/", "name");
+  system.geometry_stamp = system.solid_stamp = 1;
+  const GlobalIndex n_pressure = n_unknowns(file, "pressure unknowns", 1);
+  const GlobalIndex n_solid = n_unknowns(file, "solid unknowns", 0);
+  // Before anything of that size is made.
+  std::vector<Triplet> pressure_entries = read_square(file, "/A", n_pressure);
+  const auto pressures = even_map(n_pressure, comm);
+  system.pressure_block =
+      as_operator(assemble_triplets(std::move(pressure_entries), pressures, pressures));
+  system.null_space = read_vectors(file, "/null space", n_pressure, pressures);
+  system.pressure_null_space = read_vectors(file, "/pressure null space", n_pressure, pressures);
+  stored.rhs.pressure = read_vector(file, "/pressure rhs", n_pressure, pressures);
+  if (n_solid == 0)
+    return stored;
+  if (n_entries(file, "/C", 2) < n_solid)
+    refuse(file, fmt::format("'/C' has fewer entries than {} rows", n_solid));
+  const auto solids = even_map(std::max<GlobalIndex>(n_solid, comm->getSize()), comm);
+  system.coupling_transposed = assemble_triplets(
+      read_entries(file, "/B transposed", n_solid, n_pressure), solids, pressures);
+  system.solid_block = as_operator(read_solid_block(file, n_solid, solids));
+  stored.rhs.solid = read_vector(file, "/solid rhs", n_solid, solids);
+  return stored;
 }
 
 }  // namespace
@@ -134,33 +279,18 @@ void write_system(const std::string& path, const BlockSystem& system, const Bloc
     write_matrix(file, "/C", *solid);
     write_vector(file, "/solid rhs", *rhs.solid);
   }
-  file.close();
+  file.close_with_checksum();
 }
 
 StoredSystem read_system(const std::string& path, const Communicator& comm) {
-  const Hdf5File file = Hdf5File::open(comm, path);
-  check_output(
-      file.has_attribute("/", "kind") && file.read_attribute<std::string>("/", "kind") == file_kind,
-      "'{}' holds no block system; write one with simulate --dump-system.", path);
-  StoredSystem stored;
-  BlockSystem& system = stored.system;
-  system.name = file.read_attribute<std::string>("/", "name");
-  system.geometry_stamp = system.solid_stamp = 1;
-  const auto pressures = even_map(file.read_attribute<long long>("/", "pressure unknowns"), comm);
-  system.pressure_block =
-      as_operator(assemble_triplets(read_entries(file, "/A"), pressures, pressures));
-  system.null_space = read_vectors(file, "/null space", pressures);
-  system.pressure_null_space = read_vectors(file, "/pressure null space", pressures);
-  stored.rhs.pressure = read_vector(file, "/pressure rhs", pressures);
-  const GlobalIndex n_solid = file.read_attribute<long long>("/", "solid unknowns");
-  if (n_solid == 0)
-    return stored;
-  const auto solids = even_map(std::max<GlobalIndex>(n_solid, comm->getSize()), comm);
-  system.coupling_transposed =
-      assemble_triplets(read_entries(file, "/B transposed"), solids, pressures);
-  system.solid_block = as_operator(read_solid_block(file, n_solid, solids));
-  stored.rhs.solid = read_vector(file, "/solid rhs", solids);
-  return stored;
+  check_is_readable(path, comm);
+  try {
+    return read_parts(Hdf5File::open(comm, path));
+  } catch (const OutputError& error) {
+    throw InputError(
+        fmt::format("'{}' holds no block system; write one with simulate --dump-system. ({})", path,
+                    error.what()));
+  }
 }
 
 }  // namespace lockstep

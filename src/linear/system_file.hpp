@@ -17,8 +17,9 @@ struct StoredSystem {
 void write_system(const std::string& path, const BlockSystem& system, const BlockVector& rhs);
 
 /// Reads it, rows spread evenly over the ranks. Where there are fewer solid unknowns than ranks,
-/// unknowns that no other sees are added, so that every rank owns one. Throws OutputError for files
-/// of another kind. Collective.
+/// unknowns that no other sees are added, so that every rank owns one. Throws InputError for files
+/// that cannot be read, are of another kind, damaged, or hold anything but a complete system of
+/// finite numbers. Collective.
 StoredSystem read_system(const std::string& path, const Communicator& comm);
 
 }  // namespace lockstep

@@ -109,8 +109,8 @@ TEST(SystemFile, RefusesOtherFiles) {
   Hdf5File other = Hdf5File::create(comm, file);
   other.write_attribute<long long>("/", "number", 1);
   other.close();
-  EXPECT_THROW(read_system(file, comm), OutputError);
-  EXPECT_THROW(read_system("no-such-file.h5", comm), OutputError);
+  EXPECT_THROW(read_system(file, comm), InputError);
+  EXPECT_THROW(read_system("no-such-file.h5", comm), InputError);
   comm->barrier();
   if (is_root(comm))
     std::remove(file.c_str());

@@ -1,0 +1,174 @@
+"""Damaged files of systems: `solve` says what is wrong with each, with exit code 2, and never breaks."""
+import concurrent.futures
+import os
+import random
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy
+
+from program import SOLVE, simulate, with_checksum, without_checksum
+
+SOLVER = """<ParameterList name="direct"><Parameter name="Type" type="string" value="direct"/></ParameterList>"""
+TABLES = ["A", "B transposed", "C", "pressure rhs", "solid rhs", "null space/0"]
+
+
+def replaced(name, change):
+    """A mutation that stores another array under this name."""
+    def mutate(file):
+        values = change(file[name][...])
+        del file[name]
+        file[name] = values
+    return mutate
+
+
+def without(name):
+    def mutate(file):
+        del file[name]
+    return mutate
+
+
+def with_attribute(name, value, owner="/"):
+    def mutate(file):
+        del file[owner].attrs[name]
+        if value is not None:
+            file[owner].attrs[name] = value
+    return mutate
+
+
+def first_set(value, column=None):
+    def change(values):
+        values[(0,) if column is None else (0, column)] = value
+        return values
+    return change
+
+
+def mutations():
+    """Name and what is done to an open file."""
+    for table in TABLES:
+        places, values = f"{table}/places", f"{table}/values"
+        yield f"{table} missing", without(table)
+        yield f"{values} missing", without(values)
+        yield f"{values} shorter", replaced(values, lambda array: array[:-1])
+        yield f"{values} empty", replaced(values, lambda array: array[:0])
+        yield f"{values} nan", replaced(values, first_set(numpy.nan))
+        yield f"{values} text", replaced(values, lambda array: array.astype("S8"))
+        yield f"{places} flat", replaced(places, lambda array: array.reshape(-1)[:-1])
+        yield f"{places} beyond", replaced(places, lambda array: first_set(10**9, 0 if array.ndim > 1 else None)(array))
+    for table in ("A", "C", "B transposed"):
+        yield f"{table} column", replaced(f"{table}/places", first_set(-1, 1))
+    yield "no row", replaced("A/values", lambda array: 0 * array)
+    yield "infinite", replaced("C/values", first_set(numpy.inf))
+    yield "twice", replaced("pressure rhs/places", lambda array: 0 * array)
+    yield "places of reals", replaced("A/places", lambda array: array + 0.5)
+    for name in ("pressure unknowns", "solid unknowns"):
+        for value in (None, -1, 4, 2**40, 2**62, "many", 2.5, numpy.array([1, 2, 3])):
+            yield f"{name} {value}", with_attribute(name, value)
+    for value in (None, 7, "another kind"):
+        yield f"kind {value}", with_attribute("kind", value)
+    yield "name", with_attribute("name", numpy.array([1.5, 2.5]))
+    for value in (None, -1, 2, 10**12, "one"):
+        yield f"size {value}", with_attribute("size", value, "null space")
+    yield "zero null vector", replaced("null space/0/values", lambda array: 0 * array)
+
+
+class Systems(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(scratch.cleanup)
+        cls.folder = Path(scratch.name)
+        cls.system = cls.folder / "system.h5"
+        result = simulate(scratch.name, "--steps", 1, "--dump-system", "1:S2", cls.system)
+        assert result.returncode == 0, result.stderr
+        (cls.folder / "direct.xml").write_text(SOLVER)
+
+    def solve(self, path):
+        return subprocess.run([SOLVE, str(path), str(self.folder / "direct.xml")], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=120)
+
+    def complaint(self, path):
+        """Why `solve` did not refuse this file as it should; empty if it did."""
+        result = self.solve(path)
+        good = result.returncode == 2 and result.stderr.startswith("lockstep: ")
+        # A message of ours only: no stack of HDF5, no trace of MPI.
+        good = good and result.stderr.count("\n") == 1 and path.name in result.stderr
+        return "" if good else f"{path.name}: exit code {result.returncode}\n{result.stderr[:2000]}"
+
+    def assert_all_refused(self, paths):
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            complaints = [text for text in pool.map(self.complaint, paths) if text]
+        self.assertFalse(complaints, "\n".join(complaints))
+
+    def mutated(self, number, mutate):
+        path = self.folder / f"mutation-{number}.h5"
+        path.write_bytes(without_checksum(self.system.read_bytes()))
+        with h5py.File(path, "r+") as file:
+            mutate(file)
+        # With a checksum of its own, so that the values themselves are looked at.
+        path.write_bytes(with_checksum(path.read_bytes()))
+        return path
+
+    def test_good_systems(self):
+        plain = self.folder / "plain.h5"
+        plain.write_bytes(without_checksum(self.system.read_bytes()))
+        for path in (self.system, plain):
+            result = self.solve(path)
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_mutations(self):
+        all_mutations = list(mutations())
+        self.assertGreaterEqual(len(all_mutations), 60)
+        names = [name for name, _ in all_mutations]
+        paths = [self.mutated(number, mutate) for number, (_, mutate) in enumerate(all_mutations)]
+        renamed = [path.rename(path.with_name(name.replace("/", "_") + ".h5")) for name, path in zip(names, paths)]
+        self.assert_all_refused(renamed)
+
+    def test_flipped_bytes(self):
+        whole = self.system.read_bytes()
+        chance = random.Random(3)
+        paths = []
+        for number in range(12):
+            damaged = bytearray(whole)
+            damaged[chance.randrange(len(whole))] ^= 1 << chance.randrange(8)
+            paths.append(self.folder / f"flipped-{number}.h5")
+            paths[-1].write_bytes(damaged)
+        self.assert_all_refused(paths)
+
+    def test_flipped_structure_without_checksum(self):
+        """HDF5 itself may break on these; the ones it can read whole are as good as any."""
+        whole = without_checksum(self.system.read_bytes())
+        chance = random.Random(4)
+        for number in range(12):
+            damaged = bytearray(whole)
+            for _ in range(20):
+                damaged[chance.randrange(4096)] = chance.randrange(256)
+            path = self.folder / f"structure-{number}.h5"
+            path.write_bytes(damaged)
+            with self.subTest(number=number):
+                result = self.solve(path)
+                self.assertIn(result.returncode, (0, 2), result.stderr)
+                self.assertLessEqual(result.stderr.count("\n"), 1, result.stderr)
+
+    def test_pieces_and_other_files(self):
+        whole = self.system.read_bytes()
+        paths = []
+        for name, content in [("half.h5", whole[:len(whole) // 2]), ("nothing.h5", b""), ("text.h5", b"a system"),
+                              ("longer.h5", whole + b"x")]:
+            paths.append(self.folder / name)
+            paths[-1].write_bytes(content)
+        os.mkfifo(self.folder / "pipe.h5")
+        (self.folder / "folder.h5").mkdir()
+        checkpoint = shutil.copy(next((self.folder / "output").glob("checkpoint-*.h5")), self.folder / "other.h5")
+        self.assert_all_refused([*paths[:-1], self.folder / "pipe.h5", self.folder / "folder.h5", Path(checkpoint),
+                                 self.folder / "missing.h5"])
+
+
+if __name__ == "__main__":
+    if not Path(SOLVE).exists():
+        raise SystemExit(f"{SOLVE} is missing; set LOCKSTEP_SOLVE to the program to test.")
+    unittest.main()
