@@ -21,6 +21,7 @@ lockstep_require(tinyobjloader libtinyobjloader-dev)
 lockstep_require(CLI11 libcli11-dev)
 lockstep_require(EXPAT libexpat1-dev)
 lockstep_require(muparser libmuparser-dev)
+lockstep_require(ZLIB zlib1g-dev)
 lockstep_require(Threads g++)
 
 set(HDF5_PREFER_PARALLEL ON)

@@ -12,6 +12,7 @@
 #include <iostream>
 
 #include "base/memory.hpp"
+#include "base/shortened.hpp"
 #include "output/build_information.hpp"
 #include "parameters/command_line.hpp"
 #include "parameters/reference.hpp"
@@ -105,7 +106,8 @@ int run(int argc, char** argv, const Communicator& comm) {
   app.set_version_flag("--version", "lockstep " + build_information().version + " (" +
                                         build_information().git_hash + ")");
   app.add_option("scene", arguments.run.scene_file, "scene file (xml-params/scenes)");
-  app.add_option("--output", arguments.run.output_directory, "output folder; default: output");
+  const CLI::Option* output =
+      app.add_option("--output", arguments.run.output_directory, "output folder; default: output");
   app.add_option("--set", arguments.settings, "\"List/Sub list/Name=value\"; may be repeated")
       ->expected(1)
       ->take_all();
@@ -114,7 +116,8 @@ int run(int argc, char** argv, const Communicator& comm) {
   app.add_option("--dump-system", arguments.dump_system,
                  "STEP:S1 (or F2, S2) FILE: write that system and its right-hand side, for solve")
       ->expected(2);
-  app.add_option("--restart", arguments.run.restart_file, "continue from this checkpoint");
+  const CLI::Option* restart =
+      app.add_option("--restart", arguments.run.restart_file, "continue from this checkpoint");
   app.add_flag("--validate", arguments.validate, "check the scene and build it, without running");
   app.add_flag("--explain", arguments.explain, "print what is active, why, and its cost");
   app.add_flag("--parameters", arguments.parameters, "print all parameters with documentation");
@@ -129,8 +132,13 @@ int run(int argc, char** argv, const Communicator& comm) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0)
       return is_root(comm) ? app.exit(error) : 0;
-    throw InputError(std::string(error.what()) + " (see simulate --help).");
+    throw InputError(shortened(error.what(), 200) + " (see simulate --help).");
   }
+  check_input(
+      restart->count() == 0 || !arguments.run.restart_file.empty(),
+      "--restart names no file: give the path of a checkpoint, or leave it out to begin anew.");
+  check_input(output->count() == 0 || !arguments.run.output_directory.empty(),
+              "--output names no folder: give its path, or leave it out for \"output\".");
   if (!arguments.dump_system.empty()) {
     arguments.run.dump_system =
         parse_dump_request(arguments.dump_system[0], arguments.dump_system[1]);

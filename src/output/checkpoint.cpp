@@ -8,14 +8,17 @@
 #include <regex>
 
 #include "base/errors.hpp"
+#include "base/regular_file.hpp"
+#include "output/checksum.hpp"
 #include "output/exchange.hpp"
+#include "output/hdf5_probe.hpp"
 
 namespace lockstep {
 
 namespace fs = std::filesystem;
 
 namespace {
-constexpr long long format_version = 1;
+constexpr long long format_version = 2;
 const std::string format_name = "Lockstep checkpoint";
 
 std::string checkpoint_path(const std::string& directory, long long step) {
@@ -36,35 +39,66 @@ std::map<long long, fs::path> checkpoints_in(const std::string& directory) {
   return found;
 }
 
-/// Opens the file on rank 0 by plain means first, to tell a wrong file from a damaged one.
+std::string damaged(const std::string& path, const std::string& reason) {
+  return fmt::format("Checkpoint '{}' is truncated or damaged, restart from an earlier one. ({})",
+                     path, reason);
+}
+
+/// Looks at the file by plain means first, to tell a wrong file from a damaged one and to keep
+/// HDF5, which may crash on it, from a damaged one.
 Hdf5File open_checkpoint(const Communicator& comm, const std::string& path) {
   std::string message;
   ExitCode code = ExitCode::bad_input;
   if (is_root(comm)) {
+    const std::string refusal = refusal_to_read(path);
+    if (path.empty()) {
+      message = "The name of the checkpoint is empty.";
+    } else if (!fs::exists(path)) {
+      message = fmt::format("Checkpoint '{}' does not exist.", path);
+    } else if (!fs::is_regular_file(path)) {
+      message = fmt::format("Checkpoint '{}' is not a file: {}.", path, refusal);
+    } else if (!refusal.empty()) {
+      message = fmt::format("Checkpoint '{}' may not be read ({}): check its permissions.", path,
+                            refusal);
+      code = ExitCode::output_failed;
+    }
+  }
+  throw_on_all(comm, message, static_cast<int>(code));
+  const ChecksumState state = check_checksum(comm, path);
+  if (state == ChecksumState::broken)
+    throw OutputError(
+        damaged(path, "its bytes do not have the checksum that was written with them"));
+  if (state == ChecksumState::absent && is_root(comm)) {
     std::ifstream stream(path, std::ios::binary);
     char head[8] = {};
     stream.read(head, sizeof head);
     const auto n_read = static_cast<std::size_t>(stream.gcount());
     const std::string signature = "\x89HDF\r\n\x1a\n";
-    if (!fs::exists(path)) {
-      message = fmt::format("Checkpoint '{}' does not exist.", path);
-    } else if (!fs::is_regular_file(path)) {
-      message = fmt::format("Checkpoint '{}' is not a file.", path);
-    } else if (!stream.is_open()) {
-      message = fmt::format("Checkpoint '{}' may not be read: check its permissions.", path);
-      code = ExitCode::output_failed;
-    } else if (std::string(head, n_read) != signature.substr(0, n_read)) {
+    const std::string refusal = refusal_of_hdf5(path);
+    if (std::string(head, n_read) != signature.substr(0, n_read)) {
       message = fmt::format("'{}' is not a checkpoint: it is no HDF5 file.", path);
+    } else if (!refusal.empty()) {
+      message = damaged(path, refusal);
+      code = ExitCode::output_failed;
     }
   }
   throw_on_all(comm, message, static_cast<int>(code));
   try {
-    return Hdf5File::open(comm, path);
+    Hdf5File file = Hdf5File::open(comm, path);
+    check_input(file.has_attribute("/", "format") &&
+                    file.read_attribute<std::string>("/", "format") == format_name,
+                "'{}' is an HDF5 file, but not a checkpoint of this program.", path);
+    const auto version = file.read_attribute<long long>("/", "version");
+    check_input(
+        version == format_version,
+        "Checkpoint '{}' has format version {}, this program reads version {}: restart with the "
+        "program that wrote it.",
+        path, version, format_version);
+    if (state == ChecksumState::absent)
+      throw OutputError("its checksum is missing");
+    return file;
   } catch (const OutputError& error) {
-    throw OutputError(
-        fmt::format("Checkpoint '{}' is truncated or damaged, restart from an earlier "
-                    "one. ({})",
-                    path, error.what()));
+    throw OutputError(damaged(path, error.what()));
   }
 }
 
@@ -116,6 +150,7 @@ CheckpointWriter::CheckpointWriter(const Communicator& comm, const std::string& 
   file_.write_attribute<long long>("/", "step", header.step);
   file_.write_attribute<double>("/", "time", header.time);
   file_.write_text("parameters", header.parameters);
+  file_.write_text("files", header.files);
 }
 
 template <typename T>
@@ -148,7 +183,7 @@ void CheckpointWriter::write_distributed(const std::string& name,
 }
 
 void CheckpointWriter::finish(int keep) {
-  file_.close();
+  file_.close_with_checksum();
   if (!is_root(comm_))
     return;
   std::map<long long, fs::path> found = checkpoints_in(directory_);
@@ -162,18 +197,10 @@ void CheckpointWriter::finish(int keep) {
 
 CheckpointReader::CheckpointReader(const Communicator& comm, const std::string& path)
     : comm_(comm), file_(open_checkpoint(comm, path)) {
-  check_input(file_.has_attribute("/", "format") &&
-                  file_.read_attribute<std::string>("/", "format") == format_name,
-              "'{}' is an HDF5 file, but not a checkpoint of this program.", path);
-  const auto version = file_.read_attribute<long long>("/", "version");
-  check_input(
-      version == format_version,
-      "Checkpoint '{}' has format version {}, this program reads version {}: restart with the "
-      "program that wrote it.",
-      path, version, format_version);
   header_.step = file_.read_attribute<long long>("/", "step");
   header_.time = file_.read_attribute<double>("/", "time");
   header_.parameters = file_.read_text("parameters");
+  header_.files = file_.read_text("files");
 }
 
 template <typename T>

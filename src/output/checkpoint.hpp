@@ -12,10 +12,12 @@ struct CheckpointHeader {
   long long step = 0;
   double time = 0;         ///< [s]
   std::string parameters;  ///< the complete parameter list of the run, as XML
+  std::string files{};     ///< checksums of the files that the scene reads
 };
 
-/// Writes DIRECTORY/checkpoint-000123.h5, named after the step. The content does not depend on the
-/// number of ranks. All member functions are collective and throw OutputError.
+/// Writes DIRECTORY/checkpoint-000123.h5, named after the step, with a checksum of the whole file.
+/// The content does not depend on the number of ranks. All member functions are collective and
+/// throw OutputError.
 class CheckpointWriter {
  public:
   CheckpointWriter(const Communicator& comm, const std::string& directory,
@@ -46,7 +48,8 @@ class CheckpointWriter {
 class CheckpointReader {
  public:
   /// Throws InputError if the file does not exist, is no checkpoint of this program or has another
-  /// version; OutputError if it is truncated or cannot be read.
+  /// version; OutputError if it is truncated, if any of its bytes has changed, or if it cannot be
+  /// read.
   CheckpointReader(const Communicator& comm, const std::string& path);
 
   const CheckpointHeader& header() const { return header_; }

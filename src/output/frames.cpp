@@ -40,6 +40,12 @@ std::vector<double> padded(const std::vector<double>& values, int n_components) 
   return result;
 }
 
+/// Frames are removed from this folder, so that it must not be a link to another.
+void make_folder(const std::string& path) {
+  check_output(!fs::is_symlink(path), "'{}' is a link, but must be a folder: remove it.", path);
+  fs::create_directories(path);
+}
+
 }  // namespace
 
 FrameWriter::FrameWriter(const Communicator& comm, const std::string& directory,
@@ -56,7 +62,7 @@ std::string FrameWriter::frame_path(long long number) const {
 
 void FrameWriter::start() {
   on_root(comm_, [&] {
-    fs::create_directories(directory_ + "/frames");
+    make_folder(directory_ + "/frames");
     entries_.clear();
     write_index();
     for (const fs::path& file : frame_files()) {
@@ -68,7 +74,7 @@ void FrameWriter::start() {
 
 void FrameWriter::resume(double time) {
   on_root(comm_, [&] {
-    fs::create_directories(directory_ + "/frames");
+    make_folder(directory_ + "/frames");
     entries_ = find_entries();
     const auto later = std::find_if(entries_.begin(), entries_.end(),
                                     [&](const Entry& entry) { return entry.time > time; });

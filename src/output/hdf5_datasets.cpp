@@ -1,13 +1,11 @@
-// Writing and reading of datasets; the rest of Hdf5File is in hdf5_file.cpp.
-#include <unistd.h>
-
+// Writing of datasets; the rest of Hdf5File is in hdf5_file.cpp and hdf5_reading.cpp.
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <numeric>
 
 #include "base/errors.hpp"
+#include "output/atomic_file.hpp"
 #include "output/exchange.hpp"
 #include "output/hdf5_file.hpp"
 #include "output/hdf5_handle.hpp"
@@ -111,8 +109,7 @@ CellRange gather_range(const Communicator& comm, const std::array<int, 3>& n_cel
 template <typename T>
 GlobalIndex Hdf5File::reserve(const std::string& name, const std::vector<GlobalIndex>& extents) {
   const GlobalIndex n_bytes = n_elements(extents) * static_cast<GlobalIndex>(sizeof(T));
-  std::string failure = is_root(comm_) ? refusal_to_grow(n_bytes) : "";
-  agree(failure, fmt::format("create the dataset '{}'", name));
+  std::string failure;
   long long offset = 0;
   if (is_root(comm_)) {
     const std::vector<hsize_t> shape(extents.begin(), extents.end());
@@ -123,8 +120,8 @@ GlobalIndex Hdf5File::reserve(const std::string& name, const std::vector<GlobalI
     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
     const hdf5::Handle links = hdf5::own_properties(H5Pcreate(H5P_LINK_CREATE));
     H5Pset_create_intermediate_group(links, 1);
-    const hdf5::Handle dataset = hdf5::own_dataset(
-        H5Dcreate2(id_, name.c_str(), hdf5::native_type<T>(), space, links, creation, H5P_DEFAULT));
+    const hdf5::Handle dataset = hdf5::own_dataset(H5Dcreate2(
+        id(), name.c_str(), hdf5::native_type<T>(), space, links, creation, H5P_DEFAULT));
     if (!dataset.valid())
       failure = hdf5::last_error();
     if (failure.empty() && n_elements(extents) > 0) {
@@ -132,6 +129,7 @@ GlobalIndex Hdf5File::reserve(const std::string& name, const std::vector<GlobalI
       if (address == HADDR_UNDEF)
         failure = hdf5::last_error();
       offset = static_cast<long long>(address);
+      structure_.reserve(offset, n_bytes);
     }
   }
   agree(failure, fmt::format("create the dataset '{}'", name));
@@ -142,26 +140,15 @@ GlobalIndex Hdf5File::reserve(const std::string& name, const std::vector<GlobalI
 template <typename T>
 void Hdf5File::write_values(const std::string& name, GlobalIndex offset, GlobalIndex first,
                             const std::vector<T>& values) {
-  const char* bytes = reinterpret_cast<const char*>(values.data());
-  const std::size_t size = values.size() * sizeof(T);
-  offset += first * static_cast<GlobalIndex>(sizeof(T));
-  std::string failure;
-  for (std::size_t done = 0; done < size && failure.empty();) {
-    const ssize_t n = pwrite(descriptor_, bytes + done, size - done,
-                             static_cast<off_t>(offset + static_cast<GlobalIndex>(done)));
-    if (n < 0 && errno != EINTR)
-      failure = std::strerror(errno);
-    if (n > 0)
-      done += static_cast<std::size_t>(n);
-  }
-  agree(failure, fmt::format("write the dataset '{}'", name));
+  const int error = write_fully_at(descriptor_, reinterpret_cast<const char*>(values.data()),
+                                   values.size() * sizeof(T),
+                                   offset + first * static_cast<GlobalIndex>(sizeof(T)));
+  agree(error == 0 ? "" : std::strerror(error), fmt::format("write the dataset '{}'", name));
 }
 
 template <typename T>
 void Hdf5File::write_compressed(const std::string& name, const std::vector<GlobalIndex>& extents,
                                 const std::vector<T>& values, int level) {
-  const GlobalIndex n_bytes = n_elements(extents) * static_cast<GlobalIndex>(sizeof(T));
-  agree(refusal_to_grow(n_bytes), fmt::format("create the dataset '{}'", name));
   constexpr hsize_t chunk_edge = 32;
   const std::vector<hsize_t> shape(extents.begin(), extents.end());
   std::vector<hsize_t> chunk(shape);
@@ -177,7 +164,7 @@ void Hdf5File::write_compressed(const std::string& name, const std::vector<Globa
   H5Pset_create_intermediate_group(links, 1);
   const hid_t type = hdf5::native_type<T>();
   const hdf5::Handle dataset =
-      hdf5::own_dataset(H5Dcreate2(id_, name.c_str(), type, space, links, creation, H5P_DEFAULT));
+      hdf5::own_dataset(H5Dcreate2(id(), name.c_str(), type, space, links, creation, H5P_DEFAULT));
   const bool written = dataset.valid() &&
                        H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0 &&
                        H5Dflush(dataset) >= 0;
@@ -245,51 +232,6 @@ void Hdf5File::write_box(const std::string& name, const std::array<int, 3>& n_ce
   }
 }
 
-std::vector<GlobalIndex> Hdf5File::shape(const std::string& name) const {
-  const hdf5::Handle dataset = hdf5::own_dataset(H5Dopen2(id_, name.c_str(), H5P_DEFAULT));
-  std::vector<hsize_t> extents;
-  if (dataset.valid()) {
-    const hdf5::Handle space = hdf5::own_space(H5Dget_space(dataset));
-    extents.resize(static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space), 0)));
-    if (!extents.empty())
-      H5Sget_simple_extent_dims(space, extents.data(), nullptr);
-  }
-  agree(dataset.valid() ? "" : hdf5::last_error(), fmt::format("open the dataset '{}'", name));
-  return {extents.begin(), extents.end()};
-}
-
-template <typename T>
-std::vector<T> Hdf5File::read_rows(const std::string& name, GlobalIndex first_row,
-                                   GlobalIndex n_rows) const {
-  const std::vector<GlobalIndex> extents = shape(name);
-  const bool inside =
-      !extents.empty() && first_row >= 0 && n_rows >= 0 && first_row + n_rows <= extents.front();
-  agree(inside ? "" : fmt::format("rows {} to {} are not in it", first_row, first_row + n_rows),
-        fmt::format("read the dataset '{}'", name));
-  std::vector<hsize_t> lower(extents.size(), 0), size(extents.begin(), extents.end());
-  lower[0] = static_cast<hsize_t>(first_row);
-  size[0] = static_cast<hsize_t>(n_rows);
-  const hsize_t n = std::accumulate(size.begin(), size.end(), hsize_t{1}, std::multiplies<>());
-  std::vector<T> values(n);
-  bool done = true;
-  if (n > 0) {
-    const hdf5::Handle dataset = hdf5::own_dataset(H5Dopen2(id_, name.c_str(), H5P_DEFAULT));
-    const hdf5::Handle space = hdf5::own_space(H5Dget_space(dataset));
-    const hdf5::Handle memory = hdf5::own_space(H5Screate_simple(1, &n, nullptr));
-    done = H5Sselect_hyperslab(space, H5S_SELECT_SET, lower.data(), nullptr, size.data(),
-                               nullptr) >= 0 &&
-           H5Dread(dataset, hdf5::native_type<T>(), memory, space, H5P_DEFAULT, values.data()) >= 0;
-  }
-  agree(done ? "" : hdf5::last_error(), fmt::format("read the dataset '{}'", name));
-  return values;
-}
-
-template <typename T>
-std::vector<T> Hdf5File::read_all(const std::string& name) const {
-  const std::vector<GlobalIndex> extents = shape(name);
-  return read_rows<T>(name, 0, extents.empty() ? 0 : extents.front());
-}
-
 template void Hdf5File::write_replicated(const std::string&, const std::vector<double>&, int,
                                          Precision);
 template void Hdf5File::write_replicated(const std::string&, const std::vector<long long>&, int,
@@ -298,13 +240,5 @@ template void Hdf5File::write_replicated(const std::string&, const std::vector<i
                                          Precision);
 template void Hdf5File::write_slices(const std::string&, const std::vector<double>&, int);
 template void Hdf5File::write_slices(const std::string&, const std::vector<long long>&, int);
-template std::vector<double> Hdf5File::read_rows(const std::string&, GlobalIndex,
-                                                 GlobalIndex) const;
-template std::vector<long long> Hdf5File::read_rows(const std::string&, GlobalIndex,
-                                                    GlobalIndex) const;
-template std::vector<int> Hdf5File::read_rows(const std::string&, GlobalIndex, GlobalIndex) const;
-template std::vector<double> Hdf5File::read_all(const std::string&) const;
-template std::vector<long long> Hdf5File::read_all(const std::string&) const;
-template std::vector<int> Hdf5File::read_all(const std::string&) const;
 
 }  // namespace lockstep

@@ -1,7 +1,8 @@
+// Opening, closing and writing the structure of Hdf5File; datasets are written in
+// hdf5_datasets.cpp, and everything is read in hdf5_reading.cpp.
 #include "output/hdf5_file.hpp"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,7 +12,9 @@
 #include <type_traits>
 
 #include "base/errors.hpp"
+#include "base/regular_file.hpp"
 #include "output/atomic_file.hpp"
+#include "output/checksum.hpp"
 #include "output/hdf5_handle.hpp"
 #include "output/on_root.hpp"
 
@@ -61,9 +64,6 @@ hdf5::Handle text_type(std::size_t length) {
   return type;
 }
 
-std::string without_padding(const std::string& text) {
-  return text.substr(0, std::min(text.find('\0'), text.size()));
-}
 }  // namespace
 
 Hdf5File::Hdf5File(const Communicator& comm, const std::string& path, bool writing)
@@ -76,6 +76,7 @@ Hdf5File::Hdf5File(Hdf5File&& other) noexcept
       path_(std::move(other.path_)),
       writing_(other.writing_),
       id_(std::exchange(other.id_, -1)),
+      structure_(std::move(other.structure_)),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 Hdf5File Hdf5File::create(const Communicator& comm, const std::string& path) {
@@ -91,24 +92,20 @@ Hdf5File Hdf5File::open(const Communicator& comm, const std::string& path) {
 }
 
 void Hdf5File::create_file() {
-  const std::string part = part_name(path_);
-  const auto open_descriptor = [&](int flags) {
-    descriptor_ = ::open(part.c_str(), O_WRONLY | flags, 0666);
-    return std::string(descriptor_ < 0 ? std::strerror(errno) : "");
-  };
-  // The plain call comes first because it gives the shorter reason.
-  agree(is_root(comm_) ? open_descriptor(O_CREAT | O_TRUNC) : "", "create it");
-  const std::string failure = try_on_root(comm_, [&] {
-    const hdf5::Handle access = hdf5::own_properties(H5Pcreate(H5P_FILE_ACCESS));
-    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-    id_ = H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
-    return id_ >= 0;
-  });
+  std::string failure;
+  if (is_root(comm_))
+    descriptor_ = open_part(path_, failure);
   agree(failure, "create it");
-  agree(is_root(comm_) ? "" : open_descriptor(0), "create it");
+  agree(is_root(comm_) ? structure_.create() : "", "create it");
+  if (!is_root(comm_)) {
+    descriptor_ = ::open(part_name(path_).c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
+    failure = descriptor_ < 0 ? std::strerror(errno) : "";
+  }
+  agree(failure, "create it");
 }
 
 void Hdf5File::open_file() {
+  agree(refusal_to_read(path_), "open it");
   const hdf5::Handle access = hdf5::own_properties(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
   id_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, access);
@@ -127,31 +124,8 @@ void Hdf5File::abandon() noexcept {
   if (descriptor_ < 0)
     return;
   ::close(std::exchange(descriptor_, -1));
-  if (!is_root(comm_))
-    return;
-  // Closing writes what is still in memory, and HDF5 breaks if that fails. On a full disk, giving
-  // the space of the unfinished file back lets it pass; else the file stays open until the program
-  // ends.
-  const bool emptied = truncate(part_name(path_).c_str(), 0) == 0;
-  if (id_ >= 0 && emptied && H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0)
-    H5Fclose(id_);
-  id_ = -1;
-  H5Eclear2(H5E_DEFAULT);
-  discard_part(path_);
-}
-
-std::string Hdf5File::refusal_to_grow(GlobalIndex n_bytes) const {
-  // HDF5 cannot close a file whose end it was unable to reach (a limit of the file size), so this
-  // is tried first, with room for the structure. Nobody else writes at this moment.
-  constexpr GlobalIndex room_for_structure = 1 << 20;
-  struct stat status {};
-  hsize_t size = 0;
-  H5Fget_filesize(id_, &size);
-  const auto wanted = static_cast<off_t>(size) + n_bytes + room_for_structure;
-  const bool possible = fstat(descriptor_, &status) == 0 &&
-                        (status.st_size >= wanted || (ftruncate(descriptor_, wanted) == 0 &&
-                                                      ftruncate(descriptor_, status.st_size) == 0));
-  return possible ? "" : std::strerror(errno);
+  if (is_root(comm_))
+    discard_part(path_);
 }
 
 void Hdf5File::agree(const std::string& failure, const std::string& action) const {
@@ -164,66 +138,44 @@ void Hdf5File::agree(const std::string& failure, const std::string& action) cons
   throw_on_all(comm_, message, static_cast<int>(ExitCode::output_failed));
 }
 
+void Hdf5File::commit() {
+  ::close(std::exchange(descriptor_, -1));
+  on_root(comm_, [&] { commit_part(path_); });
+}
+
+void Hdf5File::finish_part() {
+  agree(is_root(comm_) ? structure_.copy_to(descriptor_) : "", "write it to its end");
+  agree(fsync(descriptor_) == 0 ? "" : std::strerror(errno), "write it to its end");
+}
+
 void Hdf5File::close() {
   if (!writing_) {
     H5Fclose(std::exchange(id_, -1));
     return;
   }
-  agree(fsync(descriptor_) == 0 ? "" : std::strerror(errno), "write it to its end");
-  agree(try_on_root(comm_, [&] { return H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0; }),
-        "write it to its end");
-  const std::string failure =
-      try_on_root(comm_, [&] { return H5Fclose(std::exchange(id_, -1)) >= 0; });
-  agree(failure, "close it");
-  ::close(std::exchange(descriptor_, -1));
-  on_root(comm_, [&] { commit_part(path_); });
+  finish_part();
+  commit();
+}
+
+void Hdf5File::close_with_checksum() {
+  finish_part();
+  append_checksum(comm_, part_name(path_));
+  commit();
 }
 
 void Hdf5File::create_group(const std::string& name) {
   const std::string failure = try_on_root(comm_, [&] {
     const hdf5::Handle links = hdf5::own_properties(H5Pcreate(H5P_LINK_CREATE));
     H5Pset_create_intermediate_group(links, 1);
-    return hdf5::own_group(H5Gcreate2(id_, name.c_str(), links, H5P_DEFAULT, H5P_DEFAULT)).valid();
+    return hdf5::own_group(H5Gcreate2(id(), name.c_str(), links, H5P_DEFAULT, H5P_DEFAULT)).valid();
   });
   agree(failure, fmt::format("create the group '{}'", name));
-}
-
-bool Hdf5File::exists(const std::string& name) const {
-  if (name.empty() || name == "/")
-    return true;
-  for (std::size_t slash = name.find('/', 1);; slash = name.find('/', slash + 1)) {
-    const htri_t found = H5Lexists(id_, name.substr(0, slash).c_str(), H5P_DEFAULT);
-    if (found <= 0) {
-      H5Eclear2(H5E_DEFAULT);
-      return false;
-    }
-    if (slash == std::string::npos)
-      return true;
-  }
-}
-
-bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {
-  const htri_t found = H5Aexists_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT);
-  H5Eclear2(H5E_DEFAULT);
-  return found > 0;
-}
-
-std::vector<std::string> Hdf5File::names(const std::string& group) const {
-  std::vector<std::string> result;
-  const auto append = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->push_back(name);
-    return 0;
-  };
-  const herr_t status = H5Literate_by_name(id_, group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
-                                           append, &result, H5P_DEFAULT);
-  agree(status < 0 ? hdf5::last_error() : "", fmt::format("list the group '{}'", group));
-  return result;
 }
 
 void Hdf5File::link_external(const std::string& name, const std::string& file,
                              const std::string& target) {
   const std::string failure = try_on_root(comm_, [&] {
-    return H5Lcreate_external(file.c_str(), target.c_str(), id_, name.c_str(), H5P_DEFAULT,
+    return H5Lcreate_external(file.c_str(), target.c_str(), id(), name.c_str(), H5P_DEFAULT,
                               H5P_DEFAULT) >= 0;
   });
   agree(failure, fmt::format("link '{}'", name));
@@ -247,7 +199,7 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
   agree(failure, fmt::format("write the attribute '{}'", name));
   failure = try_on_root(comm_, [&] {
     const hdf5::Handle space = hdf5::own_space(H5Screate(H5S_SCALAR));
-    const hdf5::Handle owner = hdf5::own_object(H5Oopen(id_, object.c_str(), H5P_DEFAULT));
+    const hdf5::Handle owner = hdf5::own_object(H5Oopen(id(), object.c_str(), H5P_DEFAULT));
     const hdf5::Handle attribute =
         hdf5::own_attribute(H5Acreate2(owner, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT));
     return attribute.valid() && H5Awrite(attribute, type, data) >= 0;
@@ -255,59 +207,20 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
   agree(failure, fmt::format("write the attribute '{}'", name));
 }
 
-template <typename T>
-T Hdf5File::read_attribute(const std::string& object, const std::string& name) const {
-  T value{};
-  const hdf5::Handle attribute = hdf5::own_attribute(
-      H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
-  herr_t status = attribute.valid() ? 0 : -1;
-  if (attribute.valid()) {
-    if constexpr (std::is_same_v<T, std::string>) {
-      const hdf5::Handle type = hdf5::own_type(H5Aget_type(attribute));
-      value.resize(H5Tget_size(type));
-      status = H5Aread(attribute, type, value.data());
-      value = without_padding(value);
-    } else {
-      status = H5Aread(attribute, hdf5::native_type<T>(), &value);
-    }
-  }
-  agree(status < 0 ? hdf5::last_error() : "",
-        fmt::format("read the attribute '{}' of '{}'", name, object));
-  return value;
-}
-
 void Hdf5File::write_text(const std::string& name, const std::string& text) {
-  const auto length = static_cast<GlobalIndex>(text.size());
-  agree(is_root(comm_) ? refusal_to_grow(length) : "", fmt::format("write the text '{}'", name));
   const std::string failure = try_on_root(comm_, [&] {
     const hdf5::Handle type = text_type(text.size());
     const hdf5::Handle space = hdf5::own_space(H5Screate(H5S_SCALAR));
     const hdf5::Handle dataset = hdf5::own_dataset(
-        H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+        H5Dcreate2(id(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     return dataset.valid() &&
            H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) >= 0;
   });
   agree(failure, fmt::format("write the text '{}'", name));
 }
 
-std::string Hdf5File::read_text(const std::string& name) const {
-  const hdf5::Handle dataset = hdf5::own_dataset(H5Dopen2(id_, name.c_str(), H5P_DEFAULT));
-  std::string text;
-  bool done = dataset.valid();
-  if (done) {
-    const hdf5::Handle type = hdf5::own_type(H5Dget_type(dataset));
-    text.resize(H5Tget_size(type));
-    done = H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
-  }
-  agree(done ? "" : hdf5::last_error(), fmt::format("read the text '{}'", name));
-  return without_padding(text);
-}
-
 template void Hdf5File::write_attribute(const std::string&, const std::string&, const double&);
 template void Hdf5File::write_attribute(const std::string&, const std::string&, const long long&);
 template void Hdf5File::write_attribute(const std::string&, const std::string&, const std::string&);
-template double Hdf5File::read_attribute(const std::string&, const std::string&) const;
-template long long Hdf5File::read_attribute(const std::string&, const std::string&) const;
-template std::string Hdf5File::read_attribute(const std::string&, const std::string&) const;
 
 }  // namespace lockstep

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/communicator.hpp"
+#include "output/hdf5_structure.hpp"
 
 namespace lockstep {
 
@@ -31,9 +32,12 @@ struct BoxStorage {
 /// A file being created carries the name `path.part` until `close` has succeeded; if `close` is
 /// never reached, or fails, nothing is left of it.
 ///
-/// Rank 0 alone writes the structure of the file; every rank writes its part of the numbers
-/// straight to the place that HDF5 has reserved for them. HDF5's own MPI driver is avoided: with
-/// Open MPI 4.1 a collective write to a full disk hangs.
+/// Rank 0 alone makes the structure of the file, in memory; every rank writes its part of the
+/// numbers straight to the place that HDF5 has reserved for them, and `close` adds the structure.
+/// HDF5's own MPI driver is avoided: with Open MPI 4.1 a collective write to a full disk hangs.
+///
+/// What is read is held against what was asked for: another kind of number, another shape and a
+/// size that the file cannot hold are failures as well.
 class Hdf5File {
  public:
   static Hdf5File create(const Communicator& comm, const std::string& path);
@@ -45,6 +49,8 @@ class Hdf5File {
 
   /// Forces everything to disk and gives the file its final name.
   void close();
+  /// The same, with a checksum at its end (output/checksum.hpp).
+  void close_with_checksum();
 
   const std::string& path() const { return path_; }
   const Communicator& communicator() const { return comm_; }
@@ -102,9 +108,11 @@ class Hdf5File {
   Hdf5File(const Communicator& comm, const std::string& path, bool writing);
   void create_file();
   void open_file();
+  /// Adds the structure and forces the numbers to disk; then `commit` gives the final name.
+  void finish_part();
+  void commit();
   void abandon() noexcept;
-  /// Rank 0: why the file cannot grow by this much, or "".
-  std::string refusal_to_grow(GlobalIndex n_bytes) const;
+  std::int64_t id() const { return writing_ ? structure_.id() : id_; }
   /// Throws on all ranks if any of them failed; `action` completes "Cannot ... in file".
   void agree(const std::string& failure, const std::string& action) const;
   /// Creates a dataset and returns where in the file its values lie [bytes].
@@ -126,9 +134,9 @@ class Hdf5File {
   Communicator comm_;
   std::string path_;
   bool writing_ = false;
-  std::int64_t id_ = -1;  // an hid_t, spelt out to keep hdf5.h out of this header; -1 on ranks > 0
-                          // while writing
-  int descriptor_ = -1;   // of the part file, for this rank's numbers
+  std::int64_t id_ = -1;  // while reading: an hid_t, spelt out to keep hdf5.h out of this header
+  hdf5::Structure structure_;  // while writing, on rank 0
+  int descriptor_ = -1;        // of the part file, for this rank's numbers
 };
 
 }  // namespace lockstep

@@ -4,6 +4,7 @@
 
 #include "base/communicator.hpp"
 #include "base/errors.hpp"
+#include "base/library_message.hpp"
 
 namespace lockstep {
 
@@ -20,7 +21,7 @@ void on_root(const Communicator& comm, const Action& action) {
       message = failure.what();
       code = failure.exit_code();
     } catch (const std::exception& error) {
-      message = error.what();
+      message = library_message(error);
     }
   }
   throw_on_all(comm, message, static_cast<int>(code));

@@ -23,9 +23,16 @@ void create_output_directory(const Communicator& comm, const std::string& direct
     fs::create_directories(directory, error);
     check_input(!error, "The output folder '{}' cannot be created: {}. Choose another --output.",
                 directory, error.message());
-    check_input(access(directory.c_str(), W_OK | X_OK) == 0,
+    const int reason = access(directory.c_str(), W_OK | X_OK) == 0 ? 0 : errno;
+    check_input(reason == 0,
                 "The output folder '{}' cannot be written to: {}. Choose another --output.",
-                directory, std::strerror(errno));
+                directory, std::strerror(reason));
+    const fs::file_status frames = fs::symlink_status(directory + "/frames", error);
+    check_input(
+        !fs::exists(frames) || fs::is_directory(frames),
+        "'{}/frames' is a link or a file, but frames go to a folder of that name, and those of "
+        "an earlier run are removed from it: remove it or choose another --output.",
+        directory);
   });
 }
 

@@ -9,8 +9,8 @@
 /// rank 0 does the work and its arguments count.
 namespace lockstep {
 
-/// Creates the folder with those above it. Throws InputError if the path is a file, or if the
-/// folder cannot be created or written to.
+/// Creates the folder with those above it. Throws InputError if the path is a file, if the folder
+/// cannot be created or written to, or if its "frames" is a link or a file.
 void create_output_directory(const Communicator& comm, const std::string& directory);
 
 /// DIRECTORY/input.xml, a byte copy of the scene file, and used-parameters.xml, the complete list

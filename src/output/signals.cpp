@@ -27,6 +27,8 @@ void install_signal_handlers() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGINT, &action, nullptr);
+  // Beyond a limit of the size of files, writing fails with a message instead.
+  signal(SIGXFSZ, SIG_IGN);
 }
 
 int stop_requested(const Communicator& comm) {

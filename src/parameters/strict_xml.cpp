@@ -3,15 +3,12 @@
 #include <expat.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <vector>
 
 #include "base/errors.hpp"
+#include "base/regular_file.hpp"
+#include "base/shortened.hpp"
 #include "parameters/formula.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
@@ -74,7 +71,7 @@ class Reader {
       check_input(word.empty(),
                   "the text \"{}\" stands between the elements; only <ParameterList>, <Parameter> "
                   "and comments may.",
-                  word);
+                  shortened(word));
     });
   }
   static void on_doctype(void* data, const XML_Char*, const XML_Char*, const XML_Char*, int) {
@@ -218,21 +215,11 @@ class Reader {
 /// All bytes of the file; `failure` says why not.
 std::string read_bytes(const std::string& file, std::string& failure) {
   std::string why;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    why = "it is a folder";
-  } else {
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (stream) {
-      std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-      if (text.size() < (std::size_t{1} << 30))
-        return text;
-      why = "it is larger than a parameter file can be";
-    } else {
-      why = std::strerror(errno);
-    }
-  }
+  std::string text = read_regular_file(file, why);
+  if (text.size() >= (std::size_t{1} << 30))
+    why = "it is larger than a parameter file can be";
+  if (why.empty())
+    return text;
   failure =
       fmt::format("Cannot read \"{}\": {}. Give the path of an XML parameter file.", file, why);
   return "";

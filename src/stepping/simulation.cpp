@@ -11,6 +11,7 @@
 #include "output/run_record.hpp"
 #include "output/signals.hpp"
 #include "parameters/write.hpp"
+#include "stepping/restart_check.hpp"
 
 namespace lockstep {
 namespace {
@@ -142,6 +143,7 @@ double Simulation<dim>::fraction_done() const {
 
 template <int dim>
 void Simulation<dim>::begin_outputs() {
+  files_ = checksums_of_files(scene_, options_.scene_file, comm_);
   // A checkpoint that does not fit must not leave anything behind.
   if (!options_.restart_file.empty())
     load_checkpoint();
@@ -180,7 +182,7 @@ template <int dim>
 void Simulation<dim>::write_checkpoint() {
   ScopedPhase phase(timers_, "checkpoints");
   CheckpointWriter checkpoint(comm_, options_.output_directory,
-                              {step_, stepper_->time(), to_xml(scene_)});
+                              {step_, stepper_->time(), to_xml(scene_), files_});
   components_.fluid->save(checkpoint);
   for (int m = 0; m < components_.solids->n_models(); ++m) {
     components_.solids->model(m).save(checkpoint);
@@ -193,6 +195,7 @@ void Simulation<dim>::write_checkpoint() {
 template <int dim>
 void Simulation<dim>::load_checkpoint() {
   const CheckpointReader checkpoint(comm_, options_.restart_file);
+  check_same_scene(scene_, files_, checkpoint.header(), options_.restart_file);
   for (int m = 0; m < components_.solids->n_models(); ++m) {
     components_.solids->model(m).load(checkpoint);
   }

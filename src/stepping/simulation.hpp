@@ -55,6 +55,7 @@ class Simulation {
   std::unique_ptr<Stepper<dim>> stepper_;
   RunTables<dim> tables_;
   FrameWriter frames_;
+  std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
   double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
   std::vector<int> s1_iterations_, f2_iterations_, s2_iterations_;

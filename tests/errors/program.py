@@ -1,9 +1,12 @@
 """Runs `simulate` on a small scene that tests bend to their needs."""
 import os
 import subprocess
+import zlib
 from pathlib import Path
 
 SIMULATE = os.environ.get("LOCKSTEP_SIMULATE", "build/release/drivers/simulate")
+SOLVE = os.environ.get("LOCKSTEP_SOLVE", "build/release/drivers/solve")
+CONVERGE = os.environ.get("LOCKSTEP_CONVERGE", "build/release/drivers/converge")
 MPIEXEC = os.environ.get("LOCKSTEP_MPIEXEC", "mpirun")
 
 SCENE = """<ParameterList name="Scene">
@@ -56,3 +59,12 @@ def simulate(folder, *arguments, scene=SCENE, ranks=1):
     (Path(folder) / "scene.xml").write_text(scene)
     return subprocess.run(command(folder, *arguments, ranks=ranks), stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, timeout=600)
+
+
+def with_checksum(content):
+    """The line that the programs put at the end of their HDF5 files."""
+    return content + f"\nLockstep CRC-32 {zlib.crc32(content):08x} of {len(content):020} bytes\n".encode()
+
+
+def without_checksum(content):
+    return content[:len(content) - (len(with_checksum(b"")))]

@@ -1,6 +1,7 @@
 """Bad input: each case ends with exit code 2, its own message, and nothing written."""
 import concurrent.futures
 import os
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -71,6 +72,11 @@ CASES = [
     Case("--set of a whole list", "is a list", sets=["Time=1"]),
     Case("a restart from nothing", ["none.h5", "does not exist"], arguments=["--restart", "none.h5"]),
     Case("a restart from another file", ["scene.xml", "is not a checkpoint"], arguments=["--restart", "scene.xml"]),
+    Case("a restart from no name", "--restart names no file", arguments=["--restart", ""]),
+    Case("an output folder without a name", "--output names no folder", arguments=["--output", ""]),
+    Case("a restart from a pipe", ["pipe.h5", "pipe, not a file"], arguments=["--restart", "pipe.h5"]),
+    Case("a solver file that is a pipe", ["pipe.h5", "pipe, not a file"], sets=["Solver/File=pipe.h5"]),
+    Case("a solver file that is a device", ["/dev/zero", "device, not a file"], sets=["Solver/File=/dev/zero"]),
     Case("an end before the start", "must be later", arguments=["--end-time", "-1"]),
     Case("an output folder that is a file", "scene.xml", arguments=["--output", "scene.xml"]),
 
@@ -88,6 +94,11 @@ CASES = [
     # Values.
     Case("not a number", ["line", "\"End\" is \"abc\", which is not a number"],
          change=(END, value("End", "double", "abc"))),
+    Case("a long word", ["\"End\" is \"" + 60 * "9" + "...\""],
+         change=(END, value("End", "double", 100000 * "9" + "x"))),
+    Case("a long array", "...", change=(CELLS, value("Cells", "Array(int)", "{" + 5000 * "1," + "1}"))),
+    Case("a long setting", "...", sets=["Time/End=" + 100000 * "x"]),
+    Case("a long name", "...", change=(END, END + value(100000 * "x", "double", "1"))),
     Case("not an integer", "\"1e3\", which is not an integer", change=(END, END + value("Steps", "int", "1e3"))),
     Case("nan", "must be finite", change=(END, value("End", "double", "nan"))),
     Case("infinity", "must be finite", change=(END, value("End", "double", "inf"))),
@@ -152,6 +163,15 @@ CASES = [
     Case("an open mesh", ["'Ball'", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
     Case("a triangle turned against its neighbours", "oriented against each other",
          **mesh(TETRAHEDRON.replace("f 2 3 4", "f 2 4 3"))),
+    Case("a coordinate nan", ["body.obj, line 2", "'nan'", "finite"], **mesh(TETRAHEDRON.replace("v 1 0 0", "v nan 0 0"))),
+    Case("a coordinate inf", ["body.obj, line 2", "'-inf'"], **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1 -inf 0"))),
+    Case("a coordinate beyond doubles", ["body.obj, line 2", "'1e999'"],
+         **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1e999 0 0"))),
+    Case("a hexadecimal coordinate", ["body.obj, line 2", "'0x10'"],
+         **mesh(TETRAHEDRON.replace("v 1 0 0", "v 0x10 0 0"))),
+    Case("a vertex without number", ["body.obj, line 5", "'/1'"], **mesh(TETRAHEDRON.replace("f 1 3 2", "f /1 3 2"))),
+    Case("a huge vertex number", ["body.obj, line 5", "'99999999999999999999'"],
+         **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 99999999999999999999"))),
     Case("a vertex that is not there", ["line 5", "vertex 9 does not exist"],
          **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 9"))),
     Case("a mesh without faces", "no triangles", **mesh(TETRAHEDRON.split("f", 1)[0])),
@@ -165,13 +185,17 @@ def run(case):
     with tempfile.TemporaryDirectory() as folder:
         for name, text in case.files.items():
             (Path(folder) / name).write_text(text)
-        before = {*case.files, "scene.xml"}
-        arguments = [str(Path(folder) / a) if a in ("scene.xml", "none.h5") else a for a in case.arguments]
+        os.mkfifo(Path(folder) / "pipe.h5")
+        before = {*case.files, "scene.xml", "pipe.h5"}
+        arguments = [str(Path(folder) / a) if a in ("scene.xml", "none.h5", "pipe.h5") else a
+                     for a in case.arguments]
         result = simulate(folder, *arguments, scene=case.scene)
         failures = []
         if result.returncode != 2:
             failures.append(f"exit code {result.returncode} instead of 2")
         failures += [f"no {text!r} in the message" for text in case.expected if text not in result.stderr]
+        if len(result.stderr) > 2000:
+            failures.append(f"a message of {len(result.stderr)} characters")
         if result.stderr.count("lockstep: ") != 1:
             failures.append("the message must come once")
         created = {path.name for path in Path(folder).iterdir()} - before
@@ -197,6 +221,33 @@ class BadInput(unittest.TestCase):
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             failures = [failure for failure in pool.map(run, CASES) if failure]
         self.assertFalse(failures, "\n".join(failures))
+
+    def test_links_lead_nowhere(self):
+        """What is in the way stays as it is, and so does what it points to."""
+        for name, code in [("frames", 2), ("frames.h5.part", 4), ("history.csv.part", 4), ("input.xml.part", 4)]:
+            with self.subTest(name=name), tempfile.TemporaryDirectory() as folder:
+                output, elsewhere = Path(folder) / "output", Path(folder) / "elsewhere"
+                output.mkdir()
+                if name == "frames":
+                    elsewhere.mkdir()
+                    (elsewhere / "frame-000000.h5").write_text("precious")
+                else:
+                    elsewhere.write_text("precious")
+                (output / name).symlink_to(elsewhere)
+                result = simulate(folder, "--steps", 1)
+                self.assertEqual(result.returncode, code, result.stderr)
+                self.assertIn(name, result.stderr)
+                kept = elsewhere / "frame-000000.h5" if name == "frames" else elsewhere
+                self.assertEqual(kept.read_text(), "precious")
+                self.assertTrue((output / name).is_symlink())
+
+    def test_a_scene_that_is_a_pipe(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pipe = Path(folder) / "scene.xml"
+            os.mkfifo(pipe)
+            result = subprocess.run([SIMULATE, str(pipe)], stderr=subprocess.PIPE, text=True, timeout=60)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("pipe, not a file", result.stderr)
 
     def test_two_ranks_say_it_once(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -149,22 +149,97 @@ class Faults(unittest.TestCase):
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn("Checkpoint", result.stderr)
 
-    def test_full_disk(self):
+    def test_flipped_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(simulate(folder, "--steps", 3).returncode, 0)
+            checkpoint = newest_checkpoint(folder)
+            whole = checkpoint.read_bytes()
+            places = [0, 9, *range(100, len(whole), len(whole) // 15), len(whole) - 70, len(whole) - 20, len(whole) - 1]
+            for place in places:
+                with self.subTest(place=place, of=len(whole)):
+                    damaged = bytearray(whole)
+                    damaged[place] ^= 1 << (place % 8)
+                    checkpoint.write_bytes(damaged)
+                    result = simulate(folder, "--restart", checkpoint)
+                    self.assertEqual(result.returncode, 4, result.stderr)
+                    self.assertEqual(result.stderr.count("lockstep: "), 1, result.stderr)
+                    self.assertIn("is truncated or damaged, restart from an earlier one", result.stderr)
+            self.assertTrue(read_table(Path(folder) / "output" / "history.csv"), "the old run must stay")
+
+    def test_checkpoint_of_another_scene(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(simulate(folder, "--steps", 3).returncode, 0)
+            for setting, expected in [("Solids/Ball/Geometry/Radius=0.25", ["Radius", "was 0.3 and is 0.25 now"]),
+                                      ("Domain/Upper={2, 4}", ["Domain/Upper", "was {1, 2} and is {2, 4} now"]),
+                                      ("Solids/Ball/Density=400", ["Solids/Ball/Density"]),
+                                      ("Fluid/Viscosity=0", ["Fluid/Viscosity"]),
+                                      ("Domain/Sides/x upper/Type=open", ["Domain/Sides/x upper/Type"])]:
+                with self.subTest(setting=setting):
+                    result = simulate(folder, "--restart", newest_checkpoint(folder), "--set", setting)
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    for text in [*expected, "Checkpoint", "belongs to another scene"]:
+                        self.assertIn(text, result.stderr)
+            others = ["Time/End=0.06", "Time/CFL=0.5", "Time/Fixed Step=0.005", "Output/Precision=double",
+                      "Solver/Tolerance=1e-9", "Solver/Strategy/Type=direct", "Title=longer"]
+            result = simulate(folder, "--restart", newest_checkpoint(folder),
+                              *(word for setting in others for word in ("--set", setting)))
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_checkpoint_of_another_mesh(self):
+        square = "v 0.3 0.3 0\nv 0.7 0.3 0\nv 0.7 0.7 0\nv 0.3 0.7 0\nl 1 2 3 4 1\n"
+        scene = SCENE.replace('"Shape" type="string" value="ball"', '"Shape" type="string" value="file"')
+        scene = scene.replace('"Radius" type="double" value="0.3"', '"File" type="string" value="body.obj"')
+        with tempfile.TemporaryDirectory() as folder:
+            mesh = Path(folder) / "body.obj"
+            mesh.write_text(square)
+            result = simulate(folder, "--steps", 2, scene=scene)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            mesh.write_text(square.replace("v 0.7 0.7", "v 0.7 0.65"))
+            result = simulate(folder, "--restart", newest_checkpoint(folder), "--steps", 3, scene=scene)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("content of the file that \"Solids/Ball/Geometry/File\" names has changed", result.stderr)
+            mesh.write_text(square)
+            result = simulate(folder, "--restart", newest_checkpoint(folder), "--steps", 3, scene=scene)
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_restart_from_no_name_keeps_the_old_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(simulate(folder, "--steps", 3).returncode, 0)
+            before = {path: path.read_bytes() for path in Path(folder).rglob("*") if path.is_file()}
+            result = simulate(folder, "--restart", "")
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("--restart names no file", result.stderr)
+            self.assertEqual({path: path.read_bytes() for path in before}, before)
+
+    def assert_survives_full_disk(self, size, ranks=1):
         with tempfile.TemporaryDirectory() as folder:
             output = Path(folder) / "output"
             output.mkdir()
-            mount = ["mount", "-t", "tmpfs", "-o", "size=256k", "tmpfs", str(output)]
+            mount = ["mount", "-t", "tmpfs", "-o", f"size={size}k", "tmpfs", str(output)]
             if os.geteuid() != 0 or subprocess.run(mount, stderr=subprocess.DEVNULL).returncode != 0:
                 self.skipTest("a small disk of its own needs root and the right to mount")
             try:
-                result = simulate(folder)
+                result = simulate(folder, ranks=ranks)
                 self.assertEqual(result.returncode, 4, result.stderr)
                 self.assertEqual(result.stderr.count("lockstep: "), 1, result.stderr)
                 self.assertIn("No space left on device", result.stderr)
-                self.assertTrue(read_last_frame(output / "frames.h5"), "frames finished before that")
-                self.assertTrue(read_table(output / "history.csv"))
+                if ranks == 1:
+                    self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                self.assertFalse([*output.rglob("*.part")])
+                if size > 150:
+                    self.assertTrue(read_last_frame(output / "frames.h5"), "frames finished before that")
+                    self.assertTrue(read_table(output / "history.csv"))
             finally:
                 subprocess.run(["umount", str(output)], check=True)
+
+    def test_full_disk(self):
+        # From the first file to frames and tables: whatever HDF5 was about to write, it does not break.
+        for size in (16, 36, 40, 44, 48, 64, 256):
+            with self.subTest(size=size):
+                self.assert_survives_full_disk(size)
+
+    def test_full_disk_on_two_ranks(self):
+        self.assert_survives_full_disk(52, ranks=2)
 
 
 if __name__ == "__main__":

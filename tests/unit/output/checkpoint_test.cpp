@@ -5,6 +5,8 @@
 #include <Teuchos_DefaultMpiComm.hpp>
 #include <Teuchos_DefaultSerialComm.hpp>
 
+#include <sys/stat.h>
+
 #include <fstream>
 
 #include "base/errors.hpp"
@@ -146,6 +148,46 @@ TEST(Checkpoint, RefusesDamagedAndForeignFiles) {
   EXPECT_THAT(message_of<InputError>(open("none.h5")), HasSubstr("does not exist"));
   EXPECT_THAT(message_of<InputError>(open("foreign.h5")), HasSubstr("not a checkpoint"));
   EXPECT_THAT(message_of<InputError>(open("newer.h5")), HasSubstr("version 99"));
+}
+
+TEST(Checkpoint, FindsAnyFlippedByte) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  const std::string folder = fresh_folder("checkpoint-flipped");
+  write_checkpoint(comm, folder, 12);
+  const std::string path = folder + "/checkpoint-000012.h5";
+  const std::string bytes = read_whole_file(path);
+  comm->barrier();
+  EXPECT_NO_THROW(CheckpointReader(comm, path));
+  const bool alone = comm->getSize() == 1;
+  const std::size_t stride = alone ? 13 : 997, last_stride = alone ? 1 : 23;
+  for (std::size_t place = 0;
+       place<bytes.size(); place += place + 100> bytes.size() ? last_stride : stride) {
+    if (is_root(comm)) {
+      std::string damaged = bytes;
+      damaged[place] = static_cast<char>(damaged[place] ^ (1 << (place % 8)));
+      std::ofstream(path, std::ios::binary) << damaged;
+    }
+    comm->barrier();
+    EXPECT_THAT(message_of<OutputError>([&] { CheckpointReader(comm, path); }),
+                HasSubstr("is truncated or damaged"))
+        << place;
+    comm->barrier();
+  }
+}
+
+TEST(Checkpoint, RefusesWhatIsNoFile) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  const std::string folder = fresh_folder("checkpoint-pipe");
+  if (is_root(comm)) {
+    ASSERT_EQ(mkfifo((folder + "/pipe.h5").c_str(), 0600), 0);
+  }
+  comm->barrier();
+  EXPECT_THAT(message_of<InputError>([&] { CheckpointReader(comm, folder + "/pipe.h5"); }),
+              HasSubstr("a pipe"));
+  EXPECT_THAT(message_of<OutputError>([&] { Hdf5File::open(comm, folder + "/pipe.h5"); }),
+              HasSubstr("a pipe"));
+  EXPECT_THAT(message_of<InputError>([&] { CheckpointReader(comm, folder); }),
+              HasSubstr("a folder"));
 }
 
 }  // namespace

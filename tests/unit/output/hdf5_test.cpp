@@ -6,9 +6,11 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <fstream>
 #include <limits>
 
 #include "base/errors.hpp"
+#include "output/atomic_file.hpp"
 #include "test_folder.hpp"
 
 namespace lockstep {
@@ -66,6 +68,49 @@ TEST(Hdf5File, RefusesNumbersThatAreNotFinite) {
                OutputError);
   comm->barrier();
   EXPECT_TRUE(std::filesystem::is_empty(std::filesystem::path(path).parent_path()));
+}
+
+TEST(Hdf5File, LeavesLinksAlone) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  const std::string folder = fresh_folder("links"), path = folder + "/file.h5";
+  if (is_root(comm)) {
+    std::ofstream(folder + "/precious") << "text";
+    std::filesystem::create_symlink("precious", path + ".part");
+  }
+  comm->barrier();
+  EXPECT_THAT(message_of<OutputError>([&] { Hdf5File::create(comm, path); }),
+              HasSubstr("file.h5.part' is in the way"));
+  EXPECT_THAT(message_of<OutputError>([&] { write_file_atomically(path, "other"); }),
+              HasSubstr("file.h5.part' is in the way"));
+  EXPECT_EQ(read_whole_file(folder + "/precious"), "text");
+  comm->barrier();
+  // What a killed run has left is no obstacle.
+  if (is_root(comm)) {
+    std::filesystem::remove(path + ".part");
+    std::ofstream(path + ".part") << "half a file";
+  }
+  comm->barrier();
+  EXPECT_NO_THROW(Hdf5File::create(comm, path).close());
+}
+
+TEST(Hdf5File, RefusesOtherKindsAndShapes) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  const std::string path = fresh_folder("kinds") + "/file.h5";
+  {
+    Hdf5File file = Hdf5File::create(comm, path);
+    file.write_attribute<std::string>("/", "name", "a name longer than a number");
+    file.write_attribute<double>("/", "half", 0.5);
+    file.write_replicated<double>("reals", {0.5});
+    file.write_text("text", "some text");
+    file.close();
+  }
+  const Hdf5File file = Hdf5File::open(comm, path);
+  EXPECT_THROW(file.read_attribute<long long>("/", "name"), OutputError);
+  EXPECT_THROW(file.read_attribute<long long>("/", "half"), OutputError);
+  EXPECT_THROW(file.read_attribute<std::string>("/", "half"), OutputError);
+  EXPECT_THROW(file.read_all<long long>("reals"), OutputError);
+  EXPECT_THROW(file.read_all<double>("text"), OutputError);
+  EXPECT_THROW(file.read_text("reals"), OutputError);
 }
 
 TEST(Hdf5File, RefusesOverlappingBlocks) {

@@ -1,0 +1,10 @@
+#pragma once
+#include <string>
+
+namespace lockstep {
+
+/// Why HDF5 cannot read all of a file, or "". HDF5 itself crashes on some damaged files, so a child
+/// process reads it first, whatever happens to it. For files without a checksum. Not collective.
+std::string refusal_of_hdf5(const std::string& path);
+
+}  // namespace lockstep
