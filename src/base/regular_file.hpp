@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-/// Files that are input. A pipe or a device would let the program wait for ever, so only plain files
-/// (and links to them) are read. None of these functions is collective.
+/// Files that are input. A pipe or a device would let the program wait for ever, so only plain
+/// files (and links to them) are read. None of these functions is collective.
 namespace lockstep {
 
 /// Why `path` cannot be read as a plain file: "it is a pipe", "No such file or directory"; empty if
