@@ -36,7 +36,8 @@ struct BoundarySide {
   Point<dim> velocity_at(int axis, const Point<dim>& x, double time) const {
     if (time > end_time)
       return Point<dim>::Zero();
-    const double ramp = ramp_time > time ? std::max(time, 0.0) / ramp_time : 1;
+    const double ramp =
+        ramp_time > 0 && time < ramp_time ? std::max(time, 0.0) / ramp_time : 1;  // time may be < 0
     return velocity * (type == SideType::inflow ? ramp * shape.factor(axis, x) : ramp);
   }
 };

@@ -139,7 +139,9 @@ def check_energy(scene, tables, start_energy):
 def check_ranks(scene, one, other, ranks):
     """Bodies and energies; forces and residuals are differences of these and carry the solver's tolerance over dt."""
     length, h, speed = scales(scene, one)
-    energy = max(one.energy().max(), 1e-300)
+    volume = math.prod(b - a for a, b in zip(scene.content["Domain"]["Lower"], scene.content["Domain"]["Upper"]))
+    at_speed = scene.content["Fluid"]["Density"] * volume * speed ** 2 / 2
+    energy = max(one.energy().max(), ROUND_OFF * at_speed)
     compared = [("history", c, energy) for c in ("fluid_kinetic_energy", "solid_kinetic_energy", "elastic_energy")]
     compared += [("history", "dt", scene.dt)]
     for c in "xyz":

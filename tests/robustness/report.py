@@ -14,7 +14,7 @@ FEATURES = {
     "deformable bodies": lambda c: has_type(c, "deformable body"),
     "cloth": lambda c: has_type(c, "cloth"),
     "meshes from files": lambda c: any(b["Geometry"]["Shape"] == "file" for b in c["Solids"].values()),
-    "scripted or moved": lambda c: any("Motion" in str(b) for b in c["Solids"].values()),
+    "scripts": lambda c: any("Motion" in b or "Motion" in b.get("Pinned", {}).get("Pin", {}) for b in c["Solids"].values()),
     "pins": lambda c: any("Pinned" in b for b in c["Solids"].values()),
     "attachments": lambda c: any("Attachments" in b for b in c["Solids"].values()),
     "pivots and locks": lambda c: any("Pivot" in b or "Locked" in b for b in c["Solids"].values()),

@@ -96,6 +96,18 @@ def locks(world, body):
     return chosen
 
 
+def hinge(world, body, reach):
+    """About a point that the body may lie beside; in 3D sometimes about one axis only."""
+    n = world.dimension
+    body["Pivot"] = world.vector(0.8 * reach)
+    body["Locked"] = LOCKS[n][:n]
+    body.pop("Velocity", None)
+    if n == 3 and world.rng.random() < 0.5:
+        body["Locked"] = body["Locked"] + LOCKS[n][n:n + 2]
+        if "Angular Velocity" in body:
+            body["Angular Velocity"][:2] = [0.0, 0.0]
+
+
 def turned(world):
     rng = world.rng
     if world.dimension == 2:
@@ -121,18 +133,17 @@ def rigid_body(world, center, reach):
         body.update(turned(world))
     if rng.random() < 0.15:
         body["Pivot"] = world.vector(0.3 * reach)
-    kind = rng.choice(["dynamic"] * 6 + ["static", "constant velocity", "sinusoid", "table"])
+    kind = rng.choice(["constant velocity", "sinusoid", "table"] if world.does_work(0.25) else ["dynamic"] * 8 + ["static"])
     if kind == "dynamic":
         world.facts.dynamic_rigid = True
-        if rng.random() < 0.2:
-            body["Locked"] = locks(world, body)
         if rng.random() < 0.15:
+            body["Locked"] = locks(world, body)
+        elif rng.random() < 0.1:
+            hinge(world, body, reach)
+        if world.does_work(0.15):
             pull = world.density * reach ** dim * world.speed / (world.dt * 5)
             body.update({"Force": world.vector(pull), "Torque": world.rotation(pull * reach / 5)})
-            world.facts.works = True
     else:
-        if kind != "static":
-            world.facts.works = True
         body["Motion"] = {"Type": kind} if kind in ("static", "constant velocity") else scripted(world, kind, reach)
         if kind != "constant velocity":
             body.pop("Velocity", None)

@@ -24,7 +24,9 @@ BELOS_STRATEGIES = {"block-lu", "gauss-seidel", "simple"}
 class Facts:
     """What the invariants must know of a scene."""
     works: bool = False  # something besides gravity does work on it
+    through_side: bool = False  # a body sticks through a side
     open_sides: bool = False
+    inflow: bool = False
     periodic: bool = False
     explicit: bool = False  # elastic forces of the present positions
     soft: bool = False
@@ -65,10 +67,11 @@ class World:
         self.upper = [a + n * self.h for a, n in zip(self.lower, self.cells)]
         self.density = rng.choice([1.0, 1000.0, 10 ** rng.uniform(-1, 4)])
         self.speed = 10 ** rng.uniform(-1, 0.5) * size
-        self.cfl = rng.choice([0.2, 0.5, 0.9, 2.0])
+        self.cfl = rng.choice([0.2, 0.5, 0.9, 2.0, 5.0])
         self.dt = self.cfl * self.h / self.speed
         self.n_steps = rng.randint(3, 5)
         self.start = rng.choice([0.0, 0.0, 0.0, self.dt, -0.5 * self.dt])
+        self.isolated = rng.random() < 0.3  # nothing but gravity does work: energy is bounded
 
     def vector(self, length):
         """Of at most this length, in a random direction."""
@@ -79,6 +82,13 @@ class World:
     def rotation(self, rate):
         """A number in 2D, a vector in 3D."""
         return self.rng.uniform(-rate, rate) if self.dimension == 2 else self.vector(rate)
+
+    def does_work(self, probability):
+        """True with this probability, where work may be done; then Facts know."""
+        if self.rng.random() >= probability or self.isolated:
+            return False
+        self.facts.works = True
+        return True
 
     def density_ratio(self):
         ratio = self.rng.choice([1.0, 10 ** self.rng.uniform(-2, 2), 10 ** self.rng.uniform(-1, 1)])
@@ -98,8 +108,9 @@ def sides(world):
     """Pairs of closed, periodic, open sides and inflows; an inflow has an open side to leave through."""
     rng, lists = world.rng, {}
     kinds = {}
+    choices = ["closed"] * 4 + ["periodic"] + ([] if world.isolated else ["open", "stream"])
     for axis in range(world.dimension):
-        kind = rng.choice(["closed"] * 4 + ["periodic", "open", "stream"])
+        kind = rng.choice(choices)
         names = [f"{AXES[axis]} lower", f"{AXES[axis]} upper"]
         if kind == "periodic":
             kinds.update({name: {"Type": "periodic"} for name in names})
@@ -115,14 +126,13 @@ def sides(world):
             kinds.update({name: {"Type": rng.choice(["wall", "wall", "slip wall"])} for name in names})
     for name, side in kinds.items():
         axis = AXES.index(name[0])
-        if side["Type"] == "wall" and rng.random() < 0.15:
+        if side["Type"] == "wall" and world.does_work(0.15):
             side["Velocity"] = world.vector(0.5 * world.speed)
             side["Velocity"][axis] = 0.0
             if rng.random() < 0.3:
                 side["Ramp Time"] = rng.uniform(0, 2) * world.dt
             if rng.random() < 0.2:
                 side["End Time"] = world.start + rng.uniform(0, 4) * world.dt
-            world.facts.works = True
         lists[name] = side
     world.facts.open_sides = any(side["Type"] in ("open", "inflow") for side in kinds.values())
     world.facts.periodic = any(side["Type"] == "periodic" for side in kinds.values())
@@ -144,7 +154,7 @@ def inflow(world, axis, end):
         half[axis] = world.upper[axis] - world.lower[axis]
         side["Opening"] = {"Lower": [m - x for m, x in zip(middle, half)],
                            "Upper": [m + x for m, x in zip(middle, half)]}
-    world.facts.works = True
+    world.facts.works = world.facts.inflow = True
     return side
 
 
@@ -178,9 +188,8 @@ def scalars(world, fluid, side_lists):
         if rng.random() < 0.5:
             source = {**region(world), name: rng.uniform(0, 2)}
             values.append(source[name])
-            if rng.random() < 0.4:
+            if world.does_work(0.4):
                 source["Velocity"] = world.vector(0.3 * world.speed)
-                world.facts.works = True
             if rng.random() < 0.3:
                 source["Begin Time"] = world.start + world.dt
             fluid.setdefault("Sources", {})[f"Source of {name}"] = source
@@ -188,9 +197,8 @@ def scalars(world, fluid, side_lists):
             rate = rng.uniform(0, 1) / world.dt
             fluid.setdefault("Sources", {})[f"Rate of {name}"] = {**region(world), f"{name} Rate": rate}
             values.append(max(values) + rate * world.dt * world.n_steps)
-        if rng.random() < 0.5:
+        if world.does_work(0.5):
             fluid[weight] = rng.uniform(0, 0.3) * (1 if name == "Temperature" else rng.choice([-1, 1]))
-            world.facts.works = True
         world.facts.scalar_range[name.lower()] = [min(values), max(values)]
 
 
@@ -204,9 +212,8 @@ def fluid(world, side_lists):
         chosen["Smallest Link"] = rng.uniform(0.05, 1)
     if rng.random() < 0.6:
         chosen["Gravity"] = world.vector(world.speed / world.dt / 5)
-    if rng.random() < 0.15:
+    if world.does_work(0.15):
         chosen["Body Force"] = world.vector(world.speed / world.dt / 10)
-        world.facts.works = True
     scalars(world, chosen, side_lists)
     state = rng.choice(["at rest", "at rest", "uniform", "taylor green", "rotation"])
     chosen["Initial State"] = {"Type": state}
@@ -246,10 +253,20 @@ def solids(world):
         else:
             make = {"rigid": rigid_body, "soft": deformable_body, "cloth": cloth}[kind]
             lists[world.new_name()] = make(world, center, reach)
+    if lists and rng.random() < 0.07:
+        put_through_side(world, rng.choice(list(lists.values())))
     for body in lists.values():
         if rng.random() < 0.3:
             body.update({"Restitution": rng.uniform(0, 1), "Friction": rng.uniform(0, 1)})
     return lists
+
+
+def put_through_side(world, body):
+    """Moves a rigid body across a side that nothing enters through; what it says of motion stays."""
+    axis, end = world.rng.randrange(world.dimension), world.rng.choice(["lower", "upper"])
+    if body["Type"] == "rigid body" and not world.facts.attached and not world.facts.inflow:
+        body["Position"][axis] = getattr(world, end)[axis] + world.rng.uniform(-0.5, 0.5) * world.h
+        world.facts.through_side = True
 
 
 def coupling(world):
@@ -270,9 +287,9 @@ def coupling(world):
 
 
 def contact(world, solid_lists):
-    """None where nodes are glued: those bodies overlap from the start."""
+    """None where nodes are glued or a body sticks through a wall: those overlap from the start."""
     rng = world.rng
-    if world.facts.attached or rng.random() < 0.4:
+    if world.facts.attached or world.facts.through_side or rng.random() < 0.4:
         return {"Type": "none"}
     chosen = {"Type": "gauss seidel"}
     if rng.random() < 0.3:
@@ -289,14 +306,15 @@ def strategy(world, coupling_list, solid_lists):
     """A strategy and inverses of its blocks; those of limited use only in their domain."""
     rng, facts = world.rng, world.facts
     names = list(GENERAL_STRATEGIES)
+    limited = []
     rigid_only = facts.dynamic_rigid and not (facts.soft or facts.attached or facts.closed_shell)
     if rigid_only and coupling_list["Type"] == "mixed face":
-        names += ["solid-schur", "block-lu", "bramble-pasciak", "block-elimination", "simple"]
+        limited += ["solid-schur", "block-lu", "bramble-pasciak", "block-elimination", "simple"]
         if facts.lightest >= 1:
-            names.append("gauss-seidel")
+            limited.append("gauss-seidel")
         if facts.lightest >= 20:
-            names += ["uzawa"] * 3
-    name = rng.choice(names)
+            limited += ["uzawa"] * 3
+    name = rng.choice(limited if limited and rng.random() < 0.5 else names)
     chosen = {"Type": name, "Maximum Iterations": 5000}
     facts.needs_full_ranks = name in BELOS_STRATEGIES
     if name == "paper":

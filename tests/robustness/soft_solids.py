@@ -77,14 +77,12 @@ def pinned(world, geometry, reach):
     region = half_space(world, geometry, reach, rng.uniform(0.05, 0.2))
     if rng.random() < 0.3:
         region["Directions"] = rng.sample(list("xyz"[:world.dimension]), rng.randint(1, world.dimension))
-    kind = rng.choice(["static", "static", "constant velocity", "sinusoid", "table"])
+    kind = rng.choice(["constant velocity", "sinusoid", "table"]) if world.does_work(0.6) else "static"
     if kind == "constant velocity":
         region["Motion"] = {"Type": kind, "Velocity": world.vector(0.3 * world.speed),
                             "Angular Velocity": world.rotation(0.2 * world.speed / reach)}
     elif kind != "static":
         region["Motion"] = scripted(world, kind, reach)
-    if kind != "static":
-        world.facts.works = True
     if rng.random() < 0.4:
         region["Release Time"] = world.start + rng.uniform(0, world.n_steps) * world.dt
     return {"Pin": region}
@@ -96,9 +94,8 @@ def held(world, geometry, reach):
     if rng.random() < 0.3:
         lists["Pinned"] = pinned(world, geometry, reach)
     force = world.density * reach ** world.dimension * world.speed / (world.dt * 10)
-    if rng.random() < 0.12:
+    if world.does_work(0.12):
         lists["Loads"] = {"Pull": {**half_space(world, geometry, reach, 0.1), "Force": world.vector(force)}}
-        world.facts.works = True
     if rng.random() < 0.12:
         lists["Tethers"] = {"Spring": {**half_space(world, geometry, reach, 0.1), "Stiffness": force / world.h,
                                        "Offset": world.vector(0.2 * world.h)}}
@@ -170,6 +167,8 @@ def cloth(world, center, reach, geometry=None):
         body["Surface Tension"] = surface_density * world.h ** 2 / world.dt ** 2 * 10 ** rng.uniform(-3, -1)
     if rng.random() < 0.2:
         body["Stretch Limit"] = rng.uniform(0.12, 0.3)
+    if body["Time Integration"] == "fully-implicit" and rng.random() < 0.1:
+        body["Surface Density"] = 0.0  # the fluid lumped on it is all its mass
     world.facts.soft = True
     return body
 

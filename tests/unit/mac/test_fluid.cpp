@@ -155,6 +155,20 @@ TEST(Fluid, AJetEntersThroughItsOpeningUntilItEnds) {
   }
 }
 
+/// A scene may start before time 0.
+TEST(Fluid, SidesRampUpFromTimeZeroIfAtAll) {
+  BoundarySide<2> side;
+  side.velocity = Point<2>(3, 0);
+  const Point<2> x(0.5, 0);
+  for (const double time : {-1., 0., 1.})
+    EXPECT_EQ(side.velocity_at(1, x, time), side.velocity) << time;
+  side.ramp_time = 2;
+  EXPECT_EQ(side.velocity_at(1, x, -1), Point<2>(0, 0));
+  EXPECT_EQ(side.velocity_at(1, x, 0), Point<2>(0, 0));
+  EXPECT_EQ(side.velocity_at(1, x, 1), Point<2>(1.5, 0));
+  EXPECT_EQ(side.velocity_at(1, x, 2), side.velocity);
+}
+
 TEST(Fluid, SourcesFeedSmokeAndAFrameShowsIt) {
   Case<2> scene({20, 12}, 0.1);
   scene.fluid.sublist("Smoke");
