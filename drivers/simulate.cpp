@@ -97,6 +97,7 @@ void print_plug_ins() {
   print(registries.couplings);
   print(registries.contacts);
   print(registries.strategies);
+  print(registries.observers);
 }
 
 int run(int argc, char** argv, const Communicator& comm) {

@@ -1,5 +1,5 @@
 #pragma once
-#include "stepping/registries.hpp"
+#include "interfaces/registries.hpp"
 
 namespace lockstep {
 

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "interfaces/field_sampler.hpp"
 #include "interfaces/fluid.hpp"
 #include "mac/forces.hpp"
 #include "mac/pressure_operator.hpp"
@@ -39,7 +40,7 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid);
 ///
 /// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
 template <int dim>
-class MacFluid : public FluidDiscretization<dim> {
+class MacFluid : public FluidDiscretization<dim>, public FieldSampler<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
 
@@ -85,6 +86,9 @@ class MacFluid : public FluidDiscretization<dim> {
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
   double fluid_volume() const override;
   void add_frame(std::vector<BoxFrame>& boxes) const override;
+  /// Multilinear from the samples around a point that have a value, those beyond a thin shell
+  /// included.
+  std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const override;
 
   const MacDomain<dim>& domain() const { return domain_; }
   const MacGeometry<dim>& geometry() const { return geometry_; }

@@ -6,6 +6,7 @@
 #include "mac/boundary.hpp"
 #include "mac/register_mac.hpp"
 #include "mixedface/register_mixed_face.hpp"
+#include "observers/register_observers.hpp"
 #include "rigid/register_rigid.hpp"
 #include "strategies/register_strategies.hpp"
 
@@ -22,6 +23,7 @@ Registries<dim> shipped_plug_ins() {
   register_flux<dim>(registries.couplings);
   register_contact<dim>(registries.contacts);
   register_strategies(registries.strategies);
+  register_observers<dim>(registries.observers);
   return registries;
 }
 

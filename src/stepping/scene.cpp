@@ -56,6 +56,19 @@ void declare_solver(ParameterList& scene, const StrategyRegistry& strategies) {
 }
 
 template <int dim>
+void declare_observers(ParameterList& scene, const ObserverRegistry<dim>& observers) {
+  std::vector<TypedSchema> types = observers.schemas();
+  for (TypedSchema& type : types) {
+    declare_at_least(type.parameters, "Interval", 0., 0.,
+                     "Simulated time between two looks [s]; 0: after every step.");
+  }
+  declare_named_sublists(scene, "Observers",
+                         "What is measured on the way: one sublist each, whose name is that of the "
+                         "table it fills, NAME.csv in the output folder.",
+                         types);
+}
+
+template <int dim>
 Box<dim> domain_box(const ParameterList& domain) {
   const auto& lower = domain.get<ParameterArray<double>>("Lower");
   const auto& upper = domain.get<ParameterArray<double>>("Upper");
@@ -128,6 +141,7 @@ ParameterList scene_parameters(const Registries<dim>& registries) {
       {"none", "Solids pass through each other and through walls.", ParameterList()});
   declare_typed_sublist(scene, "Contact", "Collisions and friction.", contacts, usual_contact);
   declare_solver(scene, registries.strategies);
+  declare_observers(scene, registries.observers);
   declare_time(scene);
   declare_output(scene);
   return scene;

@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
+#include "interfaces/registries.hpp"
 #include "parameters/source.hpp"
-#include "stepping/registries.hpp"
 #include "stepping/stepper.hpp"
 
 namespace lockstep {

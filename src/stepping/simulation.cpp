@@ -78,6 +78,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
       log_(log),
       components_(build_components<dim>(registries, scene, options.scene_file, comm)),
       tables_(comm, options.output_directory),
+      observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory),
       frames_(comm, options.output_directory,
               {scene_options_.output.precision == "double" ? Precision::double_precision
                                                            : Precision::single_precision,
@@ -152,17 +153,25 @@ void Simulation<dim>::begin_outputs() {
   if (options_.restart_file.empty()) {
     discard_checkpoints_after(comm_, options_.output_directory, -1);
     tables_.start();
+    if (!observers_.empty())
+      observers_.start(step_, view(components_.solids->states()));
     frames_.start();
     if (scene_options_.output.frames)
       write_frame();
   } else {
     discard_checkpoints_after(comm_, options_.output_directory, step_);
     tables_.resume(step_);
+    observers_.resume(step_);
     frames_.resume(stepper_->time());
     last_frame_ = frames_.n_frames() > 0 ? frames_.last_time() : -1e300;
   }
   first_step_ = step_;
   last_checkpoint_ = stepper_->time();
+}
+
+template <int dim>
+RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) const {
+  return {stepper_->time(), last_dt_, *components_.fluid, states};
 }
 
 template <int dim>
@@ -187,6 +196,7 @@ void Simulation<dim>::write_checkpoint() {
   for (int m = 0; m < components_.solids->n_models(); ++m) {
     components_.solids->model(m).save(checkpoint);
   }
+  observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
   checkpoint.finish(scene_options_.output.keep_checkpoints);
   last_checkpoint_ = stepper_->time();
@@ -200,6 +210,7 @@ void Simulation<dim>::load_checkpoint() {
     components_.solids->model(m).load(checkpoint);
   }
   components_.fluid->load(checkpoint);
+  observers_.load(checkpoint);
   step_ = checkpoint.header().step;
   last_dt_ = checkpoint.file().template read_attribute<double>("/", "last dt");
   stepper_->resume(checkpoint.header().time, last_dt_);
@@ -288,7 +299,12 @@ int Simulation<dim>::run() {
           step_, report.contact_position.n_crossings);
     }
     const double step_seconds = seconds_since(step_start);
-    tables_.append(step_, report, components_.solids->states(), step_seconds);
+    const std::vector<SolidState<dim>> states = components_.solids->states();
+    tables_.append(step_, report, states, step_seconds);
+    if (!observers_.empty()) {
+      ScopedPhase phase(timers_, "observers");
+      observers_.observe(step_, view(states));
+    }
     StepProgress progress = progress_of<dim>(step_, report, step_seconds);
     progress.remaining_seconds = remaining_seconds(seconds_since(start), fraction_done());
     log_.normal("{}", progress_line(progress));

@@ -5,6 +5,7 @@
 
 #include "linear/dumping_strategy.hpp"
 #include "output/frames.hpp"
+#include "stepping/observer_tables.hpp"
 #include "stepping/run_tables.hpp"
 #include "stepping/scene.hpp"
 
@@ -38,6 +39,7 @@ class Simulation {
   double next_step() const;
   bool finished() const;
   void begin_outputs();
+  RunView<dim> view(const std::vector<SolidState<dim>>& states) const;
   void write_frame();
   void write_checkpoint();
   void load_checkpoint();
@@ -54,6 +56,7 @@ class Simulation {
   Components<dim> components_;
   std::unique_ptr<Stepper<dim>> stepper_;
   RunTables<dim> tables_;
+  ObserverTables<dim> observers_;
   FrameWriter frames_;
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;

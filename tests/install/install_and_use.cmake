@@ -37,6 +37,12 @@ foreach(ranks 1 2)
   if(NOT last MATCHES "0\\.181818181")
     message(FATAL_ERROR "The piston of the template ended with '${last}' on ${ranks} ranks.")
   endif()
+  # The observer: x = a t^2 / 2 = 8 a with a = 50/1100, which the half-step velocities have exactly.
+  file(STRINGS "${copy}/run-${ranks}/stroke of the piston.csv" rows)
+  list(GET rows -1 last)
+  if(NOT last MATCHES ",0\\.3636363")
+    message(FATAL_ERROR "The observer of the template ended with '${last}' on ${ranks} ranks.")
+  endif()
 endforeach()
 
 # Nothing installed may point back to the trees it came from; the prefix itself lies in the build tree.

@@ -52,6 +52,23 @@ TEST(Fluid, BuoyancyByHand) {
   EXPECT_NEAR(impulse.angular[0], impulse.linear[1], 1e-12);
 }
 
+TEST(Fluid, SamplesOfALinearVelocityAreExactOnAnyRank) {
+  Case<2> scene({20, 24}, 0.25);
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  const auto velocity = [](const Point<2>& x) { return Point<2>(1 + 2 * x[0] - x[1], 3 * x[1]); };
+  fluid->set_prediction(velocity);
+  std::vector<Point<2>> points{{1.234, 2.1}, {2.5, 4.75}, {4.4, 0.6}, {-1, 2}};
+  const auto samples = fluid->sample(points);
+  for (int p = 0; p < 3; ++p) {
+    EXPECT_TRUE(samples[p].in_fluid);
+    EXPECT_NEAR((samples[p].velocity - velocity(points[p])).norm(), 0, 1e-13);
+    EXPECT_EQ(samples[p].pressure, 0);  // none is known before the first step
+  }
+  EXPECT_FALSE(samples[3].in_fluid);
+}
+
 TEST(Fluid, HistoryByHand) {
   Case<2> scene({4, 4}, 0.5);
   const auto fluid = scene.make();

@@ -5,6 +5,7 @@
 
 #include "interfaces/contact.hpp"
 #include "interfaces/coupling.hpp"
+#include "interfaces/observer.hpp"
 #include "interfaces/strategy.hpp"
 #include "parameters/registry.hpp"
 
@@ -43,8 +44,11 @@ using StrategyRegistry = Registry<SolverStrategy>;
 template <int dim>
 using ContactRegistry = Registry<ContactModel<dim>, const ContactSetting<dim>&>;
 
-/// All plug-ins a program offers. Fill it (packages/registration.hpp adds the shipped ones, a
-/// driver its own), then hand it to `Scene` or `simulate`.
+template <int dim>
+using ObserverRegistry = Registry<Observer<dim>>;
+
+/// All plug-ins a program offers. Fill it (shipped/shipped_plug_ins.hpp has the shipped ones, a
+/// driver adds its own), then hand it to `Simulation`.
 template <int dim>
 struct Registries {
   FluidRegistry<dim> fluids{"fluid"};
@@ -52,6 +56,7 @@ struct Registries {
   CouplingRegistry<dim> couplings{"coupling"};
   StrategyRegistry strategies{"solver strategy"};
   ContactRegistry<dim> contacts{"contact model"};
+  ObserverRegistry<dim> observers{"observer"};
   /// Schema of the "Domain" list.
   std::function<ParameterList()> domain_parameters;
 };

@@ -1,0 +1,64 @@
+#include "mac/mac_fluid.hpp"
+#include "mac/sample_lattice.hpp"
+
+namespace lockstep {
+namespace {
+
+/// Interpolates from those samples around x that `has_value`; zero if there are none.
+template <int dim, typename HasValue>
+double mean_of(const SampleLattice<dim>& lattice, SampleKind kind, const Point<dim>& x,
+               const CellField& field, const HasValue& has_value) {
+  double weight = 0, sum = 0;
+  for (const StencilCorner<dim>& corner : lattice.corners(kind, x)) {
+    const bool at_wall = corner.id == Stencil<dim>::wall_sample;
+    if (corner.weight == 0 || (!at_wall && (corner.id < 0 || !has_value(corner.id))))
+      continue;
+    weight += corner.weight;
+    sum += at_wall ? 0 : corner.weight * field[corner.id];
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<FluidSample<dim>> MacFluid<dim>::sample(const std::vector<Point<dim>>& points) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const SampleLattice<dim> lattice(grid);
+  const MacState<dim>& state = geometry_.state;
+  const bool has_pressure = last_step_ > 0 && !scaled_pressure_.empty();
+  constexpr int n_values = dim + 2;
+  // Each rank answers for its own cells; the sum is everybody's answer.
+  std::vector<double> values(points.size() * n_values, 0.);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const int cell = grid.cell_containing(points[p]);
+    if (cell < 0 || !grid.owned(cell) || state.cells[cell] != CellState::fluid)
+      continue;
+    double* value = &values[p * n_values];
+    const Point<dim> x = (grid.wrap(points[p]) - grid.lower()) / grid.spacing();
+    *value++ = 1;
+    if (has_pressure)
+      *value = mean_of<dim>(lattice, cell_centers, x, scaled_pressure_,
+                            [&](int id) { return state.cells[id] == CellState::fluid; }) /
+               last_step_;
+    ++value;
+    for (int axis = 0; axis < dim; ++axis)
+      *value++ = mean_of<dim>(lattice, axis, x, prediction_[axis],
+                              [&](int id) { return state.faces[axis][id] != FaceState::inactive; });
+  }
+  sum_all(domain_.grid.comm(), values.data(), static_cast<int>(values.size()));
+  std::vector<FluidSample<dim>> samples(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double* value = &values[p * n_values];
+    samples[p].in_fluid = value[0] > 0;
+    samples[p].pressure = value[1];
+    for (int axis = 0; axis < dim; ++axis)
+      samples[p].velocity[axis] = value[2 + axis];
+  }
+  return samples;
+}
+
+template std::vector<FluidSample<2>> MacFluid<2>::sample(const std::vector<Point<2>>&) const;
+template std::vector<FluidSample<3>> MacFluid<3>::sample(const std::vector<Point<3>>&) const;
+
+}  // namespace lockstep

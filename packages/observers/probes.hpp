@@ -1,0 +1,48 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "interfaces/field_sampler.hpp"
+#include "interfaces/observer.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// What the fluid is like at the points [m]. Throws InputError, naming `observer`, if it cannot be
+/// asked. Collective.
+template <int dim>
+std::vector<FluidSample<dim>> sample_fluid(const FluidDiscretization<dim>& fluid,
+                                           const std::vector<Point<dim>>& points,
+                                           const std::string& observer);
+
+/// Evenly spaced points of the box between two corners [m], `count` along each axis, ends included;
+/// one alone lies in the middle. x runs fastest.
+template <int dim>
+std::vector<Point<dim>> lattice_points(const Box<dim>& box, const Index<dim>& count);
+
+/// Schemas of the observers "points" and "box", and the points [m] they ask for.
+template <int dim>
+ParameterList points_parameters();
+template <int dim>
+std::vector<Point<dim>> listed_points(const ParameterList& list);
+template <int dim>
+ParameterList box_parameters();
+template <int dim>
+std::vector<Point<dim>> box_points(const ParameterList& list);
+
+/// Pressure and velocity at fixed points, a row a point.
+template <int dim>
+class Probes : public Observer<dim> {
+ public:
+  Probes(std::string name, std::vector<Point<dim>> points)
+      : name_(std::move(name)), points_(std::move(points)) {}
+  std::string name() const override { return name_; }
+  std::vector<ObservedColumn> columns() const override;
+  std::vector<std::vector<double>> observe(const RunView<dim>& run) override;
+
+ private:
+  std::string name_;
+  std::vector<Point<dim>> points_;
+};
+
+}  // namespace lockstep

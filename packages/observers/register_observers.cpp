@@ -1,0 +1,26 @@
+#include "observers/register_observers.hpp"
+
+#include "observers/flow.hpp"
+#include "observers/probes.hpp"
+
+namespace lockstep {
+
+template <int dim>
+void register_observers(ObserverRegistry<dim>& observers) {
+  observers.add("points", "Pressure and velocity at points that you list.", points_parameters<dim>,
+                [](const ParameterList& list) {
+                  return std::make_unique<Probes<dim>>("points", listed_points<dim>(list));
+                });
+  observers.add("box", "Pressure and velocity at evenly spaced points of a line, a plane or a box.",
+                box_parameters<dim>, [](const ParameterList& list) {
+                  return std::make_unique<Probes<dim>>("box", box_points<dim>(list));
+                });
+  observers.add("flow", "Volume that flows through a window along an axis, and its mean pressure.",
+                flow_parameters<dim>,
+                [](const ParameterList& list) { return std::make_unique<Flow<dim>>(list); });
+}
+
+template void register_observers<2>(ObserverRegistry<2>&);
+template void register_observers<3>(ObserverRegistry<3>&);
+
+}  // namespace lockstep

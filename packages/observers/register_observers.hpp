@@ -1,0 +1,10 @@
+#pragma once
+#include "interfaces/registries.hpp"
+
+namespace lockstep {
+
+/// Registers the observers "points", "box" and "flow".
+template <int dim>
+void register_observers(ObserverRegistry<dim>& observers);
+
+}  // namespace lockstep

@@ -1,0 +1,37 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "interfaces/fluid.hpp"
+#include "interfaces/solid.hpp"
+
+namespace lockstep {
+
+/// What an observer may look at after a step; valid during the call only.
+template <int dim>
+struct RunView {
+  double time = 0, dt = 0;  ///< [s]; the end of the step, and its length (0 at the start of a run)
+  const FluidDiscretization<dim>& fluid;
+  const std::vector<SolidState<dim>>& solids;  ///< in the order of bodies.csv
+};
+
+/// A column of an observer's table.
+struct ObservedColumn {
+  std::string name;
+  std::string unit;  ///< "1" if it has none
+  std::string description;
+};
+
+/// Sees the run at its start and after every step and makes rows of a table of its own,
+/// OUTPUT/NAME.csv, behind the columns `step` and `time`. It changes nothing. State that must
+/// survive a restart goes through `save` and `load`.
+template <int dim>
+class Observer : public PlugIn {
+ public:
+  virtual std::vector<ObservedColumn> columns() const = 0;
+  /// Any number of rows, each as long as `columns`; those of rank 0 count. Throws InputError, at
+  /// the start of the run, if the fluid cannot answer. Collective.
+  virtual std::vector<std::vector<double>> observe(const RunView<dim>& run) = 0;
+};
+
+}  // namespace lockstep

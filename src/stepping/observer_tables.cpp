@@ -1,0 +1,115 @@
+#include "stepping/observer_tables.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/errors.hpp"
+#include "output/checkpoint.hpp"
+#include "parameters/parameter_rule.hpp"
+
+namespace lockstep {
+namespace {
+
+void check_name(const std::string& name) {
+  const auto allowed = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == ' ' || c == '-' || c == '_';
+  };
+  check_input(std::all_of(name.begin(), name.end(), allowed) && name.size() <= 100,
+              "In \"Observers\", \"{}\" cannot be the name of a file; use letters, digits, blanks, "
+              "- and _.",
+              name.substr(0, 100));
+  check_input(name != "history" && name != "bodies",
+              "In \"Observers\", \"{}\" is the name of a table that every run has; take another.",
+              name);
+}
+
+std::vector<HistoryColumn> table_columns(const std::vector<ObservedColumn>& observed) {
+  std::vector<HistoryColumn> columns = {{"step", "1", "number of the step"},
+                                        {"time", "s", "at the end of the step"}};
+  for (const ObservedColumn& column : observed)
+    columns.push_back({column.name, column.unit, column.description});
+  return columns;
+}
+
+std::string attribute_of(const std::string& name) {
+  return "last look of " + name;
+}
+
+}  // namespace
+
+template <int dim>
+ObserverTables<dim>::ObserverTables(const ObserverRegistry<dim>& registry,
+                                    const ParameterList& observers, const Communicator& comm,
+                                    const std::string& directory) {
+  for (const auto& [name, entry] : entries(observers)) {
+    check_name(name);
+    const ParameterList& list = observers.sublist(name);
+    Watch watch;
+    watch.name = name;
+    watch.interval = list.get<double>("Interval");
+    watch.observer = registry.create(list.get<std::string>("Type"), list);
+    watch.table = std::make_unique<HistoryTable>(comm, directory + "/" + name + ".csv",
+                                                 table_columns(watch.observer->columns()));
+    watches_.push_back(std::move(watch));
+  }
+}
+
+template <int dim>
+void ObserverTables<dim>::look(Watch& watch, long long step, const RunView<dim>& run) {
+  std::vector<std::vector<HistoryValue>> rows;
+  for (const std::vector<double>& values : watch.observer->observe(run)) {
+    std::vector<HistoryValue> row;
+    row.emplace_back(step);
+    row.emplace_back(run.time);
+    for (const double value : values)
+      row.emplace_back(value);
+    rows.push_back(std::move(row));
+  }
+  watch.table->append_rows(rows);
+  watch.last_time = run.time;
+}
+
+template <int dim>
+void ObserverTables<dim>::start(long long step, const RunView<dim>& run) {
+  for (Watch& watch : watches_) {
+    watch.table->start();
+    look(watch, step, run);
+  }
+}
+
+template <int dim>
+void ObserverTables<dim>::resume(long long step) {
+  for (Watch& watch : watches_)
+    watch.table->resume(step);
+}
+
+template <int dim>
+void ObserverTables<dim>::observe(long long step, const RunView<dim>& run) {
+  for (Watch& watch : watches_) {
+    const double slack = 1e-9 * std::max(run.dt, watch.interval);
+    if (run.time >= watch.last_time + watch.interval - slack)
+      look(watch, step, run);
+  }
+}
+
+template <int dim>
+void ObserverTables<dim>::save(CheckpointWriter& checkpoint) const {
+  for (const Watch& watch : watches_) {
+    watch.observer->save(checkpoint);
+    checkpoint.file().write_attribute("/", attribute_of(watch.name), watch.last_time);
+  }
+}
+
+template <int dim>
+void ObserverTables<dim>::load(const CheckpointReader& checkpoint) {
+  for (Watch& watch : watches_) {
+    watch.observer->load(checkpoint);
+    watch.last_time =
+        checkpoint.file().template read_attribute<double>("/", attribute_of(watch.name));
+  }
+}
+
+template class ObserverTables<2>;
+template class ObserverTables<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,43 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "interfaces/registries.hpp"
+#include "output/history.hpp"
+
+namespace lockstep {
+
+/// The observers of a scene and their tables, one NAME.csv each in the output folder.
+template <int dim>
+class ObserverTables {
+ public:
+  /// `observers`: the validated list "Observers" of a scene. Throws InputError for a name that
+  /// cannot be that of a file, or is that of another table.
+  ObserverTables(const ObserverRegistry<dim>& registry, const ParameterList& observers,
+                 const Communicator& comm, const std::string& directory);
+
+  bool empty() const { return watches_.empty(); }
+  /// Begins the tables with what is seen before the first step. Collective, like all below.
+  void start(long long step, const RunView<dim>& run);
+  /// Continues them after `step`.
+  void resume(long long step);
+  /// After a step; observers whose interval has not passed yet look away.
+  void observe(long long step, const RunView<dim>& run);
+  void save(CheckpointWriter& checkpoint) const;
+  void load(const CheckpointReader& checkpoint);
+
+ private:
+  struct Watch {
+    std::string name;
+    double interval = 0;   ///< [s]
+    double last_time = 0;  ///< of its last look [s]
+    std::unique_ptr<Observer<dim>> observer;
+    std::unique_ptr<HistoryTable> table;
+  };
+  void look(Watch& watch, long long step, const RunView<dim>& run);
+
+  std::vector<Watch> watches_;
+};
+
+}  // namespace lockstep

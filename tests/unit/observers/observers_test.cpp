@@ -1,0 +1,79 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+
+#include "base/errors.hpp"
+#include "observers/flow.hpp"
+#include "observers/probes.hpp"
+#include "support/fake_fluid.hpp"
+
+namespace lockstep::testing {
+namespace {
+
+using ::testing::ElementsAre;
+
+/// Fluid right of x = 1 with the pressure 10 x and the velocity (y, 2).
+class HalfPlane : public FakeFluid<2>, public FieldSampler<2> {
+ public:
+  HalfPlane() : FakeFluid<2>({{4, 4}, 0.5}, Tpetra::getDefaultComm()) {}
+  std::vector<FluidSample<2>> sample(const std::vector<Point<2>>& points) const override {
+    std::vector<FluidSample<2>> samples(points.size());
+    for (std::size_t p = 0; p < points.size(); ++p)
+      if (points[p][0] > 1)
+        samples[p] = {true, 10 * points[p][0], Point<2>(points[p][1], 2)};
+    return samples;
+  }
+};
+
+ParameterList box(double x0, double y0, double x1, double y1) {
+  ParameterList list;
+  list.set("Lower", make_array<double>({x0, y0}));
+  list.set("Upper", make_array<double>({x1, y1}));
+  return list;
+}
+
+const std::vector<SolidState<2>> no_solids;
+
+TEST(Probes, ARowAPoint) {
+  const HalfPlane fluid;
+  Probes<2> probes("points", {Point<2>(0.5, 1), Point<2>(1.5, 0.25)});
+  EXPECT_EQ(probes.columns().size(), 7u);
+  EXPECT_THAT(
+      probes.observe({1, 0.1, fluid, no_solids}),
+      ElementsAre(ElementsAre(1, 0.5, 1, 0, 0, 0, 0), ElementsAre(2, 1.5, 0.25, 1, 15, 0.25, 2)));
+}
+
+TEST(Probes, ALineEndsAtTheCorners) {
+  ParameterList list = box(0, 3, 2, 5);
+  list.set("Count", make_array<int>({3, 1}));
+  EXPECT_THAT(box_points<2>(list), ElementsAre(Point<2>(0, 4), Point<2>(1, 4), Point<2>(2, 4)));
+  list.set("Count", make_array<int>({2000, 2000}));
+  EXPECT_THROW(box_points<2>(list), InputError);
+}
+
+TEST(Probes, HalfAPointIsRefused) {
+  ParameterList list;
+  list.set("Points", make_array<double>({1, 2, 3}));
+  EXPECT_THROW(listed_points<2>(list), InputError);
+}
+
+TEST(Probes, AFluidThatCannotBeAskedIsNamed) {
+  const FakeFluid<2> fluid({{4, 4}, 0.5}, Tpetra::getDefaultComm());
+  Probes<2> probes("points", {Point<2>(1, 1)});
+  EXPECT_THROW(probes.observe({1, 0.1, fluid, no_solids}), InputError);
+}
+
+TEST(Flow, ThroughTheOpenPartOfAWindow) {
+  const HalfPlane fluid;
+  // At y = 1, x from 0 to 2: squares of 0.5 in the middle of which half lie in the fluid.
+  Flow<2> upwards(box(0, 1, 2, 1));
+  EXPECT_THAT(upwards.observe({1, 0.1, fluid, no_solids}), ElementsAre(ElementsAre(2, 1, 15)));
+  // At x = 1.5: the integral of y over 0..2, which the midpoint rule has exactly.
+  Flow<2> right(box(1.5, 0, 1.5, 2));
+  EXPECT_THAT(right.observe({1, 0.1, fluid, no_solids}), ElementsAre(ElementsAre(2, 2, 15)));
+  EXPECT_THROW(Flow<2>(box(0, 0, 1, 1)), InputError);
+}
+
+}  // namespace
+}  // namespace lockstep::testing
