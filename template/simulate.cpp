@@ -1,4 +1,5 @@
-// The same two plug-ins, and an observer, under names of their own in scene files: simulate SCENE.xml OUTPUT_FOLDER
+// The same two plug-ins, and an observer, under names of their own in scene files: simulate
+// SCENE.xml OUTPUT_FOLDER
 #include <Tpetra_Core.hpp>
 #include <iostream>
 
@@ -51,9 +52,9 @@ int run(const std::string& scene_file, const std::string& output, const Communic
   Registries<2> registries = shipped_plug_ins<2>();
   registries.fluids.add("column", "A straight channel.", column_parameters, make_column);
   registries.solids.add("piston", "A plate across a channel.", piston_parameters, make_piston);
-  registries.observers.add("stroke", "How far the first solid has come.",
-                           [] { return ParameterList(); },
-                           [](const ParameterList&) { return std::make_unique<Stroke>(); });
+  registries.observers.add(
+      "stroke", "How far the first solid has come.", [] { return ParameterList(); },
+      [](const ParameterList&) { return std::make_unique<Stroke>(); });
   Document scene = read_xml(scene_file, comm);
   complete_scene(scene, {}, scene_parameters<2>(registries), comm);
   RunOptions options;
