@@ -135,27 +135,35 @@ std::vector<Triplet> read_entries(const Hdf5File& file, const std::string& group
   return entries;
 }
 
-/// A square block, each of whose rows needs an entry on the diagonal.
-std::vector<Triplet> read_square(const Hdf5File& file, const std::string& group, GlobalIndex n) {
-  const GlobalIndex n_stored = n_entries(file, group, 2);
-  if (n_stored < n)
-    refuse(file, fmt::format("'{}' has {} entries in {} rows", group, n_stored, n));
+/// A square block, at least so many of whose rows have a positive entry on the diagonal and none a
+/// negative one.
+std::vector<Triplet> read_square(const Hdf5File& file, const std::string& group, GlobalIndex n,
+                                 GlobalIndex least_positive) {
   std::vector<Triplet> entries = read_entries(file, group, n, n);
-  const auto diagonal = std::count_if(entries.begin(), entries.end(), [](const Triplet& entry) {
-    return entry.row == entry.column && entry.value > 0;
-  });
-  const GlobalIndex n_diagonal = sum_all(file.communicator(), static_cast<GlobalIndex>(diagonal));
-  if (n_diagonal != n)
-    refuse(file,
-           fmt::format("'{}' has {} positive entries on a diagonal of {}", group, n_diagonal, n));
+  GlobalIndex n_positive = 0, n_negative = 0;
+  for (const Triplet& entry : entries) {
+    n_positive += entry.row == entry.column && entry.value > 0;
+    n_negative += entry.row == entry.column && entry.value < 0;
+  }
+  n_positive = sum_all(file.communicator(), n_positive);
+  n_negative = sum_all(file.communicator(), n_negative);
+  if (n_negative > 0 || n_positive < least_positive)
+    refuse(file, fmt::format("'{}' has {} positive and {} negative entries on a diagonal of {}",
+                             group, n_positive, n_negative, n));
   return entries;
+}
+
+/// Throws unless a vector has as many values. Done for the right-hand sides before all else:
+/// nothing is made of a size that the file does not have.
+void check_size(const Hdf5File& file, const std::string& vector, GlobalIndex n) {
+  if (n_entries(file, vector, 1) != n)
+    refuse(file, fmt::format("'{}' does not have {} values", vector, n));
 }
 
 /// n values are stored, one for each place.
 RCP<Vector> read_vector(const Hdf5File& file, const std::string& group, GlobalIndex n,
                         const RCP<const Map>& map) {
-  if (n_entries(file, group, 1) != n)
-    refuse(file, fmt::format("'{}' does not have {} values", group, n));
+  check_size(file, group, n);
   // A vector is short beside the matrices: each rank reads all and keeps its own.
   const auto places = file.read_all<long long>(group + "/places");
   const auto values = file.read_all<double>(group + "/values");
@@ -195,7 +203,7 @@ std::vector<RCP<const Vector>> read_vectors(const Hdf5File& file, const std::str
 /// Reads C, and gives each unknown that is added the largest entry found, so that scales stay.
 RCP<const CrsMatrix> read_solid_block(const Hdf5File& file, GlobalIndex n_stored,
                                       const RCP<const Map>& map) {
-  std::vector<Triplet> entries = read_square(file, "/C", n_stored);
+  std::vector<Triplet> entries = read_square(file, "/C", n_stored, n_stored);
   double largest = 0;
   for (const Triplet& entry : entries)
     largest = std::max(largest, entry.value);
@@ -238,8 +246,9 @@ StoredSystem read_parts(const Hdf5File& file) {
   system.geometry_stamp = system.solid_stamp = 1;
   const GlobalIndex n_pressure = n_unknowns(file, "pressure unknowns", 1);
   const GlobalIndex n_solid = n_unknowns(file, "solid unknowns", 0);
-  // Before anything of that size is made.
-  std::vector<Triplet> pressure_entries = read_square(file, "/A", n_pressure);
+  check_size(file, "/pressure rhs", n_pressure);
+  // Cells all of whose faces are mixed have an empty row.
+  std::vector<Triplet> pressure_entries = read_square(file, "/A", n_pressure, 1);
   const auto pressures = even_map(n_pressure, comm);
   system.pressure_block =
       as_operator(assemble_triplets(std::move(pressure_entries), pressures, pressures));
@@ -248,8 +257,7 @@ StoredSystem read_parts(const Hdf5File& file) {
   stored.rhs.pressure = read_vector(file, "/pressure rhs", n_pressure, pressures);
   if (n_solid == 0)
     return stored;
-  if (n_entries(file, "/C", 2) < n_solid)
-    refuse(file, fmt::format("'/C' has fewer entries than {} rows", n_solid));
+  check_size(file, "/solid rhs", n_solid);
   const auto solids = even_map(std::max<GlobalIndex>(n_solid, comm->getSize()), comm);
   system.coupling_transposed = assemble_triplets(
       read_entries(file, "/B transposed", n_solid, n_pressure), solids, pressures);

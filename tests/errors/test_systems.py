@@ -116,7 +116,14 @@ class Systems(unittest.TestCase):
     def test_good_systems(self):
         plain = self.folder / "plain.h5"
         plain.write_bytes(without_checksum(self.system.read_bytes()))
-        for path in (self.system, plain):
+        # Cells all of whose faces are mixed leave empty rows in A.
+        empty_rows = self.folder / "empty-rows.h5"
+        result = simulate(self.folder, "--steps", 1, "--dump-system", "1:S2", empty_rows, "--set",
+                          "Coupling/Mixed Rule=every cut cell", "--set", "Solids/Ball/Geometry/Radius=0.05")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with h5py.File(empty_rows) as file:
+            self.assertLess(len({*file["A/places"][:, 0]}), file.attrs["pressure unknowns"])
+        for path in (self.system, plain, empty_rows):
             result = self.solve(path)
             self.assertEqual(result.returncode, 0, result.stderr)
 
