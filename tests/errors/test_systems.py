@@ -122,7 +122,9 @@ class Systems(unittest.TestCase):
                           "Coupling/Mixed Rule=every cut cell", "--set", "Solids/Ball/Geometry/Radius=0.05")
         self.assertEqual(result.returncode, 0, result.stderr)
         with h5py.File(empty_rows) as file:
-            self.assertLess(len({*file["A/places"][:, 0]}), file.attrs["pressure unknowns"])
+            places, values = file["A/places"][...], file["A/values"][...]
+            n_positive = ((places[:, 0] == places[:, 1]) & (values > 0)).sum()
+            self.assertLess(n_positive, file.attrs["pressure unknowns"])
         for path in (self.system, plain, empty_rows):
             result = self.solve(path)
             self.assertEqual(result.returncode, 0, result.stderr)
