@@ -17,11 +17,12 @@ namespace {
 
 const char* const help =
     "Restart with the scene and the --set of the run that wrote it; only \"Title\", \"Time\", "
-    "\"Solver\" and \"Output\" may differ.";
+    "\"Solver\", \"Output\" and \"Observers\" may differ.";
 
 /// A run may go on to another end, with other steps, solvers and outputs.
 bool may_differ(const std::string& path) {
-  return path == "Title" || path == "Time" || path == "Solver" || path == "Output";
+  return path == "Title" || path == "Time" || path == "Solver" || path == "Output" ||
+         path == "Observers";
 }
 
 /// How two entries differ, as the end of a sentence; "" if they do not.

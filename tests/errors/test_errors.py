@@ -53,6 +53,10 @@ SCENE_3D = (SCENE.replace(DIMENSION, value("Dimension", "int", "3"))
             .replace("{1, 2}", "{1, 2, 1}").replace("{12, 24}", "{6, 12, 6}")
             .replace("{0, -9.8}", "{0, -9.8, 0}").replace("{0.5, 0.5}", "{0.3, 0.3, 0.3}"))
 
+SOFT_SCENE_3D = (SCENE_3D.replace(BODY_TYPE, value("Type", "string", "deformable body"))
+                 .replace(DENSITY, DENSITY + '<ParameterList name="Material">' +
+                          value("Young's Modulus", "double", "1e4") + "</ParameterList>"))
+
 
 def mesh(text, name="body.obj"):
     """A 3D scene whose body is read from a file."""
@@ -160,6 +164,9 @@ CASES = [
 
     # Meshes.
     Case("no mesh", ["body.obj", "cannot open"], **mesh(None)),
+    Case("a mesh that is a pipe", ["pipe.obj", "pipe, not a file"], **mesh(None, "pipe.obj")),
+    Case("a volume mesh that is a pipe", ["pipe.vtk", "pipe, not a file"],
+         **{**mesh(None, "pipe.vtk"), "scene": SOFT_SCENE_3D}),
     Case("an open mesh", ["'Ball'", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
     Case("a triangle turned against its neighbours", "oriented against each other",
          **mesh(TETRAHEDRON.replace("f 2 3 4", "f 2 4 3"))),
@@ -185,8 +192,10 @@ def run(case):
     with tempfile.TemporaryDirectory() as folder:
         for name, text in case.files.items():
             (Path(folder) / name).write_text(text)
-        os.mkfifo(Path(folder) / "pipe.h5")
-        before = {*case.files, "scene.xml", "pipe.h5"}
+        pipes = {"pipe.h5", "pipe.obj", "pipe.vtk"}
+        for name in pipes:
+            os.mkfifo(Path(folder) / name)
+        before = {*case.files, "scene.xml", *pipes}
         arguments = [str(Path(folder) / a) if a in ("scene.xml", "none.h5", "pipe.h5") else a
                      for a in case.arguments]
         result = simulate(folder, *arguments, scene=case.scene)

@@ -1,9 +1,9 @@
 #include "deformable/mesh/vtk_file.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 
+#include "base/regular_file.hpp"
 #include "geometry/text_lines.hpp"
 #include "geometry/unused_vertices.hpp"
 
@@ -29,9 +29,11 @@ int corners_of_type(long type) {
 
 /// The first three lines: what it is, a title, how it is written.
 void check_header(const std::string& file) {
+  const std::string refusal = refusal_to_read(file);
+  check_input(refusal.empty(),
+              "{}: cannot open this mesh file ({}); check its path and permissions.", file,
+              refusal);
   std::ifstream stream(file);
-  check_input(std::filesystem::is_regular_file(file) && stream.good(),
-              "{}: cannot open this mesh file; check its path and permissions.", file);
   std::string signature, title, format;
   std::getline(stream, signature);
   std::getline(stream, title);
