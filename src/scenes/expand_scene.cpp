@@ -63,9 +63,11 @@ Variables take_constants(Document& document) {
 
 int dimension_of(const Document& document) {
   const ParameterList& list = document.list;
-  const int dimension = list.isType<int>("Dimension") ? list.get<int>("Dimension") : 0;
-  check_input(dimension == 2 || dimension == 3, "{}: \"Dimension\" (int) must be 2 or 3.",
-              document.source.place("Dimension"));
+  check_input(list.isType<int>("Dimension"), "{}: \"Dimension\" (int) is required; it is 2 or 3.",
+              document.source.file);
+  const int dimension = list.get<int>("Dimension");
+  check_input(dimension == 2 || dimension == 3, "{}: \"Dimension\" is {}; it must be 2 or 3.",
+              document.source.place("Dimension"), dimension);
   return dimension;
 }
 
