@@ -4,6 +4,7 @@
 #include "deformable/mesh/hollow_generators.hpp"
 #include "deformable/mesh/mesh_file.hpp"
 #include "deformable/mesh/volume_generators.hpp"
+#include "geometry/mesh_repair.hpp"
 #include "motion/list_values.hpp"
 #include "parameters/shape_sizes.hpp"
 
@@ -18,7 +19,7 @@ const std::vector<ShapeSizes>& shapes() {
                                            {"torus", {"Radius", "Tube Radius"}},
                                            {"hollow ball", {"Radius", "Thickness"}},
                                            {"tube", {"Radius", "Thickness", "Length"}},
-                                           {"file", {"File"}, {"Scale"}}};
+                                           {"file", {"File"}, mesh_repair_parameters()}};
   return all;
 }
 
@@ -69,12 +70,11 @@ void declare_deformable_geometry(ParameterList& body) {
                                 "Mesh: .msh of Gmsh (version 2.2 or 4.1) or legacy .vtk, both "
                                 "ASCII; relative to the folder of "
                                 "the scene.");
-  declare_optional<double>(list, "Scale", "Factor on the coordinates of the file [1]; default 1.");
+  declare_mesh_repair(list);
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest step of the lattice of a generated mesh [m]; default one grid "
                            "cell.");
-  for (const char* size :
-       {"Radius", "Length", "Tube Radius", "Thickness", "Scale", "Size", "Mesh Spacing"})
+  for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "Mesh Spacing"})
     set_positive(list, size);
   declare_between(
       list, "Worst Quality", 1e-3, 0.0, 1.0,
@@ -84,27 +84,30 @@ void declare_deformable_geometry(ParameterList& body) {
 
 template <int dim>
 VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacing,
-                               const std::string& name) {
+                               const std::string& name, MeshNames& names) {
   const auto& shape = geometry.get<std::string>("Shape");
   check_shape_sizes(geometry, shapes(), name);
   VolumeMesh<dim> mesh;
   if (shape == "file") {
-    mesh = read_volume_mesh<dim>(geometry.get<std::string>("File"));
-    const double scale = geometry.isParameter("Scale") ? geometry.get<double>("Scale") : 1;
-    for (auto& vertex : mesh.vertices)
-      vertex *= scale;
+    mesh = read_volume_mesh<dim>(geometry.get<std::string>("File"), names);
+    const MeshRepair repair = read_mesh_repair(geometry);
+    scale_and_weld(repair, mesh.vertices, mesh.elements, names);
+    if (repair.orient)
+      orient_elements(mesh);
   } else {
     const double spacing =
         geometry.isParameter("Mesh Spacing") ? geometry.get<double>("Mesh Spacing") : grid_spacing;
     mesh = generate<dim>(geometry, shape, spacing);
   }
-  check_volume_mesh(mesh, name, geometry.get<double>("Worst Quality"));
+  check_volume_mesh(mesh, name, geometry.get<double>("Worst Quality"), names);
   return mesh;
 }
 
 template void declare_deformable_geometry<2>(ParameterList&);
 template void declare_deformable_geometry<3>(ParameterList&);
-template VolumeMesh<2> make_body_mesh<2>(const ParameterList&, double, const std::string&);
-template VolumeMesh<3> make_body_mesh<3>(const ParameterList&, double, const std::string&);
+template VolumeMesh<2> make_body_mesh<2>(const ParameterList&, double, const std::string&,
+                                         MeshNames&);
+template VolumeMesh<3> make_body_mesh<3>(const ParameterList&, double, const std::string&,
+                                         MeshNames&);
 
 }  // namespace lockstep

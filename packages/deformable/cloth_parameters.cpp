@@ -8,6 +8,9 @@
 #include "deformable/elements/shell_elements.hpp"
 #include "deformable/mesh/mesh_file.hpp"
 #include "geometry/generators.hpp"
+#include "geometry/mesh_repair.hpp"
+#include "geometry/surface_check.hpp"
+#include "geometry/surface_parts.hpp"
 #include "motion/list_values.hpp"
 #include "parameters/shape_sizes.hpp"
 
@@ -19,7 +22,7 @@ const std::vector<ShapeSizes>& shapes() {
   static const std::vector<ShapeSizes> all{
       {"sheet", {"Size", "Normal"}},  {"bag", {"Size"}},
       {"ball", {"Radius"}},           {"open ball", {"Radius", "Opening Radius"}},
-      {"tube", {"Radius", "Length"}}, {"file", {"File"}}};
+      {"tube", {"Radius", "Length"}}, {"file", {"File"}, mesh_repair_parameters()}};
   return all;
 }
 
@@ -49,6 +52,7 @@ void declare_cloth_geometry(ParameterList& body) {
       list, "File",
       "Surface mesh: .obj, .off, .msh of Gmsh, .vtk or (3D) .stl; relative to "
       "the folder of the scene.");
+  declare_mesh_repair(list);
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest edge of a generated mesh [m]; default one grid cell.");
   for (const char* size : {"Radius", "Opening Radius", "Length", "Mesh Spacing"})
@@ -63,6 +67,7 @@ SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
   const double spacing =
       list.isParameter("Mesh Spacing") ? list.get<double>("Mesh Spacing") : grid_spacing;
   SurfaceMesh<dim> mesh;
+  MeshNames names;
   if (shape == "sheet") {
     mesh = plate_surface<dim>(vector_value<dim>(list, "Size"),
                               list.get<std::string>("Normal")[0] - 'x', spacing);
@@ -76,9 +81,13 @@ SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
   } else if (shape == "tube") {
     mesh = tube_surface<dim>(list.get<double>("Radius"), list.get<double>("Length"), spacing);
   } else {
-    mesh = read_shell_mesh<dim>(list.get<std::string>("File"));
+    mesh = read_shell_mesh<dim>(list.get<std::string>("File"), names);
+    const MeshRepair repair = read_mesh_repair(list);
+    scale_and_weld(repair, mesh.vertices, mesh.simplices, names);
+    if (repair.orient)
+      orient_surface(mesh);
   }
-  check_surface(mesh, false, name);
+  check_surface(mesh, {name, false, true}, names);
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include "deformable/body_mesh.hpp"
 #include "deformable/body_start.hpp"
 #include "deformable/elements/volume_elements.hpp"
+#include "geometry/surface_check.hpp"
 
 namespace lockstep {
 
@@ -23,6 +24,16 @@ void declare_material(ParameterList& body) {
                         material_kinds<dim>().front().name);
 }
 
+/// The sides of elements have no names in the file, their vertices have.
+MeshNames names_of_boundary(const MeshNames& volume, const std::vector<int>& vertices) {
+  MeshNames names;
+  names.file = volume.file;
+  names.vertex_word = volume.vertex_word;
+  for (const int v : vertices)
+    names.vertices.push_back(volume.vertices.empty() ? v : volume.vertices[v]);
+  return names;
+}
+
 }  // namespace
 
 template <int dim>
@@ -40,7 +51,9 @@ ParameterList deformable_body_parameters() {
 template <int dim>
 DeformableBody<dim> read_deformable_body(const std::string& name, const ParameterList& list,
                                          double grid_spacing) {
-  const VolumeMesh<dim> mesh = make_body_mesh<dim>(list.sublist("Geometry"), grid_spacing, name);
+  MeshNames names = element_names();
+  const VolumeMesh<dim> mesh =
+      make_body_mesh<dim>(list.sublist("Geometry"), grid_spacing, name, names);
   DeformableBody<dim> body;
   body.name = name;
   body.density = list.get<double>("Density");
@@ -56,8 +69,8 @@ DeformableBody<dim> read_deformable_body(const std::string& name, const Paramete
   for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e)
     body.element_measure.push_back(element_volume(mesh, e));
 
-  BoundarySurface<dim> boundary = extract_surface(mesh, name);
-  check_surface(boundary.surface, true, name);
+  BoundarySurface<dim> boundary = extract_surface(mesh, name, names);
+  check_surface(boundary.surface, {name, true, false}, names_of_boundary(names, boundary.vertices));
   for (auto simplex : boundary.surface.simplices) {
     for (int& corner : simplex)
       corner = boundary.vertices[corner];

@@ -3,6 +3,9 @@
 #include "base/errors.hpp"
 #include "geometry/generators.hpp"
 #include "geometry/mesh_files.hpp"
+#include "geometry/mesh_repair.hpp"
+#include "geometry/surface_check.hpp"
+#include "geometry/surface_parts.hpp"
 #include "motion/list_values.hpp"
 #include "parameters/shape_sizes.hpp"
 
@@ -18,12 +21,13 @@ const std::vector<ShapeSizes>& shapes() {
                                            {"torus", {"Radius", "Tube Radius"}},
                                            {"open box", {"Size"}},
                                            {"plate", {"Size", "Normal"}},
-                                           {"file", {"File"}, {"Scale"}}};
+                                           {"file", {"File"}, mesh_repair_parameters()}};
   return all;
 }
 
 template <int dim>
-SurfaceMesh<dim> make_surface(const ParameterList& list, const std::string& shape, double spacing) {
+SurfaceMesh<dim> make_surface(const ParameterList& list, const std::string& shape, double spacing,
+                              MeshNames& names) {
   const auto size = [&] { return vector_value<dim>(list, "Size"); };
   const auto number = [&](const char* parameter) { return list.get<double>(parameter); };
   if (shape == "ball")
@@ -40,10 +44,11 @@ SurfaceMesh<dim> make_surface(const ParameterList& list, const std::string& shap
     return open_box_surface<dim>(size(), spacing);
   if (shape == "plate")
     return plate_surface<dim>(size(), list.get<std::string>("Normal")[0] - 'x', spacing);
-  SurfaceMesh<dim> mesh = read_surface<dim>(list.get<std::string>("File"));
-  const double scale = list.isParameter("Scale") ? number("Scale") : 1;
-  for (auto& vertex : mesh.vertices)
-    vertex *= scale;
+  SurfaceMesh<dim> mesh = read_surface<dim>(list.get<std::string>("File"), names);
+  const MeshRepair repair = read_mesh_repair(list);
+  scale_and_weld(repair, mesh.vertices, mesh.simplices, names);
+  if (repair.orient)
+    orient_surface(mesh);
   return mesh;
 }
 
@@ -77,8 +82,8 @@ void declare_geometry(ParameterList& body) {
   set_choices(list, "Normal", axes);
   declare_optional<std::string>(
       list, "File", "Surface mesh: .obj, .off or (3D) .stl; relative to the folder of the scene.");
-  declare_optional<double>(list, "Scale", "Factor on the coordinates of the file [1]; default 1.");
-  for (const char* size : {"Radius", "Length", "Tube Radius", "Scale"})
+  declare_mesh_repair(list);
+  for (const char* size : {"Radius", "Length", "Tube Radius"})
     set_positive(list, size);
   declare_optional<double>(list, "Surface Spacing",
                            "Longest edge of a generated surface [m]; default 0.7 grid cells.");
@@ -97,9 +102,10 @@ BodyGeometry<dim> make_body_geometry(const ParameterList& geometry, double grid_
                              : 0.7 * grid_spacing;
   const bool open = shape == "open box" || shape == "plate";
   BodyGeometry<dim> body;
-  body.surface = make_surface<dim>(geometry, shape, spacing);
+  MeshNames names;
+  body.surface = make_surface<dim>(geometry, shape, spacing, names);
   body.closed = !open && !geometry.get<bool>("Thin Shell");
-  check_surface(body.surface, body.closed, name);
+  check_surface(body.surface, {name, body.closed, true}, names);
   return body;
 }
 

@@ -14,14 +14,15 @@ namespace lockstep {
 namespace {
 
 template <int dim>
-SurfaceMesh<dim> read_by_extension(const std::string& file, const std::string& extension) {
+SurfaceMesh<dim> read_by_extension(const std::string& file, const std::string& extension,
+                                   MeshNames& names) {
   if (extension == ".obj")
-    return read_obj<dim>(file);
+    return read_obj<dim>(file, names);
   if (extension == ".off")
-    return read_off<dim>(file);
+    return read_off<dim>(file, names);
   if constexpr (dim == 3) {
     if (extension == ".stl")
-      return read_stl(file);
+      return read_stl(file, names);
   } else {
     check_input(extension != ".stl",
                 "{}: an STL file holds triangles, but a 2D surface consists of segments; use .obj "
@@ -35,7 +36,7 @@ SurfaceMesh<dim> read_by_extension(const std::string& file, const std::string& e
 }  // namespace
 
 template <int dim>
-SurfaceMesh<dim> read_surface(const std::string& file) {
+SurfaceMesh<dim> read_surface(const std::string& file, MeshNames& names) {
   const std::string refusal = refusal_to_read(file);
   check_input(refusal.empty(),
               "{}: cannot open this surface file ({}); check its path and permissions.", file,
@@ -43,13 +44,23 @@ SurfaceMesh<dim> read_surface(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  SurfaceMesh<dim> mesh = read_by_extension<dim>(file, extension);
+  names = MeshNames();
+  names.file = file;
+  SurfaceMesh<dim> mesh = read_by_extension<dim>(file, extension, names);
   check_input(!mesh.simplices.empty(), "{}: the file holds no {}.", file,
               dim == 2 ? "segments" : "triangles");
-  drop_unused_vertices(mesh);
+  drop_unused_vertices(mesh.vertices, mesh.simplices, names.vertices);
   return mesh;
 }
 
+template <int dim>
+SurfaceMesh<dim> read_surface(const std::string& file) {
+  MeshNames names;
+  return read_surface<dim>(file, names);
+}
+
+template SurfaceMesh<2> read_surface<2>(const std::string&, MeshNames&);
+template SurfaceMesh<3> read_surface<3>(const std::string&, MeshNames&);
 template SurfaceMesh<2> read_surface<2>(const std::string&);
 template SurfaceMesh<3> read_surface<3>(const std::string&);
 

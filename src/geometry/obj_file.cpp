@@ -21,9 +21,18 @@ long vertex_of(const std::string& word, const TextLines& lines) {
   return lines.integer(word.substr(0, slash), word);
 }
 
+/// Lines of the simplices that records 'f' (3D) or 'l' (2D) are split into.
+template <int dim>
+void add_lines(const std::string& record, std::size_t n_vertices, int line,
+               std::vector<long>& lines) {
+  if (record == (dim == 2 ? "l" : "f"))
+    lines.insert(lines.end(), n_vertices - dim + 1, line);
+}
+
 /// What tinyobjloader lets pass: coordinates that are no numbers, which it reads as 0, and indices
 /// of no vertex.
-void check_records(const std::string& file) {
+template <int dim>
+void check_records(const std::string& file, MeshNames& names) {
   TextLines lines(file);
   std::vector<std::string> words;
   long n_vertices = 0;
@@ -33,11 +42,12 @@ void check_records(const std::string& file) {
       check_input(words.size() >= 4, "{}: a vertex needs three coordinates.", lines.where());
       for (std::size_t k = 1; k < words.size(); ++k)
         lines.number(words[k]);
-      ++n_vertices;
+      names.vertices.push_back(++n_vertices);
     } else if (words[0] == "f" || words[0] == "l") {
       const std::size_t n_needed = words[0] == "f" ? 3 : 2;
       check_input(words.size() > n_needed, "{}: a record '{}' needs at least {} vertices.",
                   lines.where(), words[0], n_needed);
+      add_lines<dim>(words[0], words.size() - 1, lines.line(), names.simplex_lines);
       for (std::size_t k = 1; k < words.size(); ++k) {
         const long v = vertex_of(words[k], lines);
         check_input(v > 0 || (v < 0 && v >= -n_vertices),
@@ -55,8 +65,8 @@ void check_records(const std::string& file) {
 }  // namespace
 
 template <int dim>
-SurfaceMesh<dim> read_obj(const std::string& file) {
-  check_records(file);
+SurfaceMesh<dim> read_obj(const std::string& file, MeshNames& names) {
+  check_records<dim>(file, names);
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;
   std::vector<tinyobj::material_t> materials;
@@ -89,10 +99,13 @@ SurfaceMesh<dim> read_obj(const std::string& file) {
             {indices[k].vertex_index, indices[k + 1].vertex_index, indices[k + 2].vertex_index});
     }
   }
+  // A polygon that is no proper one may give fewer triangles.
+  if (names.simplex_lines.size() != mesh.simplices.size())
+    names.simplex_lines.clear();
   return mesh;
 }
 
-template SurfaceMesh<2> read_obj<2>(const std::string&);
-template SurfaceMesh<3> read_obj<3>(const std::string&);
+template SurfaceMesh<2> read_obj<2>(const std::string&, MeshNames&);
+template SurfaceMesh<3> read_obj<3>(const std::string&, MeshNames&);
 
 }  // namespace lockstep

@@ -6,8 +6,8 @@ namespace lockstep {
 namespace {
 
 template <int dim>
-void add_face(const std::vector<std::string>& words, const TextLines& lines,
-              SurfaceMesh<dim>& mesh) {
+void add_face(const std::vector<std::string>& words, const TextLines& lines, SurfaceMesh<dim>& mesh,
+              MeshNames& names) {
   const long n = lines.integer(words[0]);
   check_input(n >= dim && (dim == 3 || n == 2), "{}: a face of {} vertices cannot be used in {}D.",
               lines.where(), n, dim);
@@ -23,6 +23,7 @@ void add_face(const std::vector<std::string>& words, const TextLines& lines,
     corners.push_back(static_cast<int>(v));
   }
   for (long k = dim - 1; k < n; ++k) {
+    names.simplex_lines.push_back(lines.line());
     if constexpr (dim == 2) {
       mesh.simplices.push_back({corners[0], corners[1]});
     } else {
@@ -34,7 +35,7 @@ void add_face(const std::vector<std::string>& words, const TextLines& lines,
 }  // namespace
 
 template <int dim>
-SurfaceMesh<dim> read_off(const std::string& file) {
+SurfaceMesh<dim> read_off(const std::string& file, MeshNames& names) {
   TextLines lines(file);
   std::vector<std::string> words;
   check_input(lines.next(words) && words[0] == "OFF",
@@ -56,15 +57,16 @@ SurfaceMesh<dim> read_off(const std::string& file) {
     for (int a = 0; a < 3; ++a)
       x[a] = lines.number(words[a]);
     mesh.vertices.push_back(x.template head<dim>());
+    names.vertices.push_back(v);
   }
   for (long f = 0; f < n_faces; ++f) {
     check_input(lines.next(words), "{}: the file ends after {} of {} faces.", file, f, n_faces);
-    add_face<dim>(words, lines, mesh);
+    add_face<dim>(words, lines, mesh, names);
   }
   return mesh;
 }
 
-template SurfaceMesh<2> read_off<2>(const std::string&);
-template SurfaceMesh<3> read_off<3>(const std::string&);
+template SurfaceMesh<2> read_off<2>(const std::string&, MeshNames&);
+template SurfaceMesh<3> read_off<3>(const std::string&, MeshNames&);
 
 }  // namespace lockstep

@@ -34,14 +34,14 @@ class CornerMerger {
 constexpr std::size_t header_size = 80, count_size = 4, facet_size = 50;
 
 /// 80 bytes of anything, the count, then 50 bytes a facet (normal, three corners, attributes).
-SurfaceMesh<3> read_binary(const std::string& file, std::uint32_t n_facets) {
+SurfaceMesh<3> read_binary(const std::string& file, std::uint32_t n_facets, MeshNames& names) {
   std::ifstream stream(file, std::ios::binary);
   stream.seekg(header_size + count_size);
   CornerMerger merger;
   for (std::uint32_t f = 0; f < n_facets; ++f) {
     char record[facet_size];
     check_input(static_cast<bool>(stream.read(record, facet_size)),
-                "{}: the file ends in facet {} of {}.", file, f, n_facets);
+                "{}: the file ends in facet {} of {}.", file, f + 1, n_facets);
     float values[12];
     std::memcpy(values, record, sizeof values);
     std::array<std::array<double, 3>, 3> corners;
@@ -53,13 +53,15 @@ SurfaceMesh<3> read_binary(const std::string& file, std::uint32_t n_facets) {
                     f + 1, n_facets, corners[k][a]);
       }
     merger.add_triangle(corners);
+    names.simplices.push_back(f + 1);
   }
   return merger.take();
 }
 
 class AsciiReader {
  public:
-  explicit AsciiReader(const std::string& file) : file_(file), lines_(file) {}
+  AsciiReader(const std::string& file, MeshNames& names)
+      : file_(file), lines_(file), names_(names) {}
 
   SurfaceMesh<3> read() {
     CornerMerger merger;
@@ -74,6 +76,7 @@ class AsciiReader {
         continue;
       }
       require({"facet", "normal"});
+      names_.simplex_lines.push_back(lines_.line());
       expect({"outer", "loop"});
       std::array<std::array<double, 3>, 3> corners;
       for (auto& corner : corners) {
@@ -106,12 +109,14 @@ class AsciiReader {
 
   std::string file_;
   TextLines lines_;
+  MeshNames& names_;
   std::vector<std::string> words_;
 };
 
 }  // namespace
 
-SurfaceMesh<3> read_stl(const std::string& file) {
+SurfaceMesh<3> read_stl(const std::string& file, MeshNames& names) {
+  names.simplex_word = "facet";
   const std::uintmax_t size = std::filesystem::file_size(file);
   std::ifstream stream(file, std::ios::binary);
   char start[header_size + count_size] = {};
@@ -120,9 +125,9 @@ SurfaceMesh<3> read_stl(const std::string& file) {
   std::memcpy(&n_facets, start + header_size, sizeof n_facets);
   // Binary files may begin with "solid" too, so the size decides first.
   if (size == header_size + count_size + facet_size * std::uintmax_t{n_facets})
-    return read_binary(file, n_facets);
+    return read_binary(file, n_facets, names);
   if (std::strncmp(start, "solid", 5) == 0)
-    return AsciiReader(file).read();
+    return AsciiReader(file, names).read();
   check_input(
       size > sizeof start,
       "{}: neither an ASCII STL file (no 'solid' at its start) nor a binary one (shorter than "

@@ -36,6 +36,8 @@ class TextLines {
   /// "file, line n", for messages.
   std::string where() const { return fmt::format("{}, line {}", file_, number_); }
 
+  int line() const { return number_; }
+
   /// A finite number in decimal notation.
   double number(const std::string& word) const {
     char* end = nullptr;

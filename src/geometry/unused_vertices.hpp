@@ -3,12 +3,12 @@
 
 namespace lockstep {
 
-/// Lone vertices would become nodes without mass: they go, the order of the others stays. `Mesh`
-/// has `vertices` and `simplices` of vertex numbers.
-template <typename Mesh>
-void drop_unused_vertices(Mesh& mesh) {
-  std::vector<int> number(mesh.vertices.size(), -1);
-  for (const auto& simplex : mesh.simplices) {
+/// Lone vertices would become nodes without mass: they go, the order of the others stays. Simplices
+/// are arrays of vertex numbers. `labels`: one of each vertex, which goes with it, or none.
+template <typename Vertices, typename Simplices>
+void drop_unused_vertices(Vertices& vertices, Simplices& simplices, std::vector<long>& labels) {
+  std::vector<int> number(vertices.size(), -1);
+  for (const auto& simplex : simplices) {
     for (const int v : simplex)
       number[v] = 0;
   }
@@ -17,10 +17,14 @@ void drop_unused_vertices(Mesh& mesh) {
     if (number[v] < 0)
       continue;
     number[v] = n_used;
-    mesh.vertices[n_used++] = mesh.vertices[v];
+    if (!labels.empty())
+      labels[n_used] = labels[v];
+    vertices[n_used++] = vertices[v];
   }
-  mesh.vertices.resize(n_used);
-  for (auto& simplex : mesh.simplices) {
+  vertices.resize(n_used);
+  if (!labels.empty())
+    labels.resize(n_used);
+  for (auto& simplex : simplices) {
     for (int& v : simplex)
       v = number[v];
   }

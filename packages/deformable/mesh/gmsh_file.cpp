@@ -21,6 +21,9 @@ template <int dim, int n_corners>
 class GmshReader {
  public:
   explicit GmshReader(const std::string& file) : file_(file), lines_(file) {
+    mesh_.names.file = file;
+    mesh_.names.simplex_word = "element";
+    mesh_.names.vertex_word = "node";
     check_input(std::filesystem::is_regular_file(file) && std::ifstream(file).good(),
                 "{}: cannot open this mesh file; check its path and permissions.", file);
   }
@@ -60,7 +63,7 @@ class GmshReader {
                 nodes ? "$Elements" : "$Nodes");
     check_input(!mesh_.simplices.empty(), "{}: the file holds no {}.", file_,
                 simplex_name(n_corners));
-    drop_unused_vertices(mesh_);
+    drop_unused_vertices(mesh_.vertices, mesh_.simplices, mesh_.names.vertices);
     return std::move(mesh_);
   }
 
@@ -98,6 +101,7 @@ class GmshReader {
     const bool is_new = numbers_.emplace(tag, static_cast<int>(mesh_.vertices.size())).second;
     check_input(is_new, "{}: node {} occurs twice.", lines_.where(), tag);
     mesh_.vertices.push_back(x);
+    mesh_.names.vertices.push_back(tag);
   }
   void read_nodes_2() {
     next(1);
@@ -146,6 +150,8 @@ class GmshReader {
       corners[k] = found->second;
     }
     mesh_.simplices.push_back(corners);
+    mesh_.names.simplices.push_back(tag);
+    mesh_.names.simplex_lines.push_back(lines_.line());
   }
   void read_elements_2() {
     next(1);

@@ -16,7 +16,7 @@ std::string extension_of(const std::string& file) {
 }  // namespace
 
 template <int dim>
-VolumeMesh<dim> read_volume_mesh(const std::string& file) {
+VolumeMesh<dim> read_volume_mesh(const std::string& file, MeshNames& names) {
   const std::string extension = extension_of(file);
   check_input(extension == ".msh" || extension == ".vtk",
               "{}: unknown kind of mesh file '{}'; use .msh or .vtk.", file, extension);
@@ -24,24 +24,26 @@ VolumeMesh<dim> read_volume_mesh(const std::string& file) {
   VolumeMesh<dim> mesh;
   mesh.vertices = std::move(read.vertices);
   mesh.elements = std::move(read.simplices);
+  names = std::move(read.names);
   return mesh;
 }
 
 template <int dim>
-SurfaceMesh<dim> read_shell_mesh(const std::string& file) {
+SurfaceMesh<dim> read_shell_mesh(const std::string& file, MeshNames& names) {
   const std::string extension = extension_of(file);
   if (extension != ".msh" && extension != ".vtk")
-    return read_surface<dim>(file);
+    return read_surface<dim>(file, names);
   auto read = extension == ".msh" ? read_gmsh<dim, dim>(file) : read_vtk<dim, dim>(file);
   SurfaceMesh<dim> mesh;
   mesh.vertices = std::move(read.vertices);
   mesh.simplices = std::move(read.simplices);
+  names = std::move(read.names);
   return mesh;
 }
 
-template VolumeMesh<2> read_volume_mesh<2>(const std::string&);
-template VolumeMesh<3> read_volume_mesh<3>(const std::string&);
-template SurfaceMesh<2> read_shell_mesh<2>(const std::string&);
-template SurfaceMesh<3> read_shell_mesh<3>(const std::string&);
+template VolumeMesh<2> read_volume_mesh<2>(const std::string&, MeshNames&);
+template VolumeMesh<3> read_volume_mesh<3>(const std::string&, MeshNames&);
+template SurfaceMesh<2> read_shell_mesh<2>(const std::string&, MeshNames&);
+template SurfaceMesh<3> read_shell_mesh<3>(const std::string&, MeshNames&);
 
 }  // namespace lockstep

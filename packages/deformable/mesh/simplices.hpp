@@ -2,7 +2,7 @@
 #include <array>
 #include <vector>
 
-#include "base/types.hpp"
+#include "geometry/mesh_names.hpp"
 
 namespace lockstep {
 
@@ -12,6 +12,7 @@ template <int dim, int n_corners>
 struct Simplices {
   std::vector<Point<dim>> vertices;
   std::vector<std::array<int, n_corners>> simplices;
+  MeshNames names;
 };
 
 /// "segments", "triangles" or "tetrahedra".

@@ -46,25 +46,37 @@ std::vector<Side<dim>> sorted_sides(const VolumeMesh<dim>& mesh) {
 }
 
 template <int dim>
-void check_corners(const VolumeMesh<dim>& mesh, const std::string& name) {
+void check_corners(const VolumeMesh<dim>& mesh, const std::string& heading,
+                   const MeshNames& names) {
   const int n_vertices = static_cast<int>(mesh.vertices.size());
-  check_input(!mesh.elements.empty(), "Mesh '{}' has no {}.", name,
+  check_input(!mesh.elements.empty(), "{} has no {}.", heading,
               dim == 2 ? "triangles" : "tetrahedra");
   std::vector<char> used(n_vertices, 0);
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     for (const int v : mesh.elements[e]) {
-      check_input(v >= 0 && v < n_vertices,
-                  "Mesh '{}': element {} refers to vertex {}, but the vertices are 0 to {}.", name,
-                  e, v, n_vertices - 1);
+      if (v < 0 || v >= n_vertices)
+        throw InputError(fmt::format("{}: {} refers to vertex {}, but the vertices are 0 to {}.",
+                                     heading, simplex_text(names, static_cast<int>(e), dim + 1), v,
+                                     n_vertices - 1));
       used[v] = 1;
     }
   }
   for (int v = 0; v < n_vertices; ++v) {
-    check_input(mesh.vertices[v].allFinite(), "Mesh '{}': vertex {} is not a finite point.", name,
-                v);
-    check_input(used[v], "Mesh '{}': vertex {} belongs to no element and would have no mass.", name,
-                v);
+    if (mesh.vertices[v].allFinite() && used[v])
+      continue;
+    throw InputError(fmt::format(
+        "{}: {} {}.", heading, vertex_text<dim>(names, v, mesh.vertices[v]),
+        used[v] ? "is not a finite point" : "belongs to no element and would have no mass"));
   }
+}
+
+/// "element 7 (line 12) about (0, 0.5, 1)".
+template <int dim>
+std::string element_text(const VolumeMesh<dim>& mesh, const MeshNames& names, int element) {
+  Point<dim> middle = Point<dim>::Zero();
+  for (const int v : mesh.elements[element])
+    middle += mesh.vertices[v] / (dim + 1);
+  return fmt::format("{} about {}", simplex_text(names, element, dim + 1), point_text<dim>(middle));
 }
 
 }  // namespace
@@ -112,39 +124,55 @@ void orient_elements(VolumeMesh<dim>& mesh) {
 }
 
 template <int dim>
-void check_volume_mesh(VolumeMesh<dim>& mesh, const std::string& name, double worst_quality) {
-  check_corners(mesh, name);
+void check_volume_mesh(VolumeMesh<dim>& mesh, const std::string& name, double worst_quality,
+                       const MeshNames& names) {
+  const std::string heading = heading_text("Mesh", name, names);
+  check_corners(mesh, heading, names);
   const int n = static_cast<int>(mesh.elements.size());
-  bool all_inverted = true;
-  for (int e = 0; e < n && all_inverted; ++e)
-    all_inverted = element_volume(mesh, e) < 0;
-  if (all_inverted)
-    orient_elements(mesh);
+  std::vector<int> inverted, flat;
+  double worst = 1;
   for (int e = 0; e < n; ++e) {
-    const double quality = element_quality(mesh, e);
-    check_input(quality >= 0,
-                "Mesh '{}': element {} is inverted (signed volume {:g}) while others are not; "
-                "repair the order of its corners.",
-                name, e, element_volume(mesh, e));
-    check_input(quality >= worst_quality,
-                "Mesh '{}': element {} is almost flat (quality {:.2g}, at least {:.2g} is needed); "
-                "improve the mesh there.",
-                name, e, quality, worst_quality);
+    if (element_volume(mesh, e) < 0)
+      inverted.push_back(e);
+    const double quality = std::abs(element_quality(mesh, e));
+    if (!(quality >= worst_quality))
+      flat.push_back(e);
+    worst = std::min(worst, quality);
   }
+  if (static_cast<int>(inverted.size()) == n) {
+    orient_elements(mesh);
+  } else if (!inverted.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} is inverted (signed volume {:g}), one of {} of {} elements; repair the order of "
+        "its corners, or let \"Orient\" do so.",
+        heading, element_text(mesh, names, inverted.front()),
+        element_volume(mesh, inverted.front()), inverted.size(), n));
+  }
+  if (flat.empty())
+    return;
+  throw InputError(fmt::format(
+      "{}: {} is almost flat (quality {:.2g}), one of {} of {} elements under the least of "
+      "{:.2g}, the worst of them has {:.2g}; improve the mesh, or accept less with \"Worst "
+      "Quality\".",
+      heading, element_text(mesh, names, flat.front()), element_quality(mesh, flat.front()),
+      flat.size(), n, worst_quality, worst));
 }
 
 template <int dim>
-BoundarySurface<dim> extract_surface(const VolumeMesh<dim>& mesh, const std::string& name) {
+BoundarySurface<dim> extract_surface(const VolumeMesh<dim>& mesh, const std::string& name,
+                                     const MeshNames& names) {
   const std::vector<Side<dim>> all = sorted_sides(mesh);
   std::vector<Side<dim>> boundary;
   for (std::size_t i = 0; i < all.size();) {
     std::size_t next = i + 1;
     while (next < all.size() && all[next].sorted == all[i].sorted)
       ++next;
-    check_input(
-        next - i <= 2,
-        "Mesh '{}': elements {}, {} and {} share one side; a side has at most two elements.", name,
-        all[i].element, all[i + 1].element, all[std::min(i + 2, next - 1)].element);
+    if (next - i > 2)
+      throw InputError(
+          fmt::format("{}: {}, {} and {} share one side; a side has at most two elements.",
+                      heading_text("Mesh", name, names), element_text(mesh, names, all[i].element),
+                      element_text(mesh, names, all[i + 1].element),
+                      element_text(mesh, names, all[i + 2].element)));
     if (next - i == 1)
       boundary.push_back(all[i]);
     i = next;
@@ -177,9 +205,11 @@ template double mesh_volume<2>(const VolumeMesh<2>&);
 template double mesh_volume<3>(const VolumeMesh<3>&);
 template void orient_elements<2>(VolumeMesh<2>&);
 template void orient_elements<3>(VolumeMesh<3>&);
-template void check_volume_mesh<2>(VolumeMesh<2>&, const std::string&, double);
-template void check_volume_mesh<3>(VolumeMesh<3>&, const std::string&, double);
-template BoundarySurface<2> extract_surface<2>(const VolumeMesh<2>&, const std::string&);
-template BoundarySurface<3> extract_surface<3>(const VolumeMesh<3>&, const std::string&);
+template void check_volume_mesh<2>(VolumeMesh<2>&, const std::string&, double, const MeshNames&);
+template void check_volume_mesh<3>(VolumeMesh<3>&, const std::string&, double, const MeshNames&);
+template BoundarySurface<2> extract_surface<2>(const VolumeMesh<2>&, const std::string&,
+                                               const MeshNames&);
+template BoundarySurface<3> extract_surface<3>(const VolumeMesh<3>&, const std::string&,
+                                               const MeshNames&);
 
 }  // namespace lockstep

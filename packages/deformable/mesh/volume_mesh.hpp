@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/mesh_names.hpp"
 #include "geometry/surface_mesh.hpp"
 
 namespace lockstep {
@@ -15,6 +16,13 @@ struct VolumeMesh {
   std::vector<Point<dim>> vertices;  ///< [m]
   std::vector<Element> elements;
 };
+
+/// Of a generated mesh, for messages.
+inline MeshNames element_names() {
+  MeshNames names;
+  names.simplex_word = "element";
+  return names;
+}
 
 /// Signed volume [m^dim] of an element.
 template <int dim>
@@ -29,12 +37,13 @@ double element_quality(const VolumeMesh<dim>& mesh, int element);
 template <int dim>
 double mesh_volume(const VolumeMesh<dim>& mesh);
 
-/// What a mesh file may get wrong: throws InputError naming the element if a corner is missing, a
-/// vertex is not finite or belongs to no element, or an element's quality is below
-/// `worst_quality`. A mesh whose every element is inverted is turned around; a mixture is an error.
-/// `name` is used in the message.
+/// What a mesh file may get wrong: throws InputError naming the first bad element, and how many
+/// there are, if a corner is missing, a vertex is not finite or belongs to no element, or an
+/// element's quality is below `worst_quality`. A mesh whose every element is inverted is turned
+/// around; a mixture is an error. `name` is used in the message, with what the file calls things.
 template <int dim>
-void check_volume_mesh(VolumeMesh<dim>& mesh, const std::string& name, double worst_quality = 1e-4);
+void check_volume_mesh(VolumeMesh<dim>& mesh, const std::string& name, double worst_quality = 1e-4,
+                       const MeshNames& names = element_names());
 
 /// The boundary of a volume mesh.
 template <int dim>
@@ -46,9 +55,10 @@ struct BoundarySurface {
 /// The sides that belong to one element only. Throws InputError naming the elements if more than
 /// two share a side.
 template <int dim>
-BoundarySurface<dim> extract_surface(const VolumeMesh<dim>& mesh, const std::string& name);
+BoundarySurface<dim> extract_surface(const VolumeMesh<dim>& mesh, const std::string& name,
+                                     const MeshNames& names = element_names());
 
-/// Turns elements of negative volume around; for generators.
+/// Turns elements of negative volume around.
 template <int dim>
 void orient_elements(VolumeMesh<dim>& mesh);
 

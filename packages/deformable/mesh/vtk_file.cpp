@@ -51,7 +51,11 @@ struct Cells {
 template <int dim, int n_corners>
 class VtkReader {
  public:
-  explicit VtkReader(const std::string& file) : file_(file), lines_(file) {}
+  explicit VtkReader(const std::string& file) : file_(file), lines_(file) {
+    mesh_.names.file = file;
+    mesh_.names.simplex_word = "cell";
+    mesh_.names.vertex_word = "point";
+  }
 
   Simplices<dim, n_corners> read() {
     while (next() != "ASCII") {
@@ -71,7 +75,7 @@ class VtkReader {
     take_simplices();
     check_input(!mesh_.simplices.empty(), "{}: the file holds no {}.", file_,
                 simplex_name(n_corners));
-    drop_unused_vertices(mesh_);
+    drop_unused_vertices(mesh_.vertices, mesh_.simplices, mesh_.names.vertices);
     return std::move(mesh_);
   }
 
@@ -105,6 +109,7 @@ class VtkReader {
                   "{}: a mesh of a 2D scene must lie in z = 0, but point {} has z = {}.",
                   lines_.where(), i, x[2]);
       mesh_.vertices.push_back(x.head<dim>());
+      mesh_.names.vertices.push_back(i);
     }
   }
 
@@ -160,6 +165,7 @@ class VtkReader {
       corners[k] = static_cast<int>(point);
     }
     mesh_.simplices.push_back(corners);
+    mesh_.names.simplices.push_back(cell);
   }
 
   std::string file_;

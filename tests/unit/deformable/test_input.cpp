@@ -1,4 +1,7 @@
 // What a scene may get wrong.
+#include <filesystem>
+#include <fstream>
+
 #include "support.hpp"
 
 namespace lockstep {
@@ -82,6 +85,21 @@ TEST(Input, Cloth) {
     mass += made.density * area;
   EXPECT_NEAR(mass, 1, 1e-12);
   EXPECT_FALSE(made.closed);
+}
+
+TEST(Input, ClothOfAFileIsScaledWeldedAndOriented) {
+  const std::string file =
+      ::testing::TempDir() + "cloth" + std::to_string(world()->getRank()) + ".obj";
+  std::ofstream(file) << "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1e-7 0 0\nv 2 2 1e-7\nv 0 2 0\n"
+                         "f 1 2 3\nf 4 6 5\n";
+  const auto made = cloth<3>(
+      geometry("file", text("File", file) + number("Scale", "0.5") + number("Weld", "1e-6") +
+                           "<Parameter name=\"Orient\" type=\"bool\" value=\"true\"/>") +
+      sheet);
+  std::filesystem::remove(file);
+  EXPECT_EQ(made.n_nodes(), 4);
+  EXPECT_NEAR(made.element_measure[0] + made.element_measure[1], 1, 1e-6);
+  EXPECT_EQ(made.surface[1], (std::array<int, 3>{3, 0, 2}));
 }
 
 // H3: a reported condition, no division by zero.

@@ -73,7 +73,8 @@ TEST(VolumeMesh, BadElementsAreNamed) {
   const auto sound = mesh;
   std::swap(mesh.elements[3][0], mesh.elements[3][1]);
   EXPECT_THAT(test::error([&] { check_volume_mesh(mesh, "plate"); }),
-              AllOf(HasSubstr("'plate'"), HasSubstr("element 3 is inverted")));
+              AllOf(HasSubstr("'plate'"), HasSubstr("element 3 about"), HasSubstr("is inverted"),
+                    HasSubstr("one of 1 of"), HasSubstr("\"Orient\"")));
   mesh = sound;
   for (auto& element : mesh.elements)
     std::swap(element[0], element[1]);
@@ -97,6 +98,17 @@ TEST(VolumeMesh, BadElementsAreNamed) {
   EXPECT_THAT(test::error([&] { extract_surface(mesh, "plate"); }), HasSubstr("share one side"));
 }
 
+template <int dim>
+VolumeMesh<dim> read_volume(const std::string& file) {
+  MeshNames names;
+  return read_volume_mesh<dim>(file, names);
+}
+template <int dim>
+SurfaceMesh<dim> read_shell(const std::string& file) {
+  MeshNames names;
+  return read_shell_mesh<dim>(file, names);
+}
+
 class MeshFile : public ::testing::Test {
  protected:
   explicit MeshFile(const std::string& extension)
@@ -117,14 +129,14 @@ struct VtkFile : MeshFile {
 };
 
 TEST_F(GmshFile, Version2) {
-  const auto mesh = read_volume_mesh<3>(
+  const auto mesh = read_volume<3>(
       write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body\"\n"
             "$EndPhysicalNames\n$Nodes\n5\n7 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n9 5 5 5\n$EndNodes\n"
             "$Elements\n2\n1 2 2 1 1 7 2 3\n2 4 2 1 1 7 2 3 4\n$EndElements\n"));
   ASSERT_EQ(mesh.elements.size(), 1u);
   ASSERT_EQ(mesh.vertices.size(), 4u);  // node 9 is used by nobody
   EXPECT_NEAR(mesh_volume(mesh), 1. / 6, 1e-15);
-  EXPECT_EQ(read_shell_mesh<3>(path_).simplices.size(), 1u);
+  EXPECT_EQ(read_shell<3>(path_).simplices.size(), 1u);
 }
 
 const char* const square_of_version_4 =
@@ -133,25 +145,37 @@ const char* const square_of_version_4 =
     "$Elements\n2 3 1 3\n1 1 1 1\n1 1 2\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
 
 TEST_F(GmshFile, Version4) {
-  const auto mesh = read_volume_mesh<2>(write(square_of_version_4));
+  const auto mesh = read_volume<2>(write(square_of_version_4));
   ASSERT_EQ(mesh.elements.size(), 2u);
   EXPECT_NEAR(mesh_volume(mesh), 1, 1e-15);
-  EXPECT_EQ(read_shell_mesh<2>(path_).simplices.size(), 1u);
+  EXPECT_EQ(read_shell<2>(path_).simplices.size(), 1u);
+}
+
+TEST_F(GmshFile, DefectsAreNamedAsInTheFile) {
+  MeshNames names;
+  auto mesh = read_volume_mesh<2>(
+      write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n99 8 8 0\n11 0 0 0\n12 1 0 0\n13 1 "
+            "1 0\n14 0 1 0\n$EndNodes\n$Elements\n2\n21 2 0 11 12 13\n25 2 0 11 14 13\n"
+            "$EndElements\n"),
+      names);
+  EXPECT_EQ(names.vertices, (std::vector<long>{11, 12, 13, 14}));
+  EXPECT_THAT(test::error([&] { check_volume_mesh(mesh, "plate", 1e-4, names); }),
+              AllOf(HasSubstr(path_), HasSubstr("element 25 (line 15) about (0.333333, 0.666667)"),
+                    HasSubstr("one of 1 of 2")));
 }
 
 TEST_F(GmshFile, ErrorsNameTheLine) {
-  EXPECT_THAT(test::error([&] { read_volume_mesh<2>("no/such.msh"); }), HasSubstr("cannot open"));
-  EXPECT_THAT(
-      test::error([&] { read_volume_mesh<2>(write("$MeshFormat\n2.2 1 8\n$EndMeshFormat\n")); }),
-      AllOf(HasSubstr("line 2"), HasSubstr("binary")));
-  EXPECT_THAT(test::error([&] { read_volume_mesh<3>(write(square_of_version_4)); }),
+  EXPECT_THAT(test::error([&] { read_volume<2>("no/such.msh"); }), HasSubstr("cannot open"));
+  EXPECT_THAT(test::error([&] { read_volume<2>(write("$MeshFormat\n2.2 1 8\n$EndMeshFormat\n")); }),
+              AllOf(HasSubstr("line 2"), HasSubstr("binary")));
+  EXPECT_THAT(test::error([&] { read_volume<3>(write(square_of_version_4)); }),
               HasSubstr("no tetrahedra"));
   std::string broken = square_of_version_4;
   broken.replace(broken.find("3 1 3 4"), 7, "3 1 3 8");
-  EXPECT_THAT(test::error([&] { read_volume_mesh<2>(write(broken)); }),
+  EXPECT_THAT(test::error([&] { read_volume<2>(write(broken)); }),
               AllOf(HasSubstr("element 3"), HasSubstr("node 8")));
   broken.resize(broken.size() - 20);
-  EXPECT_THAT(test::error([&] { read_volume_mesh<2>(write(broken)); }), HasSubstr("line 27"));
+  EXPECT_THAT(test::error([&] { read_volume<2>(write(broken)); }), HasSubstr("line 27"));
 }
 
 const std::string vtk_header = "# vtk DataFile Version 3.0\na title\nASCII\n";
@@ -159,29 +183,29 @@ const std::string vtk_points =
     "DATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0\n1 1 0 0 1 0 9 9 0\n";
 
 TEST_F(VtkFile, CountsBeforeCells) {
-  const auto mesh = read_volume_mesh<2>(
+  const auto mesh = read_volume<2>(
       write(vtk_header + vtk_points +
             "CELLS 3 11\n2 0 1\n3 0 1 2\n3 0 2 3\nCELL_TYPES 3\n3\n5 5\nPOINT_DATA 5\n"));
   ASSERT_EQ(mesh.elements.size(), 2u);
   ASSERT_EQ(mesh.vertices.size(), 4u);  // the fifth is used by nobody
   EXPECT_NEAR(mesh_volume(mesh), 1, 1e-15);
-  EXPECT_EQ(read_shell_mesh<2>(path_).simplices.size(), 1u);
+  EXPECT_EQ(read_shell<2>(path_).simplices.size(), 1u);
 }
 
 TEST_F(VtkFile, OffsetsOfVersion5) {
-  const auto mesh = read_volume_mesh<3>(
+  const auto mesh = read_volume<3>(
       write("# vtk DataFile Version 5.1\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
             "0 0 0 1 0 0 0 1 0 0 0 1\nMETADATA\nINFORMATION 0\n\nCELLS 3 7\n"
             "OFFSETS vtktypeint64\n0 3 7\nCONNECTIVITY vtktypeint64\n0 1 2 0 1 2 3\n"
             "CELL_TYPES 2\n5\n10\n"));
   ASSERT_EQ(mesh.elements.size(), 1u);
   EXPECT_NEAR(mesh_volume(mesh), 1. / 6, 1e-15);
-  EXPECT_EQ(read_shell_mesh<3>(path_).simplices.size(), 1u);
+  EXPECT_EQ(read_shell<3>(path_).simplices.size(), 1u);
 }
 
 TEST_F(VtkFile, ErrorsNameTheLine) {
   const auto error_of = [&](const std::string& content) {
-    return test::error([&] { read_volume_mesh<2>(write(content)); });
+    return test::error([&] { read_volume<2>(write(content)); });
   };
   EXPECT_THAT(error_of("<?xml version=\"1.0\"?>\n"), HasSubstr("no legacy VTK file"));
   EXPECT_THAT(error_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("is binary"));

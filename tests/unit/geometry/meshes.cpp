@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 
 #include "base/errors.hpp"
+#include "geometry/mesh_repair.hpp"
+#include "geometry/surface_check.hpp"
+#include "geometry/surface_parts.hpp"
 #include "support.hpp"
 
 namespace lockstep {
@@ -165,7 +168,8 @@ TEST(CheckSurface, NamesTheDefect) {
   auto open = box_surface<3>({1, 1, 1}, 2);
   open.simplices.pop_back();
   EXPECT_THAT(message_of([&] { check_surface(open, true, "hull"); }),
-              AllOf(HasSubstr("'hull'"), HasSubstr("shared by 1 simplices")));
+              AllOf(HasSubstr("'hull'"), HasSubstr("1 hole, with 3 edges of one triangle only"),
+                    HasSubstr("Thin Shell")));
   EXPECT_NO_THROW(check_surface(open, false, "hull"));
   auto twisted = box_surface<3>({1, 1, 1}, 2);
   std::swap(twisted.simplices[3][0], twisted.simplices[3][1]);
@@ -174,12 +178,147 @@ TEST(CheckSurface, NamesTheDefect) {
   auto flat = box_surface<2>({1, 1}, 2);
   flat.simplices.push_back({1, 1});
   EXPECT_THAT(message_of([&] { check_surface(flat, false, "hull"); }),
-              HasSubstr("simplex 4 is degenerate"));
+              AllOf(HasSubstr("1 segment is degenerate"), HasSubstr("segment 4")));
   flat.simplices.back() = {1, 9};
   EXPECT_THAT(message_of([&] { check_surface(flat, false, "hull"); }), HasSubstr("vertex 9"));
   flat.simplices.pop_back();
   flat.vertices[2].x() = std::nan("");
   EXPECT_THAT(message_of([&] { check_surface(flat, false, "hull"); }), HasSubstr("vertex 2"));
+}
+
+/// As if read from a file.
+template <int dim>
+std::string message_of(SurfaceMesh<dim> mesh) {
+  MeshNames names;
+  names.file = "hull.obj";
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    names.vertices.push_back(static_cast<long>(v) + 1);
+  for (std::size_t s = 0; s < mesh.simplices.size(); ++s)
+    names.simplex_lines.push_back(100 + static_cast<long>(s));
+  return message_of([&] { check_surface(mesh, {"hull", true, true}, names); });
+}
+
+template <int dim>
+void append(SurfaceMesh<dim>& mesh, const SurfaceMesh<dim>& other, bool inside_out = false) {
+  const int first = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (auto simplex : other.simplices) {
+    for (int& v : simplex)
+      v += first;
+    if (inside_out)
+      std::swap(simplex[0], simplex[1]);
+    mesh.simplices.push_back(simplex);
+  }
+}
+
+TEST(CheckSurface, CountsAndPlacesDefectsInTheFilesNumbers) {
+  auto open = box_surface<3>({1, 1, 1}, 2);  // 12 triangles
+  open.simplices.pop_back();
+  open.simplices.erase(open.simplices.begin());
+  append(open, moved<3>(open, {5, 0, 0}));
+  EXPECT_THAT(
+      message_of(open),
+      AllOf(HasSubstr("'hull' (hull.obj)"), HasSubstr("2 holes, with 8 edges"),
+            HasSubstr("from vertex 1 at (-0.5, -0.5, -0.5) to vertex 3 at (-0.5, 0.5, 0.5), "
+                      "of the triangle of line 100"),
+            HasSubstr("0.5"), HasSubstr("\"Weld\""), HasSubstr("\"Thin Shell\"")));
+  auto line = box_surface<2>({1, 1}, 2);
+  line.simplices.pop_back();
+  EXPECT_THAT(message_of(line), HasSubstr("2 loose ends, the first vertex 2 at (-0.5, 0.5)"));
+  auto twisted = box_surface<3>({1, 1, 1}, 2);
+  std::swap(twisted.simplices[3][0], twisted.simplices[3][1]);
+  EXPECT_THAT(message_of(twisted), AllOf(HasSubstr("3 edges whose two triangles are oriented"),
+                                         HasSubstr("\"Orient\" turns them")));
+}
+
+template <int dim>
+void expect_hole_is_seen() {
+  const auto outer = box_surface<dim>(Point<dim>::Constant(2), 3);
+  const auto inner = box_surface<dim>(Point<dim>::Constant(1), 3);
+  const double right = std::pow(2, dim) - 1;
+  SurfaceMesh<dim> mesh = outer;
+  append(mesh, inner, true);
+  EXPECT_EQ(message_of(mesh), "no error");
+  SurfaceMesh<dim> wrong = outer;
+  append(wrong, inner);
+  EXPECT_THAT(message_of(wrong), AllOf(HasSubstr("1 of its 2 closed parts faces the wrong way"),
+                                       HasSubstr("bounds a hole"), HasSubstr("\"Orient\"")));
+  orient_surface(wrong);
+  EXPECT_EQ(message_of(wrong), "no error");
+  EXPECT_NEAR(volume_properties(wrong).measure, right, 1e-14);
+  // A body in the hole faces out again; all of them inside out are turned around.
+  append(wrong, box_surface<dim>(Point<dim>::Constant(0.5), 3));
+  EXPECT_EQ(message_of(wrong), "no error");
+  for (auto& simplex : wrong.simplices)
+    std::swap(simplex[0], simplex[1]);
+  check_surface(wrong, true, "hull");
+  EXPECT_NEAR(volume_properties(wrong).measure, right + std::pow(0.5, dim), 1e-14);
+}
+
+TEST(CheckSurface, AHoleMustFaceIntoItself) {
+  expect_hole_is_seen<2>();
+  expect_hole_is_seen<3>();
+}
+
+TEST(CheckSurface, SelfCrossings) {
+  SurfaceMesh<2> bow{{{0, 0}, {2, 1}, {2, 0}, {0, 1}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
+  EXPECT_THAT(message_of(bow),
+              AllOf(HasSubstr("crosses itself in 1 pair of segments"), HasSubstr("line 100"),
+                    HasSubstr("line 102"), HasSubstr("at (1, 0.5)")));
+  auto boxes = box_surface<3>({1, 1, 1}, 2);
+  append(boxes, moved<3>(box_surface<3>({1, 1, 1}, 2), {0.7, 0.1, 0.2}));
+  EXPECT_THAT(message_of(boxes), HasSubstr("crosses itself"));
+  auto apart = box_surface<3>({1, 1, 1}, 2);
+  append(apart, moved<3>(box_surface<3>({1, 1, 1}, 2), {1, 0.1, 0.2}));  // they touch
+  EXPECT_EQ(message_of(apart), "no error");
+}
+
+TEST(MeshRepair, WeldsTriangleSoup) {
+  const auto box = box_surface<3>({1, 1, 1}, 2);
+  SurfaceMesh<3> soup;
+  MeshNames names;
+  names.file = "soup.stl";
+  for (const auto& triangle : box.simplices) {
+    for (const int v : triangle) {
+      names.vertices.push_back(static_cast<long>(soup.vertices.size()));
+      soup.vertices.push_back(1000 * box.vertices[v] +
+                              Point<3>::Constant(0.01 * (soup.vertices.size() % 3)));
+    }
+    const int n = static_cast<int>(soup.vertices.size());
+    soup.simplices.push_back({n - 3, n - 2, n - 1});
+    names.simplex_lines.push_back(7 * n);
+  }
+  soup.vertices.push_back(soup.vertices.front() + Point<3>(1e-3, 0, 0));
+  soup.simplices.push_back({0, 36, 1});  // a sliver, which goes
+  names.vertices.push_back(36);
+  names.simplex_lines.push_back(1);
+  MeshRepair repair;
+  repair.scale = 1e-3;
+  scale_and_weld(repair, soup.vertices, soup.simplices, names);
+  EXPECT_FALSE(is_closed(soup));
+  repair.scale = 1;
+  repair.weld = 1e-4;
+  scale_and_weld(repair, soup.vertices, soup.simplices, names);
+  EXPECT_TRUE(is_closed(soup));
+  EXPECT_EQ(soup.vertices.size(), 8u);
+  EXPECT_EQ(names.vertices.size(), 8u);
+  EXPECT_EQ(names.simplex_lines.size(), 12u);
+  EXPECT_NEAR(volume_properties(soup).measure, 1, 1e-3);
+  repair.weld = 10;
+  EXPECT_THAT(message_of([&] { scale_and_weld(repair, soup.vertices, soup.simplices, names); }),
+              HasSubstr("\"Weld\""));
+}
+
+TEST(MeshRepair, OrientsWhatIsMixed) {
+  auto ball = ball_surface<3>(1, 0.5);
+  const double volume = volume_properties(ball).measure;
+  std::mt19937 random(3);
+  for (auto& triangle : ball.simplices)
+    if (random() % 2)
+      std::swap(triangle[1], triangle[2]);
+  orient_surface(ball);
+  EXPECT_TRUE(is_closed(ball));
+  EXPECT_NEAR(volume_properties(ball).measure, volume, 1e-12);
 }
 
 }  // namespace

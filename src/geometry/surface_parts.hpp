@@ -1,0 +1,50 @@
+#pragma once
+#include <vector>
+
+#include "geometry/surface_mesh.hpp"
+
+namespace lockstep {
+
+/// A rim of a simplex: an edge in 3D (its vertices in ascending order), a vertex in 2D (twice).
+struct Rim {
+  int first = 0, second = 0;
+  /// Of traversal, +1 or -1: two neighbours of like orientation have opposite ones.
+  int direction = 0;
+  int simplex = 0;
+};
+
+/// The rims of all simplices, those of one place together.
+template <int dim>
+std::vector<Rim> sorted_rims(const SurfaceMesh<dim>& mesh);
+
+/// Calls f(first, number) for each run of rims at one place.
+template <typename Function>
+void for_each_place(const std::vector<Rim>& rims, const Function& f) {
+  for (std::size_t i = 0, n = 0; i < rims.size(); i += n) {
+    for (n = 1; i + n < rims.size() && rims[i + n].first == rims[i].first &&
+                rims[i + n].second == rims[i].second;)
+      ++n;
+    f(static_cast<int>(i), static_cast<int>(n));
+  }
+}
+
+/// Simplices joined by rims of exactly two of them.
+template <int dim>
+struct SurfacePart {
+  std::vector<int> simplices;
+  bool closed = false;  ///< all its rims join two simplices
+  double volume = 0;    ///< of a closed one, negative if it faces inwards [m^dim]
+  int depth = 0;        ///< of a closed one: how many other closed ones enclose it
+  /// A part inside an odd number of others bounds a hole, and faces into it.
+  bool faces_right() const { return (depth % 2 == 0) == (volume > 0); }
+};
+/// `volume` and `depth` mean something where neighbours agree in orientation.
+template <int dim>
+std::vector<SurfacePart<dim>> surface_parts(const SurfaceMesh<dim>& mesh);
+
+/// Turns simplices so that neighbours agree, where that is possible, each part like its first
+/// simplex; then closed parts so that they face out of the solid.
+template <int dim>
+void orient_surface(SurfaceMesh<dim>& mesh);
+
+}  // namespace lockstep
