@@ -113,7 +113,8 @@ void check_quantity(const Quantity& quantity, const Bodies& bodies, const Variab
     for (const char* name : {"x", "y", "z", "t"})
       variables[name] = 1;
   }
-  check_formula(quantity.expression, variables, where);
+  if (quantity.from != Quantity::From::line)
+    check_formula(quantity.expression, variables, where);
   if (!quantity.reference.empty() && trimmed(quantity.reference) != "self")
     check_formula(quantity.reference, common, fmt::format("Reference of \"{}\"", quantity.name));
 }

@@ -110,6 +110,54 @@ double field_value(const Quantity& quantity, const RunResults& run, const Variab
   return quantity.norm == Quantity::Norm::l1 ? sum / n : std::sqrt(squares / n);
 }
 
+/// The largest value along a line of cells, `sign` = -1: of the negative field.
+double line_maximum(const Quantity& quantity, const FrameField& field, double sign) {
+  const auto axis = static_cast<std::size_t>(quantity.axis);
+  const std::array<std::size_t, 3> stride{field.n_components, field.n_components * field.n_cells[0],
+                                          field.n_components * field.n_cells[0] * field.n_cells[1]};
+  // Across the line, the two cells around it and the share of the upper one.
+  std::size_t first = static_cast<std::size_t>(quantity.component);
+  std::array<std::size_t, 3> step{};
+  std::array<double, 3> share{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (a == axis || field.n_cells[a] == 1)
+      continue;
+    const double place = std::clamp((quantity.point[a] - field.origin[a]) / field.spacing[a] - 0.5,
+                                    0.0, static_cast<double>(field.n_cells[a]) - 1);
+    const auto cell = std::min(static_cast<std::size_t>(place), field.n_cells[a] - 2);
+    first += cell * stride[a];
+    step[a] = stride[a];
+    share[a] = place - static_cast<double>(cell);
+  }
+  std::vector<double> values(field.n_cells[axis], 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      std::size_t at = first + i * stride[axis];
+      double weight = sign;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const bool upper = ((corner >> a) & 1) != 0;
+        at += upper ? step[a] : 0;
+        weight *= upper ? share[a] : 1 - share[a];
+      }
+      values[i] += weight == 0 ? 0 : weight * field.values[at];
+    }
+  }
+  const auto top = std::max_element(values.begin(), values.end());
+  if (top == values.begin() || top + 1 == values.end())
+    return *top;
+  const double slope = 0.5 * (top[1] - top[-1]), bend = top[1] - 2 * top[0] + top[-1];
+  return bend == 0 ? *top : *top - 0.5 * slope * slope / bend;
+}
+
+double line_value(const Quantity& quantity, const RunResults& run) {
+  const FrameField field = read_last_frame(run.directory, quantity.field);
+  check_input(static_cast<std::size_t>(quantity.component) < field.n_components,
+              "Quantity \"{}\": \"{}\" has no component {}.", quantity.name, quantity.field,
+              quantity.component);
+  const double sign = quantity.over == Quantity::Over::max ? 1 : -1;
+  return sign * line_maximum(quantity, field, sign);
+}
+
 }  // namespace
 
 Variables run_variables(const Study& study, const StudyCase& study_case, const RunResults& run) {
@@ -131,6 +179,8 @@ double measure(const Quantity& quantity, const RunResults& run, const Variables&
     case Quantity::From::surface:
       return row_value(quantity, read_surface_rows(run.directory, quantity.solid, quantity.point),
                        variables);
+    case Quantity::From::line:
+      return line_value(quantity, run);
     case Quantity::From::field:
       return field_value(quantity, run, variables);
   }

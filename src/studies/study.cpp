@@ -71,7 +71,7 @@ void declare_reduction(ParameterList& list) {
 }
 
 std::vector<TypedSchema> quantity_types() {
-  ParameterList table, surface, field;
+  ParameterList table, surface, field, line;
   declare_required<std::string>(
       table, "Expression",
       "Formula of the columns of history.csv, of bodies.csv as BODY.column, of summary.json as "
@@ -95,9 +95,21 @@ std::vector<TypedSchema> quantity_types() {
                  "Of the difference, per unit volume: mean of |e|, root of the mean of e^2, max "
                  "|e|. It is value and error at once.");
   declare_targets(field);
+  declare_required<std::string>(line, "Field", "Field of the last frame, such as \"velocity\".");
+  declare_at_least(line, "Component", 0, 0, "Component of a vector: 0, 1, 2.");
+  declare_choice(line, "Axis", "x", {"x", "y", "z"}, "Along which the line runs.");
+  declare_required<ParameterArray<double>>(line, "Point", "That the line goes through [m].");
+  declare_choice(
+      line, "Over", "max", {"max", "min"},
+      "The extremum wanted: of the parabola through three neighbouring centres of cells; "
+      "across the line values are linear between cells.");
+  declare_reference(line);
+  declare_targets(line);
+  declare(line, "Extrapolate", false, "As for tables.");
   return {{"table", "From the tables of a run.", table},
           {"surface", "From a solid's surface in the frames of a run, one row a frame.", surface},
-          {"field", "Difference of a cell-centred field to an exact solution.", field}};
+          {"field", "Difference of a cell-centred field to an exact solution.", field},
+          {"line", "Extremum of a cell-centred field along a line parallel to an axis.", line}};
 }
 
 ParameterList curve_parameters() {
@@ -180,13 +192,24 @@ Value choice(const std::string& text, const std::vector<std::pair<const char*, V
       ->second;
 }
 
-void read_vertex(const ParameterList& list, const std::string& name, Quantity& quantity) {
-  quantity.solid = list.get<std::string>("Solid");
+void read_point(const ParameterList& list, const std::string& name, Quantity& quantity) {
   const auto& point = list.get<ParameterArray<double>>("Point");
   check_input(point.size() == 2 || point.size() == 3,
               "In quantity \"{}\", \"Point\" has {} components; it must have 2 or 3.", name,
               point.size());
   std::copy(point.begin(), point.end(), quantity.point.begin());
+}
+
+void read_line(const ParameterList& list, const std::string& name, Quantity& quantity) {
+  read_point(list, name, quantity);
+  quantity.field = list.get<std::string>("Field");
+  quantity.component = list.get<int>("Component");
+  quantity.axis = choice<int>(list.get<std::string>("Axis"), {{"x", 0}, {"y", 1}, {"z", 2}});
+  quantity.over = choice<Quantity::Over>(
+      list.get<std::string>("Over"), {{"max", Quantity::Over::max}, {"min", Quantity::Over::min}});
+  quantity.reference = list.get<std::string>("Reference");
+  quantity.relative = list.get<bool>("Relative");
+  quantity.extrapolate = list.get<bool>("Extrapolate");
 }
 
 Quantity read_quantity(const ParameterList& list, const std::string& name) {
@@ -196,9 +219,10 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
   Quantity quantity;
   quantity.name = name;
   quantity.targets = list.get<ParameterArray<double>>("Targets").toVector();
-  quantity.from =
-      choice<From>(list.get<std::string>("Type"),
-                   {{"table", From::tables}, {"surface", From::surface}, {"field", From::field}});
+  quantity.from = choice<From>(list.get<std::string>("Type"), {{"table", From::tables},
+                                                               {"surface", From::surface},
+                                                               {"field", From::field},
+                                                               {"line", From::line}});
   if (quantity.from == From::field) {
     quantity.expression = list.get<std::string>("Exact");
     quantity.field = list.get<std::string>("Field");
@@ -206,6 +230,10 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
     quantity.norm = choice<Norm>(list.get<std::string>("Norm"),
                                  {{"L1", Norm::l1}, {"L2", Norm::l2}, {"max", Norm::max}});
     quantity.reference = "0";
+    return quantity;
+  }
+  if (quantity.from == From::line) {
+    read_line(list, name, quantity);
     return quantity;
   }
   quantity.expression = list.get<std::string>("Expression");
@@ -217,8 +245,10 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
                                                                {"rms", Over::rms},
                                                                {"amplitude", Over::amplitude},
                                                                {"frequency", Over::frequency}});
-  if (quantity.from == From::surface)
-    read_vertex(list, name, quantity);
+  if (quantity.from == From::surface) {
+    quantity.solid = list.get<std::string>("Solid");
+    read_point(list, name, quantity);
+  }
   if (list.isParameter("From Time"))
     quantity.from_time = list.get<double>("From Time");
   quantity.reference = list.get<std::string>("Reference");

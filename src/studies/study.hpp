@@ -26,7 +26,7 @@ struct Series {
 
 /// One column of results, and what it is compared with.
 struct Quantity {
-  enum class From { tables, surface, field };
+  enum class From { tables, surface, field, line };
   enum class Over { last, first, max, min, mean, rms, amplitude, frequency };
   enum class Norm { l1, l2, max };
   std::string name;
@@ -35,7 +35,8 @@ struct Quantity {
   Over over = Over::last;  ///< how the rows of a run become one number
   double from_time = std::numeric_limits<double>::lowest();  ///< rows before do not count [s]
   std::string solid;                                         ///< whose surface
-  std::array<double, 3> point{};  ///< that picks a vertex of the surface [m]
+  std::array<double, 3> point{};  ///< that picks a vertex of the surface, or of the line [m]
+  int axis = 0;                   ///< along which the line runs
   std::string field;              ///< dataset of the last frame
   int component = 0;
   Norm norm = Norm::l2;

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Stands in for simulate: a 'scene' whose error is h^2 + offset, in the files a run leaves behind. Its frames hold
-a unit square, "Ball 1", that breathes by a tenth with a period of 0.4 s.
+a unit square, "Ball 1", that breathes by a tenth with a period of 0.4 s, and a velocity (0, -x (1 - (y - 0.4)^2)).
 
 Understands --output and the settings Domain/Cells, Solids/Ball/Position and Fake/Fail (an exit code).
 """
@@ -54,3 +54,9 @@ for k in range(25):
         file.attrs["time"] = 0.05 * k
         file["solids/Ball 1/vertices"] = [[0.0, 0, 0], [size, 0, 0], [size, size, 0], [0, size, 0]]
         file["solids/Ball 1/simplices"] = [[0, 1], [1, 2], [2, 3], [3, 0]]
+        fluid = file.create_group("fluid")
+        for axis, spacing in zip("xyz", (h, h, 1.0)):
+            fluid.attrs[f"origin_{axis}"] = 0.0
+            fluid.attrs[f"spacing_{axis}"] = spacing
+        centers = [(i + 0.5) * h for i in range(cells[0])]
+        fluid["velocity"] = [[[[0.0, -x * (1 - (y - 0.4) ** 2), 0.0] for x in centers] for y in centers]]

@@ -112,6 +112,29 @@ TEST_F(Runs, SurfacesInTheFrames) {
   EXPECT_THROW(table(), OutputError);
 }
 
+TEST_F(Runs, ExtremaAlongLines) {
+  study_.ladder_values = {8};
+  Quantity low = study_.quantities[0];
+  low.from = Quantity::From::line;
+  low.field = "velocity";
+  low.component = 1;
+  low.axis = 1;
+  low.point = {0.3, 0, 0};  // between two columns of cells
+  low.over = Quantity::Over::min;
+  low.reference = "-0.3";
+  Quantity high = low;
+  high.over = Quantity::Over::max;
+  study_.quantities = {low, high};
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_NEAR(rows[0].value, -0.3, 1e-14);
+  EXPECT_NEAR(*rows[0].error, 0, 1e-13);
+  const double end = 15. / 16;  // the last cell
+  EXPECT_NEAR(rows[1].value, -0.3 * (1 - (end - 0.4) * (end - 0.4)), 1e-14);
+  study_.quantities[0].component = 3;
+  EXPECT_THROW(table(), InputError);
+}
+
 TEST_F(Runs, MeanAndSpreadOverSamples) {
   study_.ladder_values = {4};
   study_.n_samples = 3;
