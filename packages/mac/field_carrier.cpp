@@ -108,12 +108,14 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
     block.load(kind, passenger.field.values);
     for_each_row(frame_, kind, tile, [&](const Index<dim>& row, int first) {
       RowValues<dim> values, low, high;
-      const RowRays<dim> rays = block.trace(row, -1);
+      const RowRays<dim> rays = block.trace(row, -1, passenger.cubic());
       if (passenger.corrects()) {
         block.look_up(rays.end, values, &low, &high);
         const auto stays_inside = rays.clipped == 0;
         row_of<dim>(passenger.low.get(), first) = stays_inside.select(low, 1);
         row_of<dim>(passenger.high.get(), first) = stays_inside.select(high, 0);
+      } else if (passenger.cubic()) {
+        block.look_up_cubic(rays.end, values);
       } else {
         block.look_up(rays.end, values);
       }
@@ -130,12 +132,14 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
 
 template <int dim>
 void FieldCarrier<dim>::carry_singles(Passenger<dim>& passenger, int tile) {
-  frame_.for_each_sample(passenger.field.kind, tile,
-                         [&](int id, const Point<dim>& x) { carry_single(passenger, id, x); });
+  frame_.for_each_sample(passenger.field.kind, tile, [&](int id, const Point<dim>& x) {
+    carry_single(passenger, id, x, passenger.cubic());
+  });
 }
 
 template <int dim>
-void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x) {
+void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x,
+                                     bool wide) {
   const SampleKind kind = passenger.field.kind;
   bool has_value;
   if (!is_carried(kind, id, has_value)) {
@@ -143,7 +147,7 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
     return;
   }
   passenger.forbid_correction(id);
-  Ray<dim> ray = frame_.tracer->trace(x, -1);
+  Ray<dim> ray = frame_.tracer->trace(x, -1, wide);
   if (ray.complete)
     frame_.tracer->mix_inflow(kind, ray);
   if (ray.complete && ray.inflow_share == 1) {
@@ -157,6 +161,13 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
   }
   const double* values = passenger.field.values;
   double& carried = passenger.carried()[id];
+  if (wide && ray.inflow_share == 0) {
+    const WideStencil<dim> cubic = frame_.lattice->locate_wide(kind, ray.end);
+    if (cubic.complete()) {
+      carried = interpolate<dim>(cubic, values);
+      return;
+    }
+  }
   carried = interpolate<dim>(stencil, values);
   if (ray.inflow_share > 0)
     carried += ray.inflow_share * (passenger.field.inflow(ray) - carried);
@@ -193,9 +204,19 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
     keep(passenger, id, !carried && has_value);
     return;
   }
+  const auto way = [&x](const Ray<dim>& ray) {
+    return Box<dim>(x).extend(ray.middle).extend(ray.end);
+  };
+  if (passenger.cubic()) {
+    const Ray<dim> ray = frame_.tracer->trace(x, -1, true);
+    if (ray.complete && near_surface.clear(way(ray), false, 2)) {
+      if (!by_rows)
+        carry_single(passenger, id, x, true);
+      return;
+    }
+  }
   const Ray<dim> ray = frame_.tracer->trace(x, -1);
-  Box<dim> points(x);
-  points.extend(ray.middle).extend(ray.end);
+  Box<dim> points = way(ray);
   if (!ray.complete || !near_surface.clear(points, false)) {
     if (kind != cell_centers && near_surface.inside(x))
       keep(passenger, id, false);
@@ -203,8 +224,8 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
       carry_seeing(passenger, id, x);
     return;
   }
-  if (!by_rows)
-    carry_single(passenger, id, x);
+  if (!by_rows || passenger.cubic())
+    carry_single(passenger, id, x, false);
   if (!passenger.may_correct(id))
     return;
   const Ray<dim> forward = frame_.tracer->trace(x, 1);
@@ -249,7 +270,7 @@ void FieldCarrier<dim>::carry_near_surfaces(std::vector<Passenger<dim>>& passeng
                              [&](int id, const Point<dim>& x) {
                                if (!near_surface.is_near(id)) {
                                  if (!by_rows)
-                                   carry_single(passenger, id, x);
+                                   carry_single(passenger, id, x, passenger.cubic());
                                  return;
                                }
                                if (!entered)

@@ -19,6 +19,7 @@ struct Passenger {
   /// Range of the samples used, of owned cells; empty (low > high): not to be corrected.
   std::unique_ptr<double[]> low, high;
 
+  bool cubic() const { return scheme == AdvectionScheme::cubic; }
   bool corrects() const { return scheme == AdvectionScheme::maccormack; }
   /// Where the semi-Lagrangian values go.
   CellField& carried() { return corrects() ? half_way : *result; }
@@ -46,7 +47,8 @@ class FieldCarrier {
   void carry_singles(Passenger<dim>& passenger, int tile);
   /// The samples near surfaces; `by_rows`: all have been carried as if there were none.
   void carry_near_surfaces(std::vector<Passenger<dim>>& passengers, int tile, bool by_rows);
-  void carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x);
+  /// `wide`: by cubics.
+  void carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x, bool wide);
   void carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x, bool by_rows);
   void carry_seeing(Passenger<dim>& passenger, int id, const Point<dim>& x);
   /// A partly open face whose centre a solid holds or passes keeps its own value and takes the

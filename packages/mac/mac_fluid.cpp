@@ -213,11 +213,15 @@ Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector
 
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
-  TransportSetting<dim> setting{
-      domain_.grid, geometry_.state,
-      surface,      advection_,
-      ray_halo_,    {},
-      dt,           parameters_.viscosity.viscosity / parameters_.density};
+  TransportSetting<dim> setting{domain_.grid,
+                                geometry_.state,
+                                surface,
+                                advection_,
+                                ray_halo_,
+                                {},
+                                dt,
+                                parameters_.viscosity.viscosity / parameters_.density,
+                                parameters_.advection == AdvectionScheme::cubic ? 2 : 1};
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = domain_.boundary.side(axis, end);

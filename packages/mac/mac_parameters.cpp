@@ -1,8 +1,20 @@
+#include <map>
+
 #include "mac/initial_state.hpp"
 #include "mac/mac_fluid.hpp"
 #include "mac/parameter_values.hpp"
 
 namespace lockstep {
+
+namespace {
+const std::map<std::string, AdvectionScheme>& advection_schemes() {
+  static const std::map<std::string, AdvectionScheme> schemes{
+      {"semi-lagrangian", AdvectionScheme::semi_lagrangian},
+      {"maccormack", AdvectionScheme::maccormack},
+      {"cubic", AdvectionScheme::cubic}};
+  return schemes;
+}
+}  // namespace
 
 template <int dim>
 ParameterList mac_parameters() {
@@ -17,9 +29,14 @@ ParameterList mac_parameters() {
                  "Acceleration of gravity, on fluid and solids [m/s^2].");
   declare_vector(list, "Body Force", filled_array(dim, 0.0), dim,
                  "Uniform acceleration of the fluid alone, besides gravity [m/s^2].");
-  declare_choice(list, "Advection", "maccormack", {"semi-lagrangian", "maccormack"},
+  std::vector<std::string> schemes;
+  for (const auto& [name, scheme] : advection_schemes())
+    schemes.push_back(name);
+  declare_choice(list, "Advection", "maccormack", schemes,
                  "semi-lagrangian: first order, damps; maccormack: second order where smooth, "
-                 "clamped to the values around, semi-lagrangian near surfaces.");
+                 "clamped to the values around; cubic: semi-lagrangian with cubic interpolation, "
+                 "third order, damps least, within the range of the 4 samples around along each "
+                 "axis. Any step is stable with all; near surfaces all are semi-lagrangian.");
   declare_between(
       list, "Order in Time", 1, 1, 2,
       "Of advection and all else together. 1: as in the paper, advection knows nothing of pressure "
@@ -48,9 +65,7 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   parameters.forces.expansion = fluid.get<double>("Thermal Expansion");
   parameters.forces.reference_temperature = fluid.get<double>("Reference Temperature");
   parameters.forces.smoke_weight = fluid.get<double>("Smoke Weight");
-  parameters.advection = fluid.get<std::string>("Advection") == "maccormack"
-                             ? AdvectionScheme::maccormack
-                             : AdvectionScheme::semi_lagrangian;
+  parameters.advection = advection_schemes().at(fluid.get<std::string>("Advection"));
   parameters.order_in_time = fluid.get<int>("Order in Time");
   check_input(parameters.forces.expansion == 0 || fluid.isSublist("Temperature"),
               "In \"Fluid\", \"Thermal Expansion\" is {} but the fluid has no temperature; add the "

@@ -31,8 +31,9 @@ class RayTracer {
         velocity_(velocity),
         cells_per_velocity_(cells_per_velocity) {}
 
-  /// From x against the flow (direction -1) or with it (+1).
-  Ray<dim> trace(const Point<dim>& x, double direction) const;
+  /// From x against the flow (direction -1) or with it (+1). `cubic`: the velocity is interpolated
+  /// by cubics.
+  Ray<dim> trace(const Point<dim>& x, double direction, bool cubic = false) const;
   /// Cuts the segment x -> end at the domain: at an inflow side where it leaves, elsewhere it
   /// slides.
   void clip(const Point<dim>& x, Ray<dim>& ray) const;
@@ -47,7 +48,7 @@ class RayTracer {
   double cells_per_velocity() const { return cells_per_velocity_; }
 
  private:
-  bool displacement(const Point<dim>& x, Point<dim>& d) const;
+  bool displacement(const Point<dim>& x, bool cubic, Point<dim>& d) const;
   /// Moves x into the domain along the axes that are not periodic; true if it was outside.
   bool clamp(Point<dim>& x) const;
 
@@ -58,7 +59,15 @@ class RayTracer {
 };
 
 template <int dim>
-bool RayTracer<dim>::displacement(const Point<dim>& x, Point<dim>& d) const {
+bool RayTracer<dim>::displacement(const Point<dim>& x, bool cubic, Point<dim>& d) const {
+  for (int a = 0; cubic && a < dim; ++a) {
+    const WideStencil<dim> stencil = lattice_.locate_wide(a, x);
+    if (!stencil.complete())
+      return false;
+    d[a] = interpolate<dim>(stencil, velocity_[a]) * cells_per_velocity_;
+  }
+  if (cubic)
+    return true;
   const auto stencils = lattice_.locate_faces(x);
   for (int a = 0; a < dim; ++a) {
     if (!stencils[a].complete())
@@ -69,15 +78,15 @@ bool RayTracer<dim>::displacement(const Point<dim>& x, Point<dim>& d) const {
 }
 
 template <int dim>
-Ray<dim> RayTracer<dim>::trace(const Point<dim>& x, double direction) const {
+Ray<dim> RayTracer<dim>::trace(const Point<dim>& x, double direction, bool cubic) const {
   Ray<dim> ray;
   Point<dim> d;
-  ray.complete = displacement(x, d);
+  ray.complete = displacement(x, cubic, d);
   if (!ray.complete)
     return ray;
   ray.middle = x + 0.5 * direction * d;
   clamp(ray.middle);
-  ray.complete = displacement(ray.middle, d);
+  ray.complete = displacement(ray.middle, cubic, d);
   ray.end = x + direction * d;
   clip(x, ray);
   return ray;

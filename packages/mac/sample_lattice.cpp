@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mac/cubic_weights.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -81,6 +83,42 @@ std::array<StencilCorner<dim>, (1 << dim)> SampleLattice<dim>::corners(SampleKin
     }
   }
   return result;
+}
+
+template <int dim>
+WideStencil<dim> SampleLattice<dim>::locate_wide(SampleKind kind, Point<dim> x) const {
+  const Point<dim> offset = sample_offset<dim>(kind);
+  WideStencil<dim> stencil;
+  std::array<std::array<int, 4>, dim> tile, place;
+  std::array<std::array<bool, 4>, dim> at_wall;
+  for (int a = 0; a < dim; ++a) {
+    const bool bounded = !periodic_[a], on_faces = a == kind;
+    const int last = last_sample(a, kind);
+    const double t = bounded ? std::clamp<double>(x[a] - offset[a], 0, last) : x[a] - offset[a];
+    const int below = static_cast<int>(std::floor(t));
+    const double f = t - below;
+    stencil.weight[a] =
+        cubic_weights(f, cubic_share(f, !bounded || below >= 1, !bounded || below + 2 <= last));
+    for (int k = 0; k < 4; ++k) {
+      const int i = resolve(a, on_faces, below - 1 + k);
+      at_wall[a][k] = on_faces && virtual_wall_[a] && i == n_cells_[a];
+      tile[a][k] = table_share(a, i);
+      place[a][k] = (i & (tile_width<dim> - 1)) << (log_tile_width<dim> * a);
+    }
+  }
+  for (int k = 0; k < 1 << (2 * dim); ++k) {
+    int in_table = 0, in_tile = 0;
+    bool wall = false;
+    for (int a = 0; a < dim; ++a) {
+      const int digit = (k >> (2 * a)) & 3;
+      in_table += tile[a][digit];
+      in_tile += place[a][digit];
+      wall |= at_wall[a][digit];
+    }
+    stencil.id[k] =
+        wall ? Stencil<dim>::wall_sample : table_[in_table] * tile_volume<dim> + in_tile;
+  }
+  return stencil;
 }
 
 template <int dim>

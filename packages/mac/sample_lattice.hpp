@@ -59,6 +59,36 @@ double interpolate(const Stencil<dim>& stencil, const double* field) {
   return value[0];
 }
 
+/// The 4^dim samples around a point and their weights along each axis, for cubic interpolation.
+template <int dim>
+struct WideStencil {
+  std::array<int, 1 << (2 * dim)> id;  ///< digits of the place, to base 4, x first; as in Stencil
+  std::array<std::array<double, 4>, dim> weight;
+
+  bool complete() const {
+    for (const int i : id)
+      if (i < 0 && i != Stencil<dim>::wall_sample)
+        return false;
+    return true;
+  }
+};
+
+/// Within the range of the samples, so that constants stay exact; the stencil is complete.
+template <int dim>
+double interpolate(const WideStencil<dim>& stencil, const double* field) {
+  double sum = 0, low = std::numeric_limits<double>::infinity(), high = -low;
+  for (int k = 0; k < 1 << (2 * dim); ++k) {
+    const double value = stencil.id[k] < 0 ? 0.0 : field[stencil.id[k]];
+    double weight = 1;
+    for (int a = 0; a < dim; ++a)
+      weight *= stencil.weight[a][(k >> (2 * a)) & 3];
+    sum += weight * value;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return std::clamp(sum, low, high);
+}
+
 /// Finds the samples around a point. Works in lattice units: x = (position - lower) / h, so that a
 /// cell spans [i, i + 1]. Copies what it needs of the grid: the ids of stored tiles, in a table
 /// over their bounding box.
@@ -71,10 +101,17 @@ class SampleLattice {
   Stencil<dim> locate(SampleKind kind, const Point<dim>& x) const;
   /// The same for all components of a velocity.
   std::array<Stencil<dim>, dim> locate_faces(const Point<dim>& x) const;
+  /// The samples of a cubic around x, which is moved between the outermost samples of axes that are
+  /// not periodic; beside them, of a parabola.
+  WideStencil<dim> locate_wide(SampleKind kind, Point<dim> x) const;
   /// The samples around x with their weights and places.
   std::array<StencilCorner<dim>, (1 << dim)> corners(SampleKind kind, const Point<dim>& x) const;
 
   const Index<dim>& n_cells() const { return n_cells_; }
+  /// The last sample along an axis that is not periodic.
+  int last_sample(int axis, SampleKind kind) const {
+    return n_cells_[axis] - (axis == kind ? 0 : 1);
+  }
   bool periodic(int axis) const { return periodic_[axis]; }
   /// Copies the samples of a cube of `width` cells that starts at `begin`, x fastest. False if any
   /// is missing.

@@ -17,16 +17,15 @@ constexpr double stand_off = 1e-3;
 }  // namespace
 
 template <int dim>
-SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
-                                        const SampleLattice<dim>& lattice,
-                                        const RayTracer<dim>& tracer,
-                                        const UsableSamples<dim>& usable,
-                                        const MovingSurface<dim>& surface,
-                                        double largest_displacement, double friction_speed)
+SurfaceTransport<dim>::SurfaceTransport(
+    const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice, const RayTracer<dim>& tracer,
+    const UsableSamples<dim>& usable, const MovingSurface<dim>& surface,
+    double largest_displacement, int stencil_reach, double friction_speed)
     : lattice_(lattice),
       tracer_(tracer),
       surface_(surface),
-      interpolation_(grid, lattice, usable, surface, friction_speed) {
+      interpolation_(grid, lattice, usable, surface, friction_speed),
+      stencil_reach_(stencil_reach) {
   if (interpolation_.nearby().empty())
     return;
   const SurfaceSnapshot<dim>& before = *surface.before;
@@ -43,9 +42,10 @@ SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid,
     swept_[s] = widened<dim>(swept_[s], 2 * interpolation_.nearby().tolerance());
   }
   short_ray_ = std::min(longest_short_ray, largest_displacement + surface_displacement_ + 0.01);
-  // What a ray crosses, and the samples one cell around it, must be clear of surfaces.
-  near_ = mark_within(grid, before,
-                      (largest_displacement + 1 + surface_displacement_) * grid.spacing());
+  // What a ray crosses, and the samples around it, must be clear of surfaces.
+  near_ =
+      mark_within(grid, before,
+                  (largest_displacement + stencil_reach + surface_displacement_) * grid.spacing());
   near_tiles_.resize(grid.n_owned_tiles());
   for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
     const auto first = near_.begin() + tile * tile_volume<dim>;
@@ -60,7 +60,8 @@ void SurfaceTransport<dim>::enter(const Index<dim>& begin, const Index<dim>& end
     box.min()[a] = begin[a];
     box.max()[a] = end[a];
   }
-  interpolation_.enter(widened<dim>(box, 1.1 + short_ray_ + surface_displacement_));
+  interpolation_.enter(
+      widened<dim>(box, 0.1 + stencil_reach_ + short_ray_ + surface_displacement_));
   const Box<dim> wide = interpolation_.physical(widened<dim>(box, surface_displacement_ + 0.01));
   const Box<dim> exact = interpolation_.physical(box);
   surface_.before->touching(wide, candidates_);
@@ -98,8 +99,8 @@ bool SurfaceTransport<dim>::inside(const Point<dim>& x) const {
 }
 
 template <int dim>
-bool SurfaceTransport<dim>::clear(const Box<dim>& points, bool during_step) const {
-  const double margin = during_step ? 1 + surface_displacement_ : 1;
+bool SurfaceTransport<dim>::clear(const Box<dim>& points, bool during_step, int reach) const {
+  const double margin = during_step ? reach + surface_displacement_ : reach;
   return !interpolation_.nearby().touches(interpolation_.physical(widened<dim>(points, margin)));
 }
 

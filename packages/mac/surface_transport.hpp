@@ -23,12 +23,13 @@ struct CarriedField {
 template <int dim>
 class SurfaceTransport {
  public:
-  /// `largest_displacement` of a ray along an axis, in cells; `friction_speed` [m/s] is what
-  /// friction takes off the speed at which fluid slips. References must outlive this object.
+  /// `largest_displacement` of a ray along an axis, in cells, and `stencil_reach` of the farthest
+  /// samples looked at from its end; `friction_speed` [m/s] is what friction takes off the speed at
+  /// which fluid slips. References must outlive this object.
   SurfaceTransport(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
                    const RayTracer<dim>& tracer, const UsableSamples<dim>& usable,
                    const MovingSurface<dim>& surface, double largest_displacement,
-                   double friction_speed);
+                   int stencil_reach, double friction_speed);
 
   /// True if a surface may come into the way of a ray from a sample of the owned cell, forth or
   /// back, or sweep over it.
@@ -41,9 +42,9 @@ class SurfaceTransport {
   bool swept(const Point<dim>& x) const;
   /// Inside a closed solid at t^n: possible for the centre of a coupled face.
   bool inside(const Point<dim>& x) const;
-  /// True if no surface touches the points and their surroundings of one cell, at t^n or, with
+  /// True if no surface touches the points and their surroundings of `reach` cells, at t^n or, with
   /// `during_step`, at any time of the step.
-  bool clear(const Box<dim>& points, bool during_step) const;
+  bool clear(const Box<dim>& points, bool during_step, int reach = 1) const;
   /// The value carried to the sample at x; none if it sees no valid sample.
   std::optional<double> carry(const CarriedField<dim>& field, const Point<dim>& x);
   /// A velocity `own` of the sample whose fluid is at x, beside it: changes as what is seen at x
@@ -64,6 +65,7 @@ class SurfaceTransport {
   const RayTracer<dim>& tracer_;
   const MovingSurface<dim>& surface_;
   VisibleInterpolation<dim> interpolation_;
+  int stencil_reach_;
   double surface_displacement_ = 0;  ///< largest of a vertex over the step [cells]
   double short_ray_ = 0;  ///< rays up to this length need only what is gathered around their start
   std::vector<char> near_, near_tiles_;  ///< owned cells and tiles; empty without surface

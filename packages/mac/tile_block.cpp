@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "mac/cubic_weights.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -124,12 +126,122 @@ class RowStencil {
   bool in_step_;
 };
 
+/// The four samples around a row of points along one axis. Those before `first` and after `last` do
+/// not exist: they count for nothing, and points are moved between those that do.
+template <int dim>
+struct RowCubicSplit {
+  void set(const RowValues<dim>& x, int axis, double offset, const std::array<double, 2>& limits) {
+    const auto [first, last] = limits;
+    split.set(x.max(first + offset).min(last + offset), axis, offset);
+    const RowValues<dim>& f = split.weight;
+    RowValues<dim> share = (1 + f) / 3;
+    share = (split.below + 2 <= last).select(share, 0);
+    share = (split.below - 1 >= first).select(share, 1);
+    weights = cubic_weights<RowValues<dim>>(f, share);
+  }
+  RowSplit<dim> split;
+  std::array<RowValues<dim>, 4> weights;
+};
+
+/// The 4^dim samples around each point of a row.
+template <int dim>
+class RowCubic {
+ public:
+  RowCubic(const std::array<const RowCubicSplit<dim>*, dim>& splits,
+           const std::array<int, dim>& stride)
+      : splits_(splits), stride_(stride) {}
+
+  void interpolate(const double* block, RowValues<dim>& values) const {
+    RowValues<dim> strays = splits_[0]->split.strays;
+    for (int a = 1; a < dim; ++a)
+      strays += splits_[a]->split.strays;
+    if (strays.sum() == 0)
+      values = sum<RowValues<dim>>(block + first_at(0), [&](int a, int k) -> const RowValues<dim>& {
+        return splits_[a]->weights[k];
+      });
+    else
+      for (int i = 0; i < tile_width<dim>; ++i)
+        values[i] = sum<double>(block + first_at(i),
+                                [&](int a, int k) { return splits_[a]->weights[k][i]; });
+  }
+
+ private:
+  int first_at(int i) const {
+    double first = 0;
+    for (int a = 0; a < dim; ++a)
+      first += stride_[a] * (splits_[a]->split.below[i] - 1);
+    return static_cast<int>(first);
+  }
+  template <typename Values>
+  struct Range {
+    void add(const Values& value) {
+      if constexpr (std::is_same_v<Values, double>) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+      } else {
+        low = low.min(value);
+        high = high.max(value);
+      }
+    }
+    Values low, high;
+  };
+  template <typename Values, typename Weight>
+  Values sum(const double* c, const Weight& weight) const {
+    Range<Values> range{at<Values>(c), at<Values>(c)};
+    const auto along_x = [&](const double* d) {
+      const Values v0 = at<Values>(d), v1 = at<Values>(d + 1);
+      const Values v2 = at<Values>(d + 2), v3 = at<Values>(d + 3);
+      range.add(v0);
+      range.add(v1);
+      range.add(v2);
+      range.add(v3);
+      return Values(weight(0, 0) * v0 + weight(0, 1) * v1 + weight(0, 2) * v2 + weight(0, 3) * v3);
+    };
+    const auto in_plane = [&](const double* d) {
+      Values total = weight(1, 0) * along_x(d);
+      for (int k = 1; k < 4; ++k)
+        total += weight(1, k) * along_x(d + k * stride_[1]);
+      return total;
+    };
+    Values total = in_plane_sum<Values>(c, weight, in_plane);
+    if constexpr (std::is_same_v<Values, double>)
+      return std::clamp(total, range.low, range.high);
+    else
+      return total.max(range.low).min(range.high);
+  }
+  template <typename Values, typename Weight, typename Plane>
+  Values in_plane_sum(const double* c, const Weight& weight, const Plane& in_plane) const {
+    if constexpr (dim == 2) {
+      return in_plane(c);
+    } else {
+      Values total = weight(2, 0) * in_plane(c);
+      for (int k = 1; k < 4; ++k)
+        total += weight(2, k) * in_plane(c + k * stride_[2]);
+      return total;
+    }
+  }
+  template <typename Values>
+  static Values at(const double* c) {
+    if constexpr (std::is_same_v<Values, double>)
+      return *c;
+    else
+      return Eigen::Map<const Values>(c);
+  }
+
+  const std::array<const RowCubicSplit<dim>*, dim>& splits_;
+  const std::array<int, dim>& stride_;
+};
+
 }  // namespace
 
 template <int dim>
 TileBlock<dim>::TileBlock(const SampleLattice<dim>& lattice, const RayTracer<dim>& tracer,
-                          int reach)
-    : lattice_(lattice), tracer_(tracer), reach_(reach), width_(tile_width<dim> + 2 * reach + 2) {
+                          int reach, int stencil_reach)
+    : lattice_(lattice),
+      tracer_(tracer),
+      margin_(reach + stencil_reach),
+      width_(tile_width<dim> + 2 * margin_),
+      stencil_reach_(stencil_reach) {
   int size = 1;
   for (int a = 0; a < dim; ++a) {
     stride_[a] = size;
@@ -143,10 +255,10 @@ TileBlock<dim>::TileBlock(const SampleLattice<dim>& lattice, const RayTracer<dim
 template <int dim>
 bool TileBlock<dim>::enter(const Index<dim>& tile_begin) {
   for (int a = 0; a < dim; ++a) {
-    begin_[a] = tile_begin[a] - reach_ - 1;
+    begin_[a] = tile_begin[a] - margin_;
     // Whatever the velocity is where there is no fluid, no ray may look outside the block.
-    lower_[a] = 0.5;
-    upper_[a] = width_ - 1.5;
+    lower_[a] = stencil_reach_ - 0.5;
+    upper_[a] = width_ - 0.5 - stencil_reach_;
     if (lattice_.periodic(a))
       continue;
     lower_[a] = std::max<double>(lower_[a], -begin_[a]);
@@ -191,36 +303,68 @@ RowValues<dim> TileBlock<dim>::clamped(const RowValues<dim>& x, int axis) const 
 }
 
 template <int dim>
-RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction) const {
+std::array<double, 2> TileBlock<dim>::sample_limits(int axis, SampleKind kind) const {
+  if (lattice_.periodic(axis))
+    return {-1e300, 1e300};
+  return {static_cast<double>(-begin_[axis]),
+          static_cast<double>(lattice_.last_sample(axis, kind) - begin_[axis])};
+}
+
+template <int dim>
+RowPoints<dim> TileBlock<dim>::velocity_at(const RowPoints<dim>& points, bool cubic) const {
+  RowPoints<dim> velocity;
+  const auto look_up = [&](auto stencil, const auto& on_faces, const auto& at_centers) {
+    for (int a = 0; a < dim; ++a) {
+      std::array<decltype(on_faces.data()), dim> splits;
+      for (int b = 0; b < dim; ++b)
+        splits[b] = a == b ? &on_faces[b] : &at_centers[b];
+      stencil(splits).interpolate(velocity_[a].data(), velocity[a]);
+    }
+  };
+  if (cubic) {
+    std::array<RowCubicSplit<dim>, dim> on_faces, at_centers;
+    for (int a = 0; a < dim; ++a) {
+      on_faces[a].set(points[a], a, 0, sample_limits(a, a));
+      at_centers[a].set(points[a], a, 0.5, sample_limits(a, cell_centers));
+    }
+    look_up([&](const auto& splits) { return RowCubic<dim>(splits, stride_); }, on_faces,
+            at_centers);
+  } else {
+    std::array<RowSplit<dim>, dim> on_faces, at_centers;
+    for (int a = 0; a < dim; ++a) {
+      on_faces[a].set(points[a], a, 0);
+      at_centers[a].set(points[a], a, 0.5);
+    }
+    look_up([&](const auto& splits) { return RowStencil<dim>(splits, stride_); }, on_faces,
+            at_centers);
+  }
+  return velocity;
+}
+
+template <int dim>
+RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, bool cubic) const {
   const double factor = direction * tracer_.cells_per_velocity();
   int place = 0;
-  Point<dim> first;
+  RowPoints<dim> start, middle;
   for (int a = 0; a < dim; ++a) {
-    const int cell = reach_ + 1 + (a == 0 ? 0 : in_tile[a]);
-    first[a] = cell + offset_[a];
+    const int cell = margin_ + (a == 0 ? 0 : in_tile[a]);
+    start[a] = cell + offset_[a] + (a == 0 ? 1.0 : 0.0) * steps<dim>();
     place += cell * stride_[a];
   }
-  const auto start = [&](int a) -> RowValues<dim> {
-    return first[a] + (a == 0 ? 1.0 : 0.0) * steps<dim>();
-  };
-  RowPoints<dim> middle;
-  for (int a = 0; a < dim; ++a)
-    middle[a] = clamped(start(a) + 0.5 * factor * velocity_at_samples(a, place), a);
-
-  std::array<RowSplit<dim>, dim> on_faces, at_centers;
-  for (int a = 0; a < dim; ++a) {
-    on_faces[a].set(middle[a], a, 0);
-    at_centers[a].set(middle[a], a, 0.5);
+  RowPoints<dim> velocity;
+  if (cubic) {
+    velocity = velocity_at(start, true);
+  } else {
+    for (int a = 0; a < dim; ++a)
+      velocity[a] = velocity_at_samples(a, place);
   }
+  for (int a = 0; a < dim; ++a)
+    middle[a] = clamped(start[a] + 0.5 * factor * velocity[a], a);
+  velocity = velocity_at(middle, cubic);
   RowRays<dim> rays;
   rays.clipped.setZero();
   for (int a = 0; a < dim; ++a) {
-    std::array<const RowSplit<dim>*, dim> splits;
-    for (int b = 0; b < dim; ++b)
-      splits[b] = a == b ? &on_faces[b] : &at_centers[b];
-    RowValues<dim> velocity;
-    RowStencil<dim>(splits, stride_).interpolate(velocity_[a].data(), velocity);
-    const RowValues<dim> wanted = start(a) + factor * velocity;
+    const RowValues<dim> wanted = start[a] + factor * velocity[a];
     rays.end[a] = clamped(wanted, a);
     rays.clipped += (rays.end[a] - wanted).abs();
   }
@@ -240,6 +384,17 @@ void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& value
   stencil.interpolate(field_.data(), values);
   if (low)
     stencil.find_range(field_.data(), *low, *high);
+}
+
+template <int dim>
+void TileBlock<dim>::look_up_cubic(const RowPoints<dim>& points, RowValues<dim>& values) const {
+  std::array<RowCubicSplit<dim>, dim> along;
+  std::array<const RowCubicSplit<dim>*, dim> splits;
+  for (int a = 0; a < dim; ++a) {
+    along[a].set(points[a], a, offset_[a], sample_limits(a, kind_));
+    splits[a] = &along[a];
+  }
+  RowCubic<dim>(splits, stride_).interpolate(field_.data(), values);
 }
 
 template class TileBlock<2>;

@@ -29,8 +29,10 @@ class TileBlock {
  public:
   /// Longer rays [cells] are better followed one by one.
   static constexpr int longest_reach = 6;
-  /// Rays reach `reach` cells along each axis.
-  TileBlock(const SampleLattice<dim>& lattice, const RayTracer<dim>& tracer, int reach);
+  /// Rays reach `reach` cells along each axis, and what is looked up there `stencil_reach` farther:
+  /// 1, or 2 for cubics.
+  TileBlock(const SampleLattice<dim>& lattice, const RayTracer<dim>& tracer, int reach,
+            int stencil_reach);
 
   /// Copies the velocity around the tile. False if samples there are missing: not for this tile.
   bool enter(const Index<dim>& tile_begin);
@@ -39,12 +41,20 @@ class TileBlock {
 
   /// Rays by the midpoint rule, against the flow (direction -1) or with it (+1), from the row of
   /// samples of the loaded field with these coordinates within the tile (x is ignored).
-  RowRays<dim> trace(const Index<dim>& in_tile, double direction) const;
+  /// `cubic`: the velocity is interpolated by cubics.
+  RowRays<dim> trace(const Index<dim>& in_tile, double direction, bool cubic = false) const;
   /// The loaded field at a row of points and, if wanted, the range of the samples used there.
   void look_up(const RowPoints<dim>& points, RowValues<dim>& values, RowValues<dim>* low = nullptr,
                RowValues<dim>* high = nullptr) const;
+  /// The same by cubics, within the range of the 4^dim samples around each point.
+  void look_up_cubic(const RowPoints<dim>& points, RowValues<dim>& values) const;
 
  private:
+  /// All components at a row of points.
+  RowPoints<dim> velocity_at(const RowPoints<dim>& points, bool cubic) const;
+  /// Places of the first and last sample of that kind along an axis in the block; without end if it
+  /// is periodic.
+  std::array<double, 2> sample_limits(int axis, SampleKind kind) const;
   /// Velocity component at a row of samples of the loaded field, the first at that place.
   RowValues<dim> velocity_at_samples(int axis, int place) const;
   /// Coordinates along an axis, moved to where rays may go.
@@ -52,7 +62,8 @@ class TileBlock {
 
   const SampleLattice<dim>& lattice_;
   const RayTracer<dim>& tracer_;
-  int reach_, width_;
+  int margin_, width_;  ///< cells before the tile, and of all
+  int stencil_reach_;
   Index<dim> begin_{};                         ///< first cell of the block
   std::array<int, dim> stride_{};              ///< of neighbours in the block
   std::array<double, dim> lower_{}, upper_{};  ///< where rays may go, relative to the block

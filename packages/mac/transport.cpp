@@ -57,7 +57,8 @@ Transport<dim>::Implementation::Implementation(const TransportSetting<dim>& sett
     : frame{setting, 0, {}, {}, {}, {}, {}, {}} {
   frame.largest_displacement = find_largest_displacement(setting);
   const int reach = static_cast<int>(std::ceil(frame.largest_displacement));
-  setting.halo.require(reach + 3);
+  const int stencil_reach = setting.stencil_reach;
+  setting.halo.require(reach + 2 + stencil_reach);
   const TiledGrid<dim>& samples = setting.halo.sample_grid();
   frame.lattice = std::make_unique<SampleLattice<dim>>(samples);
 
@@ -72,9 +73,11 @@ Transport<dim>::Implementation::Implementation(const TransportSetting<dim>& sett
                                                   setting.dt / setting.grid.spacing());
   frame.near_surface = std::make_unique<SurfaceTransport<dim>>(
       samples, *frame.lattice, *frame.tracer, usable, setting.surface, frame.largest_displacement,
+      stencil_reach,
       resolved_reynolds_number * setting.kinematic_viscosity / setting.grid.spacing());
   if (reach <= TileBlock<dim>::longest_reach)
-    frame.block = std::make_unique<TileBlock<dim>>(*frame.lattice, *frame.tracer, reach);
+    frame.block =
+        std::make_unique<TileBlock<dim>>(*frame.lattice, *frame.tracer, reach, stencil_reach);
   for (int tile = 0; tile < setting.grid.n_owned_tiles(); ++tile)
     frame.plans.push_back(make_plan(tile));
 }

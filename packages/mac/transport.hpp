@@ -12,7 +12,8 @@ namespace lockstep {
 
 enum class AdvectionScheme {
   semi_lagrangian,  ///< first order in time, unconditionally stable
-  maccormack        ///< second order (Selle et al. 2008), clamped; semi-Lagrangian near surfaces
+  maccormack,       ///< second order (Selle et al. 2008), clamped; semi-Lagrangian near surfaces
+  cubic             ///< semi-Lagrangian with cubics, third order in space; with lines near surfaces
 };
 
 /// What rays find that leave the domain through one of its sides. Where nothing flows in, the ray
@@ -38,6 +39,7 @@ struct TransportSetting {
   std::array<std::array<TransportSide<dim>, 2>, dim> sides;  ///< [axis][0 lower, 1 upper]
   double dt = 0;                                             ///< [s]
   double kinematic_viscosity = 0;                            ///< [m^2/s]
+  int stencil_reach = 1;                                     ///< of what is carried: 2 for cubics
 };
 
 /// Samples without a meaningful value after transport, by cell id (1: invalid): inactive or inside

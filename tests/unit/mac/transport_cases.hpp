@@ -70,7 +70,7 @@ struct FullTank {
       velocity[a] = faces(a, [&](const Point<dim>& x) { return u(x)[a]; });
   }
   TransportSetting<dim> setting(double dt) {
-    return {grid, state, surface, velocity, ray_halo, sides, dt};
+    return {grid, state, surface, velocity, ray_halo, sides, dt, 0, 2};
   }
 
   TiledGrid<dim> grid;
@@ -82,7 +82,7 @@ struct FullTank {
   std::array<std::array<TransportSide<dim>, 2>, dim> sides;
 };
 
-constexpr AdvectionScheme both_schemes[] = {AdvectionScheme::semi_lagrangian,
-                                            AdvectionScheme::maccormack};
+constexpr AdvectionScheme all_schemes[] = {AdvectionScheme::semi_lagrangian,
+                                           AdvectionScheme::maccormack, AdvectionScheme::cubic};
 
 }  // namespace lockstep
