@@ -213,6 +213,27 @@ double ask_rule(const OpenFractionRule<dim>& rule, const ControlVolume<dim>& vol
   return leads_into_solid ? 0 : fraction;
 }
 
+/// Revalidation looks from its own faces at the neighbours, which may be other ranks'.
+template <int dim>
+void share_open_centers(const MacDomain<dim>& domain, int axis, MacState<dim>& state) {
+  const TiledGrid<dim>& grid = domain.grid;
+  auto& places = state.open_centers[axis];
+  std::array<CellField, dim> shift;
+  for (int a = 0; a < dim; ++a) {
+    shift[a].assign(grid.n_stored_cells(), 0.0);
+    for (const auto& [face, place] : places)
+      shift[a][face] = place[a] - grid.face_center(axis, face)[a];
+    domain.halo.fill(shift[a]);
+  }
+  for (int face = grid.n_owned_cells(); face < grid.n_stored_cells(); ++face) {
+    Point<dim> beside;
+    for (int a = 0; a < dim; ++a)
+      beside[a] = shift[a][face];
+    if (beside != Point<dim>::Zero())
+      places[face] = grid.face_center(axis, face) + beside;
+  }
+}
+
 /// Partly open faces on any rank give every rank the array, for the exchange.
 template <int dim>
 void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
@@ -225,6 +246,8 @@ void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geomet
     if (partial.empty())
       partial.assign(domain.grid.n_stored_cells(), 1.0);
     domain.halo.fill(partial);
+    if (domain.grid.comm()->getSize() > 1)
+      share_open_centers(domain, axis, geometry.state);
   }
 }
 }  // namespace

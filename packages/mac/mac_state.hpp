@@ -30,7 +30,7 @@ struct MacState {
   std::shared_ptr<const SurfaceSnapshot<dim>> surface;
   std::vector<CellState> cells;
   std::array<std::vector<FaceState>, dim> faces;  ///< of the lower face of each cell
-  /// Where the fluid of partly open owned faces is; their centres may lie inside a solid.
+  /// Where the fluid of partly open faces is, owned and ghost; their centres may lie in a solid.
   std::array<std::unordered_map<int, Point<dim>>, dim> open_centers;
 };
 

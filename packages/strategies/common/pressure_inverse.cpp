@@ -185,7 +185,11 @@ RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
   if (const auto a = assembled(op); !a.is_null()) {
     const std::string type = type_of(list);
     const bool factors = type == "Incomplete Cholesky" || type == "Ifpack2" || type == "Direct";
-    const auto regular = shifted(a, diagonal_shift(system, *a, factors));
+    // Its coarsest level is factored: what comes out of a singular one the iteration can project
+    // out if it is a null vector of the system too, but not in pockets that a soft shell closes.
+    const bool has_pockets = system.pressure_null_space.size() > system.null_space.size();
+    const auto regular =
+        shifted(a, diagonal_shift(system, *a, factors || (type == "MueLu" && has_pockets)));
     if (regular != a)
       op = as_operator(regular);
   }

@@ -34,7 +34,8 @@ bool leaves_rows_empty(const RCP<const LinearOperator>& pressure_block);
 ///   B diag(C)^-1 B^T;
 /// - with "Incomplete Cholesky", "Ifpack2" and "Direct", which factor, the first cell of each null
 /// vector of A alone is
-///   pinned by adding its diagonal once more. Multigrid and Jacobi take a singular A.
+///   pinned by adding its diagonal once more; with "MueLu" too if a solid closes regions. Multigrid
+///   and Jacobi take a singular A.
 /// Throws InputError for a bad list, SolveError if the set-up fails. Collective.
 RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
                                            const Teuchos::ParameterList& list);
