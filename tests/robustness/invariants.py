@@ -17,7 +17,7 @@ import numpy
 
 from runs import read_table
 
-LEDGER = 1e-11
+LEDGER = 1e-10
 DIVERGENCE = 1e-6
 RANKS = 1e-6
 RANKS_IN_CONTACT = 1e-2

@@ -25,6 +25,7 @@ from pathlib import Path
 import h5py
 import numpy
 
+import hand_written
 import mesh_files
 import mutators
 import report
@@ -71,6 +72,13 @@ def soft_ball(**lists):
 def scene_case(rng):
     scene = random_scene(rng.randrange(200))
     return Case(scene_files(scene), "scene.xml", [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML)
+
+
+def hand_written_case(rng):
+    """Constants, formulas, defaults, copies and an included file."""
+    files = {"scene.xml": hand_written.SCENE.encode(), "base.xml": hand_written.BASE.encode()}
+    return Case(files, rng.choice(["scene.xml", "base.xml", "base.xml"]),
+                [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML)
 
 
 def run_case(rng):
@@ -150,8 +158,9 @@ def system_case(rng):
                 mutators.HDF5)
 
 
-KINDS = [("scene, validated", scene_case, 9), ("scene, run", run_case, 4), ("solver", solver_case, 3),
-         ("study", study_case, 3), ("mesh", mesh_case, 7), ("checkpoint", checkpoint_case, 4), ("system", system_case, 4)]
+KINDS = [("scene, validated", scene_case, 7), ("scene, by hand", hand_written_case, 3), ("scene, run", run_case, 4),
+         ("solver", solver_case, 3), ("study", study_case, 3), ("mesh", mesh_case, 7), ("checkpoint", checkpoint_case, 4),
+         ("system", system_case, 4)]
 
 
 def non_finite(folder):

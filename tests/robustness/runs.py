@@ -58,6 +58,16 @@ def run(command, seconds, ranks=1):
         return Run(code, timed_out, *texts, usage.ru_utime + usage.ru_stime)
 
 
+def end_session(leader):
+    """Ends a process and all that it started; mpirun's ranks are in process groups of their own."""
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and os.getsid(int(entry.name)) == leader:
+                os.kill(int(entry.name), signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+
 def wait(process, seconds):
     """Exit code, whether it had to be killed, and what it and its children used."""
     end, pause = time.monotonic() + seconds, 0.005
@@ -69,7 +79,7 @@ def wait(process, seconds):
             return process.returncode, timed_out, usage
         if time.monotonic() > end and not timed_out:
             timed_out = True
-            os.killpg(process.pid, signal.SIGKILL)
+            end_session(process.pid)
         time.sleep(pause)
         pause = min(0.1, 1.3 * pause)
 
