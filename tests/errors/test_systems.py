@@ -167,13 +167,14 @@ class Systems(unittest.TestCase):
         whole = self.system.read_bytes()
         paths = []
         for name, content in [("half.h5", whole[:len(whole) // 2]), ("nothing.h5", b""), ("text.h5", b"a system"),
-                              ("longer.h5", whole + b"x")]:
+                              ("longer.h5", whole + b"x"), ("line.h5", whole[:-40] + b"x" + whole[-39:]),
+                              ("begin-of-line.h5", whole[:-55] + b"x" + whole[-54:])]:
             paths.append(self.folder / name)
             paths[-1].write_bytes(content)
         os.mkfifo(self.folder / "pipe.h5")
         (self.folder / "folder.h5").mkdir()
         checkpoint = shutil.copy(next((self.folder / "output").glob("checkpoint-*.h5")), self.folder / "other.h5")
-        self.assert_all_refused([*paths[:-1], self.folder / "pipe.h5", self.folder / "folder.h5", Path(checkpoint),
+        self.assert_all_refused([*paths, self.folder / "pipe.h5", self.folder / "folder.h5", Path(checkpoint),
                                  self.folder / "missing.h5"])
 
 
