@@ -216,25 +216,30 @@ std::vector<double> FluxCoupling<dim>::effective_velocity(const SolidSystem<dim>
 }
 
 template <int dim>
+std::vector<double> FluxCoupling<dim>::pushes(const Vector& scaled_pressure) const {
+  Vector beside(pressure_import_->getTargetMap());
+  beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
+  const auto pressure = beside.getData();
+  std::vector<double> result(volumes_.size(), 0);
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    for (int side = 0; side < 2; ++side)
+      if (const GlobalIndex unknown = volumes_[f].sides[side].unknown; unknown != no_index)
+        result[f] += push(f, side) * pressure[beside.getMap()->getLocalElement(unknown)];
+  return result;
+}
+
+template <int dim>
 std::vector<Momentum<dim>> FluxCoupling<dim>::prescribed_impulses(
     const std::vector<double>& velocity_before, const std::vector<double>&,
     const Vector& scaled_pressure) const {
   std::vector<Momentum<dim>> impulses(surface_->solids().size());
   if (!any_prescribed(surface_->solids()))
     return impulses;
-  Vector beside(pressure_import_->getTargetMap());
-  beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
-  const auto pressure = beside.getData();
+  const std::vector<double> of_fluid = pushes(scaled_pressure);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    const ControlVolume<dim>& volume = volumes_[f];
-    double push_of_fluid = 0;
-    for (int side = 0; side < 2; ++side)
-      if (volume.sides[side].unknown != no_index)
-        push_of_fluid +=
-            push(f, side) * pressure[beside.getMap()->getLocalElement(volume.sides[side].unknown)];
     for (const FluxShare<dim>& share : shares_[f].all)
       if (surface_->solids()[share.solid].prescribed)
-        impulses[share.solid].add(share.center, volume.direction, share.weight * push_of_fluid);
+        impulses[share.solid].add(share.center, volumes_[f].direction, share.weight * of_fluid[f]);
     add_thin_impulses(f, velocity_before[f], impulses);
   }
   sum_over_ranks(impulses, pressure_import_->getSourceMap()->getComm());
@@ -256,6 +261,43 @@ void FluxCoupling<dim>::add_thin_impulses(std::size_t f, double velocity_before,
     impulses[share.solid].add(volumes_[f].center, volumes_[f].direction,
                               share.weight / prescribed_share * masses_[f] * gained);
   }
+}
+
+// The fluid gives to the closed part of a face at its centroid, and what is lumped on thin parts at
+// the centre; nodes take both where the surface is.
+template <int dim>
+AngularVector<dim> FluxCoupling<dim>::lever_impulse(const SolidSystem<dim>& solids,
+                                                    const std::vector<double>& velocity_before,
+                                                    const std::vector<double>& velocity_after,
+                                                    const BlockVector& solution) const {
+  const auto is_soft = [](const SolidDescription& solid) {
+    return !solid.rigid && !solid.prescribed;
+  };
+  if (coupling_transposed_.is_null() ||
+      std::none_of(solids.solids().begin(), solids.solids().end(), is_soft))
+    return AngularVector<dim>::Zero();
+  Vector taken(solids.map());
+  add_lumped_momentum(velocity_before, taken);
+  coupling_transposed_->apply(*solution.pressure, taken, Teuchos::NO_TRANS, -1, 1);
+  if (!added_mass_.is_null())
+    added_mass_->apply(*solution.solid, taken, Teuchos::NO_TRANS, -1, 1);
+  const std::vector<double> of_fluid = pushes(*solution.pressure);
+  Momentum<dim> given;
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const int axis = volumes_[f].direction;
+    for (const FluxShare<dim>& share : shares_[f].all)
+      if (!surface_->solids()[share.solid].prescribed)
+        given.add(share.center, axis, -share.weight * of_fluid[f]);
+    if (shares_[f].of_thin.empty())
+      continue;
+    double share = 0;
+    for (const SurfaceShare<dim>& thin : shares_[f].of_thin)
+      share += surface_->solids()[thin.solid].prescribed ? 0 : thin.weight;
+    given.add(volumes_[f].center, axis,
+              masses_[f] * (share * velocity_before[f] -
+                            (velocity_after[f] - prescribed_thin_velocity_[f])));
+  }
+  return solids.momentum(taken).angular - sum_over_ranks<dim>(given, solids.comm()).angular;
 }
 
 template <int dim>

@@ -52,6 +52,10 @@ class FluxCoupling : public Coupling<dim> {
   std::vector<Momentum<dim>> prescribed_impulses(const std::vector<double>& velocity_before,
                                                  const std::vector<double>& velocity_after,
                                                  const Vector& scaled_pressure) const override;
+  AngularVector<dim> lever_impulse(const SolidSystem<dim>& solids,
+                                   const std::vector<double>& velocity_before,
+                                   const std::vector<double>& velocity_after,
+                                   const BlockVector& solution) const override;
   std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
                                                  Vector& rhs) const override;
   using LinkRow = typename Coupling<dim>::LinkRow;
@@ -64,6 +68,8 @@ class FluxCoupling : public Coupling<dim> {
     const double area = (1 - volumes_[face].open_fraction) * volumes_[face].area;
     return side == 0 ? -area : area;
   }
+  /// What p̂ pushes on the closed part of each face, along its axis [kg m/s].
+  std::vector<double> pushes(const Vector& scaled_pressure) const;
   void weigh_excess(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids);
   void assemble_blocks(const SolidSystem<dim>& solids);
   void add_thin_impulses(std::size_t f, double velocity_before,

@@ -1,41 +1,51 @@
 #include "mixedface/local_rotation.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace lockstep {
 
 template <int dim>
-LocalRotation<dim>::LocalRotation(const Box<dim>& box, int solid,
-                                  const SurfaceSnapshot<dim>& surface) {
+LocalRotation<dim>::LocalRotation(const Box<dim>& box, double arm, std::vector<int> simplices,
+                                  int solid, const SurfaceSnapshot<dim>& surface) {
   constexpr int most_widenings = 6;
-  constexpr double least_ratio = 1e-2;  // of the moments of inertia
+  collect(simplices, solid, surface);
   Point<dim> margin = 0.5 * box.sizes();
-  for (int attempt = 0; attempt < most_widenings; ++attempt, margin *= 2) {
-    collect(Box<dim>(box.min() - margin, box.max() + margin), solid, surface);
-    const Eigen::SelfAdjointEigenSolver<Inertia> eigen(inertia());
-    const auto& moments = eigen.eigenvalues();
-    const double largest = moments[n_rotations<dim> - 1];
-    if (!(largest > 0) || moments[0] < least_ratio * largest)
-      continue;
-    inverse_ = eigen.eigenvectors() * moments.cwiseInverse().asDiagonal() *
-               eigen.eigenvectors().transpose();
-    return;
+  for (int attempt = 0; attempt < most_widenings && !invert(arm); ++attempt, margin *= 2) {
+    surface.touching(Box<dim>(box.min() - margin, box.max() + margin), simplices);
+    collect(simplices, solid, surface);
   }
-  vertices_.clear();  // a needle or a point: it does not turn
-  arms_.clear();
+  if (!invert(arm) && !invert(0)) {
+    vertices_.clear();  // a needle or a point: it does not turn
+    arms_.clear();
+  }
 }
 
 template <int dim>
-void LocalRotation<dim>::collect(const Box<dim>& box, int solid,
+bool LocalRotation<dim>::invert(double arm) {
+  constexpr double least_ratio = 1e-2;  // of the moments of inertia
+  constexpr double most_amplified = 3;  // arm over the radius of gyration
+  const Eigen::SelfAdjointEigenSolver<Inertia> eigen(inertia());
+  const auto& moments = eigen.eigenvalues();
+  const double largest = moments[n_rotations<dim> - 1];
+  if (!(largest > 0) || moments[0] < least_ratio * largest ||
+      std::pow(most_amplified, 2) * moments[0] < static_cast<double>(arms_.size()) * arm * arm)
+    return false;
+  inverse_ =
+      eigen.eigenvectors() * moments.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  return true;
+}
+
+template <int dim>
+void LocalRotation<dim>::collect(const std::vector<int>& simplices, int solid,
                                  const SurfaceSnapshot<dim>& surface) {
   vertices_.clear();
   arms_.clear();
-  std::vector<int> touching;
-  surface.touching(box, touching);
   std::set<int> seen;
   Point<dim> mean = Point<dim>::Zero();
-  for (const int simplex : touching) {
+  for (const int simplex : simplices) {
     if (surface.solid_of(simplex) != solid)
       continue;
     for (int k = 0; k < dim; ++k) {

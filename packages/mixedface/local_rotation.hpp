@@ -15,9 +15,12 @@ namespace lockstep {
 template <int dim>
 class LocalRotation {
  public:
-  /// From the vertices of `solid` on simplices near `box`, which is widened until they do not lie
-  /// on a point or a line. Local.
-  LocalRotation(const Box<dim>& box, int solid, const SurfaceSnapshot<dim>& surface);
+  /// From the vertices of `simplices`, those of `solid` in the dual cell `box`, so that rows take
+  /// no nodes beyond their own. Where those lie on a point or a line, or too close together to tell
+  /// a rotation at `arm` [m], the longest arm, from simplices in a box around it that is widened.
+  /// Local.
+  LocalRotation(const Box<dim>& box, double arm, std::vector<int> simplices, int solid,
+                const SurfaceSnapshot<dim>& surface);
 
   /// Omega x arm for given vertex velocities: `velocity_of(SurfacePoint)` [m/s].
   template <typename VelocityOf>
@@ -38,8 +41,10 @@ class LocalRotation {
 
  private:
   using Inertia = Eigen::Matrix<double, n_rotations<dim>, n_rotations<dim>>;
-  void collect(const Box<dim>& box, int solid, const SurfaceSnapshot<dim>& surface);
+  void collect(const std::vector<int>& simplices, int solid, const SurfaceSnapshot<dim>& surface);
   Inertia inertia() const;
+  /// Takes the inverse of the inertia; false if the vertices are too few or too close.
+  bool invert(double arm);
 
   std::vector<SurfacePoint<dim>> vertices_;
   std::vector<Point<dim>> arms_;

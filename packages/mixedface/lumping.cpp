@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/solid_volume.hpp"
 
@@ -193,62 +194,97 @@ std::vector<UnseenMass<dim>> balance_masses(
   return unseen;
 }
 
+namespace {
+
+/// The rows of each column: faces and values.
+struct Columns {
+  std::vector<int> begin, faces;
+  std::vector<double> values;
+};
+Columns columns_of(const CouplingWeights& weights) {
+  Columns columns;
+  columns.begin.assign(weights.dofs.size() + 1, 0);
+  for (const int column : weights.columns)
+    ++columns.begin[column + 1];
+  std::partial_sum(columns.begin.begin(), columns.begin.end(), columns.begin.begin());
+  std::vector<int> next(columns.begin.begin(), columns.begin.end() - 1);
+  columns.faces.resize(weights.columns.size());
+  columns.values.resize(weights.columns.size());
+  for (int f = 0; f < weights.n_rows(); ++f) {
+    for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k) {
+      const int place = next[weights.columns[k]]++;
+      columns.faces[place] = f;
+      columns.values[place] = weights.values[k];
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+// Row by row, each summed in place: the products of all faces one by one would need a hundred times
+// the memory of what they add up to.
+std::vector<Triplet> consistent_mass_triplets(const CouplingWeights& weights,
+                                              const std::vector<double>& masses) {
+  const Columns columns = columns_of(weights);
+  const int n = static_cast<int>(weights.dofs.size());
+  std::vector<Triplet> triplets;
+  std::vector<double> sums(n, 0);
+  std::vector<int> touched;
+  std::vector<char> is_touched(n, 0);
+  for (int i = 0; i < n; ++i) {
+    touched.clear();
+    for (int c = columns.begin[i]; c < columns.begin[i + 1]; ++c) {
+      const int f = columns.faces[c];
+      const double factor = masses[f] * columns.values[c];
+      for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k) {
+        const int j = weights.columns[k];
+        if (!is_touched[j])
+          touched.push_back(j);
+        is_touched[j] = 1;
+        sums[j] += factor * weights.values[k];
+      }
+    }
+    std::sort(touched.begin(), touched.end());
+    for (const int j : touched) {
+      triplets.push_back({weights.dofs[i], weights.dofs[j], sums[j]});
+      sums[j] = 0;
+      is_touched[j] = 0;
+    }
+  }
+  return triplets;
+}
+
 template <int dim>
 std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& volumes,
                                          const std::vector<std::vector<SurfaceShare<dim>>>& shares,
                                          const SolidSystem<dim>& solids,
                                          const std::vector<double>& masses, Lumping lumping) {
+  if (lumping == Lumping::consistent)
+    return consistent_mass_triplets(coupling_weights<dim>(volumes, shares, solids), masses);
   std::vector<Triplet> triplets;
   if (lumping == Lumping::paper_diagonal)
     triplets = paper_diagonal_triplets<dim>(volumes, shares, solids, masses);
   VelocityRow<dim> scratch;
-  struct Entries {
-    double weight;
-    bool is_rigid;
-    bool is_rigid_motion;  ///< that, or of an element with nodes attached to one
-    std::vector<GlobalIndex> dofs;
-    std::vector<double> values;
-  };
-  std::vector<Entries> rows;
+  std::vector<GlobalIndex> dofs;
+  std::vector<double> values;
   for (std::size_t f = 0; f < volumes.size(); ++f) {
-    rows.clear();
     for (const SurfaceShare<dim>& share : shares[f]) {
       const bool is_rigid = solids.solids()[share.solid].rigid;
-      Entries row{share.weight, is_rigid, is_rigid, {}, {}};
-      // Nodes take their masses by weights that are positive.
-      if (lumping == Lumping::consistent) {
-        carried_row<dim>(solids, share, volumes[f].center, volumes[f].direction, scratch, row.dofs,
-                         row.values);
-      } else {
-        directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch,
-                          row.dofs, row.values);
-      }
-      row.is_rigid_motion =
-          is_rigid || std::any_of(row.dofs.begin(), row.dofs.end(),
+      if (is_rigid && lumping == Lumping::paper_diagonal)
+        continue;  // done body by body
+      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch, dofs,
+                        values);
+      // A rigid motion, or that of an element with nodes attached to a rigid body.
+      const bool is_rigid_motion =
+          is_rigid || std::any_of(dofs.begin(), dofs.end(),
                                   [&](GlobalIndex dof) { return solids.carries_nodes(dof); });
-      if (!row.dofs.empty())
-        rows.push_back(std::move(row));
-    }
-    for (const Entries& row : rows) {
-      for (std::size_t i = 0; i < row.dofs.size(); ++i) {
-        if (lumping == Lumping::consistent) {
-          for (const Entries& other : rows) {
-            for (std::size_t j = 0; j < other.dofs.size(); ++j) {
-              triplets.push_back(
-                  {row.dofs[i], other.dofs[j],
-                   masses[f] * row.weight * row.values[i] * other.weight * other.values[j]});
-            }
-          }
-        } else if (row.is_rigid && lumping == Lumping::paper_diagonal) {
-          continue;  // done body by body
-        } else if (row.is_rigid_motion) {
-          for (std::size_t j = 0; j < row.dofs.size(); ++j) {
-            triplets.push_back(
-                {row.dofs[i], row.dofs[j], masses[f] * row.weight * row.values[i] * row.values[j]});
-          }
-        } else {
-          triplets.push_back({row.dofs[i], row.dofs[i], masses[f] * row.weight * row.values[i]});
-        }
+      const double mass = masses[f] * share.weight;
+      for (std::size_t i = 0; i < dofs.size(); ++i) {
+        if (!is_rigid_motion)
+          triplets.push_back({dofs[i], dofs[i], mass * values[i]});
+        for (std::size_t j = 0; is_rigid_motion && j < dofs.size(); ++j)
+          triplets.push_back({dofs[i], dofs[j], mass * values[i] * values[j]});
       }
     }
   }

@@ -40,7 +40,12 @@ std::vector<UnseenMass<dim>> balance_masses(
     const std::vector<std::vector<SurfaceShare<dim>>>& shares, const SurfaceSnapshot<dim>& surface,
     double density, const Communicator& comm, std::vector<double>& masses);
 
-/// dM as triplets over the solid map. Collective.
+/// W^T M_F W as triplets over the solid map, one an entry. Memory: what it holds. Local.
+std::vector<Triplet> consistent_mass_triplets(const CouplingWeights& weights,
+                                              const std::vector<double>& masses);
+
+/// dM as triplets over the solid map. Nodes take diagonal masses by weights that are positive:
+/// those of the shares without their local rotations. Collective.
 template <int dim>
 std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& volumes,
                                          const std::vector<std::vector<SurfaceShare<dim>>>& shares,

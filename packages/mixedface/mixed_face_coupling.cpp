@@ -72,10 +72,25 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
       density = fluid.density(surface.bounds_of_solid(0).center());
     unseen_ = balance_masses<dim>(volumes_, shares_, surface, density, solids.comm(), masses_);
   }
-  weights_ = coupling_weights<dim>(volumes_, shares_, solids);
-  solid_import_ = import_of(weights_.dofs, solids.map());
+  assemble_weights(solids);
   assemble_unseen(solids, surface);
   assemble_blocks(solids);
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::assemble_weights(const SolidSystem<dim>& solids) {
+  weights_ = coupling_weights<dim>(volumes_, shares_, solids);
+  solid_import_ = import_of(weights_.dofs, solids.map());
+  plain_weights_ = {};
+  if (!masses_are_plain())
+    return;
+  plain_weights_ = coupling_weights<dim>(volumes_, shares_, solids, false);
+  for (int& column : plain_weights_.columns) {
+    const auto place =
+        std::lower_bound(weights_.dofs.begin(), weights_.dofs.end(), plain_weights_.dofs[column]);
+    column = static_cast<int>(place - weights_.dofs.begin());
+  }
+  plain_weights_.dofs = weights_.dofs;
 }
 
 template <int dim>
@@ -96,8 +111,10 @@ void MixedFaceCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
   coupling_transposed_ =
       assemble_triplets(std::move(coupling), solids.map(), pressure_import_->getSourceMap());
   added_mass_ = assemble_triplets(
-      added_mass_triplets<dim>(volumes_, shares_, solids, masses_, options_.lumping), solids.map(),
-      solids.map());
+      options_.lumping == Lumping::consistent
+          ? consistent_mass_triplets(weights_, masses_)
+          : added_mass_triplets<dim>(volumes_, shares_, solids, masses_, options_.lumping),
+      solids.map(), solids.map());
 }
 
 namespace {
@@ -223,13 +240,14 @@ void MixedFaceCoupling<dim>::add_lumped_momentum(const std::vector<double>& coup
   // Diagonally lumped fluid moves with its own solid; consistently lumped fluid with the mixed
   // velocity.
   const double mixed = options_.lumping == Lumping::consistent ? 1 : 0;
+  const CouplingWeights& weights = mass_weights();
   Vector overlap(solid_import_->getTargetMap());
   {
     const auto values = overlap.getDataNonConst();
     for (std::size_t f = 0; f < volumes_.size(); ++f) {
       const double momentum = masses_[f] * (coupled_velocity[f] - mixed * prescribed_velocity_[f]);
-      for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k) {
-        values[weights_.columns[k]] += weights_.values[k] * momentum;
+      for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k) {
+        values[weights.columns[k]] += weights.values[k] * momentum;
       }
     }
   }
@@ -241,12 +259,13 @@ std::vector<double> MixedFaceCoupling<dim>::velocity(const Vector& solid_velocit
   std::vector<double> result = prescribed_velocity_;
   if (coupling_transposed_.is_null())
     return result;
+  const CouplingWeights& weights = mass_weights();
   Vector overlap(solid_import_->getTargetMap());
   overlap.doImport(solid_velocity, *solid_import_, Tpetra::INSERT);
   const auto values = overlap.getData();
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k) {
-      result[f] += weights_.values[k] * values[weights_.columns[k]];
+    for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k) {
+      result[f] += weights.values[k] * values[weights.columns[k]];
     }
   }
   return result;
@@ -256,12 +275,9 @@ template <int dim>
 std::vector<double> MixedFaceCoupling<dim>::effective_velocity(
     const SolidSystem<dim>& solids) const {
   std::vector<double> result(volumes_.size(), 0);
-  for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    for (const SurfaceShare<dim>& share : shares_[f]) {
-      const Point<dim> v = carried_effective_velocity<dim>(solids, share, volumes_[f].center);
-      result[f] += share.weight * v[volumes_[f].direction];
-    }
-  }
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    result[f] = carried_effective_velocity<dim>(solids, shares_[f], volumes_[f].center,
+                                                volumes_[f].direction);
   return result;
 }
 
@@ -337,9 +353,6 @@ template <int dim>
 void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& shares,
                                        const Point<dim>& x, int direction,
                                        const SolidSystem<dim>& solids, LinkRow& row) const {
-  VelocityRow<dim> scratch;
-  std::vector<GlobalIndex> dofs;
-  std::vector<double> values;
   Point<dim> pulled = Point<dim>::Zero();  // nodes are pulled where the surface is, not at x
   double dynamic_share = 0;
   for (const SurfaceShare<dim>& share : shares) {
@@ -352,11 +365,13 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
     dynamic_share += share.weight;
     const bool at_x = solids.solids()[share.solid].rigid || share.rotation;
     pulled += share.weight * (at_x ? x : share.point.position);
-    carried_row<dim>(solids, share, x, direction, scratch, dofs, values);
-    for (std::size_t k = 0; k < dofs.size(); ++k) {
-      row.dofs.push_back(dofs[k]);
-      row.weights.push_back(share.weight * values[k]);
-    }
+  }
+  VelocityRow<dim> scratch;
+  RowEntries entries;
+  add_carried_row<dim>(solids, shares, x, direction, scratch, entries);  // of dynamic solids
+  for (const auto& [dof, value] : entries) {
+    row.dofs.push_back(dof);
+    row.weights.push_back(value);
   }
   if (dynamic_share > 0)
     row.position = pulled / dynamic_share;
@@ -371,8 +386,11 @@ void MixedFaceCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidS
     share_row(shares_[link.coupled_volume], row.position, link.direction, solids, row);
   } else if (link.remote_volume) {
     row.position = link.remote_volume->center;
-    share_row(surface_shares<dim>({*link.remote_volume}, *surface_).front(), row.position,
-              link.direction, solids, row);
+    const std::vector<ControlVolume<dim>> remote{*link.remote_volume};
+    auto shares = surface_shares<dim>(remote, *surface_);
+    if (options_.carry_rotations)
+      add_local_rotations<dim>(remote, *surface_, shares);
+    share_row(shares.front(), row.position, link.direction, solids, row);
   } else {
     row.position = link.point.position;
     SurfaceShare<dim> whole;

@@ -65,6 +65,15 @@ class MixedFaceCoupling : public Coupling<dim> {
                  const SolidSystem<dim>& solids, LinkRow& row) const;
   /// p̂ above minus below each coupled volume; 0 where there is no unknown.
   std::vector<double> pressure_jumps(const Vector& scaled_pressure) const;
+  /// Diagonal masses need positive rows: W without rotations. Then momentum goes by those as well,
+  /// from the mixed faces to the nodes and back; volume and pressure go by W.
+  bool masses_are_plain() const {
+    return options_.carry_rotations && options_.lumping != Lumping::consistent;
+  }
+  const CouplingWeights& mass_weights() const {
+    return masses_are_plain() ? plain_weights_ : weights_;
+  }
+  void assemble_weights(const SolidSystem<dim>& solids);
   void assemble_blocks(const SolidSystem<dim>& solids);
   void assemble_unseen(const SolidSystem<dim>& solids, const SurfaceSnapshot<dim>& surface);
 
@@ -74,7 +83,8 @@ class MixedFaceCoupling : public Coupling<dim> {
   std::vector<ControlVolume<dim>> volumes_;
   std::vector<std::vector<SurfaceShare<dim>>> shares_;
   CouplingWeights weights_;
-  std::vector<double> masses_;  ///< M_F
+  CouplingWeights plain_weights_;  ///< without rotations, if `masses_are_plain`; the same columns
+  std::vector<double> masses_;     ///< M_F
   std::vector<double> prescribed_share_;
   std::vector<double> prescribed_velocity_;  ///< W_k V_k
   RCP<const CrsMatrix> coupling_transposed_, added_mass_;

@@ -74,15 +74,26 @@ template <int dim>
 void add_local_rotations(const std::vector<ControlVolume<dim>>& volumes,
                          const SurfaceSnapshot<dim>& surface,
                          std::vector<std::vector<SurfaceShare<dim>>>& shares) {
+  struct Part {
+    double arm = 0;
+    std::vector<int> simplices;
+    std::shared_ptr<const LocalRotation<dim>> rotation;
+  };
   for (std::size_t f = 0; f < shares.size(); ++f) {
-    std::map<int, std::shared_ptr<const LocalRotation<dim>>> of_solid;
-    for (SurfaceShare<dim>& share : shares[f]) {
+    std::map<int, Part> of_solid;
+    for (const SurfaceShare<dim>& share : shares[f]) {
       if (surface.solids()[share.solid].rigid)
         continue;
-      auto& rotation = of_solid[share.solid];
-      if (!rotation)
-        rotation = std::make_shared<LocalRotation<dim>>(volumes[f].box, share.solid, surface);
-      share.rotation = rotation;
+      Part& part = of_solid[share.solid];
+      part.simplices.push_back(share.point.simplex);
+      part.arm = std::max(part.arm, (volumes[f].center - share.point.position).norm());
+    }
+    for (auto& [solid, part] : of_solid)
+      part.rotation = std::make_shared<LocalRotation<dim>>(volumes[f].box, part.arm, part.simplices,
+                                                           solid, surface);
+    for (SurfaceShare<dim>& share : shares[f]) {
+      if (!surface.solids()[share.solid].rigid)
+        share.rotation = of_solid[share.solid].rotation;
     }
   }
 }
@@ -103,33 +114,63 @@ void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point
   }
 }
 
+namespace {
+
+/// Of the shares with one local rotation: where it is taken to, x less their points, by weights.
 template <int dim>
-void carried_row(const SolidSystem<dim>& solids, const SurfaceShare<dim>& share,
-                 const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
-                 std::vector<GlobalIndex>& dofs, std::vector<double>& values) {
-  directed_row<dim>(solids, share.point, x, direction, scratch, dofs, values);
-  if (!share.rotation)
-    return;
+std::vector<std::pair<const LocalRotation<dim>*, Point<dim>>> arms_of_rotations(
+    const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x) {
+  std::vector<std::pair<const LocalRotation<dim>*, Point<dim>>> arms;
+  for (const SurfaceShare<dim>& share : shares) {
+    if (!share.rotation)
+      continue;
+    const Point<dim> arm = share.weight * (x - share.point.position);
+    const auto same = std::find_if(arms.begin(), arms.end(), [&](const auto& other) {
+      return other.first == share.rotation.get();
+    });
+    if (same == arms.end())
+      arms.emplace_back(share.rotation.get(), arm);
+    else
+      same->second += arm;
+  }
+  return arms;
+}
+
+}  // namespace
+
+template <int dim>
+void add_carried_row(const SolidSystem<dim>& solids, const std::vector<SurfaceShare<dim>>& shares,
+                     const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
+                     RowEntries& row) {
+  for (const SurfaceShare<dim>& share : shares) {
+    solids.velocity_row(share.point, x, scratch);
+    for (std::size_t k = 0; k < scratch.dofs.size(); ++k) {
+      const double value = scratch.coefficients[k][direction];
+      if (value != 0)
+        row.emplace_back(scratch.dofs[k], share.weight * value);
+    }
+  }
   const auto add = [&](const SurfacePoint<dim>& vertex, const Point<dim>& coefficient) {
     solids.velocity_row(vertex, x, scratch);
-    for (std::size_t k = 0; k < scratch.dofs.size(); ++k) {
-      dofs.push_back(scratch.dofs[k]);
-      values.push_back(coefficient.dot(scratch.coefficients[k]));
-    }
+    for (std::size_t k = 0; k < scratch.dofs.size(); ++k)
+      row.emplace_back(scratch.dofs[k], coefficient.dot(scratch.coefficients[k]));
   };
-  share.rotation->row(x - share.point.position, direction, add);
+  for (const auto& [rotation, arm] : arms_of_rotations<dim>(shares, x))
+    rotation->row(arm, direction, add);
 }
 
 template <int dim>
-Point<dim> carried_effective_velocity(const SolidSystem<dim>& solids,
-                                      const SurfaceShare<dim>& share, const Point<dim>& x) {
-  Point<dim> velocity = solids.effective_velocity(share.point, x);
-  if (share.rotation) {
-    const auto of_vertex = [&](const SurfacePoint<dim>& vertex) {
-      return solids.effective_velocity(vertex, x);
-    };
-    velocity += share.rotation->velocity_at(x - share.point.position, of_vertex);
-  }
+double carried_effective_velocity(const SolidSystem<dim>& solids,
+                                  const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x,
+                                  int direction) {
+  double velocity = 0;
+  for (const SurfaceShare<dim>& share : shares)
+    velocity += share.weight * solids.effective_velocity(share.point, x)[direction];
+  const auto of_vertex = [&](const SurfacePoint<dim>& vertex) {
+    return solids.effective_velocity(vertex, x);
+  };
+  for (const auto& [rotation, arm] : arms_of_rotations<dim>(shares, x))
+    velocity += rotation->velocity_at(arm, of_vertex)[direction];
   return velocity;
 }
 
@@ -167,18 +208,18 @@ CouplingWeights weights_of_rows(int n_rows, const std::function<void(int, RowEnt
 template <int dim>
 CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
                                  const std::vector<std::vector<SurfaceShare<dim>>>& shares,
-                                 const SolidSystem<dim>& solids) {
+                                 const SolidSystem<dim>& solids, bool carried) {
   VelocityRow<dim> scratch;
-  std::vector<GlobalIndex> dofs;
-  std::vector<double> values;
+  std::vector<SurfaceShare<dim>> plain;
   return weights_of_rows(static_cast<int>(volumes.size()), [&](int f, RowEntries& row) {
-    for (const SurfaceShare<dim>& share : shares[f]) {
-      carried_row<dim>(solids, share, volumes[f].center, volumes[f].direction, scratch, dofs,
-                       values);
-      for (std::size_t k = 0; k < dofs.size(); ++k) {
-        row.emplace_back(dofs[k], share.weight * values[k]);
-      }
+    plain.clear();
+    if (!carried) {
+      plain = shares[f];
+      for (SurfaceShare<dim>& share : plain)
+        share.rotation.reset();
     }
+    add_carried_row<dim>(solids, carried ? shares[f] : plain, volumes[f].center,
+                         volumes[f].direction, scratch, row);
   });
 }
 
@@ -194,13 +235,14 @@ template void directed_row<2>(const SolidSystem<2>&, const SurfacePoint<2>&, con
 template void add_local_rotations<2>(const std::vector<ControlVolume<2>>&,
                                      const SurfaceSnapshot<2>&,
                                      std::vector<std::vector<SurfaceShare<2>>>&);
-template void carried_row<2>(const SolidSystem<2>&, const SurfaceShare<2>&, const Point<2>&, int,
-                             VelocityRow<2>&, std::vector<GlobalIndex>&, std::vector<double>&);
-template Point<2> carried_effective_velocity<2>(const SolidSystem<2>&, const SurfaceShare<2>&,
-                                                const Point<2>&);
+template void add_carried_row<2>(const SolidSystem<2>&, const std::vector<SurfaceShare<2>>&,
+                                 const Point<2>&, int, VelocityRow<2>&, RowEntries&);
+template double carried_effective_velocity<2>(const SolidSystem<2>&,
+                                              const std::vector<SurfaceShare<2>>&, const Point<2>&,
+                                              int);
 template CouplingWeights coupling_weights<2>(const std::vector<ControlVolume<2>>&,
                                              const std::vector<std::vector<SurfaceShare<2>>>&,
-                                             const SolidSystem<2>&);
+                                             const SolidSystem<2>&, bool);
 template std::vector<std::vector<SurfaceShare<3>>> surface_shares<3>(
     const std::vector<ControlVolume<3>>&, const SurfaceSnapshot<3>&, double);
 template void directed_row<3>(const SolidSystem<3>&, const SurfacePoint<3>&, const Point<3>&, int,
@@ -208,12 +250,13 @@ template void directed_row<3>(const SolidSystem<3>&, const SurfacePoint<3>&, con
 template void add_local_rotations<3>(const std::vector<ControlVolume<3>>&,
                                      const SurfaceSnapshot<3>&,
                                      std::vector<std::vector<SurfaceShare<3>>>&);
-template void carried_row<3>(const SolidSystem<3>&, const SurfaceShare<3>&, const Point<3>&, int,
-                             VelocityRow<3>&, std::vector<GlobalIndex>&, std::vector<double>&);
-template Point<3> carried_effective_velocity<3>(const SolidSystem<3>&, const SurfaceShare<3>&,
-                                                const Point<3>&);
+template void add_carried_row<3>(const SolidSystem<3>&, const std::vector<SurfaceShare<3>>&,
+                                 const Point<3>&, int, VelocityRow<3>&, RowEntries&);
+template double carried_effective_velocity<3>(const SolidSystem<3>&,
+                                              const std::vector<SurfaceShare<3>>&, const Point<3>&,
+                                              int);
 template CouplingWeights coupling_weights<3>(const std::vector<ControlVolume<3>>&,
                                              const std::vector<std::vector<SurfaceShare<3>>>&,
-                                             const SolidSystem<3>&);
+                                             const SolidSystem<3>&, bool);
 
 }  // namespace lockstep

@@ -52,25 +52,28 @@ void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point
                   const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
                   std::vector<GlobalIndex>& dofs, std::vector<double>& values);
 
-/// The same with the share's local rotation: the row of the velocity at x.
+/// The velocity along `direction` at x that the shares of a face make, as entries of the solid map:
+/// those of each share by its weight, and for each local rotation what it adds to them, once.
+using RowEntries = std::vector<std::pair<GlobalIndex, double>>;
 template <int dim>
-void carried_row(const SolidSystem<dim>& solids, const SurfaceShare<dim>& share,
-                 const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
-                 std::vector<GlobalIndex>& dofs, std::vector<double>& values);
-/// The effective velocity of a share's surface, carried to x [m/s].
+void add_carried_row(const SolidSystem<dim>& solids, const std::vector<SurfaceShare<dim>>& shares,
+                     const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
+                     RowEntries& row);
+/// The same of the effective velocities [m/s].
 template <int dim>
-Point<dim> carried_effective_velocity(const SolidSystem<dim>& solids,
-                                      const SurfaceShare<dim>& share, const Point<dim>& x);
+double carried_effective_velocity(const SolidSystem<dim>& solids,
+                                  const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x,
+                                  int direction);
 
 /// Rows from their entries (id of the solid map, value), in any order: equal ids are added.
 /// `entries(f, row)` appends those of row f.
-using RowEntries = std::vector<std::pair<GlobalIndex, double>>;
 CouplingWeights weights_of_rows(int n_rows, const std::function<void(int, RowEntries&)>& entries);
 
+/// `carried`: with the shares' local rotations, else each share as it is.
 template <int dim>
 CouplingWeights coupling_weights(const std::vector<ControlVolume<dim>>& volumes,
                                  const std::vector<std::vector<SurfaceShare<dim>>>& shares,
-                                 const SolidSystem<dim>& solids);
+                                 const SolidSystem<dim>& solids, bool carried = true);
 
 /// Is any solid held or scripted? The same on every rank.
 bool any_prescribed(const std::vector<SolidDescription>& solids);

@@ -224,6 +224,39 @@ TEST(Flux, OfAFluidAtRestLiftsTheBodyExactly) {
   EXPECT_LT(lift.segment(3, 3).norm(), 1e-14);
 }
 
+// What nodes take with other levers than the fluid gives it is named, to round-off.
+TEST(Flux, NamesTheLeversOfNodes) {
+  FakeBody<2> body = ball<2>(0.23, {0.52, 0.47}, 0.03), plate;
+  body.kind = plate.kind = FakeBody<2>::Kind::nodal;
+  plate.surface = box_surface<2>({0.4, 0.02}, 0.05);
+  for (auto& x : plate.surface.vertices)
+    x += Point<2>(0.6, 0.877);
+  plate.velocity = {0.3, 1};
+  FluxCase<2> c(16, {body, plate});
+  c.fluid->set_prediction(test::wavy_velocity<2>);
+  BlockVector solution{make_vector(c.fluid->pressure_map()), make_vector(c.solids->map())};
+  pseudo_random(*solution.pressure, 7);
+  const std::vector<double> before = c.fluid->coupled_velocity();
+  const RCP<Vector> momentum = c.solids->explicit_momentum(0, 0.1);
+  const BlockSystem& blocks = c.system->blocks(0.1);
+  const RCP<Vector> rhs = c.system->lumped_momentum(*momentum);
+  blocks.coupling_transposed->apply(*solution.pressure, *rhs, Teuchos::NO_TRANS, -1, 1);
+  solution.solid = distributed(dense(blocks.solid_block).llt().solve(dense(*rhs)), c.solids->map());
+  const std::vector<double> after = c.coupling.velocity(*solution.solid);
+  Momentum<2> total = c.fluid->momentum() + c.system->lumped_fluid_momentum(before);
+  total += c.solids->momentum(*momentum) + c.fluid->boundary_pressure_impulse(*solution.pressure);
+  const AngularVector<2> levers = c.coupling.lever_impulse(*c.solids, before, after, solution);
+  c.fluid->project(*solution.pressure);
+  c.fluid->set_coupled_velocity(after);
+  const auto gained = make_vector(c.solids->map());
+  apply(*c.solids->mass(), *solution.solid, *gained);
+  total -= c.fluid->momentum() + c.system->lumped_fluid_momentum(after);
+  total -= c.solids->momentum(*gained);
+  EXPECT_LT(total.linear.norm(), 1e-13);
+  EXPECT_GT(levers.norm(), 1e-5);
+  EXPECT_LT((total.angular + levers).norm(), 1e-13);
+}
+
 // Volume fractions displace the volume of the body without any correction.
 TEST(Flux, OfVolumeFractionsLiftsTheBodyExactly) {
   FluxOptions options;

@@ -51,6 +51,38 @@ TEST(Lumping, ConsistentIsTheExplicitProduct) {
   EXPECT_GT(expected.topRightCorner(3, 6).norm(), 1e-3);  // shared rows tie the two
 }
 
+// Rows that carry rotations tie the axes, but not nodes of other dual cells.
+TEST(Lumping, CarriedRowsTakeLittleMoreMemory) {
+  std::array<double, 2> n_entries{};
+  for (const bool carried : {false, true}) {
+    MixedFaceOptions options;
+    options.rule = MixedRule::every_cut_cell;
+    options.lumping = Lumping::consistent;
+    options.carry_rotations = carried;
+    FakeBody<3> body = ball<3>(0.3, {0.5, 0.51, 0.48}, FakeBody<3>::Kind::nodal);
+    body.surface = ball_surface<3>(0.3, 0.06);
+    for (auto& x : body.surface.vertices)
+      x += body.center;
+    CoupledCase<3> c(unit_tank<3>(10), fake_solids<3>({{body}}), options);
+    n_entries[carried] = static_cast<double>(c.coupling.added_mass()->getGlobalNumEntries());
+  }
+  EXPECT_GT(n_entries[0], 1e4);
+  EXPECT_LT(n_entries[1], 4.5 * n_entries[0]);
+}
+
+TEST(Lumping, ConsistentProductsAreSummedWhereTheyArise) {
+  const CouplingWeights weights{{3, 5, 8}, {0, 2, 4}, {0, 2, 0, 1}, {0.5, 0.5, -1, 2}};
+  const auto triplets = consistent_mass_triplets(weights, {4, 10});
+  const std::vector<Triplet> expected{{3, 3, 11}, {3, 5, -20}, {3, 8, 1}, {5, 3, -20},
+                                      {5, 5, 40}, {8, 3, 1},   {8, 8, 1}};
+  ASSERT_EQ(triplets.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(triplets[i].row, expected[i].row);
+    EXPECT_EQ(triplets[i].column, expected[i].column);
+    EXPECT_DOUBLE_EQ(triplets[i].value, expected[i].value);
+  }
+}
+
 TEST(Lumping, DiagonalConservesEachAxisMass) {
   CoupledCase<2> c(unit_tank<2>(10),
                    fake_solids<2>({{ball<2>(0.24, {0.5, 0.51}, FakeBody<2>::Kind::nodal)}}));

@@ -95,14 +95,18 @@ TEST(SharedRows, BodyAndPrescribedSolidConserveMomentum) {
   }
 }
 
+// With W that carries rotations, too, whose rows have negative entries.
 TEST(SharedRows, NodesConserveLinearMomentum) {
-  for (Lumping lumping : {Lumping::diagonal, Lumping::consistent}) {
-    MixedFaceOptions options;
-    options.lumping = lumping;
-    auto bodies = neighbours();
-    bodies[0].kind = FakeBody<2>::Kind::nodal;
-    CoupledCase<2> c(unit_tank<2>(10), fake_solids<2>({bodies}), options);
-    EXPECT_LT(defect_of_row_2(c).linear.norm(), 1e-13);
+  for (const bool carried : {false, true}) {
+    for (Lumping lumping : {Lumping::diagonal, Lumping::consistent}) {
+      MixedFaceOptions options;
+      options.lumping = lumping;
+      options.carry_rotations = carried;
+      auto bodies = neighbours();
+      bodies[0].kind = FakeBody<2>::Kind::nodal;
+      CoupledCase<2> c(unit_tank<2>(10), fake_solids<2>({bodies}), options);
+      EXPECT_LT(defect_of_row_2(c).linear.norm(), 1e-13);
+    }
   }
 }
 

@@ -90,6 +90,7 @@ void check_carried_rows(double radius) {
   const FakeBody<dim> body = ball<dim>(radius, center, FakeBody<dim>::Kind::nodal);
   MixedFaceOptions options;
   options.carry_rotations = true;
+  options.lumping = Lumping::consistent;  // then faces move by W itself
   CoupledCase<dim> c(unit_tank<dim>(n_cells), fake_solids<dim>({{body}}), options);
   const GatheredFaces<dim> faces = gathered_faces(c);
   ASSERT_GT(faces.volumes.size(), 10u);
