@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "geometry/solid_volume.hpp"
+
 namespace lockstep {
 namespace {
 
@@ -118,12 +120,13 @@ std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolu
                                                    const std::vector<FaceShares<dim>>& shares,
                                                    const std::vector<double>& lumped_masses,
                                                    const SurfaceSnapshot<dim>& surface,
-                                                   double density, const Communicator& comm) {
+                                                   double density, const Box<dim>& domain,
+                                                   const Communicator& comm) {
   const int n_solids = static_cast<int>(surface.solids().size());
-  std::vector<MassProperties<dim>> bodies(n_solids);
+  std::vector<PartOfSolid<dim>> bodies(n_solids);
   for (int s = 0; s < n_solids; ++s)
     if (surface.solids()[s].closed)
-      bodies[s] = volume_properties<dim>(surface.mesh_of_solid(s));
+      bodies[s] = part_of_solid<dim>(surface, s, domain);
 
   std::vector<DisplacedOfSolid<dim>> displaced(n_solids);
   for (std::size_t f = 0; f < volumes.size(); ++f) {
@@ -149,7 +152,7 @@ std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolu
       if (std::abs(d.open_area) > 1e-6 * d.area)
         continue;
       all.push_back(
-          {s, a, bodies[s].centroid, density * (d.volume - bodies[s].measure), density * d.moment});
+          {s, a, bodies[s].centroid, density * (d.volume - bodies[s].volume), density * d.moment});
     }
   return all;
 }
@@ -158,14 +161,14 @@ template std::vector<DisplacedExcess<2>> displaced_excess<2>(const std::vector<C
                                                              const std::vector<FaceShares<2>>&,
                                                              const std::vector<double>&,
                                                              const SurfaceSnapshot<2>&, double,
-                                                             const Communicator&);
+                                                             const Box<2>&, const Communicator&);
 template AxisForce force_of<2>(const DisplacedExcess<2>&, const SolidSystem<2>&,
                                const SurfaceSnapshot<2>&);
 template std::vector<DisplacedExcess<3>> displaced_excess<3>(const std::vector<ControlVolume<3>>&,
                                                              const std::vector<FaceShares<3>>&,
                                                              const std::vector<double>&,
                                                              const SurfaceSnapshot<3>&, double,
-                                                             const Communicator&);
+                                                             const Box<3>&, const Communicator&);
 template AxisForce force_of<3>(const DisplacedExcess<3>&, const SolidSystem<3>&,
                                const SurfaceSnapshot<3>&);
 

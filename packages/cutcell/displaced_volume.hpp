@@ -20,13 +20,15 @@ struct DisplacedExcess {
 };
 
 /// Of every closed solid and axis; but not along axes on which a body reaches a wall, where it is
-/// not lifted. Every rank gets all. Collective.
+/// not lifted. Of a body that sticks out of `domain` only the part inside counts. Every rank gets
+/// all. Collective.
 template <int dim>
 std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
                                                    const std::vector<FaceShares<dim>>& shares,
                                                    const std::vector<double>& lumped_masses,
                                                    const SurfaceSnapshot<dim>& surface,
-                                                   double density, const Communicator& comm);
+                                                   double density, const Box<dim>& domain,
+                                                   const Communicator& comm);
 
 /// The generalized force per unit of acceleration along one axis [kg], as entries of the solid map.
 struct AxisForce {

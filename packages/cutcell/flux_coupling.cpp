@@ -5,6 +5,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "interfaces/bounded_fluid.hpp"
 #include "linear/overlap.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "mixedface/lumping.hpp"
@@ -77,8 +78,8 @@ void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
   density = max_all(solids.comm(), density);
   if (density == 0)
     density = fluid.density(surface_->bounds_of_solid(0).center());
-  for (const auto& excess :
-       displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density, solids.comm())) {
+  for (const auto& excess : displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density,
+                                                  bounds_of(fluid), solids.comm())) {
     if (surface_->solids()[excess.solid].prescribed)
       held_excess_.push_back(excess);
     else

@@ -150,6 +150,15 @@ AngularVector<dim> MacFluid<dim>::moment_of_shifts(const Velocity& velocity) con
 }
 
 template <int dim>
+Box<dim> MacFluid<dim>::bounds() const {
+  const Point<dim> lower = domain_.grid.lower();
+  Point<dim> upper = lower;
+  for (int a = 0; a < dim; ++a)
+    upper[a] += domain_.grid.n_cells()[a] * spacing();
+  return Box<dim>(lower, upper);
+}
+
+template <int dim>
 Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
   time_ = time + dt;
   last_step_ = dt;

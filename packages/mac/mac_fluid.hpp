@@ -2,8 +2,8 @@
 #include <memory>
 #include <optional>
 
+#include "interfaces/bounded_fluid.hpp"
 #include "interfaces/field_sampler.hpp"
-#include "interfaces/fluid.hpp"
 #include "mac/forces.hpp"
 #include "mac/pressure_operator.hpp"
 #include "mac/pressure_system.hpp"
@@ -40,7 +40,9 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid);
 ///
 /// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
 template <int dim>
-class MacFluid : public FluidDiscretization<dim>, public FieldSampler<dim> {
+class MacFluid : public FluidDiscretization<dim>,
+                 public FieldSampler<dim>,
+                 public BoundedFluid<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
 
@@ -78,6 +80,7 @@ class MacFluid : public FluidDiscretization<dim>, public FieldSampler<dim> {
 
   double largest_cell_crossing_rate() const override;
   double spacing() const override { return domain_.spacing(); }
+  Box<dim> bounds() const override;
   double density(const Point<dim>&) const override { return parameters_.density; }
   RCP<Vector> last_scaled_pressure() const override;
   Point<dim> gravity() const override { return parameters_.forces.gravity; }

@@ -143,17 +143,16 @@ template <int dim>
 std::vector<UnseenMass<dim>> balance_masses(
     const std::vector<ControlVolume<dim>>& volumes,
     const std::vector<std::vector<SurfaceShare<dim>>>& shares, const SurfaceSnapshot<dim>& surface,
-    double density, const Communicator& comm, std::vector<double>& masses) {
+    double density, const Box<dim>& domain, const Communicator& comm, std::vector<double>& masses) {
   const auto& solids = surface.solids();
   std::vector<Point<dim>> centers(solids.size(), Point<dim>::Zero());
   std::vector<double> solid_volumes(solids.size(), 0);
   for (std::size_t s = 0; s < solids.size(); ++s) {
     if (!solids[s].closed || solids[s].prescribed)
       continue;
-    const MassProperties<dim> properties =
-        volume_properties<dim>(surface.mesh_of_solid(static_cast<int>(s)));
-    centers[s] = properties.centroid;
-    solid_volumes[s] = properties.measure;
+    const PartOfSolid<dim> part = part_of_solid<dim>(surface, static_cast<int>(s), domain);
+    centers[s] = part.centroid;
+    solid_volumes[s] = part.volume;
   }
   const auto balances = accumulate<dim>(volumes, shares, centers, masses, comm);
   const std::vector<double> original = masses;
@@ -297,10 +296,10 @@ template std::vector<double> fluid_masses<3>(const std::vector<ControlVolume<3>>
                                              const SurfaceSnapshot<3>&, bool);
 template std::vector<UnseenMass<2>> balance_masses<2>(
     const std::vector<ControlVolume<2>>&, const std::vector<std::vector<SurfaceShare<2>>>&,
-    const SurfaceSnapshot<2>&, double, const Communicator&, std::vector<double>&);
+    const SurfaceSnapshot<2>&, double, const Box<2>&, const Communicator&, std::vector<double>&);
 template std::vector<UnseenMass<3>> balance_masses<3>(
     const std::vector<ControlVolume<3>>&, const std::vector<std::vector<SurfaceShare<3>>>&,
-    const SurfaceSnapshot<3>&, double, const Communicator&, std::vector<double>&);
+    const SurfaceSnapshot<3>&, double, const Box<3>&, const Communicator&, std::vector<double>&);
 template std::vector<Triplet> added_mass_triplets<2>(
     const std::vector<ControlVolume<2>>&, const std::vector<std::vector<SurfaceShare<2>>>&,
     const SolidSystem<2>&, const std::vector<double>&, Lumping);

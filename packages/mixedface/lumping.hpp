@@ -32,13 +32,14 @@ struct UnseenMass {
 /// Corrects the masses of the mixed faces of every closed solid, axis by axis, by factors linear in
 /// the transverse position, so that lumped fluid + solid displace exactly what the discrete
 /// pressure lifts: sum m_f = rho (V_disc - V_solid), and its first moments across the axis. Then a
-/// neutrally buoyant body rests (A1) and drifts (A9) exactly. Returns the solids where a mass would
-/// have turned negative or that the grid does not see; their masses are left alone. Collective.
+/// neutrally buoyant body rests (A1) and drifts (A9) exactly. V_solid is that of the part in
+/// `domain`, where the fluid can be. Returns the solids where a mass would have turned negative or
+/// that the grid does not see; their masses are left alone. Collective.
 template <int dim>
 std::vector<UnseenMass<dim>> balance_masses(
     const std::vector<ControlVolume<dim>>& volumes,
     const std::vector<std::vector<SurfaceShare<dim>>>& shares, const SurfaceSnapshot<dim>& surface,
-    double density, const Communicator& comm, std::vector<double>& masses);
+    double density, const Box<dim>& domain, const Communicator& comm, std::vector<double>& masses);
 
 /// W^T M_F W as triplets over the solid map, one an entry. Memory: what it holds. Local.
 std::vector<Triplet> consistent_mass_triplets(const CouplingWeights& weights,

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "geometry/clipping.hpp"
+#include "interfaces/bounded_fluid.hpp"
 #include "linear/overlap.hpp"
 
 namespace lockstep {
@@ -70,7 +71,8 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
     density = max_all(solids.comm(), density);
     if (density == 0)
       density = fluid.density(surface.bounds_of_solid(0).center());
-    unseen_ = balance_masses<dim>(volumes_, shares_, surface, density, solids.comm(), masses_);
+    unseen_ = balance_masses<dim>(volumes_, shares_, surface, density, bounds_of(fluid),
+                                  solids.comm(), masses_);
   }
   assemble_weights(solids);
   assemble_unseen(solids, surface);

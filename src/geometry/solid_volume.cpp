@@ -117,6 +117,98 @@ double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& 
   return std::min(volume, box.volume());
 }
 
+namespace {
+
+/// Volume and first moments, about `origin`.
+template <int dim>
+struct Moments {
+  double volume = 0;
+  Point<dim> first = Point<dim>::Zero();
+};
+
+/// The integrals over x_0, from the side at `root` to x but at most to `exit`, of 1 and of x.
+template <int dim>
+Moments<dim> below(const Point<dim>& x, double root, double exit) {
+  const double top = std::min(x[0], exit);
+  Moments<dim> below;
+  below.volume = top - root;
+  below.first = below.volume * x;
+  below.first[0] = 0.5 * (top * top - root * root);
+  return below;
+}
+
+/// Adds n_0 times those over a part on one side of `exit`: quadratic, so that the middles of the
+/// edges (2D: Simpson's points) make it exact.
+template <int dim>
+void add_below(const ConvexPart<dim, false>& part, double root, double exit, Moments<dim>& sum) {
+  const auto add = [&](double weight, const Point<dim>& x) {
+    const Moments<dim> at_x = below<dim>(x, root, exit);
+    sum.volume += weight * at_x.volume;
+    sum.first += weight * at_x.first;
+  };
+  for (int i = 1; i + dim - 2 < part.n_vertices(); ++i) {
+    std::array<Point<dim>, dim> points;
+    for (int k = 0; k < dim; ++k)
+      points[k] = part.position(k == 0 ? 0 : i + k - 1);
+    const double area = area_vector<dim>(points)[0];
+    if constexpr (dim == 2) {
+      add(area / 6, points[0]);
+      add(area * 4 / 6, 0.5 * (points[0] + points[1]));
+      add(area / 6, points[1]);
+    } else {
+      for (int k = 0; k < 3; ++k)
+        add(area / 3, 0.5 * (points[k] + points[(k + 1) % 3]));
+    }
+  }
+}
+
+}  // namespace
+
+// As above, with the column along axis 0 and the fields whose divergences are 1 and x in the box.
+template <int dim>
+PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
+                               const Box<dim>& box) {
+  const Box<dim> bounds = surface.bounds_of_solid(solid);
+  const MassProperties<dim> whole = volume_properties<dim>(surface.mesh_of_solid(solid));
+  if (box.contains(bounds))
+    return {whole.measure, whole.centroid};
+  PartOfSolid<dim> part{0, whole.centroid};
+  if (!box.intersects(bounds))
+    return part;
+  const Point<dim> origin = whole.centroid;  // less round-off
+  const Point<dim> lower = box.min() - origin, upper = box.max() - origin;
+  Moments<dim> sum;
+  const SolidDescription& description = surface.solids()[solid];
+  for (int s = description.simplex_begin; s < description.simplex_end; ++s) {
+    auto corners = surface.corners(s);
+    for (Point<dim>& corner : corners)
+      corner -= origin;
+    ConvexPart<dim, false> within(corners);
+    for (int a = 1; a < dim; ++a) {
+      within.keep(a, lower[a], +1);
+      within.keep(a, upper[a], -1);
+    }
+    within.keep(0, lower[0], +1);
+    ConvexPart<dim, false> beyond = within;
+    within.keep(0, upper[0], -1);
+    bool any_beyond = false;  // what lies in the plane of the exit counts once
+    for (int i = 0; i < beyond.n_vertices(); ++i)
+      any_beyond |= beyond.position(i)[0] > upper[0];
+    add_below<dim>(within, lower[0], upper[0], sum);
+    if (any_beyond) {
+      beyond.keep(0, upper[0], +1);
+      add_below<dim>(beyond, lower[0], upper[0], sum);
+    }
+  }
+  if (sum.volume > 1e-14 * whole.measure) {
+    part.volume = sum.volume;
+    part.centroid = origin + sum.first / sum.volume;
+  }
+  return part;
+}
+
+template PartOfSolid<2> part_of_solid<2>(const SurfaceSnapshot<2>&, int, const Box<2>&);
+template PartOfSolid<3> part_of_solid<3>(const SurfaceSnapshot<3>&, int, const Box<3>&);
 template double solid_volume_in_box<2>(const SurfaceSnapshot<2>&, const Box<2>&, int);
 template double solid_volume_in_box<3>(const SurfaceSnapshot<3>&, const Box<3>&, int);
 template double solid_volume_in_box<2>(const SurfaceSnapshot<2>&, const Box<2>&);

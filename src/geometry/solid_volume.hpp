@@ -15,4 +15,16 @@ double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& 
 template <int dim>
 double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box, int solid);
 
+/// What of a solid lies in a box.
+template <int dim>
+struct PartOfSolid {
+  double volume = 0;                         ///< [m^dim]
+  Point<dim> centroid = Point<dim>::Zero();  ///< [m]; of the whole solid if the volume is zero
+};
+
+/// The part of a closed solid inside `box`, exact for its polyhedron. Costs nothing more than the
+/// volume of the whole where the box holds it. Local.
+template <int dim>
+PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid, const Box<dim>& box);
+
 }  // namespace lockstep

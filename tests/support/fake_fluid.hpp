@@ -2,7 +2,7 @@
 #include <functional>
 #include <vector>
 
-#include "interfaces/fluid.hpp"
+#include "interfaces/bounded_fluid.hpp"
 
 namespace lockstep::testing {
 
@@ -23,7 +23,7 @@ struct FakeBox {
 /// number; only the pressure unknowns (active cells in lexicographic order, in equal shares) and
 /// the lists an interface calls local are distributed. Nothing is transported: u* = u^n.
 template <int dim>
-class FakeFluid : public FluidDiscretization<dim> {
+class FakeFluid : public FluidDiscretization<dim>, public BoundedFluid<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
   enum class FaceKind { inactive, wall, free, coupled };
@@ -67,6 +67,13 @@ class FakeFluid : public FluidDiscretization<dim> {
 
   double largest_cell_crossing_rate() const override;
   double spacing() const override { return box_.spacing; }
+  double density(const Point<dim>&) const override { return box_.density; }
+  Box<dim> bounds() const override {
+    Point<dim> upper = box_.lower;
+    for (int a = 0; a < dim; ++a)
+      upper[a] += box_.n_cells[a] * box_.spacing;
+    return Box<dim>(box_.lower, upper);
+  }
   Point<dim> gravity() const override { return box_.gravity; }
   Momentum<dim> momentum() const override;
   double kinetic_energy() const override;

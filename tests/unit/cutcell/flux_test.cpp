@@ -224,6 +224,25 @@ TEST(Flux, OfAFluidAtRestLiftsTheBodyExactly) {
   EXPECT_LT(lift.segment(3, 3).norm(), 1e-14);
 }
 
+// A bar through a wall: the fluid lifts the part in the tank.
+TEST(Flux, OfAFluidAtRestLiftsThePartInTheTank) {
+  for (const double beyond : {0.4, 5.}) {
+    FakeBody<3> bar;
+    bar.surface = box_surface<3>({0.3 + beyond, 0.25, 0.25}, 0.1);
+    for (auto& x : bar.surface.vertices)
+      x += Point<3>(0.15 - beyond / 2, 0.53, 0.48);
+    bar.center = {0.15, 0.53, 0.48};
+    const FluxCase<3> c(9, {bar});
+    const Point<3> gravity(0, 0, -2);
+    const auto pressure =
+        test::pressure_vector<3>(*c.fluid, [&](const Point<3>& x) { return 0.1 * gravity.dot(x); });
+    const auto impulse = make_vector(c.solids->map());
+    c.coupling.add_unseen_buoyancy(gravity, 0.1, *impulse);
+    c.coupling.coupling_transposed()->apply(*pressure, *impulse, Teuchos::NO_TRANS, -1, 1);
+    EXPECT_NEAR(dense(*impulse)[2], 0.1 * 2 * 0.3 * 0.25 * 0.25, 1e-14) << beyond;
+  }
+}
+
 // What nodes take with other levers than the fluid gives it is named, to round-off.
 TEST(Flux, NamesTheLeversOfNodes) {
   FakeBody<2> body = ball<2>(0.23, {0.52, 0.47}, 0.03), plate;

@@ -219,6 +219,33 @@ TEST(SolidVolume, SumsToTheSolid) {
               volume_properties(torus).measure, 1e-12);
 }
 
+// Against the sums over the cells of a lattice, a route of its own.
+TEST(SolidVolume, PartInABox) {
+  const auto ball = snapshot<3>({moved<3>(ball_surface<3>(0.7, 0.2), {0.1, 0.2, -0.1}, 1)});
+  const Box<3> all(Point<3>(-2, -2, -2), Point<3>(2, 2, 2)),
+      corner(Point<3>(-1, 0, -0.3), Point<3>(0.3, 0.45, 2));
+  const MassProperties<3> whole = volume_properties<3>(ball.mesh_of_solid(0));
+  EXPECT_EQ(part_of_solid<3>(ball, 0, all).volume, whole.measure);
+  EXPECT_EQ(part_of_solid<3>(ball, 0, Box<3>(Point<3>(1, -2, -2), Point<3>(2, 2, 2))).volume, 0);
+  const PartOfSolid<3> part = part_of_solid<3>(ball, 0, corner);
+  EXPECT_NEAR(part.volume, solid_volume_in_box<3>(ball, corner), 1e-13);
+  // Two halves make the whole, with their moments.
+  for (int a = 0; a < 3; ++a) {
+    Box<3> lower = all, upper = all;
+    lower.max()[a] = upper.min()[a] = 0.17;
+    const PartOfSolid<3> l = part_of_solid<3>(ball, 0, lower), u = part_of_solid<3>(ball, 0, upper);
+    EXPECT_NEAR(l.volume + u.volume, whole.measure, 1e-13);
+    const Point<3> moment = l.volume * l.centroid + u.volume * u.centroid;
+    EXPECT_LT((moment - whole.measure * whole.centroid).norm(), 1e-13);
+  }
+  // A quarter of a square by hand.
+  const auto square = snapshot<2>({box_surface<2>({2, 2}, 0.5)});
+  const PartOfSolid<2> quarter =
+      part_of_solid<2>(square, 0, Box<2>(Point<2>(0.25, -5), Point<2>(0.75, 0.5)));
+  EXPECT_NEAR(quarter.volume, 0.5 * 1.5, 1e-14);
+  EXPECT_LT((quarter.centroid - Point<2>(0.5, -0.25)).norm(), 1e-14);
+}
+
 TEST(SolidVolume, HalfCutBoxes) {
   const auto box = snapshot<3>({box_surface<3>({1, 1, 1}, 0.4)});
   const auto in_box = [&](const Point<3>& lower, const Point<3>& upper) {

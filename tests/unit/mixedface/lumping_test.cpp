@@ -164,6 +164,27 @@ TEST(Balance, MassesMatchTheDiscreteLift3d) {
   check_balance<3>(8, 0.3);
 }
 
+// Bodies that stick out of the tank displace what is inside, those beyond it nothing.
+TEST(Balance, CountsWhatIsInTheDomain) {
+  FakeBox<2> tank = unit_tank<2>(10);
+  tank.open_axis = 1;
+  const Point<2> gravity(0, -9.8);
+  const auto lift_of = [&](const Point<2>& lower, const Point<2>& upper) {
+    FakeBody<2> body;
+    body.surface = rectangle(lower, upper);
+    body.center = (lower + upper) / 2;
+    CoupledCase<2> c(tank, fake_solids<2>({{body}}));
+    const auto impulse = make_vector(c.solids.map());
+    c.coupling.add_unseen_buoyancy(gravity, 1, *impulse);
+    return dense(*impulse)[1];
+  };
+  EXPECT_EQ(lift_of({0.3, 1.2}, {0.7, 1.5}), 0);    // above the open top
+  EXPECT_EQ(lift_of({-0.5, 0.2}, {-0.1, 0.5}), 0);  // behind a wall
+  // Between the cell centres 0.45 and 0.55 no line of them meets it.
+  EXPECT_NEAR(lift_of({0.47, 0.46}, {0.53, 0.54}), tank.density * 9.8 * 0.06 * 0.08, 1e-14);
+  EXPECT_NEAR(lift_of({-0.3, 0.46}, {0.02, 0.54}), tank.density * 9.8 * 0.02 * 0.08, 1e-14);
+}
+
 // A body the grid hardly sees gets its lift as an impulse. In resting fluid, p̂ = dt rho g . x and
 // u* = dt g, what the discrete pressure, the lumped fluid and the impulse give it is -rho V dt g.
 TEST(Balance, TinyBodyGetsItsExactBuoyantImpulse) {
