@@ -10,9 +10,9 @@ namespace lockstep {
 template <int dim>
 LocalRotation<dim>::LocalRotation(const Box<dim>& box, double arm, std::vector<int> simplices,
                                   int solid, const SurfaceSnapshot<dim>& surface) {
-  constexpr int most_widenings = 6;
+  constexpr int most_widenings = 8;
   collect(simplices, solid, surface);
-  Point<dim> margin = 0.5 * box.sizes();
+  Point<dim> margin = 0.125 * box.sizes();
   for (int attempt = 0; attempt < most_widenings && !invert(arm); ++attempt, margin *= 2) {
     surface.touching(Box<dim>(box.min() - margin, box.max() + margin), simplices);
     collect(simplices, solid, surface);
