@@ -7,7 +7,7 @@
 #include "deformable/deformable_body.hpp"
 #include "deformable/node_space.hpp"
 #include "deformable/strain_limit.hpp"
-#include "interfaces/solid.hpp"
+#include "interfaces/volume_sweeper.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -22,7 +22,7 @@ namespace lockstep {
 /// the force at x + v' dt/2, whose energy falls by a^4/8 where a is small. Explicit and
 /// semi-implicit are stable up to a = sqrt 2.
 template <int dim>
-class DeformableSolids : public SolidModel<dim> {
+class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
  public:
   /// `type` is the name of the model, gravity [m/s^2], the start of the run [s]. Collective.
   DeformableSolids(const std::string& type, std::vector<DeformableBody<dim>> bodies,
@@ -66,6 +66,11 @@ class DeformableSolids : public SolidModel<dim> {
   /// Of linear elasticity of turned bodies, means over sub-steps, and the stretch limit of S1.
   AngularVector<dim> inner_angular_impulse(double dt) const override;
   double largest_stable_step() const override { return largest_stable_step_; }
+
+  std::vector<char> can_sweep(const Box<dim>& domain) const override;
+  RCP<const Vector> swept_per_velocity() const override;
+  std::vector<int> solid_of_row() const override;
+  void sweep(double dt, const std::vector<double>& volumes, Vector& velocity) const override;
 
   /// Bit for bit on the same ranks. Throws InputError if the checkpoint holds other bodies.
   void save(CheckpointWriter& writer) const override;
@@ -115,6 +120,10 @@ class DeformableSolids : public SolidModel<dim> {
   void update_states();
   Nodes mobility() const;
   Nodes surface_values(const Nodes& owned) const;
+  std::array<Point<dim>, dim> of_corners(int simplex, const Nodes& of_vertices) const;
+  std::vector<char> free_rims() const;
+  Nodes area_shares() const;
+  Nodes swelling() const;
   int body_of_node(int local) const { return body_of_node_[local]; }
 
   std::string type_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "coupling/swept_volumes.hpp"
 #include "linear/null_space.hpp"
 #include "stepping/solve_audit.hpp"
 
@@ -166,19 +167,23 @@ SolveRequest Stepper<dim>::request(const char* name, double dt) const {
   return {name, options_.tolerance, 1e-15 * speed * area};
 }
 
-/// Contact acts on V^{n+1/2}, then all solids go to their positions at t^{n+1}.
+/// Soft solids keep the volumes of closed regions, contact acts on V^{n+1/2}, then all solids go to
+/// their positions at t^{n+1}.
 template <int dim>
 void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
   auto& solids = *components_.solids;
   RCP<Vector> half_velocity = make_vector(solids.map());
+  SweptRates swept;
   if (coupled()) {
     ScopedPhase phase(timers_, "S1");
     const RCP<Vector> momentum = solid_momentum(time_, dt / 2, nullptr, report);
     half_velocity =
         solve_newton(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
+    swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
   }
   ScopedPhase phase(timers_, "solid motion");
   solids.limit_motion(dt, *half_velocity);
+  sweep_volumes(swept, solids, dt, *half_velocity);
   if (components_.contact && coupled()) {
     report.contact_position =
         components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);

@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <filesystem>
+#include <limits>
 
 #include "deformable/register_deformable.hpp"
 #include "output/checkpoint.hpp"
@@ -184,6 +185,53 @@ TEST(DeformableSolids, MovesWithTheVelocityGiven) {
 }
 
 /// No more nodes than ranks.
+/// Volume inside the surface of a solid, from its vertices.
+template <int dim>
+double enclosed(const DeformableSolids<dim>& solids, int solid) {
+  const SurfaceMesh<dim>& mesh = solids.surface();
+  double volume = 0;
+  for (int s = solids.solids()[solid].simplex_begin; s < solids.solids()[solid].simplex_end; ++s) {
+    Eigen::Matrix<double, dim, dim> corners;
+    for (int k = 0; k < dim; ++k)
+      corners.col(k) = mesh.vertices[mesh.simplices[s][k]];
+    volume += corners.determinant() / (dim == 2 ? 2 : 6);
+  }
+  return volume;
+}
+
+// Nodes that turn on straight lines grow a body; told to, it does not, and its centre stays.
+TEST(DeformableSolids, SweepWhatTheyAreTold) {
+  const auto solids = model<3>({pair_of_bodies[0], pair_of_bodies[1], pair_of_bodies[0]});
+  const double dt = 0.1, before[] = {enclosed(*solids, 0), enclosed(*solids, 1)};
+  const Point<3> far = Point<3>::Constant(9), center = solids->states()[0].center_of_mass;
+  EXPECT_EQ(solids->can_sweep(Box<3>(-far, far)), (std::vector<char>{1, 1, 1}));
+  EXPECT_EQ(solids->can_sweep(Box<3>(-far, Point<3>(9, 1, 9))), (std::vector<char>{1, 0, 1}));
+  Vector velocity(*solids->velocity(), Teuchos::Copy);
+  const Vector free(velocity, Teuchos::Copy);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  solids->sweep(dt, {0, 0.01, nan}, velocity);
+  solids->move(velocity, 0, dt);
+  EXPECT_NEAR(enclosed(*solids, 0), before[0], 1e-14);
+  EXPECT_NEAR(enclosed(*solids, 1), before[1] + 0.01, 1e-14);
+  EXPECT_GT(enclosed(*solids, 2), before[0] * 1.01);
+  EXPECT_LT((solids->states()[0].center_of_mass - center - dt * Point<3>(1, 0, 0)).norm(), 1e-13);
+}
+
+TEST(DeformableSolids, SweepWithoutMovingHeldNodes) {
+  const auto solids = model<2>({box("0.5, 0.5", "0.125") + material("linear") +
+                                number("Density", "1") + pinned("-1, -1", "1, -0.2", "x, y")});
+  Vector velocity(solids->dof_map());
+  solids->sweep(0.1, {0.02}, velocity);
+  const auto along = solids->nodes().owned(velocity);
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    EXPECT_EQ(along[i].isZero(),
+              solids->positions()[i].y() < -0.2 || solids->positions()[i].isZero());
+  }
+  const double before = enclosed(*solids, 0);
+  solids->move(velocity, 0, 0.1);
+  EXPECT_NEAR(enclosed(*solids, 0), before + 0.02, 1e-15);
+}
+
 TEST(DeformableSolids, TwoTrianglesOnManyRanks) {
   Alone<2> alone(
       model<2>({box("1, 1", "1") + material("corotated") + number("Density", "1")}, {0, -1}));

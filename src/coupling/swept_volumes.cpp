@@ -1,0 +1,271 @@
+#include "coupling/swept_volumes.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "interfaces/bounded_fluid.hpp"
+#include "interfaces/volume_sweeper.hpp"
+
+namespace lockstep {
+namespace {
+
+constexpr double as_they_like = std::numeric_limits<double>::quiet_NaN();
+
+/// A soft solid and a region: what its dofs push out of the region's cells.
+struct Push {
+  double along = 0;  ///< times what the surface sweeps, per velocity squared
+  double size = 0;   ///< absolute values of the former's terms
+  double rate = 0;   ///< at the given velocity [m^dim/s]
+};
+
+/// All soft solids that can be told, and what they and others push out of the regions.
+struct Pushes {
+  int n_regions = 0, n_solids = 0;
+  std::vector<Push> of;        ///< [solid * n_regions + region]
+  std::vector<double> others;  ///< [region], rate of all other solids [m^dim/s]
+  std::vector<double> norm;    ///< [solid], of what the surface sweeps, squared
+  std::vector<double> swept;   ///< [solid], by its surface at the given velocity [m^dim/s]
+};
+
+/// The local rows of the stack that belong to soft solids: their number among all that can be told
+/// (-1: none of them), and what they sweep.
+struct SoftRows {
+  std::vector<int> solid;
+  std::vector<double> swept;
+  std::vector<std::pair<int, int>> names;  ///< model and solid in it, by number
+  std::vector<char> is_closed;             ///< by number
+};
+
+template <int dim>
+SoftRows soft_rows(const SolidSystem<dim>& solids, const Box<dim>& domain) {
+  SoftRows rows;
+  for (int m = 0; m < solids.n_models(); ++m) {
+    const auto* sweeper = dynamic_cast<const VolumeSweeper<dim>*>(&solids.model(m));
+    const std::size_t begin = rows.solid.size();
+    rows.solid.resize(begin + solids.model(m).dof_map()->getNodeNumElements(), -1);
+    rows.swept.resize(rows.solid.size(), 0);
+    if (!sweeper)
+      continue;
+    const std::vector<char> can = sweeper->can_sweep(domain);
+    std::vector<int> number(can.size(), -1);
+    for (std::size_t s = 0; s < can.size(); ++s) {
+      if (!can[s])
+        continue;
+      number[s] = static_cast<int>(rows.names.size());
+      rows.names.emplace_back(m, static_cast<int>(s));
+      rows.is_closed.push_back(solids.model(m).solids()[s].closed);
+    }
+    const RCP<const Vector> swept = sweeper->swept_per_velocity();
+    const auto values = swept->getData();
+    const std::vector<int> solid_of_row = sweeper->solid_of_row();
+    for (std::size_t i = 0; i < solid_of_row.size(); ++i) {
+      rows.solid[begin + i] = number[solid_of_row[i]];
+      rows.swept[begin + i] = values[i];
+    }
+  }
+  rows.solid.resize(solids.map()->getNodeNumElements(), -1);  // padding
+  rows.swept.resize(rows.solid.size(), 0);
+  return rows;
+}
+
+/// The region of each column of B^T on this rank. Collective.
+std::vector<int> regions_of_columns(const CrsMatrix& coupling_transposed,
+                                    const PressureRegions& regions) {
+  Vector mine(coupling_transposed.getDomainMap());
+  {
+    const auto values = mine.getDataNonConst();
+    for (std::size_t i = 0; i < regions.of_unknown.size(); ++i)
+      values[i] = regions.of_unknown[i];
+  }
+  Vector columns(coupling_transposed.getColMap());
+  const auto import = coupling_transposed.getGraph()->getImporter();
+  if (import.is_null())
+    columns.update(1, mine, 0);
+  else
+    columns.doImport(mine, *import, Tpetra::INSERT);
+  const auto values = columns.getData();
+  std::vector<int> result(values.size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = static_cast<int>(std::lround(values[i]));
+  return result;
+}
+
+void sum_over_ranks(Pushes& pushes, const Communicator& comm) {
+  std::vector<double> flat = pushes.others;
+  flat.insert(flat.end(), pushes.norm.begin(), pushes.norm.end());
+  flat.insert(flat.end(), pushes.swept.begin(), pushes.swept.end());
+  for (const Push& push : pushes.of)
+    flat.insert(flat.end(), {push.along, push.size, push.rate});
+  sum_all(comm, flat.data(), static_cast<int>(flat.size()));
+  auto value = flat.cbegin();
+  for (double& rate : pushes.others)
+    rate = *value++;
+  for (double& norm : pushes.norm)
+    norm = *value++;
+  for (double& rate : pushes.swept)
+    rate = *value++;
+  for (Push& push : pushes.of) {
+    push.along = *value++;
+    push.size = *value++;
+    push.rate = *value++;
+  }
+}
+
+Pushes pushes_of(const CrsMatrix& coupling_transposed, const PressureRegions& regions,
+                 const SoftRows& soft, const Vector& velocity, const Vector& prescribed) {
+  Pushes pushes;
+  pushes.n_regions = regions.n_regions;
+  pushes.n_solids = static_cast<int>(soft.names.size());
+  pushes.of.resize(std::size_t(pushes.n_solids) * pushes.n_regions);
+  pushes.others.assign(pushes.n_regions, 0);
+  pushes.norm.assign(pushes.n_solids, 0);
+  pushes.swept.assign(pushes.n_solids, 0);
+  const std::vector<int> region = regions_of_columns(coupling_transposed, regions);
+  const auto v = velocity.getData();
+  Teuchos::ArrayView<const int> columns;
+  Teuchos::ArrayView<const double> values;
+  for (std::size_t row = 0; row < soft.solid.size(); ++row) {
+    const int s = soft.solid[row];
+    coupling_transposed.getLocalRowView(static_cast<int>(row), columns, values);
+    if (s >= 0) {
+      pushes.norm[s] += soft.swept[row] * soft.swept[row];
+      pushes.swept[s] += soft.swept[row] * v[row];
+    }
+    for (int k = 0; k < columns.size(); ++k) {
+      const double rate = values[k] * v[row];
+      if (s < 0) {
+        pushes.others[region[columns[k]]] += rate;
+        continue;
+      }
+      Push& push = pushes.of[std::size_t(s) * pushes.n_regions + region[columns[k]]];
+      push.along += values[k] * soft.swept[row];
+      push.size += std::abs(values[k] * soft.swept[row]);
+      push.rate += rate;
+    }
+  }
+  const auto of_prescribed = prescribed.getData();
+  for (std::size_t i = 0; i < regions.of_unknown.size(); ++i)
+    pushes.others[regions.of_unknown[i]] += of_prescribed[i];
+  sum_over_ranks(pushes, velocity.getMap()->getComm());
+  return pushes;
+}
+
+/// Rigid and prescribed bodies inside the domain push out nothing on the whole: what their part of
+/// the faces makes beyond that belongs to those they share them with.
+void share_others(Pushes& pushes) {
+  for (int r = 0; r < pushes.n_regions; ++r) {
+    double total = 0;
+    for (int s = 0; s < pushes.n_solids; ++s)
+      total += std::abs(pushes.of[std::size_t(s) * pushes.n_regions + r].along);
+    for (int s = 0; s < pushes.n_solids && total > 0; ++s) {
+      Push& push = pushes.of[std::size_t(s) * pushes.n_regions + r];
+      push.rate += pushes.others[r] * std::abs(push.along) / total;
+    }
+  }
+}
+
+/// True if all solids but those that can be told are rigid or prescribed bodies inside the domain.
+template <int dim>
+bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
+                        const Box<dim>& domain) {
+  for (int m = 0; m < solids.n_models(); ++m) {
+    const SurfaceMesh<dim>& surface = solids.model(m).surface();
+    for (std::size_t s = 0; s < solids.model(m).solids().size(); ++s) {
+      if (std::find(soft.names.begin(), soft.names.end(), std::make_pair(m, static_cast<int>(s))) !=
+          soft.names.end())
+        continue;
+      const SolidDescription& solid = solids.model(m).solids()[s];
+      if (!solid.closed || !(solid.rigid || solid.prescribed))
+        return false;
+      for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
+        if (!domain.contains(surface.vertices[v]))
+          return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// What solid s must sweep. A body between closed regions: what its own velocities say, not what
+/// its straight steps add; its elasticity answers for the rest, as the grid sees its shape only
+/// roughly. A shell has nothing that answers: what it pushes out of the regions on one of its
+/// sides, if they are all closed and it is all of that side.
+double rate_of(const Pushes& pushes, const PressureRegions& regions, int s, bool is_closed) {
+  constexpr double least_part = 0.5;  // of the side: 1 on a fine grid
+  for (const int sign : {1, -1}) {
+    bool all_closed = true;
+    double along = 0, rate = 0;
+    for (int r = 0; r < pushes.n_regions; ++r) {
+      const Push& push = pushes.of[std::size_t(s) * pushes.n_regions + r];
+      if (push.size == 0 || (!is_closed && sign * push.along <= 0))
+        continue;
+      all_closed = all_closed && !regions.has_dirichlet[r];
+      along += sign * push.along;
+      rate += sign * push.rate;
+    }
+    if (is_closed)
+      return all_closed && along != 0 ? pushes.swept[s] : as_they_like;
+    if (all_closed && along > least_part * pushes.norm[s])
+      return rate;
+  }
+  return as_they_like;
+}
+
+}  // namespace
+
+template <int dim>
+SweptRates swept_rates(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
+                       const Coupling<dim>& coupling, const Vector& velocity) {
+  const PressureRegions& regions = fluid.regions();
+  const RCP<const CrsMatrix> coupling_transposed = coupling.coupling_transposed();
+  if (coupling_transposed.is_null() ||
+      std::all_of(regions.has_dirichlet.begin(), regions.has_dirichlet.end(),
+                  [](char has) { return has != 0; }))
+    return {};
+  const Box<dim> domain = bounds_of(fluid);
+  const SoftRows soft = soft_rows<dim>(solids, domain);
+  if (soft.names.empty())
+    return {};
+  Vector prescribed(fluid.pressure_map());
+  coupling.add_prescribed_divergence(prescribed);
+  Pushes pushes = pushes_of(*coupling_transposed, regions, soft, velocity, prescribed);
+  if (others_keep_volume<dim>(solids, soft, domain))
+    share_others(pushes);
+  SweptRates rates(solids.n_models());
+  for (int m = 0; m < solids.n_models(); ++m)
+    rates[m].assign(solids.model(m).solids().size(), as_they_like);
+  for (std::size_t s = 0; s < soft.names.size(); ++s)
+    rates[soft.names[s].first][soft.names[s].second] =
+        rate_of(pushes, regions, static_cast<int>(s), soft.is_closed[s] != 0);
+  return rates;
+}
+
+template <int dim>
+void sweep_volumes(const SweptRates& rates, const SolidSystem<dim>& solids, double dt,
+                   Vector& velocity) {
+  std::size_t begin = 0;
+  for (std::size_t m = 0; m < rates.size(); ++m) {
+    const SolidModel<dim>& model = solids.model(static_cast<int>(m));
+    if (const auto* sweeper = dynamic_cast<const VolumeSweeper<dim>*>(&model)) {
+      std::vector<double> volumes = rates[m];
+      for (double& volume : volumes)
+        volume *= dt;
+      sweeper->sweep(dt, volumes,
+                     *velocity.offsetViewNonConst(model.dof_map(), begin)->getVectorNonConst(0));
+    }
+    begin += model.dof_map()->getNodeNumElements();
+  }
+}
+
+template SweptRates swept_rates(const FluidDiscretization<2>&, const SolidSystem<2>&,
+                                const Coupling<2>&, const Vector&);
+template void sweep_volumes(const SweptRates&, const SolidSystem<2>&, double, Vector&);
+template SweptRates swept_rates(const FluidDiscretization<3>&, const SolidSystem<3>&,
+                                const Coupling<3>&, const Vector&);
+template void sweep_volumes(const SweptRates&, const SolidSystem<3>&, double, Vector&);
+
+}  // namespace lockstep
