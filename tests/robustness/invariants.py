@@ -47,6 +47,8 @@ class Tables:
         self.folder = folder
         self.history = read_table(folder / "history.csv")
         self.bodies = read_table(folder / "bodies.csv")
+        known = {"history.csv", "bodies.csv"}
+        self.observed = {path.name: read_table(path) for path in sorted(folder.glob("*.csv")) if path.name not in known}
 
     def energy(self):
         return sum(number(self.history, f"{kind}_energy") for kind in ("fluid_kinetic", "solid_kinetic", "elastic"))
@@ -73,11 +75,11 @@ def check_tables(scene, tables):
     if steps != list(range(1, len(steps) + 1)) or len(steps) != scene.n_steps:
         yield f"tables: steps {steps} of {scene.n_steps}"
         return
-    for name, rows in (("history", history), ("bodies", tables.bodies)):
+    for name, rows in {"history.csv": history, "bodies.csv": tables.bodies, **tables.observed}.items():
         for row in rows:
             bad = [c for c, text in row.items() if c != "name" and not math.isfinite(float(text))]
             if bad:
-                yield f"finite: {bad} of {name}.csv in step {row['step']}"
+                yield f"finite: {bad} of {name} in step {row['step']}"
                 return
     if scene.facts.exact_momentum:
         for kind in ("momentum", "angular_momentum"):
@@ -170,6 +172,9 @@ def check_restart(straight, restarted):
             different = sorted({c for a, b in zip(mine, theirs) for c in a if a[c] != b[c]})
             yield f"restart: {table}.csv differs in {different or 'its rows'}"
             return
+    if straight.observed != restarted.observed:
+        yield "restart: what observers saw differs"
+        return
     fields = []
     for tables in (straight, restarted):
         with h5py.File(tables.folder / "frames.h5") as file:

@@ -24,6 +24,7 @@ FEATURES = {
     "viscosity": lambda c: "Viscosity" in c["Fluid"],
     "order 2 in time": lambda c: c["Fluid"]["Order in Time"] == 2,
     "smoke or temperature": lambda c: "Smoke" in c["Fluid"] or "Temperature" in c["Fluid"],
+    "observers": lambda c: bool(c["Observers"]),
     "inflows": lambda c: side_is(c, "inflow"),
     "periodic sides": lambda c: side_is(c, "periodic"),
     "strategies but schur-cg": lambda c: c["Solver"]["Strategy"]["Type"] != "schur-cg",

@@ -40,6 +40,8 @@ def geometry(world, reach):
         sizes["File"] = world.add_file(kind, getattr(mesh_files, kind)(*surface))
         if rng.random() < 0.3:
             sizes["Scale"] = rng.uniform(0.7, 1)
+        if rng.random() < 0.2:
+            sizes.update({"Weld": 1e-4 * world.h, "Orient": True})
     is_shell = shape in SHELLS
     if not is_shell and rng.random() < 0.15:
         sizes["Thin Shell"] = is_shell = world.facts.closed_shell = True

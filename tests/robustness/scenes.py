@@ -204,7 +204,7 @@ def scalars(world, fluid, side_lists):
 
 def fluid(world, side_lists):
     rng = world.rng
-    chosen = {"Type": "mac", "Density": world.density, "Advection": rng.choice(["semi-lagrangian", "maccormack"]),
+    chosen = {"Type": "mac", "Density": world.density, "Advection": rng.choice(["semi-lagrangian", "maccormack", "cubic"]),
               "Order in Time": rng.choice([1, 2])}
     if rng.random() < 0.5:
         chosen["Viscosity"] = world.density * world.h ** 2 / world.dt * 10 ** rng.uniform(-3, 1)
@@ -348,6 +348,26 @@ def time(world):
     return chosen
 
 
+def observers(world):
+    """At most one of each type, at places in the domain."""
+    rng, lists = world.rng, {}
+
+    def place():
+        return [rng.uniform(a, b) for a, b in zip(world.lower, world.upper)]
+
+    if rng.random() < 0.15:
+        lists["probes"] = {"Type": "points", "Points": place() + place()}
+    if rng.random() < 0.15:
+        lists["plane"] = {"Type": "box", "Lower": world.lower, "Upper": place(),
+                          "Count": [rng.randint(1, 4) for _ in world.cells]}
+    if rng.random() < 0.15:
+        lower, upper = map(list, zip(*(sorted(pair) for pair in zip(place(), place()))))
+        axis = rng.randrange(world.dimension)
+        upper[axis] = lower[axis]
+        lists["window"] = {"Type": "flow", "Lower": lower, "Upper": upper, "Interval": rng.choice([0.0, 2 * world.dt])}
+    return lists
+
+
 def random_scene(seed):
     """The scene that this seed names, as a Scene."""
     world = World(seed)
@@ -359,5 +379,6 @@ def random_scene(seed):
     content["Contact"] = contact(world, content["Solids"])
     content["Solver"] = solver(world, content["Coupling"], content["Solids"])
     content["Time"] = time(world)
+    content["Observers"] = observers(world)
     content["Output"] = {"Precision": "double", "Checkpoint Interval": 1e-9 * world.dt, "Keep Checkpoints": 10}
     return Scene(seed, to_xml("Scene", content), world.files, world.facts, content, world.n_steps, world.dt)

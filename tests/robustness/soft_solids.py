@@ -35,6 +35,8 @@ def volume_geometry(world, reach):
         sizes["File"] = world.add_file(kind, write(*mesh_files.filled(*surface), dim))
         if rng.random() < 0.3:
             sizes["Scale"] = rng.uniform(0.8, 1)
+        if rng.random() < 0.2:
+            sizes.update({"Weld": 1e-4 * world.h, "Orient": True})
     return sizes
 
 
