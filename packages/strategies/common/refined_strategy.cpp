@@ -184,8 +184,12 @@ bool RefinedStrategy::update_pressure_inverse(const BlockSystem& system) {
 BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
                                                  const CorrectionRequest& request,
                                                  Presumes presumes) {
-  if (solid_gain_ < 0)
+  if (solid_gain_ < 0) {
+    // Set-up, which a restarted run does in another solve than the straight one.
+    const int counted = solid_.take_iterations();
     solid_gain_ = gain(*system.coupling_transposed, *solid_.to(rough));
+    solid_.restart_count(counted);
+  }
   // Below round-off of row 2 nothing can be asked; what that leaves is for the next correction.
   const double solid_target = std::max(
       solid_gain_ > 0 ? request.target / solid_gain_ : request.target, request.solid_round_off);
@@ -240,6 +244,7 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
       layout_->build_schur_inverse(system, *solid_.to(rough));
   }
   build(working(system), inverse_changed, solid_changed);
+  solid_.restart_count(0);
   prepared_.system_name = system.name;
   prepared_.geometry_stamp = system.geometry_stamp;
   prepared_.pressure_map = domain_map(*system.pressure_block);

@@ -44,6 +44,8 @@ class SolidInverse {
   bool is_automatic() const { return type_ == "Automatic"; }
   /// Inner iterations since the last call.
   int take_iterations();
+  /// Counts on from this number.
+  void restart_count(int iterations) { *iterations_ = iterations; }
 
  private:
   /// C, or a part of it that is not cheap.
