@@ -10,7 +10,9 @@
 #include <CLI/CLI.hpp>
 #include <Tpetra_Core.hpp>
 #include <iostream>
+#include <memory>
 
+#include "base/interruption.hpp"
 #include "base/memory.hpp"
 #include "base/shortened.hpp"
 #include "output/build_information.hpp"
@@ -112,7 +114,8 @@ int run(int argc, char** argv, const Communicator& comm) {
   app.add_option("--set", arguments.settings, "\"List/Sub list/Name=value\"; may be repeated")
       ->expected(1)
       ->take_all();
-  app.add_option("--steps", arguments.run.steps, "stop after this many steps");
+  std::string steps;
+  app.add_option("--steps", steps, "stop after this many steps");
   app.add_option("--end-time", arguments.run.end_time, "stop at this time [s]");
   app.add_option("--dump-system", arguments.dump_system,
                  "STEP:S1 (or F2, S2) FILE: write that system and its right-hand side, for solve")
@@ -144,6 +147,8 @@ int run(int argc, char** argv, const Communicator& comm) {
     arguments.run.dump_system =
         parse_dump_request(arguments.dump_system[0], arguments.dump_system[1]);
   }
+  if (!steps.empty())
+    arguments.run.steps = parse_count("--steps", steps);
   if (arguments.run.output_directory.empty())
     arguments.run.output_directory = "output";
   for (int i = 0; i < argc; ++i)
@@ -167,7 +172,9 @@ int run(int argc, char** argv, const Communicator& comm) {
 
 int main(int argc, char** argv) {
   keep_freed_memory();
+  auto held_signals = std::make_unique<HeldSignals>();
   Tpetra::ScopeGuard scope(&argc, &argv);
+  held_signals.reset();
   const Communicator comm = Tpetra::getDefaultComm();
   return run_and_report(comm, [&] { return run(argc, argv, comm); });
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/interruption.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -227,6 +229,7 @@ template <int dim>
 int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
   int sweeps = 0, searches = 1;
   for (int round = 0; round < most_rounds; ++round) {
+    poll_interruption(system_.comm());
     const SolidMotion<dim> motion(system_, shapes_, solver.velocity());
     const double tolerance = (round == 0 ? 0 : 10) * options_.tolerance * scale_;
     const int most = round == 0 ? most_at_once<dim> : 2;
@@ -271,6 +274,7 @@ template <int dim>
 int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
   int sweeps = 0;
   for (int round = 0; round < most_impact_rounds; ++round) {
+    poll_interruption(system_.comm());
     const std::vector<Contact<dim>> impacts = impacts_of(solver.velocity());
     if (impacts.empty())
       break;

@@ -8,6 +8,8 @@
 #include <optional>
 #include <set>
 
+#include "base/interruption.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -242,6 +244,7 @@ int join_impact_zones(const SolidSystem<dim>& system, const ContactShapes<dim>& 
   ImpactZones<dim> zones(system, shapes, inverse_mass, dt, velocity);
   int n_left = 0;
   for (int round = 0; round < most_rounds; ++round) {
+    poll_interruption(system.comm());
     const SolidMotion<dim> motion(system, shapes, velocity);
     const auto impacts = find_impacts(shapes, SurfacePath<dim>(shapes, motion, dt), self);
     n_left = static_cast<int>(impacts.size());

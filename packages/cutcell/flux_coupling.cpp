@@ -9,6 +9,7 @@
 #include "linear/overlap.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "mixedface/lumping.hpp"
+#include "mixedface/solid_fluxes.hpp"
 
 namespace lockstep {
 namespace {
@@ -173,6 +174,20 @@ void FluxCoupling<dim>::add_divergence(const std::vector<double>& coupled_veloci
 template <int dim>
 void FluxCoupling<dim>::add_prescribed_divergence(Vector& rhs) const {
   add_divergence(prescribed_velocity_, rhs);
+}
+
+template <int dim>
+std::vector<PrescribedFlux> FluxCoupling<dim>::solid_fluxes(const SolidSystem<dim>& solids) const {
+  FluxesOfSolids fluxes(solids.solids());
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (const FluxShare<dim>& share : shares_[f].all) {
+      if (!solids.solids()[share.solid].prescribed)
+        continue;
+      const Point<dim> v = solids.prescribed_velocity(share.point, share.center);
+      fluxes.add(share.solid, volumes_[f], share.weight * push(f, 1) * v[volumes_[f].direction]);
+    }
+  }
+  return fluxes.take();
 }
 
 template <int dim>

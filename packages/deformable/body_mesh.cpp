@@ -97,6 +97,7 @@ VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacin
   } else {
     const double spacing =
         geometry.isParameter("Mesh Spacing") ? geometry.get<double>("Mesh Spacing") : grid_spacing;
+    check_mesh_size(geometry, spacing, dim, name);
     mesh = generate<dim>(geometry, shape, spacing);
   }
   check_volume_mesh(mesh, name, geometry.get<double>("Worst Quality"), names);

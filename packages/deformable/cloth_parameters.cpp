@@ -66,6 +66,7 @@ SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
   check_shape_sizes(list, shapes(), name);
   const double spacing =
       list.isParameter("Mesh Spacing") ? list.get<double>("Mesh Spacing") : grid_spacing;
+  check_mesh_size(list, spacing, dim - 1, name);
   SurfaceMesh<dim> mesh;
   MeshNames names;
   if (shape == "sheet") {

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/errors.hpp"
+#include "base/interruption.hpp"
 
 namespace lockstep {
 
@@ -78,6 +79,7 @@ std::vector<int> partition_nodes(int n_nodes, const std::vector<ElementCorners>&
   options[METIS_OPTION_SEED] = 1;
   const auto metis = n_parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
   std::vector<idx_t> result(n_nodes, 0);
+  const HeldSignals held;
   const int status = metis(&n, &n_constraints, row_begin.data(), neighbors.data(), nullptr, nullptr,
                            nullptr, &n_wanted, nullptr, nullptr, options, &cut, result.data());
   check_input(status == METIS_OK,

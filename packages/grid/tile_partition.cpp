@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/errors.hpp"
+#include "base/interruption.hpp"
 
 namespace lockstep {
 namespace {
@@ -93,6 +94,7 @@ std::vector<int> partition_by_metis(const TileLattice<dim>& lattice,
   options[METIS_OPTION_SEED] = 1;
   const auto metis = n_parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
   std::vector<idx_t> parts(tiles.size(), 0);
+  const HeldSignals held;
   const int status = metis(&n_tiles, &n_constraints, graph.row_begin.data(), graph.neighbors.data(),
                            vertex_weights.data(), nullptr, graph.cut_cells.data(), &n, nullptr,
                            nullptr, options, &cut, parts.data());

@@ -1,6 +1,8 @@
 #include "mac/boundary.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/errors.hpp"
 #include "mac/parameter_values.hpp"
@@ -9,11 +11,14 @@ namespace lockstep {
 
 namespace {
 const char* const axis_names[] = {"x", "y", "z"};
-const std::vector<std::string> side_types = {"wall", "slip wall", "open", "inflow", "periodic"};
+}  // namespace
 
 std::string side_name(int axis, int end) {
   return std::string(axis_names[axis]) + (end == 0 ? " lower" : " upper");
 }
+
+namespace {
+const std::vector<std::string> side_types = {"wall", "slip wall", "open", "inflow", "periodic"};
 
 SideType side_type(const std::string& name) {
   for (std::size_t i = 0; i < side_types.size(); ++i)
@@ -44,6 +49,18 @@ BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, i
               "for walls and inflows.",
               side_name(axis, end), list.get<std::string>("Type"));
   return side;
+}
+
+/// Places within a cell must be numbers of their own.
+template <int dim>
+void check_resolution(const Point<dim>& lower, const Point<dim>& upper, double spacing) {
+  constexpr double finest = 1e-6;  // part of a cell
+  const double farthest = std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff());
+  check_input(!(farthest * std::numeric_limits<double>::epsilon() > finest * spacing),
+              "In \"Domain\", a corner lies {:g} m from the origin, where the numbers of a "
+              "computer cannot tell places in a cell of {:g} m apart; move the domain to the "
+              "origin.",
+              farthest, spacing);
 }
 }  // namespace
 
@@ -94,13 +111,15 @@ DomainDescription<dim> read_domain(const ParameterList& list) {
   GridDescription<dim>& grid = result.grid;
   grid.lower = lower;
   grid.spacing = (upper[0] - lower[0]) / cells[0];
-  for (int a = 0; a < dim; ++a) {
-    grid.n_cells[a] = cells[a];
+  for (int a = 0; a < dim; ++a)
     check_input(
         upper[a] > lower[a],
         "In \"Domain\", the upper corner must be above the lower one, but along {} they are "
         "{} and {} m.",
         axis_names[a], upper[a], lower[a]);
+  check_resolution<dim>(lower, upper, grid.spacing);
+  for (int a = 0; a < dim; ++a) {
+    grid.n_cells[a] = cells[a];
     const double h = (upper[a] - lower[a]) / cells[a];
     check_input(
         std::abs(h - grid.spacing) <= 1e-9 * grid.spacing,

@@ -32,13 +32,20 @@ struct BoundarySide {
 
   bool closed() const { return type == SideType::wall || type == SideType::slip_wall; }
   bool prescribed() const { return closed() || type == SideType::inflow; }
+  /// The part of `velocity` at a time.
+  double ramp(double time) const {
+    if (time > end_time)
+      return 0;
+    return ramp_time > 0 && time < ramp_time ? std::max(time, 0.0) / ramp_time
+                                             : 1;  // time may be < 0
+  }
   /// At `x` on this side, which is normal to `axis`.
   Point<dim> velocity_at(int axis, const Point<dim>& x, double time) const {
-    if (time > end_time)
-      return Point<dim>::Zero();
-    const double ramp =
-        ramp_time > 0 && time < ramp_time ? std::max(time, 0.0) / ramp_time : 1;  // time may be < 0
-    return velocity * (type == SideType::inflow ? ramp * shape.factor(axis, x) : ramp);
+    return velocity * (ramp(time) * (type == SideType::inflow ? shape.factor(axis, x) : 1));
+  }
+  /// The mean over a face of this side.
+  Point<dim> mean_velocity(int axis, const Box<dim>& face, double time) const {
+    return velocity * (ramp(time) * (type == SideType::inflow ? shape.mean_factor(axis, face) : 1));
   }
 };
 
@@ -51,6 +58,9 @@ struct Boundary {
   bool periodic(int axis) const { return sides[axis][0].type == SideType::periodic; }
 };
 
+/// "x lower", as the scene names it.
+std::string side_name(int axis, int end);
+
 /// The cells and sides of a scene's "Domain" list.
 template <int dim>
 struct DomainDescription {
@@ -61,7 +71,8 @@ struct DomainDescription {
 /// Schema of the "Domain" list.
 template <int dim>
 ParameterList domain_parameters();
-/// Throws InputError if the cells are not cubes, if only one side of an axis is periodic, or if a
+/// Throws InputError if the cells are not cubes, or too small to be told apart so far from the
+/// origin, if only one side of an axis is periodic, or if a
 /// wall moves through itself.
 template <int dim>
 DomainDescription<dim> read_domain(const ParameterList& list);

@@ -19,13 +19,45 @@ double InflowShape<dim>::factor(int axis, const Point<dim>& x) const {
   return product;
 }
 
+namespace {
+
+/// Integral of the profile over a part [from, to] of an opening, in lengths of the opening.
+double integral(bool parabolic, double from, double to) {
+  const auto primitive = [](double s) { return s * s * (3 - 2 * s); };
+  return parabolic ? primitive(to) - primitive(from) : to - from;
+}
+
+}  // namespace
+
+template <int dim>
+double InflowShape<dim>::mean_factor(int axis, const Box<dim>& face) const {
+  constexpr double round_off = 1e-9;
+  double product = 1;
+  for (int a = 0; a < dim; ++a) {
+    if (a == axis)
+      continue;
+    const double size = face.sizes()[a], length = opening.sizes()[a];
+    const double lower = std::max(face.min()[a], opening.min()[a]);
+    const double upper = std::min(face.max()[a], opening.max()[a]);
+    if (upper - lower <= round_off * size)
+      return 0;
+    if (parabolic || upper - lower < (1 - round_off) * size)
+      product *= integral(parabolic, (lower - opening.min()[a]) / length,
+                          (upper - opening.min()[a]) / length) *
+                 length / size;
+  }
+  return product;
+}
+
 template <int dim>
 void declare_inflow_shape(ParameterList& side) {
   declare_choice(side, "Profile", "uniform", {"uniform", "parabolic"},
                  "Of an inflow over its opening; \"Velocity\" is the mean. parabolic: that of a "
                  "channel, along each axis of the side.");
   ParameterList& opening = declare_optional_list(
-      side, "Opening", "The part of the side that an inflow enters through; the rest is a wall.");
+      side, "Opening",
+      "The part of the side that an inflow enters through; the rest is a wall. "
+      "Faces of cells that lie in it in part let in their part.");
   for (const char* corner : {"Lower", "Upper"}) {
     declare_required_vector<double>(opening, corner, dim,
                                     "Corner of a box whose section with the side is open [m].");

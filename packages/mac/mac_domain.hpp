@@ -23,6 +23,13 @@ struct MacDomain {
   double spacing() const { return grid.spacing(); }
   double cell_volume() const { return dim == 2 ? spacing() * spacing() : cube(spacing()); }
   double face_area() const { return cell_volume() / spacing(); }
+  /// The lower face of a cell, flat along its axis.
+  Box<dim> face_box(int axis, int cell) const {
+    const Point<dim> center = grid.face_center(axis, cell);
+    Point<dim> across = Point<dim>::Constant(0.5 * spacing());
+    across[axis] = 0;
+    return Box<dim>(center - across, center + across);
+  }
 
  private:
   static double cube(double h) { return h * h * h; }

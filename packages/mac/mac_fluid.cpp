@@ -5,6 +5,7 @@
 
 #include "mac/extended_pressure.hpp"
 #include "mac/face_moments.hpp"
+#include "mac/fitting_domain.hpp"
 #include "mac/initial_state.hpp"
 
 namespace lockstep {
@@ -12,7 +13,7 @@ namespace lockstep {
 template <int dim>
 MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
                         const Communicator& comm)
-    : domain_(read_domain<dim>(domain), comm),
+    : domain_(fitting_domain<dim>(domain, comm), comm),
       parameters_(read_mac_parameters<dim>(fluid)),
       scalars_(domain_, fluid),
       ray_halo_(domain_.grid),
@@ -46,8 +47,8 @@ template <int dim>
 void MacFluid<dim>::set_prescribed(FaceField<dim>& velocity) const {
   for (const auto& [axis, cell] : geometry_.prescribed) {
     const int end = geometry_.state.cells[cell] == CellState::outside ? 1 : 0;
-    const Point<dim> x = domain_.grid.face_center(axis, cell);
-    velocity[axis][cell] = domain_.boundary.side(axis, end).velocity_at(axis, x, time_)[axis];
+    const Box<dim> face = domain_.face_box(axis, cell);
+    velocity[axis][cell] = domain_.boundary.side(axis, end).mean_velocity(axis, face, time_)[axis];
   }
   domain_.halo.fill(velocity);
 }
@@ -122,6 +123,20 @@ void MacFluid<dim>::accept() {
   accepted_pressure_ = scaled_pressure_;
   accepted_cells_ = geometry_.state.cells;
   accepted_step_ = last_step_;
+}
+
+template <int dim>
+std::function<void()> MacFluid<dim>::undo() {
+  std::vector<CellField> before;
+  for (const Scalar& scalar : scalars_.all())
+    before.push_back(scalar.values);
+  return [this, before = std::move(before), time = time_, last_step = last_step_] {
+    for (std::size_t s = 0; s < before.size(); ++s)
+      scalars_.all()[s].values = before[s];
+    scaled_pressure_ = accepted_pressure_;
+    time_ = time;
+    last_step_ = last_step;
+  };
 }
 
 template <int dim>

@@ -92,6 +92,9 @@ class MacFluid : public FluidDiscretization<dim>,
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell
   /// included.
   std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const override;
+  std::vector<PrescribedFlux> side_fluxes(double time) const override;
+  std::function<void()> undo() override;
+  std::vector<std::pair<std::string, std::string>> notes() const override;
 
   const MacDomain<dim>& domain() const { return domain_; }
   const MacGeometry<dim>& geometry() const { return geometry_; }

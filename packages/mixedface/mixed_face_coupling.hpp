@@ -40,6 +40,7 @@ class MixedFaceCoupling : public Coupling<dim> {
   using Motion = typename Coupling<dim>::Motion;
   void set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) override;
   void add_prescribed_divergence(Vector& rhs) const override;
+  std::vector<PrescribedFlux> solid_fluxes(const SolidSystem<dim>& solids) const override;
   void add_lumped_momentum(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
   std::vector<double> velocity(const Vector& solid_velocity) const override;
   std::vector<double> effective_velocity(const SolidSystem<dim>& solids) const override;

@@ -101,6 +101,7 @@ BodyGeometry<dim> make_body_geometry(const ParameterList& geometry, double grid_
                              ? geometry.get<double>("Surface Spacing")
                              : 0.7 * grid_spacing;
   const bool open = shape == "open box" || shape == "plate";
+  check_mesh_size(geometry, spacing, dim - 1, name);
   BodyGeometry<dim> body;
   MeshNames names;
   body.surface = make_surface<dim>(geometry, shape, spacing, names);

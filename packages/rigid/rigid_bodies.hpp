@@ -52,6 +52,7 @@ class RigidBodies : public SolidModel<dim> {
   Point<dim> carried(int solid, const Point<dim>& x) const override;
   std::vector<SolidState<dim>> states() const override;
 
+  std::function<void()> undo() override;
   /// Bit for bit. Throws InputError if the checkpoint holds other bodies.
   void save(CheckpointWriter& writer) const override;
   void load(const CheckpointReader& reader) override;
@@ -69,6 +70,8 @@ class RigidBodies : public SolidModel<dim> {
   RigidVector<dim> load_impulse(const RigidBody<dim>& body, double dt) const;
   void describe();
   void update_surface();
+  std::vector<double> state() const;  ///< all that a step changes
+  void set_state(const std::vector<double>& values);
   RCP<const LinearOperator> assemble_mass() const;
 
   Communicator comm_;

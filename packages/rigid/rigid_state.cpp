@@ -42,13 +42,33 @@ std::string joined_names(const std::vector<RigidBody<dim>>& bodies) {
 }  // namespace
 
 template <int dim>
-void RigidBodies<dim>::save(CheckpointWriter& writer) const {
+std::vector<double> RigidBodies<dim>::state() const {
   std::vector<double> values{time_};
   for (RigidBody<dim> body : bodies_)
     for_each_value(body, [&](double& value) { values.push_back(value); });
+  return values;
+}
+
+template <int dim>
+void RigidBodies<dim>::set_state(const std::vector<double>& values) {
+  auto next = values.begin();
+  time_ = *next++;
+  for (RigidBody<dim>& body : bodies_)
+    for_each_value(body, [&](double& value) { value = *next++; });
+  update_surface();
+  mass_ = assemble_mass();
+}
+
+template <int dim>
+std::function<void()> RigidBodies<dim>::undo() {
+  return [this, before = state()] { set_state(before); };
+}
+
+template <int dim>
+void RigidBodies<dim>::save(CheckpointWriter& writer) const {
   writer.file().create_group(group);
   writer.file().write_text(names_path, joined_names(bodies_));
-  writer.file().write_replicated(values_path, values);
+  writer.file().write_replicated(values_path, state());
 }
 
 template <int dim>
@@ -59,20 +79,14 @@ void RigidBodies<dim>::load(const CheckpointReader& reader) {
               "scene that wrote it.",
               file.path());
   const std::vector<double> values = file.read_all<double>(values_path);
-  std::size_t next = 0;
-  const auto take = [&](double& value) {
-    check_input(next < values.size(),
-                "{}: the checkpoint's rigid bodies are incomplete; restart from another one.",
-                file.path());
-    value = values[next++];
-  };
-  take(time_);
-  for (RigidBody<dim>& body : bodies_)
-    for_each_value(body, take);
-  update_surface();
-  mass_ = assemble_mass();
+  check_input(values.size() == state().size(),
+              "{}: the checkpoint's rigid bodies are incomplete; restart from another one.",
+              file.path());
+  set_state(values);
 }
 
+template std::function<void()> RigidBodies<2>::undo();
+template std::function<void()> RigidBodies<3>::undo();
 template void RigidBodies<2>::save(CheckpointWriter&) const;
 template void RigidBodies<3>::save(CheckpointWriter&) const;
 template void RigidBodies<2>::load(const CheckpointReader&);

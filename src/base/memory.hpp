@@ -1,4 +1,5 @@
 #pragma once
+#include "base/communicator.hpp"
 
 namespace lockstep {
 
@@ -6,5 +7,9 @@ namespace lockstep {
 /// given back, every one would be zeroed page by page again when it is next asked for. For programs
 /// whose steps allocate what the last step freed. Call once, at the start.
 void keep_freed_memory();
+
+/// Of the machines that the ranks run on, each counted once, or what they are allowed of it
+/// [bytes]. Collective.
+double memory_of_machines(const Communicator& comm);
 
 }  // namespace lockstep

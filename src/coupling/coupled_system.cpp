@@ -3,7 +3,9 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "coupling/impossible_flow.hpp"
 #include "coupling/null_space.hpp"
+#include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
 
 namespace lockstep {
@@ -93,6 +95,37 @@ BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum, double& 
     rhs.solid->elementWiseMultiply(1, *solids_.free_mask(), *full, 0);
   }
   return rhs;
+}
+
+namespace {
+
+/// What locked dofs push into the pressure unknowns.
+PrescribedFlux flux_of_locks(const CrsMatrix& coupling_transposed, const Vector& velocity) {
+  PrescribedFlux flux{"what pins move of soft solids", {}};
+  const auto speed = velocity.getData();
+  for_each_entry(coupling_transposed, [&](int row, GlobalIndex unknown, double area) {
+    if (speed[row] != 0)
+      flux.into.emplace_back(unknown, area * speed[row]);
+  });
+  return flux;
+}
+
+}  // namespace
+
+template <int dim>
+std::string CoupledSystem<dim>::impossible_flow(double time,
+                                                const RCP<const Vector>& locked_velocity,
+                                                double negligible) const {
+  const bool with_solid = solids_.has_unknowns();
+  const auto& null_space = with_solid ? blocks_.null_space : pressure_only_.null_space;
+  if (null_space.empty())
+    return "";
+  PrescribedFluxes fluxes{fluid_.side_fluxes(time), coupling_.solid_fluxes(solids_)};
+  if (with_solid && !locked_velocity.is_null())
+    fluxes.solids.push_back(flux_of_locks(*unlocked_transposed_, *locked_velocity));
+  constexpr GlobalIndex smallest_region = dim == 2 ? 9 : 27;  // three cells across
+  return lockstep::impossible_flow(null_space, fluxes, fluid_.pressure_map(), smallest_region,
+                                   negligible, dim == 2 ? "m^2/s" : "m^3/s");
 }
 
 template <int dim>

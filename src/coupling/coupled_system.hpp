@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <string>
 
 #include "coupling/solid_system.hpp"
 #include "interfaces/coupling.hpp"
@@ -38,6 +39,12 @@ class CoupledSystem {
   RCP<Vector> lumped_momentum(const Vector& momentum) const;
   /// C V for a step of dt with the rows and columns of locked dofs. Collective.
   RCP<Vector> unlocked_momentum(double dt, const Vector& velocity) const;
+
+  /// A sentence if sides, prescribed solids or locked dofs of these velocities (null: at rest)
+  /// change the volume of fluid that is closed in (`impossible_flow`) by more than `negligible`
+  /// [m^dim/s]. Collective.
+  std::string impossible_flow(double time, const RCP<const Vector>& locked_velocity,
+                              double negligible = 0) const;
 
   /// Impulses that hold the locked dofs, as generalized momentum; zero without locks. Collective.
   RCP<Vector> lock_reaction(double dt, const Vector& momentum, const BlockVector& solution) const;

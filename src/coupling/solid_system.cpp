@@ -249,6 +249,19 @@ void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
 }
 
 template <int dim>
+std::function<void()> SolidSystem<dim>::undo() {
+  std::vector<std::function<void()>> all;
+  for (const auto& solid_model : models_)
+    all.push_back(solid_model->undo());
+  return [this, all = std::move(all)] {
+    for (const auto& undo_one : all)
+      undo_one();
+    if (!attachments_.empty())
+      attachments_ = find_attachments(models_, begin_, solids_, comm_);
+  };
+}
+
+template <int dim>
 bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   Vector full(velocity, Teuchos::Copy);
   attachments_.expand_velocity(full);

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -77,6 +78,8 @@ class SolidSystem {
   bool linearise(double dt, const Vector& velocity);
   void limit_motion(double dt, Vector& velocity);
   void move(const Vector& velocity, double time, double dt);
+  /// `SolidModel::undo` of all models. Calling what it returns is collective.
+  std::function<void()> undo();
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.
   /// Collective.
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;

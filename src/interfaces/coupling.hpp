@@ -32,6 +32,9 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
 
   /// rhs += V G_c^T W_k V_k: what prescribed solids push into row 1 [m^dim/s]. Collective.
   virtual void add_prescribed_divergence(Vector& rhs) const = 0;
+  /// The same of each prescribed solid alone, at the present time, face by face: one for every
+  /// prescribed solid of the system. Local.
+  virtual std::vector<PrescribedFlux> solid_fluxes(const SolidSystem<dim>&) const { return {}; }
   /// rhs += W_d^T M_F (u - W_k V_k): fluid momentum lumped on the solids, row 2 [kg m/s] (with
   /// diagonal lumping each solid carries its own share and W_k V_k stays out). Collective.
   virtual void add_lumped_momentum(const std::vector<double>& coupled_velocity,

@@ -1,11 +1,14 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/surface_snapshot.hpp"
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
+#include "interfaces/prescribed_flux.hpp"
 #include "linear/types.hpp"
 
 namespace lockstep {
@@ -177,6 +180,15 @@ class FluidDiscretization : public PlugIn {
   /// p̂ of the last accepted step on the present unknowns, carried on to those where there was none:
   /// the initial guess of the solves, and what the viscous solve reads. Default: zero.
   virtual RCP<Vector> last_scaled_pressure() const;
+  /// What its sides let in at `time`, one by one, whether they do at that time or not. Local.
+  virtual std::vector<PrescribedFlux> side_fluxes(double /*time*/) const { return {}; }
+  /// Called at the start of a step: puts back, when it is called in turn before `accept`, all that
+  /// `save` writes and the phases of a step change. Default: nothing is.
+  virtual std::function<void()> undo() {
+    return [] {};
+  }
+  /// Lines for `--explain`, title and text: how the grid has taken what the scene asks for.
+  virtual std::vector<std::pair<std::string, std::string>> notes() const { return {}; }
   /// Adds its cell-centred fields to a frame. Default: none.
   virtual void add_frame(std::vector<BoxFrame>& boxes) const;
 };

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "geometry/surface_snapshot.hpp"
@@ -117,6 +118,11 @@ class SolidModel : public PlugIn {
   /// x := x + dt * velocity from the stored positions (S1), and prescribed solids to time + dt.
   /// Collective.
   virtual void move(const Vector& velocity, double time, double dt) = 0;
+  /// Called at the start of a step: puts back, when it is called in turn, all that `save` writes
+  /// and a step changes. Calling that is collective. Default: nothing is put back.
+  virtual std::function<void()> undo() {
+    return [] {};
+  }
   /// Where the last `move` carried the point x^n = x of a rigid solid (its number in this model);
   /// asked for nodes attached to it. Default, for models without rigid solids: x. Local.
   virtual Point<dim> carried(int solid, const Point<dim>& x) const;

@@ -13,6 +13,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "base/errors.hpp"
+#include "base/interruption.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/gathered_operator.hpp"
 #include "linear/matrix_rows.hpp"
@@ -66,7 +67,10 @@ SolveInPlace factor_components(const CrsMatrix& gathered, const Vector& componen
     auto part = std::make_unique<Factored>();
     part->rows = std::move(rows);
     const SparseMatrix matrix = part_of(all, part->rows, place_of);
-    part->factors.analyzePattern(matrix);
+    {
+      const HeldSignals held;  // METIS
+      part->factors.analyzePattern(matrix);
+    }
     if (part->factors.n_operations() > most_operations)
       continue;
     part->factors.factorize(matrix);

@@ -60,6 +60,23 @@ void turn(double beta, const Vector& z, Vector& d) {
     d_data[i] = z_data[i] + beta * d_data[i];
 }
 
+/// Tells a residual that round-off keeps from falling from one that has still to fall. Once it has
+/// fallen as far as double precision may allow, directions can be what round-off has left in the
+/// null space: then r.z and d.q may have any sign, and steps along them only make r grow again.
+class RoundOff {
+ public:
+  explicit RoundOff(double initial) : initial_(initial), least_(initial) {}
+  /// `square` is r.z or d.q, positive but for round-off.
+  bool has_lost(double r_norm, double square) {
+    constexpr double deep_fall = 1e-10, growth = 1e3;
+    least_ = std::min(least_, r_norm);
+    return least_ <= deep_fall * initial_ && (!(square > 0) || r_norm > growth * least_);
+  }
+
+ private:
+  double initial_, least_;
+};
+
 /// Kernels made of two operators.
 class Actions final : public ConjugateGradientKernels {
  public:
@@ -95,12 +112,15 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
   x.putScalar(0);
   constexpr double trusted_fall = 1e-3;
   double r_norm = norm(r), true_norm = r_norm;
+  RoundOff round_off(r_norm);
   double r_dot_z = 0;
   int iteration = 0;
   double target = request.target;
   while (r_norm > target && iteration < request.maximum_iterations) {
     const double previous = r_dot_z;
     r_dot_z = kernels.precondition(r, r_norm);
+    if (round_off.has_lost(r_norm, r_dot_z))
+      break;
     check_solve(
         std::isfinite(r_dot_z) && r_dot_z > 0,
         "{}: the preconditioner is not positive definite (r . M r = {:.3e} in iteration {}, "
@@ -108,6 +128,8 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
         request.name, r_dot_z, iteration, r_norm);
     const double curvature =
         kernels.advance_direction(previous == 0 ? 0 : r_dot_z / previous, d, q);
+    if (round_off.has_lost(r_norm, curvature))
+      break;
     check_solve(
         std::isfinite(curvature) && curvature > 0,
         "{}: the operator is not positive definite (d . S d = {:.3e} in iteration {}, |r| = "

@@ -39,8 +39,9 @@ class ConjugateGradientKernels {
 /// Preconditioned conjugate gradients on a symmetric positive (semi)definite operator, from a zero
 /// initial guess (pass the residual of a better one as right-hand side, and add the result to it).
 /// Returns the number of iterations; running out of them is no error here, for the caller checks
-/// the true residual. Throws SolveError if the operator or the preconditioner turns out indefinite
-/// or not finite. Right on ranks that own no row. Collective.
+/// the true residual; nor is a residual that round-off keeps from falling on. Throws SolveError if
+/// the operator or the preconditioner turns out indefinite or not finite. Right on ranks that own
+/// no row. Collective.
 int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Vector& x,
                         const ConjugateGradientsRequest& request);
 

@@ -159,6 +159,16 @@ void set_from_command_line(Document& document, const std::string& assignment,
   Setter(document, assignment, &valid).run();
 }
 
+long long parse_count(const std::string& option, const std::string& text) {
+  constexpr std::size_t most_digits = 15;
+  const bool is_whole = text.find_first_not_of("0123456789") == std::string::npos;
+  const bool is_count = is_whole && !text.empty() && text.size() <= most_digits;
+  const long long count = is_count ? std::stoll(text) : 0;
+  check_input(count > 0, "{}: \"{}\" is not a whole number from 1 to 10^{}; give how many.", option,
+              text, most_digits);
+  return count;
+}
+
 void set_unchecked(Document& document, const std::string& assignment) {
   Setter(document, assignment, nullptr).run();
 }

@@ -15,4 +15,7 @@ void set_from_command_line(Document& document, const std::string& assignment,
 /// The same without a schema: the type comes from the entry that is there, or from the text.
 void set_unchecked(Document& document, const std::string& assignment);
 
+/// The number that an option was given, at least 1. Throws InputError.
+long long parse_count(const std::string& option, const std::string& text);
+
 }  // namespace lockstep

@@ -1,6 +1,7 @@
 #include "parameters/shape_sizes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/errors.hpp"
 
@@ -31,6 +32,25 @@ void check_shape_sizes(const ParameterList& geometry, const std::vector<ShapeSiz
     std::for_each(other.needed.begin(), other.needed.end(), refuse);
     std::for_each(other.optional.begin(), other.optional.end(), refuse);
   }
+}
+
+void check_mesh_size(const ParameterList& geometry, double spacing, int dimension,
+                     const std::string& name) {
+  constexpr double most_elements = 1e8;
+  double extent = 0;
+  for (const char* size : {"Radius", "Length"}) {
+    if (geometry.isParameter(size))
+      extent = std::max(extent, geometry.get<double>(size));
+  }
+  if (geometry.isParameter("Size")) {
+    for (const double edge : geometry.get<ParameterArray<double>>("Size"))
+      extent = std::max(extent, edge);
+  }
+  const double n_elements = std::pow(extent / spacing, dimension);
+  check_input(n_elements <= most_elements,
+              "In \"{}/Geometry\", a body {:g} m long with a mesh of {:g} m would have some {:.0e} "
+              "elements; make it smaller, or the mesh coarser.",
+              name, extent, spacing, n_elements);
 }
 
 }  // namespace lockstep

@@ -18,4 +18,9 @@ struct ShapeSizes {
 void check_shape_sizes(const ParameterList& geometry, const std::vector<ShapeSizes>& shapes,
                        const std::string& name);
 
+/// Throws InputError if a mesh of that spacing [m] would have so many elements that a typing error
+/// is likelier. `dimension`: of the elements.
+void check_mesh_size(const ParameterList& geometry, double spacing, int dimension,
+                     const std::string& name);
+
 }  // namespace lockstep

@@ -17,6 +17,9 @@ namespace lockstep {
 
 namespace {
 
+/// What walks through lists calls itself for each that is in another.
+constexpr std::size_t most_nested = 100;
+
 using Attributes = std::map<std::string, std::string>;
 
 /// Builds the list while expat reports the elements. A callback must not throw through expat: the
@@ -140,6 +143,10 @@ class Reader {
       return;
     }
     const std::string name = attributes.count("name") ? attributes.at("name") : "";
+    check_input(open_.size() < most_nested,
+                "lists are nested more than {} deep, which no parameter file needs; close some "
+                "<ParameterList>.",
+                most_nested);
     const std::string path = claim("ParameterList", name);
     ParameterList& list = open_.back().list->sublist(name);
     open_.push_back({&list, path, line()});

@@ -1,8 +1,14 @@
 #include "stepping/scene.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <map>
 
 #include "base/errors.hpp"
+#include "base/xml_text.hpp"
+#include "output/xdmf.hpp"
 
 namespace lockstep {
 namespace {
@@ -97,12 +103,36 @@ void resolve_files(ParameterList& list, const std::string& scene_file) {
   }
 }
 
+/// Frames and checkpoints keep solids under their names, as far as HDF5 and ParaView can.
+void check_solid_names(const ParameterList& solids) {
+  std::map<std::string, std::string> stored;
+  for (const auto& entry : solids) {
+    const std::string& name = entry.first;
+    check_input(std::none_of(name.begin(), name.end(),
+                             [](unsigned char c) { return std::iscntrl(c) != 0; }),
+                "In \"Solids\", the name \"{}\" holds a line break or another control character; "
+                "write it in one line.",
+                xml_escaped(name));
+    check_input(name.find_first_not_of('.') != std::string::npos,
+                "In \"Solids\", \"{}\" cannot be stored as a name; use letters or digits.", name);
+    for (const std::string& kept : {name, name + " elements"}) {
+      const auto [other, is_new] = stored.emplace(xdmf::stored_name(kept), name);
+      check_input(
+          is_new,
+          "In \"Solids\", \"{}\" and \"{}\" would be stored under one name, \"{}\"; give one "
+          "of them another.",
+          other->second, name, other->first);
+    }
+  }
+}
+
 template <int dim>
 std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries,
                                                const ParameterList& scene,
                                                const std::string& scene_file,
                                                const SolidSetting<dim>& setting) {
   const ParameterList& solids = scene.sublist("Solids");
+  check_solid_names(solids);
   std::vector<std::unique_ptr<SolidModel<dim>>> models;
   for (const auto& plugin : registries.solids) {
     NamedLists lists;
@@ -154,6 +184,15 @@ int scene_dimension(const Document& document) {
   check_input(dimension == 2 || dimension == 3, "{}: \"Dimension\" is {}; it must be 2 or 3.",
               document.source.place("Dimension"), dimension);
   return dimension;
+}
+
+void check_time_resolution(const TimeOptions& time) {
+  constexpr double finest = 1e-6;  // part of a step
+  const double dt = time.fixed_step > 0 ? time.fixed_step : time.largest_step;
+  check_input(!(std::abs(time.start) * std::numeric_limits<double>::epsilon() > finest * dt),
+              "In \"Time\", \"Start\" is {:g} s, from where the numbers of a computer cannot tell "
+              "a step of {:g} s; start nearer to 0.",
+              time.start, dt);
 }
 
 template <int dim>

@@ -38,6 +38,9 @@ struct SceneOptions {
 /// Reads "Dimension" of a document that is not validated yet. Throws InputError if it is missing.
 int scene_dimension(const Document& document);
 
+/// Throws InputError if times near the start cannot be told apart a step away.
+void check_time_resolution(const TimeOptions& time);
+
 template <int dim>
 SceneOptions scene_options(const ParameterList& scene);
 

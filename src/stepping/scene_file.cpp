@@ -30,6 +30,7 @@ std::string named_solver_file(const Document& document) {
 
 void complete_scene(Document& document, const std::vector<std::string>& settings,
                     const ParameterList& valid, const Communicator& comm) {
+  const int dimension = document.list.get<int>("Dimension");
   // The file must be known before the other settings, whose types it may fix.
   for (const std::string& setting : settings) {
     if (setting.rfind(solver_file_setting, 0) == 0)
@@ -44,6 +45,10 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
       set_from_command_line(document, setting, valid);
   }
   validate(document, valid);
+  check_input(
+      document.list.get<int>("Dimension") == dimension,
+      "{}: the scene has {} dimensions, which all its vectors follow; choose another scene.",
+      document.source.place("Dimension"), dimension);
 }
 
 int run_and_report(const Communicator& comm, const std::function<int()>& body) {

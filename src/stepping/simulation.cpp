@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/errors.hpp"
+#include "base/interruption.hpp"
 #include "output/build_information.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
@@ -90,6 +91,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
   check_input(scene_options_.time.end > scene_options_.time.start,
               "--end-time {} s must be later than the start of the scene, {} s.",
               scene_options_.time.end, scene_options_.time.start);
+  check_time_resolution(scene_options_.time);
   if (options.dump_system) {
     components_.strategy =
         std::make_unique<DumpingStrategy>(std::move(components_.strategy), *options.dump_system);
@@ -120,6 +122,10 @@ double Simulation<dim>::next_step() const {
   dt = std::min(dt, components_.solids->largest_stable_step());
   // A bit of difference between ranks would let one of them take a step more.
   dt = min_all(comm_, dt);
+  check_solve(stepper_->time() + dt > stepper_->time(),
+              "The step of {} s at {} s is lost in the round-off of the time; something moves too "
+              "fast, or a body is too stiff for explicit forces.",
+              dt, stepper_->time());
   const double left = time.end - stepper_->time();
   if (dt >= left * (1 - 1e-9))
     return left;
@@ -276,6 +282,17 @@ nlohmann::ordered_json Simulation<dim>::summary(const std::string& status, doubl
 }
 
 template <int dim>
+std::optional<StepReport<dim>> Simulation<dim>::take_step(double dt, int& signal) {
+  ScopedPhase phase(timers_, "step");
+  try {
+    return stepper_->advance(dt);
+  } catch (const Interrupted& interrupted) {
+    signal = interrupted.signal;
+    return {};
+  }
+}
+
+template <int dim>
 int Simulation<dim>::run() {
   const auto start = Clock::now();
   begin_outputs();
@@ -284,11 +301,12 @@ int Simulation<dim>::run() {
   while (!finished() && signal == 0) {
     const auto step_start = Clock::now();
     const double dt = next_step();
-    StepReport<dim> report;
-    {
-      ScopedPhase phase(timers_, "step");
-      report = stepper_->advance(dt);
+    const std::optional<StepReport<dim>> taken = take_step(dt, signal);
+    if (!taken) {
+      log_.normal("Step {} is abandoned.", step_ + 1);
+      break;
     }
+    const StepReport<dim>& report = *taken;
     ++step_;
     last_dt_ = dt;
     count(report);
@@ -318,7 +336,7 @@ int Simulation<dim>::run() {
         stepper_->time() >= last_checkpoint_ + output.checkpoint_interval - slack) {
       write_checkpoint();
     }
-    signal = stop_requested(comm_);
+    signal = signal_received(comm_);
   }
   write_checkpoint();
   const double wall_seconds = seconds_since(start);
@@ -355,6 +373,8 @@ std::string Simulation<dim>::explain() {
     n_prescribed += solid.prescribed ? 1 : 0;
     n_shells += solid.closed ? 0 : 1;
   }
+  for (const auto& [title, note] : fluid.notes())
+    line(title, note);
   line("solids", fmt::format("{} ({} prescribed, {} thin shells), {} unknowns",
                              solids.solids().size(), n_prescribed, n_shells, solids.n_unknowns()));
   const GlobalIndex n_coupled =

@@ -38,6 +38,8 @@ class Simulation {
  private:
   double next_step() const;
   bool finished() const;
+  /// The step's report; null if a signal ended it, whose number `signal` then is. Collective.
+  std::optional<StepReport<dim>> take_step(double dt, int& signal);
   void begin_outputs();
   RunView<dim> view(const std::vector<SolidState<dim>>& states) const;
   void write_frame();

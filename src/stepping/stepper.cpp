@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/interruption.hpp"
 #include "coupling/swept_volumes.hpp"
 #include "linear/null_space.hpp"
 #include "stepping/solve_audit.hpp"
@@ -20,6 +21,11 @@ Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options
       system_(*components.fluid, *components.solids, *components.coupling),
       time_(start_time) {
   freeze();
+  // Motions that begin at rest do so but for round-off.
+  const double negligible = 1e-12 * components_.fluid->fluid_volume();  // a second
+  const std::string impossible =
+      system_.impossible_flow(time_, components_.solids->locked_velocity(time_, time_), negligible);
+  check_input(impossible.empty(), "At the start: {}", impossible);
 }
 
 template <int dim>
@@ -157,14 +163,17 @@ CoupledSolution Stepper<dim>::solve_newton(double dt, const RCP<Vector>& momentu
   return solution;
 }
 
-/// Residuals below the round-off of the fluxes, with the speed that gravity may add, are nothing.
+/// Residuals below the round-off of the fluxes, with the speed that gravity may add, are nothing:
+/// in each cell a few bits of what passes a face, in the norm over all cells root of their number
+/// as much.
 template <int dim>
 SolveRequest Stepper<dim>::request(const char* name, double dt) const {
   const auto& fluid = *components_.fluid;
   const double speed =
       fluid.largest_cell_crossing_rate() * fluid.spacing() + dt * fluid.gravity().norm();
   const double area = std::pow(fluid.spacing(), dim - 1);
-  return {name, options_.tolerance, 1e-15 * speed * area};
+  const auto n_cells = static_cast<double>(fluid.pressure_map()->getGlobalNumElements());
+  return {name, options_.tolerance, 1e-15 * speed * area * std::sqrt(n_cells)};
 }
 
 /// Soft solids keep the volumes of closed regions, contact acts on V^{n+1/2}, then all solids go to
@@ -226,6 +235,17 @@ Momentum<dim> Stepper<dim>::total_momentum() const {
   return total;
 }
 
+/// What is prescribed at the end of the step must have a solution, but for what the grid makes of
+/// the solids' shapes.
+template <int dim>
+void Stepper<dim>::check_possible(double dt, double incompatibility) const {
+  constexpr double round_off = 1e-9;
+  if (incompatibility <= round_off)
+    return;
+  const std::string impossible = system_.impossible_flow(time_ + dt, locked_velocity_);
+  check_solve(impossible.empty(), "At {:.6g} s: {}", time_ + dt, impossible);
+}
+
 /// F4 and the end of the audit.
 template <int dim>
 void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport<dim>& report) {
@@ -270,9 +290,28 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
 
 template <int dim>
 StepReport<dim> Stepper<dim>::advance(double dt) {
+  const std::function<void()> undo_fluid = components_.fluid->undo();
+  const std::function<void()> undo_solids = components_.solids->undo();
+  StepReport<dim> report;
+  try {
+    const CoupledSolution solution = solve_step(dt, report);
+    ScopedPhase phase(timers_, "end");
+    finish(solution, dt, report);
+  } catch (const Interrupted&) {
+    undo_solids();
+    undo_fluid();
+    throw;
+  }
+  time_ += dt;
+  last_dt_ = dt;
+  return report;
+}
+
+template <int dim>
+CoupledSolution Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
+  const Interruptible interruptible;
   auto& fluid = *components_.fluid;
   auto& solids = *components_.solids;
-  StepReport<dim> report;
   report.dt = dt;
   report.time = time_ + dt;
   report.cfl = dt * fluid.largest_cell_crossing_rate();
@@ -311,20 +350,15 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
     locked_velocity_ = solids.locked_velocity(time_ + dt, time_ + dt);
     predict_forces(time_, dt, &report.ledger, report);
   }
-  {
-    ScopedPhase phase(timers_, "S2");
-    RCP<Vector> momentum = make_vector(solids.map());
-    if (coupled())
-      momentum = solid_momentum(time_, dt, &report.ledger, report);
-    else
-      unseen_buoyancy(dt, report);
-    const CoupledSolution solution =
-        solve_newton(dt, momentum, "S2", report.s2, report.incompatibility_s2);
-    finish(solution, dt, report);
-  }
-  time_ += dt;
-  last_dt_ = dt;
-  return report;
+  ScopedPhase phase(timers_, "S2");
+  RCP<Vector> momentum = make_vector(solids.map());
+  if (coupled())
+    momentum = solid_momentum(time_, dt, &report.ledger, report);
+  else
+    unseen_buoyancy(dt, report);
+  CoupledSolution solution = solve_newton(dt, momentum, "S2", report.s2, report.incompatibility_s2);
+  check_possible(dt, report.incompatibility_s2);
+  return solution;
 }
 
 template class Stepper<2>;

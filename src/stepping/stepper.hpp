@@ -28,7 +28,9 @@ class Stepper {
   Stepper(Components<dim>& components, const StepperOptions& options, double start_time,
           PhaseTimers& timers);
 
-  /// Advances by dt. Throws SolveError if a solve fails. Collective.
+  /// Advances by dt. Throws SolveError if a solve fails, or if what is prescribed has no solution.
+  /// Throws Interrupted (base/interruption.hpp) if a signal is received before the step is solved:
+  /// then fluid and solids can be saved as they were at its start, and not stepped on. Collective.
   StepReport<dim> advance(double dt);
   double time() const { return time_; }
   /// For restart, after fluid and solids were loaded: freezes the geometry anew. `last_dt` is that
@@ -38,6 +40,8 @@ class Stepper {
 
  private:
   void freeze();
+  /// All of a step but its end: nothing yet that cannot be undone.
+  CoupledSolution solve_step(double dt, StepReport<dim>& report);
   bool coupled() const { return components_.solids->has_unknowns(); }
   void predict_forces(double time, double dt, MomentumLedger<dim>* ledger, StepReport<dim>& report);
   void predict_viscosity(double time, double dt, StepReport<dim>& report);
@@ -53,6 +57,7 @@ class Stepper {
                                SolveReport& report, double& incompatibility);
   void move_solids(double dt, StepReport<dim>& report);
   void make_advection_velocity(StepReport<dim>& report);
+  void check_possible(double dt, double incompatibility) const;
   void finish(const CoupledSolution& solution, double dt, StepReport<dim>& report);
   ContactReport<dim> contact_momentum(double dt, Vector& momentum);
   RCP<Vector> at_locked_velocity(const Vector& velocity) const;

@@ -22,6 +22,9 @@ const char* const constants_doc =
     "each "
     "case. A series may replace those of the study; its additional ones come before them.";
 
+/// Beyond these a typing error is likelier than a study, and takes the machine down.
+constexpr int most_ranks = 4096, most_samples = 10000;
+
 ParameterList series_parameters() {
   ParameterList series;
   declare_optional<std::string>(series, "Scene", "Another scene, relative to the study file.");
@@ -29,7 +32,7 @@ ParameterList series_parameters() {
   declare(series, "Set", "", assignments_doc);
   declare_optional<ParameterArray<double>>(series, "Values",
                                            "Ladder of this series, instead of the study's.");
-  declare_positive(series, "Ranks", 1, "MPI ranks to run on.");
+  declare_between(series, "Ranks", 1, 1, most_ranks, "MPI ranks to run on.");
   return series;
 }
 
@@ -291,7 +294,7 @@ ParameterList study_parameters() {
       "offset_y, offset_z in [-1/2, 1/2) are additive sequences of irrational steps, the same on "
       "every "
       "machine; sample is 0, 1, ...");
-  declare_positive(samples, "Number", 1, "How many.");
+  declare_between(samples, "Number", 1, 1, most_samples, "How many.");
   declare(samples, "Set", "", assignments_doc);
   declare_named_sublists(study, "Quantities", "What is measured, one sublist each.",
                          quantity_types(), "table");

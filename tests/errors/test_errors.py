@@ -17,6 +17,12 @@ f 1 2 4
 f 1 4 3
 f 2 3 4
 """
+FLAT = """v 0 0 0
+v 1 0 0
+v 0 1 0
+f 1 2 3
+f 1 3 2
+"""
 
 INNER_TETRAHEDRON = """v .1 .1 .1
 v .3 .1 .1
@@ -48,7 +54,7 @@ class Case:
             self.arguments += ["--set", assignment]
         self.files = dict(files)
         self.scene = scene if scene is not None else SCENE
-        for old, new in [change] if change else []:
+        for old, new in change if isinstance(change, list) else [change] if change else []:
             assert self.scene.count(old) == 1, f"{name}: {old!r} must occur once"
             self.scene = self.scene.replace(old, new)
 
@@ -68,6 +74,18 @@ SIDE = value("Type", "string", "wall")
 END = value("End", "double", "0.5")
 BODY_TYPE = value("Type", "string", "rigid body")
 POSITION = value("Position", "Array(double)", "{0.5, 0.5}")
+INFLOW = value("Type", "string", "inflow") + value("Velocity", "Array(double)", "{1, 0}")
+UPPER = value("Upper", "Array(double)", "{1, 2}")
+FAR_CORNERS = value("Lower", "Array(double)", "{1e15, 0}") + value("Upper", "Array(double)", "{1000000000000001, 2}")
+NAME = '<ParameterList name="Ball">'
+BALL = SCENE[SCENE.index(NAME):SCENE.index("    </ParameterList>\n  </ParameterList>\n  <ParameterList name=\"Time\"")]
+TWO_BALLS = (BALL.replace(NAME, '<ParameterList name="B 1">') + "</ParameterList>\n" +
+             BALL.replace(NAME, '<ParameterList name="B_1">').replace("{0.5, 0.5}", "{0.5, 1.5}"))
+# A block from wall to wall that slides along the tank.
+BLOCK = value("Shape", "string", "box") + value("Size", "Array(double)", "{1.2, 0.4}")
+SLIDING = """<ParameterList name="Motion"> <Parameter name="Type" type="string" value="sinusoid"/>
+  <Parameter name="Amplitude" type="Array(double)" value="{0, 0.1}"/>
+  <Parameter name="Frequency" type="double" value="1"/> </ParameterList>"""
 SCENE_3D = (SCENE.replace(DIMENSION, value("Dimension", "int", "3"))
             .replace("{1, 2}", "{1, 2, 1}").replace("{12, 24}", "{6, 12, 6}")
             .replace("{0, -9.8}", "{0, -9.8, 0}").replace("{0.5, 0.5}", "{0.3, 0.3, 0.3}"))
@@ -87,6 +105,9 @@ CASES = [
     # The command line.
     Case("no such option", "--ouput", arguments=["--ouput", "here"]),
     Case("number of steps", "--steps", arguments=["--steps", "many"]),
+    *[Case(f"{n} steps", ["--steps", "whole number from 1"], arguments=[f"--steps={n}"])
+      for n in ("-3", "0", "99999999999999999999", "1.5")],
+    Case("another dimension", ["--set", "2 dimensions"], sets=["Dimension=3"]),
     Case("--set without value", "--set \"Time/End\"", sets=["Time/End"]),
     Case("--set of a list that is not there", ["--set", "\"Tim\"", "Did you mean \"Time\""], sets=["Tim/End=1"]),
     Case("--set of an unknown name", ["\"Ned\"", "Did you mean \"End\""], sets=["Time/Ned=1"]),
@@ -181,7 +202,27 @@ CASES = [
          change=(POSITION, POSITION + value("Locked", "Array(string)", "{x}") +
                  value("Velocity", "Array(double)", "{1, 0}"))),
 
+    # Impossible scenes.
+    Case("an inflow into a closed tank", ["At the start", "inflow \"x lower\" pushes in", "closed in"],
+         change=(SIDE, INFLOW)),
+    Case("a piston in a closed tank", "solid \"Ball\" ",
+         change=[(GEOMETRY, BLOCK), (DENSITY, SLIDING), (POSITION, value("Position", "Array(double)", "{0.5, 1}"))]),
+
+    # Limits.
+    Case("more cells than memory", ["\"Cells\"", "GB"], change=(CELLS, value("Cells", "Array(int)", "{500000, 1000000}"))),
+    Case("a body of too many elements", ["Ball/Geometry", "elements"],
+         change=(RADIUS, value("Radius", "double", "3e9"))),
+    Case("a corner too far away", ["\"Domain\"", "origin"], change=(UPPER, FAR_CORNERS)),
+    Case("a start too late", ["\"Start\"", "nearer to 0"],
+         change=(END, value("Start", "double", "1e300") + value("End", "double", "2e300"))),
+    Case("too many nested lists", ["scene.xml, line", "nested more than"],
+         scene="<ParameterList name=\"a\">\n" * 100000 + "</ParameterList>\n" * 100000),
+    Case("a solid without a letter", ["\".\"", "cannot be stored"], change=(NAME, '<ParameterList name=".">')),
+    Case("a solid in two lines", ["line break", "one line"], change=(NAME, '<ParameterList name="Ball&#10;2">')),
+    Case("two solids stored as one", ["\"B 1\"", "\"B_1\"", "another"], change=(BALL, TWO_BALLS)),
+
     # Meshes.
+    Case("a flat volume", ["'Ball'", "flat"], **mesh(FLAT)),
     Case("no mesh", ["body.obj", "cannot open"], **mesh(None)),
     Case("a mesh that is a pipe", ["pipe.obj", "pipe, not a file"], **mesh(None, "pipe.obj")),
     Case("a volume mesh that is a pipe", ["pipe.vtk", "pipe, not a file"],

@@ -14,6 +14,11 @@ import numpy
 
 from program import SCENE, SIMULATE, command, simulate
 
+SOFT = """<Parameter name="Density" type="double" value="500"/>
+      <ParameterList name="Material">
+        <Parameter name="Young's Modulus" type="double" value="1e5"/>
+      </ParameterList>
+      <Parameter name="Time Integration" type="string" value="fully-implicit"/>"""
 N_STEPS = 50  # of the whole run
 CHECKPOINTS = ["--set", "Output/Checkpoint Interval=0.1"]
 
@@ -42,9 +47,9 @@ def newest_checkpoint(folder):
 
 
 @contextlib.contextmanager
-def started(folder, *arguments):
+def started(folder, *arguments, scene=SCENE):
     """A run in the background; ended with the block."""
-    (Path(folder) / "scene.xml").write_text(SCENE)
+    (Path(folder) / "scene.xml").write_text(scene)
     process = subprocess.Popen(command(folder, *arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     try:
         yield process
@@ -110,6 +115,34 @@ class Faults(unittest.TestCase):
                 self.assertIsNotNone(newest_checkpoint(folder), output)
                 self.assertIn("Stopped by signal", output)
                 self.assert_restarts(folder)
+
+    def test_signal_in_a_long_step(self):
+        """A step that would take minutes is left within seconds, wherever it is, and has not been."""
+        slow = SCENE.replace("rigid body", "deformable body").replace('<Parameter name="Density" type="double" value="500"/>', SOFT)
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(simulate(folder, "--steps", 2, scene=slow).returncode, 0)
+            kept = newest_checkpoint(folder)
+            again = ["--restart", kept, "--set", "Solver/Newton Iterations=3000", "--output"]
+            for seconds in (1, 3, 6):
+                other = Path(folder) / str(seconds)
+                with self.subTest(seconds=seconds), started(folder, *again, other, scene=slow) as process:
+                    wait_for(lambda: (other / "history.csv").exists(), process)
+                    time.sleep(seconds)
+                    process.send_signal(signal.SIGTERM)
+                    sent = time.monotonic()
+                    output, _ = process.communicate(timeout=60)
+                    self.assertLess(time.monotonic() - sent, 2)
+                    self.assertEqual(process.returncode, 128 + signal.SIGTERM, output)
+                    self.assert_equal_checkpoints(next(other.glob("checkpoint-*.h5")), kept)
+
+    def assert_equal_checkpoints(self, one, other):
+        """As far as steps change them: the settings may differ."""
+        with h5py.File(one) as a, h5py.File(other) as b:
+            self.assertEqual((a.attrs["step"], a.attrs["time"]), (b.attrs["step"], b.attrs["time"]))
+            names = []
+            b.visititems(lambda name, data: names.append(name) if isinstance(data, h5py.Dataset) else None)
+            for name in set(names) - {"parameters"}:
+                self.assertTrue(numpy.array_equal(a[name][...], b[name][...]), name)
 
     def test_restart_on_two_ranks(self):
         with tempfile.TemporaryDirectory() as straight, tempfile.TemporaryDirectory() as folder:

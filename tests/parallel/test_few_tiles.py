@@ -3,28 +3,17 @@ tile, and bodies of few nodes, end on any number of ranks, with the answer of on
 import csv
 import os
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+
 SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
 N_STEPS = 3
 SECONDS = 120  # of a run; a second is usual
-
-
-def xml(name, content):
-    """A parameter list as text: dictionaries become sublists."""
-    lines = [f'<ParameterList name="{name}">']
-    for key, value in content.items():
-        if isinstance(value, dict):
-            lines.append(xml(key, value))
-            continue
-        kind = {str: "string", int: "int", float: "double"}.get(type(value))
-        if isinstance(value, tuple):
-            kind = f"Array({'int' if isinstance(value[0], int) else 'double'})"
-            value = "{" + ", ".join(map(str, value)) + "}"
-        lines.append(f'<Parameter name="{key}" type="{kind}" value="{value}"/>')
-    return "\n".join([*lines, "</ParameterList>"])
 
 
 def box(dimension, size, **more):

@@ -161,8 +161,7 @@ TEST(Fluid, AJetEntersThroughItsOpeningUntilItEnds) {
   jet.sublist("Opening").set("Lower", numbers({0.0, 0.25})).set("Upper", numbers({0.0, 0.75}));
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
-  // Four faces of 0.125 m, at 1/8, 3/8, 5/8 and 7/8 of the opening.
-  const double flux = 2 * 0.125 * 6 * (7. / 64 + 15. / 64);
+  const double flux = 0.5;  // the mean velocity, 1 m/s, through 0.5 m
   for (const double end : {0.5, 2.0}) {
     fluid->begin_prediction();
     fluid->add_forces(end - 0.1, 0.1);
@@ -184,6 +183,31 @@ TEST(Fluid, SidesRampUpFromTimeZeroIfAtAll) {
   EXPECT_EQ(side.velocity_at(1, x, 0), Point<2>(0, 0));
   EXPECT_EQ(side.velocity_at(1, x, 1), Point<2>(1.5, 0));
   EXPECT_EQ(side.velocity_at(1, x, 2), side.velocity);
+}
+
+TEST(Fluid, AnOpeningThatEndsWithinFacesLetsInWhatWasAskedFor) {
+  for (const char* const profile : {"uniform", "parabolic"}) {
+    for (const double upper : {0.45, 0.375, 0.3}) {  // of faces 0.125 m wide; the last within one
+      Case<2> scene({16, 8}, 0.125);
+      scene.side("x lower", "inflow", Point<2>(2, 0)).side("x upper", "open");
+      ParameterList& jet = scene.domain.sublist("Sides").sublist("x lower");
+      jet.set("Profile", profile);
+      jet.sublist("Opening").set("Lower", numbers({0.0, 0.28})).set("Upper", numbers({0.0, upper}));
+      const auto fluid = scene.make();
+      fluid->set_geometry(nullptr, BlockedFaces<2>());
+      double rate = 0;
+      for (const PrescribedFlux& flux : fluid->side_fluxes(0)) {
+        EXPECT_EQ(flux.name, "the inflow \"x lower\"");
+        for (const auto& entry : flux.into)
+          rate += entry.second;
+      }
+      EXPECT_NEAR(sum_all(world(), rate), 2 * (upper - 0.28), 1e-14);
+      const auto rhs = make_vector(fluid->pressure_map());
+      fluid->divergence(*rhs);
+      EXPECT_NEAR(rhs->meanValue() * 128, 2 * (upper - 0.28), 1e-13);
+      ASSERT_EQ(fluid->notes().size(), 1u);
+    }
+  }
 }
 
 TEST(Fluid, SourcesFeedSmokeAndAFrameShowsIt) {

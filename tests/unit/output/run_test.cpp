@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/errors.hpp"
+#include "base/interruption.hpp"
 #include "output/build_information.hpp"
 #include "output/progress.hpp"
 #include "output/run_record.hpp"
@@ -99,10 +100,22 @@ TEST(PhaseTimers, NestAndReduceOverTheRanks) {
 TEST(Signals, AreSeenByAllRanks) {
   const Communicator comm = Tpetra::getDefaultComm();
   install_signal_handlers();
-  EXPECT_EQ(stop_requested(comm), 0);
+  EXPECT_EQ(signal_received(comm), 0);
   if (comm->getRank() + 1 == comm->getSize())
     std::raise(SIGTERM);
-  EXPECT_EQ(stop_requested(comm), SIGTERM);
+  EXPECT_EQ(signal_received(comm), SIGTERM);
+
+  // Where a run can be left, the next sum leaves it, on all ranks.
+  EXPECT_EQ(sum_all(comm, 2.0), 2.0 * comm->getSize());
+  poll_interruption(comm);
+  const Interruptible interruptible;
+  EXPECT_THROW(sum_all(comm, 2.0), Interrupted);
+  try {
+    poll_interruption(comm);
+    FAIL() << "not interrupted";
+  } catch (const Interrupted& interrupted) {
+    EXPECT_EQ(interrupted.signal, SIGTERM);
+  }
 }
 
 TEST(RunRecord, KeepsTheInputByteForByte) {

@@ -133,6 +133,22 @@ TEST(RigidBodies, MomentumOfVelocityIsThatOfTheBodies) {
   EXPECT_NEAR(each[4].linear.z(), 8, 1e-12);
 }
 
+TEST(RigidBodies, UndoPutsBackWhatAStepChanges) {
+  const auto bodies = model<3>(zoo()), untouched = model<3>(zoo());
+  const auto undo = bodies->undo();
+  const auto velocity = rcp(new Vector(*bodies->velocity(), Teuchos::Copy));
+  bodies->move(*velocity, 0, 0.25);
+  velocity->scale(2);
+  bodies->set_velocity(*velocity);
+  undo();
+  EXPECT_EQ(bodies->time(), 0);
+  EXPECT_EQ(bodies->surface().vertices, untouched->surface().vertices);
+  for (std::size_t b = 0; b < bodies->bodies().size(); ++b) {
+    EXPECT_EQ(bodies->bodies()[b].velocity, untouched->bodies()[b].velocity);
+    EXPECT_EQ(bodies->bodies()[b].momentum, untouched->bodies()[b].momentum);
+  }
+}
+
 TEST(RigidBodies, LocksAreTheNamedDofs) {
   const auto bodies = model<3>(zoo());
   const auto mine = bodies->locked_dofs();

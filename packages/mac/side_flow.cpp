@@ -1,0 +1,74 @@
+// What the sides of the domain let in.
+#include "base/errors.hpp"
+#include "mac/mac_fluid.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Calls f(axis, end, side) for the sides that fluid enters or leaves through at a given velocity.
+template <int dim, typename Function>
+void for_each_inflow(const Boundary<dim>& boundary, const Function& f) {
+  for (int axis = 0; axis < dim; ++axis) {
+    for (int end = 0; end < 2; ++end) {
+      const BoundarySide<dim>& side = boundary.side(axis, end);
+      if (side.type == SideType::inflow && side.velocity[axis] != 0)
+        f(axis, end, side);
+    }
+  }
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<PrescribedFlux> MacFluid<dim>::side_fluxes(double time) const {
+  std::vector<PrescribedFlux> fluxes;
+  for_each_inflow(domain_.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
+    fluxes.push_back({fmt::format("the inflow \"{}\"", side_name(axis, end)), {}});
+    for (const auto& [face_axis, cell] : geometry_.prescribed) {
+      const bool is_upper = geometry_.state.cells[cell] == CellState::outside;
+      if (face_axis != axis || is_upper != (end == 1))
+        continue;
+      const double velocity =
+          side.mean_velocity(axis, domain_.face_box(axis, cell), time)[axis] * (is_upper ? -1 : 1);
+      const int fluid = is_upper ? domain_.grid.neighbor(cell, axis, 0) : cell;
+      const double area = domain_.face_area() * geometry_.open_part_of_prescribed(axis, cell);
+      if (velocity != 0)
+        fluxes.back().into.emplace_back(geometry_.unknown[fluid], area * velocity);
+    }
+  });
+  return fluxes;
+}
+
+template <int dim>
+std::vector<std::pair<std::string, std::string>> MacFluid<dim>::notes() const {
+  std::vector<std::pair<std::string, std::string>> notes;
+  for_each_inflow(domain_.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
+    double sums[3] = {0, 0, 0};  // open area, faces, faces in part
+    InflowShape<dim> opening = side.shape;
+    opening.parabolic = false;
+    for (const auto& [face_axis, cell] : geometry_.prescribed) {
+      const bool is_upper = geometry_.state.cells[cell] == CellState::outside;
+      if (face_axis != axis || is_upper != (end == 1))
+        continue;
+      const double open = opening.mean_factor(axis, domain_.face_box(axis, cell));
+      sums[0] += open * domain_.face_area();
+      sums[1] += open > 0;
+      sums[2] += open > 0 && open < 1;
+    }
+    sum_all(domain_.grid.comm(), sums, 3);
+    notes.emplace_back(
+        "inflow " + side_name(axis, end),
+        fmt::format("{:.6g} m^{}/s through {:.6g} m^{}: {:.0f} faces, {:.0f} of them in part",
+                    std::abs(side.velocity[axis]) * sums[0], dim, sums[0], dim - 1, sums[1],
+                    sums[2]));
+  });
+  return notes;
+}
+
+template std::vector<PrescribedFlux> MacFluid<2>::side_fluxes(double) const;
+template std::vector<PrescribedFlux> MacFluid<3>::side_fluxes(double) const;
+template std::vector<std::pair<std::string, std::string>> MacFluid<2>::notes() const;
+template std::vector<std::pair<std::string, std::string>> MacFluid<3>::notes() const;
+
+}  // namespace lockstep

@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "interfaces/prescribed_flux.hpp"
+#include "linear/types.hpp"
+
+namespace lockstep {
+
+/// What is prescribed at the boundary of the fluid. Every rank names the same, in the same order.
+struct PrescribedFluxes {
+  std::vector<PrescribedFlux> sides;   ///< exact
+  std::vector<PrescribedFlux> solids;  ///< as the grid sees them
+};
+
+/// A sentence if something prescribed changes the volume of fluid that is closed in and cannot
+/// change it, with the names and the rates; empty if not. The null vectors are those of the coupled
+/// system: regions without an open side, whose volume no free solid can change.
+///
+/// Solids are voxels or clipped polygons, so that not all that should cancel does: a solid is taken
+/// to change a volume if more than half of all that its faces push, in one direction and the other,
+/// is left in the sum, which is all of it for a piston and next to nothing for whatever turns or
+/// passes by; and then up to a tenth of it may be balanced by others not quite. Regions of no more
+/// cells than `smallest_region`, pockets that the grid makes, are let be, and so are changes of no
+/// more than `negligible` [m^dim/s]. Collective.
+std::string impossible_flow(const std::vector<RCP<const Vector>>& null_space,
+                            const PrescribedFluxes& fluxes, const RCP<const Map>& pressure_map,
+                            GlobalIndex smallest_region, double negligible,
+                            const std::string& unit);
+
+}  // namespace lockstep

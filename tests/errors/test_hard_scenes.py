@@ -1,0 +1,109 @@
+"""Scenes at the edge: flows that cannot be, flows that nearly cannot, and solves at round-off."""
+import csv
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from program import simulate
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+
+COUPLINGS = ("mixed face", "flux")
+
+
+def scene(n_cells=(16, 16), sides=None, solids=None, coupling="mixed face", step=.01, **more):
+    size = (1., n_cells[1] / n_cells[0])
+    return xml("Scene", {
+        "Dimension": 2, "Domain": {"Upper": size, "Cells": n_cells, "Sides": sides or {}},
+        "Fluid": {"Density": 1., **more.pop("fluid", {})}, "Solids": solids or {},
+        "Coupling": {"Type": coupling}, "Contact": {"Type": "none"},
+        "Time": {"End": 1., "Fixed Step": step, **more.pop("time", {})}, "Output": {"Frames": False}, **more})
+
+
+def moved(geometry, position=(.5, .5), **motion):
+    return {"Type": "rigid body", "Geometry": geometry, "Position": position,
+            "Motion": {"Type": "sinusoid", "Frequency": 1., **motion}}
+
+
+def box(*size):
+    return {"Shape": "box", "Size": size}
+
+
+def inflow(*velocity, **more):
+    return {"Type": "inflow", "Velocity": velocity, **more}
+
+
+class HardScenes(unittest.TestCase):
+    def run_scene(self, text, *arguments, code=0):
+        with tempfile.TemporaryDirectory() as folder:
+            result = simulate(folder, "--quiet", *arguments, scene=text)
+            self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+            history = Path(folder) / "output" / "history.csv"
+            lines = history.read_text().splitlines() if history.exists() else []
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+        return rows, result.stderr
+
+    def assert_refused(self, text, *expected, code=2):
+        rows, message = self.run_scene(text, "--steps", 20, code=code)
+        for part in expected:
+            self.assertIn(part, message)
+        self.assertEqual(len(message.strip().splitlines()), 1, message)
+        return rows
+
+    def test_impossible_from_the_start(self):
+        self.assert_refused(scene(sides={"x lower": inflow(1., 0.)}),
+                            'inflow "x lower" pushes in 1 m^2/s', "256 cells", "At the start")
+        self.assert_refused(scene(sides={"x lower": inflow(1., 0.), "x upper": inflow(.9, 0.)}),
+                            '"x upper" takes out 0.9 m^2/s', "-0.1 m^2/s")
+        for coupling in COUPLINGS:
+            piston = moved(box(.25, 1.4), Amplitude=(.05, 0.))
+            self.assert_refused(scene(solids={"Piston": piston}, coupling=coupling), 'solid "Piston"', "closed in")
+
+    def test_impossible_from_a_step_on(self):
+        rows = self.assert_refused(scene(sides={"x lower": inflow(1., 0., **{"Ramp Time": 1.})}),
+                                   "At 0.01 s", '"x lower"', code=3)
+        self.assertEqual(len(rows), 0)
+        start_at_rest = {"Phase": 1.5707963267948966}
+        for coupling in COUPLINGS:
+            piston = moved(box(.25, 1.4), Amplitude=(.05, 0.), **start_at_rest)
+            self.assert_refused(scene(solids={"Piston": piston}, coupling=coupling), 'solid "Piston"', code=3)
+
+    def test_possible(self):
+        """All of them in a tank of no open side."""
+        solids = {
+            "turning": moved(box(.5, .3), **{"Angular Amplitude": .5}),
+            "passing by": moved({"Shape": "ball", "Radius": .21}, Amplitude=(.13, .07)),
+            "turning in the wall": moved(box(.5, .3), position=(.03, .47), **{"Angular Amplitude": .4}),
+            "nearly at the wall": moved(box(.3, .3), position=(.5, .19), Amplitude=(0., .03)),
+            "a shell": moved({"Shape": "plate", "Size": (.4, 0.), "Normal": "y"}, Amplitude=(.03, .05),
+                             **{"Angular Amplitude": .3}),
+        }
+        for name, solid in solids.items():
+            for coupling in COUPLINGS:
+                with self.subTest(name, coupling=coupling):
+                    rows, _ = self.run_scene(scene(solids={"Mover": solid}, coupling=coupling), "--steps", 30)
+                    self.assertEqual(len(rows), 30)
+
+    def test_openings_of_one_area_balance(self):
+        opening = {"Opening": {"Lower": (0., .31), "Upper": (1., .48)}}
+        other = {"Opening": {"Lower": (0., .52), "Upper": (1., .69)}, "Profile": "parabolic"}
+        sides = {"x lower": inflow(1., 0., **opening), "x upper": inflow(1., 0., **other)}
+        rows, _ = self.run_scene(scene(sides=sides), "--steps", 3)
+        self.assertEqual(len(rows), 3)
+
+    def test_a_disc_that_comes_to_rest_in_a_vortex(self):
+        """Where all that S1 must balance vanishes, round-off ends the solve."""
+        periodic = {f"{axis} {end}": {"Type": "periodic"} for axis in "xy" for end in ("lower", "upper")}
+        disc = {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .1}, "Position": (.42, .31),
+                "Density": 1.}
+        text = scene((32, 32), periodic, {"Disc": disc}, step=.0125, time={"End": 2.},
+                     fluid={"Order in Time": 2, "Initial State": {"Type": "taylor green"}})
+        rows, _ = self.run_scene(text)
+        self.assertEqual(len(rows), 160)
+        self.assertLess(max(int(row["s1_iterations"]) for row in rows), 30)
+
+
+if __name__ == "__main__":
+    unittest.main()
