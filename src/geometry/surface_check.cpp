@@ -1,6 +1,7 @@
 #include "geometry/surface_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "geometry/self_crossing.hpp"
@@ -86,6 +87,7 @@ class SurfaceChecker {
     if (!demand_.closed)
       return;
     check_closure();
+    check_volume();
     if (from_file())
       check_crossing();
     check_senses();
@@ -184,6 +186,21 @@ class SurfaceChecker {
     }
     throw InputError(fmt::format("{} should enclose a volume, but has {}. {}.", heading_,
                                  fmt::join(clauses(open), "; "), fmt::join(remedies, ", or ")));
+  }
+
+  void check_volume() const {
+    double volume = 0;
+    for (const SurfacePart<dim>& part : surface_parts(mesh_))
+      volume += std::abs(part.volume);
+    Box<dim> box;
+    for (const Point<dim>& vertex : mesh_.vertices)
+      box.extend(vertex);
+    const double size = box.diagonal().norm();
+    check_input(
+        volume > 1e-10 * std::pow(size, dim),
+        "{} is closed but flat: {:g} m across, it encloses {:g} m^{}. Give it a thickness{}.",
+        heading_, size, volume, dim,
+        demand_.can_be_shell ? ", or take it as a thin shell with \"Thin Shell\"" : "");
   }
 
   void check_crossing() const {

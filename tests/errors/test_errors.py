@@ -222,7 +222,7 @@ CASES = [
     Case("two solids stored as one", ["\"B 1\"", "\"B_1\"", "another"], change=(BALL, TWO_BALLS)),
 
     # Meshes.
-    Case("a flat volume", ["'Ball'", "flat"], **mesh(FLAT)),
+    Case("a flat volume", ["Ball", "flat"], **mesh(FLAT)),
     Case("no mesh", ["body.obj", "cannot open"], **mesh(None)),
     Case("a mesh that is a pipe", ["pipe.obj", "pipe, not a file"], **mesh(None, "pipe.obj")),
     Case("a volume mesh that is a pipe", ["pipe.vtk", "pipe, not a file"],
