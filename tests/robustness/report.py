@@ -53,9 +53,18 @@ def table(heads, rows):
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
 
 
+def git(*words):
+    return subprocess.run(["git", "-C", SOURCE, *words], capture_output=True, text=True).stdout.strip()
+
+
+def commit():
+    """That of the sources; pages that other commands have just written do not count."""
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/results")
+    return (git("describe", "--always") or "an unknown commit") + ("-dirty" if changed else "")
+
+
 def made_by(command):
-    commit = subprocess.run(["git", "-C", SOURCE, "describe", "--always", "--dirty"], capture_output=True, text=True)
-    return f"Made by `{command}` on {datetime.date.today()} from {commit.stdout.strip() or 'an unknown commit'}."
+    return f"Made by `{command}` on {datetime.date.today()} from {commit()}."
 
 
 def write_scenes(page, seeds, results):
