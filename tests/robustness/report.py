@@ -3,9 +3,9 @@ import collections
 import datetime
 import re
 import subprocess
-from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
+from runs import program
+
 TITLE = "# robustness\n\nRandom scenes and damaged files, and whether what must hold for every one of them holds.\n"
 # Solids, and how often each thing that a scene may say was drawn.
 FEATURES = {
@@ -53,18 +53,11 @@ def table(heads, rows):
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
 
 
-def git(*words):
-    return subprocess.run(["git", "-C", SOURCE, *words], capture_output=True, text=True).stdout.strip()
-
-
-def commit():
-    """That of the sources; pages that other commands have just written do not count."""
-    changed = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/results")
-    return (git("describe", "--always") or "an unknown commit") + ("-dirty" if changed else "")
-
-
 def made_by(command):
-    return f"Made by `{command}` on {datetime.date.today()} from {commit()}."
+    """With the commit that the program was built from."""
+    version = subprocess.run([program("simulate"), "--version"], capture_output=True, text=True).stdout
+    built = re.search(r"\((.+)\)", version)
+    return f"Made by `{command}` on {datetime.date.today()} with a build of {built.group(1) if built else version.strip()}."
 
 
 def write_scenes(page, seeds, results):
