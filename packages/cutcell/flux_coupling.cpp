@@ -323,9 +323,13 @@ void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, in
   std::vector<GlobalIndex> dofs;
   std::vector<double> values;
   Point<dim> pulled = Point<dim>::Zero();  // nodes are pulled where the surface is
-  double dynamic_share = 0;
+  double dynamic_share = 0, largest_share = 0;
   for (const FluxShare<dim>& share : shares) {
     const SolidDescription& solid = solids.solids()[share.solid];
+    if (share.weight > largest_share) {
+      largest_share = share.weight;
+      row.solid = share.solid;
+    }
     if (solid.prescribed) {
       row.prescribed +=
           share.weight * solids.prescribed_velocity(share.point, share.center)[direction];
@@ -359,9 +363,9 @@ void FluxCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem
     add_to_row(face_shares<dim>(volume, *surface_, options_.weights).all, link.direction, solids,
                row);
   } else {
-    row.position = link.point.position;
-    add_to_row({{1, link.point, surface_->solid_of(link.point.simplex), link.point.position}},
-               link.direction, solids, row);
+    row.position = link.end;
+    add_to_row({{1, link.point, surface_->solid_of(link.point.simplex), link.end}}, link.direction,
+               solids, row);
   }
 }
 

@@ -19,6 +19,7 @@ Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& 
   links_ = std::move(found.links);
   sides_ = std::move(found.sides);
   couples_ = std::move(found.couples);
+  viscosity_ = found.viscosity;
 }
 
 template <int dim>
@@ -31,6 +32,7 @@ std::unique_ptr<ViscousSystem<dim>> Viscosity<dim>::system(const FaceField<dim>&
   result->velocity = make_vector(map_);
   result->wall_force = make_vector(map_);
   result->links = links_;
+  result->viscosity = viscosity_;
   const auto values = result->velocity->getDataNonConst();
   for (std::size_t row = 0; row < faces_.size(); ++row)
     values[row] = velocity[faces_[row].axis][faces_[row].cell];

@@ -40,6 +40,7 @@ class Viscosity {
   std::vector<ViscousLink<dim>> links_;
   std::vector<SideLink> sides_;
   std::vector<CoupleEnd> couples_;
+  double viscosity_;
 };
 
 }  // namespace lockstep

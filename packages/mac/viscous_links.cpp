@@ -64,6 +64,7 @@ class Builder {
           result_.couples.push_back({row_, across, balance_[across]});
     }
     result_.stiffness = rows.finish();
+    result_.viscosity = parameters_.viscosity;
     return std::move(result_);
   }
 
@@ -133,7 +134,7 @@ class Builder {
       return;
     }
     if (const auto hit = surface_on_link(domain_, geometry_, face_, across, end, other)) {
-      add_surface_link(face_, *hit, coefficient);
+      add_surface_link(face_, across, end, *hit, coefficient);
       return;
     }
     switch (state) {
@@ -144,7 +145,7 @@ class Builder {
           balance_[across] += end == 0 ? coefficient : -coefficient;
         break;
       case FaceState::coupled:
-        add_coupled_link(face_, other, coefficient);
+        add_coupled_link(face_, across, end, other, coefficient);
         break;
       case FaceState::prescribed:  // only along the velocity's own axis
         add_side_link(face_.axis, end, coefficient);
@@ -172,25 +173,31 @@ class Builder {
     result_.sides.push_back({row_, axis, end, coefficient});
   }
 
-  ViscousLink<dim> new_link(const FaceId& face, double coefficient) {
+  /// `coefficient` is that of a neighbour, which the link is to reach by `fraction`.
+  ViscousLink<dim> new_link(const FaceId& face, int across, int end, double coefficient,
+                            double fraction) {
+    coefficient /= fraction;
     diagonal_ += coefficient;
     ViscousLink<dim> link;
     link.row = row_;
     link.position = grid_.face_center(face.axis, face.cell);
     link.direction = face.axis;
     link.coefficient = coefficient;
+    link.end = link.position;
+    link.end[across] += (end == 0 ? -fraction : fraction) * grid_.spacing();
     return link;
   }
 
-  void add_surface_link(const FaceId& face, const SurfacePoint<dim>& point, double coefficient) {
+  void add_surface_link(const FaceId& face, int across, int end, const SurfacePoint<dim>& point,
+                        double coefficient) {
     const double fraction = std::max(point.fraction, parameters_.smallest_link_fraction);
-    ViscousLink<dim> link = new_link(face, coefficient / fraction);
+    ViscousLink<dim> link = new_link(face, across, end, coefficient, fraction);
     link.point = point;
     result_.links.push_back(link);
   }
 
-  void add_coupled_link(const FaceId& face, int other, double coefficient) {
-    ViscousLink<dim> link = new_link(face, coefficient);
+  void add_coupled_link(const FaceId& face, int across, int end, int other, double coefficient) {
+    ViscousLink<dim> link = new_link(face, across, end, coefficient, 1);
     if (grid_.owned(other)) {
       const Coupled key{{face.axis, other}, 0};
       const auto found = std::lower_bound(coupled_.begin(), coupled_.end(), key, before);
@@ -218,7 +225,7 @@ class Builder {
     if (!point)
       return;
     point->fraction = 1;
-    add_surface_link(face, *point, coefficient);
+    add_surface_link(face, across, end, *point, coefficient);
   }
 
   const MacDomain<dim>& domain_;

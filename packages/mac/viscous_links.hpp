@@ -35,6 +35,7 @@ struct ViscousLinks {
   std::vector<ViscousLink<dim>> links;
   std::vector<SideLink> sides;
   std::vector<CoupleEnd> couples;
+  double viscosity = 0;  ///< [Pa s]
 };
 
 /// Collective.

@@ -356,8 +356,12 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
                                        const Point<dim>& x, int direction,
                                        const SolidSystem<dim>& solids, LinkRow& row) const {
   Point<dim> pulled = Point<dim>::Zero();  // nodes are pulled where the surface is, not at x
-  double dynamic_share = 0;
+  double dynamic_share = 0, largest_share = 0;
   for (const SurfaceShare<dim>& share : shares) {
+    if (share.weight > largest_share) {
+      largest_share = share.weight;
+      row.solid = share.solid;
+    }
     if (solids.solids()[share.solid].prescribed) {
       row.prescribed += share.weight * solids.prescribed_velocity(share.point, x)[direction];
       row.prescribed_share += share.weight;
@@ -394,7 +398,7 @@ void MixedFaceCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidS
       add_local_rotations<dim>(remote, *surface_, shares);
     share_row(shares.front(), row.position, link.direction, solids, row);
   } else {
-    row.position = link.point.position;
+    row.position = link.end;
     SurfaceShare<dim> whole;
     whole.weight = 1;
     whole.point = link.point;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "coupling/spin_couples.hpp"
 #include "linear/preconditioner.hpp"
 #include "linear/triplet_matrix.hpp"
 
@@ -37,7 +38,7 @@ struct Pair {
 };
 
 /// All links of this rank: link l pulls with c_l (u_row(l) - (L V)_l - prescribed_l) on fluid and
-/// solid.
+/// solid; the couples of the transposed gradient come to the solid's end.
 template <int dim>
 struct Links {
   const std::vector<ViscousLink<dim>>& list;
@@ -45,19 +46,34 @@ struct Links {
   RCP<const CrsMatrix> rows;     ///< L: links x solid dofs; null without unknowns
   RCP<const CrsMatrix> squares;  ///< entries squared, for the diagonal
   std::vector<typename Coupling<dim>::LinkRow> ends;  ///< dofs and weights emptied once assembled
+  SpinCouples<dim> couples;
 
-  /// Pulls [N] for fluid velocities u and solid velocities V (null: none), prescribed velocities in
-  /// or out.
-  RCP<Vector> pull(const Vector& u, const RCP<const Vector>& solid, bool prescribed) const {
+  /// Velocities of the ends [m/s] for solid velocities V (null: none), prescribed velocities in or
+  /// out.
+  RCP<Vector> end_velocity(const RCP<const Vector>& solid, bool prescribed) const {
     const auto result = rcp(new Vector(map));
     if (!rows.is_null() && !solid.is_null())
       rows->apply(*solid, *result);
-    const auto values = result->getDataNonConst();
-    const auto velocity = u.getData();
-    for (std::size_t l = 0; l < list.size(); ++l) {
-      const double end = values[l] + (prescribed ? ends[l].prescribed : 0);
-      values[l] = list[l].coefficient * (velocity[list[l].row] - end);
+    if (prescribed) {
+      const auto values = result->getDataNonConst();
+      for (std::size_t l = 0; l < list.size(); ++l)
+        values[l] += ends[l].prescribed;
     }
+    return result;
+  }
+  /// Pulls of the bonds [N] for fluid velocities u.
+  RCP<Vector> pull(const Vector& u, const Vector& end_velocity) const {
+    const auto result = rcp(new Vector(map));
+    const auto values = result->getDataNonConst();
+    const auto velocity = u.getData(), end = end_velocity.getData();
+    for (std::size_t l = 0; l < list.size(); ++l)
+      values[l] = list[l].coefficient * (velocity[list[l].row] - end[l]);
+    return result;
+  }
+  /// The couples as forces on the solids [N]. Collective.
+  RCP<Vector> couple_pull(const Vector& end_velocity) const {
+    const auto result = rcp(new Vector(map));
+    couples.add_pull(end_velocity.getData().getRawPtr(), result->getDataNonConst().getRawPtr());
     return result;
   }
 };
@@ -65,16 +81,16 @@ struct Links {
 template <int dim>
 Links<dim> make_links(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
                       const Coupling<dim>& coupling) {
-  Links<dim> links{system.links,
-                   make_map(static_cast<int>(system.links.size()), solids.comm()),
-                   Teuchos::null,
-                   Teuchos::null,
-                   {}};
+  std::vector<typename Coupling<dim>::LinkRow> ends(system.links.size());
+  for (std::size_t l = 0; l < system.links.size(); ++l)
+    coupling.link_row(system.links[l], solids, ends[l]);
+  SpinCouples<dim> couples(system.links, ends, solids.solids(), solids.comm());
+  Links<dim> links{system.links,    make_map(static_cast<int>(system.links.size()), solids.comm()),
+                   Teuchos::null,   Teuchos::null,
+                   std::move(ends), std::move(couples)};
   std::vector<Triplet> rows, squares;
-  links.ends.resize(system.links.size());
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     auto& end = links.ends[l];
-    coupling.link_row(system.links[l], solids, end);
     const GlobalIndex id = links.map->getGlobalElement(static_cast<int>(l));
     for (std::size_t i = 0; i < end.dofs.size(); ++i) {
       rows.push_back({id, end.dofs[i], end.weights[i]});
@@ -110,18 +126,19 @@ struct ViscousOperator {
     system.stiffness->apply(*x.fluid, *y.fluid, Teuchos::NO_TRANS, dt, 1);
     if (x.solid.is_null())
       return;
-    const RCP<const Vector> solid = masked(*x.solid);
-    Vector end_velocity(links.map);
-    links.rows->apply(*solid, end_velocity);
+    const RCP<const Vector> end_velocity = links.end_velocity(masked(*x.solid), false);
     {
-      const auto values = end_velocity.getData();
+      const auto values = end_velocity->getData();
       const auto result = y.fluid->getDataNonConst();
       for (std::size_t l = 0; l < links.list.size(); ++l) {
         result[links.list[l].row] -= dt * links.list[l].coefficient * values[l];
       }
     }
     Vector drag(x.solid->getMap());
-    links.rows->apply(*links.pull(*x.fluid, solid, false), drag, Teuchos::TRANS, -dt, 0);
+    const RCP<Vector> pull = links.pull(*x.fluid, *end_velocity);
+    links.couples.add_pull(end_velocity->getData().getRawPtr(),
+                           pull->getDataNonConst().getRawPtr());
+    links.rows->apply(*pull, drag, Teuchos::TRANS, -dt, 0);
     lockstep::apply(*solid_block, *x.solid, *y.solid);
     y.solid->update(1, *masked(drag), 1);
   }
@@ -201,21 +218,23 @@ int conjugate_gradients(const ViscousOperator<dim>& op, const Preconditioner& pr
   return most;
 }
 
-/// The couple of links whose two ends lie apart across their direction, and what each prescribed
-/// solid gives the fluid through its links. This rank's part.
+/// The couple of links whose two ends lie apart across their direction, with that of the transposed
+/// gradient, which cancels it and that of the fluid's own bonds; and what each prescribed solid
+/// gives the fluid through its links. This rank's part.
 template <int dim>
-Momentum<dim> link_impulse(const Links<dim>& links, const Vector& pull, double dt,
-                           std::vector<Momentum<dim>>& of_prescribed) {
+Momentum<dim> link_impulse(const Links<dim>& links, const Vector& pull, const Vector& couple_pull,
+                           double dt, std::vector<Momentum<dim>>& of_prescribed) {
   Momentum<dim> couple;
-  const auto values = pull.getData();
+  const auto values = pull.getData(), couples = couple_pull.getData();
   for (std::size_t l = 0; l < links.list.size(); ++l) {
     const auto& link = links.list[l];
     const auto& end = links.ends[l];
-    const Point<dim> on_fluid = -dt * values[l] * Point<dim>::Unit(link.direction);
+    const Point<dim> axis = Point<dim>::Unit(link.direction);
     if (end.prescribed_share > 0)
-      of_prescribed[end.prescribed_solid].add(link.position, end.prescribed_share * on_fluid);
-    couple.angular +=
-        (1 - end.prescribed_share) * cross<dim>(link.position - end.position, on_fluid);
+      of_prescribed[end.prescribed_solid].add(
+          end.position, -dt * end.prescribed_share * (values[l] + couples[l]) * axis);
+    couple.angular += cross<dim>(link.position - end.position, -dt * values[l] * axis);
+    couple.add(end.position, dt * couples[l] * axis);
   }
   return couple;
 }
@@ -234,8 +253,8 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
   const ViscousOperator<dim> op{system, links, solid_block, mask, dt};
 
   // The pull of prescribed solids and locked dofs on resting fluid, on the right-hand side.
-  const RCP<const Vector> prescribed =
-      links.pull(*rcp(new Vector(system.map)), locked_velocity, true);
+  const RCP<const Vector> given = links.end_velocity(locked_velocity, true);
+  const RCP<Vector> prescribed = links.pull(*rcp(new Vector(system.map)), *given);
   Pair rhs{rcp(new Vector(system.map)), RCP<Vector>()};
   rhs.fluid->elementWiseMultiply(1, *system.mass, *system.velocity, 0);
   rhs.fluid->update(dt, *system.wall_force, 1);
@@ -248,6 +267,7 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
   Pair x{rcp(new Vector(*system.velocity, Teuchos::Copy)), RCP<Vector>()};
   if (solids.has_unknowns()) {
     Vector pulled(*lumped_momentum, Teuchos::Copy);
+    prescribed->update(1, *links.couple_pull(*given), 1);
     links.rows->apply(*prescribed, pulled, Teuchos::TRANS, dt, 1);
     rhs.solid = op.masked(pulled);
     x.solid = op.masked(*solids.velocity());
@@ -263,10 +283,14 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
     solid_velocity = op.masked(*x.solid);
   if (!locked_velocity.is_null())
     solid_velocity->update(1, *locked_velocity, 1);
-  const RCP<const Vector> pull = links.pull(*x.fluid, solid_velocity, true);
+  result.solid_velocity = solid_velocity;
+  const RCP<const Vector> ends = links.end_velocity(solid_velocity, true);
+  const RCP<const Vector> pull = links.pull(*x.fluid, *ends);
+  const RCP<const Vector> couple_pull = links.couple_pull(*ends);
   if (solids.has_unknowns()) {
     result.solid_impulse = rcp(new Vector(solids.map()));
     links.rows->apply(*pull, *result.solid_impulse, Teuchos::TRANS, dt, 0);
+    links.rows->apply(*couple_pull, *result.solid_impulse, Teuchos::TRANS, dt, 1);
   }
   // u = u* + M^-1 (impulses of the solution): momentum is exact, the residual of CG shows in u
   // alone.
@@ -278,7 +302,7 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
   velocity.elementWiseMultiply(1, mass_inverse, *residual.fluid, 1);
   result.boundary_impulse = fluid.accept_viscous(*x.fluid, velocity, dt);
   std::vector<Momentum<dim>> impulses(solids.solids().size());
-  impulses.push_back(link_impulse<dim>(links, *pull, dt, impulses));
+  impulses.push_back(link_impulse<dim>(links, *pull, *couple_pull, dt, impulses));
   sum_over_ranks(impulses, solids.comm());
   result.boundary_impulse += total_of(impulses);
   impulses.pop_back();

@@ -7,8 +7,9 @@ namespace lockstep {
 /// What the coupled viscous solve hands on.
 template <int dim>
 struct ViscousResult {
-  RCP<Vector> solid_impulse;  ///< j_nu = -dt (K_sf u + K_ss V_S) [kg m/s] on the solid map; null
-                              ///< without unknowns
+  RCP<Vector> solid_impulse;   ///< j_nu = -dt (K_sf u + K_ss V_S) [kg m/s] on the solid map; null
+                               ///< without unknowns
+  RCP<Vector> solid_velocity;  ///< V_S of the solution, which is not kept; null without unknowns
   Momentum<dim> boundary_impulse;  ///< walls and prescribed solids on the fluid, global
   /// Of each solid that is prescribed on the fluid, part of `boundary_impulse`; zero for dynamic
   /// solids. Where several share a face, one of them has it all. Global.

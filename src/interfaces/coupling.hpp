@@ -84,6 +84,7 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
     double prescribed_share = 0;               ///< their part of the link, 0..1
     int prescribed_solid = -1;                 ///< one of them: the last with a share
     Point<dim> position = Point<dim>::Zero();  ///< where the link pulls on the solid [m]
+    int solid = -1;                            ///< the one with the largest share
   };
   /// `assemble` and the surface it was given must still be valid. Local.
   virtual void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,

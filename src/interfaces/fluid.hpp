@@ -93,6 +93,9 @@ struct ViscousLink {
   double coefficient = 0;  ///< [kg/s]
   Point<dim> position =
       Point<dim>::Zero();  ///< of the free velocity: where the link pulls on the fluid [m]
+  /// The other end [m]: a rigid solid is taken to move there as it does everywhere, even if its
+  /// surface is a little nearer or farther.
+  Point<dim> end = Point<dim>::Zero();
 };
 
 /// Implicit viscosity in variational form: (M + dt K) u = M u* over the free velocities, SPD.
@@ -103,6 +106,7 @@ struct ViscousSystem {
   RCP<Vector> mass;                ///< M_f [kg]
   RCP<Vector> velocity;            ///< u* [m/s]
   RCP<Vector> wall_force;          ///< pull of moving walls and inflows [N]
+  double viscosity = 0;            ///< dynamic, mu [Pa s]
   std::vector<ViscousLink<dim>> links;
 };
 
@@ -162,6 +166,9 @@ class FluidDiscretization : public PlugIn {
   /// Gives values to samples that a surface swept over or uncovered, from visible neighbours.
   /// Called after `set_geometry` of the new surfaces.
   virtual void revalidate(const MovingSurface<dim>& surface) = 0;
+  /// Adds to the scaled pressure of the last `project` what `accept` keeps with it for
+  /// `last_scaled_pressure`; changes no velocity. Default: nothing.
+  virtual void correct_pressure(const Vector& /*scaled_increment*/) {}
   virtual void accept() = 0;  ///< u^n := u* (end of the step)
 
   // What the step and the outputs need to know.

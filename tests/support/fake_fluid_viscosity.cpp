@@ -68,6 +68,7 @@ std::unique_ptr<ViscousSystem<dim>> FakeFluid<dim>::viscous_system() const {
         link.direction = face.volume.direction;
         link.coefficient = bond();
         link.position = face.volume.center;
+        link.end = other.volume.center;
         if (other.kind == FaceKind::coupled && owned(other)) {
           for (std::size_t c = 0; c < coupled_.size(); ++c) {
             if (coupled_[c].id == other.volume.id)

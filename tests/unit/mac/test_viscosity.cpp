@@ -146,6 +146,7 @@ TEST(Viscosity, LinksEndOnAPlate) {
       continue;
     }
     EXPECT_NEAR(link.point.position[1], 1.8, 1e-12);
+    EXPECT_NEAR((link.end - link.point.position).norm(), 0, 1e-12);
     EXPECT_NEAR(link.point.position[0], link.position[0], 1e-12);
     // mu area / distance, at 0.3 h and 0.7 h.
     EXPECT_NEAR(link.coefficient, 3.0 / (link.position[1] < 1.8 ? 0.3 : 0.7), 1e-12);

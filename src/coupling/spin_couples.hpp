@@ -1,0 +1,46 @@
+#pragma once
+#include <vector>
+
+#include "interfaces/coupling.hpp"
+
+namespace lockstep {
+
+/// What the Laplacian form of viscosity leaves out of the symmetric stress at solids, the
+/// transposed gradient mu (grad u)^T n. Inside a fluid free of divergence it exerts no force, and
+/// where the fluid sticks to a surface it depends on the motion of that surface alone: on a closed
+/// solid its sum is the couple -2 mu V Omega, V the volume and Omega the mean angular velocity. It
+/// is exactly the couple that the links of the Laplacian make out of nothing: mu area times the
+/// velocity of the surface at either end of a row of velocities. So V is that between the ends of
+/// the links, and Omega what fits the velocities there best, that of a rigid solid exactly: a fluid
+/// that turns with its solids pulls none of them, and angular momentum is conserved. Shells have no
+/// V; that of a container is negative.
+template <int dim>
+class SpinCouples {
+ public:
+  using LinkRow = typename Coupling<dim>::LinkRow;
+
+  /// `ends`: of the links. Collective.
+  SpinCouples(const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow>& ends,
+              const std::vector<SolidDescription>& solids, const Communicator& comm);
+  /// No solid is turned by them. The same on all ranks.
+  bool empty() const { return empty_; }
+  /// pull += the couples as forces on the solids at the ends of the links [N], for these velocities
+  /// of the ends [m/s]. They are linear and symmetric: pull -= S^T strength S velocity. Collective.
+  void add_pull(const double* end_velocity, double* pull) const;
+
+ private:
+  struct Fit;
+  void place_centers(const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow>& ends);
+  std::vector<Fit> fit(const std::vector<ViscousLink<dim>>& links,
+                       const std::vector<LinkRow>& ends) const;
+
+  Communicator comm_;
+  bool empty_ = true;
+  std::vector<int> solid_;                    ///< of each link; -1: none that turns
+  std::vector<AngularVector<dim>> spin_;      ///< column of S of each link [1/m]
+  std::vector<AngularVector<dim>> strength_;  ///< 2 mu V about each axis [kg m^2/s], per solid
+  std::vector<Point<dim>> center_;            ///< of the ends of each solid's links [m]
+  mutable std::vector<double> rates_;         ///< Omega of each solid
+};
+
+}  // namespace lockstep
