@@ -66,6 +66,13 @@ void MacFluid<dim>::project(const Vector& scaled_pressure) {
 }
 
 template <int dim>
+void MacFluid<dim>::correct_pressure(const Vector& scaled_increment) {
+  const CellField increment = pressure_field(domain_, geometry_, scaled_increment);
+  for (std::size_t cell = 0; cell < increment.size(); ++cell)
+    scaled_pressure_[cell] += increment[cell];
+}
+
+template <int dim>
 RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
   const RCP<Vector> result = make_vector(geometry_.pressure_map);
   if (accepted_step_ == 0)

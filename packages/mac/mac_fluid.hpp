@@ -76,6 +76,7 @@ class MacFluid : public FluidDiscretization<dim>,
   void adopt_advection_velocity() override { advection_ = prediction_; }
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;
   void revalidate(const MovingSurface<dim>& surface) override;
+  void correct_pressure(const Vector& scaled_increment) override;
   void accept() override;
 
   double largest_cell_crossing_rate() const override;

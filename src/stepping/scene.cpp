@@ -19,17 +19,21 @@ void declare_time(ParameterList& scene) {
   ParameterList& time = declare_list(scene, "Time", "When to start, how far to step.");
   declare(time, "Start", 0., "Start time [s].");
   declare(time, "End", 1., "End time [s].");
-  declare_at_least(time, "Fixed Step", 0., 0., "Time step [s]; 0: chosen by the CFL number.");
+  declare_at_least(
+      time, "Fixed Step", 0., 0.,
+      "Time step [s]; 0: chosen by the CFL number. If whole steps do not end at \"End\", all are "
+      "a little shorter: forces would jump in a shorter last one.");
   declare_positive(
       time, "CFL", 0.9,
       "Cells that the fastest fluid crosses in a step (sum over the axes) [1]; any value is "
       "stable.");
   declare_positive(time, "Largest Step", 0.1, "Bound of the CFL-chosen step [s].");
   declare_choice(
-      time, "Pressure Correction", "incremental", {"incremental", "non-incremental"},
-      "Whether the viscous solve of a step reads the pressure of the last one. non-incremental: as "
-      "in the paper; then fluid slips at walls and solids by what pressure gradients make of it in "
-      "a step. No difference without viscosity.");
+      time, "Pressure Correction", "rotational", {"rotational", "incremental", "non-incremental"},
+      "Whether the viscous solve of a step reads the pressure of the last one. rotational: with "
+      "what viscosity adds to it, -mu div u; incremental: without, then it needs nu dt / h^2 steps "
+      "to settle; non-incremental: not at all, as in the paper; then fluid slips at walls and "
+      "solids by what pressure gradients make of it in a step. No difference without viscosity.");
   declare_at_least(time, "Steps", 0, 0, "Stop after this many steps; 0: no limit.");
 }
 
@@ -205,8 +209,9 @@ SceneOptions scene_options(const ParameterList& scene) {
   options.time.cfl = time.get<double>("CFL");
   options.time.largest_step = time.get<double>("Largest Step");
   options.time.most_steps = time.get<int>("Steps");
-  options.stepper.incremental_pressure =
-      time.get<std::string>("Pressure Correction") == "incremental";
+  const auto& correction = time.get<std::string>("Pressure Correction");
+  options.stepper.incremental_pressure = correction != "non-incremental";
+  options.stepper.rotational_pressure = correction == "rotational";
   check_input(options.time.end > options.time.start,
               "In \"Time\", \"End\" ({} s) must be later than \"Start\" ({} s).", options.time.end,
               options.time.start);

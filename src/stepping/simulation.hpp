@@ -48,6 +48,7 @@ class Simulation {
   double fraction_done() const;
   nlohmann::ordered_json summary(const std::string& status, double wall_seconds);
   void count(const StepReport<dim>& report);
+  void warn(const StepReport<dim>& report);
 
   ParameterList scene_;
   RunOptions options_;
@@ -62,6 +63,7 @@ class Simulation {
   FrameWriter frames_;
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
+  bool warned_of_viscous_step_ = false;
   double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
   std::vector<int> s1_iterations_, f2_iterations_, s2_iterations_;
   double largest_momentum_error_ = 0, largest_angular_error_ = 0, worst_residual_ = 0;

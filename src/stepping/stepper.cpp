@@ -255,6 +255,8 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
   report.max_divergence = largest_divergence(system_.blocks(dt), solution, fluid.spacing(), dim);
   audit_solve<dim>(components_, system_, solution, viscous_, dt, report);
   fluid.project(*unknowns.pressure);
+  if (!viscous_pressure_.is_null())
+    fluid.correct_pressure(*viscous_pressure_);
   RCP<Vector> velocity = unknowns.solid;
   if (velocity.is_null())
     velocity = make_vector(solids.map());

@@ -16,6 +16,7 @@ struct StepperOptions {
   double viscous_tolerance = 1e-10;  ///< relative, of the viscous CG
   int newton_iterations = 1;         ///< coupled solves each of S1 and S2 takes
   bool incremental_pressure = true;  ///< the viscous solve reads the last step's pressure
+  bool rotational_pressure = true;   ///< and corrects it by the divergence that it leaves
   double length = 1;                 ///< size of the domain [m], scales the angular audit
   bool audit_angular = true;  ///< false with periodic sides, where torque has no common origin
 };
@@ -47,6 +48,7 @@ class Stepper {
   void predict_viscosity(double time, double dt, StepReport<dim>& report);
   RCP<const Vector> expected_pressure(double time, double dt, StepReport<dim>& report);
   RCP<Vector> last_pressure(double dt) const;
+  RCP<Vector> viscous_pressure(double viscosity, double dt);
   void reset_unseen_faces();
   RCP<const Vector> unseen_buoyancy(double dt, StepReport<dim>& report) const;
   RCP<Vector> solid_momentum(double time, double dt, MomentumLedger<dim>* ledger,
@@ -72,6 +74,7 @@ class Stepper {
   double last_dt_ = 0;                 ///< 0 before the first step
   Momentum<dim> last_momentum_;        ///< at the end of the last step
   ViscousResult<dim> viscous_;         ///< of the present prediction; empty without viscosity
+  RCP<Vector> viscous_pressure_;       ///< what S2 leaves out for the next step; null: nothing
   RCP<const Vector> locked_velocity_;  ///< of locked dofs in the present solve; null: at rest
 };
 
