@@ -67,12 +67,12 @@ std::vector<SurfaceFrame> surface_frames(const SolidSystem<dim>& solids,
   return frames;
 }
 
-/// Steps of one length that end at `end`: the forces of a last one that is much shorter would be
-/// those of another step's errors.
+/// Steps of one length that end at `end`, if they get there: the forces of a last one that is much
+/// shorter would be those of another step's errors.
 double even_step(const TimeOptions& time) {
-  if (time.fixed_step == 0)
-    return 0;
   const double length = time.end - time.start;
+  if (time.fixed_step == 0 || (time.most_steps > 0 && time.most_steps * time.fixed_step < length))
+    return time.fixed_step;
   const double n_steps = std::ceil(length / time.fixed_step * (1 - 1e-9));
   const double step = length / std::max(n_steps, 1.0);
   return std::abs(step - time.fixed_step) < 1e-9 * time.fixed_step ? time.fixed_step : step;
