@@ -40,14 +40,19 @@ void check_names(const std::map<std::string, double>& by_name,
   }
 }
 
+template <int dim>
+RCP<Vector> free_part(const SolidSystem<dim>& solids, const Vector& impulse) {
+  const RCP<Vector> part = make_vector(solids.map());
+  part->elementWiseMultiply(1, *solids.free_mask(), impulse, 0);
+  return part;
+}
+
 /// M_S^-1 of an impulse on the free dofs. Collective.
 template <int dim>
 RCP<Vector> velocity_change(const SolidSystem<dim>& solids, const Vector& impulse) {
-  Vector free_impulse(solids.map());
-  free_impulse.elementWiseMultiply(1, *solids.free_mask(), impulse, 0);
   const RCP<Vector> change = make_vector(solids.map());
-  apply(*exact_inverse(solids.solid_block(Teuchos::null, 0), "mass of the solids"), free_impulse,
-        *change);
+  apply(*exact_inverse(solids.solid_block(Teuchos::null, 0), "mass of the solids"),
+        *free_part(solids, impulse), *change);
   return change;
 }
 
@@ -60,8 +65,8 @@ GaussSeidelContact<dim>::GaussSeidelContact(const GaussSeidelOptions& options,
 
 template <int dim>
 ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& solids,
-                                                    ContactPhase phase, double dt,
-                                                    Vector& velocity) {
+                                                    ContactPhase phase, double dt, Vector& velocity,
+                                                    const ContactResponse& response) {
   ContactReport<dim> report;
   if (!solids.has_unknowns())
     return report;
@@ -74,23 +79,37 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   if (!acts)
     return report;
   const InverseMass inverse_mass = replicated_inverse_mass(solids);
-  ImpulseSolver<dim> solver(solids, shapes, inverse_mass, given);
+  Mobility<dim> mobility = response ? Mobility<dim>(inverse_mass, solids, shapes, response())
+                                    : Mobility<dim>(inverse_mass);
+  ImpulseSolver<dim> solver(solids, shapes, mobility, given);
   report.iterations = problem.solve(solver);
   report.n_contacts = solver.n_contacts();
   report.external_impulse = solver.external_impulse();
 
+  const RCP<const Vector> impulse = distributed(solids, solver.generalized_impulse());
+  if (response)
+    report.impulse = free_part(solids, *impulse);
   std::vector<double> resolved = solver.velocity();
   if (phase == ContactPhase::position) {
     report.n_crossings =
         join_impact_zones(solids, shapes, inverse_mass, options_.self_contact, dt, resolved);
   }
   RCP<Vector> change = distributed(solids, resolved);
-  change->update(-1, *distributed(solids, given), 1);
-  const RCP<const Vector> impulse = distributed(solids, solver.generalized_impulse());
-  if (!inverse_mass.exact && phase == ContactPhase::velocity)
-    change = velocity_change(solids, *impulse);
-  if (solids.has_locks())
-    report.external_impulse += lock_impulse(solids, *change, *impulse);
+  if (response) {
+    // The solver knows surfaces only.
+    change->update(-1, *distributed(solids, solver.velocity()), 1);
+    apply(*mobility.response(), *report.impulse, *change, 1, 1);
+  } else {
+    change->update(-1, *distributed(solids, given), 1);
+    if (!inverse_mass.exact && phase == ContactPhase::velocity)
+      change = velocity_change(solids, *impulse);
+  }
+  if (solids.has_locks()) {
+    if (response)  // what acts on locked dofs goes to what holds them
+      report.external_impulse += solids.momentum(*report.impulse) - solids.momentum(*impulse);
+    else
+      report.external_impulse += lock_impulse(solids, *change, *impulse);
+  }
   velocity.update(1, *change, 1);
   return report;
 }

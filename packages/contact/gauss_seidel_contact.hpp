@@ -39,8 +39,8 @@ struct GaussSeidelOptions {
 /// through M_S; pinned ones do not yield, and their reactions are in the report. Where M_S is
 /// consistent, lumped masses serve for the positions and, in the velocity phase, for the size of
 /// the impulses, which then act through M_S itself: momentum is exact, velocities at contacts are
-/// not. Implicit elasticity does not enter: a body on a sheet is integrated with the sheet's
-/// forces as they are at the beginning of the step.
+/// not. Solids whose elasticity is implicit are pushed through their response (M_S - dt D)^-1, as
+/// whole bodies: pushed node by node, at steps longer than their stable one, they would be crushed.
 ///
 /// Surfaces and velocities of all solids are replicated and every rank solves the same problem:
 /// results do not depend on the number of ranks; the work, O(solids and their vertices), does not
@@ -53,8 +53,9 @@ class GaussSeidelContact : public ContactModel<dim> {
                      double grid_spacing);
 
   std::string name() const override { return "gauss seidel"; }
+  using ContactModel<dim>::resolve;
   ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
-                             Vector& velocity) override;
+                             Vector& velocity, const ContactResponse& response) override;
 
  private:
   GaussSeidelOptions options_;

@@ -26,11 +26,8 @@ Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
 
 template <int dim>
 ImpulseSolver<dim>::ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
-                                  const InverseMass& inverse_mass, std::vector<double> velocity)
-    : system_(system),
-      shapes_(shapes),
-      inverse_mass_(inverse_mass),
-      velocity_(std::move(velocity)) {}
+                                  Mobility<dim>& mobility, std::vector<double> velocity)
+    : system_(system), shapes_(shapes), mobility_(mobility), velocity_(std::move(velocity)) {}
 
 template <int dim>
 void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& point,
@@ -69,7 +66,7 @@ template <int dim>
 void ImpulseSolver<dim>::add_response(Row& row) {
   std::map<int, Point<dim>> response;
   for (int k = row.begin; k < row.end; ++k) {
-    for (const auto& [dof, value] : inverse_mass_.rows[jacobian_[k].dof]) {
+    for (const auto& [dof, value] : mobility_.row(jacobian_[k].dof)) {
       const auto place = response.try_emplace(dof, Point<dim>::Zero()).first;
       place->second += value * jacobian_[k].coefficient;
     }

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "contact/contact_search.hpp"
-#include "contact/inverse_mass.hpp"
+#include "contact/mobility.hpp"
 
 namespace lockstep {
 
@@ -13,9 +13,10 @@ template <int dim>
 class ImpulseSolver {
  public:
   ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
-                const InverseMass& inverse_mass, std::vector<double> velocity);
+                Mobility<dim>& mobility, std::vector<double> velocity);
 
-  /// Target: least normal velocity of `contact.solid` relative to the other [m/s].
+  /// Target: least normal velocity of `contact.solid` relative to the other [m/s]. Collective if
+  /// the mobility is.
   void add(const Contact<dim>& contact, double target, double friction);
   /// Sweeps until no velocity at a contact changes by more than `tolerance` [m/s]; returns the
   /// number of sweeps.
@@ -37,7 +38,7 @@ class ImpulseSolver {
   struct Row {
     Contact<dim> contact;
     int begin = 0, end = 0;                    ///< in `jacobian_`
-    int response_begin = 0, response_end = 0;  ///< in `response_`: M^-1 J^T
+    int response_begin = 0, response_end = 0;  ///< in `response_`: mobility J^T
     Point<dim> prescribed = Point<dim>::Zero();
     double target = 0, friction = 0;
     double normal_response = 0, tangent_response = 0;  ///< velocity per impulse [1/kg]
@@ -61,7 +62,7 @@ class ImpulseSolver {
 
   const SolidSystem<dim>& system_;
   const ContactShapes<dim>& shapes_;
-  const InverseMass& inverse_mass_;
+  Mobility<dim>& mobility_;
   std::vector<double> velocity_;
   VelocityRow<dim> velocity_row_;  ///< for use by add_entries alone
   std::vector<Row> rows_;

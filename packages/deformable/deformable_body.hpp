@@ -22,8 +22,9 @@ enum class TimeIntegration {
 template <int dim>
 struct DeformableBody {
   std::string name;
-  bool closed = true;  ///< a volume; false: a thin shell
-  double density = 0;  ///< [kg/m^dim], of a shell [kg/m^(dim-1)]
+  bool closed = true;        ///< a volume; false: a thin shell
+  double density = 0;        ///< [kg/m^dim], of a shell [kg/m^(dim-1)]
+  double fluid_density = 0;  ///< of what it carries along, about, per the same measure
   double restitution = 0, friction = 0;
   TimeIntegration integration = TimeIntegration::semi_implicit;
   int most_sub_steps = 1;  ///< that average its elastic forces; 1: its stable step bounds the step

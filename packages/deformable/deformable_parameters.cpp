@@ -34,6 +34,16 @@ MeshNames names_of_boundary(const MeshNames& volume, const std::vector<int>& ver
   return names;
 }
 
+/// A hundred times the pressure under the body's own weight: enough for a fall from ten times its
+/// size [Pa].
+template <int dim>
+double holding_stiffness(const VolumeMesh<dim>& mesh, double density, double gravity) {
+  Box<dim> box;
+  for (const Point<dim>& x : mesh.vertices)
+    box.extend(x);
+  return 100 * density * gravity * box.sizes().maxCoeff();
+}
+
 }  // namespace
 
 template <int dim>
@@ -50,7 +60,7 @@ ParameterList deformable_body_parameters() {
 
 template <int dim>
 DeformableBody<dim> read_deformable_body(const std::string& name, const ParameterList& list,
-                                         double grid_spacing) {
+                                         double grid_spacing, double gravity) {
   MeshNames names = element_names();
   const VolumeMesh<dim> mesh =
       make_body_mesh<dim>(list.sublist("Geometry"), grid_spacing, name, names);
@@ -63,8 +73,11 @@ DeformableBody<dim> read_deformable_body(const std::string& name, const Paramete
   const double factor = list.get<double>("Stiffness Damping");
   const StrainRateDamping damping{list.get<double>("Viscosity") + factor * lame.mu,
                                   factor * lame.lambda};
-  body.elements.push_back(volume_elements<dim>(
-      mesh, make_material<dim>(material.get<std::string>("Type"), lame), damping));
+  auto law = make_material<dim>(material.get<std::string>("Type"), lame);
+  if (list.get<std::string>("Time Integration") == "fully-implicit" ||
+      list.get<std::string>("Time Integration") == "second-order")
+    law = held_together<dim>(std::move(law), holding_stiffness(mesh, body.density, gravity));
+  body.elements.push_back(volume_elements<dim>(mesh, std::move(law), damping));
   body.mass_elements = body.elements.back()->corners();
   for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e)
     body.element_measure.push_back(element_volume(mesh, e));
@@ -82,9 +95,9 @@ DeformableBody<dim> read_deformable_body(const std::string& name, const Paramete
 
 template ParameterList deformable_body_parameters<2>();
 template ParameterList deformable_body_parameters<3>();
-template DeformableBody<2> read_deformable_body<2>(const std::string&, const ParameterList&,
+template DeformableBody<2> read_deformable_body<2>(const std::string&, const ParameterList&, double,
                                                    double);
-template DeformableBody<3> read_deformable_body<3>(const std::string&, const ParameterList&,
+template DeformableBody<3> read_deformable_body<3>(const std::string&, const ParameterList&, double,
                                                    double);
 
 }  // namespace lockstep

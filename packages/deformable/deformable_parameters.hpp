@@ -12,10 +12,11 @@ ParameterList deformable_body_parameters();
 
 /// A body at the start from its list, validated against `deformable_body_parameters`. A "File" must
 /// be absolute or relative to the working directory; `grid_spacing` [m] sets the resolution of
-/// generated meshes. Throws InputError. Every rank reads.
+/// generated meshes; `gravity` [m/s^2] what its weight may crush. Throws InputError. Every rank
+/// reads.
 template <int dim>
 DeformableBody<dim> read_deformable_body(const std::string& name, const ParameterList& list,
-                                         double grid_spacing);
+                                         double grid_spacing, double gravity = 0);
 
 /// Everything a solid of type "cloth" may say, without "Type".
 template <int dim>

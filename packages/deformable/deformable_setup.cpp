@@ -60,6 +60,7 @@ DeformableSolids<dim>::DeformableSolids(const std::string& type,
   make_strain_limit(bodies);
   space_.forget_numbers();
   update_geometry();
+  bound_frequencies();
 }
 
 template <int dim>
@@ -84,6 +85,7 @@ void DeformableSolids<dim>::add_body(DeformableBody<dim>& body, int node_begin) 
   part.most_sub_steps = body.most_sub_steps;
   part.measure = std::accumulate(body.element_measure.begin(), body.element_measure.end(), 0.0);
   part.mass = body.density * part.measure;
+  part.fluid_mass = body.fluid_density * part.measure;
   part.node_begin = node_begin;
   part.node_end = node_begin + body.n_nodes();
   bodies_.push_back(std::move(part));

@@ -36,9 +36,12 @@ Point<dim> DeformableSolids<dim>::effective_velocity(const SurfacePoint<dim>& po
 
 template <int dim>
 double DeformableSolids<dim>::elastic_share(const Body& body) const {
-  if (body.integration == TimeIntegration::second_order)
-    return before_ ? 0.5 : 1;
-  return body.integration == TimeIntegration::fully_implicit ? 1 : 0;
+  const bool second_order = body.integration == TimeIntegration::second_order;
+  if (!second_order && body.integration != TimeIntegration::fully_implicit)
+    return 0;
+  if (!moved_)
+    return 2;
+  return second_order ? 0.5 : 1;
 }
 
 template <int dim>
@@ -97,6 +100,7 @@ template <int dim>
 void DeformableSolids<dim>::begin_step(double time, double dt) {
   held_.begin_step(time);
   step_ = dt;
+  soften(dt);
 }
 
 template <int dim>
@@ -146,6 +150,9 @@ void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   velocity_ = rcp(new Vector(velocity, Teuchos::Copy));
   limiting_impulse_.clear();
   before_.reset();
+  moved_ = false;
+  linearisation_ = Teuchos::null;
+  implicit_force_ = Teuchos::null;  // that of S1 is another one
   if (linearised_)
     update_forces();
   update_states();
@@ -156,8 +163,7 @@ void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
 template <int dim>
 bool DeformableSolids<dim>::linearise(double dt, const Vector& velocity) {
   const auto share = [this](int node) { return elastic_share(bodies_[body_of_node_[node]]); };
-  if (std::none_of(bodies_.begin(), bodies_.end(),
-                   [this](const Body& body) { return elastic_share(body) > 0; }))
+  if (!has_implicit_forces())
     return false;
   const Nodes v = space_.with_ghosts(velocity);
   Nodes x = before_ ? *before_ : x_;
@@ -169,6 +175,7 @@ bool DeformableSolids<dim>::linearise(double dt, const Vector& velocity) {
       elastic_force_[i] += share(i) * dt * stiffness_.row_times(i, v);
   }
   linearised_ = true;
+  linearisation_ = rcp(new Vector(velocity, Teuchos::Copy));
   return true;
 }
 
@@ -186,6 +193,16 @@ void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
       (*before_)[i] = x_[i];
   }
   surface_velocity_ = surface_values(change);
+  moved_ = true;
+  linearisation_ = Teuchos::null;
+  if (before_) {
+    Nodes halfway(space_.n_owned(), Point<dim>::Zero());
+    for (int i = 0; i < space_.n_owned(); ++i) {
+      if (is_second_order(bodies_[body_of_node_[i]]))
+        halfway[i] = change[i];
+    }
+    linearisation_ = space_.vector(halfway);
+  }
   update_geometry();
 }
 
@@ -248,6 +265,13 @@ void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
   }
   force.resize(space_.n_owned());
   elastic_force_ = std::move(force);
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    const double softening = bodies_[body_of_node_[i]].softening;
+    if (softening == 1)
+      continue;
+    elastic_force_[i] *= softening;
+    stiffness_.scale_row(i, softening);
+  }
   n_clamped_ = sum_all(comm_, n_clamped_);
   sum_all(comm_, energies.data(), static_cast<int>(energies.size()));
   Momentum<dim> load;
@@ -256,7 +280,7 @@ void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
   }
   load_ = sum_over_ranks<dim>(load, comm_);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
-    bodies_[b].elastic_energy = energies[b];
+    bodies_[b].elastic_energy = bodies_[b].softening * energies[b];
 }
 
 template <int dim>

@@ -15,11 +15,12 @@ namespace lockstep {
 /// All deformable bodies of a scene: volumes of finite elements and thin shells. The dofs are the
 /// velocities of the nodes, distributed by METIS; the surface is replicated.
 ///
-/// Elastic forces are those at the present positions. Together with the step they make, for one
-/// mode of stiffness m omega^2 and a = omega dt, b = 1 + a^2/4, the fully implicit map
-/// x' = (1 - a^2/(2 b)) x + (dt/b) v, v' = (v - dt omega^2 x')/(1 + a^2), whose energy falls by
-/// 3/2 a^2 of itself a step. Second order has the same x' and v' = (v - dt omega^2 x)/(1 + a^2/2),
-/// the force at x + v' dt/2, whose energy falls by a^4/8 where a is small. Explicit and
+/// Explicit elastic forces are those at the present positions. Implicit ones make, for one mode of
+/// stiffness m omega^2 and a = omega dt, b = 1 + a^2/2, together with the step the map
+/// x' = (x + (1 + c a^2) dt v)/b, v' = (v - dt omega^2 x')/(1 + a^2), whose energy falls by 3/2 a^2
+/// of itself a step. Second order has v' = (v - dt omega^2 x)/(1 + a^2/2), the force at
+/// x + v' dt/2; its energy falls by a^4/8 where a is small. c is 1/4, of second order 1/8, where
+/// the step resolves the motion and 0 where it does not: see add_midpoint_correction. Explicit and
 /// semi-implicit are stable up to a = sqrt 2.
 template <int dim>
 class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
@@ -47,6 +48,7 @@ class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
   RCP<const LinearOperator> implicit_force(double dt) const override;
   NearNullSpace near_null_space() const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
+  void add_midpoint_correction(double dt, Vector& momentum) const override;
   Momentum<dim> external_impulse(double time, double dt) const override;
   void begin_step(double time, double dt) override;
   std::vector<GlobalIndex> locked_dofs() const override;
@@ -59,6 +61,9 @@ class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
   RCP<const Vector> velocity() const override { return velocity_; }
   void set_velocity(const Vector& velocity) override;
   bool linearise(double dt, const Vector& velocity) override;
+  bool has_implicit_forces() const override;
+  RCP<const Vector> linearisation() const override { return linearisation_; }
+  ComputedEnergy unlinear_energy(double dt, const Vector& velocity) const override;
   void limit_motion(double dt, Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return states_; }
@@ -92,7 +97,10 @@ class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
     TimeIntegration integration = TimeIntegration::semi_implicit;
     int most_sub_steps = 1;
     double elastic_step = 1e300;       ///< stable at the present positions, without sub-steps [s]
+    double stiffest_rate = 0;          ///< a bound of the frequencies at the start [1/s]
+    double softening = 1;              ///< that elastic forces are multiplied with in this step
     double mass = 0, measure = 0;      ///< [kg]; volume (cloth: area) as meshed
+    double fluid_mass = 0;             ///< that it carries along, about [kg]
     int node_begin = 0, node_end = 0;  ///< original numbers
     std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
     double elastic_energy = 0;  ///< of all ranks
@@ -107,12 +115,15 @@ class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
   /// After the positions have changed: surface, forces, linearisation, states.
   void update_geometry();
   void update_forces();
-  /// The part of the step [1] after which the elastic forces that the coming solve solves for are
-  /// taken: all of it, or half; 0 where D has no elasticity.
+  /// The time after which the elastic forces that the coming solve solves for are taken, over that
+  /// of the solve: in S1 the end of the step, two halves of it, in S2 its end or its middle; 0
+  /// where D has no elasticity.
   double elastic_share(const Body& body) const;
   /// Forces, stiffness and damping at positions x of all local nodes.
   void assemble_forces(const Nodes& x);
   void update_largest_stable_step();
+  void bound_frequencies();
+  void soften(double dt);
   double least_mass(int node) const;  ///< a bound of the eigenvalues of M_S [kg]
   /// Elastic forces for a step: averaged over sub-steps where it is longer than a body's stable
   /// one.
@@ -162,8 +173,10 @@ class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
   std::vector<SolidState<dim>> states_;
   Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]
   double largest_stable_step_ = 1e300;
-  double step_ = 0;          ///< the present one [s]
-  bool linearised_ = false;  ///< elsewhere than at x_
+  double step_ = 0;                  ///< the present one [s]
+  bool moved_ = false;               ///< the coming solve is S2
+  bool linearised_ = false;          ///< elsewhere than at x_
+  RCP<const Vector> linearisation_;  ///< the velocity that leads there; null: zero
   GlobalIndex n_clamped_ = 0;
 };
 

@@ -78,6 +78,8 @@ void DeformableSolids<dim>::load(const CheckpointReader& reader) {
       space_.vector(points_of<dim>(reader.read_distributed<double>(type_ + "/velocities", ids)));
   surface_velocity_ = points_of<dim>(file.read_all<double>(type_ + "/surface velocities"));
   before_.reset();
+  moved_ = false;
+  linearisation_ = Teuchos::null;
   update_geometry();
 }
 

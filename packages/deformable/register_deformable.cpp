@@ -8,16 +8,18 @@ namespace lockstep {
 namespace {
 
 /// One model of all bodies of a type.
-template <int dim>
-std::unique_ptr<SolidModel<dim>> make_model(
-    const std::string& type,
-    DeformableBody<dim> (*read)(const std::string&, const ParameterList&, double),
-    const NamedLists& lists, const SolidSetting<dim>& setting) {
+template <int dim, typename Read>
+std::unique_ptr<SolidModel<dim>> make_model(const std::string& type, const Read& read,
+                                            const NamedLists& lists,
+                                            const SolidSetting<dim>& setting) {
   if (lists.empty())
     return nullptr;
   std::vector<DeformableBody<dim>> bodies;
-  for (const auto& [name, list] : lists)
-    bodies.push_back(read(name, list, setting.grid_spacing));
+  for (const auto& [name, list] : lists) {
+    bodies.push_back(read(name, list));
+    bodies.back().fluid_density =
+        setting.fluid_density * (bodies.back().closed ? 1 : setting.grid_spacing);
+  }
   return std::make_unique<DeformableSolids<dim>>(type, std::move(bodies), setting.gravity,
                                                  setting.comm, setting.start_time);
 }
@@ -29,13 +31,20 @@ void register_deformable(SolidRegistry<dim>& solids) {
   solids.add("deformable body", "Elastic volume of triangles (2D) or tetrahedra (3D).",
              deformable_body_parameters<dim>,
              [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
-               return make_model<dim>("deformable body", read_deformable_body<dim>, lists, setting);
+               const auto read = [&setting](const std::string& name, const ParameterList& list) {
+                 return read_deformable_body<dim>(name, list, setting.grid_spacing,
+                                                  setting.gravity.norm());
+               };
+               return make_model<dim>("deformable body", read, lists, setting);
              });
   solids.add("cloth",
              "Elastic thin shell of segments (2D) or triangles (3D): membrane and bending.",
              cloth_parameters<dim>,
              [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
-               return make_model<dim>("cloth", read_cloth<dim>, lists, setting);
+               const auto read = [&setting](const std::string& name, const ParameterList& list) {
+                 return read_cloth<dim>(name, list, setting.grid_spacing);
+               };
+               return make_model<dim>("cloth", read, lists, setting);
              });
 }
 

@@ -204,9 +204,17 @@ RCP<Vector> SolidSystem<dim>::explicit_momentum(double time, double dt) const {
 }
 
 template <int dim>
-void SolidSystem<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
-  for (int m = 0; m < n_models(); ++m)
-    model(m).add_midpoint_correction(dt, *part(momentum, m));
+void SolidSystem<dim>::add_midpoint_correction(double dt, double implicit_part,
+                                               Vector& momentum) const {
+  Vector all(map_);
+  for (int m = 0; m < n_models(); ++m) {
+    const RCP<Vector> correction = part(all, m);
+    model(m).add_midpoint_correction(dt, *correction);
+    if (model(m).has_implicit_forces())
+      correction->scale(implicit_part);
+  }
+  attachments_.reduce_momentum(all);
+  momentum.update(1, all, 1);
 }
 
 template <int dim>
@@ -269,6 +277,43 @@ bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   for (int m = 0; m < n_models(); ++m)
     any = model(m).linearise(dt, *part(std::as_const(full), m)) || any;
   return any;
+}
+
+template <int dim>
+bool SolidSystem<dim>::has_implicit_forces() const {
+  return std::any_of(models_.begin(), models_.end(),
+                     [](const auto& one) { return one->has_implicit_forces(); });
+}
+
+template <int dim>
+RCP<const Vector> SolidSystem<dim>::linearisation() const {
+  RCP<Vector> all;
+  for (int m = 0; m < n_models(); ++m) {
+    const RCP<const Vector> velocity = model(m).linearisation();
+    if (velocity.is_null())
+      continue;
+    if (all.is_null())
+      all = make_vector(map_);
+    part(*all, m)->update(1, *velocity, 0);
+  }
+  if (!all.is_null())
+    attachments_.mask(*all);
+  return all;
+}
+
+template <int dim>
+ComputedEnergy SolidSystem<dim>::unlinear_energy(double dt, const Vector& velocity) const {
+  Vector full(velocity, Teuchos::Copy);
+  attachments_.expand_velocity(full);
+  ComputedEnergy sum;
+  for (int m = 0; m < n_models(); ++m) {
+    if (!model(m).has_implicit_forces())
+      continue;
+    const ComputedEnergy energy = model(m).unlinear_energy(dt, *part(std::as_const(full), m));
+    sum.value += energy.value;
+    sum.round_off += energy.round_off;
+  }
+  return sum;
 }
 
 template <int dim>

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
 #include "linear/types.hpp"
@@ -16,7 +18,13 @@ struct ContactReport {
   int n_crossings = 0;             ///< of surfaces that are not rigid, which could not be prevented
   double deepest_overlap = 0;      ///< before resolution [m]
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global
+  RCP<const Vector> impulse;  ///< generalized, on the free dofs, if there was a `ContactResponse`
 };
+
+/// Gives the operator that takes generalized impulses on the free dofs to changes of velocity, when
+/// it is not M_S^-1: (M_S - dt D)^-1 of solids whose inner forces answer within the step. Called if
+/// a contact acts only. Collective.
+using ContactResponse = std::function<RCP<const LinearOperator>()>;
 
 /// In which part of the step contacts are resolved.
 enum class ContactPhase {
@@ -29,10 +37,14 @@ template <int dim>
 class ContactModel : public PlugIn {
  public:
   /// Changes the stacked generalized velocities by contact impulses (equal and opposite between
-  /// dynamic solids, through the solids' own mass M_S) so that moving by dt from the present
-  /// positions leaves no overlap. Collective.
+  /// dynamic solids, through the solids' own mass M_S or the given response) so that moving by dt
+  /// from the present positions leaves no overlap. Collective.
   virtual ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
-                                     Vector& velocity) = 0;
+                                     Vector& velocity, const ContactResponse& response) = 0;
+  ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
+                             Vector& velocity) {
+    return resolve(solids, phase, dt, velocity, {});
+  }
 };
 
 }  // namespace lockstep

@@ -21,6 +21,7 @@ struct SolidSetting {
   Point<dim> gravity = Point<dim>::Zero();  ///< [m/s^2]
   double start_time = 0;                    ///< [s]
   Communicator comm;
+  double fluid_density = 0;  ///< in the middle of the domain [kg/m^dim]
 };
 
 /// What a contact model may know of the scene around it.

@@ -41,6 +41,11 @@ struct NodeAttachment {
 };
 struct SurfaceFrame;  // output/frames.hpp
 
+/// An energy with the round-off that its computation carries [J].
+struct ComputedEnergy {
+  double value = 0, round_off = 0;
+};
+
 /// All solids of one kind (all rigid bodies, all deformables, ...): their unknowns, mass, forces
 /// and surfaces. Knows nothing of the fluid and nothing of other models.
 ///
@@ -111,6 +116,15 @@ class SolidModel : public PlugIn {
   /// instead of at the present ones, until `move` or `set_velocity`. False if nothing depends on
   /// that. Default: nothing does. Collective.
   virtual bool linearise(double, const Vector&) { return false; }
+  /// True if some forces are those at the positions that the solve leads to, and not linear in
+  /// them: then `linearise`, `linearisation` and `unlinear_energy` are asked for. Local, the same
+  /// on all ranks.
+  virtual bool has_implicit_forces() const { return false; }
+  /// The velocity about which forces and D are linearised at present; null: zero. Local.
+  virtual RCP<const Vector> linearisation() const { return Teuchos::null; }
+  /// The potential of these forces at the velocity V of the solve over dt, less the quadratic one
+  /// of which `explicit_momentum` and D are made, up to a constant. Global, collective.
+  virtual ComputedEnergy unlinear_energy(double, const Vector&) const { return {}; }
   /// S1: velocities that are about to move the positions by dt, changed by internal impulses
   /// (limits of strain), which the model also adds to the `explicit_momentum` of S2. Default:
   /// nothing. Collective.

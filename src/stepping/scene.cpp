@@ -244,8 +244,10 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
   Components<dim> components;
   components.fluid =
       registries.fluids.create(type_of("Fluid"), scene.sublist("Fluid"), domain, comm);
-  const SolidSetting<dim> solid_setting{components.fluid->spacing(), components.fluid->gravity(),
-                                        scene.sublist("Time").get<double>("Start"), comm};
+  const SolidSetting<dim> solid_setting{
+      components.fluid->spacing(), components.fluid->gravity(),
+      scene.sublist("Time").get<double>("Start"), comm,
+      components.fluid->density(domain_box<dim>(domain).center())};
   components.solids = build_solids<dim>(registries, scene, scene_file, solid_setting);
   components.coupling = registries.couplings.create(type_of("Coupling"), scene.sublist("Coupling"));
   const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");

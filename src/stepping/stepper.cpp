@@ -8,6 +8,7 @@
 #include "base/interruption.hpp"
 #include "coupling/swept_volumes.hpp"
 #include "linear/null_space.hpp"
+#include "stepping/implicit_motion.hpp"
 #include "stepping/solve_audit.hpp"
 
 namespace lockstep {
@@ -62,7 +63,7 @@ RCP<Vector> Stepper<dim>::solid_momentum(double time, double dt, MomentumLedger<
   auto& solids = *components_.solids;
   const RCP<Vector> momentum = solids.explicit_momentum(time, dt);
   if (!ledger)  // S1
-    solids.add_midpoint_correction(dt, *momentum);
+    solids.add_midpoint_correction(dt, resolved_part(dt), *momentum);
   if (ledger)
     ledger->add("solid forces", solids.external_impulse(time, dt));
   const RCP<const Vector> buoyancy = unseen_buoyancy(dt, report);
@@ -93,6 +94,8 @@ RCP<Vector> Stepper<dim>::at_locked_velocity(const Vector& velocity) const {
 template <int dim>
 ContactReport<dim> Stepper<dim>::contact_momentum(double dt, Vector& momentum) {
   auto& solids = *components_.solids;
+  if (solids.has_implicit_forces())
+    return settled_momentum(dt, momentum);
   const RCP<Vector> velocity = at_locked_velocity(*solids.velocity_of(momentum));
   Vector change(*velocity, Teuchos::Copy);
   const ContactReport<dim> report =
@@ -183,9 +186,10 @@ void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
   auto& solids = *components_.solids;
   RCP<Vector> half_velocity = make_vector(solids.map());
   SweptRates swept;
+  RCP<Vector> momentum;
   if (coupled()) {
     ScopedPhase phase(timers_, "S1");
-    const RCP<Vector> momentum = solid_momentum(time_, dt / 2, nullptr, report);
+    momentum = solid_momentum(time_, dt / 2, nullptr, report);
     half_velocity =
         solve_newton(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
     swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
@@ -193,7 +197,13 @@ void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
   ScopedPhase phase(timers_, "solid motion");
   solids.limit_motion(dt, *half_velocity);
   sweep_volumes(swept, solids, dt, *half_velocity);
-  if (components_.contact && coupled()) {
+  if (coupled() && solids.has_implicit_forces()) {
+    const SettledMotion<dim> settled = settle_motion(
+        solids, components_.contact.get(),
+        {ContactPhase::position, time_, dt / 2, dt, locked_velocity_}, *half_velocity, *momentum);
+    half_velocity = settled.velocity;
+    report.contact_position = settled.contact;
+  } else if (components_.contact && coupled()) {
     report.contact_position =
         components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);
   }
@@ -318,7 +328,8 @@ CoupledSolution Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
   report.time = time_ + dt;
   report.cfl = dt * fluid.largest_cell_crossing_rate();
   if (solids.begin_step(time_, dt))
-    freeze();  // other dofs are locked now
+    freeze();                    // other dofs are locked now
+  system_.forget_solid_block();  // what is implicit is other in S1 than in S2
   locked_velocity_ = solids.locked_velocity(time_, time_ + dt);
   const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
 
@@ -358,7 +369,7 @@ CoupledSolution Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
     momentum = solid_momentum(time_, dt, &report.ledger, report);
   else
     unseen_buoyancy(dt, report);
-  CoupledSolution solution = solve_newton(dt, momentum, "S2", report.s2, report.incompatibility_s2);
+  CoupledSolution solution = solve_settled(dt, momentum, report);
   check_possible(dt, report.incompatibility_s2);
   return solution;
 }

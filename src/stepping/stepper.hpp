@@ -51,6 +51,7 @@ class Stepper {
   RCP<Vector> viscous_pressure(double viscosity, double dt);
   void reset_unseen_faces();
   RCP<const Vector> unseen_buoyancy(double dt, StepReport<dim>& report) const;
+  double resolved_part(double dt);
   RCP<Vector> solid_momentum(double time, double dt, MomentumLedger<dim>* ledger,
                              StepReport<dim>& report);
   CoupledSolution solve(double dt, const RCP<Vector>& momentum, const char* name,
@@ -62,6 +63,8 @@ class Stepper {
   void check_possible(double dt, double incompatibility) const;
   void finish(const CoupledSolution& solution, double dt, StepReport<dim>& report);
   ContactReport<dim> contact_momentum(double dt, Vector& momentum);
+  ContactReport<dim> settled_momentum(double dt, Vector& momentum);
+  CoupledSolution solve_settled(double dt, const RCP<Vector>& momentum, StepReport<dim>& report);
   RCP<Vector> at_locked_velocity(const Vector& velocity) const;
   SolveRequest request(const char* name, double dt) const;
   Momentum<dim> total_momentum() const;

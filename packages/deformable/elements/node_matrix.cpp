@@ -41,6 +41,12 @@ void NodeMatrix<dim>::add_row(int row, double factor, const NodeMatrix& other) {
 }
 
 template <int dim>
+void NodeMatrix<dim>::scale_row(int row, double factor) {
+  for (int k = row_begin(row); k < row_end(row); ++k)
+    blocks_[k] *= factor;
+}
+
+template <int dim>
 Point<dim> NodeMatrix<dim>::row_times(int row, const std::vector<Point<dim>>& x) const {
   Point<dim> sum = Point<dim>::Zero();
   for (int k = row_begin(row); k < row_end(row); ++k)

@@ -30,6 +30,7 @@ class NodeMatrix {
   void set_zero();
   /// Row += factor * row of a matrix with the same pattern.
   void add_row(int row, double factor, const NodeMatrix& other);
+  void scale_row(int row, double factor);
   /// Sum over the row of the blocks times x (all local nodes).
   Point<dim> row_times(int row, const std::vector<Point<dim>>& x) const;
   /// Rows of ghosts are another rank's: ignored.

@@ -61,6 +61,12 @@ std::unique_ptr<Material<dim>> st_venant_kirchhoff(const LameConstants& lame);
 template <int dim>
 std::unique_ptr<Material<dim>> neo_hookean(const LameConstants& lame);
 
+/// The same with a `stiffness` [Pa] against stretches beyond four: nodes inside a body too soft for
+/// its weight have nothing else that keeps them from falling out of it. Itself if that is 0.
+template <int dim>
+std::unique_ptr<Material<dim>> held_together(std::unique_ptr<Material<dim>> material,
+                                             double stiffness);
+
 /// A law that scenes can name.
 template <int dim>
 struct MaterialKind {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -118,6 +119,43 @@ TYPED_TEST(ClothContacts, ASheetOnAnInclineSticksOrSlides) {
     EXPECT_NEAR(speed, acceleration * time, 0.02 * acceleration * time) << on_wall;
     EXPECT_NEAR(distance, acceleration * time * time / 2, 0.05 * h) << on_wall;
   }
+}
+
+/// A line on end. Pushed through M_S only the end stops that meets the floor; with the response of
+/// stiff forces, at a step far longer than they need, all of it does.
+TEST(ContactResponse, StiffSolidsArePushedAsAWhole) {
+  SurfaceMesh<2> line;
+  line.vertices = {{0, h}, {0, 2 * h}, {0, 3 * h}};
+  line.simplices = {{0, 1}, {1, 2}};
+  std::vector<DeformableBody<2>> cloths;
+  cloths.push_back(cloth<2>(line, 1e9));
+  ClothWorld<2> world(std::move(cloths), {}, Point<2>::Zero(), {{2, 1, 1.0, 0}});
+  const double dt = 1, speed = 1.5 * h;
+  const auto resolved = [&](const ContactResponse& response, RCP<const Vector>* impulse) {
+    const auto velocity = make_vector(world.solids->map());
+    const auto falling = rcp(new Vector(*velocity, Teuchos::Copy));
+    std::vector<double> values(6, 0);
+    for (int node = 0; node < 3; ++node)
+      values[2 * node + 1] = -speed;
+    falling->update(1, *distributed(*world.solids, values), 0);
+    const auto report =
+        world.contact.resolve(*world.solids, ContactPhase::position, dt, *falling, response);
+    if (impulse)
+      *impulse = report.impulse;
+    EXPECT_EQ(report.n_contacts, 1);
+    return replicated(*world.solids, *falling);
+  };
+  const std::vector<double> alone = resolved({}, nullptr);
+  EXPECT_NEAR(*std::min_element(alone.begin(), alone.end()), -speed, 1e-12);
+  RCP<const Vector> impulse;
+  const std::vector<double> whole = resolved(
+      [&] { return exact_inverse(world.solids->solid_block(Teuchos::null, dt / 2), "solids"); },
+      &impulse);
+  const double left = 0.95 * h;  // the skin is h/10 thick
+  for (int node = 0; node < 3; ++node)
+    EXPECT_NEAR(whole[2 * node + 1], -left / dt, 1e-6 * speed) << node;
+  const double mass = world.state(0).mass;
+  EXPECT_NEAR(world.solids->momentum(*impulse).linear.y(), mass * (speed - left / dt), 1e-6 * mass);
 }
 
 TEST(ClothContacts3D, AClothFallsOnABallAndFoldsWithoutCrossing) {

@@ -10,8 +10,11 @@ namespace lockstep::test {
 namespace {
 
 template <int dim>
-RCP<Vector> solved(const SolidSystem<dim>& system, double dt, const RCP<const Vector>& locked) {
+RCP<Vector> solved(const SolidSystem<dim>& system, double dt, bool for_positions,
+                   const RCP<const Vector>& locked) {
   const auto given = system.explicit_momentum(0, dt);
+  if (for_positions)
+    system.add_midpoint_correction(dt, 1, *given);
   if (!locked.is_null())
     apply(*system.unlocked_block(Teuchos::null, dt), *locked, *given, -1, 1);
   const auto momentum = make_vector(system.map());
@@ -28,11 +31,11 @@ RCP<Vector> solved(const SolidSystem<dim>& system, double dt, const RCP<const Ve
 template <int dim>
 void Alone<dim>::step(double dt) {
   system.begin_step(time, dt);
-  const auto half = solved(system, dt / 2, system.locked_velocity(time, time + dt));
+  const auto half = solved(system, dt / 2, true, system.locked_velocity(time, time + dt));
   system.limit_motion(dt, *half);
   system.move(*half, time, dt);
   time += dt;
-  system.set_velocity(*solved(system, dt, system.locked_velocity(time, time)));
+  system.set_velocity(*solved(system, dt, false, system.locked_velocity(time, time)));
 }
 
 template struct Alone<2>;

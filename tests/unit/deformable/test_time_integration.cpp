@@ -46,7 +46,13 @@ Eigen::Vector2d expected_step(const Eigen::Vector2d& state, double dt, const std
     return (mass * v - tau * (stiffness * x + (damping_implicit ? 0 : c * v))) / m;
   };
   const bool fully = name == "fully-implicit", second = name == "second-order";
-  const double x = state[0], after = x + dt * velocity(x, x, fully || second ? 1 : 0, dt / 2);
+  // S1 sees the forces at the end of the step, less a part of what the present velocity makes
+  // there.
+  const double x = state[0], tau = dt / 2, share = fully || second ? 2 : 0;
+  const double correction = (fully ? 1 : second ? 0.5 : 0) * tau * tau * stiffness * state[1];
+  const double all =
+      mass + (damping_implicit ? tau * damping(x) : 0) + share * tau * tau * stiffness;
+  const double after = x + dt * (velocity(x, x, share, tau) + correction / all);
   return {after, second ? velocity((x + after) / 2, x, 0.5, dt)
                         : velocity(after, after, fully ? 1 : 0, dt)};
 }
@@ -76,13 +82,13 @@ TEST(TimeIntegration, StepsAreThoseOfOneMode) {
   }
 }
 
-/// The largest omega of M^-1 K by dense algebra.
+/// The largest omega of M^-1 K by dense algebra; D before S1 has K of the whole step, dt/2 twice.
 template <int dim>
 double largest_omega(const DeformableSolids<dim>& solids) {
   const Eigen::MatrixXd mass_matrix = dense(solids.mass());
   const Eigen::MatrixXd d = dense(solids.implicit_force(1)) - dense(solids.implicit_force(1e-9));
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      0.5 * (-d - d.transpose().eval()), mass_matrix, Eigen::EigenvaluesOnly);
+      0.25 * (-d - d.transpose().eval()), mass_matrix, Eigen::EigenvaluesOnly);
   return std::sqrt(eigen.eigenvalues().maxCoeff());
 }
 
@@ -116,26 +122,39 @@ TEST(TimeIntegration, ExplicitStepsAreStableUpToTheBound) {
   EXPECT_GE(energy(alone.solids), 0.01 * before);
 }
 
-/// Moderate strains at any step; large ones with damping of the step's size, since an undamped S1
-/// overshoots rest by as much as the body is strained.
+/// Strains far from small; modes that the step does not resolve are gone after a few.
 TEST(TimeIntegration, FullyImplicitStepsAreStableAtAnyStep) {
   if (world()->getSize() > 1)
     GTEST_SKIP() << once;
   for (const double dt : {0.001, 0.03, 1.0, 100.0}) {
-    for (const bool damped : {false, true}) {
+    for (const std::string integration : {"fully-implicit", "second-order"}) {
       Alone<2> alone(model<2>({box("1, 0.25", "0.125") + material("neo-hookean", "1000") +
-                               number("Density", "1") +
-                               numbers("Stretch", damped ? "1.4, 0.9" : "1.02, 0.99") +
-                               number("Stiffness Damping", damped ? std::to_string(dt / 2) : "0") +
-                               text("Time Integration", "fully-implicit")}));
+                               number("Density", "1") + numbers("Stretch", "1.4, 0.9") +
+                               text("Time Integration", integration)}));
       const double before = energy(alone.solids);
       for (int i = 0; i < 10; ++i) {
         alone.step(dt);
-        EXPECT_LE(energy(alone.solids), 1.2 * before) << dt << " " << damped;
+        EXPECT_LE(energy(alone.solids), 1.2 * before) << dt << " " << integration;
+      }
+      if (dt >= 1) {
+        EXPECT_LE(energy(alone.solids), 0.01 * before) << dt << " " << integration;
       }
       EXPECT_LE(alone.solids.states()[0].center_of_mass.norm(), 1e-6) << dt;
     }
   }
+}
+
+/// Elastic forces beyond what round-off leaves of the inertia are softened, by the step alone.
+TEST(TimeIntegration, StiffestBodiesKeepTheirInertia) {
+  if (world()->getSize() > 1)
+    GTEST_SKIP() << once;
+  Alone<2> alone(
+      model<2>({box("1, 0.25", "0.125") + material("corotated", "1e15") + number("Density", "1") +
+                numbers("Velocity", "1, 2") + text("Time Integration", "fully-implicit")}));
+  for (int i = 0; i < 5; ++i)
+    alone.step(10);
+  EXPECT_LE((alone.solids.states()[0].velocity - Point<2>(1, 2)).norm(), 1e-6);
+  EXPECT_LE((alone.solids.states()[0].center_of_mass - Point<2>(50, 100)).norm(), 1e-4);
 }
 
 /// A block that rings. No mode gains energy; those that the step resolves lose next to none, and
@@ -212,7 +231,7 @@ TEST(TimeIntegration, FreeBodiesKeepTheirMomentum) {
   for (const std::string name : {"explicit", "semi-implicit", "fully-implicit", "second-order"})
     EXPECT_LE(change(name, 5), 0.02) << name;
   EXPECT_NEAR(change("fully-implicit", 10) / change("fully-implicit", 5), 0.5, 0.05);
-  EXPECT_LE(change("second-order", 10) / change("second-order", 5), 0.27);
+  EXPECT_LE(change("second-order", 20) / change("second-order", 10), 0.27);
 }
 
 /// A block on tethers: every node is an oscillator of the same frequency, and the anchors hold it.
@@ -223,11 +242,11 @@ TEST(TimeIntegration, TetheredBlock) {
                 list("Tethers",
                      list("all", numbers("Lower", "-1, -1, -1") + numbers("Upper", "1, 1, 1") +
                                      number("Stiffness", "9") + numbers("Offset", "0, 0.1, 0")))}));
-  const double dt = 0.3, a = 3 * dt, b = 1 + a * a / 4;  // omega = sqrt(9 / 1)
+  const double dt = 0.3, a = 3 * dt, b = 1 + a * a / 2;  // omega = sqrt(9 / 1)
   Eigen::Vector2d state(-0.1, 0);
   for (int i = 0; i < 3; ++i) {
     alone.step(dt);
-    const double x = (1 - a * a / (2 * b)) * state[0] + dt / b * state[1];
+    const double x = state[0] / b + dt * (1 + a * a / 4) / b * state[1];
     state = {x, (state[1] - dt * 9 * x) / (1 + a * a)};
     const auto solid = alone.solids.states()[0];
     EXPECT_NEAR(solid.center_of_mass.y(), 0.1 + state[0], 1e-12);
@@ -309,7 +328,7 @@ TEST(TimeIntegration, RanksAgree) {
     alone.step(0.02);
   const auto state = alone.solids.states()[0];
   // The figures of one rank.
-  EXPECT_NEAR(state.center_of_mass.y(), -0.026845356198630, 1e-12);
+  EXPECT_NEAR(state.center_of_mass.y(), -0.026826585862871, 1e-12);
   double tip = 0;
   for (const auto& x : alone.solids.surface().vertices)
     tip = std::min(tip, x.y());

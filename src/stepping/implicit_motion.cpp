@@ -1,0 +1,180 @@
+#include "stepping/implicit_motion.hpp"
+
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "linear/exact_inverse.hpp"
+
+namespace lockstep {
+
+namespace {
+/// Of the change of the model, that the potential may exceed it by: in a step that ends the search,
+/// and in one that goes on.
+constexpr double good = 0.1, tolerable = 0.5;
+constexpr int most_iterations = 40, most_halvings = 40;
+
+/// (M_S - dt D)^-1 with locked rows of the identity, factored when it is asked for.
+template <int dim>
+class Response {
+ public:
+  Response(const SolidSystem<dim>& solids, double dt) : solids_(solids), dt_(dt) {}
+  void forget() { inverse_ = Teuchos::null; }
+  RCP<const LinearOperator> inverse() {
+    if (inverse_.is_null())
+      inverse_ =
+          exact_inverse(solids_.solid_block(Teuchos::null, dt_), "implicit forces of solids");
+    return inverse_;
+  }
+
+ private:
+  const SolidSystem<dim>& solids_;
+  double dt_;
+  RCP<const LinearOperator> inverse_;
+};
+
+template <int dim>
+RCP<Vector> solve_free(const SolidSystem<dim>& solids, const LinearOperator& block,
+                       const LinearOperator& inverse, const Vector& momentum,
+                       const RCP<const Vector>& locked) {
+  Vector rest(momentum, Teuchos::Copy);
+  if (!locked.is_null())
+    apply(block, *locked, rest, -1, 1);
+  Vector free_part(solids.map());
+  free_part.elementWiseMultiply(1, *solids.free_mask(), rest, 0);
+  const RCP<Vector> velocity = make_vector(solids.map());
+  apply(inverse, free_part, *velocity);
+  if (!locked.is_null())
+    velocity->update(1, *locked, 1);
+  return velocity;
+}
+
+/// Phi along a line from the velocity about which forces are linearised.
+template <int dim>
+class Descent {
+ public:
+  /// `gradient`: of the model at `from`.
+  Descent(const SolidSystem<dim>& solids, double dt, const LinearOperator& block,
+          const Vector& from, const Vector& gradient, const Vector& to)
+      : solids_(solids), dt_(dt), from_(from), change_(to, Teuchos::Copy) {
+    change_.update(-1, from, 1);
+    slope_ = gradient.dot(change_);
+    Vector product(solids.map());
+    apply(block, change_, product);
+    curvature_ = product.dot(change_);
+    start_ = solids.unlinear_energy(dt, from);
+  }
+
+  RCP<Vector> at(double part) const {
+    const auto velocity = rcp(new Vector(from_, Teuchos::Copy));
+    velocity->update(part, change_, 1);
+    return velocity;
+  }
+  /// What the potential exceeds the model by, over the change of the model.
+  double excess(double part) const {
+    const ComputedEnergy end = solids_.unlinear_energy(dt_, *at(part));
+    const double model = std::abs(part * slope_ + 0.5 * part * part * curvature_);
+    const double above = end.value - start_.value - end.round_off - start_.round_off;
+    return above <= 0 ? 0 : above / std::max(model, 1e-300);
+  }
+
+ private:
+  const SolidSystem<dim>& solids_;
+  double dt_;
+  const Vector& from_;
+  Vector change_;
+  double slope_ = 0, curvature_ = 0;
+  ComputedEnergy start_;
+};
+
+template <int dim>
+RCP<Vector> linearisation_of(const SolidSystem<dim>& solids) {
+  const RCP<const Vector> known = solids.linearisation();
+  return known.is_null() ? make_vector(solids.map()) : rcp(new Vector(*known, Teuchos::Copy));
+}
+
+/// The largest of 1, 1/2, 1/4, ... that lowers Phi enough; zero if none does.
+template <int dim>
+double tolerable_part(const Descent<dim>& descent) {
+  double part = 1;
+  for (int k = 0; k < most_halvings; ++k) {
+    if (descent.excess(part) <= tolerable)
+      return part;
+    part /= 2;
+  }
+  return 0;
+}
+
+}  // namespace
+
+template <int dim>
+RCP<Vector> implicit_velocity(const SolidSystem<dim>& solids, double dt, const Vector& momentum,
+                              const RCP<const Vector>& locked) {
+  Response<dim> response(solids, dt);
+  return solve_free(solids, *solids.unlocked_block(Teuchos::null, dt), *response.inverse(),
+                    momentum, locked);
+}
+
+template <int dim>
+SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
+                                 const MotionRequest& request, const Vector& predicted,
+                                 Vector& momentum) {
+  const double dt = request.dt;
+  SettledMotion<dim> settled;
+  Response<dim> response(solids, dt);
+  RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
+  RCP<Vector> at = linearisation_of(solids);
+  RCP<Vector> goal = rcp(new Vector(predicted, Teuchos::Copy));
+  Vector impulse(solids.map());
+  apply(*block, *goal, impulse);
+  for (int k = 1;; ++k) {
+    if (contact) {
+      settled.contact = contact->resolve(solids, request.phase, request.contact_dt, *goal,
+                                         [&response] { return response.inverse(); });
+    }
+    Vector gradient(impulse, Teuchos::Copy);
+    apply(*block, *at, gradient, 1, -1);
+    const Descent<dim> descent(solids, dt, *block, *at, gradient, *goal);
+    if (descent.excess(1) <= good) {
+      settled.velocity = goal;
+      return settled;
+    }
+    at = descent.at(tolerable_part(descent));
+    if (k == most_iterations) {
+      settled.velocity = at;
+      return settled;
+    }
+    const RCP<const Vector> before = solids.explicit_momentum(request.time, dt);
+    solids.linearise(dt, *at);
+    settled.linearised_anew = true;
+    Vector change(*solids.explicit_momentum(request.time, dt), Teuchos::Copy);
+    change.update(-1, *before, 1);
+    momentum.update(1, change, 1);
+    impulse.update(1, change, 1);
+    block = solids.unlocked_block(Teuchos::null, dt);
+    response.forget();
+    goal = solve_free(solids, *block, *response.inverse(), impulse, request.locked);
+  }
+}
+
+template <int dim>
+bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity) {
+  const RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
+  const RCP<Vector> at = linearisation_of(solids);
+  Vector gradient(*at, Teuchos::Copy), product(solids.map());
+  gradient.update(-1, velocity, 1);
+  apply(*block, gradient, product);
+  return Descent<dim>(solids, dt, *block, *at, product, velocity).excess(1) <= good;
+}
+
+template RCP<Vector> implicit_velocity<2>(const SolidSystem<2>&, double, const Vector&,
+                                          const RCP<const Vector>&);
+template RCP<Vector> implicit_velocity<3>(const SolidSystem<3>&, double, const Vector&,
+                                          const RCP<const Vector>&);
+template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, const MotionRequest&,
+                                           const Vector&, Vector&);
+template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, const MotionRequest&,
+                                           const Vector&, Vector&);
+template bool is_settled<2>(const SolidSystem<2>&, double, const Vector&);
+template bool is_settled<3>(const SolidSystem<3>&, double, const Vector&);
+
+}  // namespace lockstep

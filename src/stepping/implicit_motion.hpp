@@ -1,0 +1,46 @@
+#pragma once
+#include "coupling/solid_system.hpp"
+#include "interfaces/contact.hpp"
+
+namespace lockstep {
+
+/// What a solve over dt is to find for the solids alone: with the impulses of the fluid as they
+/// are, the velocity that minimises
+///
+///   Phi(V) = 1/2 V.M_S V - Q.V + potential of the inner forces at the positions that V leads to.
+///
+/// Linearised forces are its quadratic model. Where that is good, nothing is to be done; where it
+/// is not (large turns or strains in one step, of stiff solids above all), Newton's method with
+/// steps that must lower Phi finds the minimum, so that no step gives the solids energy.
+struct MotionRequest {
+  ContactPhase phase = ContactPhase::position;
+  double time = 0;           ///< at the beginning of the step [s]
+  double dt = 0;             ///< of the solve [s]
+  double contact_dt = 0;     ///< over which contacts hold, the whole step [s]
+  RCP<const Vector> locked;  ///< velocities of locked dofs, or null: at rest
+};
+
+template <int dim>
+struct SettledMotion {
+  RCP<Vector> velocity;          ///< with contact
+  ContactReport<dim> contact;    ///< of the last linearisation; without contact empty
+  bool linearised_anew = false;  ///< D is another one than before
+};
+
+/// (M_S - dt D)^-1 of `momentum`, with the velocities of locked dofs. Collective.
+template <int dim>
+RCP<Vector> implicit_velocity(const SolidSystem<dim>& solids, double dt, const Vector& momentum,
+                              const RCP<const Vector>& locked);
+
+/// `predicted`: of the linearised forces; defines Q. `contact` may be null. `momentum`, the
+/// explicit one of the solve, changes by that of forces linearised anew. Collective.
+template <int dim>
+SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
+                                 const MotionRequest& request, const Vector& predicted,
+                                 Vector& momentum);
+
+/// Whether the model is good at the velocity that a solve has found. Collective.
+template <int dim>
+bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity);
+
+}  // namespace lockstep
