@@ -126,7 +126,7 @@ def main():
     print(f"{len(results)} scenes, {n_failed} failed, {sum(runs.refused for runs in results)} runs refused for ranks "
           f"without unknowns; {core_seconds:.0f} s of a core, {time.monotonic() - begin:.0f} s")
     if arguments.report:
-        report.write_scenes(Path(arguments.report), arguments.seeds, results)
+        report.write_scenes(Path(arguments.report), arguments.seeds, results, arguments.quick)
     sys.exit(1 if n_failed else 0)
 
 

@@ -60,7 +60,7 @@ def made_by(command):
     return f"Made by `{command}` on {datetime.date.today()} with a build of {built.group(1) if built else version.strip()}."
 
 
-def write_scenes(page, seeds, results):
+def write_scenes(page, seeds, results, quick):
     """What was drawn, what failed, and the largest of what is bounded."""
     failures = collections.Counter()
     for runs in results:
@@ -72,14 +72,16 @@ def write_scenes(page, seeds, results):
         rows.append([name, len(drawn), len(failing.intersection(drawn))])
     classes = "".join(f"\n- {name}: {n} scenes" for name, n in failures.most_common())
     named = f"\nFailing seeds: {', '.join(map(str, sorted(failing)))}.\n" if failing else ""
+    ranks, option = (" and 2 or 3", " --quick") if quick else (", 2 and 3", "")
+    command = f"tests/robustness/random_scenes.py --seeds {seeds[0]}-{seeds[-1]}{option} --report docs/results/robustness.md"
     body = f"""\
-{len(results)} scenes, seeds {seeds[0]} to {seeds[-1]}: {len(failing)} fail. Each of 3 to 5 steps on 1, 2 and 3 ranks, mostly more than there
-are tiles, and again from a checkpoint. What is checked, with its bounds: the head of `tests/robustness/invariants.py`.
+{len(results)} scenes, seeds {seeds[0]} to {seeds[-1]}: {len(failing)} fail. Each of 3 to 5 steps on 1{ranks} ranks, mostly more than
+there are tiles, and again from a checkpoint. What is checked, with its bounds: the head of `tests/robustness/invariants.py`.
 {classes}
 {named}
 {table(["scenes with", "drawn", "failing"], rows)}
 
-{sum(runs.core_seconds for runs in results):.0f} s of a core. {made_by(f"tests/robustness/random_scenes.py --seeds {seeds[0]}-{seeds[-1]} --report docs/results/robustness.md")}"""
+{sum(runs.core_seconds for runs in results):.0f} s of a core. {made_by(command)}"""
     write_section(page, "Random scenes", body)
 
 
@@ -93,11 +95,12 @@ def write_mutations(page, numbers, results):
                      sum(bool(mutation.failure) for mutation in those)])
     failing = [str(mutation.number) for mutation in results if mutation.failure]
     named = f"\nFailing: {', '.join(failing)}.\n" if failing else ""
+    command = f"tests/robustness/mutations.py --mutations {numbers[0]}-{numbers[-1]} --report docs/results/robustness.md"
     body = f"""\
 {len(results)} damaged files: {len(failing)} end as no program should. It must end with 0, 2, 3 or 4, in time and by no signal, with one message if
 not 0, with nothing written if 2; what it wrote can be read and is finite. 0: the damage left a file that says something valid.
 {named}
 {table(["file", "mutations", "exit 0", "exit 2", "exit 3", "exit 4", "failing"], rows)}
 
-{sum(mutation.core_seconds for mutation in results):.0f} s of a core. {made_by(f"tests/robustness/mutations.py --mutations {numbers[0]}-{numbers[-1]} --report docs/results/robustness.md")}"""
+{sum(mutation.core_seconds for mutation in results):.0f} s of a core. {made_by(command)}"""
     write_section(page, "Damaged files", body)
