@@ -87,9 +87,9 @@ class SurfaceChecker {
     if (!demand_.closed)
       return;
     check_closure();
-    check_volume();
     if (from_file())
       check_crossing();
+    check_volume();
     check_senses();
   }
 
