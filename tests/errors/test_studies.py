@@ -65,6 +65,17 @@ class Studies(unittest.TestCase):
                 self.assertIn(expected, result.stderr)
                 self.assertFalse((self.folder / "results").exists(), "nothing may have run")
 
+    def test_absurd_numbers(self):
+        for name, absurd in [("Samples", '<Parameter name="Number" type="int" value="2000000000"/>'),
+                             ("Series", '<ParameterList name="a"><Parameter name="Ranks" type="int" value="100000"/>'
+                                        '</ParameterList>')]:
+            with self.subTest(name):
+                part = f'<ParameterList name="{name}">{absurd}</ParameterList>\n  <ParameterList name="Quantities">'
+                result = self.converge(study=STUDY.replace('<ParameterList name="Quantities">', part))
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn("at most", result.stderr)
+                self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+
     def test_a_changed_solver_file_is_noticed(self):
         solver = self.folder / "solver.xml"
         solver.write_text('<ParameterList name="s"><Parameter name="Type" type="string" value="direct"/></ParameterList>')
