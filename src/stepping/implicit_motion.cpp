@@ -1,6 +1,7 @@
 #include "stepping/implicit_motion.hpp"
 
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "linear/exact_inverse.hpp"
@@ -157,6 +158,21 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
 }
 
 template <int dim>
+void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before,
+                 Vector& velocity) {
+  constexpr double largest = 0.01;  // of the energy that the motion has in the model
+  const RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
+  Vector change(velocity, Teuchos::Copy), product(solids.map());
+  change.update(-1, before, 1);
+  apply(*block, change, product);
+  const double cost = product.dot(change);
+  apply(*block, before, product);
+  const double allowed = largest * product.dot(before);
+  if (cost > allowed)
+    velocity.update(1, before, std::sqrt(std::max(allowed, 0.0) / cost), change, 0);
+}
+
+template <int dim>
 bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity) {
   const RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
   const RCP<Vector> at = linearisation_of(solids);
@@ -174,6 +190,8 @@ template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, co
                                            const Vector&, Vector&);
 template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, const MotionRequest&,
                                            const Vector&, Vector&);
+template void bound_sweep<2>(const SolidSystem<2>&, double, const Vector&, Vector&);
+template void bound_sweep<3>(const SolidSystem<3>&, double, const Vector&, Vector&);
 template bool is_settled<2>(const SolidSystem<2>&, double, const Vector&);
 template bool is_settled<3>(const SolidSystem<3>&, double, const Vector&);
 

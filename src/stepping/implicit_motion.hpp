@@ -39,6 +39,11 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
                                  const MotionRequest& request, const Vector& predicted,
                                  Vector& momentum);
 
+/// What `sweep_volumes` has made of velocities is taken back to where it costs the solids little
+/// energy: stiff ones would be strained by it. Collective.
+template <int dim>
+void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before, Vector& velocity);
+
 /// Whether the model is good at the velocity that a solve has found. Collective.
 template <int dim>
 bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity);

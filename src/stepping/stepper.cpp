@@ -196,7 +196,11 @@ void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
   }
   ScopedPhase phase(timers_, "solid motion");
   solids.limit_motion(dt, *half_velocity);
+  const RCP<const Vector> as_solved = half_velocity;
+  half_velocity = rcp(new Vector(*as_solved, Teuchos::Copy));
   sweep_volumes(swept, solids, dt, *half_velocity);
+  if (coupled() && solids.has_implicit_forces())
+    bound_sweep<dim>(solids, dt / 2, *as_solved, *half_velocity);
   if (coupled() && solids.has_implicit_forces()) {
     const SettledMotion<dim> settled = settle_motion(
         solids, components_.contact.get(),
