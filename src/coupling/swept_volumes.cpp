@@ -245,6 +245,18 @@ SweptRates swept_rates(const FluidDiscretization<dim>& fluid, const SolidSystem<
 }
 
 template <int dim>
+SweptRates rates_of_kind(const SweptRates& rates, const SolidSystem<dim>& solids, bool closed) {
+  SweptRates some = rates;
+  for (std::size_t m = 0; m < rates.size(); ++m) {
+    for (std::size_t s = 0; s < rates[m].size(); ++s) {
+      if (solids.model(static_cast<int>(m)).solids()[s].closed != closed)
+        some[m][s] = as_they_like;
+    }
+  }
+  return some;
+}
+
+template <int dim>
 void sweep_volumes(const SweptRates& rates, const SolidSystem<dim>& solids, double dt,
                    Vector& velocity) {
   std::size_t begin = 0;
@@ -263,9 +275,11 @@ void sweep_volumes(const SweptRates& rates, const SolidSystem<dim>& solids, doub
 
 template SweptRates swept_rates(const FluidDiscretization<2>&, const SolidSystem<2>&,
                                 const Coupling<2>&, const Vector&);
+template SweptRates rates_of_kind(const SweptRates&, const SolidSystem<2>&, bool);
 template void sweep_volumes(const SweptRates&, const SolidSystem<2>&, double, Vector&);
 template SweptRates swept_rates(const FluidDiscretization<3>&, const SolidSystem<3>&,
                                 const Coupling<3>&, const Vector&);
+template SweptRates rates_of_kind(const SweptRates&, const SolidSystem<3>&, bool);
 template void sweep_volumes(const SweptRates&, const SolidSystem<3>&, double, Vector&);
 
 }  // namespace lockstep

@@ -19,6 +19,10 @@ template <int dim>
 SweptRates swept_rates(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
                        const Coupling<dim>& coupling, const Vector& velocity);
 
+/// Those of closed bodies alone, or of shells. Local.
+template <int dim>
+SweptRates rates_of_kind(const SweptRates& rates, const SolidSystem<dim>& solids, bool closed);
+
 /// Changes velocities that are about to move the positions by dt so that the surfaces sweep that.
 /// Collective.
 template <int dim>

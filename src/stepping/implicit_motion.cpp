@@ -118,15 +118,15 @@ RCP<Vector> implicit_velocity(const SolidSystem<dim>& solids, double dt, const V
 template <int dim>
 SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
                                  const MotionRequest& request, const Vector& predicted,
-                                 Vector& momentum) {
+                                 const Vector& first, Vector& momentum) {
   const double dt = request.dt;
   SettledMotion<dim> settled;
   Response<dim> response(solids, dt);
   RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
   RCP<Vector> at = linearisation_of(solids);
-  RCP<Vector> goal = rcp(new Vector(predicted, Teuchos::Copy));
+  RCP<Vector> goal = rcp(new Vector(first, Teuchos::Copy));
   Vector impulse(solids.map());
-  apply(*block, *goal, impulse);
+  apply(*block, predicted, impulse);
   for (int k = 1;; ++k) {
     if (contact) {
       settled.contact = contact->resolve(solids, request.phase, request.contact_dt, *goal,
@@ -154,9 +154,13 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
     block = solids.unlocked_block(Teuchos::null, dt);
     response.forget();
     goal = solve_free(solids, *block, *response.inverse(), impulse, request.locked);
+    if (request.adjust)
+      request.adjust(*goal);
   }
 }
 
+/// `before` is where the model is least, so Phi rises by 1/2 d.C d and what the model does not
+/// know.
 template <int dim>
 void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before,
                  Vector& velocity) {
@@ -164,12 +168,27 @@ void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before
   const RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
   Vector change(velocity, Teuchos::Copy), product(solids.map());
   change.update(-1, before, 1);
-  apply(*block, change, product);
-  const double cost = product.dot(change);
   apply(*block, before, product);
-  const double allowed = largest * product.dot(before);
-  if (cost > allowed)
-    velocity.update(1, before, std::sqrt(std::max(allowed, 0.0) / cost), change, 0);
+  const double allowed = largest * 0.5 * product.dot(before);
+  apply(*block, change, product);
+  const double cost = 0.5 * product.dot(change);
+  if (cost == 0)
+    return;
+  if (!is_settled(solids, dt, before)) {  // nor is the motion itself what it should be
+    velocity.update(1, before, 0);
+    return;
+  }
+  const ComputedEnergy start = solids.unlinear_energy(dt, before);
+  double part = 1;
+  for (int k = 0; k < most_halvings; ++k) {
+    velocity.update(1, before, part, change, 0);
+    const ComputedEnergy end = solids.unlinear_energy(dt, velocity);
+    const double rise = part * part * cost + end.value - start.value;
+    if (rise <= allowed + start.round_off + end.round_off)
+      return;
+    part /= 2;
+  }
+  velocity.update(1, before, 0);
 }
 
 template <int dim>
@@ -187,9 +206,9 @@ template RCP<Vector> implicit_velocity<2>(const SolidSystem<2>&, double, const V
 template RCP<Vector> implicit_velocity<3>(const SolidSystem<3>&, double, const Vector&,
                                           const RCP<const Vector>&);
 template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, const MotionRequest&,
-                                           const Vector&, Vector&);
+                                           const Vector&, const Vector&, Vector&);
 template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, const MotionRequest&,
-                                           const Vector&, Vector&);
+                                           const Vector&, const Vector&, Vector&);
 template void bound_sweep<2>(const SolidSystem<2>&, double, const Vector&, Vector&);
 template void bound_sweep<3>(const SolidSystem<3>&, double, const Vector&, Vector&);
 template bool is_settled<2>(const SolidSystem<2>&, double, const Vector&);

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "coupling/solid_system.hpp"
 #include "interfaces/contact.hpp"
 
@@ -18,6 +20,8 @@ struct MotionRequest {
   double dt = 0;             ///< of the solve [s]
   double contact_dt = 0;     ///< over which contacts hold, the whole step [s]
   RCP<const Vector> locked;  ///< velocities of locked dofs, or null: at rest
+  /// What velocities must fulfil besides, if anything: done to those of every linearisation.
+  std::function<void(Vector&)> adjust = {};
 };
 
 template <int dim>
@@ -32,15 +36,17 @@ template <int dim>
 RCP<Vector> implicit_velocity(const SolidSystem<dim>& solids, double dt, const Vector& momentum,
                               const RCP<const Vector>& locked);
 
-/// `predicted`: of the linearised forces; defines Q. `contact` may be null. `momentum`, the
+/// `predicted`: of the linearised forces; defines Q. `first`: the same, or what else has been asked
+/// of it, where the search begins. `contact` may be null. `momentum`, the
 /// explicit one of the solve, changes by that of forces linearised anew. Collective.
 template <int dim>
 SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
                                  const MotionRequest& request, const Vector& predicted,
-                                 Vector& momentum);
+                                 const Vector& first, Vector& momentum);
 
 /// What `sweep_volumes` has made of velocities is taken back to where it costs the solids little
-/// energy: stiff ones would be strained by it. Collective.
+/// energy, stiff ones would be strained by it; and left to `settle_motion` where that acts.
+/// Collective.
 template <int dim>
 void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before, Vector& velocity);
 

@@ -196,15 +196,20 @@ void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
   }
   ScopedPhase phase(timers_, "solid motion");
   solids.limit_motion(dt, *half_velocity);
-  const RCP<const Vector> as_solved = half_velocity;
-  half_velocity = rcp(new Vector(*as_solved, Teuchos::Copy));
-  sweep_volumes(swept, solids, dt, *half_velocity);
+  // Shells push the fluid of closed regions, bodies only take back what straight steps add.
+  const auto sweep_shells = [&](Vector& velocity) {
+    sweep_volumes(rates_of_kind(swept, solids, false), solids, dt, velocity);
+  };
+  sweep_shells(*half_velocity);
+  const Vector as_solved(*half_velocity, Teuchos::Copy);
+  sweep_volumes(rates_of_kind(swept, solids, true), solids, dt, *half_velocity);
   if (coupled() && solids.has_implicit_forces())
-    bound_sweep<dim>(solids, dt / 2, *as_solved, *half_velocity);
+    bound_sweep<dim>(solids, dt / 2, as_solved, *half_velocity);
   if (coupled() && solids.has_implicit_forces()) {
-    const SettledMotion<dim> settled = settle_motion(
-        solids, components_.contact.get(),
-        {ContactPhase::position, time_, dt / 2, dt, locked_velocity_}, *half_velocity, *momentum);
+    const SettledMotion<dim> settled =
+        settle_motion(solids, components_.contact.get(),
+                      {ContactPhase::position, time_, dt / 2, dt, locked_velocity_, sweep_shells},
+                      as_solved, *half_velocity, *momentum);
     half_velocity = settled.velocity;
     report.contact_position = settled.contact;
   } else if (components_.contact && coupled()) {

@@ -32,7 +32,7 @@ ContactReport<dim> Stepper<dim>::settled_momentum(double dt, Vector& momentum) {
   const RCP<const Vector> predicted = implicit_velocity(solids, dt, momentum, locked_velocity_);
   const SettledMotion<dim> settled = settle_motion(
       solids, components_.contact.get(), {ContactPhase::velocity, time_, dt, dt, locked_velocity_},
-      *predicted, momentum);
+      *predicted, *predicted, momentum);
   if (settled.linearised_anew)
     system_.forget_solid_block();
   if (!settled.contact.impulse.is_null())
@@ -52,7 +52,7 @@ CoupledSolution Stepper<dim>::solve_settled(double dt, const RCP<Vector>& moment
     return solution;
   for (int k = 0; k < most_repeats && !is_settled(solids, dt, *solution.unknowns.solid); ++k) {
     settle_motion<dim>(solids, nullptr, {ContactPhase::velocity, time_, dt, dt, locked_velocity_},
-                       *solution.unknowns.solid, *momentum);
+                       *solution.unknowns.solid, *solution.unknowns.solid, *momentum);
     system_.forget_solid_block();
     const int iterations = report.s2.iterations;
     solution = solve(dt, momentum, "S2", report.s2, report.incompatibility_s2);
