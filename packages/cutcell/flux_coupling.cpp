@@ -73,7 +73,7 @@ void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
                                      const SolidSystem<dim>& solids) {
   excess_.clear();
   held_excess_.clear();
-  if (!options_.correct_buoyancy || surface_->empty() || fluid.gravity().isZero())
+  if (!options_.correct_buoyancy || surface_->empty() || fluid.gravity().isZero(0))
     return;
   double density = volumes_.empty() ? 0 : volumes_.front().density;
   density = max_all(solids.comm(), density);

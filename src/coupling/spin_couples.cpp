@@ -126,11 +126,11 @@ SpinCouples<dim>::SpinCouples(const std::vector<ViscousLink<dim>>& links,
     fit.normal = fit.normal.inverse().eval();
     // A soft container that deforms would gain energy from a negative one.
     strength_[s] = solids[s].rigid ? fit.strength : AngularVector<dim>(fit.strength.cwiseMax(0));
-    empty_ = empty_ && strength_[s].isZero();
+    empty_ = empty_ && strength_[s].isZero(0);
   }
   for (std::size_t l = 0; l < links.size(); ++l) {
     const int s = solid_[l];
-    if (s < 0 || strength_[s].isZero()) {
+    if (s < 0 || strength_[s].isZero(0)) {
       solid_[l] = -1;
       continue;
     }
