@@ -9,9 +9,9 @@
 #include "base/errors.hpp"
 #include "column_fluid.hpp"
 #include "coupling/coupled_system.hpp"
-#include "linear/solve_with_stratimikos.hpp"
 #include "mixedface/mixed_face_coupling.hpp"
 #include "piston.hpp"
+#include "solve/solve_with_stratimikos.hpp"
 #include "stepping/scene_file.hpp"
 using namespace lockstep;
 

@@ -6,7 +6,7 @@
 #include "base/errors.hpp"
 #include "contact/contact_problem.hpp"
 #include "contact/impact_zones.hpp"
-#include "linear/exact_inverse.hpp"
+#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
 

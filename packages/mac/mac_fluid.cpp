@@ -3,10 +3,10 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
-#include "mac/extended_pressure.hpp"
-#include "mac/face_moments.hpp"
-#include "mac/fitting_domain.hpp"
-#include "mac/initial_state.hpp"
+#include "mac/domain/fitting_domain.hpp"
+#include "mac/pressure/extended_pressure.hpp"
+#include "mac/state/face_moments.hpp"
+#include "mac/state/initial_state.hpp"
 
 namespace lockstep {
 

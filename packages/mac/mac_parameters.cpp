@@ -1,8 +1,8 @@
 #include <map>
 
-#include "mac/initial_state.hpp"
+#include "mac/domain/parameter_values.hpp"
 #include "mac/mac_fluid.hpp"
-#include "mac/parameter_values.hpp"
+#include "mac/state/initial_state.hpp"
 
 namespace lockstep {
 

@@ -1,5 +1,5 @@
 #include "mac/mac_fluid.hpp"
-#include "mac/sample_lattice.hpp"
+#include "mac/transport/sample_lattice.hpp"
 
 namespace lockstep {
 namespace {

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "linear/added_mass_diagonal.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/overlap.hpp"
 #include "multigrid/layout_kernels.hpp"
 #include "multigrid/layout_operators.hpp"
 #include "multigrid/schur_stencil.hpp"
+#include "solve/added_mass_diagonal.hpp"
 
 namespace lockstep {
 

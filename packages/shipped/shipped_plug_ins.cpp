@@ -3,7 +3,7 @@
 #include "contact/register_contact.hpp"
 #include "cutcell/register_flux.hpp"
 #include "deformable/register_deformable.hpp"
-#include "mac/boundary.hpp"
+#include "mac/domain/boundary.hpp"
 #include "mac/register_mac.hpp"
 #include "mixedface/register_mixed_face.hpp"
 #include "observers/register_observers.hpp"

@@ -6,8 +6,8 @@
 #include "base/errors.hpp"
 #include "coupling/solid_system.hpp"
 #include "coupling/stacked_matrix.hpp"
-#include "linear/exact_inverse.hpp"
 #include "linear/triplet_matrix.hpp"
+#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
 

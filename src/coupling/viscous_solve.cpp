@@ -6,8 +6,8 @@
 
 #include "base/errors.hpp"
 #include "coupling/spin_couples.hpp"
-#include "linear/preconditioner.hpp"
 #include "linear/triplet_matrix.hpp"
+#include "solve/preconditioner.hpp"
 
 namespace lockstep {
 namespace {

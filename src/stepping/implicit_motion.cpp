@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "linear/exact_inverse.hpp"
+#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "linear/dumping_strategy.hpp"
 #include "output/frames.hpp"
+#include "solve/dumping_strategy.hpp"
 #include "stepping/observer_tables.hpp"
 #include "stepping/run_tables.hpp"
 #include "stepping/scene.hpp"

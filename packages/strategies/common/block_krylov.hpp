@@ -17,7 +17,7 @@ struct BlockKrylovRequest {
 };
 
 /// Declares "Krylov Method" for strategies that use MINRES: "Lockstep MINRES" (MINRES-QLP of
-/// linear/minres.hpp: right on singular systems and on ranks that own no row, stops block by block)
+/// solve/minres.hpp: right on singular systems and on ranks that own no row, stops block by block)
 /// or "Belos MINRES" (every rank must own rows of both blocks; reduces a residual by 1e9 at most).
 void declare_minres(ParameterList& list, const std::string& standard);
 /// Which one the list names. Throws InputError if neither.

@@ -11,10 +11,10 @@
 
 #include "base/errors.hpp"
 #include "base/library_message.hpp"
-#include "linear/belos_solvers.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/symmetry_check.hpp"
-#include "linear/thyra_vectors.hpp"
+#include "solve/belos_solvers.hpp"
+#include "solve/thyra_vectors.hpp"
 #include "strategies/common/block_krylov.hpp"
 
 namespace lockstep {

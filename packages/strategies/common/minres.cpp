@@ -9,9 +9,9 @@
 
 #include "base/errors.hpp"
 #include "base/library_message.hpp"
-#include "linear/minres.hpp"
-#include "linear/thyra_vectors.hpp"
 #include "linear/vector_sums.hpp"
+#include "solve/minres.hpp"
+#include "solve/thyra_vectors.hpp"
 #include "strategies/common/block_krylov.hpp"
 
 namespace lockstep {

@@ -1,7 +1,7 @@
 #include "strategies/common/minres_strategy.hpp"
 
 #include "linear/symmetry_check.hpp"
-#include "linear/thyra_vectors.hpp"
+#include "solve/thyra_vectors.hpp"
 
 namespace lockstep {
 

@@ -8,10 +8,10 @@
 
 #include "base/errors.hpp"
 #include "linear/action_operator.hpp"
-#include "linear/added_mass_diagonal.hpp"
 #include "linear/matrix_rows.hpp"
-#include "linear/preconditioner.hpp"
 #include "multigrid/pressure_layout.hpp"
+#include "solve/added_mass_diagonal.hpp"
+#include "solve/preconditioner.hpp"
 #include "strategies/common/strategy_parameters.hpp"
 
 namespace lockstep {

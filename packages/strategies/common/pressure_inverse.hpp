@@ -10,7 +10,7 @@ namespace lockstep {
 ///   "Automatic"   the default of most strategies: Multigrid where the fluid's A is a stencil that
 ///                 it can halve, else MueLu
 ///   "Multigrid"   the matrix-free geometric multigrid ("Sweeps", 2; "Cycle", "V")
-/// or one of linear/preconditioner.hpp, which need an assembled A.
+/// or one of solve/preconditioner.hpp, which need an assembled A.
 void declare_pressure_inverse(Teuchos::ParameterList& list, const std::string& doc);
 /// The list given, checked, or `standard` if there is none. Throws InputError.
 Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "interfaces/strategy.hpp"
-#include "linear/block_residual.hpp"
 #include "multigrid/pressure_layout.hpp"
+#include "solve/block_residual.hpp"
 #include "strategies/common/block_krylov.hpp"
 #include "strategies/common/solid_inverse.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "linear/exact_inverse.hpp"
-#include "linear/preconditioner.hpp"
-#include "linear/single_precision.hpp"
+#include "solve/preconditioner.hpp"
+#include "solve/soft/exact_inverse.hpp"
+#include "solve/soft/single_precision.hpp"
 #include "strategies/common/strategy_parameters.hpp"
 
 namespace lockstep {

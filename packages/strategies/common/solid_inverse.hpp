@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "interfaces/strategy.hpp"
-#include "linear/inverse_by_cost.hpp"
 #include "parameters/parameter_list.hpp"
+#include "solve/soft/inverse_by_cost.hpp"
 
 namespace lockstep {
 
@@ -15,7 +15,7 @@ namespace lockstep {
 ///                M̃ dominates, "Additive Multilevel" where dt D does, and MueLu with the rigid
 ///                motions of the bodies beyond; approximations of C^-1 take MueLu earlier
 ///   "Exact"      that to round-off, by conjugate gradients where it must iterate
-/// or one of linear/preconditioner.hpp.
+/// or one of solve/preconditioner.hpp.
 void declare_solid_inverse(ParameterList& list);
 
 /// C^-1 and what stands for it in preconditioners.

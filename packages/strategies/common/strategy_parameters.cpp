@@ -1,6 +1,6 @@
 #include "strategies/common/strategy_parameters.hpp"
 
-#include "linear/preconditioner.hpp"
+#include "solve/preconditioner.hpp"
 #include "strategies/common/solid_inverse.hpp"
 
 namespace lockstep {

@@ -5,7 +5,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "base/errors.hpp"
-#include "linear/gathered_direct.hpp"
+#include "solve/gathered_direct.hpp"
 
 namespace lockstep {
 

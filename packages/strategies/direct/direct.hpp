@@ -1,5 +1,5 @@
 #pragma once
-#include "linear/merge.hpp"
+#include "solve/merge.hpp"
 #include "strategies/common/refined_strategy.hpp"
 #include "strategies/common/strategy_parameters.hpp"
 

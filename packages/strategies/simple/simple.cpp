@@ -10,8 +10,8 @@
 #include <Tpetra_RowMatrixTransposer.hpp>
 
 #include "base/errors.hpp"
-#include "linear/exact_inverse.hpp"
 #include "linear/matrix_rows.hpp"
+#include "solve/soft/exact_inverse.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 
 namespace lockstep {

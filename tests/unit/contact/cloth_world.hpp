@@ -2,7 +2,7 @@
 #include "contact_world.hpp"
 #include "deformable/deformable_solids.hpp"
 #include "deformable/elements/shell_elements.hpp"
-#include "linear/exact_inverse.hpp"
+#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
 

@@ -3,7 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
-#include "linear/exact_inverse.hpp"
+#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep::test {
 

@@ -3,9 +3,9 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
-#include "linear/exact_inverse.hpp"
 #include "rigid/rigid_bodies.hpp"
 #include "rigid/rigid_parameters.hpp"
+#include "solve/soft/exact_inverse.hpp"
 #include "support.hpp"
 #include "support/dense.hpp"
 

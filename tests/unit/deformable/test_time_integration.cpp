@@ -4,7 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
-#include "linear/exact_inverse.hpp"
+#include "solve/soft/exact_inverse.hpp"
 #include "support.hpp"
 #include "support/dense.hpp"
 

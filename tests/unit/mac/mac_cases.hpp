@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geometry/generators.hpp"
+#include "mac/domain/parameter_values.hpp"
 #include "mac/mac_fluid.hpp"
-#include "mac/parameter_values.hpp"
 #include "parameters/validate.hpp"
 
 namespace lockstep::test {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "mac/box_bins.hpp"
+#include "mac/transport/box_bins.hpp"
 
 namespace lockstep::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <cmath>
 
-#include "mac/extended_pressure.hpp"
+#include "mac/pressure/extended_pressure.hpp"
 #include "mac_cases.hpp"
 
 namespace lockstep::test {

@@ -1,4 +1,4 @@
-#include "mac/transport.hpp"
+#include "mac/transport/transport.hpp"
 
 #include "transport_cases.hpp"
 

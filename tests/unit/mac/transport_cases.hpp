@@ -7,8 +7,8 @@
 #include <cmath>
 #include <functional>
 
-#include "mac/revalidation.hpp"
-#include "mac/transport.hpp"
+#include "mac/transport/revalidation.hpp"
+#include "mac/transport/transport.hpp"
 
 namespace lockstep {
 

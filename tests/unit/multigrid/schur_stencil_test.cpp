@@ -4,12 +4,12 @@
 #include <Tpetra_CrsMatrix.hpp>
 
 #include "linear/conjugate_gradients.hpp"
-#include "linear/exact_inverse.hpp"
 #include "linear/matrix_rows.hpp"
 #include "multigrid/pressure_layout.hpp"
 #include "multigrid/schur_stencil.hpp"
 #include "multigrid/through_sheets.hpp"
 #include "multigrid_cases.hpp"
+#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep::test {
 namespace {

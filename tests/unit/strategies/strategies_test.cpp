@@ -10,7 +10,7 @@
 #include "base/errors.hpp"
 #include "linear/matrix_rows.hpp"
 #include "strategies/register_strategies.hpp"
-#include "unit/linear/saddle_problem.hpp"
+#include "unit/solve/saddle_problem.hpp"
 #include "unit/strategies/steepest_descent.hpp"
 
 namespace lockstep::test {

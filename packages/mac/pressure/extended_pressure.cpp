@@ -1,0 +1,65 @@
+#include "mac/pressure/extended_pressure.hpp"
+
+#include <utility>
+
+namespace lockstep {
+
+template <int dim>
+CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<CellState>& now,
+                            const std::vector<CellState>& before, CellField pressure,
+                            const Point<dim>& gradient) {
+  const TiledGrid<dim>& grid = domain.grid;
+  std::vector<int> missing;
+  grid.for_each_owned_cell([&](int cell) {
+    if (now[cell] == CellState::fluid && before[cell] != CellState::fluid)
+      missing.push_back(cell);
+  });
+  const auto n_over_ranks = [&](std::size_t n) {
+    return sum_all(grid.comm(), static_cast<GlobalIndex>(n));
+  };
+  if (n_over_ranks(missing.size()) == 0)
+    return pressure;
+
+  const double h = grid.spacing();
+  std::vector<char> known(before.size());
+  for (std::size_t cell = 0; cell < before.size(); ++cell)
+    known[cell] = before[cell] == CellState::fluid;
+  while (n_over_ranks(missing.size()) > 0) {
+    std::vector<std::pair<int, double>> front;
+    std::vector<int> behind;
+    for (const int cell : missing) {
+      double sum = 0;
+      int n = 0;
+      for (int axis = 0; axis < dim; ++axis) {
+        for (int side = 0; side < 2; ++side) {
+          const int other = grid.neighbor(cell, axis, side);
+          if (other < 0 || !known[other])
+            continue;
+          sum += pressure[other] + (side == 0 ? h : -h) * gradient[axis];
+          ++n;
+        }
+      }
+      if (n > 0)
+        front.emplace_back(cell, sum / n);
+      else
+        behind.push_back(cell);
+    }
+    if (n_over_ranks(front.size()) == 0)
+      break;  // pockets that hold nothing but new fluid
+    for (const auto& [cell, value] : front) {
+      pressure[cell] = value;
+      known[cell] = 1;
+    }
+    domain.halo.fill(pressure);
+    domain.halo.fill(known);
+    missing = std::move(behind);
+  }
+  return pressure;
+}
+
+template CellField extended_pressure<2>(const MacDomain<2>&, const std::vector<CellState>&,
+                                        const std::vector<CellState>&, CellField, const Point<2>&);
+template CellField extended_pressure<3>(const MacDomain<3>&, const std::vector<CellState>&,
+                                        const std::vector<CellState>&, CellField, const Point<3>&);
+
+}  // namespace lockstep

@@ -1,0 +1,196 @@
+#include "mac/pressure/pressure_operator.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "mac/pressure/row_builder.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Coefficients of all faces of owned cells: the upper ones of the last cells belong to stored
+/// ghost cells, whose geometry is known here too.
+template <int dim>
+FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                   double density, std::shared_ptr<const LatticeBlocks> blocks) {
+  const auto& cells = geometry.state.cells;
+  const std::size_t n = domain.grid.n_stored_cells();
+  FaceCoefficients result;
+  result.blocks = std::move(blocks);
+  result.map = geometry.pressure_map;
+  result.unit = domain.face_area() / (density * domain.spacing());
+  result.row.assign(n, -1);
+  result.dirichlet.assign(n, 0);
+  for (int axis = 0; axis < dim; ++axis)
+    result.lower[axis].assign(n, 0);
+  int row = 0;
+  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    if (cells[cell] != CellState::fluid)
+      return;
+    result.row[cell] = row++;
+    for (int axis = 0; axis < dim; ++axis) {
+      for (int end = 0; end < 2; ++end) {
+        const int other = neighbors[2 * axis + end];
+        const int face = end == 0 ? cell : other;
+        const double open = face < 0 ? 0 : geometry.open_fraction(axis, face);
+        if (open == 0)
+          continue;
+        const bool at_side = other < 0 || cells[other] == CellState::outside;
+        if (at_side)
+          result.dirichlet[cell] += static_cast<float>(2 * open);
+        else if (cells[other] != CellState::fluid)
+          result.dirichlet[cell] += static_cast<float>(open);
+        else
+          result.lower[axis][face] = static_cast<float>(open);
+      }
+    }
+  });
+  return result;
+}
+
+template <int dim>
+class MacPressureOperator final : public StencilOperator {
+ public:
+  MacPressureOperator(const MacDomain<dim>& domain, FaceCoefficients coefficients)
+      : domain_(domain), coefficients_(std::move(coefficients)) {}
+
+  RCP<const Map> getDomainMap() const override { return coefficients_.map; }
+  RCP<const Map> getRangeMap() const override { return coefficients_.map; }
+  bool hasTransposeApply() const override { return true; }
+  const FaceCoefficients& coefficients() const override { return coefficients_; }
+
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, double alpha,
+             double beta) const override {
+    if (!matrix_.is_null()) {
+      matrix_->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
+      return;
+    }
+    for (std::size_t column = 0; column < x.getNumVectors(); ++column)
+      apply_to(*x.getVector(column), *y.getVectorNonConst(column), alpha, beta);
+  }
+
+  RCP<const CrsMatrix> assembled() const override;
+
+ private:
+  /// Calls f(cell, row, neighbours, coefficients of the faces to them).
+  template <typename Function>
+  void for_each_row(const Function& f) const;
+  void apply_to(const Vector& x, Vector& y, double alpha, double beta) const;
+
+  const MacDomain<dim>& domain_;
+  FaceCoefficients coefficients_;
+  mutable CellField field_;
+  mutable RCP<const CrsMatrix> matrix_;
+};
+
+template <int dim>
+template <typename Function>
+void MacPressureOperator<dim>::for_each_row(const Function& f) const {
+  domain_.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    const int row = coefficients_.row[cell];
+    if (row < 0)
+      return;
+    std::array<double, 2 * dim> face;
+    for (int axis = 0; axis < dim; ++axis) {
+      const int upper = neighbors[2 * axis + 1];
+      face[2 * axis] = coefficients_.lower[axis][cell];
+      face[2 * axis + 1] = upper < 0 ? 0 : coefficients_.lower[axis][upper];
+    }
+    f(cell, row, neighbors, face);
+  });
+}
+
+template <int dim>
+void MacPressureOperator<dim>::apply_to(const Vector& x, Vector& y, double alpha,
+                                        double beta) const {
+  field_.assign(domain_.grid.n_stored_cells(), 0.0);
+  const auto in = x.getData();
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    if (coefficients_.row[cell] >= 0)
+      field_[cell] = in[coefficients_.row[cell]];
+  });
+  domain_.halo.fill(field_);
+  const auto out = y.getDataNonConst();
+  const double scale = alpha * coefficients_.unit;
+  for_each_row([&](int cell, int row, const auto& neighbors, const auto& face) {
+    double sum = coefficients_.dirichlet[cell] * field_[cell];
+    for (int side = 0; side < 2 * dim; ++side) {
+      if (face[side] != 0)
+        sum += face[side] * (field_[cell] - field_[neighbors[side]]);
+    }
+    out[row] = scale * sum + (beta == 0 ? 0 : beta * out[row]);
+  });
+}
+
+template <int dim>
+RCP<const CrsMatrix> MacPressureOperator<dim>::assembled() const {
+  if (!matrix_.is_null())
+    return matrix_;
+  std::vector<GlobalIndex> unknown(domain_.grid.n_stored_cells(), no_index);
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    if (coefficients_.row[cell] >= 0)
+      unknown[cell] = coefficients_.map->getGlobalElement(coefficients_.row[cell]);
+  });
+  domain_.halo.fill(unknown);
+  RowBuilder rows(coefficients_.map, 2 * dim + 1);
+  for_each_row([&](int cell, int, const auto& neighbors, const auto& face) {
+    double diagonal = coefficients_.dirichlet[cell];
+    const auto add = [&](int side) {
+      if (face[side] == 0)
+        return;
+      diagonal += face[side];
+      rows.add(unknown[neighbors[side]], -coefficients_.unit * face[side]);
+    };
+    // In the order of the ids within a tile.
+    for (int axis = dim - 1; axis >= 0; --axis)
+      add(2 * axis);
+    const std::size_t middle = rows.add(unknown[cell], 0);
+    for (int axis = 0; axis < dim; ++axis)
+      add(2 * axis + 1);
+    rows.set(middle, coefficients_.unit * diagonal);
+    rows.end_row();
+  });
+  matrix_ = rows.finish();
+  return matrix_;
+}
+
+}  // namespace
+
+template <int dim>
+std::shared_ptr<const LatticeBlocks> lattice_blocks(const TiledGrid<dim>& grid) {
+  LatticeBlocks blocks;
+  blocks.dimension = dim;
+  blocks.width = tile_width<dim>;
+  blocks.comm = grid.comm();
+  for (int axis = 0; axis < dim; ++axis) {
+    blocks.n_cells[axis] = grid.n_cells()[axis];
+    blocks.periodic[axis] = grid.description().periodic[axis];
+  }
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    std::array<int, 3> begin{};
+    for (int axis = 0; axis < dim; ++axis)
+      begin[axis] = grid.tile_begin(tile)[axis];
+    blocks.begins.push_back(begin);
+  }
+  return std::make_shared<const LatticeBlocks>(std::move(blocks));
+}
+
+template <int dim>
+RCP<const StencilOperator> pressure_operator(const MacDomain<dim>& domain,
+                                             const MacGeometry<dim>& geometry, double density,
+                                             std::shared_ptr<const LatticeBlocks> blocks) {
+  return rcp(new MacPressureOperator<dim>(
+      domain, face_coefficients(domain, geometry, density, std::move(blocks))));
+}
+
+template std::shared_ptr<const LatticeBlocks> lattice_blocks<2>(const TiledGrid<2>&);
+template std::shared_ptr<const LatticeBlocks> lattice_blocks<3>(const TiledGrid<3>&);
+template RCP<const StencilOperator> pressure_operator<2>(const MacDomain<2>&, const MacGeometry<2>&,
+                                                         double,
+                                                         std::shared_ptr<const LatticeBlocks>);
+template RCP<const StencilOperator> pressure_operator<3>(const MacDomain<3>&, const MacGeometry<3>&,
+                                                         double,
+                                                         std::shared_ptr<const LatticeBlocks>);
+
+}  // namespace lockstep

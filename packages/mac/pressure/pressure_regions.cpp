@@ -1,0 +1,217 @@
+#include <Tpetra_Map.hpp>
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "mac/pressure/pressure_system.hpp"
+
+namespace lockstep {
+
+namespace {
+/// Disjoint sets of 0 .. n-1; the root is the smallest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int root(int i) {
+    while (parent_[i] != i)
+      i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(int i, int j) {
+    i = root(i);
+    j = root(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+  /// Makes every member point at its root.
+  void flatten() {
+    for (int& parent : parent_)  // parents come first
+      parent = parent_[parent];
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// What one rank knows of the components in its cells.
+struct LocalComponents {
+  std::vector<GlobalIndex> label;  ///< of each stored cell: lattice number of the component's first
+                                   ///< cell on its rank, or no_index
+  std::vector<GlobalIndex> labels;  ///< all labels here
+  std::vector<GlobalIndex> fixed;   ///< labels whose pressure level is fixed
+  std::vector<std::pair<GlobalIndex, GlobalIndex>> joined;  ///< across ranks
+};
+
+template <typename State>
+bool all_are(const std::vector<State>& states, int begin, int n, State value) {
+  bool same = true;
+  for (int i = begin; i < begin + n; ++i)
+    same &= states[i] == value;
+  return same;
+}
+
+/// Joins the cells of this rank that are connected, row by row.
+template <int dim>
+class ComponentFinder {
+ public:
+  ComponentFinder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry)
+      : sets(domain.grid.n_owned_cells()),
+        grid_(domain.grid),
+        geometry_(geometry),
+        cells_(geometry.state.cells) {
+    grid_.for_each_owned_row([&](const CellRow<dim>& row) { join_row(row); });
+    sets.flatten();
+  }
+
+  DisjointSets sets;
+  std::vector<int> fixed_cells;             ///< at open sides or empty cells
+  std::vector<std::pair<int, int>> across;  ///< cells joined with ghosts
+
+ private:
+  /// All cells of the row are fluid and connected along it.
+  bool is_one(int begin, int n) const {
+    return all_are(cells_, begin, n, CellState::fluid) &&
+           all_are(geometry_.state.faces[0], begin + 1, n - 1, FaceState::free);
+  }
+  void join_row(const CellRow<dim>& row) {
+    const bool one = is_one(row.begin, row.n);
+    for (int x = 0; x < row.n; ++x) {
+      const int cell = row.begin + x;
+      if (cells_[cell] != CellState::fluid)
+        continue;
+      if (one && x > 0)
+        sets.join(row.begin, cell);
+      else
+        look(cell, x > 0 ? cell - 1 : row.neighbors[0], 0, 0);
+      if (!one || x == row.n - 1)
+        look(cell, x < row.n - 1 ? cell + 1 : row.neighbors[1], 0, 1);
+    }
+    for (int axis = 1; axis < dim; ++axis)
+      for (int end = 0; end < 2; ++end)
+        join_rows(row, one, axis, end);
+  }
+  void join_rows(const CellRow<dim>& row, bool one, int axis, int end) {
+    const int other = row.neighbors[2 * axis + end];
+    if (one && other >= 0 && grid_.owned(other) && is_one(other, row.n)) {
+      if (end == 1)  // the other row does it
+        return;
+      if (all_are(geometry_.state.faces[axis], row.begin, row.n, FaceState::free)) {
+        sets.join(row.begin, other);
+        return;
+      }
+    }
+    for (int x = 0; x < row.n; ++x)
+      if (cells_[row.begin + x] == CellState::fluid)
+        look(row.begin + x, other < 0 ? -1 : other + x, axis, end);
+  }
+  /// A fluid cell and its neighbour.
+  void look(int cell, int other, int axis, int end) {
+    const int face = end == 0 ? cell : other;
+    if (face < 0 || geometry_.open_fraction(axis, face) == 0)
+      return;
+    if (other < 0 || cells_[other] != CellState::fluid)
+      fixed_cells.push_back(cell);
+    else if (!grid_.owned(other))
+      across.emplace_back(cell, other);
+    else if (end == 0)
+      sets.join(cell, other);
+  }
+
+  const TiledGrid<dim>& grid_;
+  const MacGeometry<dim>& geometry_;
+  const std::vector<CellState>& cells_;
+};
+
+template <int dim>
+LocalComponents local_components(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const auto& cells = geometry.state.cells;
+  ComponentFinder<dim> found(domain, geometry);
+
+  LocalComponents result;
+  result.label.assign(grid.n_stored_cells(), no_index);
+  // First the smallest lattice number of each set at its root, then that for all its cells. Numbers
+  // grow along a row: only where another set begins one may be smaller.
+  int last_root = -1, last_cell = -1;
+  grid.for_each_owned_cell([&](int cell) {
+    if (cells[cell] != CellState::fluid)
+      return;
+    const int root = found.sets.root(cell);
+    const bool goes_on = root == last_root && cell == last_cell + 1 && cell % tile_width<dim> > 0;
+    last_root = root;
+    last_cell = cell;
+    if (goes_on)
+      return;
+    GlobalIndex& label = result.label[root];
+    const GlobalIndex id = grid.global_id(cell);
+    label = label == no_index ? id : std::min(label, id);
+  });
+  grid.for_each_owned_cell([&](int cell) {
+    if (cells[cell] != CellState::fluid)
+      return;
+    const int root = found.sets.root(cell);
+    result.label[cell] = result.label[root];
+    if (root == cell)
+      result.labels.push_back(result.label[cell]);
+  });
+  domain.halo.fill(result.label);
+  for (const int cell : found.fixed_cells)
+    result.fixed.push_back(result.label[cell]);
+  for (const auto& [cell, other] : found.across)
+    result.joined.emplace_back(result.label[cell], result.label[other]);
+  std::sort(result.fixed.begin(), result.fixed.end());
+  result.fixed.erase(std::unique(result.fixed.begin(), result.fixed.end()), result.fixed.end());
+  std::sort(result.joined.begin(), result.joined.end());
+  result.joined.erase(std::unique(result.joined.begin(), result.joined.end()), result.joined.end());
+  return result;
+}
+}  // namespace
+
+template <int dim>
+PressureRegions find_regions(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const LocalComponents mine = local_components(domain, geometry);
+
+  // The components of all ranks are few; what joins them is shared by all.
+  std::vector<GlobalIndex> labels = gather_all(grid.comm(), mine.labels);
+  std::sort(labels.begin(), labels.end());
+  const auto position = [&](GlobalIndex label) {
+    return static_cast<int>(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
+  };
+  std::vector<GlobalIndex> pairs;
+  for (const auto& [a, b] : mine.joined) {
+    pairs.push_back(a);
+    pairs.push_back(b);
+  }
+  pairs = gather_all(grid.comm(), pairs);
+  DisjointSets sets(static_cast<int>(labels.size()));
+  for (std::size_t i = 0; i < pairs.size(); i += 2)
+    sets.join(position(pairs[i]), position(pairs[i + 1]));
+
+  PressureRegions regions;
+  std::vector<int> region(labels.size());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const int root = sets.root(static_cast<int>(i));
+    region[i] = root == static_cast<int>(i) ? regions.n_regions++ : region[root];
+  }
+  regions.has_dirichlet.assign(regions.n_regions, 0);
+  for (const GlobalIndex label : gather_all(grid.comm(), mine.fixed))
+    regions.has_dirichlet[region[position(label)]] = 1;
+  regions.of_unknown.reserve(geometry.pressure_map->getNodeNumElements());
+  GlobalIndex last_label = no_index;
+  int last_region = -1;
+  grid.for_each_owned_cell([&](int cell) {
+    if (geometry.state.cells[cell] != CellState::fluid)
+      return;
+    if (mine.label[cell] != last_label) {
+      last_label = mine.label[cell];
+      last_region = region[position(last_label)];
+    }
+    regions.of_unknown.push_back(last_region);
+  });
+  return regions;
+}
+
+template PressureRegions find_regions<2>(const MacDomain<2>&, const MacGeometry<2>&);
+template PressureRegions find_regions<3>(const MacDomain<3>&, const MacGeometry<3>&);
+
+}  // namespace lockstep

@@ -1,0 +1,349 @@
+#include "mac/state/mac_geometry.hpp"
+
+#include <Tpetra_Map.hpp>
+#include <algorithm>
+
+#include "mac/state/covered_sides.hpp"
+#include "mac/state/surface_marks.hpp"
+
+namespace lockstep {
+
+namespace {
+template <int dim>
+void number_pressures(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const auto& cells = geometry.state.cells;
+  int n = 0;
+  grid.for_each_owned_cell([&](int cell) { n += cells[cell] == CellState::fluid; });
+  geometry.pressure_map = make_map(n, grid.comm());
+  geometry.unknown.assign(grid.n_stored_cells(), no_index);
+  GlobalIndex next = n == 0 ? 0 : geometry.pressure_map->getMinGlobalIndex();
+  grid.for_each_owned_cell([&](int cell) {
+    if (cells[cell] == CellState::fluid)
+      geometry.unknown[cell] = next++;
+  });
+  domain.halo.fill(geometry.unknown);
+}
+
+template <int dim>
+PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
+                                const Point<dim>& center) {
+  PressureSide<dim> side;
+  side.center = center;
+  if (cell < 0)
+    return side;
+  side.unknown = geometry.unknown[cell];
+  if (geometry.state.cells[cell] == CellState::solid) {
+    side.inside_solid = true;
+    side.solid = geometry.state.surface->inside(center);
+  }
+  return side;
+}
+
+template <int dim>
+bool sees(const SurfaceSnapshot<dim>& surface, const ControlVolume<dim>& volume) {
+  for (const PressureSide<dim>& side : volume.sides)
+    if (side.unknown != no_index && !surface.first_hit(side.center, volume.center))
+      return true;
+  return false;
+}
+
+/// Free, coupled, prescribed or inactive, where no surface is near.
+template <int dim>
+FaceState state_far_from_surfaces(const MacDomain<dim>& domain, const std::vector<CellState>& cells,
+                                  int axis, const FaceCells& face) {
+  const bool lower_fluid = face.lower >= 0 && cells[face.lower] == CellState::fluid;
+  const bool upper_fluid = face.upper >= 0 && cells[face.upper] == CellState::fluid;
+  if (!lower_fluid && !upper_fluid)
+    return FaceState::inactive;
+  if (face.at_side() && domain.boundary.side(axis, face.lower < 0 ? 0 : 1).prescribed())
+    return FaceState::prescribed;
+  return FaceState::free;
+}
+
+template <int dim>
+bool in_solid(const std::vector<CellState>& cells, int cell) {
+  return cell >= 0 && cells[cell] == CellState::solid;
+}
+
+/// Open fractions of all owned faces and those above them, where cut cells are wanted.
+template <int dim>
+using OpenFractions = std::array<CellField, dim>;
+
+/// Asks a cut-cell rule about all faces near the surface. Walls and inflows open no cell.
+template <int dim>
+OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain, double density,
+                                       const OpenFractionRule<dim>& rule,
+                                       const SurfaceMarks<dim>& marks, MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const auto& cells = geometry.state.cells;
+  geometry.unknown.assign(grid.n_stored_cells(), no_index);
+  OpenFractions<dim> fractions;
+  for (int axis = 0; axis < dim; ++axis) {
+    fractions[axis].assign(grid.n_stored_cells(), 0.0);
+    grid.for_each_owned_face(axis, [&](int cell) {
+      const FaceCells face = cells_of_face(grid, cells, axis, cell);
+      if (face.lower < 0 && face.upper < 0)
+        return;
+      if (face.at_side() && domain.boundary.side(axis, face.lower < 0 ? 0 : 1).prescribed())
+        return;
+      double& fraction = fractions[axis][cell];
+      if (geometry.near_surface(cell))
+        fraction =
+            rule.open_fraction(control_volume(domain, geometry, density, axis, cell),
+                               (marks.blocked[cell] >> axis & 1) != 0, *geometry.state.surface);
+      else
+        fraction = in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper) ? 0 : 1;
+    });
+    domain.halo.fill(fractions[axis]);
+  }
+  return fractions;
+}
+
+/// True if a thin shell comes between a cell and its neighbours' centres.
+template <int dim>
+bool holds_shell(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface, int cell) {
+  const Point<dim> reach = Point<dim>::Constant(domain.spacing());
+  const Point<dim> x = domain.grid.center(cell);
+  std::vector<int> touching;
+  surface.touching(Box<dim>(x - reach, x + reach), touching);
+  return std::any_of(touching.begin(), touching.end(),
+                     [&](int s) { return !surface.solids()[surface.solid_of(s)].closed; });
+}
+
+/// Near the surface, the cells with an open face are fluid, wherever their centres are; and so are
+/// pockets between shells.
+template <int dim>
+void open_cut_cells(const MacDomain<dim>& domain, const OpenFractions<dim>& fractions,
+                    MacGeometry<dim>& geometry) {
+  auto& cells = geometry.state.cells;
+  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    if (!geometry.near_surface(cell) || cells[cell] == CellState::outside)
+      return;
+    bool open = false;
+    for (int axis = 0; axis < dim; ++axis) {
+      const int upper = neighbors[2 * axis + 1];
+      open = open || fractions[axis][cell] > 0 || (upper >= 0 && fractions[axis][upper] > 0);
+    }
+    const bool is_pocket = !open && cells[cell] == CellState::fluid &&
+                           holds_shell(domain, *geometry.state.surface, cell);
+    cells[cell] = open || is_pocket ? CellState::fluid : CellState::solid;
+  });
+  fill_flags(domain.full_halo, cells);
+}
+
+/// The centroid of the open part of a face; or, where that lies in a solid (its tip is in the
+/// face), a place beside an edge of the face.
+template <int dim>
+Point<dim> place_in_fluid(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
+  Point<dim> place = volume.open_center;
+  for (int k = 1; k < dim && surface.inside(place) >= 0; ++k) {
+    const int across = (volume.direction + k) % dim;
+    for (const double end : {0.49, -0.49}) {
+      const Point<dim> edge =
+          volume.center + end * volume.box.sizes()[across] * Point<dim>::Unit(across);
+      if (surface.inside(edge) < 0)
+        place = edge;
+    }
+  }
+  return place;
+}
+
+/// Takes an open fraction below one for a face near the surface that would be free otherwise.
+template <int dim>
+void take_fraction(const OpenFractionRule<dim>& rule, int axis, int cell, ControlVolume<dim> volume,
+                   MacGeometry<dim>& geometry) {
+  if (volume.open_fraction >= 1)
+    return;
+  const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
+  if (volume.open_fraction > 0) {
+    geometry.set_partial(axis, cell, volume.open_fraction);
+    volume.open_center = rule.open_center(volume, surface);
+    geometry.state.open_centers[axis][cell] = place_in_fluid(volume, surface);
+  } else {
+    geometry.state.faces[axis][cell] = FaceState::coupled;
+  }
+  volume.seen_by_fluid = sees(surface, volume);
+  geometry.coupled.push_back({axis, cell});
+  geometry.volumes.push_back(volume);
+}
+
+/// Faces in the plane where a periodic axis closes lie at its lower end, unless a solid sticks out
+/// at the upper one: it is not repeated, so that only there the face meets it.
+template <int dim>
+Point<dim> center_of_face(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry, int axis,
+                          int cell) {
+  const TiledGrid<dim>& grid = domain.grid;
+  Point<dim> center = grid.face_center(axis, cell);
+  if (!geometry.state.surface || !grid.description().periodic[axis] ||
+      grid.coordinates(cell)[axis] != 0)
+    return center;
+  const Point<dim> half = Point<dim>::Unit(axis) * (0.5 * grid.spacing());
+  const Point<dim> at_upper_end =
+      center + Point<dim>::Unit(axis) * (grid.n_cells()[axis] * grid.spacing());
+  const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
+  if (surface.inside(at_upper_end - half) >= 0 && surface.inside(center + half) < 0)
+    center = at_upper_end;
+  return center;
+}
+
+/// Owned tiles all of whose cells are fluid, with no surface near.
+template <int dim>
+std::vector<char> find_plain_tiles(const TiledGrid<dim>& grid, const MacGeometry<dim>& geometry) {
+  std::vector<char> plain(grid.n_owned_tiles());
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    bool is_plain = true;
+    for (int cell = tile * tile_volume<dim>; cell < (tile + 1) * tile_volume<dim>; ++cell)
+      is_plain &= geometry.state.cells[cell] == CellState::fluid && !geometry.near_surface(cell);
+    plain[tile] = is_plain;
+  }
+  return plain;
+}
+
+/// Asks the rule about a face near the surface that would be free otherwise.
+template <int dim>
+double ask_rule(const OpenFractionRule<dim>& rule, const ControlVolume<dim>& volume,
+                const MacGeometry<dim>& geometry, const FaceCells& face, bool crossed) {
+  const auto& cells = geometry.state.cells;
+  const bool leads_into_solid =
+      in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper);
+  const double fraction =
+      rule.open_fraction(volume, crossed || leads_into_solid, *geometry.state.surface);
+  // An open face between fluid and solid would be a silent leak, whatever the rule says.
+  return leads_into_solid ? 0 : fraction;
+}
+
+/// Revalidation looks from its own faces at the neighbours, which may be other ranks'.
+template <int dim>
+void share_open_centers(const MacDomain<dim>& domain, int axis, MacState<dim>& state) {
+  const TiledGrid<dim>& grid = domain.grid;
+  auto& places = state.open_centers[axis];
+  std::array<CellField, dim> shift;
+  for (int a = 0; a < dim; ++a) {
+    shift[a].assign(grid.n_stored_cells(), 0.0);
+    for (const auto& [face, place] : places)
+      shift[a][face] = place[a] - grid.face_center(axis, face)[a];
+    domain.halo.fill(shift[a]);
+  }
+  for (int face = grid.n_owned_cells(); face < grid.n_stored_cells(); ++face) {
+    Point<dim> beside;
+    for (int a = 0; a < dim; ++a)
+      beside[a] = shift[a][face];
+    if (beside != Point<dim>::Zero())
+      places[face] = grid.face_center(axis, face) + beside;
+  }
+}
+
+/// Partly open faces on any rank give every rank the array, for the exchange.
+template <int dim>
+void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
+  if (!geometry.state.surface)
+    return;
+  for (int axis = 0; axis < dim; ++axis) {
+    CellField& partial = geometry.partial[axis];
+    if (max_all(domain.grid.comm(), partial.empty() ? 0.0 : 1.0) == 0)
+      continue;
+    if (partial.empty())
+      partial.assign(domain.grid.n_stored_cells(), 1.0);
+    domain.halo.fill(partial);
+    if (domain.grid.comm()->getSize() > 1)
+      share_open_centers(domain, axis, geometry.state);
+  }
+}
+}  // namespace
+
+template <int dim>
+ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                  double density, int axis, int cell) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const FaceCells face = cells_of_face(grid, geometry.state.cells, axis, cell);
+  const double half = 0.5 * grid.spacing();
+  ControlVolume<dim> volume;
+  volume.direction = axis;
+  volume.center = center_of_face(domain, geometry, axis, cell);
+  volume.open_center = volume.center;
+  volume.density = density;
+  volume.area = domain.face_area();
+  volume.id = dim * grid.global_id(cell) + axis;
+  const Point<dim> step = Point<dim>::Unit(axis) * half;
+  const Point<dim> lower = face.lower < 0 ? volume.center : Point<dim>(volume.center - step);
+  const Point<dim> upper = face.upper < 0 ? volume.center : Point<dim>(volume.center + step);
+  volume.sides = {pressure_side(geometry, face.lower, lower),
+                  pressure_side(geometry, face.upper, upper)};
+  Point<dim> across = Point<dim>::Constant(half);
+  across[axis] = 0;
+  volume.box = Box<dim>(lower - across, upper + across);
+  return volume;
+}
+
+template <int dim>
+MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
+                               const std::shared_ptr<const SurfaceSnapshot<dim>>& surface,
+                               const OpenFractionRule<dim>& rule) {
+  const TiledGrid<dim>& grid = domain.grid;
+  MacGeometry<dim> geometry;
+  MacState<dim>& state = geometry.state;
+  state.cells.assign(grid.n_stored_cells(), CellState::outside);
+  grid.for_each_stored_cell([&](int cell) { state.cells[cell] = CellState::fluid; });
+  SurfaceMarks<dim> marks;
+  if (surface && !surface->empty()) {
+    state.surface = surface;
+    marks = mark_surface(domain, *surface, state.cells);
+    geometry.near = std::move(marks.near);
+  }
+  OpenFractions<dim> fractions;
+  const bool cut = state.surface && rule.cuts_cells();
+  if (cut) {
+    fractions = find_open_fractions(domain, density, rule, marks, geometry);
+    open_cut_cells<dim>(domain, fractions, geometry);
+  }
+  number_pressures(domain, geometry);
+  const std::vector<char> plain = find_plain_tiles(grid, geometry);
+  for (int axis = 0; axis < dim; ++axis) {
+    state.faces[axis].assign(grid.n_stored_cells(), FaceState::inactive);
+    const int place_in_tile = (tile_width<dim> - 1) << (axis * log_tile_width<dim>);
+    grid.for_each_owned_face(axis, [&](int cell) {
+      if (plain[TiledGrid<dim>::tile_of(cell)] && (cell & place_in_tile) != 0) {
+        state.faces[axis][cell] = FaceState::free;
+        return;
+      }
+      const FaceCells face = cells_of_face(grid, state.cells, axis, cell);
+      FaceState& result = state.faces[axis][cell];
+      result = state_far_from_surfaces(domain, state.cells, axis, face);
+      // A closed face behind a cut cell need not be near the surface.
+      const bool asked = geometry.near_surface(cell) || (cut && fractions[axis][cell] == 0);
+      if (result == FaceState::free && asked) {
+        ControlVolume<dim> volume = control_volume(domain, geometry, density, axis, cell);
+        volume.open_fraction =
+            cut ? fractions[axis][cell]
+                : ask_rule(rule, volume, geometry, face, (marks.blocked[cell] >> axis & 1) != 0);
+        take_fraction(rule, axis, cell, volume, geometry);
+      }
+      if (result == FaceState::prescribed)
+        geometry.prescribed.push_back({axis, cell});
+      if (result == FaceState::free && face.at_side())
+        geometry.open_sides.push_back({axis, cell});
+    });
+    if (grid.comm()->getSize() > 1)
+      fill_flags(domain.full_halo, state.faces[axis]);
+  }
+  if (cut)
+    add_covered_sides(domain, density, rule, geometry);
+  share_open_fractions(domain, geometry);
+  return geometry;
+}
+
+template struct MacGeometry<2>;
+template struct MacGeometry<3>;
+template ControlVolume<2> control_volume<2>(const MacDomain<2>&, const MacGeometry<2>&, double, int,
+                                            int);
+template ControlVolume<3> control_volume<3>(const MacDomain<3>&, const MacGeometry<3>&, double, int,
+                                            int);
+template MacGeometry<2> make_geometry<2>(const MacDomain<2>&, double,
+                                         const std::shared_ptr<const SurfaceSnapshot<2>>&,
+                                         const OpenFractionRule<2>&);
+template MacGeometry<3> make_geometry<3>(const MacDomain<3>&, double,
+                                         const std::shared_ptr<const SurfaceSnapshot<3>>&,
+                                         const OpenFractionRule<3>&);
+
+}  // namespace lockstep

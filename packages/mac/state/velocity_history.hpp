@@ -1,0 +1,48 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "grid/halo_exchange.hpp"
+#include "mac/state/mac_state.hpp"
+
+namespace lockstep {
+
+/// What makes advection second order in time: how fast velocities on faces that stay free changed
+/// in the last step. Zero elsewhere, and in the first step, whose change may be an impulse. Ghost
+/// faces included. Local.
+template <int dim>
+class VelocityHistory {
+ public:
+  explicit VelocityHistory(const TiledGrid<dim>& grid);
+
+  /// u^n to the middle of a step: u += dt/2 du/dt.
+  void extrapolate(double dt, FaceField<dim>& u) const { add(dt / 2, rate_, u); }
+  /// u += scale a, with a what pressure, forces and viscosity made of the velocity that the last
+  /// step had advected [m/s^2]. The trapezoidal rule along a ray from x_d to x is
+  ///   u* = (u^n + dt/2 a)(x_d) + dt/2 a^{n+1}(x);
+  /// since the rest of the step brings the whole of dt a^{n+1}, half of it is taken off at once.
+  void add_acceleration(double scale, FaceField<dim>& u) const { add(scale, acceleration_, u); }
+
+  void set_advected(const FaceField<dim>& u) { advected_ = u; }
+  /// After a step of dt from `before` to `after`.
+  void accept(const FaceField<dim>& before, const FaceField<dim>& after, const MacState<dim>& state,
+              double dt);
+
+  /// All that a restart needs, by name.
+  std::vector<std::pair<std::string, FaceField<dim>*>> fields() {
+    return {{"acceleration", &acceleration_}, {"rate", &rate_}, {"free", &free_}};
+  }
+  std::vector<std::pair<std::string, const FaceField<dim>*>> fields() const {
+    return {{"acceleration", &acceleration_}, {"rate", &rate_}, {"free", &free_}};
+  }
+
+ private:
+  static void add(double scale, const FaceField<dim>& change, FaceField<dim>& u);
+
+  FaceField<dim> acceleration_, rate_;  ///< [m/s^2]
+  FaceField<dim> advected_;             ///< of the present step [m/s]
+  FaceField<dim> free_;                 ///< 1 on faces that were free at the end of the last step
+};
+
+}  // namespace lockstep

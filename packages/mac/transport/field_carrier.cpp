@@ -1,0 +1,344 @@
+#include "mac/transport/field_carrier.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace lockstep {
+
+namespace {
+
+/// Cells along each axis of the blocks that are told apart in tiles near surfaces.
+constexpr int log_block_width = 2;
+
+/// Calls f(row within the tile, id of its first sample) for the rows of a tile that have samples.
+template <int dim, typename Function>
+void for_each_row(const TransportFrame<dim>& frame, SampleKind kind, int tile, const Function& f) {
+  constexpr int width = tile_width<dim>;
+  const Index<dim>& tile_begin = frame.setting.grid.tile_begin(tile);
+  for (int first = 0; first < tile_volume<dim>; first += width) {
+    Index<dim> row{};
+    bool exists = true;
+    for (int a = 1, rest = first / width; a < dim; ++a, rest /= width) {
+      row[a] = rest % width;
+      exists = exists && tile_begin[a] + row[a] < frame.samples_end(kind, a);
+    }
+    if (exists)
+      f(row, tile * tile_volume<dim> + first);
+  }
+}
+
+template <int dim>
+int row_length(const TransportFrame<dim>& frame, SampleKind kind, int tile) {
+  return std::min(tile_width<dim>,
+                  frame.samples_end(kind, 0) - frame.setting.grid.tile_begin(tile)[0]);
+}
+
+/// The values of a row, of which there is storage for the whole.
+template <int dim>
+Eigen::Map<RowValues<dim>> row_of(double* field, int first) {
+  return Eigen::Map<RowValues<dim>>(field + first);
+}
+template <int dim>
+Eigen::Map<const RowValues<dim>> row_of(const double* field, int first) {
+  return Eigen::Map<const RowValues<dim>>(field + first);
+}
+
+}  // namespace
+
+template <int dim>
+bool FieldCarrier<dim>::is_carried(SampleKind kind, int id, bool& has_value) const {
+  const MacState<dim>& state = frame_.setting.state;
+  if (kind == cell_centers) {
+    has_value = state.cells[id] == CellState::fluid;
+    return has_value;
+  }
+  const FaceState face = state.faces[kind][id];
+  has_value = face != FaceState::inactive;
+  return face == FaceState::free || face == FaceState::coupled;
+}
+
+template <int dim>
+void FieldCarrier<dim>::keep(Passenger<dim>& passenger, int id, bool has_value) const {
+  passenger.carried()[id] = (*passenger.start)[id];
+  (*passenger.invalid)[id] = !has_value;
+  passenger.forbid_correction(id);
+}
+
+template <int dim>
+void FieldCarrier<dim>::carry(std::vector<Passenger<dim>>& passengers) {
+  for (Passenger<dim>& passenger : passengers)
+    begin(passenger);
+  if (passengers.front().field.kind != cell_centers)
+    for (Passenger<dim>& passenger : passengers)
+      for (const Passenger<dim>& other : passengers)
+        passenger.field.velocity[other.field.kind] = other.field.values;
+  for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
+    const bool by_rows = frame_.plans[tile].by_rows && carry_rows(passengers, tile);
+    if (frame_.plans[tile].near_surface)
+      carry_near_surfaces(passengers, tile, by_rows);
+    else if (!by_rows)
+      for (Passenger<dim>& passenger : passengers)
+        carry_singles(passenger, tile);
+  }
+  if (passengers.front().corrects())
+    correct(passengers);
+}
+
+template <int dim>
+void FieldCarrier<dim>::begin(Passenger<dim>& passenger) {
+  passenger.field.values = frame_.setting.halo.fetch(*passenger.start, passenger.storage).data();
+  passenger.result->resize(passenger.start->size());
+  if (passenger.corrects()) {
+    passenger.half_way.resize(passenger.start->size());
+    // Every value is set before it is used.
+    passenger.low.reset(new double[frame_.setting.grid.n_owned_cells()]);
+    passenger.high.reset(new double[frame_.setting.grid.n_owned_cells()]);
+  }
+}
+
+template <int dim>
+bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int tile) {
+  TileBlock<dim>& block = *frame_.block;
+  if (!block.enter(frame_.setting.grid.tile_begin(tile)))
+    return false;
+  for (Passenger<dim>& passenger : passengers) {
+    const SampleKind kind = passenger.field.kind;
+    const int length = row_length(frame_, kind, tile);
+    CellField& carried = passenger.carried();
+    block.load(kind, passenger.field.values);
+    for_each_row(frame_, kind, tile, [&](const Index<dim>& row, int first) {
+      RowValues<dim> values, low, high;
+      const RowRays<dim> rays = block.trace(row, -1, passenger.cubic());
+      if (passenger.corrects()) {
+        block.look_up(rays.end, values, &low, &high);
+        const auto stays_inside = rays.clipped == 0;
+        row_of<dim>(passenger.low.get(), first) = stays_inside.select(low, 1);
+        row_of<dim>(passenger.high.get(), first) = stays_inside.select(high, 0);
+      } else if (passenger.cubic()) {
+        block.look_up_cubic(rays.end, values);
+      } else {
+        block.look_up(rays.end, values);
+      }
+      row_of<dim>(carried.data(), first) = values;
+      for (int id = first; id < first + length; ++id) {
+        bool has_value;
+        if (!is_carried(kind, id, has_value))
+          keep(passenger, id, has_value);
+      }
+    });
+  }
+  return true;
+}
+
+template <int dim>
+void FieldCarrier<dim>::carry_singles(Passenger<dim>& passenger, int tile) {
+  frame_.for_each_sample(passenger.field.kind, tile, [&](int id, const Point<dim>& x) {
+    carry_single(passenger, id, x, passenger.cubic());
+  });
+}
+
+template <int dim>
+void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x,
+                                     bool wide) {
+  const SampleKind kind = passenger.field.kind;
+  bool has_value;
+  if (!is_carried(kind, id, has_value)) {
+    keep(passenger, id, has_value);
+    return;
+  }
+  passenger.forbid_correction(id);
+  Ray<dim> ray = frame_.tracer->trace(x, -1, wide);
+  if (ray.complete)
+    frame_.tracer->mix_inflow(kind, ray);
+  if (ray.complete && ray.inflow_share == 1) {
+    passenger.carried()[id] = passenger.field.inflow(ray);
+    return;
+  }
+  const Stencil<dim> stencil = frame_.lattice->locate(kind, ray.end);
+  if (!ray.complete || !stencil.complete()) {
+    carry_seeing(passenger, id, x);
+    return;
+  }
+  const double* values = passenger.field.values;
+  double& carried = passenger.carried()[id];
+  if (wide && ray.inflow_share == 0) {
+    const WideStencil<dim> cubic = frame_.lattice->locate_wide(kind, ray.end);
+    if (cubic.complete()) {
+      carried = interpolate<dim>(cubic, values);
+      return;
+    }
+  }
+  carried = interpolate<dim>(stencil, values);
+  if (ray.inflow_share > 0)
+    carried += ray.inflow_share * (passenger.field.inflow(ray) - carried);
+  if (!passenger.corrects() || ray.clipped || ray.inflow_share > 0)
+    return;
+  passenger.low[id] = std::numeric_limits<double>::infinity();
+  passenger.high[id] = -passenger.low[id];
+  for (const int i : stencil.id) {
+    const double value = i < 0 ? 0 : values[i];
+    passenger.low[id] = std::min(passenger.low[id], value);
+    passenger.high[id] = std::max(passenger.high[id], value);
+  }
+}
+
+template <int dim>
+void FieldCarrier<dim>::carry_seeing(Passenger<dim>& passenger, int id, const Point<dim>& x) {
+  passenger.forbid_correction(id);
+  if (const auto value = frame_.near_surface->carry(passenger.field, x))
+    passenger.carried()[id] = *value;
+  else
+    keep(passenger, id, false);
+}
+
+template <int dim>
+void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x,
+                                        bool by_rows) {
+  SurfaceTransport<dim>& near_surface = *frame_.near_surface;
+  const SampleKind kind = passenger.field.kind;
+  bool has_value;
+  const bool carried = is_carried(kind, id, has_value);
+  if (carried && carry_open_part(passenger, id, x))
+    return;
+  if (!carried || near_surface.swept(x)) {
+    keep(passenger, id, !carried && has_value);
+    return;
+  }
+  const auto way = [&x](const Ray<dim>& ray) {
+    return Box<dim>(x).extend(ray.middle).extend(ray.end);
+  };
+  if (passenger.cubic()) {
+    const Ray<dim> ray = frame_.tracer->trace(x, -1, true);
+    if (ray.complete && near_surface.clear(way(ray), false, 2)) {
+      if (!by_rows)
+        carry_single(passenger, id, x, true);
+      return;
+    }
+  }
+  const Ray<dim> ray = frame_.tracer->trace(x, -1);
+  Box<dim> points = way(ray);
+  if (!ray.complete || !near_surface.clear(points, false)) {
+    if (kind != cell_centers && near_surface.inside(x))
+      keep(passenger, id, false);
+    else
+      carry_seeing(passenger, id, x);
+    return;
+  }
+  if (!by_rows || passenger.cubic())
+    carry_single(passenger, id, x, false);
+  if (!passenger.may_correct(id))
+    return;
+  const Ray<dim> forward = frame_.tracer->trace(x, 1);
+  points.extend(forward.middle).extend(forward.end);
+  if (!forward.complete || !near_surface.clear(points, true))
+    passenger.forbid_correction(id);
+}
+
+template <int dim>
+bool FieldCarrier<dim>::carry_open_part(Passenger<dim>& passenger, int id, const Point<dim>& x) {
+  const SampleKind kind = passenger.field.kind;
+  if (kind == cell_centers)
+    return false;
+  const auto& places = frame_.setting.state.open_centers[kind];
+  const auto place = places.find(id);
+  SurfaceTransport<dim>& near_surface = *frame_.near_surface;
+  if (place == places.end() || !(near_surface.inside(x) || near_surface.swept(x)))
+    return false;
+  const TiledGrid<dim>& grid = frame_.setting.grid;
+  const Point<dim> shift = (place->second - grid.face_center(kind, id)) / grid.spacing();
+  passenger.carried()[id] =
+      near_surface.carry_beside(passenger.field, x + shift, (*passenger.start)[id]);
+  passenger.forbid_correction(id);
+  return true;
+}
+
+template <int dim>
+void FieldCarrier<dim>::carry_near_surfaces(std::vector<Passenger<dim>>& passengers, int tile,
+                                            bool by_rows) {
+  constexpr int width = 1 << log_block_width;
+  constexpr int log_n_along = log_tile_width<dim> - log_block_width;
+  SurfaceTransport<dim>& near_surface = *frame_.near_surface;
+  for (int block = 0; block < 1 << (dim * log_n_along); ++block) {
+    Index<dim> begin = frame_.setting.grid.tile_begin(tile), end;
+    for (int a = 0; a < dim; ++a) {
+      begin[a] += ((block >> (a * log_n_along)) & ((1 << log_n_along) - 1)) * width;
+      end[a] = begin[a] + width;
+    }
+    bool entered = false;
+    for (Passenger<dim>& passenger : passengers)
+      frame_.for_each_sample(passenger.field.kind, tile, begin, end,
+                             [&](int id, const Point<dim>& x) {
+                               if (!near_surface.is_near(id)) {
+                                 if (!by_rows)
+                                   carry_single(passenger, id, x, passenger.cubic());
+                                 return;
+                               }
+                               if (!entered)
+                                 near_surface.enter(begin, end);
+                               entered = true;
+                               carry_with_care(passenger, id, x, by_rows);
+                             });
+  }
+}
+
+template <int dim>
+void FieldCarrier<dim>::correct(std::vector<Passenger<dim>>& passengers) {
+  std::vector<const double*> carried;
+  for (Passenger<dim>& passenger : passengers)
+    carried.push_back(frame_.setting.halo.fetch(passenger.half_way, passenger.storage).data());
+  for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
+    if (frame_.plans[tile].by_rows && correct_rows(passengers, carried, tile))
+      continue;
+    for (std::size_t p = 0; p < passengers.size(); ++p)
+      frame_.for_each_sample(passengers[p].field.kind, tile, [&](int id, const Point<dim>& x) {
+        correct_single(passengers[p], carried[p], id, x);
+      });
+  }
+}
+
+template <int dim>
+bool FieldCarrier<dim>::correct_rows(std::vector<Passenger<dim>>& passengers,
+                                     const std::vector<const double*>& carried, int tile) {
+  TileBlock<dim>& block = *frame_.block;
+  if (!block.enter(frame_.setting.grid.tile_begin(tile)))
+    return false;
+  for (std::size_t p = 0; p < passengers.size(); ++p) {
+    Passenger<dim>& passenger = passengers[p];
+    block.load(passenger.field.kind, carried[p]);
+    for_each_row(frame_, passenger.field.kind, tile, [&](const Index<dim>& row, int first) {
+      RowValues<dim> returned;
+      const RowRays<dim> rays = block.trace(row, 1);
+      block.look_up(rays.end, returned);
+      const RowValues<dim> start = row_of<dim>(passenger.start->data(), first);
+      const RowValues<dim> half_way = row_of<dim>(passenger.half_way.data(), first);
+      const RowValues<dim> low = row_of<dim>(passenger.low.get(), first);
+      const RowValues<dim> high = row_of<dim>(passenger.high.get(), first);
+      const RowValues<dim> better = (half_way - 0.5 * (returned - start)).max(low).min(high);
+      row_of<dim>(passenger.result->data(), first) =
+          (low <= high && rays.clipped == 0).select(better, half_way);
+    });
+  }
+  return true;
+}
+
+template <int dim>
+void FieldCarrier<dim>::correct_single(Passenger<dim>& passenger, const double* carried, int id,
+                                       const Point<dim>& x) const {
+  double& result = (*passenger.result)[id];
+  result = passenger.half_way[id];
+  if (!passenger.may_correct(id))
+    return;
+  const Ray<dim> ray = frame_.tracer->trace(x, 1);
+  if (!ray.complete || ray.clipped)
+    return;
+  const Stencil<dim> stencil = frame_.lattice->locate(passenger.field.kind, ray.end);
+  if (!stencil.complete())
+    return;
+  const double error = 0.5 * (interpolate<dim>(stencil, carried) - (*passenger.start)[id]);
+  result = std::clamp(result - error, passenger.low[id], passenger.high[id]);
+}
+
+template class FieldCarrier<2>;
+template class FieldCarrier<3>;
+
+}  // namespace lockstep

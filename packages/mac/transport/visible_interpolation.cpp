@@ -1,0 +1,130 @@
+#include "mac/transport/visible_interpolation.hpp"
+
+#include <algorithm>
+
+namespace lockstep {
+
+void WeightedMean::add(double weight, double value) {
+  if (weight_ == 0)
+    base_ = low_ = high_ = value;
+  weight_ += weight;
+  sum_ += weight * (value - base_);
+  low_ = std::min(low_, value);
+  high_ = std::max(high_, value);
+}
+
+std::optional<double> WeightedMean::value() const {
+  if (weight_ == 0)
+    return std::nullopt;
+  return std::clamp(base_ + sum_ / weight_, low_, high_);
+}
+
+template <int dim>
+void VisibleInterpolation<dim>::look_around(const Point<dim>& x, double radius) {
+  nearby_.gather(physical(widened<dim>(Box<dim>(x), 1 + radius)));
+}
+
+template <int dim>
+std::array<StencilCorner<dim>, (1 << dim)> VisibleInterpolation<dim>::focus(SampleKind kind,
+                                                                            const Point<dim>& x) {
+  const auto corners = lattice_.corners(kind, x);
+  Box<dim> box(x);
+  for (const StencilCorner<dim>& corner : corners)
+    box.extend(corner.position);
+  nearby_.focus(physical(box));
+  return corners;
+}
+
+template <int dim>
+void VisibleInterpolation<dim>::look(int axis, const Point<dim>& x, const double* field) {
+  Sight& sight = sight_[axis];
+  sight.visible = {};
+  sight.hidden.clear();
+  const Point<dim> eye = physical(x);
+  for (const StencilCorner<dim>& corner : focus(axis, x)) {
+    if (corner.weight == 0)
+      continue;
+    if (const auto hit = nearby_.focused_hit(eye, physical(corner.position)))
+      sight.hidden.push_back({corner.weight, *hit});
+    else if (corner.id == Stencil<dim>::wall_sample)
+      sight.visible.add(corner.weight, 0);
+    else if (corner.id >= 0 && usable_.faces[axis][corner.id])
+      sight.visible.add(corner.weight, field[corner.id]);
+  }
+}
+
+template <int dim>
+double VisibleInterpolation<dim>::slipping(int axis, const Point<dim>& seen,
+                                           const SurfacePoint<dim>& hit) const {
+  Point<dim> normal = area_vector<dim>(surface_.before->corners(hit.simplex));
+  normal.normalize();
+  const Point<dim> relative = surface_.velocity(hit) - seen;
+  const Point<dim> along = relative - normal * normal.dot(relative);
+  const double slip = along.norm();
+  const double held = slip > friction_speed_ ? friction_speed_ / slip : 1;
+  return seen[axis] + relative[axis] - (1 - held) * along[axis];
+}
+
+template <int dim>
+std::optional<double> VisibleInterpolation<dim>::seen_velocity(int axis) const {
+  WeightedMean mean = sight_[axis].visible;
+  const std::vector<Hidden>& hidden = sight_[axis].hidden;
+  if (hidden.empty())
+    return mean.value();
+  // A component of which nothing is visible is the surface's.
+  Point<dim> seen = surface_.velocity(hidden.front().hit);
+  for (int a = 0; a < dim; ++a)
+    seen[a] = sight_[a].visible.value().value_or(seen[a]);
+  for (const Hidden& sample : hidden)
+    mean.add(sample.weight, slipping(axis, seen, sample.hit));
+  return mean.value();
+}
+
+template <int dim>
+std::optional<double> VisibleInterpolation<dim>::velocity(int axis, const Point<dim>& x,
+                                                          const Velocity& field) {
+  look(axis, x, field[axis]);
+  if (!sight_[axis].hidden.empty())
+    for (int k = 1; k < dim; ++k)
+      look((axis + k) % dim, x, field[(axis + k) % dim]);
+  return seen_velocity(axis);
+}
+
+template <int dim>
+std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, const double* field) {
+  const Point<dim> eye = physical(x);
+  WeightedMean mean;
+  for (const StencilCorner<dim>& corner : focus(cell_centers, x))
+    if (corner.weight > 0 && corner.id >= 0 && usable_.cells[corner.id] &&
+        !nearby_.focused_hit(eye, physical(corner.position)))
+      mean.add(corner.weight, field[corner.id]);
+  return mean.value();
+}
+
+template <int dim>
+Point<dim> VisibleInterpolation<dim>::velocity_at(const Point<dim>& x, const Velocity& field) {
+  for (int a = 0; a < dim; ++a)
+    look(a, x, field[a]);
+  Point<dim> result;
+  std::optional<Point<dim>> fallback;
+  for (int a = 0; a < dim; ++a) {
+    const auto component = seen_velocity(a);
+    if (!component && !fallback)
+      fallback = nearest_surface_velocity(x);
+    result[a] = component ? *component : (*fallback)[a];
+  }
+  return result;
+}
+
+template <int dim>
+Point<dim> VisibleInterpolation<dim>::nearest_surface_velocity(const Point<dim>& x) const {
+  if (nearby_.empty())
+    return Point<dim>::Zero();
+  const auto closest = nearby_.snapshot().closest(physical(x), 3 * grid_.spacing());
+  return closest ? surface_.velocity(*closest) : Point<dim>(Point<dim>::Zero());
+}
+
+template class VisibleInterpolation<2>;
+template class VisibleInterpolation<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,83 @@
+#include "mac/viscosity/viscosity.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "mac/viscosity/viscous_links.hpp"
+
+namespace lockstep {
+
+template <int dim>
+Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                          double density, const ViscosityParameters& parameters)
+    : domain_(domain) {
+  ViscousLinks<dim> found = find_viscous_links(domain, geometry, density, parameters);
+  map_ = found.map;
+  faces_ = std::move(found.faces);
+  stiffness_ = found.stiffness;
+  mass_ = found.mass;
+  links_ = std::move(found.links);
+  sides_ = std::move(found.sides);
+  couples_ = std::move(found.couples);
+  viscosity_ = found.viscosity;
+}
+
+template <int dim>
+std::unique_ptr<ViscousSystem<dim>> Viscosity<dim>::system(const FaceField<dim>& velocity,
+                                                           double time) const {
+  auto result = std::make_unique<ViscousSystem<dim>>();
+  result->map = map_;
+  result->stiffness = stiffness_;
+  result->mass = mass_;
+  result->velocity = make_vector(map_);
+  result->wall_force = make_vector(map_);
+  result->links = links_;
+  result->viscosity = viscosity_;
+  const auto values = result->velocity->getDataNonConst();
+  for (std::size_t row = 0; row < faces_.size(); ++row)
+    values[row] = velocity[faces_[row].axis][faces_[row].cell];
+  const auto forces = result->wall_force->getDataNonConst();
+  for (const SideLink& side : sides_)
+    forces[side.row] += side.coefficient * side_velocity(side, time);
+  return result;
+}
+
+template <int dim>
+double Viscosity<dim>::side_velocity(const SideLink& side, double time) const {
+  const auto [axis, cell] = faces_[side.row];
+  const Point<dim> x = domain_.grid.face_center(axis, cell);
+  return domain_.boundary.side(side.axis, side.end).velocity_at(side.axis, x, time)[axis];
+}
+
+template <int dim>
+void Viscosity<dim>::store(const Vector& solution, FaceField<dim>& velocity) const {
+  const auto values = solution.getData();
+  for (std::size_t row = 0; row < faces_.size(); ++row)
+    velocity[faces_[row].axis][faces_[row].cell] = values[row];
+}
+
+template <int dim>
+Momentum<dim> Viscosity<dim>::impulse(const FaceField<dim>& velocity, double time,
+                                      double dt) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  Momentum<dim> result;
+  for (const SideLink& side : sides_) {
+    const auto [axis, cell] = faces_[side.row];
+    const double pull = side.coefficient * (side_velocity(side, time) - velocity[axis][cell]);
+    result.add(grid.face_center(axis, cell), axis, dt * pull);
+  }
+  const double h = grid.spacing();
+  for (const CoupleEnd& couple : couples_) {
+    const auto [axis, cell] = faces_[couple.row];
+    // +J here and -J at the upper neighbour: the arm between them is -h.
+    const double sum = dt * couple.coefficient * velocity[axis][cell];
+    result.angular +=
+        cross<dim>(Point<dim>::Unit(couple.across) * -h, Point<dim>::Unit(axis) * sum);
+  }
+  return sum_over_ranks(result, grid.comm());
+}
+
+template class Viscosity<2>;
+template class Viscosity<3>;
+
+}  // namespace lockstep

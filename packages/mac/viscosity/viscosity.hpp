@@ -1,0 +1,46 @@
+#pragma once
+#include <memory>
+
+#include "mac/viscosity/viscous_links.hpp"
+
+namespace lockstep {
+
+/// Implicit viscosity in the Laplacian form, component by component: a velocity and its neighbour
+/// at distance d across an area pull on each other with mu area / d. What a velocity is tied to is
+/// found once per geometry, for the matrix as for the impulses.
+///
+/// A wall pulls from h/2 (its tangential velocities) or from the next face (its normal ones); slip
+/// walls and open sides do not pull. A neighbour behind a surface, or inside a solid, is replaced
+/// by the point where the link meets the surface.
+template <int dim>
+class Viscosity {
+ public:
+  /// Collective. `domain` must outlive this.
+  Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry, double density,
+            const ViscosityParameters& parameters);
+
+  /// The system for the present velocities; matrix and links are shared with earlier ones. `time`
+  /// sets the velocity of walls and inflows. Collective.
+  std::unique_ptr<ViscousSystem<dim>> system(const FaceField<dim>& velocity, double time) const;
+  /// velocity := solution on owned free faces.
+  void store(const Vector& solution, FaceField<dim>& velocity) const;
+  /// Impulse of walls and inflows over dt, acting at the centre of the velocity that they pull, and
+  /// the couple of parallel forces between neighbours. The halo of `velocity` must be valid.
+  /// Collective.
+  Momentum<dim> impulse(const FaceField<dim>& velocity, double time, double dt) const;
+
+ private:
+  double side_velocity(const SideLink& side, double time) const;
+
+  const MacDomain<dim>& domain_;
+  RCP<const Map> map_;
+  std::vector<FaceId> faces_;  ///< of the rows
+  RCP<const CrsMatrix> stiffness_;
+  RCP<Vector> mass_;
+  std::vector<ViscousLink<dim>> links_;
+  std::vector<SideLink> sides_;
+  std::vector<CoupleEnd> couples_;
+  double viscosity_;
+};
+
+}  // namespace lockstep

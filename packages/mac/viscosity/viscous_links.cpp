@@ -1,0 +1,260 @@
+#include "mac/viscosity/viscous_links.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <optional>
+
+#include "mac/pressure/row_builder.hpp"
+
+namespace lockstep {
+
+namespace {
+/// Where the link to the neighbour meets a surface first, if it does. Both ends ask about the same
+/// segment, so that they agree whether it is blocked. Links along the velocity's own axis run
+/// inside two unblocked segments, or end on a coupled face.
+template <int dim>
+std::optional<SurfacePoint<dim>> surface_on_link(const MacDomain<dim>& domain,
+                                                 const MacGeometry<dim>& geometry,
+                                                 const FaceId& face, int across, int end,
+                                                 int other) {
+  const int lower_cell = end == 0 ? other : face.cell;
+  if (across == face.axis || !geometry.near_surface(lower_cell))
+    return std::nullopt;
+  const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
+  const Point<dim> lower = domain.grid.face_center(face.axis, lower_cell);
+  const Point<dim> upper = lower + Point<dim>::Unit(across) * domain.spacing();
+  auto hit = surface.first_hit(lower, upper);
+  if (hit && end == 0) {
+    if (const auto reverse = surface.first_hit(upper, lower))
+      return reverse;
+    hit->fraction = 1 - hit->fraction;
+  }
+  return hit;
+}
+
+template <int dim>
+class Builder {
+ public:
+  Builder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry, double density,
+          const ViscosityParameters& parameters)
+      : domain_(domain),
+        geometry_(geometry),
+        grid_(domain.grid),
+        density_(density),
+        parameters_(parameters) {}
+
+  ViscousLinks<dim> build() {
+    number_faces();
+    index_coupled_volumes();
+    RowBuilder rows(result_.map, 2 * dim + 1);
+    const int n = static_cast<int>(result_.faces.size());
+    for (row_ = 0; row_ < n; ++row_) {
+      start_row(result_.faces[row_]);
+      // In the order of the ids within a tile.
+      for (int across = dim - 1; across >= 0; --across)
+        add_link(across, 0, rows);
+      const std::size_t middle = rows.add(ids_[face_.axis][face_.cell], 0);
+      for (int across = 0; across < dim; ++across)
+        add_link(across, 1, rows);
+      rows.set(middle, diagonal_);
+      rows.end_row();
+      for (int across = 0; across < dim; ++across)
+        if (balance_[across] != 0)
+          result_.couples.push_back({row_, across, balance_[across]});
+    }
+    result_.stiffness = rows.finish();
+    result_.viscosity = parameters_.viscosity;
+    return std::move(result_);
+  }
+
+ private:
+  void number_faces() {
+    for (int axis = 0; axis < dim; ++axis)
+      grid_.for_each_owned_face(axis, [&](int cell) {
+        if (geometry_.state.faces[axis][cell] == FaceState::free)
+          result_.faces.push_back({axis, cell});
+      });
+    result_.map = make_map(static_cast<int>(result_.faces.size()), grid_.comm());
+    result_.mass = make_vector(result_.map);
+    const auto mass = result_.mass->getDataNonConst();
+    for (int axis = 0; axis < dim; ++axis)
+      ids_[axis].assign(grid_.n_stored_cells(), no_index);
+    for (std::size_t row = 0; row < result_.faces.size(); ++row) {
+      const auto [axis, cell] = result_.faces[row];
+      ids_[axis][cell] = result_.map->getMinGlobalIndex() + static_cast<GlobalIndex>(row);
+      const bool half = cells_of_face(grid_, geometry_.state.cells, axis, cell).at_side();
+      mass[row] =
+          density_ * domain_.cell_volume() * geometry_.open_fraction(axis, cell) * (half ? 0.5 : 1);
+    }
+    for (int axis = 0; axis < dim; ++axis)
+      domain_.halo.fill(ids_[axis]);
+  }
+
+  void index_coupled_volumes() {
+    for (std::size_t i = 0; i < geometry_.coupled.size(); ++i)
+      coupled_.push_back({geometry_.coupled[i], static_cast<int>(i)});
+    std::sort(coupled_.begin(), coupled_.end(), before);
+  }
+  struct Coupled {
+    FaceId face;
+    int index;
+  };
+  static bool before(const Coupled& a, const Coupled& b) {
+    return std::make_pair(a.face.axis, a.face.cell) < std::make_pair(b.face.axis, b.face.cell);
+  }
+
+  void start_row(const FaceId& face) {
+    face_ = face;
+    cells_ = cells_of_face(grid_, geometry_.state.cells, face.axis, face.cell);
+    diagonal_ = 0;
+    balance_.fill(0);
+  }
+
+  /// mu area / h to the neighbour [kg/s]; the dual cell at an open side is only half as long, so it
+  /// has half the area across.
+  double full_coefficient(int across) const {
+    const double unit = parameters_.viscosity * domain_.face_area() / domain_.spacing();
+    return across != face_.axis && cells_.at_side() ? 0.5 * unit : unit;
+  }
+
+  void add_link(int across, int end, RowBuilder& rows) {
+    const double coefficient = full_coefficient(across);
+    if (across == face_.axis) {
+      const int between = end == 0 ? cells_.lower : cells_.upper;
+      // Beyond an open side, and in a void, nothing pulls.
+      if (between < 0 || geometry_.state.cells[between] != CellState::fluid)
+        return;
+    }
+    const int other = grid_.neighbor(face_.cell, across, end);
+    const FaceState state =
+        other < 0 ? FaceState::inactive : geometry_.state.faces[face_.axis][other];
+    if (state == FaceState::inactive && beyond_domain(other)) {
+      add_side_link(across, end, across == face_.axis ? coefficient : 2 * coefficient);
+      return;
+    }
+    if (const auto hit = surface_on_link(domain_, geometry_, face_, across, end, other)) {
+      add_surface_link(face_, across, end, *hit, coefficient);
+      return;
+    }
+    switch (state) {
+      case FaceState::free:
+        rows.add(ids_[face_.axis][other], -coefficient);
+        diagonal_ += coefficient;
+        if (across != face_.axis)
+          balance_[across] += end == 0 ? coefficient : -coefficient;
+        break;
+      case FaceState::coupled:
+        add_coupled_link(face_, across, end, other, coefficient);
+        break;
+      case FaceState::prescribed:  // only along the velocity's own axis
+        add_side_link(face_.axis, end, coefficient);
+        break;
+      case FaceState::inactive:
+        add_hidden_link(face_, across, end, other, coefficient);
+        break;
+    }
+  }
+
+  /// No face, as above a closed side, or one between two cells of the layer above another side.
+  bool beyond_domain(int face) const {
+    if (face < 0)
+      return true;
+    const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, face_.axis, face);
+    return cells.lower < 0 && cells.upper < 0;
+  }
+
+  void add_side_link(int axis, int end, double coefficient) {
+    const SideType type = domain_.boundary.side(axis, end).type;
+    const bool normal = axis == result_.faces[row_].axis;
+    if (type == SideType::open || (type == SideType::slip_wall && !normal))
+      return;
+    diagonal_ += coefficient;
+    result_.sides.push_back({row_, axis, end, coefficient});
+  }
+
+  /// `coefficient` is that of a neighbour, which the link is to reach by `fraction`.
+  ViscousLink<dim> new_link(const FaceId& face, int across, int end, double coefficient,
+                            double fraction) {
+    coefficient /= fraction;
+    diagonal_ += coefficient;
+    ViscousLink<dim> link;
+    link.row = row_;
+    link.position = grid_.face_center(face.axis, face.cell);
+    link.direction = face.axis;
+    link.coefficient = coefficient;
+    link.end = link.position;
+    link.end[across] += (end == 0 ? -fraction : fraction) * grid_.spacing();
+    return link;
+  }
+
+  void add_surface_link(const FaceId& face, int across, int end, const SurfacePoint<dim>& point,
+                        double coefficient) {
+    const double fraction = std::max(point.fraction, parameters_.smallest_link_fraction);
+    ViscousLink<dim> link = new_link(face, across, end, coefficient, fraction);
+    link.point = point;
+    result_.links.push_back(link);
+  }
+
+  void add_coupled_link(const FaceId& face, int across, int end, int other, double coefficient) {
+    ViscousLink<dim> link = new_link(face, across, end, coefficient, 1);
+    if (grid_.owned(other)) {
+      const Coupled key{{face.axis, other}, 0};
+      const auto found = std::lower_bound(coupled_.begin(), coupled_.end(), key, before);
+      LOCKSTEP_ASSERT(found != coupled_.end() && found->face.cell == other);
+      link.coupled_volume = found->index;
+    } else {
+      link.remote_volume = std::make_shared<ControlVolume<dim>>(
+          control_volume(domain_, geometry_, density_, face.axis, other));
+    }
+    result_.links.push_back(link);
+  }
+
+  /// The neighbour has no fluid, yet no surface was met on the way: the link ends on the nearest
+  /// one if the neighbour is inside a solid; a void does not pull.
+  void add_hidden_link(const FaceId& face, int across, int end, int other, double coefficient) {
+    const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, face.axis, other);
+    const auto solid = [&](int cell) {
+      return cell >= 0 && geometry_.state.cells[cell] == CellState::solid;
+    };
+    if (!solid(cells.lower) && !solid(cells.upper))
+      return;
+    Point<dim> x = grid_.face_center(face.axis, face.cell);
+    x[across] += end == 0 ? -grid_.spacing() : grid_.spacing();
+    auto point = geometry_.state.surface->closest(x, 2 * grid_.spacing());
+    if (!point)
+      return;
+    point->fraction = 1;
+    add_surface_link(face, across, end, *point, coefficient);
+  }
+
+  const MacDomain<dim>& domain_;
+  const MacGeometry<dim>& geometry_;
+  const TiledGrid<dim>& grid_;
+  double density_;
+  ViscosityParameters parameters_;
+  ViscousLinks<dim> result_;
+  std::array<std::vector<GlobalIndex>, dim> ids_;
+  std::vector<Coupled> coupled_;
+  // Of the present row.
+  int row_ = 0;
+  FaceId face_;
+  FaceCells cells_;
+  double diagonal_ = 0;
+  std::array<double, dim>
+      balance_{};  ///< coefficients of lower minus upper joined neighbours across
+};
+}  // namespace
+
+template <int dim>
+ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                     double density, const ViscosityParameters& parameters) {
+  return Builder<dim>(domain, geometry, density, parameters).build();
+}
+
+template ViscousLinks<2> find_viscous_links<2>(const MacDomain<2>&, const MacGeometry<2>&, double,
+                                               const ViscosityParameters&);
+template ViscousLinks<3> find_viscous_links<3>(const MacDomain<3>&, const MacGeometry<3>&, double,
+                                               const ViscosityParameters&);
+
+}  // namespace lockstep

@@ -1,0 +1,46 @@
+#pragma once
+#include "mac/state/mac_geometry.hpp"
+
+namespace lockstep {
+
+struct ViscosityParameters {
+  double viscosity = 0;                 ///< dynamic, mu [Pa s]
+  double smallest_link_fraction = 0.2;  ///< of h: a link to a surface is never taken shorter
+};
+
+/// A side of the domain pulls on a free velocity.
+struct SideLink {
+  int row = 0;             ///< local
+  int axis = 0, end = 0;   ///< the side
+  double coefficient = 0;  ///< [kg/s]
+};
+
+/// The end of a row of free velocities, side by side and joined by links: where the couple of those
+/// links does not cancel. The couple of a link between neighbours at distance h across their
+/// direction is h mu area / h (u_upper - u_lower), so that of a whole row is the difference of its
+/// ends.
+struct CoupleEnd {
+  int row = 0;             ///< local
+  int across = 0;          ///< axis along which the velocities stand side by side
+  double coefficient = 0;  ///< [kg/s], negative at the lower end
+};
+
+/// Everything that free velocities are viscously tied to.
+template <int dim>
+struct ViscousLinks {
+  RCP<const Map> map;
+  std::vector<FaceId> faces;  ///< of the local rows
+  RCP<const CrsMatrix> stiffness;
+  RCP<Vector> mass;
+  std::vector<ViscousLink<dim>> links;
+  std::vector<SideLink> sides;
+  std::vector<CoupleEnd> couples;
+  double viscosity = 0;  ///< [Pa s]
+};
+
+/// Collective.
+template <int dim>
+ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                     double density, const ViscosityParameters& parameters);
+
+}  // namespace lockstep

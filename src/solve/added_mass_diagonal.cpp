@@ -1,0 +1,35 @@
+#include "solve/added_mass_diagonal.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Export.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "linear/matrix_rows.hpp"
+
+namespace lockstep {
+
+RCP<Vector> added_mass_diagonal(const BlockSystem& system, const RCP<const Map>& map) {
+  const auto result = make_vector(map);
+  const auto solid = assembled(system.solid_block);
+  if (solid.is_null())
+    return result;
+  const CrsMatrix& coupling = *system.coupling_transposed;
+  const auto mass = diagonal_of(*solid);
+  const auto masses = mass->getData();
+  Vector on_columns(coupling.getColMap());
+  {
+    const auto sums = on_columns.getDataNonConst();
+    for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
+      if (masses[row] > 0)
+        sums[coupling.getColMap()->getLocalElement(column)] += value * value / masses[row];
+    });
+  }
+  const auto importer = coupling.getGraph()->getImporter();
+  if (importer.is_null())
+    result->update(1, on_columns, 0);
+  else
+    result->doExport(on_columns, *importer, Tpetra::ADD);
+  return result;
+}
+
+}  // namespace lockstep

@@ -1,0 +1,74 @@
+#include "solve/block_residual.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+#include "linear/matrix_rows.hpp"
+#include "linear/vector_sums.hpp"
+
+namespace lockstep {
+
+namespace {
+/// Surfaces that move against each other within one cell carry fluxes that cancel to round-off.
+/// The least scale of the pressure rows, as a part of what the fluxes would be without that: with
+/// it the usual tolerances stay above round-off.
+constexpr double least_flux = 1e-6;
+/// The same of stiff solids, whose elastic forces cancel where they move rigidly.
+constexpr double least_force = 1e-6;
+
+/// |diag(C) V|, which is what elastic forces would be if they did not cancel; 0 if C is no matrix.
+double gross_force(const RCP<const LinearOperator>& solid_block, const Vector& velocity) {
+  const auto c = assembled(solid_block);
+  if (c.is_null())
+    return 0;
+  Vector force(c->getRowMap());
+  force.elementWiseMultiply(1, *diagonal_of(*c), velocity, 0);
+  return norm(force);
+}
+
+/// residual += sign term; `scale` becomes |term| if that is more.
+void add_term(Vector& residual, const Vector& term, double sign, double& scale) {
+  scale = std::max(scale, add_and_measure(sign, term, residual));
+}
+}  // namespace
+
+SolidResidual solid_row_residual(const BlockSystem& system, const BlockVector& rhs,
+                                 const BlockVector& solution) {
+  SolidResidual result{make_vector(rhs.solid->getMap())};
+  Vector term(rhs.solid->getMap());
+  add_term(*result.vector, *rhs.solid, -1, result.scale);
+  system.coupling_transposed->apply(*solution.pressure, term);
+  add_term(*result.vector, term, 1, result.scale);
+  apply(*system.solid_block, *solution.solid, term);
+  add_term(*result.vector, term, 1, result.scale);
+  return result;
+}
+
+BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
+                             const BlockVector& solution) {
+  BlockResidual result;
+  auto& r1 = result.vector.pressure;
+  r1 = rcp(new Vector(*rhs.pressure, Teuchos::Copy));
+  result.pressure_scale = norm(*r1);
+  Vector term(r1->getMap());
+  apply(*system.pressure_block, *solution.pressure, term);
+  add_term(*r1, term, -1, result.pressure_scale);
+  if (system.has_solid()) {
+    system.coupling_transposed->apply(*solution.solid, term, Teuchos::TRANS);
+    add_term(*r1, term, 1, result.pressure_scale);
+    const double gross_flux =
+        system.coupling_transposed->getFrobeniusNorm() * solution.solid->norm2();
+    result.pressure_scale = std::max(result.pressure_scale, least_flux * gross_flux);
+
+    const SolidResidual row = solid_row_residual(system, rhs, solution);
+    result.vector.solid = row.vector;
+    result.solid_scale =
+        std::max(row.scale, least_force * gross_force(system.solid_block, *solution.solid));
+    result.solid = norm(*row.vector);
+  }
+  result.pressure = norm(*r1);
+  return result;
+}
+
+}  // namespace lockstep

@@ -1,0 +1,191 @@
+#include "solve/soft/inverse_by_cost.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <map>
+
+#include "linear/block_diagonal.hpp"
+#include "linear/matrix_rows.hpp"
+#include "solve/soft/component_cholesky.hpp"
+#include "solve/soft/components.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Components of more entries are not even analysed: a volume's factors would cost too much, and
+/// even a surface's come near the limit.
+constexpr double most_entries = 800000;
+/// About half a second, which pays where the iteration takes a hundred steps an application and is
+/// applied a few dozen times.
+constexpr double most_operations = 1e9;
+/// A component of this many rows is judged, and iterated on, by itself; at most so many of them.
+constexpr GlobalIndex fewest_rows_alone = 2000;
+constexpr std::size_t most_alone = 8;
+/// Below this stiffness number an iteration on a cloth of 7 650 rows takes less time than its
+/// factors and the solves with them: .13 s a solve of the coupled system less at 600, the same at
+/// 5 000 to 10 000, .2 s more at 30 000.
+constexpr double least_stiffness_for_factors = 5000;
+
+template <typename Condition>
+std::vector<bool> rows_where(const std::vector<RowComponent>& components, Condition condition) {
+  std::vector<bool> result;
+  for (const RowComponent& component : components)
+    result.push_back(condition(component));
+  return result;
+}
+
+std::vector<RowComponent> chosen(const std::vector<RowComponent>& all,
+                                 const std::vector<bool>& is_chosen) {
+  std::vector<RowComponent> result;
+  for (std::size_t row = 0; row < all.size(); ++row) {
+    if (is_chosen[row])
+      result.push_back(all[row]);
+  }
+  return result;
+}
+
+bool any(const std::vector<bool>& rows, const Communicator& comm) {
+  const bool here = std::find(rows.begin(), rows.end(), true) != rows.end();
+  return max_all(comm, here ? 1.0 : 0.0) > 0;
+}
+
+/// The ids of the largest components, in ascending order; the same on all ranks.
+std::vector<GlobalIndex> large_components(const std::vector<RowComponent>& components,
+                                          const Communicator& comm) {
+  std::map<GlobalIndex, GlobalIndex> rows_of;
+  for (const RowComponent& component : components) {
+    if (component.n_rows >= fewest_rows_alone)
+      rows_of[component.id] = component.n_rows;
+  }
+  std::vector<GlobalIndex> mine;
+  for (const auto& [id, n_rows] : rows_of)
+    mine.insert(mine.end(), {id, n_rows});
+  const std::vector<GlobalIndex> all = gather_all(comm, mine);
+  for (std::size_t i = 0; i < all.size(); i += 2)
+    rows_of[all[i]] = all[i + 1];
+  std::vector<std::pair<GlobalIndex, GlobalIndex>> by_size;
+  for (const auto& [id, n_rows] : rows_of)
+    by_size.emplace_back(-n_rows, id);
+  std::sort(by_size.begin(), by_size.end());
+  by_size.resize(std::min(by_size.size(), most_alone));
+  std::vector<GlobalIndex> ids;
+  for (const auto& component : by_size)
+    ids.push_back(component.second);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+NearNullSpace restricted(const NearNullSpace& all, const MatrixPart& part) {
+  if (all.empty())
+    return all;
+  NearNullSpace result;
+  const auto motions = rcp(new MultiVector(part.map(), all.motions->getNumVectors()));
+  for (std::size_t j = 0; j < motions->getNumVectors(); ++j)
+    part.restrict_to(*all.motions->getVector(j), *motions->getVectorNonConst(j));
+  result.motions = motions;
+  result.mass = part.restricted(*all.mass);
+  result.n_bodies = all.n_bodies;
+  for (const int row : part.rows())
+    result.body_of_row.push_back(all.body_of_row[row]);
+  return result;
+}
+
+InverseByCost::Rest rest_of(const std::shared_ptr<const MatrixPart>& part,
+                            const NearNullSpace& space) {
+  const NearNullSpace motions = restricted(space, *part);
+  return {as_operator(RCP<const CrsMatrix>(part->matrix())), motions,
+          stiffness_number(*part->matrix(), motions), part};
+}
+
+}  // namespace
+
+InverseByCost::InverseByCost(const RCP<const LinearOperator>& op, const NearNullSpace& space,
+                             const std::string& name)
+    : map_(domain_map(*op)) {
+  const auto matrix = assembled(op);
+  if (matrix.is_null())
+    rests_.push_back({op, space, 1, nullptr});
+  else
+    split(matrix, space, name);
+}
+
+void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space,
+                          const std::string& name) {
+  const Communicator comm = map_->getComm();
+  const std::vector<RowComponent> components = components_of_rows(*matrix, space);
+  const auto is_block = rows_where(
+      components, [](const RowComponent& one) { return one.n_rows <= largest_dense_block; });
+  if (!any(rows_where(components,
+                      [](const RowComponent& one) { return one.n_rows > largest_dense_block; }),
+           comm)) {
+    whole_ = as_operator(block_diagonal_inverse(matrix, largest_dense_block, name).inverse);
+    return;
+  }
+  const std::vector<GlobalIndex> large = large_components(components, comm);
+  const auto is_small = rows_where(components, [&](const RowComponent& one) {
+    return one.n_rows > largest_dense_block &&
+           !std::binary_search(large.begin(), large.end(), one.id);
+  });
+  if (any(is_block, comm))
+    cheap_.push_back(part_of_blocks(std::make_shared<const MatrixPart>(*matrix, is_block), name));
+  if (any(is_small, comm))
+    take_small(*matrix, space, components, is_small, name);
+  for (const GlobalIndex id : large)
+    take_large(*matrix, space,
+               rows_where(components, [id](const RowComponent& one) { return one.id == id; }),
+               name);
+}
+
+/// All of them at once: those whose factors are cheap, and the others as one rest.
+void InverseByCost::take_small(const CrsMatrix& matrix, const NearNullSpace& space,
+                               const std::vector<RowComponent>& components,
+                               std::vector<bool> is_small, const std::string& name) {
+  const auto part = std::make_shared<const MatrixPart>(matrix, is_small);
+  const ComponentCholesky cholesky =
+      cheap_component_cholesky(part->matrix(), chosen(components, is_small), most_operations, name);
+  if (any(cholesky.is_factored, map_->getComm()))
+    cheap_.push_back({part, cholesky.inverse});
+  auto is_factored = cholesky.is_factored.begin();
+  for (std::size_t row = 0; row < is_small.size(); ++row) {
+    if (is_small[row])
+      is_small[row] = !*is_factored++;
+  }
+  if (any(is_small, map_->getComm()))
+    rests_.push_back(rest_of(std::make_shared<const MatrixPart>(matrix, is_small), space));
+}
+
+void InverseByCost::take_large(const CrsMatrix& matrix, const NearNullSpace& space,
+                               const std::vector<bool>& rows, const std::string& name) {
+  const Rest rest = rest_of(std::make_shared<const MatrixPart>(matrix, rows), space);
+  const auto& part = rest.part;
+  const auto n_rows = static_cast<GlobalIndex>(part->map()->getGlobalNumElements());
+  const bool may_factor =
+      static_cast<double>(part->matrix()->getGlobalNumEntries()) <= most_entries &&
+      (space.empty() || rest.stiffness > least_stiffness_for_factors);
+  if (may_factor) {
+    const std::vector<RowComponent> as_one(part->rows().size(), {0, n_rows});
+    const ComponentCholesky cholesky =
+        cheap_component_cholesky(part->matrix(), as_one, most_operations, name);
+    if (any(cholesky.is_factored, map_->getComm())) {
+      cheap_.push_back({part, cholesky.inverse});
+      return;
+    }
+  }
+  rests_.push_back(rest);
+}
+
+RCP<const LinearOperator> InverseByCost::with(const InverseOfRest& inverse_of_rest) const {
+  if (!whole_.is_null())
+    return whole_;
+  std::vector<PartInverse> parts = cheap_;
+  for (const Rest& rest : rests_) {
+    if (rest.part == nullptr)
+      return inverse_of_rest(rest);
+    parts.push_back({rest.part, inverse_of_rest(rest)});
+  }
+  return inverse_by_parts(map_, parts);
+}
+
+}  // namespace lockstep

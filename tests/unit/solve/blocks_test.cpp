@@ -1,0 +1,182 @@
+// Eq. 16 as a Thyra operator, as a merged matrix, and its exact inverses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Thyra_VectorStdOps.hpp>
+#include <Tpetra_Core.hpp>
+
+#include "base/errors.hpp"
+#include "linear/block_diagonal.hpp"
+#include "solve/gathered_direct.hpp"
+#include "solve/merge.hpp"
+#include "solve/soft/exact_inverse.hpp"
+#include "solve/thyra_vectors.hpp"
+#include "unit/solve/saddle_problem.hpp"
+
+namespace lockstep::test {
+
+namespace {
+
+Communicator world() {
+  return Tpetra::getDefaultComm();
+}
+
+BlockVector random_vector(const SaddleProblem& problem, int seed) {
+  BlockVector x = problem.zero();
+  pseudo_random(*x.pressure, seed);
+  pseudo_random(*x.solid, seed + 100);
+  return x;
+}
+
+/// A tridiagonal matrix (-1, 2, -1) with `n` rows, dealt out evenly.
+RCP<CrsMatrix> tridiagonal(int n) {
+  const int size = world()->getSize(), rank = world()->getRank();
+  const auto map = make_map((rank + 1) * n / size - rank * n / size, world());
+  std::vector<std::vector<Entry>> rows(map->getNodeNumElements());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const GlobalIndex id = map->getGlobalElement(static_cast<int>(row));
+    for (GlobalIndex column = std::max<GlobalIndex>(0, id - 1);
+         column <= std::min<GlobalIndex>(n - 1, id + 1); ++column) {
+      rows[row].push_back({column, column == id ? 2.0 : -1.0});
+    }
+  }
+  return matrix_from_rows(map, rows);
+}
+
+/// |op inverse x - x| / |x|
+double inverse_error(const LinearOperator& op, const LinearOperator& inverse) {
+  Vector x(domain_map(op)), y(x.getMap()), z(x.getMap());
+  pseudo_random(x, 5);
+  apply(inverse, x, y);
+  apply(op, y, z);
+  return relative_difference(x, z);
+}
+
+}  // namespace
+
+TEST(BlockOperator, MatchesTheHandMultiplication) {
+  // [2 -1 | -1; -1 2 | 0; -1 0 | -4] (1, 2, 3) = (-3, 3, -13), all on rank 0.
+  const bool root = is_root(world());
+  const auto cells = make_map(root ? 2 : 0, world()), dofs = make_map(root ? 1 : 0, world());
+  std::vector<std::vector<Entry>> a, b, c;
+  if (root) {
+    a = {{{0, 2}, {1, -1}}, {{0, -1}, {1, 2}}};
+    b = {{{0, 1}}};
+    c = {{{0, 4}}};
+  }
+  BlockSystem system;
+  system.pressure_block = as_operator(matrix_from_rows(cells, a));
+  system.coupling_transposed = matrix_from_rows(dofs, b, cells, dofs);
+  system.solid_block = as_operator(matrix_from_rows(dofs, c));
+  const BlockVector x{make_vector(cells), make_vector(dofs)},
+      y{make_vector(cells), make_vector(dofs)};
+  if (root) {
+    x.pressure->replaceLocalValue(0, 1.0);
+    x.pressure->replaceLocalValue(1, 2.0);
+    x.solid->replaceLocalValue(0, 3.0);
+  }
+  const auto op = block_operator(system);
+  op->apply(Thyra::NOTRANS, *as_thyra(x, *op), as_thyra(y, *op).ptr(), 1, 0);
+  if (root) {
+    EXPECT_DOUBLE_EQ(y.pressure->getData()[0], -3);
+    EXPECT_DOUBLE_EQ(y.pressure->getData()[1], 3);
+    EXPECT_DOUBLE_EQ(y.solid->getData()[0], -13);
+  }
+}
+
+TEST(BlockOperator, IsSymmetricAndEqualsTheMergedMatrix) {
+  const SaddleProblem problem(world(), {});
+  const auto op = block_operator(problem.system, 2, 3);
+  const BlockVector u = random_vector(problem, 1), v = random_vector(problem, 2),
+                    ku = problem.zero(), kv = problem.zero();
+  op->apply(Thyra::NOTRANS, *as_thyra(u, *op), as_thyra(ku, *op).ptr(), 1, 0);
+  op->apply(Thyra::NOTRANS, *as_thyra(v, *op), as_thyra(kv, *op).ptr(), 1, 0);
+  const double uv = u.pressure->dot(*kv.pressure) + u.solid->dot(*kv.solid);
+  const double vu = v.pressure->dot(*ku.pressure) + v.solid->dot(*ku.solid);
+  EXPECT_NEAR(uv, vu, 1e-12 * kv.solid->norm2() * u.solid->norm2());
+
+  const auto unscaled = block_operator(problem.system);
+  unscaled->apply(Thyra::NOTRANS, *as_thyra(u, *unscaled), as_thyra(ku, *unscaled).ptr(), 1, 0);
+  const MergedSystem merged = merge(problem.system);
+  Vector product(merged.matrix->getRowMap());
+  merged.matrix->apply(*to_merged(merged, u), product);
+  BlockVector from_matrix = problem.zero();
+  from_merged(merged, product, from_matrix);
+  EXPECT_LT(relative_difference(*ku.pressure, *from_matrix.pressure), 1e-13);
+  EXPECT_LT(relative_difference(*ku.solid, *from_matrix.solid), 1e-13);
+}
+
+TEST(MergedSystem, BorderMakesAClosedTankRegular) {
+  SaddleOptions options;
+  options.open_top = false;
+  const SaddleProblem problem(world(), options);
+  const MergedSystem merged = merge(problem.system);
+  EXPECT_EQ(merged.matrix->getGlobalNumRows(), 16u * 16u + 6u + 1u);
+  const auto inverse = gathered_direct(merged.matrix, "closed tank");
+  EXPECT_LT(inverse_error(*as_operator(merged.matrix), *inverse), 1e-9);
+}
+
+TEST(GatheredDirect, IsRightOnAnyNumberOfRanks) {
+  const auto matrix = tridiagonal(8);
+  EXPECT_LT(inverse_error(*as_operator(matrix), *gathered_direct(matrix, "test")), 1e-14);
+}
+
+TEST(GatheredDirect, RefusesASingularMatrix) {
+  const auto map = make_map(is_root(world()) ? 2 : 0, world());
+  std::vector<std::vector<Entry>> rows;
+  if (is_root(world()))
+    rows = {{{0, 1}, {1, 0}}, {{0, 0}, {1, 0}}};
+  EXPECT_THROW(gathered_direct(matrix_from_rows(map, rows), "test"), SolveError);
+}
+
+/// As in the mass matrix of a turned body, where R J R^T is symmetric up to round-off only.
+TEST(BlockDiagonal, AZeroOnOneSideOfTheDiagonalCountsNothingTwice) {
+  for (const auto& [above, below] : {std::pair(0., 1e-17), std::pair(1e-17, 0.)}) {
+    const auto map = make_map(is_root(world()) ? 3 : 0, world());
+    std::vector<std::vector<Entry>> rows;
+    if (is_root(world()))
+      rows = {{{0, 2}, {1, above}}, {{0, below}, {1, 4}, {2, above}}, {{1, below}, {2, 5}}};
+    const auto matrix = matrix_from_rows(map, rows);
+    const auto blocks = block_diagonal_inverse(matrix, 24, "test");
+    EXPECT_TRUE(blocks.exact);
+    EXPECT_LT(inverse_error(*as_operator(matrix), *as_operator(blocks.inverse)), 1e-14);
+  }
+}
+
+TEST(BlockDiagonal, InvertsBlocksThatSpanRanks) {
+  const SaddleProblem problem(world(), {});
+  const auto solid = assembled(problem.system.solid_block);
+  const auto blocks = block_diagonal_inverse(solid, 24, "test");
+  EXPECT_TRUE(blocks.exact);
+  EXPECT_EQ(blocks.inverse->getGlobalNumEntries(), 18u);
+  EXPECT_LT(inverse_error(*problem.system.solid_block, *as_operator(blocks.inverse)), 1e-14);
+}
+
+TEST(BlockDiagonal, LargeComponentsFallBackToTheDiagonal) {
+  const auto blocks = block_diagonal_inverse(tridiagonal(40), 24, "test");
+  EXPECT_FALSE(blocks.exact);
+  EXPECT_EQ(blocks.inverse->getGlobalNumEntries(), 40u);
+  const auto small = block_diagonal_inverse(tridiagonal(24), 24, "test");
+  EXPECT_TRUE(small.exact);
+  EXPECT_LT(inverse_error(*as_operator(tridiagonal(24)), *as_operator(small.inverse)), 1e-13);
+}
+
+TEST(BlockDiagonal, RefusesAnIndefiniteBlock) {
+  SaddleOptions options;
+  options.plate_mass = -1;
+  const SaddleProblem problem(world(), options);
+  EXPECT_THROW(block_diagonal_inverse(assembled(problem.system.solid_block), 24, "test"),
+               SolveError);
+}
+
+TEST(ExactInverse, IsExactForEveryKindOfMatrix) {
+  EXPECT_LT(inverse_error(*as_operator(tridiagonal(200)),
+                          *exact_inverse(as_operator(tridiagonal(200)), "test")),
+            1e-11);
+  EXPECT_LT(inverse_error(
+                *as_operator(tridiagonal(200)),
+                *conjugate_gradient_inverse(as_operator(tridiagonal(200)), 1e-14, 1000, "test")),
+            1e-10);
+}
+
+}  // namespace lockstep::test

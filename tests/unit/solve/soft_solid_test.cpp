@@ -1,0 +1,419 @@
+// Inverses of C = M - dt D of a soft solid, from a solid of mass to one that is nearly rigid.
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "linear/action_operator.hpp"
+#include "linear/matrix_part.hpp"
+#include "linear/matrix_rows.hpp"
+#include "linear/matrix_sum.hpp"
+#include "linear/symmetry_check.hpp"
+#include "solve/block_residual.hpp"
+#include "solve/preconditioner.hpp"
+#include "solve/soft/additive_multilevel.hpp"
+#include "solve/soft/aggregation.hpp"
+#include "solve/soft/component_cholesky.hpp"
+#include "solve/soft/exact_inverse.hpp"
+#include "solve/soft/inverse_by_cost.hpp"
+#include "solve/soft/single_precision.hpp"
+
+namespace lockstep::test {
+
+namespace {
+
+/// n x n nodes of unit mass and distance, tied to their eight neighbours by springs of stiffness k,
+/// linear about rest; the nodes are dealt to the ranks row by row. A rigid dof of mass 3 follows on
+/// the last rank.
+struct Lattice {
+  Lattice(int n, double k) {
+    const Communicator comm = Tpetra::getDefaultComm();
+    const int n_nodes = n * n, rank = comm->getRank(), n_ranks = comm->getSize();
+    const int begin = n_nodes * rank / n_ranks, end = n_nodes * (rank + 1) / n_ranks;
+    const bool is_last = rank == n_ranks - 1;
+    const RCP<const Map> map = make_map(2 * (end - begin) + (is_last ? 1 : 0), comm);
+    std::vector<std::vector<Entry>> rows(map->getNodeNumElements());
+    const auto motions = rcp(new MultiVector(map, 3));
+    for (int node = begin; node < end; ++node) {
+      const int i = node % n, j = node / n, row = 2 * (node - begin);
+      for (int a = 0; a < 2; ++a) {
+        rows[row + a].push_back({2 * node + a, 1});
+        motions->replaceLocalValue(row + a, a, 1);
+        motions->replaceLocalValue(row + a, 2, a == 0 ? -j : i);
+        space.body_of_row.push_back(0);
+      }
+      for (int dj = -1; dj <= 1; ++dj) {
+        for (int di = -1; di <= 1; ++di) {
+          const bool inside = i + di >= 0 && i + di < n && j + dj >= 0 && j + dj < n;
+          if (inside && (di != 0 || dj != 0))
+            add_spring(node, node + di + n * dj, Point<2>(di, dj).normalized(), k, rows, row);
+        }
+      }
+    }
+    if (is_last) {
+      rows.back().push_back({2 * n_nodes, 3});
+      space.body_of_row.push_back(-1);
+    }
+    space.motions = motions;
+    space.n_bodies = 1;
+    std::vector<std::vector<Entry>> mass(rows.size());
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      mass[row] = {{map->getGlobalElement(row), 1}};
+    space.mass =
+        lumped_mass(*as_operator(RCP<const CrsMatrix>(matrix_from_rows(map, mass))), space);
+    c = matrix_from_rows(map, rows);
+  }
+
+  static void add_spring(int node, int other, const Point<2>& e, double k,
+                         std::vector<std::vector<Entry>>& rows, int row) {
+    for (int a = 0; a < 2; ++a) {
+      for (int b = 0; b < 2; ++b) {
+        rows[row + a].push_back({2 * node + b, k * e[a] * e[b]});
+        rows[row + a].push_back({2 * other + b, -k * e[a] * e[b]});
+      }
+    }
+  }
+
+  RCP<const CrsMatrix> c;
+  NearNullSpace space;
+};
+
+Teuchos::ParameterList type(const std::string& name) {
+  Teuchos::ParameterList list;
+  list.set("Type", name);
+  return list;
+}
+
+/// Iterations of conjugate gradients to 1e-10 with this inverse.
+long iterations(const Lattice& solid, const std::string& name) {
+  const auto op = as_operator(solid.c);
+  const auto inverse = preconditioner_from_list(op, type(name), "solid", solid.space);
+  EXPECT_NO_THROW(check_symmetric_positive(*inverse, "solid"));
+  const auto count = std::make_shared<long>(0);
+  const auto solver =
+      conjugate_gradient_inverse(op, {inverse, Teuchos::null, 1e-10, 5000, "solid", count});
+  Vector rhs(solid.c->getRowMap()), x(solid.c->getRowMap()), residual(solid.c->getRowMap());
+  pseudo_random(rhs, 7);
+  apply(*solver, rhs, x);
+  solid.c->apply(x, residual);
+  residual.update(1, rhs, -1);
+  EXPECT_LT(residual.norm2(), 1e-6 * rhs.norm2());
+  return *count;
+}
+
+}  // namespace
+
+TEST(SoftSolid, StiffnessNumberComparesTheTraces) {
+  // Two nodes by two: each has springs along x and y (k e e^T: trace k each) and one diagonal.
+  const Lattice solid(2, 5);
+  EXPECT_NEAR(stiffness_number(*solid.c, solid.space), 1 + 0.5 * 3 * 5, 1e-12);
+  EXPECT_EQ(stiffness_number(*solid.c, {}), 1);
+  EXPECT_NEAR(stiffness_number(*Lattice(3, 0).c, Lattice(3, 0).space), 1, 1e-12);
+}
+
+TEST(SoftSolid, MassIsFoundInC) {
+  const Lattice solid(5, 1e3);
+  const auto inverse = block_diagonal_mass_inverse(solid.c, solid.space, "solid");
+  Vector ones(solid.c->getRowMap()), x(solid.c->getRowMap());
+  ones.putScalar(1);
+  apply(*inverse, ones, x);
+  const auto values = x.getData();
+  for (int row = 0; row < static_cast<int>(values.size()); ++row)
+    EXPECT_NEAR(values[row], solid.space.body_of_row[row] == 0 ? 1 : 1. / 3, 1e-10);
+}
+
+TEST(SoftSolid, MultigridIsFlatInStiffnessAndSize) {
+  const long soft = iterations(Lattice(24, 1), "MueLu");
+  for (const double k : {1e2, 1e4, 1e8})
+    EXPECT_LE(iterations(Lattice(24, k), "MueLu"), soft + 12) << k;
+  EXPECT_LE(iterations(Lattice(48, 1e4), "MueLu"), soft + 14);
+  EXPECT_GT(iterations(Lattice(48, 1e4), "Jacobi"), 8 * soft);
+}
+
+/// |C x - b| / |b| for this inverse.
+double error_of(const LinearOperator& inverse, const CrsMatrix& c) {
+  Vector rhs(c.getRowMap()), x(c.getRowMap()), residual(c.getRowMap());
+  pseudo_random(rhs, 5);
+  apply(inverse, rhs, x);
+  c.apply(x, residual);
+  residual.update(1, rhs, -1);
+  return residual.norm2() / rhs.norm2();
+}
+
+TEST(SoftSolid, ComponentsAreFoundAcrossRanks) {
+  const Lattice solid(12, 1);
+  const auto components = components_of_rows(*solid.c);
+  const GlobalIndex n_rows = 2 * 12 * 12;
+  for (std::size_t row = 0; row < components.size(); ++row) {
+    const bool is_node = solid.space.body_of_row[row] == 0;
+    EXPECT_EQ(components[row].id, is_node ? 0 : n_rows);
+    EXPECT_EQ(components[row].n_rows, is_node ? n_rows : 1);
+  }
+  // Without springs every dof is alone.
+  const Lattice loose(3, 0);
+  for (const RowComponent& component : components_of_rows(*loose.c))
+    EXPECT_EQ(component.n_rows, 1);
+}
+
+TEST(SoftSolid, CholeskyOfCheapComponentsOnly) {
+  const Lattice solid(12, 1e4);
+  const auto components = components_of_rows(*solid.c);
+  const auto all = cheap_component_cholesky(solid.c, components, 1e9, "solid");
+  EXPECT_EQ(std::count(all.is_factored.begin(), all.is_factored.end(), false), 0);
+  EXPECT_LT(error_of(*all.inverse, *solid.c), 1e-9);
+  // The lone dof takes one multiplication, the lattice thousands.
+  const auto one = cheap_component_cholesky(solid.c, components, 10, "solid");
+  for (std::size_t row = 0; row < components.size(); ++row)
+    EXPECT_EQ(one.is_factored[row], solid.space.body_of_row[row] < 0);
+  Vector rhs(solid.c->getRowMap()), x(solid.c->getRowMap());
+  rhs.putScalar(6);
+  apply(*one.inverse, rhs, x);
+  const auto values = x.getData();
+  for (std::size_t row = 0; row < components.size(); ++row)
+    EXPECT_NEAR(values[row], one.is_factored[row] ? 2 : 0, 1e-14);
+}
+
+TEST(SoftSolid, IndefiniteMatricesHaveNoCholeskyFactors) {
+  const Lattice solid(6, -1);
+  const auto components = components_of_rows(*solid.c);
+  EXPECT_THROW(cheap_component_cholesky(solid.c, components, 1e9, "solid"), SolveError);
+}
+
+TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
+  const Lattice small(20, 1e3);
+  EXPECT_TRUE(InverseByCost(as_operator(small.c), small.space, "solid").is_complete());
+  // 5 000 rows: factored where an iteration would be slow, or no motions tell.
+  const Lattice soft(50, 10), stiff(50, 1e4);
+  EXPECT_FALSE(InverseByCost(as_operator(soft.c), soft.space, "solid").is_complete());
+  EXPECT_TRUE(InverseByCost(as_operator(stiff.c), stiff.space, "solid").is_complete());
+  EXPECT_TRUE(InverseByCost(as_operator(soft.c), {}, "solid").is_complete());
+
+  const Lattice solid(160, 10);  // 51 200 rows and one
+  const InverseByCost split(as_operator(solid.c), solid.space, "solid");
+  ASSERT_EQ(split.rests().size(), 1u);
+  const auto rest = assembled(split.rests()[0].op);
+  EXPECT_EQ(rest->getGlobalNumRows(), 2 * 160 * 160);
+  const NearNullSpace& motions = split.rests()[0].motions;
+  EXPECT_EQ(std::count(motions.body_of_row.begin(), motions.body_of_row.end(), -1), 0);
+  EXPECT_NEAR(motions.mass->norm1(), 2 * 160 * 160, 1e-6);
+  const auto inverse = split.with([](const InverseByCost::Rest& one) {
+    return conjugate_gradient_inverse(one.op, 1e-12, 5000, "rest");
+  });
+  EXPECT_LT(error_of(*inverse, *solid.c), 1e-11);
+}
+
+/// What moves in the plane of a flat cloth and what moves out of it is tied by nothing but nodes.
+TEST(SoftSolid, NodesAreNotTornApart) {
+  const Lattice solid(40, 10);
+  const Map& map = *solid.c->getRowMap();
+  std::vector<std::vector<Entry>> rows(map.getNodeNumElements());
+  for_each_entry(*solid.c, [&](int row, GlobalIndex column, double value) {
+    const GlobalIndex id = map.getGlobalElement(row);
+    if (id % 2 == column % 2 || solid.space.body_of_row[row] < 0)
+      rows[row].push_back({column, value});
+  });
+  const auto flat = matrix_from_rows(solid.c->getRowMap(), rows);
+  EXPECT_EQ(components_of_rows(*flat)[0].n_rows, 40 * 40);
+  const InverseByCost split(as_operator(RCP<const CrsMatrix>(flat)), solid.space, "cloth");
+  ASSERT_EQ(split.rests().size(), 1u);
+  const InverseByCost::Rest& rest = split.rests()[0];
+  EXPECT_EQ(assembled(rest.op)->getGlobalNumRows(), 2 * 40 * 40);
+  const auto levels = additive_multilevel_inverse(assembled(rest.op), rest.motions, "cloth");
+  EXPECT_NO_THROW(check_symmetric_positive(*levels, "levels", 1e-10));
+}
+
+TEST(SoftSolid, LargePartsAreIteratedOnOneByOne) {
+  const Lattice one(40, 10), other(40, 50);
+  const Map& part = *one.c->getRowMap();
+  const auto n = static_cast<GlobalIndex>(part.getGlobalNumElements());
+  std::vector<GlobalIndex> ids;
+  for (const GlobalIndex shift : {GlobalIndex(0), n}) {
+    for (const GlobalIndex id : part.getNodeElementList())
+      ids.push_back(id + shift);
+  }
+  const RCP<const Map> map =
+      rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                  Teuchos::arrayViewFromVector(ids), 0, Tpetra::getDefaultComm()));
+  const RCP<const CrsMatrix> both = sum_of({{one.c, 0, 1}, {other.c, n, 1}}, map);
+  NearNullSpace space;
+  space.n_bodies = 2;
+  const auto motions = rcp(new MultiVector(map, 3));
+  const auto mass = make_vector(map);
+  for (const auto* solid : {&one, &other}) {
+    const std::size_t begin = space.body_of_row.size();
+    for (const int body : solid->space.body_of_row)
+      space.body_of_row.push_back(body < 0 ? -1 : solid == &other);
+    motions->offsetViewNonConst(one.c->getRowMap(), begin)->update(1, *solid->space.motions, 0);
+    mass->offsetViewNonConst(one.c->getRowMap(), begin)->update(1, *solid->space.mass, 0);
+  }
+  space.motions = motions;
+  space.mass = mass;
+
+  const InverseByCost split(as_operator(both), space, "solids");
+  ASSERT_EQ(split.rests().size(), 2u);
+  EXPECT_NEAR((split.rests()[1].stiffness - 1) / (split.rests()[0].stiffness - 1), 5, 1e-9);
+  const auto inverse = split.with([](const InverseByCost::Rest& rest) {
+    return conjugate_gradient_inverse(rest.op, 1e-12, 5000, "rest");
+  });
+  EXPECT_LT(error_of(*inverse, *both), 1e-11);
+}
+
+/// What elastic forces leave when they cancel is round-off, and no strategy can do better.
+TEST(SoftSolid, ResidualsAreNotMeasuredBelowRoundOff) {
+  for (const double k : {1e2, 1e10}) {
+    const Lattice solid(12, k);
+    BlockSystem system;
+    const auto pressures = make_map(1, Tpetra::getDefaultComm());
+    const auto nothing = [&](const RCP<const Map>& rows) {
+      return matrix_from_rows(rows, std::vector<std::vector<Entry>>(rows->getNodeNumElements()),
+                              pressures, rows);
+    };
+    system.pressure_block = as_operator(RCP<const CrsMatrix>(nothing(pressures)));
+    system.coupling_transposed = nothing(solid.c->getRowMap());
+    system.solid_block = as_operator(solid.c);
+    const auto velocity = make_vector(solid.c->getRowMap()),
+               momentum = make_vector(velocity->getMap());
+    velocity->update(1, *solid.space.motions->getVector(0), 3, *solid.space.motions->getVector(1),
+                     0);
+    momentum->elementWiseMultiply(1, *solid.space.mass, *velocity, 0);
+    const BlockResidual residual = block_residual(system, {make_vector(pressures), momentum},
+                                                  {make_vector(pressures), velocity});
+    EXPECT_LT(residual.relative_solid(), 1e-9);
+    if (k < 1e6) {
+      EXPECT_NEAR(residual.solid_scale, momentum->norm2(), 1e-8 * momentum->norm2());
+    }
+  }
+}
+
+/// Without the lone dof.
+struct Nodes {
+  Nodes(int n, double k) {
+    const Lattice solid(n, k);
+    std::vector<bool> is_node;
+    for (const int body : solid.space.body_of_row)
+      is_node.push_back(body >= 0);
+    const MatrixPart part(*solid.c, is_node);
+    c = part.matrix();
+    const auto motions = rcp(new MultiVector(part.map(), 3));
+    for (int j = 0; j < 3; ++j)
+      part.restrict_to(*solid.space.motions->getVector(j), *motions->getVectorNonConst(j));
+    space.motions = motions;
+    space.n_bodies = 1;
+    space.body_of_row.assign(part.rows().size(), 0);
+    space.mass = part.restricted(*solid.space.mass);
+  }
+
+  RCP<const CrsMatrix> c;
+  NearNullSpace space;
+};
+
+TEST(SoftSolid, SinglePrecisionCopyIsTheMatrixRounded) {
+  const Nodes solid(12, 1e3 / 3);
+  const auto copy = single_precision_copy(solid.c, solid.space);
+  ASSERT_FALSE(copy.is_null());
+  EXPECT_LT(symmetry_defect(*copy), 1e-15);
+  Vector x(solid.c->getRowMap()), exact(solid.c->getRowMap()), rounded(solid.c->getRowMap());
+  pseudo_random(x, 3);
+  solid.c->apply(x, exact);
+  apply(*copy, x, rounded);
+  rounded.update(-1, exact, 1);
+  const double error = rounded.norm2() / exact.norm2();
+  EXPECT_LT(error, 1e-7);
+  EXPECT_GT(error, 1e-10);
+}
+
+TEST(SoftSolid, ThereIsNoSinglePrecisionCopyWhereItWouldNotServe) {
+  const Lattice with_lone_dof(6, 1);
+  EXPECT_TRUE(single_precision_copy(with_lone_dof.c, with_lone_dof.space).is_null());
+  const Nodes unknown(6, 1), stiff(6, 1e5);
+  EXPECT_TRUE(single_precision_copy(unknown.c, {}).is_null());
+  EXPECT_TRUE(single_precision_copy(stiff.c, stiff.space).is_null());
+  const auto map = unknown.c->getRowMap();
+  std::vector<std::vector<Entry>> diagonal;
+  for (const GlobalIndex id : map->getNodeElementList())
+    diagonal.push_back({{id, 2}});
+  EXPECT_TRUE(single_precision_copy(matrix_from_rows(map, diagonal), unknown.space).is_null());
+}
+
+TEST(SoftSolid, IterationOnARoundedMatrixReachesRoundOff) {
+  const Nodes solid(24, 1e3 / 3);
+  const auto op = as_operator(solid.c);
+  const auto jacobi = preconditioner_from_list(op, type("Jacobi"), "solid");
+  const auto to = [&](double tolerance, const RCP<const LinearOperator>& rounded) {
+    const auto count = std::make_shared<long>(0);
+    const auto inverse =
+        conjugate_gradient_inverse(op, {jacobi, rounded, tolerance, 5000, "solid", count});
+    EXPECT_LT(error_of(*inverse, *solid.c), 2 * tolerance);
+    return static_cast<double>(*count);
+  };
+  // What is lost where the residual is replaced is less than what an iteration gains.
+  const auto rounded = single_precision_copy(solid.c, solid.space);
+  ASSERT_FALSE(rounded.is_null());
+  for (const double tolerance : {1e-2, 1e-5, 1e-9, 1e-13})
+    EXPECT_LT(to(tolerance, rounded) / to(tolerance, Teuchos::null), 1.5) << tolerance;
+  // Further than round-off lets the true residual fall.
+  const auto inverse = conjugate_gradient_inverse(op, {jacobi, rounded, 1e-16, 1000, "solid", {}});
+  EXPECT_LT(error_of(*inverse, *solid.c), 1e-13);
+}
+
+TEST(SoftSolid, WhatIsRoundedTooMuchIsFinishedWithTheMatrixItself) {
+  // At .4 C the true residual grows by half with every correction.
+  const Nodes solid(12, 10);
+  const auto op = as_operator(solid.c);
+  const auto far_off = action_operator(solid.c->getRowMap(),
+                                       [op](const Vector& x, Vector& y) { apply(*op, x, y, 0.4); });
+  const auto jacobi = preconditioner_from_list(op, type("Jacobi"), "solid");
+  const auto inverse = conjugate_gradient_inverse(op, {jacobi, far_off, 1e-10, 1000, "solid", {}});
+  EXPECT_LT(error_of(*inverse, *solid.c), 1e-9);
+}
+
+TEST(SoftSolid, AggregatesAreNodesAndTheirNeighbors) {
+  // 9 x 9 nodes with eight neighbours each.
+  const Nodes solid(9, 1);
+  if (solid.c->getComm()->getSize() > 1)
+    GTEST_SKIP() << "Aggregates do not cross ranks.";
+  RowsOfNodes nodes{2, {}, {}};
+  for (int node = 0; node < 81; ++node) {
+    nodes.first.push_back(2 * node);
+    nodes.of_row.insert(nodes.of_row.end(), 2, node);
+  }
+  const Aggregates aggregates = aggregate(*solid.c, nodes);
+  std::vector<int> sizes(aggregates.n, 0);
+  for (const int a : aggregates.of_node)
+    ++sizes.at(a);
+  EXPECT_GE(*std::min_element(sizes.begin(), sizes.end()), 3);
+  EXPECT_LE(aggregates.n, 81 / 5);
+  EXPECT_EQ(aggregates.of_node[0], aggregates.of_node[10]);
+  EXPECT_NE(aggregates.of_node[0], aggregates.of_node[80]);
+}
+
+TEST(SoftSolid, CoarseMatrixIsThatOfTranslations) {
+  // All nodes in one aggregate a rank: only the mass is left, and the springs between ranks.
+  const Nodes solid(8, 7);
+  const Communicator comm = solid.c->getComm();
+  std::vector<int> place;
+  for (std::size_t row = 0; row < solid.space.body_of_row.size(); ++row)
+    place.push_back(static_cast<int>(row) % 2);
+  const auto coarse = coarse_matrix(*solid.c, place, make_map(2, comm));
+  Vector ones(coarse->getRowMap()), sums(coarse->getRowMap());
+  ones.putScalar(1);
+  coarse->apply(ones, sums);
+  for (const double sum : sums.getData())
+    EXPECT_NEAR(sum, static_cast<double>(place.size()) / 2, 1e-9);
+}
+
+TEST(SoftSolid, CoarseLevelsSaveIterations) {
+  const Lattice soft(60, 20), stiff(60, 1e3);  // stiffness numbers of 79 and 3900
+  EXPECT_LT(iterations(soft, "Additive Multilevel"), 0.65 * iterations(soft, "Jacobi"));
+  EXPECT_LT(iterations(stiff, "Additive Multilevel"), 0.4 * iterations(stiff, "Jacobi"));
+  // Of one node alone it is the inverse.
+  const Lattice one(1, 1);
+  const auto inverse =
+      preconditioner_from_list(as_operator(one.c), type("Additive Multilevel"), "solid", one.space);
+  EXPECT_LT(error_of(*inverse, *one.c), 1e-15);
+}
+
+}  // namespace lockstep::test
