@@ -340,7 +340,7 @@ def solver(world, coupling_list, solid_lists):
 def time(world):
     rng = world.rng
     chosen = {"Start": world.start, "End": world.start + 100 * world.dt, "Steps": world.n_steps,
-              "Pressure Correction": rng.choice(["incremental", "incremental", "non-incremental"])}
+              "Pressure Correction": rng.choice(["rotational", "incremental", "non-incremental"])}
     if rng.random() < 0.6:
         chosen["Fixed Step"] = world.dt
     else:
