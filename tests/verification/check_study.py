@@ -5,10 +5,12 @@ check_study.py CONVERGE STUDY OUTPUT [--rungs A:B] [--series REGEX]
                --expect "SERIES | QUANTITY | COLUMN | last|all|order | < | BOUND" ...
 
 SERIES and QUANTITY are regular expressions that must match whole names. `last` looks at the last rung, `all` at
-every rung, `spread` at largest minus smallest value over the matched rows.
+every rung, `spread` at largest minus smallest value over the matched rows. Values and errors are compared by their
+size, orders with their sign. What is not a finite number holds to no bound.
 """
 import argparse
 import csv
+import math
 import operator
 import re
 import subprocess
@@ -26,23 +28,30 @@ def selected(rows, series, quantity):
     return [r for r in rows if re.fullmatch(series, r["series"]) and re.fullmatch(quantity, r["quantity"])]
 
 
+def measured(row, column):
+    number = float(row[column])
+    return number if column == "order" else abs(number)
+
+
 def check(rows, expectation):
+    """One line for each row that breaks the expectation."""
     series, quantity, column, which, relation, bound = [p.strip() for p in expectation.split(" | ")]
     matched = selected(rows, series, quantity)
     if not matched:
         return [f"no row matches: {expectation}"]
     if which == "spread":
         values = [float(r[column]) for r in matched]
-        found = [(max(values) - min(values), f"spread of {column}")]
+        spread = max(values) - min(values) if all(map(math.isfinite, values)) else math.nan
+        found = [(spread, f"spread of {column}")]
     else:
         if which == "last":
             matched = list({r["series"]: r for r in matched}.values())
-        found = [(abs(float(r[column])), f"{r['series']}, {r['quantity']}, h {r['h']}: {column}")
+        found = [(measured(r, column), f"{r['series']}, {r['quantity']}, h {r['h']}: {column}")
                  for r in matched if r[column] != ""]
         if not found:
             return [f"no value in column {column}: {expectation}"]
     return [f"{name} is {value:g}, must be {relation} {bound}" for value, name in found
-            if not RELATIONS[relation](value, float(bound))]
+            if not (math.isfinite(value) and RELATIONS[relation](value, float(bound)))]
 
 
 def main():
@@ -68,4 +77,5 @@ def main():
     sys.exit(1 if failures else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()
