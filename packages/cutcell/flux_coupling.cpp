@@ -48,8 +48,6 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   const std::size_t n = volumes_.size();
   shares_.clear();
   masses_.assign(n, 0);
-  prescribed_velocity_.assign(n, 0);
-  prescribed_thin_velocity_.assign(n, 0);
   std::vector<GlobalIndex> unknowns;
   for (std::size_t f = 0; f < n; ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
@@ -60,6 +58,7 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
         unknowns.push_back(side.unknown);
   }
   pressure_import_ = import_of(std::move(unknowns), fluid.pressure_map());
+  find_prescribed_velocity(solids);
 
   coupling_transposed_ = Teuchos::null;
   added_mass_ = Teuchos::null;
@@ -142,14 +141,13 @@ std::vector<Momentum<dim>> FluxCoupling<dim>::add_unseen_buoyancy(const Point<di
 }
 
 template <int dim>
-void FluxCoupling<dim>::set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) {
+void FluxCoupling<dim>::find_prescribed_velocity(const SolidSystem<dim>& solids) {
+  prescribed_velocity_.assign(volumes_.size(), 0);
+  prescribed_thin_velocity_.assign(volumes_.size(), 0);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const auto velocity = [&](const SurfacePoint<dim>& point, const Point<dim>& x) {
-      return (motion == Motion::present
-                  ? solids.prescribed_velocity(point, x)
-                  : solids.effective_velocity(point, x))[volumes_[f].direction];
+      return solids.prescribed_velocity(point, x)[volumes_[f].direction];
     };
-    prescribed_velocity_[f] = prescribed_thin_velocity_[f] = 0;
     for (const FluxShare<dim>& share : shares_[f].all)
       if (solids.solids()[share.solid].prescribed)
         prescribed_velocity_[f] += share.weight * velocity(share.point, share.center);

@@ -39,8 +39,6 @@ class FluxCoupling : public Coupling<dim> {
   /// Of thin parts only; null without any.
   RCP<const CrsMatrix> added_mass() const override { return added_mass_; }
 
-  using Motion = typename Coupling<dim>::Motion;
-  void set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) override;
   void add_prescribed_divergence(Vector& rhs) const override;
   std::vector<PrescribedFlux> solid_fluxes(const SolidSystem<dim>& solids) const override;
   void add_lumped_momentum(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
@@ -71,6 +69,7 @@ class FluxCoupling : public Coupling<dim> {
   }
   /// What p̂ pushes on the closed part of each face, along its axis [kg m/s].
   std::vector<double> pushes(const Vector& scaled_pressure) const;
+  void find_prescribed_velocity(const SolidSystem<dim>& solids);
   void weigh_excess(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids);
   void assemble_blocks(const SolidSystem<dim>& solids);
   void add_thin_impulses(std::size_t f, double velocity_before,

@@ -43,14 +43,7 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   if (options_.carry_rotations)
     add_local_rotations<dim>(volumes_, surface, shares_);
   masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass);
-  prescribed_share_.assign(volumes_.size(), 0);
-  prescribed_velocity_.assign(volumes_.size(), 0);
-  for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    for (const SurfaceShare<dim>& share : shares_[f]) {
-      if (surface.solids()[share.solid].prescribed)
-        prescribed_share_[f] += share.weight;
-    }
-  }
+  find_prescribed(solids);
   std::vector<GlobalIndex> unknowns;
   for (const ControlVolume<dim>& volume : volumes_) {
     for (const auto& side : volume.sides) {
@@ -200,17 +193,15 @@ std::vector<Momentum<dim>> MixedFaceCoupling<dim>::add_unseen_buoyancy(const Poi
 }
 
 template <int dim>
-void MixedFaceCoupling<dim>::set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) {
+void MixedFaceCoupling<dim>::find_prescribed(const SolidSystem<dim>& solids) {
+  prescribed_share_.assign(volumes_.size(), 0);
+  prescribed_velocity_.assign(volumes_.size(), 0);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    prescribed_velocity_[f] = 0;
-    if (prescribed_share_[f] == 0)
-      continue;
     for (const SurfaceShare<dim>& share : shares_[f]) {
       if (!solids.solids()[share.solid].prescribed)
         continue;
-      const Point<dim> v = motion == Motion::present
-                               ? solids.prescribed_velocity(share.point, volumes_[f].center)
-                               : solids.effective_velocity(share.point, volumes_[f].center);
+      const Point<dim> v = solids.prescribed_velocity(share.point, volumes_[f].center);
+      prescribed_share_[f] += share.weight;
       prescribed_velocity_[f] += share.weight * v[volumes_[f].direction];
     }
   }

@@ -37,8 +37,6 @@ class MixedFaceCoupling : public Coupling<dim> {
   RCP<const CrsMatrix> coupling_transposed() const override { return coupling_transposed_; }
   RCP<const CrsMatrix> added_mass() const override { return added_mass_; }
 
-  using Motion = typename Coupling<dim>::Motion;
-  void set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) override;
   void add_prescribed_divergence(Vector& rhs) const override;
   std::vector<PrescribedFlux> solid_fluxes(const SolidSystem<dim>& solids) const override;
   void add_lumped_momentum(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
@@ -74,6 +72,7 @@ class MixedFaceCoupling : public Coupling<dim> {
   const CouplingWeights& mass_weights() const {
     return masses_are_plain() ? plain_weights_ : weights_;
   }
+  void find_prescribed(const SolidSystem<dim>& solids);
   void assemble_weights(const SolidSystem<dim>& solids);
   void assemble_blocks(const SolidSystem<dim>& solids);
   void assemble_unseen(const SolidSystem<dim>& solids, const SurfaceSnapshot<dim>& surface);

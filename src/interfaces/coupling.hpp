@@ -15,7 +15,8 @@ class SolidSystem;
 template <int dim>
 class Coupling : public PlugIn, public OpenFractionRule<dim> {
  public:
-  /// Computes everything that depends on the geometry only; `surface` must outlive the next call.
+  /// Computes everything that depends on where the solids are, and on how prescribed ones move
+  /// there (W_k V_k of the present time, used below); `surface` must outlive the next call.
   /// Collective.
   virtual void assemble(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
                         const SurfaceSnapshot<dim>& surface) = 0;
@@ -23,12 +24,6 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
   // Blocks. Null when there are no dynamic solids.
   virtual RCP<const CrsMatrix> coupling_transposed() const = 0;  ///< B^T [m^(dim-1)]
   virtual RCP<const CrsMatrix> added_mass() const = 0;           ///< dM: M̃_S = M_S + dM [kg]
-
-  /// Velocity of prescribed solids, evaluated at each coupled volume's share of them.
-  enum class Motion { present, effective };
-  /// Fixes the prescribed velocities W_k V_k used below: at the present time, or the effective ones
-  /// (F2).
-  virtual void set_prescribed_motion(const SolidSystem<dim>& solids, Motion motion) = 0;
 
   /// rhs += V G_c^T W_k V_k: what prescribed solids push into row 1 [m^dim/s]. Collective.
   virtual void add_prescribed_divergence(Vector& rhs) const = 0;

@@ -119,7 +119,6 @@ RCP<Vector> Stepper<dim>::last_pressure(double dt) const {
 template <int dim>
 CoupledSolution Stepper<dim>::solve(double dt, const RCP<Vector>& momentum, const char* name,
                                     SolveReport& report, double& incompatibility) {
-  components_.coupling->set_prescribed_motion(*components_.solids, Coupling<dim>::Motion::present);
   CoupledSolution solution;
   solution.momentum = momentum;
   solution.coupled_before = components_.fluid->coupled_velocity();

@@ -17,7 +17,6 @@ void Stepper<dim>::reset_unseen_faces() {
     unseen += volume.seen_by_fluid ? 0 : 1;
   if (sum_all(components_.solids->comm(), unseen) == 0)
     return;
-  components_.coupling->set_prescribed_motion(*components_.solids, Coupling<dim>::Motion::present);
   const std::vector<double> solid = components_.coupling->velocity(*components_.solids->velocity());
   std::vector<double> velocity = components_.fluid->coupled_velocity();
   for (std::size_t f = 0; f < volumes.size(); ++f) {
@@ -119,7 +118,6 @@ template <int dim>
 RCP<Vector> Stepper<dim>::viscous_pressure(double viscosity, double dt) {
   auto& fluid = *components_.fluid;
   auto& coupling = *components_.coupling;
-  coupling.set_prescribed_motion(*components_.solids, Coupling<dim>::Motion::present);
   const auto result = make_vector(fluid.pressure_map());
   fluid.divergence(*result);
   coupling.add_prescribed_divergence(*result);

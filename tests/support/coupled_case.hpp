@@ -33,7 +33,6 @@ struct CoupledCase {
         coupling(options),
         system(fluid, solids, coupling) {
     system.freeze(solids.snapshot());
-    coupling.set_prescribed_motion(solids, Coupling<dim>::Motion::present);
   }
   FakeFluid<dim> fluid;
   SolidSystem<dim> solids;

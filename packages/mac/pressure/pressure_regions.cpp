@@ -63,7 +63,7 @@ class ComponentFinder {
   }
 
   DisjointSets sets;
-  std::vector<int> fixed_cells;             ///< at open sides or empty cells
+  std::vector<int> fixed_cells;             ///< at open sides
   std::vector<std::pair<int, int>> across;  ///< cells joined with ghosts
 
  private:

@@ -12,8 +12,7 @@ namespace lockstep {
 enum class CellState : char {
   outside,  ///< beyond the domain
   fluid,    ///< carries a pressure
-  solid,    ///< centre inside a closed solid
-  empty     ///< no fluid, p = 0
+  solid     ///< centre inside a closed solid
 };
 
 /// What a face velocity is.

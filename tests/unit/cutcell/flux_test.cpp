@@ -42,7 +42,6 @@ struct FluxCase {
     system = std::make_unique<CoupledSystem<dim>>(*fluid, *solids, coupling);
     surface = solids->snapshot();
     system->freeze(surface);
-    coupling.set_prescribed_motion(*solids, Coupling<dim>::Motion::present);
     fluid->begin_prediction();
   }
   static std::unique_ptr<MacFluid<dim>> tank(int n_cells, bool periodic) {

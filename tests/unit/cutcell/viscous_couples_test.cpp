@@ -53,7 +53,6 @@ struct ViscousCase {
     solids = std::make_unique<SolidSystem<dim>>(std::move(models), Tpetra::getDefaultComm());
     system = std::make_unique<CoupledSystem<dim>>(*fluid, *solids, coupling);
     system->freeze(solids->snapshot());
-    coupling.set_prescribed_motion(*solids, Coupling<dim>::Motion::present);
     fluid->begin_prediction();
   }
   ViscousResult<dim> solve() {
