@@ -33,12 +33,10 @@ void MacFluid<dim>::set_geometry(const Surface& surface, const OpenFractionRule<
     return;
   viscosity_.reset();
   geometry_ = make_geometry(domain_, parameters_.density, surface, rule);
-  pressure_block_ =
-      as_operator(pressure_operator(domain_, geometry_, parameters_.density, lattice_blocks_));
+  pressure_block_ = as_operator(pressure_operator(domain_, geometry_, lattice_blocks_));
   regions_ = find_regions(domain_, geometry_);
   if (parameters_.viscosity.viscosity > 0)
-    viscosity_ = std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.density,
-                                                  parameters_.viscosity);
+    viscosity_ = std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.viscosity);
   set_prescribed(velocity_);
   set_prescribed(prediction_);
 }
@@ -61,7 +59,7 @@ void MacFluid<dim>::divergence(Vector& rhs) const {
 template <int dim>
 void MacFluid<dim>::project(const Vector& scaled_pressure) {
   scaled_pressure_ = pressure_field(domain_, geometry_, scaled_pressure);
-  subtract_gradient<dim>(domain_, geometry_, parameters_.density, scaled_pressure_, prediction_);
+  subtract_gradient<dim>(domain_, geometry_, scaled_pressure_, prediction_);
   domain_.halo.fill(prediction_);
 }
 
@@ -163,10 +161,9 @@ AngularVector<dim> MacFluid<dim>::moment_of_shifts(const Velocity& velocity) con
     const ControlVolume<dim>& volume = geometry_.volumes[i];
     if (volume.open_fraction == 0)
       continue;
-    const double mass = volume.density * volume.box.volume() * volume.open_fraction;
-    const Point<dim> momentum = Point<dim>::Unit(volume.direction) *
-                                (mass * velocity(volume.direction, geometry_.coupled[i].cell));
-    moment += cross<dim>(volume.open_center - volume.center, momentum);
+    const auto [axis, cell] = geometry_.coupled[i];
+    const double momentum = geometry_.mass(axis, cell) * velocity(axis, cell);
+    moment += cross<dim>(volume.open_center - volume.center, Point<dim>::Unit(axis) * momentum);
   }
   return moment;
 }
@@ -187,7 +184,6 @@ Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
   set_prescribed(prediction_);
   Momentum<dim> impulse = push_sources(time);
   const ForceField<dim> force(domain_, geometry_, parameters_.forces, scalars_);
-  const double full_mass = parameters_.density * domain_.cell_volume();
   Momentum<dim> mine;
   for (int axis = 0; axis < dim; ++axis) {
     if (force.vanishes(axis))
@@ -198,13 +194,10 @@ Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
         return;
       const double change = dt * force(axis, cell);
       prediction_[axis][cell] += change;
-      moments.add(cell, full_mass * geometry_.open_fraction(axis, cell) * change);
+      moments.add(cell, geometry_.mass(axis, cell) * change);
     });
     mine += moments.total();
   }
-  for (const auto& [axis, cell] : geometry_.open_sides)
-    mine.add(domain_.grid.face_center(axis, cell), axis,
-             -0.5 * full_mass * geometry_.open_fraction(axis, cell) * dt * force(axis, cell));
   mine.angular += moment_of_shifts([&](int axis, int cell) { return dt * force(axis, cell); });
   domain_.halo.fill(prediction_);
   return impulse + sum_over_ranks(mine, domain_.grid.comm());
@@ -301,20 +294,15 @@ void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
 
 template <int dim>
 Momentum<dim> MacFluid<dim>::momentum() const {
-  const double full_mass = parameters_.density * domain_.cell_volume();
   Momentum<dim> mine;
   for (int axis = 0; axis < dim; ++axis) {
     FaceMoments<dim> moments(domain_.grid, axis);
     domain_.grid.for_each_owned_face(axis, [&](int cell) {
-      const double open = geometry_.open_fraction(axis, cell);
-      if (open > 0)
-        moments.add(cell, full_mass * open * prediction_[axis][cell]);
+      if (const double mass = geometry_.mass(axis, cell); mass > 0)
+        moments.add(cell, mass * prediction_[axis][cell]);
     });
     mine += moments.total();
   }
-  for (const auto& [axis, cell] : geometry_.open_sides)
-    mine.add(domain_.grid.face_center(axis, cell), axis,
-             -0.5 * full_mass * geometry_.open_fraction(axis, cell) * prediction_[axis][cell]);
   mine.angular += moment_of_shifts([&](int axis, int cell) { return prediction_[axis][cell]; });
   return sum_over_ranks(mine, domain_.grid.comm());
 }
@@ -322,15 +310,12 @@ Momentum<dim> MacFluid<dim>::momentum() const {
 template <int dim>
 double MacFluid<dim>::kinetic_energy() const {
   double mine = 0;
-  const auto square = [&](int axis, int cell) {
-    const double u = prediction_[axis][cell];
-    return geometry_.open_fraction(axis, cell) * u * u;
-  };
   for (int axis = 0; axis < dim; ++axis)
-    domain_.grid.for_each_owned_face(axis, [&](int cell) { mine += square(axis, cell); });
-  for (const auto& [axis, cell] : geometry_.open_sides)
-    mine -= 0.5 * square(axis, cell);
-  return 0.5 * parameters_.density * domain_.cell_volume() * sum_all(domain_.grid.comm(), mine);
+    domain_.grid.for_each_owned_face(axis, [&](int cell) {
+      const double u = prediction_[axis][cell];
+      mine += geometry_.mass(axis, cell) * u * u;
+    });
+  return 0.5 * sum_all(domain_.grid.comm(), mine);
 }
 
 template <int dim>

@@ -32,7 +32,7 @@ std::vector<PrescribedFlux> MacFluid<dim>::side_fluxes(double time) const {
       const double velocity =
           side.mean_velocity(axis, domain_.face_box(axis, cell), time)[axis] * (is_upper ? -1 : 1);
       const int fluid = is_upper ? domain_.grid.neighbor(cell, axis, 0) : cell;
-      const double area = domain_.face_area() * geometry_.open_part_of_prescribed(axis, cell);
+      const double area = domain_.face_area() * geometry_.flux_fraction(axis, cell);
       if (velocity != 0)
         fluxes.back().into.emplace_back(geometry_.unknown[fluid], area * velocity);
     }

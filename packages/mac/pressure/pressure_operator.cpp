@@ -13,13 +13,13 @@ namespace {
 /// ghost cells, whose geometry is known here too.
 template <int dim>
 FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                   double density, std::shared_ptr<const LatticeBlocks> blocks) {
+                                   std::shared_ptr<const LatticeBlocks> blocks) {
   const auto& cells = geometry.state.cells;
   const std::size_t n = domain.grid.n_stored_cells();
   FaceCoefficients result;
   result.blocks = std::move(blocks);
   result.map = geometry.pressure_map;
-  result.unit = domain.face_area() / (density * domain.spacing());
+  result.unit = geometry.face_table.unit_coefficient();
   result.row.assign(n, -1);
   result.dirichlet.assign(n, 0);
   for (int axis = 0; axis < dim; ++axis)
@@ -33,16 +33,13 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
       for (int end = 0; end < 2; ++end) {
         const int other = neighbors[2 * axis + end];
         const int face = end == 0 ? cell : other;
-        const double open = face < 0 ? 0 : geometry.open_fraction(axis, face);
-        if (open == 0)
+        if (face < 0 || geometry.open_fraction(axis, face) == 0)
           continue;
-        const bool at_side = other < 0 || cells[other] == CellState::outside;
-        if (at_side)
-          result.dirichlet[cell] += static_cast<float>(2 * open);
-        else if (cells[other] != CellState::fluid)
-          result.dirichlet[cell] += static_cast<float>(open);
+        const auto coefficient = static_cast<float>(geometry.face_table(axis, face).coefficient);
+        if (other < 0 || cells[other] != CellState::fluid)
+          result.dirichlet[cell] += coefficient;
         else
-          result.lower[axis][face] = static_cast<float>(open);
+          result.lower[axis][face] = coefficient;
       }
     }
   });
@@ -178,19 +175,17 @@ std::shared_ptr<const LatticeBlocks> lattice_blocks(const TiledGrid<dim>& grid) 
 
 template <int dim>
 RCP<const StencilOperator> pressure_operator(const MacDomain<dim>& domain,
-                                             const MacGeometry<dim>& geometry, double density,
+                                             const MacGeometry<dim>& geometry,
                                              std::shared_ptr<const LatticeBlocks> blocks) {
-  return rcp(new MacPressureOperator<dim>(
-      domain, face_coefficients(domain, geometry, density, std::move(blocks))));
+  return rcp(
+      new MacPressureOperator<dim>(domain, face_coefficients(domain, geometry, std::move(blocks))));
 }
 
 template std::shared_ptr<const LatticeBlocks> lattice_blocks<2>(const TiledGrid<2>&);
 template std::shared_ptr<const LatticeBlocks> lattice_blocks<3>(const TiledGrid<3>&);
 template RCP<const StencilOperator> pressure_operator<2>(const MacDomain<2>&, const MacGeometry<2>&,
-                                                         double,
                                                          std::shared_ptr<const LatticeBlocks>);
 template RCP<const StencilOperator> pressure_operator<3>(const MacDomain<3>&, const MacGeometry<3>&,
-                                                         double,
                                                          std::shared_ptr<const LatticeBlocks>);
 
 }  // namespace lockstep

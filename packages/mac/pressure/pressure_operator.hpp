@@ -12,7 +12,7 @@ std::shared_ptr<const LatticeBlocks> lattice_blocks(const TiledGrid<dim>& grid);
 /// asked for. A cell without free face has an empty row. `domain` must outlive it. Collective.
 template <int dim>
 RCP<const StencilOperator> pressure_operator(const MacDomain<dim>& domain,
-                                             const MacGeometry<dim>& geometry, double density,
+                                             const MacGeometry<dim>& geometry,
                                              std::shared_ptr<const LatticeBlocks> blocks);
 
 }  // namespace lockstep

@@ -4,28 +4,11 @@
 
 namespace lockstep {
 
-namespace {
-/// Distance of the two pressure points of a face in units of h.
-double pressure_distance(const FaceCells& face) {
-  return face.at_side() ? 0.5 : 1.0;
-}
-
-/// The part of a face through which the fluid leaves with the face's own velocity.
-template <int dim>
-double flux_fraction(const MacGeometry<dim>& geometry, int axis, int face) {
-  if (face < 0)
-    return 0;
-  if (geometry.state.faces[axis][face] == FaceState::prescribed)
-    return geometry.open_part_of_prescribed(axis, face);
-  return geometry.open_fraction(axis, face);
-}
-}  // namespace
-
 template <int dim>
 void outflow_deficit(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                      const FaceField<dim>& velocity, Vector& rhs) {
   const auto values = rhs.getDataNonConst();
-  const double area = domain.face_area();
+  const double area = geometry.face_table.area();
   int row = 0;
   domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
     if (geometry.state.cells[cell] != CellState::fluid)
@@ -33,10 +16,10 @@ void outflow_deficit(const MacDomain<dim>& domain, const MacGeometry<dim>& geome
     double outflow = 0;
     for (int axis = 0; axis < dim; ++axis) {
       const int upper = neighbors[2 * axis + 1];
-      const double open_upper = flux_fraction(geometry, axis, upper);
+      const double open_upper = upper < 0 ? 0 : geometry.flux_fraction(axis, upper);
       if (open_upper != 0)
         outflow += open_upper * velocity[axis][upper];
-      outflow -= flux_fraction(geometry, axis, cell) * velocity[axis][cell];
+      outflow -= geometry.flux_fraction(axis, cell) * velocity[axis][cell];
     }
     values[row++] = -area * outflow;
   });
@@ -58,16 +41,15 @@ CellField pressure_field(const MacDomain<dim>& domain, const MacGeometry<dim>& g
 
 template <int dim>
 void subtract_gradient(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                       double density, const CellField& scaled_pressure, FaceField<dim>& velocity) {
-  const double unit = 1 / (density * domain.spacing());
+                       const CellField& scaled_pressure, FaceField<dim>& velocity) {
   for (int axis = 0; axis < dim; ++axis)
     domain.grid.for_each_owned_face(axis, [&](int cell) {
       if (geometry.state.faces[axis][cell] != FaceState::free)
         return;
-      const FaceCells face = cells_of_face(domain.grid, geometry.state.cells, axis, cell);
-      const double upper = face.upper < 0 ? 0 : scaled_pressure[face.upper];
-      const double lower = face.lower < 0 ? 0 : scaled_pressure[face.lower];
-      velocity[axis][cell] -= unit / pressure_distance(face) * (upper - lower);
+      // Outside of the fluid the field is zero.
+      const int lower = domain.grid.neighbor(cell, axis, 0);
+      const double jump = scaled_pressure[cell] - (lower < 0 ? 0 : scaled_pressure[lower]);
+      velocity[axis][cell] -= geometry.face_table(axis, cell).gradient * jump;
     });
 }
 
@@ -76,7 +58,7 @@ Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeome
                                     const Vector& scaled_pressure) {
   const TiledGrid<dim>& grid = domain.grid;
   const auto values = scaled_pressure.getData();
-  const double area = domain.face_area(), half = 0.5 * grid.spacing();
+  const double area = geometry.face_table.area(), half = 0.5 * grid.spacing();
   Momentum<dim> impulse;
   int row = 0;
   // Closed upper sides have no stored face, so this goes by cells.
@@ -115,10 +97,10 @@ template void outflow_deficit<3>(const MacDomain<3>&, const MacGeometry<3>&, con
                                  Vector&);
 template CellField pressure_field<2>(const MacDomain<2>&, const MacGeometry<2>&, const Vector&);
 template CellField pressure_field<3>(const MacDomain<3>&, const MacGeometry<3>&, const Vector&);
-template void subtract_gradient<2>(const MacDomain<2>&, const MacGeometry<2>&, double,
-                                   const CellField&, FaceField<2>&);
-template void subtract_gradient<3>(const MacDomain<3>&, const MacGeometry<3>&, double,
-                                   const CellField&, FaceField<3>&);
+template void subtract_gradient<2>(const MacDomain<2>&, const MacGeometry<2>&, const CellField&,
+                                   FaceField<2>&);
+template void subtract_gradient<3>(const MacDomain<3>&, const MacGeometry<3>&, const CellField&,
+                                   FaceField<3>&);
 template Momentum<2> side_pressure_impulse<2>(const MacDomain<2>&, const MacGeometry<2>&,
                                               const Vector&);
 template Momentum<3> side_pressure_impulse<3>(const MacDomain<3>&, const MacGeometry<3>&,

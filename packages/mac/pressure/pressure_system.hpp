@@ -22,7 +22,7 @@ CellField pressure_field(const MacDomain<dim>& domain, const MacGeometry<dim>& g
 /// velocity -= rho^-1 G p̂ on owned free faces.
 template <int dim>
 void subtract_gradient(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                       double density, const CellField& scaled_pressure, FaceField<dim>& velocity);
+                       const CellField& scaled_pressure, FaceField<dim>& velocity);
 
 /// Impulse of walls and inflows on the fluid through their pressure, which is that of the cell
 /// beside them; open sides have none (p = 0). Collective.

@@ -8,7 +8,7 @@ namespace lockstep {
 /// solid and takes the pressure there; were it still, what the solid pushes into the last cells
 /// between body and side would have no way out but gaps that close.
 template <int dim>
-void add_covered_sides(const MacDomain<dim>& domain, double density,
-                       const OpenFractionRule<dim>& rule, MacGeometry<dim>& geometry);
+void add_covered_sides(const MacDomain<dim>& domain, const OpenFractionRule<dim>& rule,
+                       MacGeometry<dim>& geometry);
 
 }  // namespace lockstep

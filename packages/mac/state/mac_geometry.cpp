@@ -72,7 +72,7 @@ using OpenFractions = std::array<CellField, dim>;
 
 /// Asks a cut-cell rule about all faces near the surface. Walls and inflows open no cell.
 template <int dim>
-OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain, double density,
+OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain,
                                        const OpenFractionRule<dim>& rule,
                                        const SurfaceMarks<dim>& marks, MacGeometry<dim>& geometry) {
   const TiledGrid<dim>& grid = domain.grid;
@@ -90,7 +90,7 @@ OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain, double dens
       double& fraction = fractions[axis][cell];
       if (geometry.near_surface(cell))
         fraction =
-            rule.open_fraction(control_volume(domain, geometry, density, axis, cell),
+            rule.open_fraction(control_volume(domain, geometry, axis, cell),
                                (marks.blocked[cell] >> axis & 1) != 0, *geometry.state.surface);
       else
         fraction = in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper) ? 0 : 1;
@@ -157,7 +157,7 @@ void take_fraction(const OpenFractionRule<dim>& rule, int axis, int cell, Contro
     return;
   const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
   if (volume.open_fraction > 0) {
-    geometry.set_partial(axis, cell, volume.open_fraction);
+    geometry.face_table.set_open(axis, cell, volume.open_fraction);
     volume.open_center = rule.open_center(volume, surface);
     geometry.state.open_centers[axis][cell] = place_in_fluid(volume, surface);
   } else {
@@ -234,27 +234,51 @@ void share_open_centers(const MacDomain<dim>& domain, int axis, MacState<dim>& s
   }
 }
 
-/// Partly open faces on any rank give every rank the array, for the exchange.
+/// The upper faces of owned cells may be ghosts; those at open sides can be told from the state.
+template <int dim>
+void complete_ghost_faces(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const MacState<dim>& state = geometry.state;
+  for (int axis = 0; axis < dim; ++axis) {
+    if (domain.boundary.side(axis, 1).type != SideType::open)
+      continue;
+    for (int cell = grid.n_owned_cells(); cell < grid.n_stored_cells(); ++cell)
+      if (state.cells[cell] == CellState::outside && state.faces[axis][cell] == FaceState::free)
+        geometry.face_table.set_closeness(axis, cell, 2);
+  }
+}
+
+/// The open fractions of ghost faces, if any rank has partly open ones along an axis.
 template <int dim>
 void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
-  if (!geometry.state.surface)
+  const TiledGrid<dim>& grid = domain.grid;
+  if (!geometry.state.surface || grid.comm()->getSize() == 1)
     return;
+  std::array<double, dim> n_partial{};
+  for (const ControlVolume<dim>& volume : geometry.volumes)
+    n_partial[volume.direction] += volume.open_fraction > 0;
+  for (const auto& [axis, cell] : geometry.prescribed)
+    n_partial[axis] += geometry.face_table(axis, cell).open < 1;
+  sum_all(grid.comm(), n_partial.data(), dim);
   for (int axis = 0; axis < dim; ++axis) {
-    CellField& partial = geometry.partial[axis];
-    if (max_all(domain.grid.comm(), partial.empty() ? 0.0 : 1.0) == 0)
+    if (n_partial[axis] == 0)
       continue;
-    if (partial.empty())
-      partial.assign(domain.grid.n_stored_cells(), 1.0);
-    domain.halo.fill(partial);
-    if (domain.grid.comm()->getSize() > 1)
-      share_open_centers(domain, axis, geometry.state);
+    CellField open(grid.n_stored_cells());
+    for (int cell = 0; cell < grid.n_owned_cells(); ++cell)
+      open[cell] = geometry.face_table(axis, cell).open;
+    std::fill(open.begin() + grid.n_owned_cells(), open.end(), 1.0);
+    domain.halo.fill(open);
+    for (int cell = grid.n_owned_cells(); cell < grid.n_stored_cells(); ++cell)
+      if (open[cell] < 1)
+        geometry.face_table.set_open(axis, cell, open[cell]);
+    share_open_centers(domain, axis, geometry.state);
   }
 }
 }  // namespace
 
 template <int dim>
 ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                  double density, int axis, int cell) {
+                                  int axis, int cell) {
   const TiledGrid<dim>& grid = domain.grid;
   const FaceCells face = cells_of_face(grid, geometry.state.cells, axis, cell);
   const double half = 0.5 * grid.spacing();
@@ -262,8 +286,8 @@ ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometr
   volume.direction = axis;
   volume.center = center_of_face(domain, geometry, axis, cell);
   volume.open_center = volume.center;
-  volume.density = density;
-  volume.area = domain.face_area();
+  volume.density = geometry.face_table(axis, cell).density;
+  volume.area = geometry.face_table.area();
   volume.id = dim * grid.global_id(cell) + axis;
   const Point<dim> step = Point<dim>::Unit(axis) * half;
   const Point<dim> lower = face.lower < 0 ? volume.center : Point<dim>(volume.center - step);
@@ -282,6 +306,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
                                const OpenFractionRule<dim>& rule) {
   const TiledGrid<dim>& grid = domain.grid;
   MacGeometry<dim> geometry;
+  geometry.face_table = FaceTable<dim>(domain, density);
   MacState<dim>& state = geometry.state;
   state.cells.assign(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { state.cells[cell] = CellState::fluid; });
@@ -294,7 +319,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   OpenFractions<dim> fractions;
   const bool cut = state.surface && rule.cuts_cells();
   if (cut) {
-    fractions = find_open_fractions(domain, density, rule, marks, geometry);
+    fractions = find_open_fractions(domain, rule, marks, geometry);
     open_cut_cells<dim>(domain, fractions, geometry);
   }
   number_pressures(domain, geometry);
@@ -313,7 +338,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       // A closed face behind a cut cell need not be near the surface.
       const bool asked = geometry.near_surface(cell) || (cut && fractions[axis][cell] == 0);
       if (result == FaceState::free && asked) {
-        ControlVolume<dim> volume = control_volume(domain, geometry, density, axis, cell);
+        ControlVolume<dim> volume = control_volume(domain, geometry, axis, cell);
         volume.open_fraction =
             cut ? fractions[axis][cell]
                 : ask_rule(rule, volume, geometry, face, (marks.blocked[cell] >> axis & 1) != 0);
@@ -322,23 +347,22 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       if (result == FaceState::prescribed)
         geometry.prescribed.push_back({axis, cell});
       if (result == FaceState::free && face.at_side())
-        geometry.open_sides.push_back({axis, cell});
+        geometry.face_table.set_closeness(axis, cell, 2);
     });
     if (grid.comm()->getSize() > 1)
       fill_flags(domain.full_halo, state.faces[axis]);
   }
   if (cut)
-    add_covered_sides(domain, density, rule, geometry);
+    add_covered_sides(domain, rule, geometry);
+  complete_ghost_faces(domain, geometry);
   share_open_fractions(domain, geometry);
   return geometry;
 }
 
 template struct MacGeometry<2>;
 template struct MacGeometry<3>;
-template ControlVolume<2> control_volume<2>(const MacDomain<2>&, const MacGeometry<2>&, double, int,
-                                            int);
-template ControlVolume<3> control_volume<3>(const MacDomain<3>&, const MacGeometry<3>&, double, int,
-                                            int);
+template ControlVolume<2> control_volume<2>(const MacDomain<2>&, const MacGeometry<2>&, int, int);
+template ControlVolume<3> control_volume<3>(const MacDomain<3>&, const MacGeometry<3>&, int, int);
 template MacGeometry<2> make_geometry<2>(const MacDomain<2>&, double,
                                          const std::shared_ptr<const SurfaceSnapshot<2>>&,
                                          const OpenFractionRule<2>&);

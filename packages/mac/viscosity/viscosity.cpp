@@ -9,9 +9,9 @@ namespace lockstep {
 
 template <int dim>
 Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                          double density, const ViscosityParameters& parameters)
+                          const ViscosityParameters& parameters)
     : domain_(domain) {
-  ViscousLinks<dim> found = find_viscous_links(domain, geometry, density, parameters);
+  ViscousLinks<dim> found = find_viscous_links(domain, geometry, parameters);
   map_ = found.map;
   faces_ = std::move(found.faces);
   stiffness_ = found.stiffness;

@@ -16,7 +16,7 @@ template <int dim>
 class Viscosity {
  public:
   /// Collective. `domain` must outlive this.
-  Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry, double density,
+  Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
             const ViscosityParameters& parameters);
 
   /// The system for the present velocities; matrix and links are shared with earlier ones. `time`

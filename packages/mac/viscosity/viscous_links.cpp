@@ -36,13 +36,9 @@ std::optional<SurfacePoint<dim>> surface_on_link(const MacDomain<dim>& domain,
 template <int dim>
 class Builder {
  public:
-  Builder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry, double density,
+  Builder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
           const ViscosityParameters& parameters)
-      : domain_(domain),
-        geometry_(geometry),
-        grid_(domain.grid),
-        density_(density),
-        parameters_(parameters) {}
+      : domain_(domain), geometry_(geometry), grid_(domain.grid), parameters_(parameters) {}
 
   ViscousLinks<dim> build() {
     number_faces();
@@ -83,9 +79,7 @@ class Builder {
     for (std::size_t row = 0; row < result_.faces.size(); ++row) {
       const auto [axis, cell] = result_.faces[row];
       ids_[axis][cell] = result_.map->getMinGlobalIndex() + static_cast<GlobalIndex>(row);
-      const bool half = cells_of_face(grid_, geometry_.state.cells, axis, cell).at_side();
-      mass[row] =
-          density_ * domain_.cell_volume() * geometry_.open_fraction(axis, cell) * (half ? 0.5 : 1);
+      mass[row] = geometry_.mass(axis, cell);
     }
     for (int axis = 0; axis < dim; ++axis)
       domain_.halo.fill(ids_[axis]);
@@ -205,7 +199,7 @@ class Builder {
       link.coupled_volume = found->index;
     } else {
       link.remote_volume = std::make_shared<ControlVolume<dim>>(
-          control_volume(domain_, geometry_, density_, face.axis, other));
+          control_volume(domain_, geometry_, face.axis, other));
     }
     result_.links.push_back(link);
   }
@@ -231,7 +225,6 @@ class Builder {
   const MacDomain<dim>& domain_;
   const MacGeometry<dim>& geometry_;
   const TiledGrid<dim>& grid_;
-  double density_;
   ViscosityParameters parameters_;
   ViscousLinks<dim> result_;
   std::array<std::vector<GlobalIndex>, dim> ids_;
@@ -248,13 +241,13 @@ class Builder {
 
 template <int dim>
 ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     double density, const ViscosityParameters& parameters) {
-  return Builder<dim>(domain, geometry, density, parameters).build();
+                                     const ViscosityParameters& parameters) {
+  return Builder<dim>(domain, geometry, parameters).build();
 }
 
-template ViscousLinks<2> find_viscous_links<2>(const MacDomain<2>&, const MacGeometry<2>&, double,
+template ViscousLinks<2> find_viscous_links<2>(const MacDomain<2>&, const MacGeometry<2>&,
                                                const ViscosityParameters&);
-template ViscousLinks<3> find_viscous_links<3>(const MacDomain<3>&, const MacGeometry<3>&, double,
+template ViscousLinks<3> find_viscous_links<3>(const MacDomain<3>&, const MacGeometry<3>&,
                                                const ViscosityParameters&);
 
 }  // namespace lockstep

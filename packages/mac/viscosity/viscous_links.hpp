@@ -41,6 +41,6 @@ struct ViscousLinks {
 /// Collective.
 template <int dim>
 ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     double density, const ViscosityParameters& parameters);
+                                     const ViscosityParameters& parameters);
 
 }  // namespace lockstep

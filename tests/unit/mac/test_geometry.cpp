@@ -112,5 +112,59 @@ TEST(Geometry, AnOpenSideThatAPlateCovers) {
   }
 }
 
+/// Leaves 0.3 of a face open that is blocked.
+struct LeakyFaces : OpenFractionRule<2> {
+  double open_fraction(const ControlVolume<2>&, bool blocked,
+                       const SurfaceSnapshot<2>&) const override {
+    return blocked ? 0.3 : 1;
+  }
+};
+
+TEST(Geometry, TheFaceTableStoresOnlyWhatIsNotRegular) {
+  const double h = 0.5, density = 3;
+  Case<2> scene({48, 32}, h);
+  scene.fluid.set("Density", density);
+  scene.side("x lower", "open").side("x upper", "open");
+  const auto fluid = scene.make();
+  Solids<2> solids;
+  solids.add(plate_surface<2>(Point<2>(20, 0), 1, h), Point<2>(12, 4.2), false);
+  fluid->set_geometry(solids.snapshot(), LeakyFaces());
+  const MacGeometry<2>& geometry = fluid->geometry();
+  const FaceTable<2>& table = geometry.face_table;
+  const auto& grid = fluid->domain().grid;
+  double open_area = 0, n_partial = 0, leak = 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    grid.for_each_owned_face(axis, [&](int cell) {
+      if (geometry.state.faces[axis][cell] != FaceState::free)
+        return;
+      const FaceWorth& face = table(axis, cell);
+      const double x = grid.face_center(axis, cell)[axis];
+      const bool at_side = axis == 0 && (x == 0 || x == 24);
+      EXPECT_DOUBLE_EQ(face.closeness, at_side ? 2 : 1);
+      EXPECT_DOUBLE_EQ(face.mass, density * h * h * face.open / face.closeness);
+      // Eq. 9: A, the projection and the momentum are of one area and one mass.
+      const double area = face.open * table.area();
+      EXPECT_DOUBLE_EQ(face.gradient, area / face.mass);
+      EXPECT_DOUBLE_EQ(face.coefficient * table.unit_coefficient(), area * area / face.mass);
+      n_partial += face.open < 1;
+      open_area += face.open;
+    });
+  }
+  // What leaves a cell through its upper face, perhaps another rank's, enters the next.
+  grid.for_each_owned_cell([&](int cell) {
+    const int above = grid.neighbor(cell, 1, 1);
+    leak += (above < 0 ? 0 : geometry.open_fraction(1, above)) - geometry.open_fraction(1, cell);
+  });
+  double sums[] = {n_partial, open_area, leak, static_cast<double>(table.n_stored())};
+  sum_all(world(), sums, 4);
+  EXPECT_EQ(sums[0], 40);
+  EXPECT_NEAR(sums[1], 49 * 32 + 48 * 31 - 0.7 * 40, 1e-10);
+  EXPECT_NEAR(sums[2], 0, 1e-12);
+  EXPECT_GT(sums[3], 0);
+  if (world()->getSize() == 1) {
+    EXPECT_EQ(sums[3], (2 * 2 + 3) * 16 * 16);  // the tiles of both open sides and of the plate
+  }
+}
+
 }  // namespace
 }  // namespace lockstep::test
