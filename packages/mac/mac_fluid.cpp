@@ -32,6 +32,7 @@ void MacFluid<dim>::set_geometry(const Surface& surface, const OpenFractionRule<
   if (unchanged)
     return;
   viscosity_.reset();
+  crossing_rate_.reset();
   geometry_ = make_geometry(domain_, parameters_.density, surface, rule);
   pressure_block_ = as_operator(pressure_operator(domain_, geometry_, lattice_blocks_));
   regions_ = find_regions(domain_, geometry_);
@@ -121,7 +122,14 @@ void MacFluid<dim>::begin_advection_velocity(double dt) {
 }
 
 template <int dim>
+void MacFluid<dim>::adopt_advection_velocity() {
+  // Without solids nothing has changed, and there is nothing to store.
+  advection_ = prediction_ == velocity_ ? FaceField<dim>() : prediction_;
+}
+
+template <int dim>
 void MacFluid<dim>::accept() {
+  crossing_rate_.reset();
   if (history_)
     history_->accept(velocity_, prediction_, geometry_.state, last_step_);
   velocity_ = prediction_;
@@ -240,7 +248,7 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
   TransportSetting<dim> setting{domain_.grid,
                                 geometry_.state,
                                 surface,
-                                advection_,
+                                advection_[0].empty() ? velocity_ : advection_,
                                 ray_halo_,
                                 {},
                                 dt,
@@ -320,6 +328,8 @@ double MacFluid<dim>::kinetic_energy() const {
 
 template <int dim>
 double MacFluid<dim>::largest_cell_crossing_rate() const {
+  if (crossing_rate_)
+    return *crossing_rate_;
   double largest = 0;
   const auto speed = [&](int axis, int face) {
     const bool still = face < 0 || geometry_.state.faces[axis][face] == FaceState::inactive;
@@ -333,7 +343,8 @@ double MacFluid<dim>::largest_cell_crossing_rate() const {
       sum += std::max(speed(axis, cell), speed(axis, neighbors[2 * axis + 1]));
     largest = std::max(largest, sum);
   });
-  return max_all(domain_.grid.comm(), largest) / spacing();
+  crossing_rate_ = max_all(domain_.grid.comm(), largest) / spacing();
+  return *crossing_rate_;
 }
 
 template <int dim>

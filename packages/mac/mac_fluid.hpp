@@ -73,7 +73,7 @@ class MacFluid : public FluidDiscretization<dim>,
   bool is_viscous() const override { return parameters_.viscosity.viscosity > 0; }
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
   Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
-  void adopt_advection_velocity() override { advection_ = prediction_; }
+  void adopt_advection_velocity() override;
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;
   void revalidate(const MovingSurface<dim>& surface) override;
   void correct_pressure(const Vector& scaled_increment) override;
@@ -128,7 +128,9 @@ class MacFluid : public FluidDiscretization<dim>,
   PressureRegions regions_;
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
-  FaceField<dim> velocity_, prediction_, advection_;
+  FaceField<dim> velocity_, prediction_;
+  FaceField<dim> advection_;                     ///< empty: it is the velocity
+  mutable std::optional<double> crossing_rate_;  ///< of this velocity and geometry, once asked for
   std::optional<VelocityHistory<dim>> history_;  ///< none: first order in time
   CellField scaled_pressure_;                    ///< of the last projection
   CellField accepted_pressure_;                  ///< of the last accepted step

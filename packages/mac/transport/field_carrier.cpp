@@ -58,6 +58,17 @@ bool FieldCarrier<dim>::is_carried(SampleKind kind, int id, bool& has_value) con
 }
 
 template <int dim>
+bool FieldCarrier<dim>::all_free(SampleKind kind, int first, int n) const {
+  if (kind == cell_centers)
+    return false;
+  const FaceState* states = frame_.setting.state.faces[kind].data() + first;
+  int others = 0;
+  for (int i = 0; i < n; ++i)
+    others += states[i] != FaceState::free;
+  return others == 0;
+}
+
+template <int dim>
 void FieldCarrier<dim>::keep(Passenger<dim>& passenger, int id, bool has_value) const {
   passenger.carried()[id] = (*passenger.start)[id];
   (*passenger.invalid)[id] = !has_value;
@@ -110,7 +121,7 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
       RowValues<dim> values, low, high;
       const RowRays<dim> rays = block.trace(row, -1, passenger.cubic());
       if (passenger.corrects()) {
-        block.look_up(rays.end, values, &low, &high);
+        block.look_up(rays.end, values, low, high);
         const auto stays_inside = rays.clipped == 0;
         row_of<dim>(passenger.low.get(), first) = stays_inside.select(low, 1);
         row_of<dim>(passenger.high.get(), first) = stays_inside.select(high, 0);
@@ -120,6 +131,8 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
         block.look_up(rays.end, values);
       }
       row_of<dim>(carried.data(), first) = values;
+      if (all_free(kind, first, length))
+        return;
       for (int id = first; id < first + length; ++id) {
         bool has_value;
         if (!is_carried(kind, id, has_value))

@@ -63,6 +63,8 @@ class FieldCarrier {
 
   /// Whether a sample is moved by transport; if not, whether it has a value nevertheless.
   bool is_carried(SampleKind kind, int id, bool& has_value) const;
+  /// Whether these are free faces, all carried.
+  bool all_free(SampleKind kind, int first, int n) const;
   /// Leaves a sample as it was.
   void keep(Passenger<dim>& passenger, int id, bool has_value) const;
 

@@ -8,28 +8,36 @@ namespace lockstep {
 
 namespace {
 
-/// Sets a part of a block with rows of `width` values to zero.
-void fill_part(const Index<3>& size, int width, double* to) {
+/// Copies rows of a tile with rows of `tile_row` values; `n` values of each, or those of `size`.
+template <int tile_row, int n>
+void copy_rows(const Index<3>& size, const double* from, const Index<3>& stride, double* to) {
   for (int z = 0; z < size[2]; ++z)
-    for (int y = 0; y < size[1]; ++y)
-      std::fill_n(to + (z * width + y) * width, size[0], 0.0);
+    for (int y = 0; y < size[1]; ++y) {
+      double* target = to + z * stride[2] + y * stride[1];
+      const double* source = from + (z * tile_row + y) * tile_row;
+      if constexpr (n > 0) {
+        using Row = Eigen::Array<double, n, 1>;
+        Row::Map(target) = Row::Map(source);
+      } else {
+        for (int x = 0; x < size[0]; ++x)
+          target[x] = source[x];
+      }
+    }
 }
 
-/// Copies a part of a tile with rows of `tile_row` values to a block with rows of `width`.
+/// Copies a part of a tile to a block; zeros from nowhere.
 template <int tile_row>
-void copy_part(const Index<3>& size, const double* from, int width, double* to) {
-  for (int z = 0; z < size[2]; ++z) {
-    const double* source = from + z * tile_row * tile_row;
-    double* target = to + z * width * width;
-    if (size[0] == tile_row) {
-      using Row = Eigen::Array<double, tile_row, 1>;
+void copy_part(const Index<3>& size, const double* from, const Index<3>& stride, double* to) {
+  if (from == nullptr) {
+    for (int z = 0; z < size[2]; ++z)
       for (int y = 0; y < size[1]; ++y)
-        Eigen::Map<Row>(target + y * width) = Eigen::Map<const Row>(source + y * tile_row);
-    } else {  // short rows are copied fastest across
-      for (int x = 0; x < size[0]; ++x)
-        for (int y = 0; y < size[1]; ++y)
-          target[y * width + x] = source[y * tile_row + x];
-    }
+        std::fill_n(to + z * stride[2] + y * stride[1], size[0], 0.0);
+  } else if (size[0] == tile_row) {
+    copy_rows<tile_row, tile_row>(size, from, stride, to);
+  } else if (size[0] == 4) {
+    copy_rows<tile_row, 4>(size, from, stride, to);
+  } else {
+    copy_rows<tile_row, 0>(size, from, stride, to);
   }
 }
 
@@ -142,25 +150,24 @@ std::vector<typename SampleLattice<dim>::Run> SampleLattice<dim>::find_runs(int 
 }
 
 template <int dim>
-bool SampleLattice<dim>::copy_block(SampleKind kind, const Index<dim>& begin, int width,
-                                    const double* field, double* block) const {
-  std::array<std::vector<Run>, 3> runs;
-  runs[2] = {Run{0, 1, 0, 0, false}};
-  for (int a = 0; a < dim; ++a)
-    runs[a] = find_runs(a, a == kind, begin[a], width);
-  for (const Run& z : runs[2])
-    for (const Run& y : runs[1])
-      for (const Run& x : runs[0]) {
-        double* to = block + (z.begin * width + y.begin) * width + x.begin;
+bool SampleLattice<dim>::copy_block(const std::array<const std::vector<Run>*, dim>& runs,
+                                    const std::array<int, dim>& stride, const double* field,
+                                    double* block) const {
+  static const std::vector<Run> one_plane{Run{0, 1, 0, 0, false}};
+  const std::vector<Run>& planes = dim == 3 ? *runs[dim - 1] : one_plane;
+  const Index<3> strides{1, stride[1], dim == 3 ? stride[dim - 1] : 0};
+  for (const Run& z : planes)
+    for (const Run& y : *runs[1])
+      for (const Run& x : *runs[0]) {
+        const Index<3> size{x.length, y.length, z.length};
+        double* to = block + z.begin * strides[2] + y.begin * strides[1] + x.begin;
+        const bool at_wall = z.at_wall || y.at_wall || x.at_wall;
         const int tile = table_[z.tile + y.tile + x.tile];
-        if (z.at_wall || y.at_wall || x.at_wall)
-          fill_part({x.length, y.length, z.length}, width, to);
-        else if (tile < 0)
+        if (tile < 0 && !at_wall)
           return false;
-        else
-          copy_part<tile_width<dim>>(
-              {x.length, y.length, z.length},
-              field + tile * tile_volume<dim> + z.offset + y.offset + x.offset, width, to);
+        const double* from =
+            at_wall ? nullptr : field + tile * tile_volume<dim> + z.offset + y.offset + x.offset;
+        copy_part<tile_width<dim>>(size, from, strides, to);
       }
   return true;
 }

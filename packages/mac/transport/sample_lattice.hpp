@@ -113,10 +113,20 @@ class SampleLattice {
     return n_cells_[axis] - (axis == kind ? 0 : 1);
   }
   bool periodic(int axis) const { return periodic_[axis]; }
-  /// Copies the samples of a cube of `width` cells that starts at `begin`, x fastest. False if any
-  /// is missing.
-  bool copy_block(SampleKind kind, const Index<dim>& begin, int width, const double* field,
-                  double* block) const;
+
+  /// Neighbouring places of a block along one axis whose samples are neighbours in their tile too.
+  struct Run {
+    int begin = 0, length = 0;  ///< places in the block
+    int tile = 0;               ///< share of the place in the tile table
+    int offset = 0;             ///< share of the first place's offset in the tile
+    bool at_wall = false;
+  };
+  /// Of `width` places from `begin`; `on_faces`: of faces normal to the axis.
+  std::vector<Run> find_runs(int axis, bool on_faces, int begin, int width) const;
+  /// Copies the samples of a box of cells, x fastest, in rows and planes of `stride`; runs[axis]
+  /// are those of the box. False if any sample is missing.
+  bool copy_block(const std::array<const std::vector<Run>*, dim>& runs,
+                  const std::array<int, dim>& stride, const double* field, double* block) const;
 
  private:
   /// The two samples around x along one axis.
@@ -126,14 +136,6 @@ class SampleLattice {
     std::array<bool, 2> at_wall{};
     double weight;
   };
-  /// Neighbouring places of a block along one axis whose samples are neighbours in their tile too.
-  struct Run {
-    int begin = 0, length = 0;  ///< places in the block
-    int tile = 0;               ///< share of the place in the tile table
-    int offset = 0;             ///< share of the first place's offset in the tile
-    bool at_wall = false;
-  };
-  std::vector<Run> find_runs(int axis, bool on_faces, int begin, int width) const;
   Pair find_pair(int axis, bool on_faces, double x) const;
   Stencil<dim> combine(const std::array<const Pair*, dim>& pairs) const;
   /// Sample coordinate after wrapping and clamping.

@@ -3,15 +3,9 @@
 #include <vector>
 
 #include "mac/transport/ray_tracer.hpp"
+#include "mac/transport/row_values.hpp"
 
 namespace lockstep {
-
-/// Values for one row of samples of a tile, along x.
-template <int dim>
-using RowValues = Eigen::Array<double, tile_width<dim>, 1>;
-/// Positions of such a row, by axis, relative to a block's first cell.
-template <int dim>
-using RowPoints = std::array<RowValues<dim>, dim>;
 
 /// Ends of the rays of a row.
 template <int dim>
@@ -43,10 +37,12 @@ class TileBlock {
   /// samples of the loaded field with these coordinates within the tile (x is ignored).
   /// `cubic`: the velocity is interpolated by cubics.
   RowRays<dim> trace(const Index<dim>& in_tile, double direction, bool cubic = false) const;
-  /// The loaded field at a row of points and, if wanted, the range of the samples used there.
-  void look_up(const RowPoints<dim>& points, RowValues<dim>& values, RowValues<dim>* low = nullptr,
-               RowValues<dim>* high = nullptr) const;
-  /// The same by cubics, within the range of the 4^dim samples around each point.
+  /// The loaded field at a row of points.
+  void look_up(const RowPoints<dim>& points, RowValues<dim>& values) const;
+  /// The same, and the range of the samples used there.
+  void look_up(const RowPoints<dim>& points, RowValues<dim>& values, RowValues<dim>& low,
+               RowValues<dim>& high) const;
+  /// The first by cubics, within the range of the 4^dim samples around each point.
   void look_up_cubic(const RowPoints<dim>& points, RowValues<dim>& values) const;
 
  private:
@@ -60,17 +56,26 @@ class TileBlock {
   /// Coordinates along an axis, moved to where rays may go.
   RowValues<dim> clamped(const RowValues<dim>& x, int axis) const;
 
+  using Runs = std::vector<typename SampleLattice<dim>::Run>;
+  using Values = std::vector<double, Eigen::aligned_allocator<double>>;
+  /// The place of the first sample in the storage: row loads may begin or end one place outside.
+  static constexpr int first_place = tile_width<dim>;
+  bool copy(SampleKind kind, const double* from, Values& to) const;
+
   const SampleLattice<dim>& lattice_;
   const RayTracer<dim>& tracer_;
-  int margin_, width_;  ///< cells before the tile, and of all
+  /// Cells before the tile, and of all. Multiples of 4 along x, so that rows are copied fast.
+  std::array<int, dim> margin_, width_;
   int stencil_reach_;
   Index<dim> begin_{};                         ///< first cell of the block
+  std::array<std::array<Runs, 2>, dim> runs_;  ///< [axis][of faces normal to it]
   std::array<int, dim> stride_{};              ///< of neighbours in the block
   std::array<double, dim> lower_{}, upper_{};  ///< where rays may go, relative to the block
-  std::array<std::vector<double>, dim> velocity_;
+  std::array<Values, dim> velocity_;
   SampleKind kind_ = cell_centers;  ///< of the loaded field
   Point<dim> offset_;               ///< of its samples in their cells
-  std::vector<double> field_;
+  const double* field_ = nullptr;   ///< its samples
+  Values storage_;                  ///< of them, unless they are those of the velocity
 };
 
 }  // namespace lockstep

@@ -1,0 +1,58 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <type_traits>
+
+#include "grid/tile_lattice.hpp"
+
+namespace lockstep {
+
+/// Values for one row of samples of a tile, along x.
+template <int dim>
+using RowValues = Eigen::Array<double, tile_width<dim>, 1>;
+/// Positions of such a row, by axis, relative to a block's first cell.
+template <int dim>
+using RowPoints = std::array<RowValues<dim>, dim>;
+
+template <typename Values>
+Values blend(const Values& a, const Values& b, const Values& weight) {
+  return a + weight * (b - a);
+}
+
+/// 0, 1, 2, ...
+template <int dim>
+RowValues<dim> steps() {
+  alignas(64) static constexpr double counted[] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                   8, 9, 10, 11, 12, 13, 14, 15};
+  static_assert(tile_width<dim> <= 16);
+  return Eigen::Map<const RowValues<dim>>(counted);
+}
+
+/// One sample, or those of a whole row that are neighbours in memory.
+template <typename Values>
+Values samples_at(const double* c) {
+  if constexpr (std::is_same_v<Values, double>)
+    return *c;
+  else
+    return Eigen::Map<const Values>(c);
+}
+
+/// Where the flag is not 0 the first, else the second.
+template <int dim>
+[[gnu::always_inline]] inline RowValues<dim> chosen(const RowValues<dim>& flag,
+                                                    const RowValues<dim>& first,
+                                                    const RowValues<dim>& second) {
+  // Compilers make jumps of a loop with a condition.
+  using Part [[gnu::vector_size(EIGEN_MAX_ALIGN_BYTES), gnu::may_alias]] = double;
+  constexpr int n = EIGEN_MAX_ALIGN_BYTES / sizeof(double);
+  RowValues<dim> result;
+  for (int i = 0; i < tile_width<dim>; i += n) {
+    const auto part = [i](const RowValues<dim>& values) -> const Part& {
+      return *reinterpret_cast<const Part*>(values.data() + i);
+    };
+    *reinterpret_cast<Part*>(result.data() + i) = part(flag) != 0 ? part(first) : part(second);
+  }
+  return result;
+}
+
+}  // namespace lockstep
