@@ -7,7 +7,7 @@
 #include "support/fake_fluid.hpp"
 #include "support/fake_solid.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 template <int dim>
 using Models = std::vector<std::unique_ptr<SolidModel<dim>>>;
@@ -56,4 +56,4 @@ inline SurfaceMesh<2> rectangle(const Point<2>& lower, const Point<2>& upper) {
   return polyline({lower, {upper.x(), lower.y()}, upper, {lower.x(), upper.y()}}, true);
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -5,7 +5,7 @@
 
 #include "linear/matrix_rows.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 /// Sums what every rank knows of a small matrix.
@@ -62,4 +62,4 @@ RCP<Vector> distributed(const Eigen::VectorXd& values, const RCP<const Map>& map
   return result;
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

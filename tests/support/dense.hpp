@@ -3,7 +3,7 @@
 
 #include "linear/types.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 /// A distributed vector by global id, on every rank; ids must be 0 .. n-1. Collective.
 Eigen::VectorXd dense(const Vector& vector);
@@ -15,4 +15,4 @@ Eigen::MatrixXd dense(const RCP<const CrsMatrix>& matrix);
 /// The vector of these values on a map whose ids are 0 .. n-1.
 RCP<Vector> distributed(const Eigen::VectorXd& values, const RCP<const Map>& map);
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -7,7 +7,7 @@
 
 #include "linear/triplet_matrix.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 template <int dim>
 FakeFluid<dim>::FakeFluid(const FakeBox<dim>& box, const Communicator& comm)
@@ -368,4 +368,4 @@ double FakeFluid<dim>::fluid_volume() const {
 template class FakeFluid<2>;
 template class FakeFluid<3>;
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

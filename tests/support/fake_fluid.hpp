@@ -4,7 +4,7 @@
 
 #include "interfaces/bounded_fluid.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 /// A fluid in a box of a few cells between walls.
 template <int dim>
@@ -114,4 +114,4 @@ class FakeFluid : public FluidDiscretization<dim>, public BoundedFluid<dim> {
   std::vector<ControlVolume<dim>> coupled_;
 };
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

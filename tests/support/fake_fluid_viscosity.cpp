@@ -6,7 +6,7 @@
 #include "linear/triplet_matrix.hpp"
 #include "support/fake_fluid.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 template <int dim>
 double FakeFluid<dim>::bond() const {
@@ -126,4 +126,4 @@ template std::unique_ptr<ViscousSystem<3>> FakeFluid<3>::viscous_system() const;
 template Momentum<2> FakeFluid<2>::accept_viscous(const Vector&, const Vector&, double);
 template Momentum<3> FakeFluid<3>::accept_viscous(const Vector&, const Vector&, double);
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

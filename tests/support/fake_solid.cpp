@@ -7,7 +7,7 @@
 
 #include "linear/triplet_matrix.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 /// A diagonal that no one can take apart.
@@ -277,4 +277,4 @@ std::vector<SolidState<dim>> FakeSolid<dim>::states() const {
 template class FakeSolid<2>;
 template class FakeSolid<3>;
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -3,7 +3,7 @@
 
 #include "interfaces/solid.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 /// One solid of a FakeSolid.
 template <int dim>
@@ -80,4 +80,4 @@ class FakeSolid : public SolidModel<dim> {
   RCP<const LinearOperator> mass_;
 };
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -4,7 +4,7 @@
 
 #include "support/dense.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 template <int dim>
 GatheredFaces<dim> gathered_faces(CoupledCase<dim>& c) {
@@ -40,4 +40,4 @@ GatheredFaces<dim> gathered_faces(CoupledCase<dim>& c) {
 template GatheredFaces<2> gathered_faces<2>(CoupledCase<2>&);
 template GatheredFaces<3> gathered_faces<3>(CoupledCase<3>&);
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -3,7 +3,7 @@
 
 #include "support/coupled_case.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 /// The mixed faces of a case gathered from all ranks, in the order of the fluid's ids.
 template <int dim>
@@ -17,4 +17,4 @@ struct GatheredFaces {
 template <int dim>
 GatheredFaces<dim> gathered_faces(CoupledCase<dim>& c);
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

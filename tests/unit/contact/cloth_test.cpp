@@ -8,7 +8,7 @@
 #include "cloth_world.hpp"
 #include "contact/impact_zones.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 template <typename T>
@@ -314,4 +314,4 @@ TYPED_TEST(ClothContactsOnRanks, ImpulsesBalanceAndDoNotDependOnTheNumberOfRanks
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

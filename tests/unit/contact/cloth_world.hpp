@@ -4,7 +4,7 @@
 #include "deformable/elements/shell_elements.hpp"
 #include "solve/soft/exact_inverse.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 
 /// Cloth of a mesh, of surface density one: soft, and flat at rest.
 template <int dim>
@@ -161,4 +161,4 @@ int n_crossings(const SolidSystem<dim>& solids) {
   return n_crossings<dim>(solids.snapshot()->mesh());
 }
 
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -5,7 +5,7 @@
 #include "contact/carried_point.hpp"
 #include "contact/continuous_collision.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 void expect_roots(const std::array<double, 4>& c, const std::vector<double>& expected,
@@ -121,4 +121,4 @@ TEST(CarriedPoint, FollowsRigidMotions) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -7,7 +7,7 @@
 #include "contact_world.hpp"
 #include "parameters/validate.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 template <typename T>
@@ -253,4 +253,4 @@ TEST(ContactRegistration, IsChosenByName) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -11,7 +11,7 @@
 #include "geometry/generators.hpp"
 #include "rigid/rigid_bodies.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 
 constexpr double h = 0.1;  // the spacing of a grid that is not there [m]
 constexpr double g = 9.81;
@@ -156,4 +156,4 @@ Point<dim> up(double value = 1) {
   return value * Point<dim>::Unit(dim - 1);
 }
 
-}  // namespace lockstep
+}  // namespace lockstep::test

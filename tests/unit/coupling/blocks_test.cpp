@@ -8,7 +8,7 @@
 #include "support/coupled_case.hpp"
 #include "support/dense.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 constexpr double near = 1e-13;
@@ -238,4 +238,4 @@ TEST(Eq16, PressureInsideAHalfFilledDualCell) {
   EXPECT_NEAR(between, (rho2 * p[1] + rho1 * p[2]) / (rho1 + rho2), 1e-8);
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -6,7 +6,7 @@
 
 #include "coupling/impossible_flow.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 constexpr int n_per_rank = 20;
@@ -62,4 +62,4 @@ TEST(ImpossibleFlow, PocketsOfTheGridAreLetBe) {
 }
 
 }  // namespace
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

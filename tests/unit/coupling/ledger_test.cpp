@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 Momentum<3> momentum_3d(const Point<3>& linear, const Point<3>& angular) {
@@ -45,4 +45,4 @@ TEST(MomentumLedger, NothingMovesNoError) {
   EXPECT_EQ(ledger.angular_error(1), 0);
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

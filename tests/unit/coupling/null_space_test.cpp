@@ -8,7 +8,7 @@
 #include "support/coupled_case.hpp"
 #include "support/dense.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 FakeBox<2> tank_around(bool open_top, Index<2> n_cells = {6, 6}) {
@@ -94,4 +94,4 @@ TEST(NullSpace, PistonBetweenClosedEndsLeavesOneLevel) {
   EXPECT_EQ(null_space_sizes(held), Sizes(2, 2));
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

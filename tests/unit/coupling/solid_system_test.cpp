@@ -8,7 +8,7 @@
 #include "support/coupled_case.hpp"
 #include "support/dense.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 FakeBody<2> sliding_plate() {
@@ -156,4 +156,4 @@ TEST(SolidSystem, MatrixFreeModelsGiveTheSameBlock) {
             1e-13);
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

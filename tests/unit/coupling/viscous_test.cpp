@@ -8,7 +8,7 @@
 #include "support/coupled_case.hpp"
 #include "support/dense.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 constexpr double viscous_dt = 0.1;
@@ -144,4 +144,4 @@ TEST(Viscous, VanishingViscosityLeavesEverythingAlone) {
   EXPECT_EQ(inviscid.fluid.viscous_system(), nullptr);
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

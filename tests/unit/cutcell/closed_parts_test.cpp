@@ -5,7 +5,7 @@
 
 #include "geometry/generators.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 template <int dim>
@@ -124,4 +124,4 @@ TEST(ClosedParts, VolumesOfADualCell) {
   EXPECT_TRUE(closed_volumes<2>(surface, {Point<2>(0.9, 0), Point<2>(1, 1)}, 0).empty());
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

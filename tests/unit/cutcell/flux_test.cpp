@@ -14,7 +14,7 @@
 #include "support/fake_solid.hpp"
 #include "unit/mac/mac_cases.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 template <int dim>
@@ -409,4 +409,4 @@ TEST(Flux, JetsInPartlyOpenFacesDoNotLast) {
   }
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -12,7 +12,7 @@
 #include "support/fake_solid.hpp"
 #include "unit/mac/mac_cases.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 constexpr double viscosity = 0.7, dt = 0.05;
@@ -156,4 +156,4 @@ TEST(ViscousCouples, NoneComesFromOutside) {
   expect_no_couple_from_outside<3, FluxCoupling>(14);
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

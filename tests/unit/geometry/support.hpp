@@ -7,7 +7,7 @@
 #include "geometry/generators.hpp"
 #include "geometry/surface_snapshot.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -47,4 +47,4 @@ SurfaceSnapshot<dim> snapshot(const std::vector<SurfaceMesh<dim>>& meshes, bool 
   return {all, solids};
 }
 
-}  // namespace lockstep
+}  // namespace lockstep::test

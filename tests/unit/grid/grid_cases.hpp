@@ -3,7 +3,7 @@
 
 #include "grid/tiled_grid.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 
 inline Communicator world() {
   return Teuchos::DefaultComm<int>::getComm();
@@ -58,4 +58,4 @@ double label(const TiledGrid<dim>& grid, int cell) {
   return 1.0 + static_cast<double>(grid.global_id(cell));
 }
 
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -8,7 +8,7 @@
 #include "grid/wide_halo.hpp"
 #include "grid_cases.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 constexpr double unset = -7;
@@ -165,4 +165,4 @@ TEST(WideHalo, FillsAWiderGridFromTheBaseGrid) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -7,7 +7,7 @@
 
 #include "grid_cases.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 template <int dim>
@@ -211,4 +211,4 @@ TEST(TiledGrid, RefusesBadDescriptionsOnAllRanks) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -9,7 +9,7 @@
 #include "support/fake_fluid.hpp"
 #include "support/fake_solid.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 /// Every blocked face couples.
@@ -147,4 +147,4 @@ TEST(FakeSolid, RowsMoveThePointsThatMove) {
   }
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

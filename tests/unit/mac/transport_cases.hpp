@@ -10,7 +10,7 @@
 #include "mac/transport/revalidation.hpp"
 #include "mac/transport/transport.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 
 inline Communicator world() {
   return Teuchos::DefaultComm<int>::getComm();
@@ -85,4 +85,4 @@ struct FullTank {
 constexpr AdvectionScheme all_schemes[] = {AdvectionScheme::semi_lagrangian,
                                            AdvectionScheme::maccormack, AdvectionScheme::cubic};
 
-}  // namespace lockstep
+}  // namespace lockstep::test

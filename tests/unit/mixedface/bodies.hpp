@@ -2,7 +2,7 @@
 #include "geometry/generators.hpp"
 #include "support/weights_of.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 template <int dim>
 FakeBox<dim> unit_tank(int n_cells) {
@@ -42,4 +42,4 @@ Point<dim> shifted_center(int k, double spacing) {
   return x;
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -8,7 +8,7 @@
 #include "support/dense.hpp"
 #include "unit/mixedface/bodies.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 TEST(FluidMass, DualCellMinusSolidByHand) {
   FakeBox<2> box;
@@ -217,4 +217,4 @@ TEST(Balance, TinyBodyGetsItsExactBuoyantImpulse) {
   }
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

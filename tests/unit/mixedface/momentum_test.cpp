@@ -10,7 +10,7 @@
 #include "support/dense.hpp"
 #include "unit/mixedface/bodies.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 /// Row 2 of Eq. 16 for some pressure, velocities before and after: the change of the momentum of
@@ -194,4 +194,4 @@ TEST(PaperDiagonal, IsTheFullBlockForASymmetricBody) {
   EXPECT_EQ(dense(literal.system.blocks(0.1).solid_block).llt().info(), Eigen::Success);
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

@@ -7,7 +7,7 @@
 #include "support/dense.hpp"
 #include "unit/mixedface/bodies.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 
 TEST(Weights, SlantedSegmentClippedByHand) {
   FakeBox<2> box;
@@ -167,4 +167,4 @@ TEST(Weights, BlocksAreTheSameOnAnyNumberOfRanks) {
   EXPECT_NEAR(bt.cwiseAbs().sum() + added.sum(), 4.1229721735861604, 1e-12);
 }
 
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

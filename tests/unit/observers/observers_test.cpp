@@ -8,7 +8,7 @@
 #include "observers/probes.hpp"
 #include "support/fake_fluid.hpp"
 
-namespace lockstep::testing {
+namespace lockstep::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -76,4 +76,4 @@ TEST(Flow, ThroughTheOpenPartOfAWindow) {
 }
 
 }  // namespace
-}  // namespace lockstep::testing
+}  // namespace lockstep::test

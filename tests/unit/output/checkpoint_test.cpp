@@ -13,7 +13,7 @@
 #include "output/atomic_file.hpp"
 #include "test_folder.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -191,4 +191,4 @@ TEST(Checkpoint, RefusesWhatIsNoFile) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

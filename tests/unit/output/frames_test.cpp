@@ -10,7 +10,7 @@
 #include "output/atomic_file.hpp"
 #include "test_folder.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -158,4 +158,4 @@ TEST(FrameWriter, LeavesNoTraceOfAFrameThatFails) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

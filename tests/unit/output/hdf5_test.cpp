@@ -13,7 +13,7 @@
 #include "output/atomic_file.hpp"
 #include "test_folder.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -203,4 +203,4 @@ TEST(Hdf5File, SurvivesAFullDisk) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -12,7 +12,7 @@
 #include "output/atomic_file.hpp"
 #include "test_folder.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST_F(History, KeepsWholeRowsWhenTheDiskIsFull) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -17,7 +17,7 @@
 #include "output/timers.hpp"
 #include "test_folder.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -143,4 +143,4 @@ TEST(RunRecord, KeepsTheInputByteForByte) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -5,7 +5,7 @@
 
 #include "base/communicator.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 
 /// An empty folder of this test and rank count, below the build folder. Collective.
 inline std::string fresh_folder(const std::string& name) {
@@ -31,4 +31,4 @@ std::string message_of(const Action& action) {
   return "";
 }
 
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -2,7 +2,7 @@
 #include "strategies/common/refined_strategy.hpp"
 #include "strategies/common/strategy_parameters.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 
 /// The example of docs/tutorials/add-a-solver-strategy.md: preconditioned steepest descent on the
 /// Schur complement S = A + B C^-1 B^T, with the relaxation that minimises the error's energy.
@@ -20,4 +20,4 @@ class SteepestDescent : public RefinedStrategy {
   double shortening_;
 };
 
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -1,7 +1,7 @@
 // Masses, inertias and centres of mass against formulas.
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
@@ -63,4 +63,4 @@ TEST(Mass, MatrixAboutAPivotGivesThePhysicalMomentum) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

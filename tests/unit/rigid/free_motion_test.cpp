@@ -1,7 +1,7 @@
 // Spin and swing without a fluid: conservation, order, bounded energy.
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
@@ -133,4 +133,4 @@ TEST(FreeMotion, HingedPlateTurnsUniformly) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -1,7 +1,7 @@
 // Hits of segments, closest points, and surfaces that sweep over points.
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 std::vector<int> all_of(int n) {
@@ -148,4 +148,4 @@ TEST(SweptOver, EveryPointBetweenTwoBallsOnce) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -2,7 +2,7 @@
 
 #include "transport_cases.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 const double two_pi = 2 * std::acos(-1.0);
@@ -258,4 +258,4 @@ TEST(Transport, RefusesAVelocityThatIsNotANumber) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -5,7 +5,7 @@
 #include "output/frames.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
@@ -88,4 +88,4 @@ TEST(InnerTorque, OnlyTheLinearLawHasOneWhenTurned) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -4,7 +4,7 @@
 
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
@@ -130,4 +130,4 @@ TEST(Input, MasslessCloth) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

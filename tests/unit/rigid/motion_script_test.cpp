@@ -1,7 +1,7 @@
 // Prescribed motions: values by hand, velocities against differences.
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
@@ -71,4 +71,4 @@ TEST(Script, TurnsAboutThePivotAndStartsWhereItsScriptIs) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

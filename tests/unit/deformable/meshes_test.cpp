@@ -11,7 +11,7 @@
 #include "deformable/mesh/volume_generators.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -222,4 +222,4 @@ TEST_F(VtkFile, ErrorsNameTheLine) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -6,7 +6,7 @@
 #include "deformable/mesh/volume_generators.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 template <int dim>
@@ -203,4 +203,4 @@ TEST(Clamping, OnlyNegativeEigenvaluesChange) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

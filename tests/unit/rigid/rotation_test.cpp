@@ -1,7 +1,7 @@
 // Rotations and twists.
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using test::followed;
@@ -51,4 +51,4 @@ TEST(Twist, OfATranslationIsItsVelocity) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -3,7 +3,7 @@
 #include "geometry/generators.hpp"
 #include "transport_cases.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 template <int dim>
@@ -296,4 +296,4 @@ TEST(TransportNearSurfaces, LeftOverFacesTakeTheSurfaceVelocity) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

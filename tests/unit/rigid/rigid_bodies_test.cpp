@@ -8,7 +8,7 @@
 #include "rigid/register_rigid.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
@@ -250,4 +250,4 @@ TEST(RigidBodies, RegistryMakesOneModelOfAllBodies) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -6,7 +6,7 @@
 #include "deformable/mesh/volume_generators.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
@@ -101,4 +101,4 @@ TEST(Beams, FlagsSagAsPublished) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

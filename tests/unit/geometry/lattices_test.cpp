@@ -5,7 +5,7 @@
 #include "geometry/solid_volume.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 template <int dim>
@@ -267,4 +267,4 @@ TEST(SolidVolume, HalfCutBoxes) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

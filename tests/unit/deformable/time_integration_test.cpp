@@ -8,11 +8,10 @@
 #include "support.hpp"
 #include "support/dense.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
-using testing::dense;
 
 const char* const once = "The same on several ranks (RanksAgree), only slower.";
 
@@ -341,4 +340,4 @@ TEST(TimeIntegration, RanksAgree) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -12,7 +12,7 @@
 #include "geometry/mesh_files.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using ::testing::AllOf;
@@ -162,4 +162,4 @@ TEST_F(SurfaceFiles, NumbersMustBeFiniteAndIndicesSmall) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -7,7 +7,7 @@
 #include "geometry/surface_parts.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -322,4 +322,4 @@ TEST(MeshRepair, OrientsWhatIsMixed) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -10,11 +10,10 @@
 #include "support.hpp"
 #include "support/dense.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
-using testing::dense;
 
 /// Two bodies, stretched and turning.
 const std::vector<std::string> pair_of_bodies{
@@ -301,4 +300,4 @@ TEST(DeformableSolids, RegistryMakesOneModelOfAllBodies) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

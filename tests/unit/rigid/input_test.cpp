@@ -2,7 +2,7 @@
 #include "base/errors.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
@@ -66,4 +66,4 @@ TEST(RigidInput, Orientation) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -9,11 +9,10 @@
 #include "support.hpp"
 #include "support/dense.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
-using testing::dense;
 
 ParameterList rigid_list(const std::string& content) {
   return scene_list(content, rigid_body_parameters<3>());
@@ -144,4 +143,4 @@ TEST(Attachments, WantADynamicRigidBody) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

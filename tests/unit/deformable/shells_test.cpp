@@ -7,7 +7,7 @@
 #include "geometry/generators.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -250,4 +250,4 @@ TEST(ShellElements, CollapsedHingesPushFinitely) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

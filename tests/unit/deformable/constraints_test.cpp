@@ -7,11 +7,10 @@
 #include "support.hpp"
 #include "support/dense.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 using namespace test;
-using testing::dense;
 
 std::string region(const std::string& lower, const std::string& upper, const std::string& more) {
   return list("Pinned", list("rim", numbers("Lower", lower) + numbers("Upper", upper) + more));
@@ -258,4 +257,4 @@ TEST(SubSteps, StiffBodyIsStableAtTenTimesItsStep) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

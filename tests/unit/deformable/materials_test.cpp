@@ -7,7 +7,7 @@
 #include "deformable/materials/tensor_products.hpp"
 #include "support.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 const LameConstants lame{2.0, 1.5};
@@ -140,4 +140,4 @@ TEST(Inputs, ModuliAreChecked) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test
