@@ -1,5 +1,7 @@
 #pragma once
 // Conjugate gradients in a PressureLayout; for pressure_layout.cpp alone.
+#include <array>
+#include <numeric>
 #include <vector>
 
 #include "linear/conjugate_gradients.hpp"
@@ -7,52 +9,136 @@
 
 namespace lockstep {
 
-/// A and one cycle, in two passes over memory an iteration.
+/// A and one cycle, in two passes over memory an iteration beside the cycle's: A d is worked out in
+/// both, which takes less time than to store it. The cycle leaves z on ghost cells too, so that
+/// nothing need be exchanged for d.
 template <int dim>
 class LayoutKernels final : public ConjugateGradientKernels {
  public:
   LayoutKernels(RCP<const LayoutStencil<dim>> stencil, RCP<const LayoutInverse<dim>> inverse,
-                Communicator comm)
-      : stencil_(std::move(stencil)), inverse_(std::move(inverse)), comm_(std::move(comm)) {}
+                const LevelHalo& halo, RCP<Vector> direction, Communicator comm)
+      : stencil_(std::move(stencil)),
+        inverse_(std::move(inverse)),
+        direction_(std::move(direction)),
+        comm_(std::move(comm)) {
+    if (!halo.empty())
+      find_ghosts(halo);
+    in_empty_rows_.resize(inverse_->empty_rows().size());
+  }
+
+  const Vector& direction() const override { return *direction_; }
 
   double precondition(const Vector& r, double r_norm) override {
     return sum_all(comm_, inverse_->cycle(r.getData().getRawPtr(), r_norm));
   }
 
-  double advance_direction(double beta, Vector& d, Vector& q) override {
+  double advance_direction(double beta) override {
     const std::ptrdiff_t n_slots = inverse_->n_slots();
-    const auto d_values = d.getDataNonConst(), q_values = q.getDataNonConst();
-    double* direction = d_values.getRawPtr();
-    std::vector<double> in_empty_rows;
-    for (const EmptyRow& row : inverse_->empty_rows()) {
-      in_empty_rows.push_back(row.z + (beta == 0 ? 0 : beta * direction[row.entry]));
-      direction[row.entry] = 0;
+    const auto values = direction_->getDataNonConst();
+    double* d = values.getRawPtr();
+    const std::vector<EmptyRow>& empty_rows = inverse_->empty_rows();
+    for (std::size_t i = 0; i < empty_rows.size(); ++i) {
+      double& entry = d[empty_rows[i].entry];
+      in_empty_rows_[i] = empty_rows[i].z + (beta == 0 ? 0 : beta * entry);
+      entry = 0;
     }
     const double back = inverse_->back();
-    const auto update_slab = [&](int slab) {
-      inverse_->for_each_row(slab, [&](int colour, std::ptrdiff_t at, int n) {
-        const float* z = inverse_->solution(colour) + at;
-        double* to = direction + colour * n_slots + at;
-        if (beta == 0) {
-          for (int m = 0; m < n; ++m)
-            to[m] = back * z[m];
-        } else {
+    const auto turn = [&](int colour, std::ptrdiff_t at, int n) {
+      const float* z = inverse_->solution(colour) + at;
+      double* to = d + colour * n_slots + at;
+      if (beta == 0) {
+        for (int m = 0; m < n; ++m)
+          to[m] = back * z[m];
+      } else {
 #pragma GCC ivdep
-          for (int m = 0; m < n; ++m)
-            to[m] = back * z[m] + beta * to[m];
-        }
-      });
+        for (int m = 0; m < n; ++m)
+          to[m] = back * z[m] + beta * to[m];
+      }
     };
-    const double sum = stencil_->multiply(direction, q_values.getRawPtr(), update_slab);
-    for (std::size_t i = 0; i < in_empty_rows.size(); ++i)
-      direction[inverse_->empty_rows()[i].entry] = in_empty_rows[i];
+    for (int colour = 0; colour < 2; ++colour)
+      for (const std::ptrdiff_t ghost : ghosts_[colour])
+        turn(colour, ghost, 1);
+    double sum = 0;
+    stencil_->for_each_product(
+        d, [&](int slab) { inverse_->for_each_row(slab, turn); },
+        [&](int colour, std::ptrdiff_t at, int n, const double* product) {
+          sum += sum_of_products(d + colour * n_slots + at, product, n);
+        });
+    restore_empty_rows(d);
+    return sum_all(comm_, sum);
+  }
+
+  double advance(double step, Vector& x, Vector& r) override {
+    const std::ptrdiff_t n_slots = inverse_->n_slots();
+    const auto d_values = direction_->getDataNonConst(), x_values = x.getDataNonConst(),
+               r_values = r.getDataNonConst();
+    double* d = d_values.getRawPtr();
+    double sum = 0;
+    for (std::size_t i = 0; i < in_empty_rows_.size(); ++i) {
+      const int entry = inverse_->empty_rows()[i].entry;
+      d[entry] = 0;
+      x_values[entry] += step * in_empty_rows_[i];
+      sum += r_values[entry] * r_values[entry];
+    }
+    stencil_->for_each_product(
+        d, [](int) {},
+        [&](int colour, std::ptrdiff_t at, int n, const double* product) {
+          const std::ptrdiff_t first = colour * n_slots + at;
+          sum += advance_row(step, stencil_->diagonal(colour) + at, d + first, product, n,
+                             x_values.getRawPtr() + first, r_values.getRawPtr() + first);
+        });
+    restore_empty_rows(d);
     return sum_all(comm_, sum);
   }
 
  private:
+  /// Of cells with faces, which have a diagonal; returns r.r. Ghosts in between are d's alone.
+  static double advance_row(double step, const float* diagonal, const double* d,
+                            const double* product, int n, double* x, double* r) {
+    constexpr int n_lanes = 16;  // as in sum_of_products
+    std::array<double, n_lanes> sums{};
+    const auto at = [&](int m, double& sum) {
+      const double has_row = diagonal[m] > 0 ? 1 : 0;
+      x[m] += has_row * step * d[m];
+      const double value = r[m] - step * product[m];
+      r[m] = value;
+      sum += has_row * value * value;
+    };
+    int m = 0;
+    for (; m + n_lanes <= n; m += n_lanes) {
+#pragma GCC ivdep
+      for (int lane = 0; lane < n_lanes; ++lane)
+        at(m + lane, sums[lane]);
+    }
+    for (; m < n; ++m)
+      at(m, sums[0]);
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
+  }
+
+  void restore_empty_rows(double* d) const {
+    for (std::size_t i = 0; i < in_empty_rows_.size(); ++i)
+      d[inverse_->empty_rows()[i].entry] = in_empty_rows_[i];
+  }
+
+  /// Those ghosts that no row of the rank's own holds.
+  void find_ghosts(const LevelHalo& halo) {
+    const std::ptrdiff_t n_slots = inverse_->n_slots();
+    std::vector<char> in_row(2 * n_slots);
+    inverse_->for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+      std::fill_n(in_row.begin() + colour * n_slots + at, n, 1);
+    });
+    for (int colour = 0; colour < 2; ++colour)
+      for (const std::ptrdiff_t ghost : halo.ghosts(colour))
+        if (!in_row[colour * n_slots + ghost])
+          ghosts_[colour].push_back(ghost);
+  }
+
   RCP<const LayoutStencil<dim>> stencil_;
   RCP<const LayoutInverse<dim>> inverse_;
+  RCP<Vector> direction_;
   Communicator comm_;
+  std::array<std::vector<std::ptrdiff_t>, 2> ghosts_;  ///< by colour
+  std::vector<double> in_empty_rows_;                  ///< d there
 };
 
 }  // namespace lockstep

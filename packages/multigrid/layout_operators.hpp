@@ -57,34 +57,23 @@ class LayoutStencil final : public LayoutOperator {
       : LayoutOperator(map), level_(level), halo_(halo), unit_(unit), empty_(std::move(empty)) {
     if (!halo.empty())
       with_ghosts_.resize(2 * level.grid().n_slots);
+    row_.resize(level.grid().row_stride + 16);
   }
 
-  /// y = A x; `before(slab)` is called for each slab before x is read there. x must be zero in the
-  /// empty rows: their neighbours do not know that no face lies between. Returns x.y of this rank.
-  template <typename Before>
-  double multiply(const double* x, double* y, const Before& before) const {
+  /// Calls use(colour, slot of the first, number of slots, their part of A x) for all rows, and
+  /// before(slab) before x is read there. x must hold its ghosts, and zero in the empty rows: their
+  /// neighbours do not know that no face lies between.
+  template <typename Before, typename Use>
+  void for_each_product(const double* x, const Before& before, const Use& use) const {
     const int n_slabs = level_.grid().n_slabs();
-    double sum = 0;
-    for (const int entry : empty_)
-      y[entry] = 0;
-    if (halo_.empty()) {
-      for (int front = 0; front <= n_slabs; ++front) {
-        if (front < n_slabs)
-          before(front);
-        if (front > 0)
-          sum += multiply_slab(front - 1, x, y);
-      }
-      return sum;
+    for (int front = 0; front <= n_slabs; ++front) {
+      if (front < n_slabs)
+        before(front);
+      if (front > 0)
+        multiply_slab(front - 1, x, use);
     }
-    for (int slab = 0; slab < n_slabs; ++slab)
-      before(slab);
-    std::copy_n(x, with_ghosts_.size(), with_ghosts_.data());
-    for (int colour = 0; colour < 2; ++colour)
-      halo_.fill(colour, with_ghosts_.data() + colour * level_.grid().n_slots);
-    for (int slab = 0; slab < n_slabs; ++slab)
-      sum += multiply_slab(slab, with_ghosts_.data(), y);
-    return sum;
   }
+  const float* diagonal(int colour) const { return level_.diagonal(colour).data(); }
 
  private:
   void apply_to(const double* x, double* y) const override {
@@ -95,32 +84,41 @@ class LayoutStencil final : public LayoutOperator {
         without_empty[entry] = 0;
       x = without_empty.data();
     }
-    multiply(x, y, [](int) {});
+    if (!halo_.empty()) {
+      std::copy_n(x, with_ghosts_.size(), with_ghosts_.data());
+      for (int colour = 0; colour < 2; ++colour)
+        halo_.fill(colour, with_ghosts_.data() + colour * level_.grid().n_slots);
+      x = with_ghosts_.data();
+    }
+    for (const int entry : empty_)
+      y[entry] = 0;
+    for_each_product(
+        x, [](int) {},
+        [&](int colour, std::ptrdiff_t at, int n, const double* product) {
+          std::copy_n(product, n, y + colour * level_.grid().n_slots + at);
+        });
   }
 
-  double multiply_slab(int slab, const double* x, double* y) const {
+  template <typename Use>
+  void multiply_slab(int slab, const double* x, const Use& use) const {
     const LevelGrid& grid = level_.grid();
     const auto rows = level_.rows_of(slab);
-    double sum = 0;
     for (int j = rows.j_begin; j < rows.j_end; ++j) {
       const auto range = level_.range(j, rows.k);
-      const int n = range.last - range.first;
       for (int colour = 0; colour < 2; ++colour) {
-        const double* in = x + colour * grid.n_slots;
-        double* out = y + colour * grid.n_slots;
-        level_.multiply(colour, j, rows.k, unit_, in, x + (1 - colour) * grid.n_slots, out);
-        const std::ptrdiff_t at = grid.slot(range.first, j, rows.k);
-        sum += sum_of_products(in + at, out + at, n);
+        level_.multiply(colour, j, rows.k, unit_, x + colour * grid.n_slots,
+                        x + (1 - colour) * grid.n_slots, row_.data());
+        use(colour, grid.slot(range.first, j, rows.k), range.last - range.first,
+            row_.data() + range.first);
       }
     }
-    return sum;
   }
 
   const StencilLevel<dim>& level_;
   const LevelHalo& halo_;
   double unit_;
   std::vector<int> empty_;
-  mutable std::vector<double> with_ghosts_;
+  mutable std::vector<double> with_ghosts_, row_;
 };
 
 /// A row of the layout that A leaves empty, and the inverse of what stands in for its diagonal.
@@ -173,11 +171,12 @@ class LayoutInverse final : public LayoutOperator {
     });
     multigrid_.cycle();
     back_ = 1 / (scale * unit_);
+    // r as the cycle has seen it: what rounding takes from the step length does no harm.
     double sum = 0;
     for_each_row([&](int colour, std::ptrdiff_t at, int n) {
-      sum += sum_of_products(r + colour * n_slots + at, multigrid_.solution(colour) + at, n);
+      sum += sum_of_products(multigrid_.rhs(colour) + at, multigrid_.solution(colour) + at, n);
     });
-    sum *= back_;
+    sum *= back_ / scale;
     for (EmptyRow& row : empty_rows_) {
       row.z = row.inverse * r[row.entry];
       sum += row.z * r[row.entry];

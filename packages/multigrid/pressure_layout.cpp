@@ -34,6 +34,9 @@ class PressureLayoutOf final : public PressureLayout {
       entries.push_back(entry_of_row_[row]);
     stencil_ = rcp(new LayoutStencil<dim>(map_, multigrid_.finest(), layout_->levels().front().halo,
                                           coefficients.unit, std::move(entries)));
+    if (direction_.is_null())
+      direction_ = make_vector(map_);
+    direction_->putScalar(0);
     own_ = with_cycle_of(multigrid_, system);
     of_schur_ = {};
   }
@@ -101,7 +104,8 @@ class PressureLayoutOf final : public PressureLayout {
         rcp(new LayoutInverse<dim>(map_, multigrid, layout_->blocks().comm,
                                    stencil_of(system.pressure_block)->unit, with_values(system)));
     return {inverse,
-            std::make_shared<LayoutKernels<dim>>(stencil_, inverse, layout_->blocks().comm)};
+            std::make_shared<LayoutKernels<dim>>(stencil_, inverse, layout_->levels().front().halo,
+                                                 direction_, layout_->blocks().comm)};
   }
 
   MultigridOptions options_;
@@ -110,6 +114,7 @@ class PressureLayoutOf final : public PressureLayout {
   bool schur_depends_on_solid_block_ = false;
   std::vector<int> empty_rows_;  ///< local rows that A leaves empty
   RCP<const LayoutStencil<dim>> stencil_;
+  RCP<Vector> direction_;  ///< of both kernels; zero where neither has an unknown
   Preconditioned own_, of_schur_;
 };
 

@@ -293,12 +293,11 @@ void StencilLevel<dim>::multiply(int colour, int j, int k, double unit, const do
   const std::ptrdiff_t at = grid_.slot(0, j, k);
   const double* p_row = p + at;
   const float* diagonal = diagonal_[colour].data() + at;
-  double* result_row = result + at;
   with_sums(colour, j, k, other, [=](int first, int last, const auto& sum) {
 #pragma GCC ivdep
     for (int m = first; m < last; ++m) {
       const double value = unit * (diagonal[m] * p_row[m] - sum(m));
-      result_row[m] = diagonal[m] > 0 ? value : 0;
+      result[m] = diagonal[m] > 0 ? value : 0;
     }
   });
 }

@@ -52,7 +52,7 @@ class StencilLevel {
   /// The same of one cell, in slot m of the row.
   float residual_at(int colour, int m, int j, int k, const float* b, const float* x,
                     const float* other) const;
-  /// result := unit A p of one row in double precision.
+  /// result := unit A p of one row in double precision, in slots [first, last).
   void multiply(int colour, int j, int k, double unit, const double* p, const double* other,
                 double* result) const;
 

@@ -82,33 +82,39 @@ class Actions final : public ConjugateGradientKernels {
  public:
   Actions(const Action& op, const Action& preconditioner,
           const std::vector<RCP<const Vector>>& null_space, const RCP<const Map>& map)
-      : op_(op), preconditioner_(preconditioner), null_space_(null_space), z_(map) {}
+      : op_(op),
+        preconditioner_(preconditioner),
+        null_space_(null_space),
+        z_(map),
+        direction_(map),
+        product_(map) {}
 
   double precondition(const Vector& r, double) override {
     preconditioner_(r, z_);
     project_out(null_space_, z_);
     return dot(r, z_);
   }
-  double advance_direction(double beta, Vector& d, Vector& q) override {
-    turn(beta, z_, d);
-    op_(d, q);
-    return dot(d, q);
+  double advance_direction(double beta) override {
+    turn(beta, z_, direction_);
+    op_(direction_, product_);
+    return dot(direction_, product_);
   }
+  double advance(double step, Vector& x, Vector& r) override {
+    return sum_all(r.getMap()->getComm(), lockstep::advance(step, direction_, product_, x, r));
+  }
+  const Vector& direction() const override { return direction_; }
 
  private:
   const Action& op_;
   const Action& preconditioner_;
   const std::vector<RCP<const Vector>>& null_space_;
-  Vector z_;
+  Vector z_, direction_, product_;
 };
 
 }  // namespace
 
-int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Vector& x,
+int conjugate_gradients(ConjugateGradientKernels& kernels, Vector& r, Vector& x,
                         const ConjugateGradientsRequest& request) {
-  const auto map = rhs.getMap();
-  const Communicator comm = map->getComm();
-  Vector r(rhs, Teuchos::Copy), d(map), q(map);
   x.putScalar(0);
   constexpr double trusted_fall = 1e-3;
   double r_norm = norm(r), true_norm = r_norm;
@@ -126,8 +132,7 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
         "{}: the preconditioner is not positive definite (r . M r = {:.3e} in iteration {}, "
         "|r| = {:.3e}). Choose another sub-block inverse.",
         request.name, r_dot_z, iteration, r_norm);
-    const double curvature =
-        kernels.advance_direction(previous == 0 ? 0 : r_dot_z / previous, d, q);
+    const double curvature = kernels.advance_direction(previous == 0 ? 0 : r_dot_z / previous);
     if (round_off.has_lost(r_norm, curvature))
       break;
     check_solve(
@@ -135,7 +140,7 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
         "{}: the operator is not positive definite (d . S d = {:.3e} in iteration {}, |r| = "
         "{:.3e}). A singular system needs its null vectors.",
         request.name, curvature, iteration, r_norm);
-    r_norm = std::sqrt(sum_all(comm, advance(r_dot_z / curvature, d, q, x, r)));
+    r_norm = std::sqrt(kernels.advance(r_dot_z / curvature, x, r));
     ++iteration;
     if (request.true_residual && r_norm <= trusted_fall * true_norm) {
       if (!request.true_residual(x, r))
@@ -155,7 +160,8 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Ve
 int conjugate_gradients(const Action& op, const Action& preconditioner, const Vector& rhs,
                         Vector& x, const ConjugateGradientsRequest& request) {
   Actions actions(op, preconditioner, request.null_space, rhs.getMap());
-  return conjugate_gradients(actions, rhs, x, request);
+  Vector r(rhs, Teuchos::Copy);
+  return conjugate_gradients(actions, r, x, request);
 }
 
 }  // namespace lockstep

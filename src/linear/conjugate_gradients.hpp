@@ -26,23 +26,28 @@ struct ConjugateGradientsRequest {
 };
 
 /// What an iteration does to its vectors, in as few passes over memory as the operators allow. The
-/// preconditioned residual z belongs to the kernels. All sums are global, all calls collective.
+/// preconditioned residual z and the direction d belong to the kernels. All sums are global, all
+/// calls collective.
 class ConjugateGradientKernels {
  public:
   virtual ~ConjugateGradientKernels() = default;
   /// z = M r; returns r.z. `r_norm` is |r|.
   virtual double precondition(const Vector& r, double r_norm) = 0;
-  /// d = z + beta d, q = (operator) d; returns d.q. With beta 0 the old d does not matter.
-  virtual double advance_direction(double beta, Vector& d, Vector& q) = 0;
+  /// d = z + beta d; returns d.(operator) d. With beta 0 the old d does not matter.
+  virtual double advance_direction(double beta) = 0;
+  /// x += step d, r -= step (operator) d; returns r.r.
+  virtual double advance(double step, Vector& x, Vector& r) = 0;
+  /// d. Entries that belong to no unknown may have any value.
+  virtual const Vector& direction() const = 0;
 };
 
 /// Preconditioned conjugate gradients on a symmetric positive (semi)definite operator, from a zero
 /// initial guess (pass the residual of a better one as right-hand side, and add the result to it).
-/// Returns the number of iterations; running out of them is no error here, for the caller checks
-/// the true residual; nor is a residual that round-off keeps from falling on. Throws SolveError if
-/// the operator or the preconditioner turns out indefinite or not finite. Right on ranks that own
-/// no row. Collective.
-int conjugate_gradients(ConjugateGradientKernels& kernels, const Vector& rhs, Vector& x,
+/// `r` is the right-hand side, and in the end what is left of it. Returns the number of iterations;
+/// running out of them is no error here, for the caller checks the true residual; nor is a residual
+/// that round-off keeps from falling on. Throws SolveError if the operator or the preconditioner
+/// turns out indefinite or not finite. Right on ranks that own no row. Collective.
+int conjugate_gradients(ConjugateGradientKernels& kernels, Vector& r, Vector& x,
                         const ConjugateGradientsRequest& request);
 
 /// The same from two operators; the request's null vectors are projected out of z.

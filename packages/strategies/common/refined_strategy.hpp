@@ -44,7 +44,7 @@ class RefinedStrategy : public SolverStrategy {
 
   struct CorrectionRequest {
     std::string name;        ///< for messages
-    const Vector* residual;  ///< r_1, free of null vectors
+    Vector* residual;        ///< r_1, free of null vectors; may be overwritten
     double residual_norm;    ///< |r_1|
     double target;           ///< what |r_1| should become
     double solid_round_off;  ///< what |r_2| cannot be asked to fall below

@@ -30,12 +30,15 @@ class Eliminated {
     inverse_ = solid_.to(std::min(loosest, share * target_ / norm));
   }
 
-  /// y += B C^-1 B^T x; returns x.B C^-1 B^T x.
-  double add(const Vector& x, Vector& y) {
+  /// Finds C^-1 B^T x; returns x.B C^-1 B^T x.
+  double find(const Vector& x) {
     coupling_.apply(x, force_);
     apply(*inverse_, force_, velocity_);
-    coupling_.apply(velocity_, y, Teuchos::TRANS, 1, 1);
     return dot(force_, velocity_);
+  }
+  /// y += factor B C^-1 B^T x, of the x last found.
+  void add(double factor, Vector& y) const {
+    coupling_.apply(velocity_, y, Teuchos::TRANS, factor, 1);
   }
 
  private:
@@ -54,10 +57,15 @@ class SchurKernels final : public ConjugateGradientKernels {
     eliminated_.set_residual(r_norm);
     return pressure_.precondition(r, r_norm);
   }
-  double advance_direction(double beta, Vector& d, Vector& q) override {
-    const double of_pressure = pressure_.advance_direction(beta, d, q);
-    return of_pressure + eliminated_.add(d, q);
+  double advance_direction(double beta) override {
+    const double of_pressure = pressure_.advance_direction(beta);
+    return of_pressure + eliminated_.find(direction());
   }
+  double advance(double step, Vector& x, Vector& r) override {
+    eliminated_.add(-step, r);
+    return pressure_.advance(step, x, r);
+  }
+  const Vector& direction() const override { return pressure_.direction(); }
 
  private:
   ConjugateGradientKernels& pressure_;
@@ -92,7 +100,8 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
   return conjugate_gradients(
       [&](const Vector& x, Vector& y) {
         apply(*system.pressure_block, x, y);
-        eliminated.add(x, y);
+        eliminated.find(x);
+        eliminated.add(1, y);
       },
       [&](const Vector& x, Vector& y) { apply(*pressure_inverse(), x, y); }, *request.residual,
       correction, cg);
