@@ -156,47 +156,9 @@ SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapsh
   return marks;
 }
 
-template <int dim>
-std::vector<char> mark_within(const TiledGrid<dim>& grid, const SurfaceSnapshot<dim>& surface,
-                              double distance) {
-  std::vector<char> marks(grid.n_owned_cells(), 0);
-  const double h = grid.spacing();
-  constexpr double slack = 0.01;  // in cells
-  for (int s = 0; s < surface.n_simplices(); ++s) {
-    const Box<dim> bounds = surface.bounds(s);
-    Index<dim> begin, end;
-    for (int a = 0; a < dim; ++a) {
-      // On periodic axes, the lookup of cells wraps.
-      const int n = grid.tile_lattice().n_cells()[a];
-      const int slip = grid.description().periodic[a] ? n : 0;
-      const double low = (bounds.min()[a] - distance - grid.lower()[a]) / h - slack;
-      const double high = (bounds.max()[a] + distance - grid.lower()[a]) / h + slack;
-      begin[a] = static_cast<int>(std::floor(std::clamp<double>(low, -slip, n + slip)));
-      end[a] = static_cast<int>(std::floor(std::clamp<double>(high, -slip - 1, n + slip - 1))) + 1;
-    }
-    const int row_end = end[0], n = grid.tile_lattice().n_cells()[0];
-    end[0] = std::min(begin[0] + 1, row_end);
-    for_each_index<dim>(begin, end, [&](Index<dim> c) {
-      while (c[0] < row_end) {  // the cells of a row have successive ids up to the end of a tile
-        const int x = (c[0] % n + n) % n;
-        const int stretch =
-            std::min({tile_width<dim> - x % tile_width<dim>, n - x, row_end - c[0]});
-        const int cell = grid.cell(c);
-        if (cell >= 0 && grid.owned(cell))
-          std::fill_n(marks.begin() + cell, stretch, 1);
-        c[0] += stretch;
-      }
-    });
-  }
-  return marks;
-}
-
 template SurfaceMarks<2> mark_surface<2>(const MacDomain<2>&, const SurfaceSnapshot<2>&,
                                          std::vector<CellState>&);
 template SurfaceMarks<3> mark_surface<3>(const MacDomain<3>&, const SurfaceSnapshot<3>&,
                                          std::vector<CellState>&);
-
-template std::vector<char> mark_within<2>(const TiledGrid<2>&, const SurfaceSnapshot<2>&, double);
-template std::vector<char> mark_within<3>(const TiledGrid<3>&, const SurfaceSnapshot<3>&, double);
 
 }  // namespace lockstep

@@ -18,10 +18,4 @@ template <int dim>
 SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface,
                                std::vector<CellState>& cells);
 
-/// Marks the owned cells that the boxes of the simplices, widened by a distance [m], touch. Not
-/// collective.
-template <int dim>
-std::vector<char> mark_within(const TiledGrid<dim>& grid, const SurfaceSnapshot<dim>& surface,
-                              double distance);
-
 }  // namespace lockstep

@@ -1,134 +1,90 @@
 #include "mac/transport/box_bins.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace lockstep {
-
-namespace {
-/// Up to so many boxes are looked through one by one.
-constexpr std::size_t handful = 12;
-/// Bins along an axis, at most.
-constexpr double most_bins = 64;
-}  // namespace
-
-template <int dim>
-void BoxBins<dim>::clear() {
-  boxes_ = nullptr;
-  per_width_ = 0;
-}
-
-template <int dim>
-int BoxBins<dim>::row_of(const Index<dim>& bin) const {
-  int row = 0;
-  for (int a = dim - 1; a > 0; --a)
-    row = (row + bin[a]) * (a > 1 ? count_[a - 1] : 1);
-  return row * count_[0];
-}
-
-template <int dim>
-template <typename Function>
-void BoxBins<dim>::for_each_row(const Range& range, const Function& f) const {
-  Index<dim> bin = range.begin;
-  while (true) {
-    const int row = row_of(bin);
-    f(row + range.begin[0], row + range.end[0]);
-    int a = 1;
-    while (a < dim && ++bin[a] == range.end[a]) {
-      bin[a] = range.begin[a];
-      ++a;
-    }
-    if (a == dim)
-      return;
-  }
-}
 
 template <int dim>
 typename BoxBins<dim>::Range BoxBins<dim>::range(const Box<dim>& box) const {
   Range range;
   for (int a = 0; a < dim; ++a) {
-    const double last = count_[a] - 1;
-    const double low = (box.min()[a] - lower_[a]) * per_width_;
-    const double high = (box.max()[a] - lower_[a]) * per_width_;
-    range.begin[a] = static_cast<int>(std::clamp(low, 0., last));
-    range.end[a] = static_cast<int>(std::clamp(high, 0., last)) + 1;
+    const double low = std::floor((box.min()[a] - lower_[a]) * per_width_);
+    const double high = std::floor((box.max()[a] - lower_[a]) * per_width_);
+    range.begin[a] = static_cast<int>(std::clamp<double>(low, 0, count_[a]));
+    range.end[a] = static_cast<int>(std::clamp<double>(high + 1, 0, count_[a]));
   }
   return range;
 }
 
 template <int dim>
-void BoxBins<dim>::build(const std::vector<Box<dim>>& boxes, const Box<dim>& region, double width) {
-  boxes_ = &boxes;
-  per_width_ = 0;
-  if (boxes.size() <= handful)
-    return;
-  lower_ = region.min();
-  per_width_ = 1 / std::max(width, region.sizes().maxCoeff() / most_bins);
-  int n_bins = 1;
-  for (int a = 0; a < dim; ++a) {
-    count_[a] = std::max(1, static_cast<int>(std::ceil(region.sizes()[a] * per_width_)));
-    n_bins *= count_[a];
-  }
-  start_.assign(n_bins + 1, 0);
-  for (const Box<dim>& box : boxes)
-    for_each_row(range(box), [&](int first, int last) {
-      for (int bin = first; bin < last; ++bin)
-        ++start_[bin + 1];
-    });
-  for (int bin = 0; bin < n_bins; ++bin)
-    start_[bin + 1] += start_[bin];
-  items_.resize(start_[n_bins]);
-  // Filled from the back, so that every start ends up where it belongs.
-  for (int i = static_cast<int>(boxes.size()) - 1; i >= 0; --i)
-    for_each_row(range(boxes[i]), [&](int first, int last) {
-      for (int bin = first; bin < last; ++bin)
-        items_[--start_[bin + 1]] = i;
-    });
-  std::rotate(start_.begin(), start_.begin() + 1, start_.end());
-  start_.back() = static_cast<int>(items_.size());
-  seen_.assign(boxes.size(), 0);
-  question_ = 0;
-}
-
-template <int dim>
-void BoxBins<dim>::touching(const Box<dim>& box, std::vector<int>& found) const {
-  found.clear();
-  if (!boxes_)
-    return;
-  const std::vector<Box<dim>>& boxes = *boxes_;
-  if (per_width_ == 0) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      if (boxes[i].intersects(box))
-        found.push_back(static_cast<int>(i));
-    return;
-  }
-  ++question_;
-  for_each_row(range(box), [&](int first, int last) {
-    for (int k = start_[first]; k < start_[last]; ++k) {
-      const int i = items_[k];
-      if (seen_[i] == question_)
-        continue;
-      seen_[i] = question_;
-      if (boxes[i].intersects(box))
-        found.push_back(i);
-    }
-  });
-}
-
-template <int dim>
-bool BoxBins<dim>::any_touches(const Box<dim>& box) const {
-  if (!boxes_)
+bool BoxBins<dim>::lay_out(const Box<dim>& region, const Point<dim>& origin, double width) {
+  count_.fill(0);
+  used_.clear();
+  if (region.isEmpty())
     return false;
-  const std::vector<Box<dim>>& boxes = *boxes_;
-  const auto touches = [&](const Box<dim>& other) { return other.intersects(box); };
-  if (per_width_ == 0)
-    return std::any_of(boxes.begin(), boxes.end(), touches);
-  bool any = false;
-  for_each_row(range(box), [&](int first, int last) {
-    for (int k = start_[first]; !any && k < start_[last]; ++k)
-      any = touches(boxes[items_[k]]);
+  per_width_ = 1 / width;
+  int n_rows = 1;
+  for (int a = 0; a < dim; ++a) {
+    const double first = std::floor((region.min()[a] - origin[a]) * per_width_);
+    lower_[a] = origin[a] + first * width;
+    count_[a] = static_cast<int>(std::floor((region.max()[a] - lower_[a]) * per_width_)) + 1;
+    n_rows *= a > 0 ? count_[a] : 1;
+  }
+  words_in_row_ = (count_[0] + 63) / 64;
+  used_.resize(n_rows * words_in_row_);
+  return true;
+}
+
+template <int dim>
+void BoxBins<dim>::fill(const std::vector<Entry>& entries) {
+  for (const Entry& entry : entries)
+    used_[entry.word] |= std::uint64_t{1} << entry.bit;
+  slots_before_.resize(used_.size());
+  int n_slots = 0;
+  for (std::size_t word = 0; word < used_.size(); ++word) {
+    slots_before_[word] = n_slots;
+    n_slots += __builtin_popcountll(used_[word]);
+  }
+  start_.assign(n_slots + 1, 0);
+  for (const Entry& entry : entries)
+    ++start_[slot(entry.word, entry.bit)];
+  for (int slot = 1; slot <= n_slots; ++slot)
+    start_[slot] += start_[slot - 1];
+  items_.resize(entries.size());
+  // Filled from the back, so that every start ends up where it belongs.
+  for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry)
+    items_[--start_[slot(entry->word, entry->bit)]] = entry->item;
+}
+
+template <int dim>
+bool BoxBins<dim>::clear(const Box<dim>& box) const {
+  const Range asked = range(box);
+  const int last = asked.end[0] - 1;
+  const std::uint64_t first_bits = ~bits_below(asked.begin[0] & 63);
+  const std::uint64_t last_bits = ~std::uint64_t{0} >> (63 - (last & 63));
+  return !any_row(asked, [&](const Index<dim>& bin) {
+    const std::uint64_t* row = used_.data() + row_of(bin);
+    const int first_word = bin[0] >> 6, last_word = last >> 6;
+    if (first_word == last_word)
+      return (row[first_word] & first_bits & last_bits) != 0;
+    bool any = (row[first_word] & first_bits) != 0 || (row[last_word] & last_bits) != 0;
+    for (int word = first_word + 1; word < last_word; ++word)
+      any = any || row[word] != 0;
+    return any;
   });
-  return any;
+}
+
+template <int dim>
+typename BoxBins<dim>::List BoxBins<dim>::at(const Point<dim>& x) const {
+  Index<dim> bin;
+  for (int a = 0; a < dim; ++a) {
+    const double place = std::floor((x[a] - lower_[a]) * per_width_);
+    if (!(place >= 0 && place < count_[a]))
+      return {};
+    bin[a] = static_cast<int>(place);
+  }
+  const int word = row_of(bin) + (bin[0] >> 6), bit = bin[0] & 63;
+  return (used_[word] >> bit & 1) != 0 ? list(slot(word, bit)) : List{};
 }
 
 template class BoxBins<2>;

@@ -7,9 +7,6 @@ namespace lockstep {
 
 namespace {
 
-/// Cells along each axis of the blocks that are told apart in tiles near surfaces.
-constexpr int log_block_width = 2;
-
 /// Calls f(row within the tile, id of its first sample) for the rows of a tile that have samples.
 template <int dim, typename Function>
 void for_each_row(const TransportFrame<dim>& frame, SampleKind kind, int tile, const Function& f) {
@@ -110,12 +107,14 @@ void FieldCarrier<dim>::begin(Passenger<dim>& passenger) {
 template <int dim>
 bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int tile) {
   TileBlock<dim>& block = *frame_.block;
+  const bool near_surface = frame_.plans[tile].near_surface;
   if (!block.enter(frame_.setting.grid.tile_begin(tile)))
     return false;
   for (Passenger<dim>& passenger : passengers) {
     const SampleKind kind = passenger.field.kind;
     const int length = row_length(frame_, kind, tile);
     CellField& carried = passenger.carried();
+    passenger.displacement.resize(tile_volume<dim>);
     block.load(kind, passenger.field.values);
     for_each_row(frame_, kind, tile, [&](const Index<dim>& row, int first) {
       RowValues<dim> values, low, high;
@@ -131,6 +130,12 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
         block.look_up(rays.end, values);
       }
       row_of<dim>(carried.data(), first) = values;
+      if (near_surface) {
+        RowValues<dim> displacement = rays.displacement;
+        if (passenger.corrects())
+          displacement = displacement.max(block.trace(row, 1).displacement);
+        row_of<dim>(passenger.displacement.data(), first - tile * tile_volume<dim>) = displacement;
+      }
       if (all_free(kind, first, length))
         return;
       for (int id = first; id < first + length; ++id) {
@@ -231,7 +236,7 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
   const Ray<dim> ray = frame_.tracer->trace(x, -1);
   Box<dim> points = way(ray);
   if (!ray.complete || !near_surface.clear(points, false)) {
-    if (kind != cell_centers && near_surface.inside(x))
+    if (kind != cell_centers && near_surface.inside(x, frame_.setting.state.cells[id]))
       keep(passenger, id, false);
     else
       carry_seeing(passenger, id, x);
@@ -250,12 +255,13 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
 template <int dim>
 bool FieldCarrier<dim>::carry_open_part(Passenger<dim>& passenger, int id, const Point<dim>& x) {
   const SampleKind kind = passenger.field.kind;
-  if (kind == cell_centers)
+  SurfaceTransport<dim>& near_surface = *frame_.near_surface;
+  if (kind == cell_centers || !near_surface.may_be_swept(x))
     return false;
   const auto& places = frame_.setting.state.open_centers[kind];
   const auto place = places.find(id);
-  SurfaceTransport<dim>& near_surface = *frame_.near_surface;
-  if (place == places.end() || !(near_surface.inside(x) || near_surface.swept(x)))
+  if (place == places.end() ||
+      !(near_surface.inside(x, frame_.setting.state.cells[id]) || near_surface.swept(x)))
     return false;
   const TiledGrid<dim>& grid = frame_.setting.grid;
   const Point<dim> shift = (place->second - grid.face_center(kind, id)) / grid.spacing();
@@ -268,30 +274,15 @@ bool FieldCarrier<dim>::carry_open_part(Passenger<dim>& passenger, int id, const
 template <int dim>
 void FieldCarrier<dim>::carry_near_surfaces(std::vector<Passenger<dim>>& passengers, int tile,
                                             bool by_rows) {
-  constexpr int width = 1 << log_block_width;
-  constexpr int log_n_along = log_tile_width<dim> - log_block_width;
-  SurfaceTransport<dim>& near_surface = *frame_.near_surface;
-  for (int block = 0; block < 1 << (dim * log_n_along); ++block) {
-    Index<dim> begin = frame_.setting.grid.tile_begin(tile), end;
-    for (int a = 0; a < dim; ++a) {
-      begin[a] += ((block >> (a * log_n_along)) & ((1 << log_n_along) - 1)) * width;
-      end[a] = begin[a] + width;
-    }
-    bool entered = false;
-    for (Passenger<dim>& passenger : passengers)
-      frame_.for_each_sample(passenger.field.kind, tile, begin, end,
-                             [&](int id, const Point<dim>& x) {
-                               if (!near_surface.is_near(id)) {
-                                 if (!by_rows)
-                                   carry_single(passenger, id, x, passenger.cubic());
-                                 return;
-                               }
-                               if (!entered)
-                                 near_surface.enter(begin, end);
-                               entered = true;
-                               carry_with_care(passenger, id, x, by_rows);
-                             });
-  }
+  for (Passenger<dim>& passenger : passengers)
+    frame_.for_each_sample(passenger.field.kind, tile, [&](int id, const Point<dim>& x) {
+      const double displacement = by_rows ? passenger.displacement[id - tile * tile_volume<dim>]
+                                          : frame_.largest_displacement;
+      if (frame_.near_surface->is_near(x, displacement))
+        carry_with_care(passenger, id, x, by_rows);
+      else if (!by_rows)
+        carry_single(passenger, id, x, passenger.cubic());
+    });
 }
 
 template <int dim>

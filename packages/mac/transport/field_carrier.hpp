@@ -18,6 +18,8 @@ struct Passenger {
   CellField half_way;  ///< MacCormack's first half: the result of semi-Lagrangian transport
   /// Range of the samples used, of owned cells; empty (low > high): not to be corrected.
   std::unique_ptr<double[]> low, high;
+  /// Longest way along an axis of the rays from the samples of a tile carried by rows [cells].
+  std::vector<double> displacement;
 
   bool cubic() const { return scheme == AdvectionScheme::cubic; }
   bool corrects() const { return scheme == AdvectionScheme::maccormack; }

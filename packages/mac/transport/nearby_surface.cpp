@@ -7,14 +7,105 @@
 
 namespace lockstep {
 
+namespace {
+/// Bins are no smaller than h over this, and no more than so many.
+constexpr double finest_bins = 16;
+constexpr double most_bins = 1e9;
+}  // namespace
+
 template <int dim>
-NearbySurface<dim>::NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid)
+NearbySurface<dim>::NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid, int reach)
     : snapshot_(snapshot && !snapshot->empty() ? std::move(snapshot) : nullptr),
       lower_(grid.lower()),
       spacing_(grid.spacing()),
       tolerance_(1e-6 * grid.spacing()) {
   for (int a = 0; a < dim; ++a)
     period_[a] = grid.description().periodic[a] ? grid.n_cells()[a] * grid.spacing() : 0;
+  if (empty() || grid.n_owned_tiles() == 0)
+    return;
+  reach = std::min(reach, longest_reach);
+  Index<dim> begin = grid.tile_begin(0), end = begin;
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile)
+    for (int a = 0; a < dim; ++a) {
+      begin[a] = std::min(begin[a], grid.tile_begin(tile)[a] - reach);
+      end[a] = std::max(end[a], grid.tile_begin(tile)[a] + tile_width<dim> + reach);
+    }
+  for (int a = 0; a < dim; ++a) {
+    reached_.min()[a] = lower_[a] + begin[a] * spacing_;
+    reached_.max()[a] = lower_[a] + end[a] * spacing_;
+  }
+  list_near();
+  make_bins();
+  std::vector<Box<dim>> in_cells;
+  in_cells.reserve(bounds_.size());
+  for (const Box<dim>& box : bounds_)
+    in_cells.emplace_back((box.min() - lower_) / spacing_, (box.max() - lower_) / spacing_);
+  distance_.build(in_cells, begin, end, reach);
+}
+
+template <int dim>
+void NearbySurface<dim>::list_near() {
+  any_image(reached_, [&](const Point<dim>& shift) {
+    const Box<dim> place(reached_.min() - shift, reached_.max() - shift);
+    for (int s = 0; s < snapshot_->n_simplices(); ++s) {
+      Box<dim> bounds = snapshot_->bounds(s);
+      if (!place.intersects(bounds))
+        continue;
+      bounds_.push_back(widened<dim>(bounds.translate(shift), 2 * tolerance_));
+      near_.push_back(picture(s, shift));
+    }
+    return false;
+  });
+}
+
+template <int dim>
+std::array<Point<dim>, dim> NearbySurface<dim>::corners(const Near& near) const {
+  auto result = snapshot_->corners(near.simplex);
+  for (Point<dim>& corner : result)
+    corner += near.shift;
+  return result;
+}
+
+template <int dim>
+typename NearbySurface<dim>::Near NearbySurface<dim>::picture(int simplex,
+                                                              const Point<dim>& shift) const {
+  Near near;
+  near.simplex = simplex;
+  near.shift = shift;
+  const auto points = corners(near);
+  const auto plane = [](Point<dim> normal, const Point<dim>& x) {
+    normal.normalize();
+    return Plane{normal, normal.dot(x)};
+  };
+  near.plane = plane(area_vector<dim>(points), points[0]);
+  for (int k = 0; k < dim; ++k) {
+    const Point<dim>&rim = points[(k + 1) % dim], &end = points[(k + dim - 1) % dim];
+    const Point<dim> along = end - rim, inward = points[k] - rim;
+    const double square = along.squaredNorm();
+    near.rims[k] = plane(inward - (square > 0 ? along.dot(inward) / square : 0) * along, rim);
+  }
+  return near;
+}
+
+/// Bins of half a cell tell stencils that surfaces cut from the others; where many small simplices
+/// are in each, smaller ones pay.
+template <int dim>
+void NearbySurface<dim>::make_bins() {
+  Box<dim> region;
+  double mean_extent = 0;
+  for (const Box<dim>& box : bounds_) {
+    region.extend(box);
+    mean_extent += box.sizes().maxCoeff() / static_cast<double>(bounds_.size());
+  }
+  region = region.intersection(reached_);
+  double width = 0.5 * spacing_;
+  while (width > spacing_ / finest_bins && 2.4 * mean_extent < width &&
+         region.volume() / std::pow(0.5 * width, dim) < most_bins)
+    width *= 0.5;
+  bins_.build(bounds_, region, lower_, width, [&](int i, const Point<dim>& center) {
+    const Plane& plane = near_[i].plane;
+    return std::abs(plane(center)) <= 0.5 * width * plane.normal.cwiseAbs().sum() + 4 * tolerance_;
+  });
 }
 
 template <int dim>
@@ -47,139 +138,97 @@ template <int dim>
 bool NearbySurface<dim>::touches(const Box<dim>& box) const {
   if (empty())
     return false;
-  if (entered_.box.contains(box))
-    return entered_.bins.any_touches(box);
-  return any_image(box, [&](const Point<dim>& shift) {
-    return snapshot_->touches(Box<dim>(box.min() - shift, box.max() - shift));
-  });
+  const auto any_touches = [&](double margin) {
+    return any_image(box, [&](const Point<dim>& shift) {
+      return snapshot_->touches(
+          widened<dim>(Box<dim>(box.min() - shift, box.max() - shift), margin));
+    });
+  };
+  if (!reached_.contains(box))
+    return any_touches(0);
+  // The rings of cells around the middle one that hold the box, and those that it holds.
+  Index<dim> middle;
+  int outer = 0, inner = NearbySurface::longest_reach;
+  for (int a = 0; a < dim; ++a) {
+    const double low = (box.min()[a] - lower_[a]) / spacing_;
+    const double high = (box.max()[a] - lower_[a]) / spacing_;
+    const int first = static_cast<int>(std::floor(low)), last = static_cast<int>(std::floor(high));
+    middle[a] = (first + last) >> 1;
+    outer = std::max({outer, middle[a] - first, last - middle[a]});
+    inner = std::min({inner, middle[a] - static_cast<int>(std::ceil(low)), last - 1 - middle[a]});
+  }
+  const int distance = distance_(middle);
+  return distance <= outer && (distance <= inner || any_touches(2 * tolerance_));
+}
+
+template <int dim>
+bool NearbySurface<dim>::clear(const Box<dim>& box) const {
+  if (empty())
+    return true;
+  // What touches the rim alone reaches into the box by the width of its bounds.
+  const Point<dim> middle = box.center(), margin = Point<dim>::Constant(tolerance_);
+  return reached_.contains(box) && bins_.clear({(box.min() + margin).cwiseMin(middle),
+                                                (box.max() - margin).cwiseMax(middle)});
 }
 
 template <int dim>
 std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>& a,
                                                                const Point<dim>& b) const {
-  std::optional<SurfacePoint<dim>> first;
+  Hit first;
   if (empty())
-    return first;
-  any_image(span(a, b), [&](const Point<dim>& shift) {
-    const auto hit = snapshot_->first_hit(a - shift, b - shift, tolerance_);
-    if (hit && (!first || hit->fraction < first->fraction))
-      first = hit;
-    return false;
-  });
-  return first;
-}
-
-template <int dim>
-void NearbySurface<dim>::list_all() {
-  Box<dim> region;
-  for (int s = 0; s < snapshot_->n_simplices(); ++s) {
-    all_bounds_.push_back(snapshot_->bounds(s));
-    region.extend(all_bounds_.back());
+    return first.point;
+  if (reached_.contains(a) && reached_.contains(b)) {
+    const double length = (b - a).norm();
+    bins_.walk(a, b, [&](const auto& list, double fraction) {
+      if (first.point && (fraction - first.point->fraction) * length > 4 * tolerance_)
+        return true;
+      for (const int near : list)
+        look_at(near, a, b, length, first);
+      return false;
+    });
+    return first.point;
   }
-  all_.build(all_bounds_, region, spacing_);
-}
-
-template <int dim>
-void NearbySurface<dim>::fetch(const Box<dim>& box, Place& place) {
-  if (all_bounds_.empty())
-    list_all();
-  place.box = box;
-  place.simplices.clear();
-  place.bounds.clear();
+  const Box<dim> box(a.cwiseMin(b), a.cwiseMax(b));
   any_image(box, [&](const Point<dim>& shift) {
-    all_.touching(Box<dim>(box.min() - shift, box.max() - shift), found_);
-    std::sort(found_.begin(), found_.end());
-    for (const int s : found_) {
-      Near near;
-      near.simplex = s;
-      near.corners = snapshot_->corners(s);
-      Box<dim> bounds;
-      for (Point<dim>& corner : near.corners) {
-        corner += shift;
-        bounds.extend(corner);
-      }
-      near.normal = area_vector<dim>(near.corners);
-      near.normal.normalize();
-      near.shift = shift;
-      place.simplices.push_back(near);
-      place.bounds.push_back(widened<dim>(bounds, 2 * tolerance_));
-    }
+    const auto hit = snapshot_->first_hit(a - shift, b - shift, tolerance_);
+    if (hit && (!first.point || hit->fraction < first.point->fraction))
+      first.point = hit;
     return false;
   });
-  place.bins.build(place.bounds, box, spacing_);
+  return first.point;
 }
 
 template <int dim>
-void NearbySurface<dim>::enter(const Box<dim>& box) {
-  focused_.clear();
-  gathered_ = &entered_;
-  if (!empty())
-    fetch(box, entered_);
-}
-
-template <int dim>
-void NearbySurface<dim>::gather(const Box<dim>& box) {
-  focused_.clear();
-  if (empty())
+void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b, double length,
+                                 Hit& first) const {
+  const Near& near = near_[i];
+  const double from = near.plane(a), to = near.plane(b);
+  if (i == first.near || std::min(from, to) > 3 * tolerance_ ||
+      std::max(from, to) < -3 * tolerance_ ||
+      !bounds_[i].intersects(Box<dim>(a.cwiseMin(b), a.cwiseMax(b))))
     return;
-  const Box<dim> wide = widened<dim>(box, tolerance_);
-  gathered_ = entered_.box.contains(wide) ? &entered_ : &elsewhere_;
-  if (!gathered_->box.contains(wide))
-    fetch(wide, elsewhere_);
-}
-
-template <int dim>
-void NearbySurface<dim>::focus(const Box<dim>& box) {
-  focused_.clear();
-  const Point<dim> center = box.center(), half = 0.5 * box.sizes();
-  gathered_->bins.touching(box, found_);
-  for (const int n : found_) {
-    // No segment in the box meets a simplex whose plane passes by.
-    const Near& near = gathered_->simplices[n];
-    const double height = std::abs(near.normal.dot(center - near.corners[0]));
-    if (height <= near.normal.cwiseAbs().dot(half) + 3 * tolerance_)
-      focused_.push_back(n);
-  }
-  std::sort(focused_.begin(), focused_.end());  // of equally near hits the first counts
-}
-
-template <int dim>
-std::optional<SurfacePoint<dim>> NearbySurface<dim>::near_hit(const Point<dim>& a,
-                                                              const Point<dim>& b) const {
-  gathered_->bins.touching(span(a, b), found_);
-  std::sort(found_.begin(), found_.end());
-  return found_.empty() ? std::nullopt : hit_among(found_, a, b);
-}
-
-template <int dim>
-std::optional<SurfacePoint<dim>> NearbySurface<dim>::hit_among(const std::vector<int>& among,
-                                                               const Point<dim>& a,
-                                                               const Point<dim>& b) const {
-  std::optional<SurfacePoint<dim>> first;
-  const Box<dim> box = span(a, b);
+  // Most that cross the plane pass by the simplex, which is clear long before the hit is known.
+  const double drop = from - to;
+  if (length > tolerance_ && std::abs(drop) > 1e-9 * length)
+    for (const Plane& rim : near.rims)
+      if (std::copysign(1.0, drop) * (from * rim(b) - to * rim(a)) < -2 * tolerance_ * length)
+        return;
+  const auto take = [&](const Barycentric<dim>& barycentric, const Point<dim>& position,
+                        double fraction) {
+    if (first.point &&
+        (fraction > first.point->fraction || (fraction == first.point->fraction && i > first.near)))
+      return;
+    first.near = i;
+    first.point = SurfacePoint<dim>{near.simplex, barycentric, position - near.shift, fraction};
+  };
   // A segment shorter than the tolerance has no direction to speak of.
-  const bool is_point = (b - a).norm() <= tolerance_;
-  for (const int n : among) {
-    if (!gathered_->bounds[n].intersects(box))
-      continue;
-    const Near& near = gathered_->simplices[n];
-    const double from = near.normal.dot(a - near.corners[0]);
-    const double to = near.normal.dot(b - near.corners[0]);
-    if (std::min(from, to) > 3 * tolerance_ || std::max(from, to) < -3 * tolerance_)
-      continue;
-    if (is_point) {
-      const auto closest = closest_on_simplex<dim>(near.corners, a);
-      if (closest.distance <= 2 * tolerance_)
-        return SurfacePoint<dim>{near.simplex, closest.barycentric, closest.position - near.shift,
-                                 0};
-      continue;
-    }
-    const auto hit = hit_simplex<dim>(near.corners, a, b, tolerance_);
-    if (hit && (!first || hit->fraction < first->fraction))
-      first = SurfacePoint<dim>{near.simplex, hit->barycentric, hit->position - near.shift,
-                                hit->fraction};
+  if (length <= tolerance_) {
+    const auto closest = closest_on_simplex<dim>(corners(near), a);
+    if (closest.distance <= 2 * tolerance_)
+      take(closest.barycentric, closest.position, 0);
+  } else if (const auto hit = hit_simplex<dim>(corners(near), a, b, tolerance_)) {
+    take(hit->barycentric, hit->position, hit->fraction);
   }
-  return first;
 }
 
 template class NearbySurface<2>;

@@ -6,10 +6,12 @@
 #include "geometry/surface_snapshot.hpp"
 #include "grid/tiled_grid.hpp"
 #include "mac/transport/box_bins.hpp"
+#include "mac/transport/cell_distance.hpp"
 
 namespace lockstep {
 
-/// A snapshot asked many times about one place: its simplices near there are gathered once. Sight
+/// A snapshot asked many times about places near the cells that a rank owns: there its simplices
+/// are listed by bins, so that an answer costs by the bins on the way and not by the mesh. Sight
 /// lines may leave a periodic domain: they then meet what lies at the other end. Touching counts as
 /// meeting, within `tolerance()`, so that nothing is ever seen through a surface by round-off.
 template <int dim>
@@ -17,70 +19,70 @@ class NearbySurface {
  public:
   using Snapshot = std::shared_ptr<const SurfaceSnapshot<dim>>;
 
-  /// The snapshot may be null: no surface.
-  NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid);
+  /// The snapshot may be null: no surface. Fast within `reach` cells of owned ones, if that is no
+  /// more than `longest_reach`.
+  NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid, int reach);
   NearbySurface(const NearbySurface&) = delete;
   NearbySurface& operator=(const NearbySurface&) = delete;
+
+  static constexpr int longest_reach = 24;
 
   bool empty() const { return !snapshot_; }
   const SurfaceSnapshot<dim>& snapshot() const { return *snapshot_; }
   double tolerance() const { return tolerance_; }  ///< [m], a millionth of h
+  /// Where answers are fast [m]; may be empty.
+  const Box<dim>& reached() const { return reached_; }
 
+  /// Cells between this one and the nearest that the box of a simplex touches: 0 if it is touched;
+  /// a lower bound, exact up to `reach`.
+  int cells_to(const Index<dim>& cell) const { return distance_(cell); }
   /// True if the box of a simplex touches this box [m].
   bool touches(const Box<dim>& box) const;
+  /// False if a simplex may come into the box [m].
+  bool clear(const Box<dim>& box) const;
   /// First surface point on the segment a -> b of any length; its position is the real one, not
   /// that of a periodic image.
   std::optional<SurfacePoint<dim>> first_hit(const Point<dim>& a, const Point<dim>& b) const;
 
-  /// Remembers what touches the box [m], so that `touches` and `gather` for boxes inside it are
-  /// fast; forgets what was gathered.
-  void enter(const Box<dim>& box);
-  /// Makes `near_hit` and `focus` know what touches the box [m].
-  void gather(const Box<dim>& box);
-  /// First simplex that the segment, inside the box gathered, meets.
-  std::optional<SurfacePoint<dim>> near_hit(const Point<dim>& a, const Point<dim>& b) const;
-  /// Picks the simplices that touch a smaller box, for many segments inside it.
-  void focus(const Box<dim>& box);
-  std::optional<SurfacePoint<dim>> focused_hit(const Point<dim>& a, const Point<dim>& b) const {
-    return focused_.empty() ? std::nullopt : hit_among(focused_, a, b);
-  }
-
  private:
+  /// x -> normal . x - offset
+  struct Plane {
+    double operator()(const Point<dim>& x) const { return normal.dot(x) - offset; }
+    Point<dim> normal = Point<dim>::Zero();
+    double offset = 0;
+  };
+  /// The image of a simplex near here.
   struct Near {
-    int simplex;
-    std::array<Point<dim>, dim> corners;  ///< of the image
-    Point<dim> normal;                    ///< of length one; zero if the simplex is degenerate
-    Point<dim> shift;                     ///< from the real place to the image
+    int simplex = -1;
+    Point<dim> shift;  ///< from the real place to the image
+    Plane plane;       ///< its own, [m]; zero if it is degenerate
+    /// How far inside the rim opposite to each corner a point of its plane is [m].
+    std::array<Plane, dim> rims;
   };
-  /// All images of simplices that touch a box.
-  struct Place {
-    Box<dim> box;                  ///< empty: of nothing
-    std::vector<Near> simplices;   ///< ascending by image and simplex
-    std::vector<Box<dim>> bounds;  ///< of the images, widened by the tolerance
-    BoxBins<dim> bins;             ///< of `bounds`
+  struct Hit {
+    std::optional<SurfacePoint<dim>> point;
+    int near = -1;
   };
-  void fetch(const Box<dim>& box, Place& place);
-  void list_all();
+  void list_near();
+  Near picture(int simplex, const Point<dim>& shift) const;
+  std::array<Point<dim>, dim> corners(const Near& near) const;
+  void make_bins();
   /// Calls f(shift) for each period by which the surface may have to be moved to touch the box,
   /// until f returns true.
   template <typename Function>
   bool any_image(const Box<dim>& box, const Function& f) const;
-  static Box<dim> span(const Point<dim>& a, const Point<dim>& b) {
-    return {a.cwiseMin(b), a.cwiseMax(b)};
-  }
-  /// `among`: indices of simplices in the place gathered.
-  std::optional<SurfacePoint<dim>> hit_among(const std::vector<int>& among, const Point<dim>& a,
-                                             const Point<dim>& b) const;
+  /// Takes the hit on one simplex if it comes before the one found, or is as near and the simplex
+  /// comes first.
+  void look_at(int near, const Point<dim>& a, const Point<dim>& b, double length, Hit& hit) const;
 
   Snapshot snapshot_;
   Point<dim> lower_, period_;  ///< period 0: not periodic
   double spacing_, tolerance_;
-  std::vector<Box<dim>> all_bounds_;
-  BoxBins<dim> all_;                   ///< of `all_bounds_`; made when first needed
-  Place entered_, elsewhere_;          ///< what `enter` and `gather` last asked for
-  const Place* gathered_ = &entered_;  ///< one of the two
-  std::vector<int> focused_;           ///< indices of simplices in the place gathered
-  mutable std::vector<int> found_;
+  Box<dim> reached_;        ///< where all simplices are listed; empty if there is no such place
+  std::vector<Near> near_;  ///< ascending by image and simplex
+  std::vector<Box<dim>> bounds_;  ///< of the images, widened by twice the tolerance
+  BoxBins<dim> bins_;             ///< of `near_`; every half cell is one or several bins
+  CellDistance<dim> distance_;    ///< to `bounds_`
 };
 
 /// The box widened by a distance on all sides.

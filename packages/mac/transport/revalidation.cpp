@@ -9,6 +9,9 @@ namespace lockstep {
 
 namespace {
 
+/// How far beyond owned cells the neighbours that are looked at lie, at most [cells].
+constexpr int sight = 2;
+
 /// A sample that waits for a value, and those of its neighbours that it can see.
 template <int dim>
 struct Waiting {
@@ -22,12 +25,13 @@ template <int dim>
 class Fronts {
  public:
   Fronts(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo, const MacState<dim>& after,
-         const MovingSurface<dim>& surface, SampleKind kind, const std::vector<char>& invalid)
+         const MovingSurface<dim>& surface, const NearbySurface<dim>& nearby, SampleKind kind,
+         const std::vector<char>& invalid)
       : grid_(grid),
         halo_(halo),
         state_(after),
         surface_(surface),
-        nearby_(after.surface, grid),
+        nearby_(nearby),
         kind_(kind),
         valid_(grid.n_stored_cells()) {
     const auto look_at = [&](int id) {
@@ -110,14 +114,13 @@ class Fronts {
     sample.id = id;
     const Point<dim> x = position(id), eye = x + shift(id);
     const double h = grid_.spacing();
-    nearby_.gather(widened<dim>(Box<dim>(x), 1.5 * h));
     for (int a = 0; a < dim; ++a)
       for (int side = 0; side < 2; ++side) {
         const int neighbor = grid_.neighbor(id, a, side);
         if (neighbor < 0 || !in_fluid(neighbor))
           continue;
         const Point<dim> other = x + (side == 0 ? -h : h) * Point<dim>::Unit(a) + shift(neighbor);
-        if (!nearby_.near_hit(eye, other))
+        if (!nearby_.first_hit(eye, other))
           sample.visible[sample.n_visible++] = neighbor;
       }
     waiting_.push_back(sample);
@@ -156,7 +159,7 @@ class Fronts {
   const HaloExchange<dim>& halo_;
   const MacState<dim>& state_;
   const MovingSurface<dim>& surface_;
-  NearbySurface<dim> nearby_;
+  const NearbySurface<dim>& nearby_;
   SampleKind kind_;
   std::vector<char> valid_;
   std::vector<Waiting<dim>> waiting_;
@@ -169,8 +172,9 @@ RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchan
                                     const MacState<dim>& after, const MovingSurface<dim>& surface,
                                     const InvalidSamples<dim>& invalid, FaceField<dim>& u) {
   RevalidationReport total;
+  const NearbySurface<dim> nearby(after.surface, grid, sight);
   for (int a = 0; a < dim; ++a) {
-    Fronts<dim> fronts(grid, halo, after, surface, a, invalid.faces[a]);
+    Fronts<dim> fronts(grid, halo, after, surface, nearby, a, invalid.faces[a]);
     const RevalidationReport report = fronts.fill(u[a]);
     for (const auto& sample : fronts.left_over())
       u[a][sample.id] = fronts.surface_velocity(sample.id);
@@ -188,7 +192,8 @@ RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExcha
                                      const MacState<dim>& after, const MovingSurface<dim>& surface,
                                      const InvalidSamples<dim>& invalid, double ambient,
                                      CellField& s) {
-  Fronts<dim> fronts(grid, halo, after, surface, cell_centers, invalid.cells);
+  const NearbySurface<dim> nearby(after.surface, grid, sight);
+  Fronts<dim> fronts(grid, halo, after, surface, nearby, cell_centers, invalid.cells);
   const RevalidationReport report = fronts.fill(s);
   for (const auto& sample : fronts.left_over())
     s[sample.id] = ambient;

@@ -1,18 +1,29 @@
 #include "mac/transport/surface_transport.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/simplex_queries.hpp"
-#include "mac/state/surface_marks.hpp"
 
 namespace lockstep {
 
 namespace {
 
-/// Rays up to this length look at the simplices gathered around their start alone [cells].
-constexpr double longest_short_ray = 1.5;
 /// How far before a surface a ray stops [cells].
 constexpr double stand_off = 1e-3;
+
+/// Largest displacement of a vertex over the step [m].
+template <int dim>
+double largest_move(const MovingSurface<dim>& surface) {
+  double largest = 0;
+  if (!surface.before || !surface.after)
+    return largest;
+  const auto& from = surface.before->mesh().vertices;
+  const auto& to = surface.after->mesh().vertices;
+  for (std::size_t v = 0; v < from.size(); ++v)
+    largest = std::max(largest, (to[v] - from[v]).squaredNorm());
+  return std::sqrt(largest);
+}
 
 }  // namespace
 
@@ -24,64 +35,59 @@ SurfaceTransport<dim>::SurfaceTransport(
     : lattice_(lattice),
       tracer_(tracer),
       surface_(surface),
-      interpolation_(grid, lattice, usable, surface, friction_speed),
-      stencil_reach_(stencil_reach) {
+      largest_displacement_(largest_displacement),
+      surface_displacement_(largest_move(surface) / grid.spacing()),
+      stencil_reach_(stencil_reach),
+      // What a ray crosses, and the samples around it, must be clear of surfaces.
+      interpolation_(
+          grid, lattice, usable, surface, friction_speed,
+          cells_reached(largest_displacement + stencil_reach + surface_displacement_) + 2) {
   if (interpolation_.nearby().empty())
     return;
   const SurfaceSnapshot<dim>& before = *surface.before;
   const SurfaceSnapshot<dim>& after = surface.after ? *surface.after : before;
-  const auto& from = before.mesh().vertices;
-  const auto& to = after.mesh().vertices;
-  for (std::size_t v = 0; v < from.size(); ++v)
-    surface_displacement_ =
-        std::max(surface_displacement_, (to[v] - from[v]).norm() / grid.spacing());
-  swept_.resize(before.n_simplices());
+  Box<dim> region;
   for (int s = 0; s < before.n_simplices(); ++s) {
-    swept_[s] = before.bounds(s);
-    swept_[s].extend(after.bounds(s));
-    swept_[s] = widened<dim>(swept_[s], 2 * interpolation_.nearby().tolerance());
+    const Box<dim> both = before.bounds(s).merged(after.bounds(s));
+    swept_.push_back(widened<dim>(both, 2 * interpolation_.nearby().tolerance()));
+    region.extend(swept_.back());
   }
-  short_ray_ = std::min(longest_short_ray, largest_displacement + surface_displacement_ + 0.01);
-  // What a ray crosses, and the samples around it, must be clear of surfaces.
-  near_ =
-      mark_within(grid, before,
-                  (largest_displacement + stencil_reach + surface_displacement_) * grid.spacing());
-  near_tiles_.resize(grid.n_owned_tiles());
-  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
-    const auto first = near_.begin() + tile * tile_volume<dim>;
-    near_tiles_[tile] = std::find(first, first + tile_volume<dim>, 1) != first + tile_volume<dim>;
-  }
+  swept_bins_.build(swept_, region.intersection(interpolation_.nearby().reached()), grid.lower(),
+                    0.5 * grid.spacing(), [](int, const Point<dim>&) { return true; });
 }
 
 template <int dim>
-void SurfaceTransport<dim>::enter(const Index<dim>& begin, const Index<dim>& end) {
-  Box<dim> box;
-  for (int a = 0; a < dim; ++a) {
-    box.min()[a] = begin[a];
-    box.max()[a] = end[a];
+bool SurfaceTransport<dim>::within(const Point<dim>& x, int reach) const {
+  const NearbySurface<dim>& nearby = interpolation_.nearby();
+  if (nearby.empty())
+    return false;
+  Index<dim> cell;
+  for (int a = 0; a < dim; ++a)
+    cell[a] = static_cast<int>(std::floor(x[a]));
+  return reach > NearbySurface<dim>::longest_reach || nearby.cells_to(cell) <= reach;
+}
+
+template <int dim>
+bool SurfaceTransport<dim>::is_near_tile(const Index<dim>& tile_begin) const {
+  Point<dim> x;
+  for (int cell = 0; cell < tile_volume<dim>; ++cell) {
+    for (int a = 0, rest = cell; a < dim; ++a, rest /= tile_width<dim>)
+      x[a] = tile_begin[a] + rest % tile_width<dim>;
+    if (is_near(x, largest_displacement_))
+      return true;
   }
-  interpolation_.enter(
-      widened<dim>(box, 0.1 + stencil_reach_ + short_ray_ + surface_displacement_));
-  const Box<dim> wide = interpolation_.physical(widened<dim>(box, surface_displacement_ + 0.01));
-  const Box<dim> exact = interpolation_.physical(box);
-  surface_.before->touching(wide, candidates_);
-  around_.clear();
-  for (const int s : candidates_)
-    if (swept_[s].intersects(exact))
-      around_.push_back(s);
+  return false;
 }
 
 template <int dim>
 bool SurfaceTransport<dim>::swept(const Point<dim>& x) const {
-  if (around_.empty())
+  if (!may_be_swept(x))
     return false;
   const Point<dim> position = interpolation_.physical(x);
   candidates_.clear();
-  for (const int s : around_)
+  for (const int s : swept_bins_.at(position))
     if (swept_[s].contains(position))
       candidates_.push_back(s);
-  if (candidates_.empty())
-    return false;
   const SurfaceSnapshot<dim>& before = *surface_.before;
   const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
   const double tolerance = interpolation_.nearby().tolerance();
@@ -89,13 +95,20 @@ bool SurfaceTransport<dim>::swept(const Point<dim>& x) const {
     if (closest_on_simplex<dim>(before.corners(s), position).distance <= tolerance ||
         closest_on_simplex<dim>(after.corners(s), position).distance <= tolerance)
       return true;
-  return surface_displacement_ > 0 && swept_over<dim>(before, after, position, candidates_);
+  return surface_displacement_ > 0 && !candidates_.empty() &&
+         swept_over<dim>(before, after, position, candidates_);
 }
 
 template <int dim>
-bool SurfaceTransport<dim>::inside(const Point<dim>& x) const {
-  return !interpolation_.nearby().empty() &&
-         surface_.before->inside(interpolation_.physical(x)) >= 0;
+bool SurfaceTransport<dim>::inside(const Point<dim>& x, CellState cell) const {
+  if (!may_be_swept(x))
+    return false;
+  // As the centre of its cell, unless a surface may lie between.
+  const Point<dim> center = x.array().floor() + 0.5;
+  const Box<dim> between(x.cwiseMin(center), x.cwiseMax(center));
+  if (cell != CellState::outside && interpolation_.nearby().clear(interpolation_.physical(between)))
+    return cell == CellState::solid;
+  return surface_.before->inside(interpolation_.physical(x)) >= 0;
 }
 
 template <int dim>
@@ -107,28 +120,19 @@ bool SurfaceTransport<dim>::clear(const Box<dim>& points, bool during_step, int 
 template <int dim>
 std::optional<SurfacePoint<dim>> SurfaceTransport<dim>::hit_on_way(const Point<dim>& x,
                                                                    const Point<dim>& end) const {
-  const NearbySurface<dim>& nearby = interpolation_.nearby();
-  const Point<dim> a = interpolation_.physical(x), b = interpolation_.physical(end);
-  return (end - x).cwiseAbs().maxCoeff() <= short_ray_ ? nearby.near_hit(a, b)
-                                                       : nearby.first_hit(a, b);
+  return interpolation_.nearby().first_hit(interpolation_.physical(x),
+                                           interpolation_.physical(end));
 }
 
 template <int dim>
 Ray<dim> SurfaceTransport<dim>::trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit) {
-  interpolation_.look_around(x, short_ray_);
   const double scale = tracer_.cells_per_velocity();
   Point<dim> displacement = scale * interpolation_.velocity_at(x, tracer_.velocity());
   Ray<dim> half;
   half.end = x - 0.5 * displacement;
   tracer_.clip(x, half);
-  if (!hit_on_way(x, half.end)) {
-    const bool is_long = (half.end - x).cwiseAbs().maxCoeff() > short_ray_;
-    if (is_long)
-      interpolation_.look_around(half.end);
+  if (!hit_on_way(x, half.end))
     displacement = scale * interpolation_.velocity_at(half.end, tracer_.velocity());
-    if (is_long)
-      interpolation_.look_around(x, short_ray_);
-  }
   Ray<dim> ray;
   ray.middle = half.end;
   ray.end = x - displacement;
@@ -176,16 +180,11 @@ std::optional<double> SurfaceTransport<dim>::fetch(const CarriedField<dim>& fiel
   }
   if (ray.inflow_share == 1)
     return field.inflow(ray);
-  const bool is_long = (ray.end - x).cwiseAbs().maxCoeff() > short_ray_;
-  if (is_long)
-    interpolation_.look_around(ray.end);
   auto value = look_up(field, ray.end);
   if (value && ray.inflow_share > 0)
     *value += ray.inflow_share * (field.inflow(ray) - *value);
   if (value)
     return value;
-  if (is_long)
-    interpolation_.look_around(x);
   value = look_up(field, x);
   if (!value && hit && field.kind != cell_centers)
     value = surface_.velocity(*hit)[field.kind];
@@ -198,7 +197,6 @@ double SurfaceTransport<dim>::carry_beside(const CarriedField<dim>& field, const
   std::optional<SurfacePoint<dim>> hit;
   const Ray<dim> ray = trace(x, hit);
   const auto carried = fetch(field, x, ray, hit);
-  interpolation_.look_around(x);
   const auto seen = look_up(field, x);
   // In a gap that no sample sees, what flows comes to rest at the surface.
   const double here = seen ? *seen : interpolation_.nearest_surface_velocity(x)[field.kind];

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "mac/state/mac_state.hpp"
 #include "mac/transport/ray_tracer.hpp"
 #include "mac/transport/visible_interpolation.hpp"
 
@@ -31,17 +32,22 @@ class SurfaceTransport {
                    const MovingSurface<dim>& surface, double largest_displacement,
                    int stencil_reach, double friction_speed);
 
-  /// True if a surface may come into the way of a ray from a sample of the owned cell, forth or
-  /// back, or sweep over it.
-  bool is_near(int cell) const { return !near_.empty() && near_[cell]; }
-  /// True of some cell of the tile.
-  bool is_near_tile(int tile) const { return !near_tiles_.empty() && near_tiles_[tile]; }
-  /// Prepares the questions about samples in the cells [begin, end).
-  void enter(const Index<dim>& begin, const Index<dim>& end);
+  /// True if a surface may come into the way of a ray from the sample, forth or back, that goes so
+  /// many cells along an axis, or sweep over the sample.
+  bool is_near(const Point<dim>& x, double displacement) const {
+    return within(x, cells_reached(displacement + stencil_reach_ + surface_displacement_));
+  }
+  /// The same of some sample of the tile that begins there, with the longest of all rays.
+  bool is_near_tile(const Index<dim>& tile_begin) const;
+  /// False if no surface comes into the sample's cell during the step.
+  bool may_be_swept(const Point<dim>& x) const {
+    return within(x, cells_reached(surface_displacement_));
+  }
   /// The sample changes sides or has none: swept over, or on a surface at t^n or t^{n+1}.
   bool swept(const Point<dim>& x) const;
-  /// Inside a closed solid at t^n: possible for the centre of a coupled face.
-  bool inside(const Point<dim>& x) const;
+  /// Of a face that is carried, of a cell in this state: its centre is inside a closed solid at
+  /// t^n.
+  bool inside(const Point<dim>& x, CellState cell) const;
   /// True if no surface touches the points and their surroundings of `reach` cells, at t^n or, with
   /// `during_step`, at any time of the step.
   bool clear(const Box<dim>& points, bool during_step, int reach = 1) const;
@@ -52,6 +58,12 @@ class SurfaceTransport {
   double carry_beside(const CarriedField<dim>& field, const Point<dim>& x, double own);
 
  private:
+  /// Cells that a distance in cells reaches from any place in a cell.
+  static int cells_reached(double distance) {
+    return static_cast<int>(std::min(std::ceil(distance + 0.01), 1e9));
+  }
+  /// True if a simplex comes within so many cells of the cell that holds x.
+  bool within(const Point<dim>& x, int reach) const;
   /// Where the fluid of x came from, as far as it can be seen; sets `hit` if a surface is in the
   /// way.
   Ray<dim> trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit);
@@ -64,13 +76,12 @@ class SurfaceTransport {
   const SampleLattice<dim>& lattice_;
   const RayTracer<dim>& tracer_;
   const MovingSurface<dim>& surface_;
-  VisibleInterpolation<dim> interpolation_;
+  /// Largest of a ray along an axis, and of a vertex over the step [cells].
+  double largest_displacement_, surface_displacement_;
   int stencil_reach_;
-  double surface_displacement_ = 0;  ///< largest of a vertex over the step [cells]
-  double short_ray_ = 0;  ///< rays up to this length need only what is gathered around their start
-  std::vector<char> near_, near_tiles_;  ///< owned cells and tiles; empty without surface
+  VisibleInterpolation<dim> interpolation_;
   std::vector<Box<dim>> swept_;  ///< box of each simplex over the step, a little widened [m]
-  std::vector<int> around_;      ///< simplices whose swept box touches the box entered
+  BoxBins<dim> swept_bins_;
   mutable std::vector<int> candidates_;
 };
 

@@ -167,10 +167,13 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, 
   velocity = velocity_at(middle, cubic);
   RowRays<dim> rays;
   rays.clipped.setZero();
+  rays.displacement.setZero();
   for (int a = 0; a < dim; ++a) {
     const RowValues<dim> wanted = start[a] + factor * velocity[a];
     rays.end[a] = clamped(wanted, a);
     rays.clipped += (rays.end[a] - wanted).abs();
+    rays.displacement = rays.displacement.max((middle[a] - start[a]).abs());
+    rays.displacement = rays.displacement.max((rays.end[a] - start[a]).abs());
   }
   return rays;
 }

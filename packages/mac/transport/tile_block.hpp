@@ -13,6 +13,8 @@ struct RowRays {
   RowPoints<dim> end;
   /// Not 0 where a ray would have left the domain.
   RowValues<dim> clipped;
+  /// The longest way along an axis, to the end or to where the midpoint rule looked [cells].
+  RowValues<dim> displacement;
 };
 
 /// A tile and its surroundings as dense arrays, in which short rays are followed a row at a time:

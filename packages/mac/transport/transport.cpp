@@ -111,7 +111,7 @@ TilePlan Transport<dim>::Implementation::make_plan(int tile) const {
     near_inflow = near_inflow || (frame.tracer->flows_in(a, 0) && lower_gap < reach) ||
                   (frame.tracer->flows_in(a, 1) && upper_gap < reach);
   }
-  return {frame.block && !near_inflow, frame.near_surface->is_near_tile(tile)};
+  return {frame.block && !near_inflow, frame.near_surface->is_near_tile(grid.tile_begin(tile))};
 }
 
 template <int dim>

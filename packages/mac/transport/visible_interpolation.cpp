@@ -20,19 +20,24 @@ std::optional<double> WeightedMean::value() const {
 }
 
 template <int dim>
-void VisibleInterpolation<dim>::look_around(const Point<dim>& x, double radius) {
-  nearby_.gather(physical(widened<dim>(Box<dim>(x), 1 + radius)));
-}
-
-template <int dim>
-std::array<StencilCorner<dim>, (1 << dim)> VisibleInterpolation<dim>::focus(SampleKind kind,
-                                                                            const Point<dim>& x) {
+template <typename Function>
+void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim>& x,
+                                                const Function& f) const {
   const auto corners = lattice_.corners(kind, x);
-  Box<dim> box(x);
+  const Point<dim> eye = physical(x);
+  Box<dim> around(eye);
   for (const StencilCorner<dim>& corner : corners)
-    box.extend(corner.position);
-  nearby_.focus(physical(box));
-  return corners;
+    if (corner.weight != 0)
+      around.extend(physical(corner.position));
+  const bool all_visible = nearby_.clear(around);
+  for (const StencilCorner<dim>& corner : corners) {
+    if (corner.weight == 0)
+      continue;
+    std::optional<SurfacePoint<dim>> hit;
+    if (!all_visible)
+      hit = nearby_.first_hit(eye, physical(corner.position));
+    f(corner, hit);
+  }
 }
 
 template <int dim>
@@ -40,17 +45,14 @@ void VisibleInterpolation<dim>::look(int axis, const Point<dim>& x, const double
   Sight& sight = sight_[axis];
   sight.visible = {};
   sight.hidden.clear();
-  const Point<dim> eye = physical(x);
-  for (const StencilCorner<dim>& corner : focus(axis, x)) {
-    if (corner.weight == 0)
-      continue;
-    if (const auto hit = nearby_.focused_hit(eye, physical(corner.position)))
+  for_each_sample(axis, x, [&](const StencilCorner<dim>& corner, const auto& hit) {
+    if (hit)
       sight.hidden.push_back({corner.weight, *hit});
     else if (corner.id == Stencil<dim>::wall_sample)
       sight.visible.add(corner.weight, 0);
     else if (corner.id >= 0 && usable_.faces[axis][corner.id])
       sight.visible.add(corner.weight, field[corner.id]);
-  }
+  });
 }
 
 template <int dim>
@@ -92,12 +94,11 @@ std::optional<double> VisibleInterpolation<dim>::velocity(int axis, const Point<
 
 template <int dim>
 std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, const double* field) {
-  const Point<dim> eye = physical(x);
   WeightedMean mean;
-  for (const StencilCorner<dim>& corner : focus(cell_centers, x))
-    if (corner.weight > 0 && corner.id >= 0 && usable_.cells[corner.id] &&
-        !nearby_.focused_hit(eye, physical(corner.position)))
+  for_each_sample(cell_centers, x, [&](const StencilCorner<dim>& corner, const auto& hit) {
+    if (!hit && corner.id >= 0 && usable_.cells[corner.id])
       mean.add(corner.weight, field[corner.id]);
+  });
   return mean.value();
 }
 

@@ -34,21 +34,18 @@ class VisibleInterpolation {
   /// All components of a velocity, on the sample grid.
   using Velocity = std::array<const double*, dim>;
 
-  /// All references must outlive this object. `velocity` is that of a surface point.
+  /// All references must outlive this object. `velocity` is that of a surface point. Fast within
+  /// `reach` cells of owned ones.
   VisibleInterpolation(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
                        const UsableSamples<dim>& usable, const MovingSurface<dim>& surface,
-                       double friction_speed)
+                       double friction_speed, int reach)
       : grid_(grid),
         lattice_(lattice),
         usable_(usable),
         surface_(surface),
         friction_speed_(friction_speed),
-        nearby_(surface.before, grid) {}
+        nearby_(surface.before, grid, reach) {}
 
-  /// Makes the questions about points well inside the box faster.
-  void enter(const Box<dim>& box) { nearby_.enter(physical(box)); }
-  /// Prepares interpolation at x and, to see far, at points within `radius` cells of it.
-  void look_around(const Point<dim>& x, double radius = 0);
   /// A velocity component of fluid that slips: samples hidden by a surface have the mean of the
   /// visible ones with the part along the surface's normal replaced by its own; along it the two
   /// differ by as much less as friction takes. None if nothing is visible and no surface in sight.
@@ -68,8 +65,9 @@ class VisibleInterpolation {
   Point<dim> nearest_surface_velocity(const Point<dim>& x) const;
 
  private:
-  /// The samples around x; simplices that could hide them are in focus.
-  std::array<StencilCorner<dim>, (1 << dim)> focus(SampleKind kind, const Point<dim>& x);
+  /// Calls f(sample, what hides it) for the samples around x that count.
+  template <typename Function>
+  void for_each_sample(SampleKind kind, const Point<dim>& x, const Function& f) const;
   struct Hidden {
     double weight = 0;
     SurfacePoint<dim> hit;
