@@ -57,12 +57,11 @@ void BoxBins<dim>::fill(const std::vector<Entry>& entries) {
 }
 
 template <int dim>
-bool BoxBins<dim>::clear(const Box<dim>& box) const {
-  const Range asked = range(box);
+bool BoxBins<dim>::any_used(const Range& asked) const {
   const int last = asked.end[0] - 1;
   const std::uint64_t first_bits = ~bits_below(asked.begin[0] & 63);
   const std::uint64_t last_bits = ~std::uint64_t{0} >> (63 - (last & 63));
-  return !any_row(asked, [&](const Index<dim>& bin) {
+  return any_row(asked, [&](const Index<dim>& bin) {
     const std::uint64_t* row = used_.data() + row_of(bin);
     const int first_word = bin[0] >> 6, last_word = last >> 6;
     if (first_word == last_word)
@@ -72,6 +71,16 @@ bool BoxBins<dim>::clear(const Box<dim>& box) const {
       any = any || row[word] != 0;
     return any;
   });
+}
+
+template <int dim>
+bool BoxBins<dim>::clear_within(const Box<dim>& box) const {
+  Range within = range(box);
+  for (int a = 0; a < dim; ++a) {
+    within.begin[a] += lower_[a] + within.begin[a] / per_width_ < box.min()[a];
+    within.end[a] -= lower_[a] + within.end[a] / per_width_ > box.max()[a];
+  }
+  return !any_used(within);
 }
 
 template <int dim>

@@ -26,7 +26,12 @@ class BoxBins {
              double width, const Counts& counts);
 
   /// True if the bins that this box touches are empty.
-  bool clear(const Box<dim>& box) const;
+  bool clear(const Box<dim>& box) const { return !any_used(range(box)); }
+  /// True if all bins that lie within this box are empty.
+  bool clear_within(const Box<dim>& box) const;
+  /// Calls f(list) for the bins that this box touches.
+  template <typename Function>
+  void visit(const Box<dim>& box, const Function& f) const;
   /// What is in the bin at a place: indices, ascending.
   List at(const Point<dim>& x) const;
   /// Calls f(list, fraction of the segment where it enters the bin) for the bins on the
@@ -41,6 +46,8 @@ class BoxBins {
   };
   /// Bins that a box touches; without any if it misses the region.
   Range range(const Box<dim>& box) const;
+  /// True if some bin of a range is not empty.
+  bool any_used(const Range& asked) const;
   /// Sets the bins; false if there are none.
   bool lay_out(const Box<dim>& region, const Point<dim>& origin, double width);
   struct Entry {
@@ -114,6 +121,19 @@ void BoxBins<dim>::build(const std::vector<Box<dim>>& boxes, const Box<dim>& reg
     }
   }
   fill(entries);
+}
+
+template <int dim>
+template <typename Function>
+void BoxBins<dim>::visit(const Box<dim>& box, const Function& f) const {
+  const Range asked = range(box);
+  any_row(asked, [&](const Index<dim>& first) {
+    const int row = row_of(first);
+    for (int bin = first[0]; bin < asked.end[0]; ++bin)
+      if (used_[row + (bin >> 6)] >> (bin & 63) & 1)
+        f(list(slot(row + (bin >> 6), bin & 63)));
+    return false;
+  });
 }
 
 template <int dim>

@@ -30,6 +30,11 @@ int row_length(const TransportFrame<dim>& frame, SampleKind kind, int tile) {
                   frame.samples_end(kind, 0) - frame.setting.grid.tile_begin(tile)[0]);
 }
 
+template <int dim>
+int row_in_tile(int id) {
+  return (id & (tile_volume<dim> - 1)) / tile_width<dim>;
+}
+
 /// The values of a row, of which there is storage for the whole.
 template <int dim>
 Eigen::Map<RowValues<dim>> row_of(double* field, int first) {
@@ -114,7 +119,10 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
     const SampleKind kind = passenger.field.kind;
     const int length = row_length(frame_, kind, tile);
     CellField& carried = passenger.carried();
-    passenger.displacement.resize(tile_volume<dim>);
+    if (near_surface) {
+      passenger.back.resize(tile_volume<dim> / tile_width<dim>);
+      passenger.forth.resize(tile_volume<dim> / tile_width<dim>);
+    }
     block.load(kind, passenger.field.values);
     for_each_row(frame_, kind, tile, [&](const Index<dim>& row, int first) {
       RowValues<dim> values, low, high;
@@ -131,10 +139,9 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
       }
       row_of<dim>(carried.data(), first) = values;
       if (near_surface) {
-        RowValues<dim> displacement = rays.displacement;
+        passenger.back[row_in_tile<dim>(first)] = rays;
         if (passenger.corrects())
-          displacement = displacement.max(block.trace(row, 1).displacement);
-        row_of<dim>(passenger.displacement.data(), first - tile * tile_volume<dim>) = displacement;
+          passenger.forth[row_in_tile<dim>(first)] = block.trace(row, 1);
       }
       if (all_free(kind, first, length))
         return;
@@ -226,18 +233,20 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
     return Box<dim>(x).extend(ray.middle).extend(ray.end);
   };
   if (passenger.cubic()) {
-    const Ray<dim> ray = frame_.tracer->trace(x, -1, true);
+    const Ray<dim> ray = trace(passenger, id, x, -1, true, by_rows);
     if (ray.complete && near_surface.clear(way(ray), false, 2)) {
       if (!by_rows)
         carry_single(passenger, id, x, true);
       return;
     }
   }
-  const Ray<dim> ray = frame_.tracer->trace(x, -1);
+  const Ray<dim> ray = trace(passenger, id, x, -1, false, by_rows);
   Box<dim> points = way(ray);
   if (!ray.complete || !near_surface.clear(points, false)) {
     if (kind != cell_centers && near_surface.inside(x, frame_.setting.state.cells[id]))
       keep(passenger, id, false);
+    else if (by_rows && !passenger.cubic() && near_surface.sees_all(kind, x, ray))
+      passenger.forbid_correction(id);
     else
       carry_seeing(passenger, id, x);
     return;
@@ -246,10 +255,36 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
     carry_single(passenger, id, x, false);
   if (!passenger.may_correct(id))
     return;
-  const Ray<dim> forward = frame_.tracer->trace(x, 1);
+  const Ray<dim> forward = trace(passenger, id, x, 1, false, by_rows);
   points.extend(forward.middle).extend(forward.end);
   if (!forward.complete || !near_surface.clear(points, true))
     passenger.forbid_correction(id);
+}
+
+template <int dim>
+Ray<dim> FieldCarrier<dim>::trace(const Passenger<dim>& passenger, int id, const Point<dim>& x,
+                                  double direction, bool cubic, bool by_rows) const {
+  if (!by_rows || cubic != passenger.cubic())
+    return frame_.tracer->trace(x, direction, cubic);
+  const auto& rows = direction < 0 ? passenger.back : passenger.forth;
+  const RowRays<dim>& rays = rows[row_in_tile<dim>(id)];
+  const int i = id & (tile_width<dim> - 1);
+  Ray<dim> ray;
+  ray.middle = frame_.block->place(rays.middle, i);
+  ray.end = frame_.block->place(rays.end, i);
+  return ray;
+}
+
+template <int dim>
+double FieldCarrier<dim>::longest_way(const Passenger<dim>& passenger, int id,
+                                      const Point<dim>& x) const {
+  const Ray<dim> back = trace(passenger, id, x, -1, passenger.cubic(), true);
+  Box<dim> points = Box<dim>(x).extend(back.middle).extend(back.end);
+  if (passenger.corrects()) {
+    const Ray<dim> forth = trace(passenger, id, x, 1, false, true);
+    points.extend(forth.middle).extend(forth.end);
+  }
+  return std::max((points.max() - x).maxCoeff(), (x - points.min()).maxCoeff());
 }
 
 template <int dim>
@@ -276,8 +311,8 @@ void FieldCarrier<dim>::carry_near_surfaces(std::vector<Passenger<dim>>& passeng
                                             bool by_rows) {
   for (Passenger<dim>& passenger : passengers)
     frame_.for_each_sample(passenger.field.kind, tile, [&](int id, const Point<dim>& x) {
-      const double displacement = by_rows ? passenger.displacement[id - tile * tile_volume<dim>]
-                                          : frame_.largest_displacement;
+      const double displacement =
+          by_rows ? longest_way(passenger, id, x) : frame_.largest_displacement;
       if (frame_.near_surface->is_near(x, displacement))
         carry_with_care(passenger, id, x, by_rows);
       else if (!by_rows)

@@ -18,8 +18,8 @@ struct Passenger {
   CellField half_way;  ///< MacCormack's first half: the result of semi-Lagrangian transport
   /// Range of the samples used, of owned cells; empty (low > high): not to be corrected.
   std::unique_ptr<double[]> low, high;
-  /// Longest way along an axis of the rays from the samples of a tile carried by rows [cells].
-  std::vector<double> displacement;
+  /// Of the rows of a tile near surfaces that is carried by rows.
+  std::vector<RowRays<dim>> back, forth;
 
   bool cubic() const { return scheme == AdvectionScheme::cubic; }
   bool corrects() const { return scheme == AdvectionScheme::maccormack; }
@@ -49,6 +49,11 @@ class FieldCarrier {
   void carry_singles(Passenger<dim>& passenger, int tile);
   /// The samples near surfaces; `by_rows`: all have been carried as if there were none.
   void carry_near_surfaces(std::vector<Passenger<dim>>& passengers, int tile, bool by_rows);
+  /// The ray from a sample; `by_rows`: as carried by rows.
+  Ray<dim> trace(const Passenger<dim>& passenger, int id, const Point<dim>& x, double direction,
+                 bool cubic, bool by_rows) const;
+  /// The farthest that the rays from a sample of a tile carried by rows go along an axis [cells].
+  double longest_way(const Passenger<dim>& passenger, int id, const Point<dim>& x) const;
   /// `wide`: by cubics.
   void carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x, bool wide);
   void carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x, bool by_rows);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/simplex_queries.hpp"
 
@@ -102,6 +103,8 @@ void NearbySurface<dim>::make_bins() {
   while (width > spacing_ / finest_bins && 2.4 * mean_extent < width &&
          region.volume() / std::pow(0.5 * width, dim) < most_bins)
     width *= 0.5;
+  small_simplices_ = width < 0.5 * spacing_;
+  seen_.assign(near_.size(), 0);
   bins_.build(bounds_, region, lower_, width, [&](int i, const Point<dim>& center) {
     const Plane& plane = near_[i].plane;
     return std::abs(plane(center)) <= 0.5 * width * plane.normal.cwiseAbs().sum() + 4 * tolerance_;
@@ -158,7 +161,8 @@ bool NearbySurface<dim>::touches(const Box<dim>& box) const {
     inner = std::min({inner, middle[a] - static_cast<int>(std::ceil(low)), last - 1 - middle[a]});
   }
   const int distance = distance_(middle);
-  return distance <= outer && (distance <= inner || any_touches(2 * tolerance_));
+  return distance <= outer &&
+         (distance <= inner || !bins_.clear_within(box) || any_touches(2 * tolerance_));
 }
 
 template <int dim>
@@ -196,6 +200,59 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>&
     return false;
   });
   return first.point;
+}
+
+template <int dim>
+void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
+                                     const Corners& corners, Hits& hits) const {
+  using Values = Eigen::Array<double, 1 << dim, 1>;
+  const auto corner = [&](int k) {
+    Point<dim> x;
+    for (int a = 0; a < dim; ++a)
+      x[a] = corners[a][k];
+    return x;
+  };
+  // Walks cost by the bins on the way, the rest of this by the simplices in the box.
+  if (empty() || small_simplices_ || !reached_.contains(box)) {
+    for (int k = 0; k < 1 << dim; ++k)
+      hits[k] = first_hit(eye, corner(k));
+    return;
+  }
+  Values square = Values::Zero();
+  for (int a = 0; a < dim; ++a)
+    square += (corners[a] - eye[a]).square();
+  const Values length = square.sqrt();
+  const auto at_corners = [&](const Plane& plane) {
+    Values value = Values::Constant(-plane.offset);
+    for (int a = 0; a < dim; ++a)
+      value += plane.normal[a] * corners[a];
+    return value;
+  };
+  std::array<Hit, 1 << dim> first;
+  ++question_;
+  bins_.visit(box, [&](const auto& list) {
+    for (const int i : list) {
+      if (seen_[i] == question_)
+        continue;
+      seen_[i] = question_;
+      const Near& near = near_[i];
+      const double from = near.plane(eye);
+      const Values to = at_corners(near.plane);
+      if (std::min(from, to.minCoeff()) > 3 * tolerance_ ||
+          std::max(from, to.maxCoeff()) < -3 * tolerance_)
+        continue;
+      const Values drop = from - to, sign = (drop < 0).select(Values::Constant(-1), 1);
+      Values inside = Values::Constant(std::numeric_limits<double>::infinity());
+      for (const Plane& rim : near.rims)
+        inside = inside.min(sign * (from * at_corners(rim) - rim(eye) * to));
+      const auto passes_by = inside < -2 * tolerance_ * length && drop.abs() > 1e-9 * length;
+      for (int k = 0; k < 1 << dim; ++k)
+        if (!passes_by[k])
+          look_at(i, eye, corner(k), length[k], first[k]);
+    }
+  });
+  for (int k = 0; k < 1 << dim; ++k)
+    hits[k] = first[k].point;
 }
 
 template <int dim>

@@ -40,6 +40,12 @@ class NearbySurface {
   bool touches(const Box<dim>& box) const;
   /// False if a simplex may come into the box [m].
   bool clear(const Box<dim>& box) const;
+  /// The 2^dim corners of a box [m], by axis.
+  using Corners = std::array<Eigen::Array<double, 1 << dim, 1>, dim>;
+  using Hits = std::array<std::optional<SurfacePoint<dim>>, 1 << dim>;
+  /// First surface points on the segments from a point of the box to its corners.
+  void look_around(const Point<dim>& eye, const Box<dim>& box, const Corners& corners,
+                   Hits& hits) const;
   /// First surface point on the segment a -> b of any length; its position is the real one, not
   /// that of a periodic image.
   std::optional<SurfacePoint<dim>> first_hit(const Point<dim>& a, const Point<dim>& b) const;
@@ -80,9 +86,12 @@ class NearbySurface {
   double spacing_, tolerance_;
   Box<dim> reached_;        ///< where all simplices are listed; empty if there is no such place
   std::vector<Near> near_;  ///< ascending by image and simplex
-  std::vector<Box<dim>> bounds_;  ///< of the images, widened by twice the tolerance
-  BoxBins<dim> bins_;             ///< of `near_`; every half cell is one or several bins
-  CellDistance<dim> distance_;    ///< to `bounds_`
+  std::vector<Box<dim>> bounds_;        ///< of the images, widened by twice the tolerance
+  bool small_simplices_ = false;        ///< bins are smaller than half a cell
+  BoxBins<dim> bins_;                   ///< of `near_`; every half cell is one or several bins
+  CellDistance<dim> distance_;          ///< to `bounds_`
+  mutable std::vector<unsigned> seen_;  ///< the question that each simplex last came up for
+  mutable unsigned question_ = 0;
 };
 
 /// The box widened by a distance on all sides.

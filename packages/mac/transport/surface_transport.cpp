@@ -118,6 +118,24 @@ bool SurfaceTransport<dim>::clear(const Box<dim>& points, bool during_step, int 
 }
 
 template <int dim>
+bool SurfaceTransport<dim>::sees_all(SampleKind kind, const Point<dim>& x,
+                                     const Ray<dim>& ray) const {
+  const auto clear = [&](const Box<dim>& box) {
+    return interpolation_.nearby().clear(interpolation_.physical(box));
+  };
+  const auto clear_around = [&](SampleKind samples, const Point<dim>& place) {
+    const Point<dim> offset = sample_offset<dim>(samples);
+    const Point<dim> lower = (place - offset).array().floor().matrix() + offset;
+    return clear({lower, lower + Point<dim>::Ones()});
+  };
+  bool all = clear(Box<dim>(x).extend(ray.middle).extend(ray.end)) &&
+             clear(widened<dim>(Box<dim>(x), 0.5)) && clear_around(kind, ray.end);
+  for (int a = 0; a < dim; ++a)
+    all = all && clear_around(a, ray.middle);
+  return all;
+}
+
+template <int dim>
 std::optional<SurfacePoint<dim>> SurfaceTransport<dim>::hit_on_way(const Point<dim>& x,
                                                                    const Point<dim>& end) const {
   return interpolation_.nearby().first_hit(interpolation_.physical(x),

@@ -51,6 +51,9 @@ class SurfaceTransport {
   /// True if no surface touches the points and their surroundings of `reach` cells, at t^n or, with
   /// `during_step`, at any time of the step.
   bool clear(const Box<dim>& points, bool during_step, int reach = 1) const;
+  /// True if no surface comes between the sample at x, the way of its ray and all samples used on
+  /// it: they might as well be carried as if there were none. Possible where it is not clear.
+  bool sees_all(SampleKind kind, const Point<dim>& x, const Ray<dim>& ray) const;
   /// The value carried to the sample at x; none if it sees no valid sample.
   std::optional<double> carry(const CarriedField<dim>& field, const Point<dim>& x);
   /// A velocity `own` of the sample whose fluid is at x, beside it: changes as what is seen at x

@@ -149,7 +149,8 @@ template <int dim>
 RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, bool cubic) const {
   const double factor = direction * tracer_.cells_per_velocity();
   int place = 0;
-  RowPoints<dim> start, middle;
+  RowRays<dim> rays;
+  RowPoints<dim> start;
   for (int a = 0; a < dim; ++a) {
     const int cell = margin_[a] + (a == 0 ? 0 : in_tile[a]);
     start[a] = cell + offset_[a] + (a == 0 ? 1.0 : 0.0) * steps<dim>();
@@ -163,17 +164,13 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, 
       velocity[a] = velocity_at_samples(a, place);
   }
   for (int a = 0; a < dim; ++a)
-    middle[a] = clamped(start[a] + 0.5 * factor * velocity[a], a);
-  velocity = velocity_at(middle, cubic);
-  RowRays<dim> rays;
+    rays.middle[a] = clamped(start[a] + 0.5 * factor * velocity[a], a);
+  velocity = velocity_at(rays.middle, cubic);
   rays.clipped.setZero();
-  rays.displacement.setZero();
   for (int a = 0; a < dim; ++a) {
     const RowValues<dim> wanted = start[a] + factor * velocity[a];
     rays.end[a] = clamped(wanted, a);
     rays.clipped += (rays.end[a] - wanted).abs();
-    rays.displacement = rays.displacement.max((middle[a] - start[a]).abs());
-    rays.displacement = rays.displacement.max((rays.end[a] - start[a]).abs());
   }
   return rays;
 }

@@ -7,14 +7,12 @@
 
 namespace lockstep {
 
-/// Ends of the rays of a row.
+/// The rays of a row.
 template <int dim>
 struct RowRays {
-  RowPoints<dim> end;
+  RowPoints<dim> middle, end;  ///< where the midpoint rule looked, and the ends
   /// Not 0 where a ray would have left the domain.
   RowValues<dim> clipped;
-  /// The longest way along an axis, to the end or to where the midpoint rule looked [cells].
-  RowValues<dim> displacement;
 };
 
 /// A tile and its surroundings as dense arrays, in which short rays are followed a row at a time:
@@ -39,6 +37,13 @@ class TileBlock {
   /// samples of the loaded field with these coordinates within the tile (x is ignored).
   /// `cubic`: the velocity is interpolated by cubics.
   RowRays<dim> trace(const Index<dim>& in_tile, double direction, bool cubic = false) const;
+  /// One of a row of points, in lattice units.
+  Point<dim> place(const RowPoints<dim>& points, int i) const {
+    Point<dim> x;
+    for (int a = 0; a < dim; ++a)
+      x[a] = begin_[a] + points[a][i];
+    return x;
+  }
   /// The loaded field at a row of points.
   void look_up(const RowPoints<dim>& points, RowValues<dim>& values) const;
   /// The same, and the range of the samples used there.

@@ -23,21 +23,22 @@ template <int dim>
 template <typename Function>
 void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim>& x,
                                                 const Function& f) const {
-  const auto corners = lattice_.corners(kind, x);
+  const auto samples = lattice_.corners(kind, x);
   const Point<dim> eye = physical(x);
   Box<dim> around(eye);
-  for (const StencilCorner<dim>& corner : corners)
-    if (corner.weight != 0)
-      around.extend(physical(corner.position));
-  const bool all_visible = nearby_.clear(around);
-  for (const StencilCorner<dim>& corner : corners) {
-    if (corner.weight == 0)
-      continue;
-    std::optional<SurfacePoint<dim>> hit;
-    if (!all_visible)
-      hit = nearby_.first_hit(eye, physical(corner.position));
-    f(corner, hit);
+  typename NearbySurface<dim>::Corners corners;
+  for (int k = 0; k < 1 << dim; ++k) {
+    const Point<dim> place = samples[k].weight != 0 ? physical(samples[k].position) : eye;
+    around.extend(place);
+    for (int a = 0; a < dim; ++a)
+      corners[a][k] = place[a];
   }
+  typename NearbySurface<dim>::Hits hits;
+  if (!nearby_.clear(around))
+    nearby_.look_around(eye, around, corners, hits);
+  for (int k = 0; k < 1 << dim; ++k)
+    if (samples[k].weight != 0)
+      f(samples[k], hits[k]);
 }
 
 template <int dim>
