@@ -12,7 +12,7 @@ using namespace lockstep;
 ColumnFluid::ColumnFluid(const Options& options, const Communicator& comm)
     : options_(options), h_(options.length / options.n_cells), comm_(comm) {
   const int rank = comm->getRank(), size = comm->getSize(), n = options.n_cells;
-  cells_ = make_map((rank + 1) * n / size - rank * n / size, comm);
+  frozen_.pressure_map = make_map((rank + 1) * n / size - rank * n / size, comm);
   velocity_.assign(n + 1, 0);
   predicted_ = velocity_;
   coupled_at_.assign(n + 1, 0);
@@ -31,6 +31,7 @@ ControlVolume<2> ColumnFluid::control_volume(int face) const {
     const bool inside = cell >= 0 && cell < options_.n_cells;
     volume.sides[side].center = volume.center;
     if (inside) {
+      volume.sides[side].kind = SideKind::unknown;
       volume.sides[side].unknown = cell;
       volume.sides[side].center.x() += (side - 0.5) * h_;
     }
@@ -44,27 +45,29 @@ double ColumnFluid::mass(int face) const {
   return options_.density * control_volume(face).box.volume();
 }
 
-void ColumnFluid::set_geometry(const Surface& surface, const OpenFractionRule<2>& rule) {
+const FluidGeometry<2>& ColumnFluid::freeze(const Surface& surface,
+                                            const OpenFractionRule<2>& rule) {
   const int n = options_.n_cells;
+  PressureRegions& regions = frozen_.regions;
   std::vector<Triplet> triplets;
   std::vector<int> region_of_cell(n, 0);
-  coupled_.clear();
-  regions_ = PressureRegions();
-  regions_.n_regions = 1;
+  frozen_.coupled_volumes.clear();
+  regions = PressureRegions();
+  regions.n_regions = 1;
   for (int face = 0; face <= n; ++face) {
     // 1. Does the coupling take this control volume?
     ControlVolume<2> volume = control_volume(face);
     const auto hit = surface->first_hit(volume.sides[0].center, volume.sides[1].center);
     volume.open_fraction = rule.open_fraction(volume, hit.has_value(), *surface);
     coupled_at_[face] = volume.open_fraction < 1;
-    const bool mine = cells_->isNodeGlobalElement(std::max(0, face - 1));
+    const bool mine = frozen_.pressure_map->isNodeGlobalElement(std::max(0, face - 1));
     if (coupled_at_[face] && mine)
-      coupled_.push_back(volume);
+      frozen_.coupled_volumes.push_back(volume);
     // 2. Cells beyond it belong to another region.
     if (coupled_at_[face] && face > 0 && face < n)
-      ++regions_.n_regions;
+      ++regions.n_regions;
     if (face < n)
-      region_of_cell[face] = regions_.n_regions - 1;
+      region_of_cell[face] = regions.n_regions - 1;
     // 3. Otherwise it adds area^2 / mass to A.
     if (coupled_at_[face] || !mine)
       continue;
@@ -77,20 +80,23 @@ void ColumnFluid::set_geometry(const Surface& surface, const OpenFractionRule<2>
       }
     }
   }
-  for (GlobalIndex cell : cells_->getNodeElementList()) {
+  for (GlobalIndex cell : frozen_.pressure_map->getNodeElementList()) {
     triplets.push_back({cell, cell, 0});  // a cell between two coupled faces keeps its row
-    regions_.of_unknown.push_back(region_of_cell[cell]);
+    regions.of_unknown.push_back(region_of_cell[cell]);
   }
-  regions_.has_dirichlet.assign(regions_.n_regions, 0);
+  regions.has_dirichlet.assign(regions.n_regions, 0);
   if (is_free(0))
-    regions_.has_dirichlet.front() = 1;
+    regions.has_dirichlet.front() = 1;
   if (is_free(n))
-    regions_.has_dirichlet.back() = 1;
-  matrix_ = as_operator(assemble_triplets(std::move(triplets), cells_, cells_));
+    regions.has_dirichlet.back() = 1;
+  const RCP<const Map> map = frozen_.pressure_map;
+  frozen_.pressure_block = as_operator(assemble_triplets(std::move(triplets), map, map));
+  frozen_.volume = options_.length * options_.width;
+  return frozen_;
 }
 
 void ColumnFluid::divergence(Vector& rhs) const {
-  for (GlobalIndex cell : cells_->getNodeElementList()) {
+  for (GlobalIndex cell : frozen_.pressure_map->getNodeElementList()) {
     const double inflow = is_free(cell) ? predicted_[cell] : 0;
     const double outflow = is_free(cell + 1) ? predicted_[cell + 1] : 0;
     rhs.sumIntoGlobalValue(cell, options_.width * (inflow - outflow));
@@ -111,14 +117,14 @@ void ColumnFluid::project(const Vector& scaled_pressure) {
 
 std::vector<double> ColumnFluid::coupled_velocity() const {
   std::vector<double> result;
-  for (const auto& volume : coupled_)
+  for (const auto& volume : frozen_.coupled_volumes)
     result.push_back(predicted_[volume.id]);
   return result;
 }
 
 void ColumnFluid::set_coupled_velocity(const std::vector<double>& velocity) {
   std::vector<GlobalIndex> faces;
-  for (const auto& volume : coupled_)
+  for (const auto& volume : frozen_.coupled_volumes)
     faces.push_back(volume.id);
   const auto all_faces = gather_all(comm_, faces);
   const auto all_values = gather_all(comm_, velocity);
@@ -126,24 +132,21 @@ void ColumnFluid::set_coupled_velocity(const std::vector<double>& velocity) {
     predicted_[all_faces[i]] = all_values[i];
 }
 
-Momentum<2> ColumnFluid::add_forces(double, double dt) {
-  Momentum<2> impulse;
+ForceImpulse<2> ColumnFluid::add_forces(double, double dt) {
+  ForceImpulse<2> given;
   for (int face = 0; face <= options_.n_cells; ++face) {
     predicted_[face] += dt * options_.gravity;
     if (is_free(face))
-      impulse.add(control_volume(face).center, 0, mass(face) * dt * options_.gravity);
+      given.impulse.add(control_volume(face).center, 0, mass(face) * dt * options_.gravity);
   }
-  return impulse;
+  given.coupled_change.assign(frozen_.coupled_volumes.size(), dt * options_.gravity);
+  return given;
 }
 
-std::vector<double> ColumnFluid::coupled_force(double, double dt) const {
-  return std::vector<double>(coupled_.size(), dt * options_.gravity);
-}
-
-double ColumnFluid::largest_cell_crossing_rate() const {
+double ColumnFluid::largest_speed() const {
   double largest = 0;
   for (double u : velocity_)
-    largest = std::max(largest, std::abs(u) / h_);
+    largest = std::max(largest, std::abs(u));
   return largest;
 }
 

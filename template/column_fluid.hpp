@@ -1,12 +1,13 @@
 #pragma once
 #include <vector>
 
-#include "interfaces/fluid.hpp"
+#include "interfaces/fluid_sides.hpp"
 
 /// A fluid of your own: a straight channel along x, one cell wide, open (p = 0) at both ends. Its
 /// incompressible velocity is uniform between solids, so nothing is carried along by advection.
-/// Pressures are distributed over the ranks; the few velocities are kept on every rank.
-class ColumnFluid : public lockstep::FluidDiscretization<2> {
+/// Pressures are distributed over the ranks; the few velocities are kept on every rank. Of the side
+/// interfaces it has one, so that its runs audit their momentum.
+class ColumnFluid : public lockstep::FluidDiscretization<2>, public lockstep::AuditedFluid<2> {
  public:
   struct Options {
     int n_cells = 20;
@@ -20,39 +21,30 @@ class ColumnFluid : public lockstep::FluidDiscretization<2> {
   std::string name() const override { return "column"; }
   const std::vector<double>& predicted() const { return predicted_; }  ///< u* at the faces [m/s]
 
-  void set_geometry(const Surface& surface, const lockstep::OpenFractionRule<2>& rule) override;
-  const std::vector<lockstep::ControlVolume<2>>& coupled_volumes() const override {
-    return coupled_;
-  }
-  lockstep::RCP<const lockstep::Map> pressure_map() const override { return cells_; }
-  lockstep::RCP<const lockstep::LinearOperator> pressure_block() const override { return matrix_; }
-  const lockstep::PressureRegions& regions() const override { return regions_; }
   void divergence(lockstep::Vector& rhs) const override;
   void project(const lockstep::Vector& scaled_pressure) override;
   std::vector<double> coupled_velocity() const override;
   void set_coupled_velocity(const std::vector<double>& velocity) override;
 
   void begin_prediction() override { predicted_ = velocity_; }
-  lockstep::Momentum<2> add_forces(double time, double dt) override;
-  std::vector<double> coupled_force(double time, double dt) const override;
-  void adopt_advection_velocity() override {}
+  lockstep::ForceImpulse<2> add_forces(double time, double dt) override;
   void advect(double, double, const lockstep::MovingSurface<2>&) override {
     predicted_ = velocity_;
   }
-  void revalidate(const lockstep::MovingSurface<2>&) override {}
   void accept() override { velocity_ = predicted_; }
 
-  double largest_cell_crossing_rate() const override;
-  double spacing() const override { return h_; }
+  double smallest_length() const override { return h_; }
+  double largest_speed() const override;
   lockstep::Point<2> gravity() const override { return {options_.gravity, 0}; }
   lockstep::Momentum<2> momentum() const override;
   double kinetic_energy() const override;
   lockstep::Momentum<2> boundary_pressure_impulse(const lockstep::Vector&) const override {
     return {};  // the open ends have p = 0, and the pressure on the long walls cancels
   }
-  double fluid_volume() const override { return options_.length * options_.width; }
 
  private:
+  const lockstep::FluidGeometry<2>& freeze(const Surface& surface,
+                                           const lockstep::OpenFractionRule<2>& rule) override;
   bool is_free(int face) const { return coupled_at_[face] == 0; }
   lockstep::ControlVolume<2> control_volume(int face) const;
   double mass(int face) const;
@@ -62,8 +54,5 @@ class ColumnFluid : public lockstep::FluidDiscretization<2> {
   lockstep::Communicator comm_;
   std::vector<double> velocity_, predicted_;  ///< of all faces, 0 at x = 0
   std::vector<char> coupled_at_;              ///< per face
-  lockstep::RCP<const lockstep::Map> cells_;
-  lockstep::RCP<const lockstep::LinearOperator> matrix_;
-  lockstep::PressureRegions regions_;
-  std::vector<lockstep::ControlVolume<2>> coupled_;  ///< those whose lower cell is on this rank
+  lockstep::FluidGeometry<2> frozen_;         ///< of coupled volumes those whose lower cell is here
 };

@@ -1,11 +1,11 @@
 #pragma once
 #include <vector>
 
-#include "interfaces/solid.hpp"
+#include "interfaces/solid_sides.hpp"
 
 /// A solid of your own: a thin plate across a channel that slides along x and is pushed by a
 /// constant force. One unknown, its velocity, on rank 0.
-class Piston : public lockstep::SolidModel<2> {
+class Piston : public lockstep::SolidModel<2>, public lockstep::AuditedSolids<2> {
  public:
   struct Options {
     double position = 0.7;  ///< along x [m]
@@ -20,10 +20,6 @@ class Piston : public lockstep::SolidModel<2> {
   const lockstep::SurfaceMesh<2>& surface() const override { return surface_; }
   void velocity_row(const lockstep::SurfacePoint<2>& point, const lockstep::Point<2>& x,
                     lockstep::VelocityRow<2>& row) const override;
-  lockstep::Point<2> prescribed_velocity(const lockstep::SurfacePoint<2>&,
-                                         const lockstep::Point<2>&) const override {
-    return {0, 0};
-  }
   lockstep::Point<2> effective_velocity(const lockstep::SurfacePoint<2>&,
                                         const lockstep::Point<2>&) const override {
     return {last_velocity_, 0};

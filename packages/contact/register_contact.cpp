@@ -85,7 +85,7 @@ void register_contact(ContactRegistry<dim>& contacts) {
                [](const ParameterList& list, const ContactSetting<dim>& setting) {
                  return std::make_unique<GaussSeidelContact<dim>>(
                      options_from(list), walls_of<dim>(setting.domain, setting.closed_sides),
-                     setting.grid_spacing);
+                     setting.smallest_length);
                });
 }
 

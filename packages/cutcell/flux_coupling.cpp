@@ -5,7 +5,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
-#include "interfaces/bounded_fluid.hpp"
+#include "interfaces/fluid_sides.hpp"
 #include "linear/overlap.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "mixedface/lumping.hpp"
@@ -316,7 +316,7 @@ AngularVector<dim> FluxCoupling<dim>::lever_impulse(const SolidSystem<dim>& soli
 
 template <int dim>
 void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
-                                   const SolidSystem<dim>& solids, LinkRow& row) const {
+                                   const SolidSystem<dim>& solids, LinkRow<dim>& row) const {
   VelocityRow<dim> scratch;
   std::vector<GlobalIndex> dofs;
   std::vector<double> values;
@@ -349,8 +349,8 @@ void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, in
 
 template <int dim>
 void FluxCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                                 LinkRow& row) const {
-  row = LinkRow();
+                                 LinkRow<dim>& row) const {
+  row = {};
   if (link.coupled_volume >= 0) {
     row.position = volumes_[link.coupled_volume].center;
     add_to_row(shares_[link.coupled_volume].all, link.direction, solids, row);

@@ -3,7 +3,9 @@
 
 #include "cutcell/displaced_volume.hpp"
 #include "cutcell/flux_shares.hpp"
-#include "interfaces/coupling.hpp"
+#include "interfaces/coupling_sides.hpp"
+#include "interfaces/prescribed_flux.hpp"
+#include "interfaces/viscosity.hpp"
 #include "mixedface/weights.hpp"
 
 namespace lockstep {
@@ -22,7 +24,11 @@ struct FluxOptions {
 /// C = M_S - dt D; only the normal velocity is tied. Thin shells, and parts of closed solids
 /// thinner than a cell, close their faces and lump the fluid as mixed faces do.
 template <int dim>
-class FluxCoupling : public Coupling<dim> {
+class FluxCoupling : public Coupling<dim>,
+                     public AuditedCoupling<dim>,
+                     public UnseenBuoyancy<dim>,
+                     public ViscousCoupling<dim>,
+                     public SolidFluxes<dim> {
  public:
   explicit FluxCoupling(const FluxOptions& options) : options_(options) {}
 
@@ -57,9 +63,8 @@ class FluxCoupling : public Coupling<dim> {
                                    const BlockVector& solution) const override;
   std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
                                                  Vector& rhs) const override;
-  using LinkRow = typename Coupling<dim>::LinkRow;
   void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                LinkRow& row) const override;
+                LinkRow<dim>& row) const override;
 
  private:
   /// Closed area of a face as the lower or upper pressure sees it [m^(dim-1)].
@@ -75,7 +80,7 @@ class FluxCoupling : public Coupling<dim> {
   void add_thin_impulses(std::size_t f, double velocity_before,
                          std::vector<Momentum<dim>>& impulses) const;
   void add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
-                  const SolidSystem<dim>& solids, LinkRow& row) const;
+                  const SolidSystem<dim>& solids, LinkRow<dim>& row) const;
 
   FluxOptions options_;
   const SurfaceSnapshot<dim>* surface_ = nullptr;  ///< of the last `assemble`

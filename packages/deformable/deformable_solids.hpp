@@ -7,6 +7,7 @@
 #include "deformable/deformable_body.hpp"
 #include "deformable/node_space.hpp"
 #include "deformable/strain_limit.hpp"
+#include "interfaces/solid_sides.hpp"
 #include "interfaces/volume_sweeper.hpp"
 #include "parameters/parameter_list.hpp"
 
@@ -23,7 +24,12 @@ namespace lockstep {
 /// the step resolves the motion and 0 where it does not: see add_midpoint_correction. Explicit and
 /// semi-implicit are stable up to a = sqrt 2.
 template <int dim>
-class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
+class DeformableSolids : public SolidModel<dim>,
+                         public AuditedSolids<dim>,
+                         public UnlinearSolids<dim>,
+                         public NearNullSpaces<dim>,
+                         public SolidOutput<dim>,
+                         public VolumeSweeper<dim> {
  public:
   /// `type` is the name of the model, gravity [m/s^2], the start of the run [s]. Collective.
   DeformableSolids(const std::string& type, std::vector<DeformableBody<dim>> bodies,
@@ -35,9 +41,6 @@ class DeformableSolids : public SolidModel<dim>, public VolumeSweeper<dim> {
   const SurfaceMesh<dim>& surface() const override { return surface_; }
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                     VelocityRow<dim>& row) const override;
-  Point<dim> prescribed_velocity(const SurfacePoint<dim>&, const Point<dim>&) const override {
-    return Point<dim>::Zero();
-  }
   Point<dim> effective_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const override;
 
   RCP<const Map> dof_map() const override { return space_.dof_map(); }

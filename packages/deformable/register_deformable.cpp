@@ -18,7 +18,7 @@ std::unique_ptr<SolidModel<dim>> make_model(const std::string& type, const Read&
   for (const auto& [name, list] : lists) {
     bodies.push_back(read(name, list));
     bodies.back().fluid_density =
-        setting.fluid_density * (bodies.back().closed ? 1 : setting.grid_spacing);
+        setting.fluid_density * (bodies.back().closed ? 1 : setting.smallest_length);
   }
   return std::make_unique<DeformableSolids<dim>>(type, std::move(bodies), setting.gravity,
                                                  setting.comm, setting.start_time);
@@ -32,7 +32,7 @@ void register_deformable(SolidRegistry<dim>& solids) {
              deformable_body_parameters<dim>,
              [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
                const auto read = [&setting](const std::string& name, const ParameterList& list) {
-                 return read_deformable_body<dim>(name, list, setting.grid_spacing,
+                 return read_deformable_body<dim>(name, list, setting.smallest_length,
                                                   setting.gravity.norm());
                };
                return make_model<dim>("deformable body", read, lists, setting);
@@ -42,7 +42,7 @@ void register_deformable(SolidRegistry<dim>& solids) {
              cloth_parameters<dim>,
              [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
                const auto read = [&setting](const std::string& name, const ParameterList& list) {
-                 return read_cloth<dim>(name, list, setting.grid_spacing);
+                 return read_cloth<dim>(name, list, setting.smallest_length);
                };
                return make_model<dim>("cloth", read, lists, setting);
              });

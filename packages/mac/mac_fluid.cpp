@@ -26,20 +26,24 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
 }
 
 template <int dim>
-void MacFluid<dim>::set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) {
-  const bool unchanged =
-      !pressure_block_.is_null() && !geometry_.state.surface && (!surface || surface->empty());
+const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
+                                                const OpenFractionRule<dim>& rule) {
+  const bool unchanged = !geometry_.pressure_block.is_null() && !geometry_.state.surface &&
+                         (!surface || surface->empty());
   if (unchanged)
-    return;
+    return geometry_;
   viscosity_.reset();
-  crossing_rate_.reset();
+  largest_speed_.reset();
   geometry_ = make_geometry(domain_, parameters_.density, surface, rule);
-  pressure_block_ = as_operator(pressure_operator(domain_, geometry_, lattice_blocks_));
-  regions_ = find_regions(domain_, geometry_);
+  geometry_.pressure_block = as_operator(pressure_operator(domain_, geometry_, lattice_blocks_));
+  geometry_.regions = find_regions(domain_, geometry_);
+  geometry_.volume =
+      static_cast<double>(geometry_.pressure_map->getGlobalNumElements()) * domain_.cell_volume();
   if (parameters_.viscosity.viscosity > 0)
     viscosity_ = std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.viscosity);
   set_prescribed(velocity_);
   set_prescribed(prediction_);
+  return geometry_;
 }
 
 template <int dim>
@@ -65,10 +69,11 @@ void MacFluid<dim>::project(const Vector& scaled_pressure) {
 }
 
 template <int dim>
-void MacFluid<dim>::correct_pressure(const Vector& scaled_increment) {
-  const CellField increment = pressure_field(domain_, geometry_, scaled_increment);
-  for (std::size_t cell = 0; cell < increment.size(); ++cell)
-    scaled_pressure_[cell] += increment[cell];
+void MacFluid<dim>::correct_pressure(const Vector& inflow) {
+  const CellField field = pressure_field(domain_, geometry_, inflow);
+  const double per_volume = 1 / domain_.cell_volume();
+  for (std::size_t cell = 0; cell < field.size(); ++cell)
+    scaled_pressure_[cell] += per_volume * field[cell];
 }
 
 template <int dim>
@@ -91,16 +96,16 @@ RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
 template <int dim>
 std::vector<double> MacFluid<dim>::coupled_velocity() const {
   std::vector<double> result;
-  result.reserve(geometry_.volumes.size());
+  result.reserve(geometry_.coupled_volumes.size());
   for (const auto& [axis, cell] : geometry_.coupled)
     result.push_back(prediction_[axis][cell]);
-  result.resize(geometry_.volumes.size(), 0);
+  result.resize(geometry_.coupled_volumes.size(), 0);
   return result;
 }
 
 template <int dim>
 void MacFluid<dim>::set_coupled_velocity(const std::vector<double>& velocity) {
-  LOCKSTEP_ASSERT(velocity.size() == geometry_.volumes.size());
+  LOCKSTEP_ASSERT(velocity.size() == geometry_.coupled_volumes.size());
   for (std::size_t i = 0; i < geometry_.coupled.size(); ++i) {
     const auto [axis, cell] = geometry_.coupled[i];
     if (geometry_.state.faces[axis][cell] == FaceState::coupled)
@@ -122,14 +127,8 @@ void MacFluid<dim>::begin_advection_velocity(double dt) {
 }
 
 template <int dim>
-void MacFluid<dim>::adopt_advection_velocity() {
-  // Without solids nothing has changed, and there is nothing to store.
-  advection_ = prediction_ == velocity_ ? FaceField<dim>() : prediction_;
-}
-
-template <int dim>
 void MacFluid<dim>::accept() {
-  crossing_rate_.reset();
+  largest_speed_.reset();
   if (history_)
     history_->accept(velocity_, prediction_, geometry_.state, last_step_);
   velocity_ = prediction_;
@@ -166,7 +165,7 @@ template <typename Velocity>
 AngularVector<dim> MacFluid<dim>::moment_of_shifts(const Velocity& velocity) const {
   AngularVector<dim> moment = AngularVector<dim>::Zero();
   for (std::size_t i = 0; i < geometry_.coupled.size(); ++i) {
-    const ControlVolume<dim>& volume = geometry_.volumes[i];
+    const ControlVolume<dim>& volume = geometry_.coupled_volumes[i];
     if (volume.open_fraction == 0)
       continue;
     const auto [axis, cell] = geometry_.coupled[i];
@@ -181,16 +180,34 @@ Box<dim> MacFluid<dim>::bounds() const {
   const Point<dim> lower = domain_.grid.lower();
   Point<dim> upper = lower;
   for (int a = 0; a < dim; ++a)
-    upper[a] += domain_.grid.n_cells()[a] * spacing();
+    upper[a] += domain_.grid.n_cells()[a] * domain_.spacing();
   return Box<dim>(lower, upper);
 }
 
 template <int dim>
-Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
+std::array<std::array<bool, 2>, dim> MacFluid<dim>::closed_sides() const {
+  std::array<std::array<bool, 2>, dim> closed{};
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end)
+      closed[axis][end] = domain_.boundary.side(axis, end).closed();
+  return closed;
+}
+
+template <int dim>
+bool MacFluid<dim>::is_periodic() const {
+  bool any = false;
+  for (int axis = 0; axis < dim; ++axis)
+    any = any || domain_.boundary.periodic(axis);
+  return any;
+}
+
+template <int dim>
+ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   time_ = time + dt;
   last_step_ = dt;
   set_prescribed(prediction_);
-  Momentum<dim> impulse = push_sources(time);
+  ForceImpulse<dim> given;
+  given.impulse = push_sources(time);
   const ForceField<dim> force(domain_, geometry_, parameters_.forces, scalars_);
   Momentum<dim> mine;
   for (int axis = 0; axis < dim; ++axis) {
@@ -208,18 +225,12 @@ Momentum<dim> MacFluid<dim>::add_forces(double time, double dt) {
   }
   mine.angular += moment_of_shifts([&](int axis, int cell) { return dt * force(axis, cell); });
   domain_.halo.fill(prediction_);
-  return impulse + sum_over_ranks(mine, domain_.grid.comm());
-}
-
-template <int dim>
-std::vector<double> MacFluid<dim>::coupled_force(double, double dt) const {
-  const ForceField<dim> force(domain_, geometry_, parameters_.forces, scalars_);
-  std::vector<double> result;
-  result.reserve(geometry_.volumes.size());
+  given.impulse += sum_over_ranks(mine, domain_.grid.comm());
+  given.coupled_change.reserve(geometry_.coupled_volumes.size());
   for (const auto& [axis, cell] : geometry_.coupled)
-    result.push_back(dt * force(axis, cell));
-  result.resize(geometry_.volumes.size(), 0);
-  return result;
+    given.coupled_change.push_back(dt * force(axis, cell));
+  given.coupled_change.resize(geometry_.coupled_volumes.size(), 0);
+  return given;
 }
 
 template <int dim>
@@ -245,10 +256,12 @@ Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector
 
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
+  // Without solids nothing has changed, and there is nothing to store.
+  const FaceField<dim> advection = prediction_ == velocity_ ? FaceField<dim>() : prediction_;
   TransportSetting<dim> setting{domain_.grid,
                                 geometry_.state,
                                 surface,
-                                advection_[0].empty() ? velocity_ : advection_,
+                                advection[0].empty() ? velocity_ : advection,
                                 ray_halo_,
                                 {},
                                 dt,
@@ -327,9 +340,9 @@ double MacFluid<dim>::kinetic_energy() const {
 }
 
 template <int dim>
-double MacFluid<dim>::largest_cell_crossing_rate() const {
-  if (crossing_rate_)
-    return *crossing_rate_;
+double MacFluid<dim>::largest_speed() const {
+  if (largest_speed_)
+    return *largest_speed_;
   double largest = 0;
   const auto speed = [&](int axis, int face) {
     const bool still = face < 0 || geometry_.state.faces[axis][face] == FaceState::inactive;
@@ -343,19 +356,13 @@ double MacFluid<dim>::largest_cell_crossing_rate() const {
       sum += std::max(speed(axis, cell), speed(axis, neighbors[2 * axis + 1]));
     largest = std::max(largest, sum);
   });
-  crossing_rate_ = max_all(domain_.grid.comm(), largest) / spacing();
-  return *crossing_rate_;
+  largest_speed_ = max_all(domain_.grid.comm(), largest);
+  return *largest_speed_;
 }
 
 template <int dim>
 Momentum<dim> MacFluid<dim>::boundary_pressure_impulse(const Vector& scaled_pressure) const {
   return side_pressure_impulse(domain_, geometry_, scaled_pressure);
-}
-
-template <int dim>
-double MacFluid<dim>::fluid_volume() const {
-  return static_cast<double>(geometry_.pressure_map->getGlobalNumElements()) *
-         domain_.cell_volume();
 }
 
 template <int dim>

@@ -2,8 +2,9 @@
 #include <memory>
 #include <optional>
 
-#include "interfaces/bounded_fluid.hpp"
 #include "interfaces/field_sampler.hpp"
+#include "interfaces/fluid_sides.hpp"
+#include "interfaces/prescribed_flux.hpp"
 #include "mac/pressure/forces.hpp"
 #include "mac/pressure/pressure_operator.hpp"
 #include "mac/pressure/pressure_system.hpp"
@@ -41,8 +42,13 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid);
 /// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
 template <int dim>
 class MacFluid : public FluidDiscretization<dim>,
+                 public AuditedFluid<dim>,
+                 public BoundedFluid<dim>,
                  public FieldSampler<dim>,
-                 public BoundedFluid<dim> {
+                 public FluidOutput<dim>,
+                 public PressureMemory<dim>,
+                 public SideFluxes,
+                 public ViscousFluid<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
 
@@ -53,13 +59,6 @@ class MacFluid : public FluidDiscretization<dim>,
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
 
-  void set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) override;
-  const std::vector<ControlVolume<dim>>& coupled_volumes() const override {
-    return geometry_.volumes;
-  }
-  RCP<const Map> pressure_map() const override { return geometry_.pressure_map; }
-  RCP<const LinearOperator> pressure_block() const override { return pressure_block_; }
-  const PressureRegions& regions() const override { return regions_; }
   void divergence(Vector& rhs) const override;
   void project(const Vector& scaled_pressure) override;
   std::vector<double> coupled_velocity() const override;
@@ -68,27 +67,26 @@ class MacFluid : public FluidDiscretization<dim>,
 
   void begin_prediction() override;
   void begin_advection_velocity(double dt) override;
-  Momentum<dim> add_forces(double time, double dt) override;
-  std::vector<double> coupled_force(double time, double dt) const override;
+  ForceImpulse<dim> add_forces(double time, double dt) override;
   bool is_viscous() const override { return parameters_.viscosity.viscosity > 0; }
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
   Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
-  void adopt_advection_velocity() override;
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;
   void revalidate(const MovingSurface<dim>& surface) override;
-  void correct_pressure(const Vector& scaled_increment) override;
+  void correct_pressure(const Vector& inflow) override;
   void accept() override;
 
-  double largest_cell_crossing_rate() const override;
-  double spacing() const override { return domain_.spacing(); }
+  double smallest_length() const override { return domain_.spacing(); }
+  double largest_speed() const override;
   Box<dim> bounds() const override;
+  std::array<std::array<bool, 2>, dim> closed_sides() const override;
+  bool is_periodic() const override;
   double density(const Point<dim>&) const override { return parameters_.density; }
   RCP<Vector> last_scaled_pressure() const override;
   Point<dim> gravity() const override { return parameters_.forces.gravity; }
   Momentum<dim> momentum() const override;
   double kinetic_energy() const override;
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
-  double fluid_volume() const override;
   void add_frame(std::vector<BoxFrame>& boxes) const override;
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell
   /// included.
@@ -106,6 +104,8 @@ class MacFluid : public FluidDiscretization<dim>,
   void set_prediction(const std::function<Point<dim>(const Point<dim>&)>& velocity);
 
  private:
+  const FluidGeometry<dim>& freeze(const Surface& surface,
+                                   const OpenFractionRule<dim>& rule) override;
   bool moves(int axis, int cell) const {
     const FaceState state = geometry_.state.faces[axis][cell];
     return state == FaceState::free || state == FaceState::coupled;
@@ -124,13 +124,10 @@ class MacFluid : public FluidDiscretization<dim>,
   std::shared_ptr<const LatticeBlocks> lattice_blocks_;
 
   MacGeometry<dim> geometry_;
-  RCP<const LinearOperator> pressure_block_;
-  PressureRegions regions_;
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
   FaceField<dim> velocity_, prediction_;
-  FaceField<dim> advection_;                     ///< empty: it is the velocity
-  mutable std::optional<double> crossing_rate_;  ///< of this velocity and geometry, once asked for
+  mutable std::optional<double> largest_speed_;  ///< of this velocity and geometry, once asked for
   std::optional<VelocityHistory<dim>> history_;  ///< none: first order in time
   CellField scaled_pressure_;                    ///< of the last projection
   CellField accepted_pressure_;                  ///< of the last accepted step

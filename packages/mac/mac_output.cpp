@@ -176,7 +176,7 @@ void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
   time_ = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
   accepted_step_ = last_step_;
-  crossing_rate_.reset();
+  largest_speed_.reset();
 }
 
 template void MacFluid<2>::add_frame(std::vector<BoxFrame>&) const;

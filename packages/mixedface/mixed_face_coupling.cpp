@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "geometry/clipping.hpp"
-#include "interfaces/bounded_fluid.hpp"
+#include "interfaces/fluid_sides.hpp"
 #include "linear/overlap.hpp"
 
 namespace lockstep {
@@ -26,7 +26,8 @@ bool cuts(const SurfaceSnapshot<dim>& surface, const Box<dim>& box) {
 template <int dim>
 double MixedFaceCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool blocked,
                                              const SurfaceSnapshot<dim>& surface) const {
-  if (blocked || volume.sides[0].inside_solid != volume.sides[1].inside_solid)
+  const bool below = volume.sides[0].kind == SideKind::solid;
+  if (blocked || below != (volume.sides[1].kind == SideKind::solid))
     return 0;
   if (options_.rule == MixedRule::every_cut_cell && cuts<dim>(surface, volume.box))
     return 0;
@@ -345,7 +346,7 @@ AngularVector<dim> MixedFaceCoupling<dim>::lever_impulse(const SolidSystem<dim>&
 template <int dim>
 void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& shares,
                                        const Point<dim>& x, int direction,
-                                       const SolidSystem<dim>& solids, LinkRow& row) const {
+                                       const SolidSystem<dim>& solids, LinkRow<dim>& row) const {
   Point<dim> pulled = Point<dim>::Zero();  // nodes are pulled where the surface is, not at x
   double dynamic_share = 0, largest_share = 0;
   for (const SurfaceShare<dim>& share : shares) {
@@ -376,8 +377,8 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
 
 template <int dim>
 void MixedFaceCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                                      LinkRow& row) const {
-  row = LinkRow();
+                                      LinkRow<dim>& row) const {
+  row = {};
   if (link.coupled_volume >= 0) {
     row.position = volumes_[link.coupled_volume].center;
     share_row(shares_[link.coupled_volume], row.position, link.direction, solids, row);

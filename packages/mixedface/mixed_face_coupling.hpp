@@ -1,7 +1,9 @@
 #pragma once
 #include <memory>
 
-#include "interfaces/coupling.hpp"
+#include "interfaces/coupling_sides.hpp"
+#include "interfaces/prescribed_flux.hpp"
+#include "interfaces/viscosity.hpp"
 #include "mixedface/lumping.hpp"
 #include "mixedface/weights.hpp"
 
@@ -24,7 +26,11 @@ struct MixedFaceOptions {
 /// The coupling of the paper: every mixed dual cell moves with the solid, W V_S, and its fluid is
 /// lumped on the solid (Eqs. 12, 13, 15).
 template <int dim>
-class MixedFaceCoupling : public Coupling<dim> {
+class MixedFaceCoupling : public Coupling<dim>,
+                          public AuditedCoupling<dim>,
+                          public UnseenBuoyancy<dim>,
+                          public ViscousCoupling<dim>,
+                          public SolidFluxes<dim> {
  public:
   explicit MixedFaceCoupling(const MixedFaceOptions& options) : options_(options) {}
 
@@ -54,14 +60,13 @@ class MixedFaceCoupling : public Coupling<dim> {
                                    const BlockVector& solution) const override;
   std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
                                                  Vector& rhs) const override;
-  using LinkRow = typename Coupling<dim>::LinkRow;
   void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                LinkRow& row) const override;
+                LinkRow<dim>& row) const override;
 
  private:
   /// Adds the rows of the shares, taken at x along one axis.
   void share_row(const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x, int direction,
-                 const SolidSystem<dim>& solids, LinkRow& row) const;
+                 const SolidSystem<dim>& solids, LinkRow<dim>& row) const;
   /// p̂ above minus below each coupled volume; 0 where there is no unknown.
   std::vector<double> pressure_jumps(const Vector& scaled_pressure) const;
   /// Diagonal masses need positive rows: W without rotations. Then momentum goes by those as well,

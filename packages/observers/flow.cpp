@@ -51,7 +51,8 @@ std::vector<std::vector<double>> Flow<dim>::observe(const RunView<dim>& run) {
   double area = 1;
   for (int a = 0; a < dim; ++a) {
     const double extent = window_.sizes()[a];
-    count[a] = a == axis_ ? 1 : static_cast<int>(std::ceil(extent / run.fluid.spacing() - 1e-9));
+    count[a] =
+        a == axis_ ? 1 : static_cast<int>(std::ceil(extent / run.fluid.smallest_length() - 1e-9));
     if (a == axis_)
       continue;
     area *= extent / count[a];

@@ -10,7 +10,7 @@ void register_rigid(SolidRegistry<dim>& solids) {
   solids.add("rigid body", "Rigid volume or rigid thin shell, dynamic or moved by a script.",
              rigid_body_parameters<dim>,
              [](const ParameterList&, const NamedLists& bodies, const SolidSetting<dim>& setting) {
-               return make_rigid_bodies<dim>(bodies, setting.grid_spacing, setting.gravity,
+               return make_rigid_bodies<dim>(bodies, setting.smallest_length, setting.gravity,
                                              setting.comm, setting.start_time);
              });
 }

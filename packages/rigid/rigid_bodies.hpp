@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "interfaces/solid.hpp"
+#include "interfaces/solid_sides.hpp"
 #include "parameters/parameter_list.hpp"
 #include "rigid/rigid_body.hpp"
 
@@ -19,7 +19,7 @@ namespace lockstep {
 /// contains the gyroscopic effect. Free spin conserves angular momentum exactly, its energy stays
 /// bounded, and it is second order in time.
 template <int dim>
-class RigidBodies : public SolidModel<dim> {
+class RigidBodies : public SolidModel<dim>, public AuditedSolids<dim> {
  public:
   /// gravity [m/s^2]; prescribed bodies are put where they are at `start_time` [s]. Collective.
   RigidBodies(std::vector<RigidBody<dim>> bodies, const Point<dim>& gravity,

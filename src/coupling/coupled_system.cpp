@@ -5,6 +5,7 @@
 
 #include "coupling/impossible_flow.hpp"
 #include "coupling/null_space.hpp"
+#include "interfaces/prescribed_flux.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
 
@@ -120,7 +121,11 @@ std::string CoupledSystem<dim>::impossible_flow(double time,
   const auto& null_space = with_solid ? blocks_.null_space : pressure_only_.null_space;
   if (null_space.empty())
     return "";
-  PrescribedFluxes fluxes{fluid_.side_fluxes(time), coupling_.solid_fluxes(solids_)};
+  PrescribedFluxes fluxes;
+  if (const auto* sides = side_of<SideFluxes>(fluid_))
+    fluxes.sides = sides->side_fluxes(time);
+  if (const auto* pushed = side_of<SolidFluxes<dim>>(coupling_))
+    fluxes.solids = pushed->solid_fluxes(solids_);
   if (with_solid && !locked_velocity.is_null())
     fluxes.solids.push_back(flux_of_locks(*unlocked_transposed_, *locked_velocity));
   constexpr GlobalIndex smallest_region = dim == 2 ? 9 : 27;  // three cells across

@@ -77,7 +77,8 @@ NearNullSpace SolidSystem<dim>::near_null_space(const RCP<const CrsMatrix>& adde
   NearNullSpace all;
   RCP<MultiVector> motions;
   for (int m = 0; m < n_models(); ++m) {
-    const NearNullSpace part = model(m).near_null_space();
+    const auto* known = side<NearNullSpaces<dim>>(m);
+    const NearNullSpace part = known ? known->near_null_space() : NearNullSpace();
     if (part.empty())
       continue;
     if (motions.is_null()) {

@@ -210,7 +210,7 @@ void SolidSystem<dim>::add_midpoint_correction(double dt, double implicit_part,
   for (int m = 0; m < n_models(); ++m) {
     const RCP<Vector> correction = part(all, m);
     model(m).add_midpoint_correction(dt, *correction);
-    if (model(m).has_implicit_forces())
+    if (unlinear(m))
       correction->scale(implicit_part);
   }
   attachments_.reduce_momentum(all);
@@ -233,16 +233,20 @@ RCP<Vector> SolidSystem<dim>::implicit_impulse(double dt, const Vector& velocity
 template <int dim>
 AngularVector<dim> SolidSystem<dim>::inner_angular_impulse(double dt) const {
   AngularVector<dim> total = AngularVector<dim>::Zero();
-  for (const auto& solid_model : models_)
-    total += solid_model->inner_angular_impulse(dt);
+  for (int m = 0; m < n_models(); ++m) {
+    if (const auto* audited = side<AuditedSolids<dim>>(m))
+      total += audited->inner_angular_impulse(dt);
+  }
   return total;
 }
 
 template <int dim>
 Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
   Momentum<dim> total;
-  for (const auto& solid_model : models_)
-    total += solid_model->external_impulse(time, dt);
+  for (int m = 0; m < n_models(); ++m) {
+    if (const auto* audited = side<AuditedSolids<dim>>(m))
+      total += audited->external_impulse(time, dt);
+  }
   return total;
 }
 
@@ -274,22 +278,42 @@ bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   Vector full(velocity, Teuchos::Copy);
   attachments_.expand_velocity(full);
   bool any = false;
-  for (int m = 0; m < n_models(); ++m)
-    any = model(m).linearise(dt, *part(std::as_const(full), m)) || any;
+  for (int m = 0; m < n_models(); ++m) {
+    if (unlinear(m))
+      any = side_of<UnlinearSolids<dim>>(model(m))->linearise(dt, *part(std::as_const(full), m)) ||
+            any;
+  }
   return any;
 }
 
 template <int dim>
+const UnlinearSolids<dim>* SolidSystem<dim>::unlinear(int m) const {
+  const auto* forces = side<UnlinearSolids<dim>>(m);
+  return forces && forces->has_implicit_forces() ? forces : nullptr;
+}
+
+template <int dim>
 bool SolidSystem<dim>::has_implicit_forces() const {
-  return std::any_of(models_.begin(), models_.end(),
-                     [](const auto& one) { return one->has_implicit_forces(); });
+  bool any = false;
+  for (int m = 0; m < n_models(); ++m)
+    any = any || unlinear(m);
+  return any;
+}
+
+template <int dim>
+bool SolidSystem<dim>::is_audited() const {
+  bool all = true;
+  for (int m = 0; m < n_models(); ++m)
+    all = all && side<AuditedSolids<dim>>(m);
+  return all;
 }
 
 template <int dim>
 RCP<const Vector> SolidSystem<dim>::linearisation() const {
   RCP<Vector> all;
   for (int m = 0; m < n_models(); ++m) {
-    const RCP<const Vector> velocity = model(m).linearisation();
+    const auto* forces = unlinear(m);
+    const RCP<const Vector> velocity = forces ? forces->linearisation() : Teuchos::null;
     if (velocity.is_null())
       continue;
     if (all.is_null())
@@ -307,9 +331,10 @@ ComputedEnergy SolidSystem<dim>::unlinear_energy(double dt, const Vector& veloci
   attachments_.expand_velocity(full);
   ComputedEnergy sum;
   for (int m = 0; m < n_models(); ++m) {
-    if (!model(m).has_implicit_forces())
+    const auto* forces = unlinear(m);
+    if (!forces)
       continue;
-    const ComputedEnergy energy = model(m).unlinear_energy(dt, *part(std::as_const(full), m));
+    const ComputedEnergy energy = forces->unlinear_energy(dt, *part(std::as_const(full), m));
     sum.value += energy.value;
     sum.round_off += energy.round_off;
   }
@@ -348,9 +373,13 @@ std::vector<Momentum<dim>> SolidSystem<dim>::momentum_of_each(
     const Vector& generalized_momentum) const {
   std::vector<Momentum<dim>> all;
   for (int m = 0; m < n_models(); ++m) {
-    for (const auto& momentum : model(m).momentum_of_each(*part(generalized_momentum, m))) {
-      all.push_back(momentum);
+    const auto* audited = side<AuditedSolids<dim>>(m);
+    if (!audited) {
+      all.resize(all.size() + model(m).solids().size());
+      continue;
     }
+    for (const auto& momentum : audited->momentum_of_each(*part(generalized_momentum, m)))
+      all.push_back(momentum);
   }
   return all;
 }
@@ -374,8 +403,10 @@ double SolidSystem<dim>::largest_stable_step() const {
 template <int dim>
 GlobalIndex SolidSystem<dim>::n_clamped_elements() const {
   GlobalIndex n = 0;
-  for (const auto& solid_model : models_)
-    n += solid_model->n_clamped_elements();
+  for (int m = 0; m < n_models(); ++m) {
+    if (const auto* output = side<SolidOutput<dim>>(m))
+      n += output->n_clamped_elements();
+  }
   return n;
 }
 

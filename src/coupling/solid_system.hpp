@@ -5,7 +5,7 @@
 
 #include "coupling/attachments.hpp"
 #include "coupling/stacked_operator.hpp"
-#include "interfaces/solid.hpp"
+#include "interfaces/solid_sides.hpp"
 
 namespace lockstep {
 
@@ -77,7 +77,7 @@ class SolidSystem {
   AngularVector<dim> inner_angular_impulse(double dt) const;  ///< of all models [kg m^2/s]
   Momentum<dim> external_impulse(double time, double dt) const;
   bool linearise(double dt, const Vector& velocity);
-  /// Of any model, and of all: see SolidModel.
+  /// Of any model, and of all: see UnlinearSolids.
   bool has_implicit_forces() const;
   RCP<const Vector> linearisation() const;
   ComputedEnergy unlinear_energy(double dt, const Vector& velocity) const;
@@ -90,9 +90,18 @@ class SolidSystem {
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;
   Momentum<dim> momentum(const Vector& generalized_momentum) const;
   double largest_stable_step() const;
-  GlobalIndex n_clamped_elements() const;  ///< of all models, see SolidModel
+  GlobalIndex n_clamped_elements() const;  ///< of all models, see SolidOutput
+  /// True if all models tell their momentum (AuditedSolids).
+  bool is_audited() const;
 
  private:
+  /// A side interface of a model, or null.
+  template <typename Side>
+  const Side* side(int m) const {
+    return side_of<Side>(model(m));
+  }
+  /// The same of forces that are not linear, if it has any in this scene.
+  const UnlinearSolids<dim>* unlinear(int m) const;
   void move_attached(const Vector& velocity, double time, double dt);
   std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;
   RCP<const Vector> part(const Vector& stacked, int m) const;

@@ -48,7 +48,7 @@ struct SpinCouples<dim>::Fit {
 
 template <int dim>
 void SpinCouples<dim>::place_centers(const std::vector<ViscousLink<dim>>& links,
-                                     const std::vector<LinkRow>& ends) {
+                                     const std::vector<LinkRow<dim>>& ends) {
   std::vector<double> sums((dim + 1) * center_.size(), 0);
   for (std::size_t l = 0; l < links.size(); ++l) {
     if (solid_[l] < 0)
@@ -70,7 +70,7 @@ void SpinCouples<dim>::place_centers(const std::vector<ViscousLink<dim>>& links,
 
 template <int dim>
 std::vector<typename SpinCouples<dim>::Fit> SpinCouples<dim>::fit(
-    const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow>& ends) const {
+    const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow<dim>>& ends) const {
   constexpr int n_normal = n_motions<dim> * n_motions<dim>;
   constexpr int n_each = n_normal + n_rotations<dim>;
   std::vector<double> sums(n_each * center_.size(), 0);
@@ -107,7 +107,7 @@ std::vector<typename SpinCouples<dim>::Fit> SpinCouples<dim>::fit(
 
 template <int dim>
 SpinCouples<dim>::SpinCouples(const std::vector<ViscousLink<dim>>& links,
-                              const std::vector<LinkRow>& ends,
+                              const std::vector<LinkRow<dim>>& ends,
                               const std::vector<SolidDescription>& solids, const Communicator& comm)
     : comm_(comm),
       solid_(links.size(), -1),

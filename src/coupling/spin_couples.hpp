@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "interfaces/coupling.hpp"
+#include "interfaces/viscosity.hpp"
 
 namespace lockstep {
 
@@ -17,10 +17,8 @@ namespace lockstep {
 template <int dim>
 class SpinCouples {
  public:
-  using LinkRow = typename Coupling<dim>::LinkRow;
-
   /// `ends`: of the links. Collective.
-  SpinCouples(const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow>& ends,
+  SpinCouples(const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow<dim>>& ends,
               const std::vector<SolidDescription>& solids, const Communicator& comm);
   /// No solid is turned by them. The same on all ranks.
   bool empty() const { return empty_; }
@@ -30,9 +28,10 @@ class SpinCouples {
 
  private:
   struct Fit;
-  void place_centers(const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow>& ends);
+  void place_centers(const std::vector<ViscousLink<dim>>& links,
+                     const std::vector<LinkRow<dim>>& ends);
   std::vector<Fit> fit(const std::vector<ViscousLink<dim>>& links,
-                       const std::vector<LinkRow>& ends) const;
+                       const std::vector<LinkRow<dim>>& ends) const;
 
   Communicator comm_;
   bool empty_ = true;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "interfaces/bounded_fluid.hpp"
+#include "interfaces/fluid_sides.hpp"
 #include "interfaces/volume_sweeper.hpp"
 
 namespace lockstep {

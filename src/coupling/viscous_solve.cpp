@@ -42,10 +42,10 @@ struct Pair {
 template <int dim>
 struct Links {
   const std::vector<ViscousLink<dim>>& list;
-  RCP<const Map> map;            ///< links
-  RCP<const CrsMatrix> rows;     ///< L: links x solid dofs; null without unknowns
-  RCP<const CrsMatrix> squares;  ///< entries squared, for the diagonal
-  std::vector<typename Coupling<dim>::LinkRow> ends;  ///< dofs and weights emptied once assembled
+  RCP<const Map> map;              ///< links
+  RCP<const CrsMatrix> rows;       ///< L: links x solid dofs; null without unknowns
+  RCP<const CrsMatrix> squares;    ///< entries squared, for the diagonal
+  std::vector<LinkRow<dim>> ends;  ///< dofs and weights emptied once assembled
   SpinCouples<dim> couples;
 
   /// Velocities of the ends [m/s] for solid velocities V (null: none), prescribed velocities in or
@@ -80,8 +80,8 @@ struct Links {
 
 template <int dim>
 Links<dim> make_links(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
-                      const Coupling<dim>& coupling) {
-  std::vector<typename Coupling<dim>::LinkRow> ends(system.links.size());
+                      const ViscousCoupling<dim>& coupling) {
+  std::vector<LinkRow<dim>> ends(system.links.size());
   for (std::size_t l = 0; l < system.links.size(); ++l)
     coupling.link_row(system.links[l], solids, ends[l]);
   SpinCouples<dim> couples(system.links, ends, solids.solids(), solids.comm());
@@ -242,8 +242,9 @@ Momentum<dim> link_impulse(const Links<dim>& links, const Vector& pull, const Ve
 }  // namespace
 
 template <int dim>
-ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscretization<dim>& fluid,
-                                 const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
+ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid,
+                                 const SolidSystem<dim>& solids,
+                                 const ViscousCoupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
                                  const NearNullSpace& near_null_space,
                                  const RCP<const Vector>& lumped_momentum, double dt,
@@ -310,13 +311,13 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscreti
   return result;
 }
 
-template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, FluidDiscretization<2>&,
-                                           const SolidSystem<2>&, const Coupling<2>&,
+template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, ViscousFluid<2>&,
+                                           const SolidSystem<2>&, const ViscousCoupling<2>&,
                                            const RCP<const LinearOperator>&, const NearNullSpace&,
                                            const RCP<const Vector>&, double, double,
                                            const RCP<const Vector>&);
-template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, FluidDiscretization<3>&,
-                                           const SolidSystem<3>&, const Coupling<3>&,
+template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, ViscousFluid<3>&,
+                                           const SolidSystem<3>&, const ViscousCoupling<3>&,
                                            const RCP<const LinearOperator>&, const NearNullSpace&,
                                            const RCP<const Vector>&, double, double,
                                            const RCP<const Vector>&);

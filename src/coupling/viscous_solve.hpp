@@ -1,6 +1,7 @@
 #pragma once
 #include "coupling/solid_system.hpp"
-#include "interfaces/coupling.hpp"
+#include "interfaces/viscosity.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
@@ -27,12 +28,10 @@ struct ViscousResult {
 /// The preconditioner is the diagonal, of a stiff C (of this near null space) an inverse of it.
 /// Throws SolveError if CG does not reach `tolerance`. Collective.
 template <int dim>
-ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, FluidDiscretization<dim>& fluid,
-                                 const SolidSystem<dim>& solids, const Coupling<dim>& coupling,
-                                 const RCP<const LinearOperator>& solid_block,
-                                 const NearNullSpace& near_null_space,
-                                 const RCP<const Vector>& lumped_momentum, double dt,
-                                 double tolerance,
-                                 const RCP<const Vector>& locked_velocity = Teuchos::null);
+ViscousResult<dim> solve_viscous(
+    const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid, const SolidSystem<dim>& solids,
+    const ViscousCoupling<dim>& coupling, const RCP<const LinearOperator>& solid_block,
+    const NearNullSpace& near_null_space, const RCP<const Vector>& lumped_momentum, double dt,
+    double tolerance, const RCP<const Vector>& locked_velocity = Teuchos::null);
 
 }  // namespace lockstep

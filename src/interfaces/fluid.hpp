@@ -1,32 +1,41 @@
 #pragma once
+#include <cmath>
 #include <functional>
 #include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "geometry/surface_snapshot.hpp"
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
-#include "interfaces/prescribed_flux.hpp"
 #include "linear/types.hpp"
 
 namespace lockstep {
 
-struct BoxFrame;  // output/frames.hpp
+/// What lies on one side of a velocity control volume.
+enum class SideKind : char {
+  unknown,  ///< a pressure that is solved for
+  solid,    ///< the inside of a closed solid
+  empty,    ///< a void, p = 0
+  open,     ///< an open side of the domain, p = 0
+  closed    ///< a wall or an inflow, which takes any pressure
+};
 
 /// One side of a velocity control volume.
 template <int dim>
 struct PressureSide {
-  GlobalIndex unknown =
-      no_index;  ///< id in `pressure_map`, or no_index: no pressure (solid, void, open side)
+  SideKind kind = SideKind::open;
+  GlobalIndex unknown = no_index;          ///< id in `pressure_map` if the kind is `unknown`
   Point<dim> center = Point<dim>::Zero();  ///< where the pressure lives [m]
-  bool inside_solid = false;               ///< the point lies inside a closed solid
-  int solid = -1;                          ///< which one (index in the snapshot), or -1
+  int solid = -1;  ///< which one (index in the snapshot) if the kind is `solid`, or -1
 };
 
 /// The control volume of one staggered velocity (a dual cell). Its momentum balance is
 /// M u' = M u* - area (p̂_upper - p̂_lower) (Eq. 9).
+///
+/// It is an axis-aligned box with one direction, its velocity's. Couplings cut the box by surfaces
+/// and carry its momentum along that axis alone. Staggered grids and octrees, whose faces between
+/// cells of two sizes are boxes too, are made of such volumes; finite elements are not: their
+/// velocities stand at nodes, along all axes, and would need a coupling of their own.
 template <int dim>
 struct ControlVolume {
   int direction = 0;                            ///< axis of its velocity
@@ -80,40 +89,31 @@ struct PressureRegions {
   std::vector<char> has_dirichlet;  ///< per region: some face fixes the pressure level
 };
 
-/// A viscous bond from a free velocity to the solid: it pulls with
-/// coefficient * (u_row - v_solid) [N] on both, equal and opposite.
+/// What `set_geometry` freezes.
 template <int dim>
-struct ViscousLink {
-  int row = -1;             ///< local row of `ViscousSystem::stiffness`
-  int coupled_volume = -1;  ///< >= 0: the neighbour is this coupled control volume (index), W V_S
-  /// The neighbour is a coupled control volume of another rank, W V_S (`coupled_volume` is -1).
-  std::shared_ptr<const ControlVolume<dim>> remote_volume;
-  SurfacePoint<dim> point;  ///< else: the link meets the surface here
-  int direction = 0;
-  double coefficient = 0;  ///< [kg/s]
-  Point<dim> position =
-      Point<dim>::Zero();  ///< of the free velocity: where the link pulls on the fluid [m]
-  /// The other end [m]: a rigid solid is taken to move there as it does everywhere, even if its
-  /// surface is a little nearer or farther.
-  Point<dim> end = Point<dim>::Zero();
+struct FluidGeometry {
+  /// Control volumes with open_fraction < 1 and at least one pressure unknown, owned here.
+  std::vector<ControlVolume<dim>> coupled_volumes;
+  RCP<const Map> pressure_map;
+  /// A = V G_f^T rho^-1 G_f over free faces [m^dim s / kg * 1/m^2]; symmetric positive
+  /// semidefinite.
+  RCP<const LinearOperator> pressure_block;
+  PressureRegions regions;
+  double volume = 0;  ///< of the fluid [m^dim], global
 };
 
-/// Implicit viscosity in variational form: (M + dt K) u = M u* over the free velocities, SPD.
+/// What the explicit forces of a step did.
 template <int dim>
-struct ViscousSystem {
-  RCP<const Map> map;              ///< free velocities
-  RCP<const CrsMatrix> stiffness;  ///< K_ff [kg/s], with the diagonal of all links and walls
-  RCP<Vector> mass;                ///< M_f [kg]
-  RCP<Vector> velocity;            ///< u* [m/s]
-  RCP<Vector> wall_force;          ///< pull of moving walls and inflows [N]
-  double viscosity = 0;            ///< dynamic, mu [Pa s]
-  std::vector<ViscousLink<dim>> links;
+struct ForceImpulse {
+  Momentum<dim> impulse;               ///< given to the free velocities, global
+  std::vector<double> coupled_change;  ///< of each coupled control volume's u* [m/s]
 };
 
 /// A fluid on its own discretization. Geometry is frozen between two calls of `set_geometry`.
 ///
 /// It keeps three velocity fields: the velocity u^n, the prediction u* on which all phases between
-/// `begin_prediction` and `accept` act, and the leak-proof advection velocity u_ADV.
+/// `begin_prediction` and `accept` act, and the leak-proof advection velocity u_ADV. What audits,
+/// solvers and outputs want beyond this: interfaces/fluid_sides.hpp; viscosity: viscosity.hpp.
 /// All members are collective unless they say otherwise.
 template <int dim>
 class FluidDiscretization : public PlugIn {
@@ -123,14 +123,18 @@ class FluidDiscretization : public PlugIn {
   // Geometry and the pressure system (Eq. 16, block A).
 
   /// Freezes the geometry: cell states, coupled control volumes, pressure unknowns, regions, A.
-  virtual void set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) = 0;
-  /// Control volumes with open_fraction < 1 and at least one pressure unknown, owned here. Local.
-  virtual const std::vector<ControlVolume<dim>>& coupled_volumes() const = 0;
-  virtual RCP<const Map> pressure_map() const = 0;
-  /// A = V G_f^T rho^-1 G_f over free faces [m^dim s / kg * 1/m^2]; symmetric positive
-  /// semidefinite.
-  virtual RCP<const LinearOperator> pressure_block() const = 0;
-  virtual const PressureRegions& regions() const = 0;
+  void set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) {
+    frozen_ = &freeze(surface, rule);
+  }
+  /// What it froze. Local.
+  const std::vector<ControlVolume<dim>>& coupled_volumes() const {
+    return frozen_->coupled_volumes;
+  }
+  const RCP<const Map>& pressure_map() const { return frozen_->pressure_map; }
+  const RCP<const LinearOperator>& pressure_block() const { return frozen_->pressure_block; }
+  const PressureRegions& regions() const { return frozen_->regions; }
+  double fluid_volume() const { return frozen_->volume; }
+
   /// rhs = V G_f^T u* + V G_d^T u_d: minus the outflow of the free and the prescribed faces
   /// [m^dim/s].
   virtual void divergence(Vector& rhs) const = 0;
@@ -146,69 +150,52 @@ class FluidDiscretization : public PlugIn {
   /// u* := the velocity to carry things over a step of dt, before F2 makes it free of divergence:
   /// u^n, or nearer to the middle of the step.
   virtual void begin_advection_velocity(double /*dt*/) { begin_prediction(); }
-  /// u* += dt f on all velocities outside solids; returns the impulse given to the free ones,
-  /// global.
-  virtual Momentum<dim> add_forces(double time, double dt) = 0;
-  /// The dt f that `add_forces` adds to each coupled control volume [m/s]. Local.
-  virtual std::vector<double> coupled_force(double time, double dt) const = 0;
-  /// False: no viscous solve exists, and the two functions below are never called. Local.
-  virtual bool is_viscous() const { return false; }
-  virtual std::unique_ptr<ViscousSystem<dim>> viscous_system() const { return nullptr; }
-  /// Returns the impulse of walls, open sides and the internal couple of the scheme over dt, each
-  /// computed from the tractions of `solution`, global; u* := `velocity` on free velocities, which
-  /// is u* plus exactly the impulses of `solution` (the two differ by the solver's residual over
-  /// M).
-  virtual Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt);
-  virtual void adopt_advection_velocity() = 0;  ///< u_ADV := u* (end of F2)
-  /// F3: u* := u^n carried along u_ADV, and all scalars; rays stop at the moving surfaces and see
-  /// only samples on their own side. Called before `set_geometry` of the new surfaces.
+  /// u* += dt f on all velocities outside solids.
+  virtual ForceImpulse<dim> add_forces(double time, double dt) = 0;
+  /// F3: u_ADV := u*, as F2 left it; then u* := u^n carried along u_ADV, and all scalars. Rays stop
+  /// at the moving surfaces and see only samples on their own side. Called before `set_geometry` of
+  /// the new surfaces.
   virtual void advect(double time, double dt, const MovingSurface<dim>& surface) = 0;
   /// Gives values to samples that a surface swept over or uncovered, from visible neighbours.
-  /// Called after `set_geometry` of the new surfaces.
-  virtual void revalidate(const MovingSurface<dim>& surface) = 0;
-  /// Adds to the scaled pressure of the last `project` what `accept` keeps with it for
-  /// `last_scaled_pressure`; changes no velocity. Default: nothing.
-  virtual void correct_pressure(const Vector& /*scaled_increment*/) {}
+  /// Called after `set_geometry` of the new surfaces. Default: nothing is stored there.
+  virtual void revalidate(const MovingSurface<dim>&) {}
   virtual void accept() = 0;  ///< u^n := u* (end of the step)
 
-  // What the step and the outputs need to know.
+  // What the step and the solids need to know.
 
-  virtual double largest_cell_crossing_rate() const = 0;  ///< max sum_a |u_a|/h over u^n [1/s]
-  virtual double spacing() const = 0;                     ///< h [m]
-  virtual Point<dim> gravity() const = 0;                 ///< uniform acceleration [m/s^2]
+  /// The shortest distance that it resolves [m]: h of its smallest cells. Local.
+  virtual double smallest_length() const = 0;
+  /// Largest sum_a |u_a| of u^n [m/s].
+  virtual double largest_speed() const = 0;
+  /// A step in which neither the fluid nor a solid of that speed [m/s] crosses more than so many
+  /// cells; the velocity that gravity adds within the step counts as well. Infinite at rest.
+  /// Default: all cells are as small as the smallest.
+  virtual double suggested_step(double n_cells, double solid_speed) const;
+  /// Uniform acceleration [m/s^2]. Local.
+  virtual Point<dim> gravity() const { return Point<dim>::Zero(); }
   /// Density of the fluid at x [kg/m^dim], for the buoyancy of bodies too small for the grid to
-  /// see. Default 0: such bodies feel none.
+  /// see. Default 0: such bodies feel none. Local.
   virtual double density(const Point<dim>&) const { return 0; }
-  virtual Momentum<dim> momentum() const = 0;  ///< of u* on free faces, global
-  virtual double kinetic_energy() const = 0;   ///< of u* on free faces [J], global
-  /// Impulse of walls and open sides through their own pressure [kg m/s], global.
-  virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
-  virtual double fluid_volume() const = 0;  ///< of active cells [m^dim], global
-  /// p̂ of the last accepted step on the present unknowns, carried on to those where there was none:
-  /// the initial guess of the solves, and what the viscous solve reads. Default: zero.
-  virtual RCP<Vector> last_scaled_pressure() const;
-  /// What its sides let in at `time`, one by one, whether they do at that time or not. Local.
-  virtual std::vector<PrescribedFlux> side_fluxes(double /*time*/) const { return {}; }
-  /// Called at the start of a step: puts back, when it is called in turn before `accept`, all that
-  /// `save` writes and the phases of a step change. Default: nothing is.
-  virtual std::function<void()> undo() {
-    return [] {};
-  }
-  /// Lines for `--explain`, title and text: how the grid has taken what the scene asks for.
-  virtual std::vector<std::pair<std::string, std::string>> notes() const { return {}; }
-  /// Adds its cell-centred fields to a frame. Default: none.
-  virtual void add_frame(std::vector<BoxFrame>& boxes) const;
+
+ protected:
+  FluidDiscretization() = default;
+  FluidDiscretization(const FluidDiscretization&) = delete;
+  FluidDiscretization& operator=(const FluidDiscretization&) = delete;
+
+ private:
+  /// For `set_geometry`; what is returned stays valid and unchanged until the next call.
+  virtual const FluidGeometry<dim>& freeze(const Surface& surface,
+                                           const OpenFractionRule<dim>& rule) = 0;
+
+  const FluidGeometry<dim>* frozen_ = nullptr;
 };
 
 template <int dim>
-Momentum<dim> FluidDiscretization<dim>::accept_viscous(const Vector&, const Vector&, double) {
-  return {};
+double FluidDiscretization<dim>::suggested_step(double n_cells, double solid_speed) const {
+  const double speed = std::max(largest_speed(), solid_speed);
+  const double distance = n_cells * smallest_length();
+  const double acceleration = gravity().template lpNorm<1>();
+  return 2 * distance / (speed + std::sqrt(speed * speed + 4 * acceleration * distance));
 }
-template <int dim>
-RCP<Vector> FluidDiscretization<dim>::last_scaled_pressure() const {
-  return make_vector(pressure_map());
-}
-template <int dim>
-void FluidDiscretization<dim>::add_frame(std::vector<BoxFrame>&) const {}
 
 }  // namespace lockstep

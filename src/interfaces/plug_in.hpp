@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 
 namespace lockstep {
@@ -7,7 +8,8 @@ class CheckpointWriter;
 class CheckpointReader;
 
 /// What every plug-in shares. Parameters are declared where the plug-in is registered (see
-/// parameters/registry.hpp); state that must survive a restart goes through `save` and `load`.
+/// parameters/registry.hpp); state that must survive a restart goes through `save` and `load`,
+/// which a run calls for every one of its plug-ins.
 class PlugIn {
  public:
   virtual ~PlugIn() = default;
@@ -16,11 +18,27 @@ class PlugIn {
   /// Collective. Default: no state.
   virtual void save(CheckpointWriter&) const {}
   virtual void load(const CheckpointReader&) {}
+  /// Called at the start of a step: puts back, when it is called in turn, all that `save` writes
+  /// and a step changes. Calling that is collective. Default: nothing is put back.
+  virtual std::function<void()> undo() {
+    return [] {};
+  }
 
  protected:
   PlugIn() = default;
   PlugIn(const PlugIn&) = default;
   PlugIn& operator=(const PlugIn&) = default;
 };
+
+/// A side interface of a plug-in, or null if it does without. An interface holds what every plug-in
+/// of its kind must write; what audits, solvers or outputs would like is asked for in this way.
+template <typename Side>
+const Side* side_of(const PlugIn& plug_in) {
+  return dynamic_cast<const Side*>(&plug_in);
+}
+template <typename Side>
+Side* side_of(PlugIn& plug_in) {
+  return dynamic_cast<Side*>(&plug_in);
+}
 
 }  // namespace lockstep

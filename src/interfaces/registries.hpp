@@ -17,7 +17,7 @@ using NamedLists = std::vector<std::pair<std::string, ParameterList>>;
 /// What a solid model may know of the scene around it.
 template <int dim>
 struct SolidSetting {
-  double grid_spacing = 1;                  ///< h of the fluid [m]
+  double smallest_length = 1;               ///< that the fluid resolves, h [m]
   Point<dim> gravity = Point<dim>::Zero();  ///< [m/s^2]
   double start_time = 0;                    ///< [s]
   Communicator comm;
@@ -29,8 +29,8 @@ template <int dim>
 struct ContactSetting {
   Box<dim> domain;  ///< [m]
   std::array<std::array<bool, 2>, dim>
-      closed_sides{};       ///< [axis][lower, upper] is a wall for solids
-  double grid_spacing = 1;  ///< h [m]
+      closed_sides{};          ///< [axis][lower, upper] is a wall for solids
+  double smallest_length = 1;  ///< that the fluid resolves, h [m]
   Communicator comm;
 };
 

@@ -3,9 +3,10 @@
 
 #include "coupling/solid_system.hpp"
 #include "interfaces/contact.hpp"
-#include "interfaces/coupling.hpp"
-#include "interfaces/fluid.hpp"
+#include "interfaces/coupling_sides.hpp"
+#include "interfaces/fluid_sides.hpp"
 #include "interfaces/strategy.hpp"
+#include "interfaces/viscosity.hpp"
 
 namespace lockstep {
 
@@ -17,6 +18,53 @@ struct Components {
   std::unique_ptr<Coupling<dim>> coupling;
   std::unique_ptr<SolverStrategy> strategy;
   std::unique_ptr<ContactModel<dim>> contact;  ///< null: solids do not touch
+};
+
+/// Calls f(plug_in) for all of them.
+template <int dim, typename Function>
+void for_each_plug_in(Components<dim>& components, const Function& f) {
+  for (int m = 0; m < components.solids->n_models(); ++m)
+    f(components.solids->model(m));
+  f(*components.fluid);
+  f(*components.coupling);
+  f(*components.strategy);
+  if (components.contact)
+    f(*components.contact);
+}
+
+/// `PlugIn::undo` of all of them. Calling what it returns is collective.
+template <int dim>
+std::function<void()> undo_of(Components<dim>& components) {
+  std::vector<std::function<void()>> all{components.solids->undo()};
+  for_each_plug_in(components, [&all](PlugIn& plug_in) {
+    if (!side_of<SolidModel<dim>>(plug_in))
+      all.push_back(plug_in.undo());
+  });
+  return [all = std::move(all)] {
+    for (const auto& undo_one : all)
+      undo_one();
+  };
+}
+
+/// The side interfaces that a step makes use of; null where a plug-in does without.
+template <int dim>
+struct ComponentSides {
+  explicit ComponentSides(Components<dim>& components)
+      : viscous_fluid(viscosity_of(*components.fluid)),
+        audited_fluid(side_of<AuditedFluid<dim>>(*components.fluid)),
+        pressure_memory(side_of<PressureMemory<dim>>(*components.fluid)),
+        viscous_coupling(side_of<ViscousCoupling<dim>>(*components.coupling)),
+        audited_coupling(side_of<AuditedCoupling<dim>>(*components.coupling)),
+        unseen_buoyancy(side_of<UnseenBuoyancy<dim>>(*components.coupling)),
+        audited(audited_fluid && audited_coupling && components.solids->is_audited()) {}
+
+  ViscousFluid<dim>* viscous_fluid;
+  const AuditedFluid<dim>* audited_fluid;
+  PressureMemory<dim>* pressure_memory;
+  const ViscousCoupling<dim>* viscous_coupling;
+  const AuditedCoupling<dim>* audited_coupling;
+  const UnseenBuoyancy<dim>* unseen_buoyancy;
+  bool audited;  ///< all that the momentum ledger asks
 };
 
 }  // namespace lockstep

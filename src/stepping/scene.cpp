@@ -13,8 +13,6 @@
 namespace lockstep {
 namespace {
 
-const char* const axis_names[] = {"x", "y", "z"};
-
 void declare_time(ParameterList& scene) {
   ParameterList& time = declare_list(scene, "Time", "When to start, how far to step.");
   declare(time, "Start", 0., "Start time [s].");
@@ -76,23 +74,6 @@ void declare_observers(ParameterList& scene, const ObserverRegistry<dim>& observ
                          "What is measured on the way: one sublist each, whose name is that of the "
                          "table it fills, NAME.csv in the output folder.",
                          types);
-}
-
-template <int dim>
-Box<dim> domain_box(const ParameterList& domain) {
-  const auto& lower = domain.get<ParameterArray<double>>("Lower");
-  const auto& upper = domain.get<ParameterArray<double>>("Upper");
-  Box<dim> box;
-  for (int a = 0; a < dim; ++a) {
-    box.min()[a] = lower[a];
-    box.max()[a] = upper[a];
-  }
-  return box;
-}
-
-std::string side_type(const ParameterList& domain, int axis, int side) {
-  const std::string name = std::string(axis_names[axis]) + (side == 0 ? " lower" : " upper");
-  return domain.sublist("Sides").sublist(name).get<std::string>("Type");
 }
 
 /// Mesh files are given relative to the scene.
@@ -199,7 +180,6 @@ void check_time_resolution(const TimeOptions& time) {
               time.start, dt);
 }
 
-template <int dim>
 SceneOptions scene_options(const ParameterList& scene) {
   SceneOptions options;
   const ParameterList& time = scene.sublist("Time");
@@ -225,12 +205,6 @@ SceneOptions scene_options(const ParameterList& scene) {
   options.stepper.tolerance = solver.get<double>("Tolerance");
   options.stepper.newton_iterations = solver.get<int>("Newton Iterations");
   options.stepper.viscous_tolerance = solver.get<double>("Viscous Tolerance");
-  const ParameterList& domain = scene.sublist("Domain");
-  options.stepper.length = domain_box<dim>(domain).sizes().maxCoeff();
-  for (int a = 0; a < dim; ++a) {
-    if (side_type(domain, a, 0) == "periodic")
-      options.stepper.audit_angular = false;
-  }
   return options;
 }
 
@@ -240,29 +214,25 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
   const auto type_of = [&scene](const char* list) {
     return scene.sublist(list).get<std::string>("Type");
   };
-  const ParameterList& domain = scene.sublist("Domain");
   Components<dim> components;
-  components.fluid =
-      registries.fluids.create(type_of("Fluid"), scene.sublist("Fluid"), domain, comm);
-  const SolidSetting<dim> solid_setting{
-      components.fluid->spacing(), components.fluid->gravity(),
-      scene.sublist("Time").get<double>("Start"), comm,
-      components.fluid->density(domain_box<dim>(domain).center())};
+  components.fluid = registries.fluids.create(type_of("Fluid"), scene.sublist("Fluid"),
+                                              scene.sublist("Domain"), comm);
+  const FluidDiscretization<dim>& fluid = *components.fluid;
+  const Box<dim> bounds = bounds_of(fluid);
+  const SolidSetting<dim> solid_setting{fluid.smallest_length(), fluid.gravity(),
+                                        scene.sublist("Time").get<double>("Start"), comm,
+                                        fluid.density(bounds.center())};
   components.solids = build_solids<dim>(registries, scene, scene_file, solid_setting);
   components.coupling = registries.couplings.create(type_of("Coupling"), scene.sublist("Coupling"));
   const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");
   components.strategy = registries.strategies.create(strategy.get<std::string>("Type"), strategy);
   if (type_of("Contact") != "none") {
     ContactSetting<dim> setting;
-    setting.domain = domain_box<dim>(domain);
-    setting.grid_spacing = components.fluid->spacing();
+    setting.domain = bounds;
+    setting.smallest_length = fluid.smallest_length();
     setting.comm = comm;
-    for (int a = 0; a < dim; ++a) {
-      for (int side = 0; side < 2; ++side) {
-        const std::string type = side_type(domain, a, side);
-        setting.closed_sides[a][side] = type == "wall" || type == "slip wall";
-      }
-    }
+    if (const auto* bounded = side_of<BoundedFluid<dim>>(fluid))
+      setting.closed_sides = bounded->closed_sides();
     components.contact =
         registries.contacts.create(type_of("Contact"), scene.sublist("Contact"), setting);
   }
@@ -271,8 +241,6 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
 
 template ParameterList scene_parameters<2>(const Registries<2>&);
 template ParameterList scene_parameters<3>(const Registries<3>&);
-template SceneOptions scene_options<2>(const ParameterList&);
-template SceneOptions scene_options<3>(const ParameterList&);
 template Components<2> build_components<2>(const Registries<2>&, const ParameterList&,
                                            const std::string&, const Communicator&);
 template Components<3> build_components<3>(const Registries<3>&, const ParameterList&,

@@ -41,7 +41,6 @@ int scene_dimension(const Document& document);
 /// Throws InputError if times near the start cannot be told apart a step away.
 void check_time_resolution(const TimeOptions& time);
 
-template <int dim>
 SceneOptions scene_options(const ParameterList& scene);
 
 /// Builds the plug-ins of a validated scene. `scene_file` resolves relative mesh files. Collective.

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "base/errors.hpp"
 #include "base/interruption.hpp"
-#include "output/build_information.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
 #include "output/signals.hpp"
 #include "parameters/write.hpp"
 #include "stepping/restart_check.hpp"
+#include "stepping/surface_frames.hpp"
 
 namespace lockstep {
 namespace {
@@ -21,50 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double median(std::vector<int> values) {
-  if (values.empty())
-    return 0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-nlohmann::ordered_json iteration_summary(const std::vector<int>& values) {
-  return {{"median", median(values)},
-          {"max", values.empty() ? 0 : *std::max_element(values.begin(), values.end())}};
-}
-
-template <int dim>
-std::vector<SurfaceFrame> surface_frames(const SolidSystem<dim>& solids,
-                                         const SurfaceSnapshot<dim>& surface) {
-  std::vector<SurfaceFrame> frames;
-  for (const SolidDescription& solid : surface.solids()) {
-    SurfaceFrame frame;
-    frame.name = solid.name;
-    frame.dimension = dim;
-    frame.simplex_size = dim;
-    SurfaceField velocity{"velocity", "m/s", dim, SurfaceField::Place::simplices, {}};
-    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
-      for (int a = 0; a < dim; ++a)
-        frame.vertices.push_back(surface.mesh().vertices[v][a]);
-    }
-    for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
-      SurfacePoint<dim> middle;
-      middle.simplex = s;
-      middle.barycentric.setConstant(1. / dim);
-      for (int vertex : surface.mesh().simplices[s]) {
-        frame.simplices.push_back(vertex - solid.vertex_begin);
-        middle.position += surface.mesh().vertices[vertex] / dim;
-      }
-      const Point<dim> v = solids.effective_velocity(middle, middle.position);
-      velocity.values.insert(velocity.values.end(), v.data(), v.data() + dim);
-    }
-    frame.fields.push_back(std::move(velocity));
-    frames.push_back(std::move(frame));
-  }
-  return frames;
 }
 
 /// Steps of one length that end at `end`, if they get there: the forces of a last one that is much
@@ -85,7 +40,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
                             const RunOptions& options, const Communicator& comm, const Log& log)
     : scene_(scene),
       options_(options),
-      scene_options_(scene_options<dim>(scene)),
+      scene_options_(scene_options(scene)),
       comm_(comm),
       log_(log),
       components_(build_components<dim>(registries, scene, options.scene_file, comm)),
@@ -118,18 +73,9 @@ double Simulation<dim>::next_step() const {
   const TimeOptions& time = scene_options_.time;
   double dt = time.fixed_step;
   if (dt == 0) {
-    const double rate = components_.fluid->largest_cell_crossing_rate();
     // A resting fluid still has to resolve moving solids.
-    const double solid_rate =
-        components_.solids->largest_surface_speed() / components_.fluid->spacing();
-    // The velocity that gravity adds within the step counts as well.
-    const double acceleration =
-        components_.fluid->gravity().template lpNorm<1>() / components_.fluid->spacing();
-    const double r = std::max(rate, solid_rate);
-    dt = time.largest_step;
-    if (r > 0 || acceleration > 0) {
-      dt = std::min(dt, 2 * time.cfl / (r + std::sqrt(r * r + 4 * acceleration * time.cfl)));
-    }
+    dt = std::min(time.largest_step, components_.fluid->suggested_step(
+                                         time.cfl, components_.solids->largest_surface_speed()));
   }
   dt = std::min(dt, components_.solids->largest_stable_step());
   // A bit of difference between ranks would let one of them take a step more.
@@ -196,11 +142,14 @@ template <int dim>
 void Simulation<dim>::write_frame() {
   ScopedPhase phase(timers_, "frames");
   std::vector<BoxFrame> boxes;
-  components_.fluid->add_frame(boxes);
+  if (const auto* output = side_of<FluidOutput<dim>>(*components_.fluid))
+    output->add_frame(boxes);
   std::vector<SurfaceFrame> meshes =
       surface_frames<dim>(*components_.solids, *stepper_->system().surface());
-  for (int m = 0; m < components_.solids->n_models(); ++m)
-    components_.solids->model(m).add_frames(meshes);
+  for (int m = 0; m < components_.solids->n_models(); ++m) {
+    if (const auto* output = side_of<SolidOutput<dim>>(components_.solids->model(m)))
+      output->add_frames(meshes);
+  }
   frames_.write(step_, stepper_->time(), boxes, meshes);
   last_frame_ = stepper_->time();
 }
@@ -210,10 +159,7 @@ void Simulation<dim>::write_checkpoint() {
   ScopedPhase phase(timers_, "checkpoints");
   CheckpointWriter checkpoint(comm_, options_.output_directory,
                               {step_, stepper_->time(), to_xml(scene_), files_});
-  components_.fluid->save(checkpoint);
-  for (int m = 0; m < components_.solids->n_models(); ++m) {
-    components_.solids->model(m).save(checkpoint);
-  }
+  for_each_plug_in(components_, [&](const PlugIn& plug_in) { plug_in.save(checkpoint); });
   observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
   checkpoint.finish(scene_options_.output.keep_checkpoints);
@@ -224,73 +170,11 @@ template <int dim>
 void Simulation<dim>::load_checkpoint() {
   const CheckpointReader checkpoint(comm_, options_.restart_file);
   check_same_scene(scene_, files_, checkpoint.header(), options_.restart_file);
-  for (int m = 0; m < components_.solids->n_models(); ++m) {
-    components_.solids->model(m).load(checkpoint);
-  }
-  components_.fluid->load(checkpoint);
+  for_each_plug_in(components_, [&](PlugIn& plug_in) { plug_in.load(checkpoint); });
   observers_.load(checkpoint);
   step_ = checkpoint.header().step;
   last_dt_ = checkpoint.file().template read_attribute<double>("/", "last dt");
   stepper_->resume(checkpoint.header().time, last_dt_);
-}
-
-template <int dim>
-void Simulation<dim>::count(const StepReport<dim>& report) {
-  s1_iterations_.push_back(report.s1.iterations);
-  f2_iterations_.push_back(report.f2.iterations);
-  s2_iterations_.push_back(report.s2.iterations);
-  largest_momentum_error_ = std::max(largest_momentum_error_, report.momentum_error);
-  largest_angular_error_ = std::max(largest_angular_error_, report.angular_momentum_error);
-  for (const SolveReport* solve : {&report.s1, &report.f2, &report.s2}) {
-    worst_residual_ = std::max({worst_residual_, solve->pressure_residual, solve->solid_residual});
-    preconditioner_builds_ += solve->preconditioner_builds;
-    preconditioner_reuses_ += solve->preconditioner_reuses;
-    stored_nonzeros_ = std::max(stored_nonzeros_, solve->stored_nonzeros);
-  }
-}
-
-template <int dim>
-nlohmann::ordered_json Simulation<dim>::summary(const std::string& status, double wall_seconds) {
-  const BuildInformation build = build_information();
-  const PeakMemory memory = peak_memory_mb(comm_);
-  nlohmann::ordered_json phases = nlohmann::ordered_json::array();
-  for (const PhaseTime& phase : timers_.report(comm_)) {
-    phases.push_back({{"name", phase.name},
-                      {"min_seconds", phase.min_seconds},
-                      {"mean_seconds", phase.mean_seconds},
-                      {"max_seconds", phase.max_seconds},
-                      {"calls", phase.calls}});
-  }
-  const RCP<const Map> pressure = components_.fluid->pressure_map();
-  return {{"status", status},
-          {"versions",
-           {{"lockstep", build.version},
-            {"git", build.git_hash},
-            {"build", build.build_type},
-            {"compiler", build.compiler},
-            {"trilinos", build.trilinos},
-            {"mpi", build.mpi},
-            {"hdf5", build.hdf5}}},
-          {"ranks", comm_->getSize()},
-          {"steps", step_ - first_step_},
-          {"step", step_},
-          {"time", stepper_->time()},
-          {"pressure_unknowns", static_cast<long long>(pressure->getGlobalNumElements())},
-          {"solid_unknowns", components_.solids->n_unknowns()},
-          {"iterations",
-           {{"s1", iteration_summary(s1_iterations_)},
-            {"f2", iteration_summary(f2_iterations_)},
-            {"s2", iteration_summary(s2_iterations_)}}},
-          {"largest_momentum_error", largest_momentum_error_},
-          {"largest_angular_momentum_error", largest_angular_error_},
-          {"worst_residual", worst_residual_},
-          {"preconditioner_builds", preconditioner_builds_},
-          {"preconditioner_reuses", preconditioner_reuses_},
-          {"stored_nonzeros", stored_nonzeros_},
-          {"wall_seconds", wall_seconds},
-          {"peak_memory_mb", memory.all_ranks_mb},
-          {"peak_memory_largest_rank_mb", memory.largest_rank_mb},
-          {"phases", phases}};
 }
 
 template <int dim>
@@ -342,7 +226,7 @@ int Simulation<dim>::run() {
     const StepReport<dim>& report = *taken;
     ++step_;
     last_dt_ = dt;
-    count(report);
+    summary_.count(report);
     warn(report);
     const double step_seconds = seconds_since(step_start);
     const std::vector<SolidState<dim>> states = components_.solids->states();
@@ -368,8 +252,12 @@ int Simulation<dim>::run() {
   }
   write_checkpoint();
   const double wall_seconds = seconds_since(start);
-  write_summary(comm_, options_.output_directory,
-                summary(signal == 0 ? "done" : "stopped by a signal", wall_seconds));
+  write_summary(
+      comm_, options_.output_directory,
+      summary_.json({signal == 0 ? "done" : "stopped by a signal", step_ - first_step_, step_,
+                     stepper_->time(), components_.fluid->pressure_map()->getGlobalNumElements(),
+                     components_.solids->n_unknowns(), wall_seconds},
+                    timers_.report(comm_), comm_));
   log_.normal("{}", timing_table(timers_.report(comm_)));
   if (signal != 0) {
     log_.normal("Stopped by signal {} after step {}; the checkpoint in {} continues the run.",
@@ -390,19 +278,21 @@ std::string Simulation<dim>::explain() {
   };
   line("dimension", std::to_string(dim));
   line("ranks", std::to_string(comm_->getSize()));
-  line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(), fluid.spacing(),
-                            fluid.pressure_map()->getGlobalNumElements()));
+  line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(),
+                            fluid.smallest_length(), fluid.pressure_map()->getGlobalNumElements()));
   const bool reads_pressure = scene_options_.stepper.incremental_pressure;
-  line("viscous solve", !fluid.is_viscous() ? "off (inviscid)"
-                        : reads_pressure    ? "on (viscosity > 0), reads the last pressure"
-                                            : "on (viscosity > 0), without pressure");
+  line("viscous solve", !viscosity_of(*components_.fluid) ? "off (inviscid)"
+                        : reads_pressure ? "on (viscosity > 0), reads the last pressure"
+                                         : "on (viscosity > 0), without pressure");
   int n_prescribed = 0, n_shells = 0;
   for (const auto& solid : solids.solids()) {
     n_prescribed += solid.prescribed ? 1 : 0;
     n_shells += solid.closed ? 0 : 1;
   }
-  for (const auto& [title, note] : fluid.notes())
-    line(title, note);
+  if (const auto* output = side_of<FluidOutput<dim>>(fluid)) {
+    for (const auto& [title, note] : output->notes())
+      line(title, note);
+  }
   line("solids", fmt::format("{} ({} prescribed, {} thin shells), {} unknowns",
                              solids.solids().size(), n_prescribed, n_shells, solids.n_unknowns()));
   const GlobalIndex n_coupled =

@@ -1,11 +1,11 @@
 #pragma once
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "output/frames.hpp"
 #include "solve/dumping_strategy.hpp"
 #include "stepping/observer_tables.hpp"
+#include "stepping/run_summary.hpp"
 #include "stepping/run_tables.hpp"
 #include "stepping/scene.hpp"
 
@@ -46,8 +46,6 @@ class Simulation {
   void write_checkpoint();
   void load_checkpoint();
   double fraction_done() const;
-  nlohmann::ordered_json summary(const std::string& status, double wall_seconds);
-  void count(const StepReport<dim>& report);
   void warn(const StepReport<dim>& report);
 
   ParameterList scene_;
@@ -65,10 +63,7 @@ class Simulation {
   long long step_ = 0, first_step_ = 0;
   bool warned_of_viscous_step_ = false;
   double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
-  std::vector<int> s1_iterations_, f2_iterations_, s2_iterations_;
-  double largest_momentum_error_ = 0, largest_angular_error_ = 0, worst_residual_ = 0;
-  int preconditioner_builds_ = 0, preconditioner_reuses_ = 0;
-  long stored_nonzeros_ = 0;
+  RunSummary summary_;
 };
 
 }  // namespace lockstep

@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <cmath>
+#include <limits>
 
 namespace lockstep {
 
@@ -16,20 +17,24 @@ double largest_divergence(const BlockSystem& blocks, const CoupledSolution& solu
 }
 
 template <int dim>
-void audit_solve(const Components<dim>& components, CoupledSystem<dim>& system,
-                 const CoupledSolution& solution, const ViscousResult<dim>& viscous, double dt,
-                 StepReport<dim>& report) {
+void audit_solve(const Components<dim>& components, const ComponentSides<dim>& sides,
+                 CoupledSystem<dim>& system, const CoupledSolution& solution,
+                 const ViscousResult<dim>& viscous, double dt, StepReport<dim>& report) {
   const SolidSystem<dim>& solids = *components.solids;
   const BlockVector& unknowns = solution.unknowns;
-  const Momentum<dim> walls = components.fluid->boundary_pressure_impulse(*unknowns.pressure);
+  const Momentum<dim> walls =
+      sides.audited_fluid ? sides.audited_fluid->boundary_pressure_impulse(*unknowns.pressure)
+                          : Momentum<dim>();
   report.ledger.add("walls", walls);
   report.boundary_impulse = walls + report.ledger.impulse_of("viscous boundaries");
   RCP<Vector> velocity = unknowns.solid;
   if (velocity.is_null())
     velocity = make_vector(solids.map());
   const std::vector<double> coupled_after = components.coupling->velocity(*velocity);
-  const std::vector<Momentum<dim>> prescribed = components.coupling->prescribed_impulses(
-      solution.coupled_before, coupled_after, *unknowns.pressure);
+  std::vector<Momentum<dim>> prescribed;
+  if (sides.audited_coupling)
+    prescribed = sides.audited_coupling->prescribed_impulses(solution.coupled_before, coupled_after,
+                                                             *unknowns.pressure);
   report.ledger.add("prescribed solids", total_of(prescribed));
   for (std::size_t s = 0; s < prescribed.size(); ++s)
     report.hydrodynamic_impulse[s] -= prescribed[s];
@@ -39,8 +44,9 @@ void audit_solve(const Components<dim>& components, CoupledSystem<dim>& system,
     return;
   const RCP<const Vector> reaction = system.lock_reaction(dt, *solution.momentum, unknowns);
   report.ledger.add("locks", solids.momentum(*reaction));
-  report.lever_impulse =
-      components.coupling->lever_impulse(solids, solution.coupled_before, coupled_after, unknowns);
+  if (sides.audited_coupling)
+    report.lever_impulse = sides.audited_coupling->lever_impulse(solids, solution.coupled_before,
+                                                                 coupled_after, unknowns);
   report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lever_impulse});
   const RCP<const Vector> implicit = solids.implicit_impulse(dt, *unknowns.solid);
   report.linearisation_impulse =
@@ -55,9 +61,30 @@ void audit_solve(const Components<dim>& components, CoupledSystem<dim>& system,
   add_each(solids.momentum_of_each(*gained), report.hydrodynamic_impulse);
 }
 
-template void audit_solve(const Components<2>&, CoupledSystem<2>&, const CoupledSolution&,
-                          const ViscousResult<2>&, double, StepReport<2>&);
-template void audit_solve(const Components<3>&, CoupledSystem<3>&, const CoupledSolution&,
-                          const ViscousResult<3>&, double, StepReport<3>&);
+template <int dim>
+void audit_momentum(const Components<dim>& components, const ComponentSides<dim>& sides,
+                    StepReport<dim>& report) {
+  if (!sides.audited) {
+    report.momentum_error = report.angular_momentum_error =
+        std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
+  // sum m |u| >= sum m u^2 / max |u|
+  const double fastest = components.fluid->largest_speed();
+  const double momentum_scale = fastest > 0 ? 2 * report.fluid_kinetic_energy / fastest : 0;
+  report.momentum_error = report.ledger.linear_error(momentum_scale);
+  const auto* box = side_of<BoundedFluid<dim>>(*components.fluid);
+  const double length =
+      box ? box->bounds().sizes().maxCoeff() : std::pow(report.fluid_volume, 1.0 / dim);
+  if (!box || !box->is_periodic())
+    report.angular_momentum_error = report.ledger.angular_error(length, momentum_scale);
+}
+
+template void audit_momentum(const Components<2>&, const ComponentSides<2>&, StepReport<2>&);
+template void audit_momentum(const Components<3>&, const ComponentSides<3>&, StepReport<3>&);
+template void audit_solve(const Components<2>&, const ComponentSides<2>&, CoupledSystem<2>&,
+                          const CoupledSolution&, const ViscousResult<2>&, double, StepReport<2>&);
+template void audit_solve(const Components<3>&, const ComponentSides<3>&, CoupledSystem<3>&,
+                          const CoupledSolution&, const ViscousResult<3>&, double, StepReport<3>&);
 
 }  // namespace lockstep

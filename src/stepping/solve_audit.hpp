@@ -24,8 +24,14 @@ double largest_divergence(const BlockSystem& blocks, const CoupledSolution& solu
 /// what the fluid gave to every solid, on top of the buoyancy that is there. `viscous`: empty for a
 /// fluid without viscosity. Collective.
 template <int dim>
-void audit_solve(const Components<dim>& components, CoupledSystem<dim>& system,
-                 const CoupledSolution& solution, const ViscousResult<dim>& viscous, double dt,
-                 StepReport<dim>& report);
+void audit_solve(const Components<dim>& components, const ComponentSides<dim>& sides,
+                 CoupledSystem<dim>& system, const CoupledSolution& solution,
+                 const ViscousResult<dim>& viscous, double dt, StepReport<dim>& report);
+
+/// The errors of momentum that the closed ledger shows; nan if not all plug-ins tell theirs.
+/// Torques of periodic fluids have no common origin. Collective.
+template <int dim>
+void audit_momentum(const Components<dim>& components, const ComponentSides<dim>& sides,
+                    StepReport<dim>& report);
 
 }  // namespace lockstep

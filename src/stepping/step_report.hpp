@@ -24,7 +24,8 @@ struct StepReport {
   /// What advection, revalidation, occlusion resets and the change of lumped masses did to the
   /// momentum.
   Momentum<dim> transport_change;
-  /// Numerical torques over dt, see Coupling::lever_impulse and SolidSystem::implicit_impulse.
+  /// Numerical torques over dt, see AuditedCoupling::lever_impulse and
+  /// SolidSystem::implicit_impulse.
   AngularVector<dim> lever_impulse = AngularVector<dim>::Zero();
   AngularVector<dim> linearisation_impulse = AngularVector<dim>::Zero();
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]

@@ -17,10 +17,16 @@ template <int dim>
 Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options, double start_time,
                       PhaseTimers& timers)
     : components_(components),
+      sides_(components),
       options_(options),
       timers_(timers),
       system_(*components.fluid, *components.solids, *components.coupling),
       time_(start_time) {
+  check_input(
+      !sides_.viscous_fluid || sides_.viscous_coupling,
+      "The coupling \"{}\" carries no viscous forces, but the fluid is viscous; take another "
+      "one, or make the fluid inviscid.",
+      components.coupling->name());
   freeze();
   // Motions that begin at rest do so but for round-off.
   const double negligible = 1e-12 * components_.fluid->fluid_volume();  // a second
@@ -50,8 +56,10 @@ template <int dim>
 RCP<const Vector> Stepper<dim>::unseen_buoyancy(double dt, StepReport<dim>& report) const {
   const auto& solids = *components_.solids;
   const auto buoyancy = make_vector(solids.map());
-  report.hydrodynamic_impulse =
-      components_.coupling->add_unseen_buoyancy(components_.fluid->gravity(), dt, *buoyancy);
+  report.hydrodynamic_impulse.assign(solids.solids().size(), {});
+  if (sides_.unseen_buoyancy)
+    report.hydrodynamic_impulse =
+        sides_.unseen_buoyancy->add_unseen_buoyancy(components_.fluid->gravity(), dt, *buoyancy);
   add_each(solids.momentum_of_each(*buoyancy), report.hydrodynamic_impulse);
   return buoyancy;
 }
@@ -110,7 +118,7 @@ ContactReport<dim> Stepper<dim>::contact_momentum(double dt, Vector& momentum) {
 /// p̂ = dt p of the last step's pressure p; zero before the first one.
 template <int dim>
 RCP<Vector> Stepper<dim>::last_pressure(double dt) const {
-  const RCP<Vector> pressure = components_.fluid->last_scaled_pressure();
+  const RCP<Vector> pressure = last_scaled_pressure_of(*components_.fluid);
   if (last_dt_ > 0)
     pressure->scale(dt / last_dt_);
   return pressure;
@@ -171,9 +179,8 @@ CoupledSolution Stepper<dim>::solve_newton(double dt, const RCP<Vector>& momentu
 template <int dim>
 SolveRequest Stepper<dim>::request(const char* name, double dt) const {
   const auto& fluid = *components_.fluid;
-  const double speed =
-      fluid.largest_cell_crossing_rate() * fluid.spacing() + dt * fluid.gravity().norm();
-  const double area = std::pow(fluid.spacing(), dim - 1);
+  const double speed = fluid.largest_speed() + dt * fluid.gravity().norm();
+  const double area = std::pow(fluid.smallest_length(), dim - 1);
   const auto n_cells = static_cast<double>(fluid.pressure_map()->getGlobalNumElements());
   return {name, options_.tolerance, 1e-15 * speed * area * std::sqrt(n_cells)};
 }
@@ -224,10 +231,8 @@ void Stepper<dim>::make_advection_velocity(StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   auto& coupling = *components_.coupling;
   fluid.begin_advection_velocity(report.dt);
-  if (components_.solids->empty() && last_dt_ > 0) {
-    fluid.adopt_advection_velocity();  // u^n is divergence-free already
-    return;
-  }
+  if (components_.solids->empty() && last_dt_ > 0)
+    return;  // u^n is divergence-free already
   ScopedPhase phase(timers_, "F2");
   const std::vector<double> effective = coupling.effective_velocity(*components_.solids);
   fluid.set_coupled_velocity(effective);
@@ -240,13 +245,18 @@ void Stepper<dim>::make_advection_velocity(StepReport<dim>& report) {
   components_.strategy->prepare(blocks);
   report.f2 = components_.strategy->solve(blocks, rhs, solution, request("F2", report.dt));
   fluid.project(*solution.pressure);
-  fluid.adopt_advection_velocity();
+}
+
+/// Of u*.
+template <int dim>
+Momentum<dim> Stepper<dim>::fluid_momentum() const {
+  return sides_.audited_fluid ? sides_.audited_fluid->momentum() : Momentum<dim>();
 }
 
 /// Fluid (u*), lumped fluid and solids (M_S V_S^n).
 template <int dim>
 Momentum<dim> Stepper<dim>::total_momentum() const {
-  Momentum<dim> total = components_.fluid->momentum();
+  Momentum<dim> total = fluid_momentum();
   total += system_.lumped_fluid_momentum(components_.fluid->coupled_velocity());
   if (coupled())
     total += components_.solids->momentum(*components_.solids->explicit_momentum(time_, 0));
@@ -270,11 +280,12 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
   auto& fluid = *components_.fluid;
   auto& solids = *components_.solids;
   const BlockVector& unknowns = solution.unknowns;
-  report.max_divergence = largest_divergence(system_.blocks(dt), solution, fluid.spacing(), dim);
-  audit_solve<dim>(components_, system_, solution, viscous_, dt, report);
+  report.max_divergence =
+      largest_divergence(system_.blocks(dt), solution, fluid.smallest_length(), dim);
+  audit_solve<dim>(components_, sides_, system_, solution, viscous_, dt, report);
   fluid.project(*unknowns.pressure);
-  if (!viscous_pressure_.is_null())
-    fluid.correct_pressure(*viscous_pressure_);
+  if (!viscous_pressure_.is_null() && sides_.pressure_memory)
+    sides_.pressure_memory->correct_pressure(*viscous_pressure_);
   RCP<Vector> velocity = unknowns.solid;
   if (velocity.is_null())
     velocity = make_vector(solids.map());
@@ -282,8 +293,10 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
   fluid.set_coupled_velocity(coupled_after);
   fluid.accept();
 
-  report.fluid_momentum = fluid.momentum() + system_.lumped_fluid_momentum(coupled_after);
-  report.fluid_kinetic_energy = fluid.kinetic_energy() + system_.lumped_fluid_energy(coupled_after);
+  report.fluid_momentum = fluid_momentum() + system_.lumped_fluid_momentum(coupled_after);
+  report.fluid_kinetic_energy = system_.lumped_fluid_energy(coupled_after);
+  if (sides_.audited_fluid)
+    report.fluid_kinetic_energy += sides_.audited_fluid->kinetic_energy();
   report.fluid_volume = fluid.fluid_volume();
   if (coupled()) {
     solids.set_velocity(*velocity);
@@ -295,13 +308,7 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
   report.ledger.close(report.fluid_momentum + report.solid_momentum);
   // Not that of the ledger: a restarted run finds it anew, and must not differ in its last digit.
   last_momentum_ = total_momentum();
-  // sum m |u| >= sum m u^2 / max |u|
-  const double fastest = fluid.largest_cell_crossing_rate() * fluid.spacing();
-  const double momentum_scale = fastest > 0 ? 2 * report.fluid_kinetic_energy / fastest : 0;
-  report.momentum_error = report.ledger.linear_error(momentum_scale);
-  if (options_.audit_angular) {
-    report.angular_momentum_error = report.ledger.angular_error(options_.length, momentum_scale);
-  }
+  audit_momentum<dim>(components_, sides_, report);
   for (const auto& state : solids.states()) {
     report.solid_kinetic_energy += state.kinetic_energy;
     report.elastic_energy += state.elastic_energy;
@@ -310,16 +317,14 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
 
 template <int dim>
 StepReport<dim> Stepper<dim>::advance(double dt) {
-  const std::function<void()> undo_fluid = components_.fluid->undo();
-  const std::function<void()> undo_solids = components_.solids->undo();
+  const std::function<void()> undo = undo_of(components_);
   StepReport<dim> report;
   try {
     const CoupledSolution solution = solve_step(dt, report);
     ScopedPhase phase(timers_, "end");
     finish(solution, dt, report);
   } catch (const Interrupted&) {
-    undo_solids();
-    undo_fluid();
+    undo();
     throw;
   }
   time_ += dt;
@@ -334,7 +339,7 @@ CoupledSolution Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
   auto& solids = *components_.solids;
   report.dt = dt;
   report.time = time_ + dt;
-  report.cfl = dt * fluid.largest_cell_crossing_rate();
+  report.cfl = dt * fluid.largest_speed() / fluid.smallest_length();
   if (solids.begin_step(time_, dt))
     freeze();                    // other dofs are locked now
   system_.forget_solid_block();  // what is implicit is other in S1 than in S2

@@ -17,8 +17,6 @@ struct StepperOptions {
   int newton_iterations = 1;         ///< coupled solves each of S1 and S2 takes
   bool incremental_pressure = true;  ///< the viscous solve reads the last step's pressure
   bool rotational_pressure = true;   ///< and corrects it by the divergence that it leaves
-  double length = 1;                 ///< size of the domain [m], scales the angular audit
-  bool audit_angular = true;  ///< false with periodic sides, where torque has no common origin
 };
 
 /// The step F1 S1 F2 F3 S2 F4 of Section 7.
@@ -67,9 +65,11 @@ class Stepper {
   CoupledSolution solve_settled(double dt, const RCP<Vector>& momentum, StepReport<dim>& report);
   RCP<Vector> at_locked_velocity(const Vector& velocity) const;
   SolveRequest request(const char* name, double dt) const;
+  Momentum<dim> fluid_momentum() const;
   Momentum<dim> total_momentum() const;
 
   Components<dim>& components_;
+  ComponentSides<dim> sides_;
   StepperOptions options_;
   PhaseTimers& timers_;
   CoupledSystem<dim> system_;

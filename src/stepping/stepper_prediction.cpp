@@ -33,15 +33,13 @@ void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* l
   auto& fluid = *components_.fluid;
   {
     ScopedPhase phase(timers_, "forces");
-    Momentum<dim> impulse = fluid.add_forces(time, dt);
-    if (ledger) {
-      const auto increment = fluid.coupled_force(time, dt);
-      impulse += system_.lumped_fluid_momentum(increment);
-      ledger->add("body forces", impulse);
-    }
+    const ForceImpulse<dim> given = fluid.add_forces(time, dt);
+    if (ledger)
+      ledger->add("body forces",
+                  given.impulse + system_.lumped_fluid_momentum(given.coupled_change));
   }
   viscous_ = {};
-  if (!fluid.is_viscous())
+  if (!sides_.viscous_fluid)
     return;
   predict_viscosity(time, dt, report);
   if (ledger)
@@ -81,8 +79,8 @@ void Stepper<dim>::predict_viscosity(double time, double dt, StepReport<dim>& re
     block = blocks.solid_block;
     near_null_space = blocks.near_null_space;
     const RCP<Vector> momentum = components_.solids->explicit_momentum(time, dt);
-    if (!pressure.is_null())
-      components_.coupling->add_unseen_buoyancy(fluid.gravity(), dt, *momentum);
+    if (!pressure.is_null() && sides_.unseen_buoyancy)
+      sides_.unseen_buoyancy->add_unseen_buoyancy(fluid.gravity(), dt, *momentum);
     row = system_.lumped_momentum(*momentum);
     if (!pressure.is_null())
       blocks.coupling_transposed->apply(*pressure, *row, Teuchos::NO_TRANS, -1, 1);
@@ -91,15 +89,15 @@ void Stepper<dim>::predict_viscosity(double time, double dt, StepReport<dim>& re
   }
   if (!pressure.is_null())
     fluid.project(*pressure);
-  const std::unique_ptr<ViscousSystem<dim>> viscous = fluid.viscous_system();
-  viscous_ =
-      solve_viscous<dim>(*viscous, fluid, *components_.solids, *components_.coupling, block,
-                         near_null_space, row, dt, options_.viscous_tolerance, locked_velocity_);
+  const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
+  viscous_ = solve_viscous<dim>(*viscous, *sides_.viscous_fluid, *components_.solids,
+                                *sides_.viscous_coupling, block, near_null_space, row, dt,
+                                options_.viscous_tolerance, locked_velocity_);
   report.viscous_iterations += viscous_.iterations;
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)
     report.viscous_number =
-        viscous->viscosity * dt * std::pow(fluid.spacing(), dim - 2) / full_mass;
+        viscous->viscosity * dt * std::pow(fluid.smallest_length(), dim - 2) / full_mass;
   if (options_.rotational_pressure)
     viscous_pressure_ = viscous_pressure(viscous->viscosity, dt);
   if (!pressure.is_null()) {
@@ -123,7 +121,7 @@ RCP<Vector> Stepper<dim>::viscous_pressure(double viscosity, double dt) {
   coupling.add_prescribed_divergence(*result);
   if (coupled())
     coupling.coupling_transposed()->apply(*viscous_.solid_velocity, *result, Teuchos::TRANS, 1, 1);
-  result->scale(dt * viscosity / std::pow(fluid.spacing(), dim));
+  result->scale(dt * viscosity);
   return result;
 }
 

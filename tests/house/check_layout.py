@@ -28,6 +28,8 @@ FORBIDDEN = {
     "a path of one machine": re.compile(r"\.\./" r"shared|/" r"work/|/" r"tmp/|/" r"root/|/" r"home/\w"),
     "an unfinished mark": re.compile(r"\b(TO" r"DO|FIX" r"ME|X" r"XX)\b"),
 }
+CLASS = re.compile(r"^class (\w+)([^;{]*)\{(.*?)^\};", re.MULTILINE | re.DOTALL)
+MOST_PURE = 12  # functions that a new plug-in must write, its name among them
 CONSOLE = re.compile(r"\bstd::(cout|cerr)\b")
 
 
@@ -83,11 +85,24 @@ def text_violations(path, root):
                 yield f"{name}:{number}: {what}: {line.strip()[:80]}"
 
 
+def interface_violations(path, root):
+    """Interfaces that ask more of a plug-in than it must have; the rest belongs into side interfaces."""
+    found = []
+    for name, bases, body in CLASS.findall(path.read_text()):
+        inherited = sum(base in bases for base in ("PlugIn", "OpenFractionRule"))
+        n_pure = inherited + len(re.findall(r"= 0;", body))
+        if n_pure > MOST_PURE:
+            found.append(f"{path.relative_to(root)}: {name} has {n_pure} pure virtual functions, more than {MOST_PURE}")
+    return found
+
+
 def violations(root):
     root = Path(root)
     packages = rooms(root, "packages")
     for path in source_files(root, {".cpp", ".hpp"}):
         yield from code_violations(path, root, packages)
+    for path in sorted((root / "src" / "interfaces").glob("*.hpp")):
+        yield from interface_violations(path, root)
     # In a worktree .git is a file that holds a path.
     top = [path for path in sorted(root.iterdir())
            if path.is_file() and path.suffix in TEXT_SUFFIXES and path.name != ".git"]

@@ -78,17 +78,20 @@ void FakeFluid<dim>::set_velocity(
 }
 
 template <int dim>
-void FakeFluid<dim>::set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) {
+const FluidGeometry<dim>& FakeFluid<dim>::freeze(const Surface& surface,
+                                                 const OpenFractionRule<dim>& rule) {
   surface_ = surface;
   number_cells(*surface);
-  coupled_.clear();
+  frozen_.coupled_volumes.clear();
   for (Face& face : faces_) {
     classify(face, *surface, rule);
     if (face.kind == FaceKind::coupled && owned(face))
-      coupled_.push_back(face.volume);
+      frozen_.coupled_volumes.push_back(face.volume);
   }
   find_regions();
   assemble_pressure_block();
+  frozen_.volume = static_cast<double>(rank_of_unknown_.size()) * std::pow(box_.spacing, dim);
+  return frozen_;
 }
 
 template <int dim>
@@ -117,7 +120,7 @@ void FakeFluid<dim>::number_cells(const SurfaceSnapshot<dim>& surface) {
     rank_of_unknown_[i] = static_cast<int>(i * comm_->getSize() / n_active);
     n_local += rank_of_unknown_[i] == comm_->getRank() ? 1 : 0;
   }
-  map_ = make_map(n_local, comm_);
+  frozen_.pressure_map = make_map(n_local, comm_);
 }
 
 template <int dim>
@@ -141,11 +144,12 @@ void FakeFluid<dim>::classify(Face& face, const SurfaceSnapshot<dim>& surface,
     PressureSide<dim>& pressure = volume.sides[side];
     pressure = PressureSide<dim>();
     pressure.center = volume.center + (side - 0.5) * h * Point<dim>::Unit(axis);
+    pressure.kind = axis == box_.open_axis && side == 1 ? SideKind::open : SideKind::closed;
     if (cells[side] < 0)
       continue;
     pressure.unknown = unknown_[cells[side]];
     pressure.solid = solid_[cells[side]];
-    pressure.inside_solid = pressure.solid >= 0;
+    pressure.kind = pressure.solid >= 0 ? SideKind::solid : SideKind::unknown;
   }
   face.kind = FaceKind::inactive;
   const GlobalIndex first =
@@ -188,18 +192,18 @@ void FakeFluid<dim>::find_regions() {
       a = b = std::min(a, b);
     }
   }
-  regions_ = PressureRegions();
+  frozen_.regions = PressureRegions();
   std::vector<int> number(region.size(), -1);
   for (std::size_t i = 0; i < region.size(); ++i) {
     if (region[i] == static_cast<int>(i))
-      number[i] = regions_.n_regions++;
+      number[i] = frozen_.regions.n_regions++;
     if (rank_of_unknown_[i] == comm_->getRank())
-      regions_.of_unknown.push_back(number[region[i]]);
+      frozen_.regions.of_unknown.push_back(number[region[i]]);
   }
-  regions_.has_dirichlet.assign(regions_.n_regions, 0);
+  frozen_.regions.has_dirichlet.assign(frozen_.regions.n_regions, 0);
   for (const Face& face : faces_) {
     if (face.kind == FaceKind::free && face.open)
-      regions_.has_dirichlet[number[region[face.volume.sides[0].unknown]]] = 1;
+      frozen_.regions.has_dirichlet[number[region[face.volume.sides[0].unknown]]] = 1;
   }
 }
 
@@ -225,9 +229,10 @@ void FakeFluid<dim>::assemble_pressure_block() {
     triplets.push_back({upper, lower, -entry});
   }
   // A cell with coupled faces only keeps its (zero) row.
-  for (GlobalIndex id : map_->getNodeElementList())
+  for (GlobalIndex id : frozen_.pressure_map->getNodeElementList())
     triplets.push_back({id, id, 0});
-  pressure_block_ = as_operator(assemble_triplets(std::move(triplets), map_, map_));
+  frozen_.pressure_block = as_operator(
+      assemble_triplets(std::move(triplets), frozen_.pressure_map, frozen_.pressure_map));
 }
 
 template <int dim>
@@ -238,7 +243,7 @@ void FakeFluid<dim>::divergence(Vector& rhs) const {
       continue;
     for (int side = 0; side < 2; ++side) {
       const GlobalIndex unknown = face.volume.sides[side].unknown;
-      if (unknown != no_index && map_->isNodeGlobalElement(unknown))
+      if (unknown != no_index && frozen_.pressure_map->isNodeGlobalElement(unknown))
         rhs.sumIntoGlobalValue(unknown, (side == 0 ? -1 : 1) * face.volume.area * predicted_[f]);
     }
   }
@@ -266,7 +271,7 @@ void FakeFluid<dim>::project(const Vector& scaled_pressure) {
 template <int dim>
 std::vector<double> FakeFluid<dim>::coupled_velocity() const {
   std::vector<double> result;
-  for (const ControlVolume<dim>& volume : coupled_)
+  for (const ControlVolume<dim>& volume : frozen_.coupled_volumes)
     result.push_back(predicted_[volume.id]);
   return result;
 }
@@ -290,8 +295,8 @@ void FakeFluid<dim>::set_coupled_velocity(const std::vector<double>& velocity) {
 }
 
 template <int dim>
-Momentum<dim> FakeFluid<dim>::add_forces(double, double dt) {
-  Momentum<dim> impulse;
+ForceImpulse<dim> FakeFluid<dim>::add_forces(double, double dt) {
+  ForceImpulse<dim> given;
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const Face& face = faces_[f];
     if (face.kind != FaceKind::free && face.kind != FaceKind::coupled)
@@ -299,29 +304,23 @@ Momentum<dim> FakeFluid<dim>::add_forces(double, double dt) {
     const int axis = face.volume.direction;
     predicted_[f] += dt * box_.gravity[axis];
     if (face.kind == FaceKind::free)
-      impulse.add(face.volume.center, axis, mass(face) * dt * box_.gravity[axis]);
+      given.impulse.add(face.volume.center, axis, mass(face) * dt * box_.gravity[axis]);
   }
-  return impulse;
+  for (const ControlVolume<dim>& volume : frozen_.coupled_volumes)
+    given.coupled_change.push_back(dt * box_.gravity[volume.direction]);
+  return given;
 }
 
 template <int dim>
-std::vector<double> FakeFluid<dim>::coupled_force(double, double dt) const {
-  std::vector<double> force;
-  for (const ControlVolume<dim>& volume : coupled_)
-    force.push_back(dt * box_.gravity[volume.direction]);
-  return force;
-}
-
-template <int dim>
-double FakeFluid<dim>::largest_cell_crossing_rate() const {
-  double rate = 0;
+double FakeFluid<dim>::largest_speed() const {
+  double speed = 0;
   for (int axis = 0; axis < dim; ++axis) {
     double largest = 0;
     for (int f = first_face_[axis]; f < first_face_[axis + 1]; ++f)
       largest = std::max(largest, std::abs(velocity_[f]));
-    rate += largest / box_.spacing;
+    speed += largest;
   }
-  return rate;
+  return speed;
 }
 
 template <int dim>
@@ -358,11 +357,6 @@ Momentum<dim> FakeFluid<dim>::boundary_pressure_impulse(const Vector& scaled_pre
         (inner == 1 ? 1 : -1) * face.volume.area * pressure[face.volume.sides[inner].unknown]);
   }
   return impulse;
-}
-
-template <int dim>
-double FakeFluid<dim>::fluid_volume() const {
-  return static_cast<double>(rank_of_unknown_.size()) * std::pow(box_.spacing, dim);
 }
 
 template class FakeFluid<2>;

@@ -2,7 +2,8 @@
 #include <functional>
 #include <vector>
 
-#include "interfaces/bounded_fluid.hpp"
+#include "interfaces/fluid_sides.hpp"
+#include "interfaces/viscosity.hpp"
 
 namespace lockstep::test {
 
@@ -23,7 +24,10 @@ struct FakeBox {
 /// number; only the pressure unknowns (active cells in lexicographic order, in equal shares) and
 /// the lists an interface calls local are distributed. Nothing is transported: u* = u^n.
 template <int dim>
-class FakeFluid : public FluidDiscretization<dim>, public BoundedFluid<dim> {
+class FakeFluid : public FluidDiscretization<dim>,
+                  public AuditedFluid<dim>,
+                  public BoundedFluid<dim>,
+                  public ViscousFluid<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
   enum class FaceKind { inactive, wall, free, coupled };
@@ -44,29 +48,21 @@ class FakeFluid : public FluidDiscretization<dim>, public BoundedFluid<dim> {
   const std::vector<double>& predicted() const { return predicted_; }  ///< u* of all faces
 
   std::string name() const override { return "fake fluid"; }
-  void set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) override;
-  const std::vector<ControlVolume<dim>>& coupled_volumes() const override { return coupled_; }
-  RCP<const Map> pressure_map() const override { return map_; }
-  RCP<const LinearOperator> pressure_block() const override { return pressure_block_; }
-  const PressureRegions& regions() const override { return regions_; }
   void divergence(Vector& rhs) const override;
   void project(const Vector& scaled_pressure) override;
   std::vector<double> coupled_velocity() const override;
   void set_coupled_velocity(const std::vector<double>& velocity) override;
 
   void begin_prediction() override { predicted_ = velocity_; }
-  Momentum<dim> add_forces(double time, double dt) override;
-  std::vector<double> coupled_force(double time, double dt) const override;
+  ForceImpulse<dim> add_forces(double time, double dt) override;
   bool is_viscous() const override { return box_.viscosity > 0; }
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
   Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
-  void adopt_advection_velocity() override {}
   void advect(double, double, const MovingSurface<dim>&) override { predicted_ = velocity_; }
-  void revalidate(const MovingSurface<dim>&) override {}
   void accept() override { velocity_ = predicted_; }
 
-  double largest_cell_crossing_rate() const override;
-  double spacing() const override { return box_.spacing; }
+  double smallest_length() const override { return box_.spacing; }
+  double largest_speed() const override;
   double density(const Point<dim>&) const override { return box_.density; }
   Box<dim> bounds() const override {
     Point<dim> upper = box_.lower;
@@ -78,9 +74,10 @@ class FakeFluid : public FluidDiscretization<dim>, public BoundedFluid<dim> {
   Momentum<dim> momentum() const override;
   double kinetic_energy() const override;
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
-  double fluid_volume() const override;
 
  private:
+  const FluidGeometry<dim>& freeze(const Surface& surface,
+                                   const OpenFractionRule<dim>& rule) override;
   void make_faces();
   int cell_at(const Index<dim>& index) const;  ///< -1 outside the box
   int face_at(int axis, const Index<dim>& index) const;
@@ -108,10 +105,7 @@ class FakeFluid : public FluidDiscretization<dim>, public BoundedFluid<dim> {
   std::vector<GlobalIndex> unknown_;  ///< of each cell, no_index inside solids
   std::vector<int> solid_;            ///< of each cell, -1 in the fluid
   std::vector<int> rank_of_unknown_;
-  RCP<const Map> map_;
-  RCP<const LinearOperator> pressure_block_;
-  PressureRegions regions_;
-  std::vector<ControlVolume<dim>> coupled_;
+  FluidGeometry<dim> frozen_;
 };
 
 }  // namespace lockstep::test

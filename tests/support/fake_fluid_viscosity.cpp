@@ -70,8 +70,8 @@ std::unique_ptr<ViscousSystem<dim>> FakeFluid<dim>::viscous_system() const {
         link.position = face.volume.center;
         link.end = other.volume.center;
         if (other.kind == FaceKind::coupled && owned(other)) {
-          for (std::size_t c = 0; c < coupled_.size(); ++c) {
-            if (coupled_[c].id == other.volume.id)
+          for (std::size_t c = 0; c < frozen_.coupled_volumes.size(); ++c) {
+            if (frozen_.coupled_volumes[c].id == other.volume.id)
               link.coupled_volume = static_cast<int>(c);
           }
         } else if (other.kind == FaceKind::coupled) {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "interfaces/solid.hpp"
+#include "interfaces/solid_sides.hpp"
 
 namespace lockstep::test {
 
@@ -33,7 +33,7 @@ struct FakeSolidOptions {
 /// mass. State is replicated; the dofs are dealt to the ranks in equal shares, wherever a body
 /// ends.
 template <int dim>
-class FakeSolid : public SolidModel<dim> {
+class FakeSolid : public SolidModel<dim>, public AuditedSolids<dim> {
  public:
   FakeSolid(std::vector<FakeBody<dim>> bodies, const FakeSolidOptions<dim>& options,
             const Communicator& comm);

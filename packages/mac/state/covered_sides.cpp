@@ -17,6 +17,8 @@ ControlVolume<dim> volume_at_side(const MacDomain<dim>& domain, const MacGeometr
   volume.density = geometry.face_table.regular().density;
   volume.area = geometry.face_table.area();
   volume.at_prescribed_side = true;
+  volume.sides[end].kind = SideKind::closed;
+  volume.sides[1 - end].kind = SideKind::unknown;
   volume.sides[1 - end].unknown = geometry.unknown[cell];
   volume.sides[1 - end].center = inner;
   volume.sides[end].center = volume.center;
@@ -49,7 +51,7 @@ void add_covered_sides(const MacDomain<dim>& domain, const OpenFractionRule<dim>
           continue;
         if (volume.open_fraction > 0)
           volume.open_center = rule.open_center(volume, *geometry.state.surface);
-        geometry.volumes.push_back(volume);
+        geometry.coupled_volumes.push_back(volume);
         if (const int face = end == 0 ? cell : other; face >= 0)
           geometry.face_table.set_open(axis, face, volume.open_fraction);
       }

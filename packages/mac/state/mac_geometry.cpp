@@ -33,8 +33,9 @@ PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
   if (cell < 0)
     return side;
   side.unknown = geometry.unknown[cell];
+  side.kind = SideKind::unknown;
   if (geometry.state.cells[cell] == CellState::solid) {
-    side.inside_solid = true;
+    side.kind = SideKind::solid;
     side.solid = geometry.state.surface->inside(center);
   }
   return side;
@@ -165,7 +166,7 @@ void take_fraction(const OpenFractionRule<dim>& rule, int axis, int cell, Contro
   }
   volume.seen_by_fluid = sees(surface, volume);
   geometry.coupled.push_back({axis, cell});
-  geometry.volumes.push_back(volume);
+  geometry.coupled_volumes.push_back(volume);
 }
 
 /// Faces in the plane where a periodic axis closes lie at its lower end, unless a solid sticks out
@@ -255,7 +256,7 @@ void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geomet
   if (!geometry.state.surface || grid.comm()->getSize() == 1)
     return;
   std::array<double, dim> n_partial{};
-  for (const ControlVolume<dim>& volume : geometry.volumes)
+  for (const ControlVolume<dim>& volume : geometry.coupled_volumes)
     n_partial[volume.direction] += volume.open_fraction > 0;
   for (const auto& [axis, cell] : geometry.prescribed)
     n_partial[axis] += geometry.face_table(axis, cell).open < 1;

@@ -8,21 +8,19 @@
 
 namespace lockstep {
 
-/// The frozen geometry of one instant with the numbering of the pressures.
+/// The frozen geometry of one instant with the numbering of the pressures. The coupled volumes are
+/// those of `coupled`, behind them volumes at prescribed sides (add_covered_sides).
 template <int dim>
-struct MacGeometry {
+struct MacGeometry : FluidGeometry<dim> {
   MacState<dim> state;
-  RCP<const Map> pressure_map;
   /// Pressure unknown of each owned cell and its neighbours, or no_index.
   std::vector<GlobalIndex> unknown;
   /// Of owned faces and the upper ones of owned cells.
   FaceTable<dim> face_table;
   /// Cells so near to a surface that a link from their faces may meet it; empty without surface.
   std::vector<char> near;
-  /// Owned faces with open fraction < 1 and fluid on at least one side, and their control volumes;
-  /// behind them volumes at prescribed sides (add_covered_sides).
+  /// Owned faces with open fraction < 1 and fluid on at least one side.
   std::vector<FaceId> coupled;
-  std::vector<ControlVolume<dim>> volumes;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows
 
   /// The part of a face through which free fluid flows.
@@ -43,7 +41,8 @@ struct MacGeometry {
 };
 
 /// Judges cells by their centres, asks `rule` about faces near the surface, numbers the pressures.
-/// All of the fluid has this density. `surface` may be null or empty. Collective.
+/// All of the fluid has this density. `surface` may be null or empty. Pressure block and regions
+/// are left to be made of it. Collective.
 template <int dim>
 MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
                                const std::shared_ptr<const SurfaceSnapshot<dim>>& surface,

@@ -1,4 +1,5 @@
 #pragma once
+#include "interfaces/viscosity.hpp"
 #include "mac/state/mac_geometry.hpp"
 
 namespace lockstep {

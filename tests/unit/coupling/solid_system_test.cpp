@@ -36,6 +36,36 @@ FakeBody<2> loose_thread() {
   return body;
 }
 
+/// What every solid model must write, and nothing more.
+class BareSolid : public SolidModel<2> {
+ public:
+  explicit BareSolid(const FakeBody<2>& body) : inner_({body}, {}, Tpetra::getDefaultComm()) {}
+  std::string name() const override { return "bare"; }
+  const std::vector<SolidDescription>& solids() const override { return inner_.solids(); }
+  const SurfaceMesh<2>& surface() const override { return inner_.surface(); }
+  void velocity_row(const SurfacePoint<2>& point, const Point<2>& x,
+                    VelocityRow<2>& row) const override {
+    inner_.velocity_row(point, x, row);
+  }
+  Point<2> effective_velocity(const SurfacePoint<2>& point, const Point<2>& x) const override {
+    return inner_.effective_velocity(point, x);
+  }
+  RCP<const Map> dof_map() const override { return inner_.dof_map(); }
+  RCP<const LinearOperator> mass() const override { return inner_.mass(); }
+  void explicit_momentum(double time, double dt, Vector& momentum) const override {
+    inner_.explicit_momentum(time, dt, momentum);
+  }
+  RCP<const Vector> velocity() const override { return inner_.velocity(); }
+  void set_velocity(const Vector& velocity) override { inner_.set_velocity(velocity); }
+  void move(const Vector& velocity, double time, double dt) override {
+    inner_.move(velocity, time, dt);
+  }
+  std::vector<SolidState<2>> states() const override { return inner_.states(); }
+
+ private:
+  FakeSolid<2> inner_;
+};
+
 FakeBox<2> small_tank() {
   FakeBox<2> box;
   box.n_cells = {6, 4};
@@ -73,6 +103,27 @@ TEST(SolidSystem, ModelsFollowOneAnother) {
   EXPECT_DOUBLE_EQ(momentum[0].angular[0], 1 * 6 - 0.5 * 3 + 0.75);
   EXPECT_EQ(momentum[1].linear, Point<2>(-2, 10));
   EXPECT_DOUBLE_EQ(momentum[1].angular[0], 2 * 10 + 2 * 1);
+}
+
+TEST(SolidSystem, DoesWithoutSideInterfaces) {
+  std::vector<std::unique_ptr<SolidModel<2>>> models = fake_solids<2>({{sliding_plate()}});
+  EXPECT_TRUE(
+      SolidSystem<2>(fake_solids<2>({{sliding_plate()}}), Tpetra::getDefaultComm()).is_audited());
+  models.push_back(std::make_unique<BareSolid>(loose_thread()));
+  SolidSystem<2> solids(std::move(models), Tpetra::getDefaultComm());
+  EXPECT_FALSE(solids.is_audited());
+  const RCP<Vector> momentum = solids.explicit_momentum(0, 0.1);
+  EXPECT_EQ(momentum->norm1(), 3 * (1 + 2) + 0.25 * 3 + (1 + 5) * 2);
+  const auto of_each = solids.momentum_of_each(*momentum);
+  ASSERT_EQ(of_each.size(), 2u);
+  EXPECT_EQ(of_each[0].linear, Point<2>(3, 6));
+  EXPECT_EQ(of_each[1].linear, Point<2>(0, 0));
+  EXPECT_EQ(solids.external_impulse(0, 0.1).linear, Point<2>(0, 0));
+  EXPECT_FALSE(solids.has_implicit_forces());
+  EXPECT_FALSE(solids.linearise(0.1, *solids.velocity()));
+  EXPECT_TRUE(solids.linearisation().is_null());
+  EXPECT_TRUE(solids.near_null_space(Teuchos::null).empty());
+  EXPECT_EQ(solids.n_clamped_elements(), 0);
 }
 
 TEST(SolidSystem, StackedVectorsReachTheirModels) {

@@ -362,7 +362,6 @@ TEST(Flux, PartlyOpenFacesKeepTheVelocityOfTheirFluid) {
   MacFluid<2>& fluid = *c.fluid;
   fluid.set_prediction([](const Point<2>&) { return Point<2>(1, 2); });
   fluid.accept();
-  fluid.adopt_advection_velocity();
   const MovingSurface<2> still{c.surface, c.surface,
                                [](const SurfacePoint<2>&) { return Point<2>(0, 0); }};
   fluid.advect(0, 1e-5, still);
@@ -389,11 +388,10 @@ TEST(Flux, JetsInPartlyOpenFacesDoNotLast) {
   const auto turning = [&](const Point<2>& x) {
     return Point<2>(middle[1] - x[1], x[0] - middle[0]);
   };
-  fluid.set_prediction(turning);
-  fluid.adopt_advection_velocity();
   fluid.set_prediction(
       [&](const Point<2>& x) { return c.surface->inside(x) >= 0 ? Point<2>(9, -9) : turning(x); });
   fluid.accept();
+  fluid.set_prediction(turning);
   const MovingSurface<2> still{c.surface, c.surface,
                                [](const SurfacePoint<2>&) { return Point<2>(0, 0); }};
   fluid.advect(0, 0.25, still);  // 0.23 m/s: 0.9 cells

@@ -17,7 +17,8 @@ template <int dim>
 struct Blocked : OpenFractionRule<dim> {
   double open_fraction(const ControlVolume<dim>& volume, bool blocked,
                        const SurfaceSnapshot<dim>&) const override {
-    return blocked || volume.sides[0].inside_solid != volume.sides[1].inside_solid ? 0 : 1;
+    const auto& [below, above] = volume.sides;
+    return blocked || (below.kind == SideKind::solid) != (above.kind == SideKind::solid) ? 0 : 1;
   }
 };
 
@@ -73,7 +74,7 @@ TEST(FakeFluid, DivergenceAndProjectionAgree3d) {
 TEST(FakeFluid, HydrostaticPressureHoldsGravity) {
   FakeFluid<2> fluid(open_box<2>(), Tpetra::getDefaultComm());
   fluid.set_geometry(no_surface<2>(), Blocked<2>());
-  const Momentum<2> impulse = fluid.add_forces(0, 0.1);
+  const Momentum<2> impulse = fluid.add_forces(0, 0.1).impulse;
   // Free upright faces: 4 columns of 2 whole dual cells and the open half: 10 dual cells of 0.5 kg.
   EXPECT_NEAR(impulse.linear.y(), -10 * 0.5 * 10 * 0.1, 1e-13);
   // p̂ = rho g dt (1.5 - y) in the rows y = 0.25, 0.75, 1.25.

@@ -44,7 +44,7 @@ TEST(Fluid, BuoyancyByHand) {
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
   fluid->begin_prediction();
-  const Momentum<2> impulse = fluid->add_forces(0.0, 0.1);
+  const Momentum<2> impulse = fluid->add_forces(0.0, 0.1).impulse;
   // 12 inner y faces of mass 0.5; acceleration -10 (1 - 0.01 * 10 + 0.5 * 0.4) = -11.
   EXPECT_NEAR(impulse.linear[1], 12 * 0.5 * 0.1 * -11, 1e-12);
   EXPECT_NEAR(impulse.linear[0], 0, 1e-15);
@@ -116,10 +116,9 @@ TEST(Fluid, AVortexAtRestInTheMeanStaysOneInAStep) {
   fluid->begin_prediction();
   const double energy = fluid->kinetic_energy();
   for (int step = 0; step < 4; ++step) {
-    const double dt = 0.5 / fluid->largest_cell_crossing_rate();
+    const double dt = 0.5 * fluid->smallest_length() / fluid->largest_speed();
     fluid->begin_prediction();
     project(*fluid);
-    fluid->adopt_advection_velocity();
     fluid->advect(0, dt, no_surface<2>());
     fluid->add_forces(0, dt);
     project(*fluid);
@@ -146,7 +145,7 @@ TEST(Fluid, AChannelFillsFromTheInflow) {
     project(*fluid);
     fluid->accept();
     const double speed = std::min(end, 1.0);
-    EXPECT_NEAR(fluid->largest_cell_crossing_rate(), speed / 0.125, 1e-7);
+    EXPECT_NEAR(fluid->largest_speed(), speed, 1e-8);
     // 1000 kg/m^3 on 2 m^3 less the half cell at the inflow.
     EXPECT_NEAR(fluid->momentum().linear[0], 1000 * speed * (2 - 0.0625), 1e-5);
   }
@@ -219,7 +218,6 @@ TEST(Fluid, SourcesFeedSmokeAndAFrameShowsIt) {
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
   fluid->begin_prediction();
-  fluid->adopt_advection_velocity();
   fluid->advect(0, 0.25, no_surface<2>());
   std::vector<BoxFrame> frames;
   fluid->add_frame(frames);
@@ -275,7 +273,7 @@ TEST(Fluid, IsRegistered) {
   scene.make();
   const auto fluid = fluids.create("mac", scene.fluid, scene.domain, world());
   EXPECT_EQ(fluid->name(), "mac");
-  EXPECT_DOUBLE_EQ(fluid->spacing(), 0.125);
+  EXPECT_DOUBLE_EQ(fluid->smallest_length(), 0.125);
 }
 
 }  // namespace

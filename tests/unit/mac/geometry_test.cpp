@@ -21,7 +21,9 @@ TEST(Geometry, CellsOfABoxAndItsFaces) {
   for (const ControlVolume<2>& volume : fluid->coupled_volumes()) {
     const auto& sides = volume.sides;
     EXPECT_NE(sides[0].unknown == no_index, sides[1].unknown == no_index);
-    EXPECT_EQ(sides[0].inside_solid || sides[1].inside_solid, true);
+    const int inner = sides[0].unknown == no_index ? 0 : 1;
+    EXPECT_EQ(sides[inner].kind, SideKind::solid);
+    EXPECT_EQ(sides[1 - inner].kind, SideKind::unknown);
     EXPECT_EQ(std::max(sides[0].solid, sides[1].solid), 0);
     EXPECT_NEAR(volume.box.volume(), 1.0, 1e-14);
     EXPECT_TRUE(volume.box.contains(volume.center));
@@ -39,7 +41,7 @@ TEST(Geometry, FacesInsideSolidsAreInactiveAndFeelNoForce) {
   solids.add(ball_surface<3>(0.25, 0.05), Point<3>(0.5, 0.5, 0.5), true);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<3>());
   fluid->begin_prediction();
-  const Momentum<3> impulse = fluid->add_forces(0.0, 0.5);
+  const auto [impulse, coupled_change] = fluid->add_forces(0.0, 0.5);
   EXPECT_LT((impulse.linear - fluid->momentum().linear).norm(), 1e-13);
   const auto& faces = fluid->geometry().state.faces[2];
   GlobalIndex free = 0, inactive = 0;
@@ -53,7 +55,7 @@ TEST(Geometry, FacesInsideSolidsAreInactiveAndFeelNoForce) {
   EXPECT_GT(sum_all(world(), inactive), 100);
   const double mass = static_cast<double>(sum_all(world(), free)) / (16 * 16 * 16);
   EXPECT_NEAR(impulse.linear[2], -mass, 1e-13);
-  for (const double change : fluid->coupled_force(0.0, 0.5))
+  for (const double change : coupled_change)
     EXPECT_TRUE(change == -1.0 || change == 0.0);
 }
 
@@ -108,6 +110,7 @@ TEST(Geometry, AnOpenSideThatAPlateCovers) {
     EXPECT_DOUBLE_EQ(volume.center[1], 4.0);
     EXPECT_NEAR(volume.box.volume(), 0.5, 1e-14);
     EXPECT_EQ(volume.sides[1].unknown, no_index);
+    EXPECT_EQ(volume.sides[1].kind, SideKind::open);
     EXPECT_FALSE(volume.seen_by_fluid);
   }
 }

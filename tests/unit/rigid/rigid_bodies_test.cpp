@@ -241,7 +241,7 @@ TEST(RigidBodies, RegistryMakesOneModelOfAllBodies) {
   const std::string disc = geometry("ball", number("Radius", "0.2")) + number("Density", "1");
   const NamedLists bodies{{"Left", body_list<2>(disc)}, {"Right", body_list<2>(disc)}};
   SolidSetting<2> setting;
-  setting.grid_spacing = 0.1;
+  setting.smallest_length = 0.1;
   setting.comm = world();
   const auto made = registry.create("rigid body", ParameterList(), bodies, setting);
   ASSERT_EQ(made->solids().size(), 2u);

@@ -1,0 +1,77 @@
+#pragma once
+#include "interfaces/solid.hpp"
+#include "linear/near_null_space.hpp"
+
+namespace lockstep {
+
+struct SurfaceFrame;  // output/frames.hpp
+
+// Side interfaces of solid models (`side_of`): what audits, solvers and outputs want. The
+// SolidSystem asks each of its models and does without.
+
+/// Momentum, for the ledger and for the forces that are reported. Without it a run has no
+/// `momentum_error`, and the forces on these solids are zero in its tables.
+template <int dim>
+class AuditedSolids {
+ public:
+  virtual ~AuditedSolids() = default;
+  /// Total of the external impulses (gravity, loads) inside `explicit_momentum`. Global.
+  virtual Momentum<dim> external_impulse(double time, double dt) const = 0;
+  /// Linear and angular momentum (about the origin) of each solid for a generalized momentum q on
+  /// dof_map; zero for prescribed ones. Every rank gets all. Collective.
+  virtual std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const = 0;
+  /// Angular momentum about the origin that the inner forces of `explicit_momentum` give at the
+  /// present positions [kg m^2/s]: zero but for laws that do not turn with the body, and forces
+  /// taken elsewhere on its path. Asked for before `set_velocity`. Global, collective.
+  virtual AngularVector<dim> inner_angular_impulse(double) const {
+    return AngularVector<dim>::Zero();
+  }
+};
+
+/// An energy with the round-off that its computation carries [J].
+struct ComputedEnergy {
+  double value = 0, round_off = 0;
+};
+
+/// Forces at the positions that the solve leads to, and not linear in them.
+template <int dim>
+class UnlinearSolids {
+ public:
+  virtual ~UnlinearSolids() = default;
+  /// False: none in this scene, the functions below are not asked. Local, the same on all ranks.
+  virtual bool has_implicit_forces() const = 0;
+  /// A Newton iteration: linearises forces and D at the positions that this velocity reaches in dt,
+  /// instead of at the present ones, until `move` or `set_velocity`. False if nothing depends on
+  /// that. Collective.
+  virtual bool linearise(double dt, const Vector& velocity) = 0;
+  /// The velocity about which forces and D are linearised at present; null: zero. Local.
+  virtual RCP<const Vector> linearisation() const = 0;
+  /// The potential of these forces at the velocity V of the solve over dt, less the quadratic one
+  /// of which `explicit_momentum` and D are made, up to a constant. Global, collective.
+  virtual ComputedEnergy unlinear_energy(double dt, const Vector& velocity) const = 0;
+};
+
+/// What inverses of C can be built on.
+template <int dim>
+class NearNullSpaces {
+ public:
+  virtual ~NearNullSpaces() = default;
+  /// The motions at the present positions that D does not resist, on `dof_map`, of models with
+  /// nodes, without `mass`. Collective.
+  virtual NearNullSpace near_null_space() const = 0;
+};
+
+/// What only pictures and tables show.
+template <int dim>
+class SolidOutput {
+ public:
+  virtual ~SolidOutput() = default;
+  /// Appends meshes with fields beyond the surface, for frames: what is inside, stress and strain.
+  /// Collective.
+  virtual void add_frames(std::vector<SurfaceFrame>& frames) const = 0;
+  /// Elements whose implicit forces were changed to keep C definite, in the last step that used
+  /// them; for the history. Global, local call.
+  virtual GlobalIndex n_clamped_elements() const { return 0; }
+};
+
+}  // namespace lockstep

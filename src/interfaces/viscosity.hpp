@@ -1,0 +1,91 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "interfaces/fluid.hpp"
+
+namespace lockstep {
+
+template <int dim>
+class SolidSystem;
+
+/// A viscous bond from a free velocity to the solid: it pulls with
+/// coefficient * (u_row - v_solid) [N] on both, equal and opposite.
+template <int dim>
+struct ViscousLink {
+  int row = -1;             ///< local row of `ViscousSystem::stiffness`
+  int coupled_volume = -1;  ///< >= 0: the neighbour is this coupled control volume (index), W V_S
+  /// The neighbour is a coupled control volume of another rank, W V_S (`coupled_volume` is -1).
+  std::shared_ptr<const ControlVolume<dim>> remote_volume;
+  SurfacePoint<dim> point;  ///< else: the link meets the surface here
+  int direction = 0;
+  double coefficient = 0;  ///< [kg/s]
+  Point<dim> position =
+      Point<dim>::Zero();  ///< of the free velocity: where the link pulls on the fluid [m]
+  /// The other end [m]: a rigid solid is taken to move there as it does everywhere, even if its
+  /// surface is a little nearer or farther.
+  Point<dim> end = Point<dim>::Zero();
+};
+
+/// Implicit viscosity in variational form: (M + dt K) u = M u* over the free velocities, SPD.
+template <int dim>
+struct ViscousSystem {
+  RCP<const Map> map;              ///< free velocities
+  RCP<const CrsMatrix> stiffness;  ///< K_ff [kg/s], with the diagonal of all links and walls
+  RCP<Vector> mass;                ///< M_f [kg]
+  RCP<Vector> velocity;            ///< u* [m/s]
+  RCP<Vector> wall_force;          ///< pull of moving walls and inflows [N]
+  double viscosity = 0;            ///< dynamic, mu [Pa s]
+  std::vector<ViscousLink<dim>> links;
+};
+
+/// A side interface of fluids: viscosity, taken implicitly together with the solids. Without it a
+/// fluid is inviscid.
+template <int dim>
+class ViscousFluid {
+ public:
+  virtual ~ViscousFluid() = default;
+  /// False: inviscid in this scene, the two functions below are never called. Local.
+  virtual bool is_viscous() const = 0;
+  /// Of the present u*. Collective.
+  virtual std::unique_ptr<ViscousSystem<dim>> viscous_system() const = 0;
+  /// Returns the impulse of walls, open sides and the internal couple of the scheme over dt, each
+  /// computed from the tractions of `solution`, global; u* := `velocity` on free velocities, which
+  /// is u* plus exactly the impulses of `solution` (the two differ by the solver's residual over
+  /// M). Collective.
+  virtual Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity,
+                                       double dt) = 0;
+};
+
+/// Null for inviscid fluids.
+template <int dim>
+ViscousFluid<dim>* viscosity_of(FluidDiscretization<dim>& fluid) {
+  auto* viscous = side_of<ViscousFluid<dim>>(fluid);
+  return viscous && viscous->is_viscous() ? viscous : nullptr;
+}
+
+/// Row of the dynamic solids (ids of SolidSystem's map) and the prescribed velocity at a viscous
+/// link.
+template <int dim>
+struct LinkRow {
+  std::vector<GlobalIndex> dofs;
+  std::vector<double> weights;
+  double prescribed = 0;                     ///< velocity that prescribed solids contribute [m/s]
+  double prescribed_share = 0;               ///< their part of the link, 0..1
+  int prescribed_solid = -1;                 ///< one of them: the last with a share
+  Point<dim> position = Point<dim>::Zero();  ///< where the link pulls on the solid [m]
+  int solid = -1;                            ///< the one with the largest share
+};
+
+/// A side interface of couplings: what viscous links pull on. A viscous fluid among solids needs
+/// it.
+template <int dim>
+class ViscousCoupling {
+ public:
+  virtual ~ViscousCoupling() = default;
+  /// `assemble` and the surface it was given must still be valid. Local.
+  virtual void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
+                        LinkRow<dim>& row) const = 0;
+};
+
+}  // namespace lockstep

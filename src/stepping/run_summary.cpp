@@ -1,0 +1,81 @@
+#include "stepping/run_summary.hpp"
+
+#include <algorithm>
+
+#include "output/build_information.hpp"
+
+namespace lockstep {
+
+namespace {
+
+double median(std::vector<int> values) {
+  if (values.empty())
+    return 0;
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+nlohmann::ordered_json iteration_summary(const std::vector<int>& values) {
+  return {{"median", median(values)},
+          {"max", values.empty() ? 0 : *std::max_element(values.begin(), values.end())}};
+}
+
+}  // namespace
+
+void RunSummary::count(const SolveReport& s1, const SolveReport& f2, const SolveReport& s2) {
+  s1_iterations_.push_back(s1.iterations);
+  f2_iterations_.push_back(f2.iterations);
+  s2_iterations_.push_back(s2.iterations);
+  for (const SolveReport* solve : {&s1, &f2, &s2}) {
+    worst_residual_ = std::max({worst_residual_, solve->pressure_residual, solve->solid_residual});
+    preconditioner_builds_ += solve->preconditioner_builds;
+    preconditioner_reuses_ += solve->preconditioner_reuses;
+    stored_nonzeros_ = std::max(stored_nonzeros_, solve->stored_nonzeros);
+  }
+}
+
+nlohmann::ordered_json RunSummary::json(const RunFacts& run, const std::vector<PhaseTime>& phases,
+                                        const Communicator& comm) const {
+  const BuildInformation build = build_information();
+  const PeakMemory memory = peak_memory_mb(comm);
+  nlohmann::ordered_json phase_times = nlohmann::ordered_json::array();
+  for (const PhaseTime& phase : phases) {
+    phase_times.push_back({{"name", phase.name},
+                           {"min_seconds", phase.min_seconds},
+                           {"mean_seconds", phase.mean_seconds},
+                           {"max_seconds", phase.max_seconds},
+                           {"calls", phase.calls}});
+  }
+  return {{"status", run.status},
+          {"versions",
+           {{"lockstep", build.version},
+            {"git", build.git_hash},
+            {"build", build.build_type},
+            {"compiler", build.compiler},
+            {"trilinos", build.trilinos},
+            {"mpi", build.mpi},
+            {"hdf5", build.hdf5}}},
+          {"ranks", comm->getSize()},
+          {"steps", run.n_steps},
+          {"step", run.step},
+          {"time", run.time},
+          {"pressure_unknowns", run.n_pressures},
+          {"solid_unknowns", run.n_solid_unknowns},
+          {"iterations",
+           {{"s1", iteration_summary(s1_iterations_)},
+            {"f2", iteration_summary(f2_iterations_)},
+            {"s2", iteration_summary(s2_iterations_)}}},
+          {"largest_momentum_error", largest_momentum_error_},
+          {"largest_angular_momentum_error", largest_angular_error_},
+          {"worst_residual", worst_residual_},
+          {"preconditioner_builds", preconditioner_builds_},
+          {"preconditioner_reuses", preconditioner_reuses_},
+          {"stored_nonzeros", stored_nonzeros_},
+          {"wall_seconds", run.wall_seconds},
+          {"peak_memory_mb", memory.all_ranks_mb},
+          {"peak_memory_largest_rank_mb", memory.largest_rank_mb},
+          {"phases", phase_times}};
+}
+
+}  // namespace lockstep

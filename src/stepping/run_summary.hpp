@@ -1,0 +1,45 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "output/timers.hpp"
+#include "stepping/step_report.hpp"
+
+namespace lockstep {
+
+/// What summary.json says of a run besides its steps.
+struct RunFacts {
+  std::string status;
+  long long n_steps = 0, step = 0;  ///< taken by this program, and the number of the last
+  double time = 0;                  ///< [s]
+  std::size_t n_pressures = 0;
+  GlobalIndex n_solid_unknowns = 0;
+  double wall_seconds = 0;
+};
+
+/// Adds up the steps of a run for summary.json.
+class RunSummary {
+ public:
+  template <int dim>
+  void count(const StepReport<dim>& report) {
+    count(report.s1, report.f2, report.s2);
+    largest_momentum_error_ = larger(report.momentum_error, largest_momentum_error_);
+    largest_angular_error_ = larger(report.angular_momentum_error, largest_angular_error_);
+  }
+  /// Collective.
+  nlohmann::ordered_json json(const RunFacts& run, const std::vector<PhaseTime>& phases,
+                              const Communicator& comm) const;
+
+ private:
+  void count(const SolveReport& s1, const SolveReport& f2, const SolveReport& s2);
+  /// nan, of what is not audited, stays.
+  static double larger(double value, double largest) { return value <= largest ? largest : value; }
+
+  std::vector<int> s1_iterations_, f2_iterations_, s2_iterations_;
+  double largest_momentum_error_ = 0, largest_angular_error_ = 0, worst_residual_ = 0;
+  int preconditioner_builds_ = 0, preconditioner_reuses_ = 0;
+  long stored_nonzeros_ = 0;
+};
+
+}  // namespace lockstep
