@@ -21,8 +21,17 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
       velocity_(initial_velocity<dim>(domain_.grid, fluid.sublist("Initial State"))) {
   domain_.halo.fill(velocity_);
   prediction_ = velocity_;
-  if (parameters_.order_in_time == 2)
+  scaled_pressure_.assign(domain_.grid.n_stored_cells(), 0.0);
+  accepted_pressure_ = scaled_pressure_;
+  fields_ = {stored_faces<dim>("velocity", velocity_)};
+  if (parameters_.order_in_time == 2) {
     history_.emplace(domain_.grid);
+    for (StoredField& field : history_->fields())
+      fields_.push_back(std::move(field));
+  }
+  for (Scalar& scalar : scalars_.all())
+    fields_.push_back({scalar.name, {&scalar.values}});
+  fields_.push_back({"scaled_pressure", {&accepted_pressure_}});
 }
 
 template <int dim>

@@ -8,6 +8,7 @@
 #include "mac/pressure/forces.hpp"
 #include "mac/pressure/pressure_operator.hpp"
 #include "mac/pressure/pressure_system.hpp"
+#include "mac/state/stored_fields.hpp"
 #include "mac/state/velocity_history.hpp"
 #include "mac/transport/ray_halo.hpp"
 #include "mac/transport/revalidation.hpp"
@@ -126,13 +127,14 @@ class MacFluid : public FluidDiscretization<dim>,
   MacGeometry<dim> geometry_;
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
-  FaceField<dim> velocity_, prediction_;
+  FaceField<dim> velocity_, prediction_;         ///< u^n, u*
   mutable std::optional<double> largest_speed_;  ///< of this velocity and geometry, once asked for
   std::optional<VelocityHistory<dim>> history_;  ///< none: first order in time
   CellField scaled_pressure_;                    ///< of the last projection
   CellField accepted_pressure_;                  ///< of the last accepted step
   std::vector<CellState> accepted_cells_;        ///< which cells had one
   double accepted_step_ = 0;                     ///< its dt
+  std::vector<StoredField> fields_;              ///< all that are kept from step to step
   InvalidSamples<dim> invalid_;
   double time_ = 0;       ///< of walls and inflows
   double last_step_ = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures

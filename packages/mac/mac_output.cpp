@@ -1,4 +1,5 @@
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
 #include "mac/mac_fluid.hpp"
 #include "output/checkpoint.hpp"
@@ -48,24 +49,6 @@ BoxField scalar_field(const TiledGrid<dim>& grid, const std::vector<int>& tiles,
           }};
 }
 
-/// The numbers of the owned lattice cells, in which all fields are saved.
-template <int dim>
-std::vector<int> saved_cells(const TiledGrid<dim>& grid) {
-  std::vector<int> cells;
-  for (int cell = 0; cell < grid.n_owned_cells(); ++cell)
-    if (grid.in_lattice(cell))
-      cells.push_back(cell);
-  return cells;
-}
-
-template <int dim>
-std::vector<GlobalIndex> numbers_of(const TiledGrid<dim>& grid, const std::vector<int>& cells) {
-  std::vector<GlobalIndex> ids;
-  ids.reserve(cells.size());
-  for (const int cell : cells)
-    ids.push_back(grid.global_id(cell));
-  return ids;
-}
 }  // namespace
 
 template <int dim>
@@ -95,8 +78,7 @@ void MacFluid<dim>::add_frame(std::vector<BoxFrame>& boxes) const {
   const double per_step = last_step_ > 0 ? 1 / last_step_ : 0;
   box.fields.push_back(
       scalar_field(grid, tiles, "pressure", "Pa", [this, &cells, per_step](int cell) {
-        const bool known = cells[cell] == CellState::fluid && !scaled_pressure_.empty();
-        return known ? scaled_pressure_[cell] * per_step : 0;
+        return cells[cell] == CellState::fluid ? scaled_pressure_[cell] * per_step : 0;
       }));
   for (const Scalar& scalar : scalars_.all())
     box.fields.push_back(
@@ -111,68 +93,25 @@ void MacFluid<dim>::add_frame(std::vector<BoxFrame>& boxes) const {
 
 template <int dim>
 void MacFluid<dim>::save(CheckpointWriter& checkpoint) const {
-  const std::vector<int> cells = saved_cells(domain_.grid);
-  const std::vector<GlobalIndex> ids = numbers_of(domain_.grid, cells);
-  const auto write_faces = [&](const std::string& name, const FaceField<dim>& field) {
-    std::vector<double> values;
-    for (const int cell : cells)
-      for (int axis = 0; axis < dim; ++axis)
-        values.push_back(field[axis][cell]);
-    checkpoint.write_distributed("fluid/" + name, ids, values, dim);
-  };
-  write_faces("velocity", velocity_);
-  if (history_)
-    for (const auto& [name, field] : history_->fields())
-      write_faces(name, *field);
-  std::vector<double> values(cells.size());
-  for (const Scalar& scalar : scalars_.all()) {
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      values[i] = scalar.values[cells[i]];
-    checkpoint.write_distributed("fluid/" + scalar.name, ids, values);
-  }
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    values[i] = scaled_pressure_.empty() ? 0 : scaled_pressure_[cells[i]];
-  checkpoint.write_distributed("fluid/scaled_pressure", ids, values);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    values[i] = accepted_cells_.empty() ? -1 : static_cast<double>(accepted_cells_[cells[i]]);
-  checkpoint.write_distributed("fluid/cells_with_pressure", ids, values);
+  save_fields(domain_, fields_, checkpoint);
+  CellField cells(domain_.grid.n_stored_cells(), static_cast<double>(CellState::outside));
+  std::transform(accepted_cells_.begin(), accepted_cells_.end(), cells.begin(),
+                 [](CellState state) { return static_cast<double>(state); });
+  save_fields(domain_, {{"cells_with_pressure", {&cells}}}, checkpoint);
   checkpoint.file().write_attribute("fluid", "boundary_time", time_);
   checkpoint.file().write_attribute("fluid", "last_step", last_step_);
 }
 
 template <int dim>
 void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
-  const std::vector<int> cells = saved_cells(domain_.grid);
-  const std::vector<GlobalIndex> ids = numbers_of(domain_.grid, cells);
-  const auto read_faces = [&](const std::string& name, FaceField<dim>& field) {
-    const auto values = checkpoint.read_distributed<double>("fluid/" + name, ids);
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      for (int axis = 0; axis < dim; ++axis)
-        field[axis][cells[i]] = values[i * dim + axis];
-    domain_.halo.fill(field);
-  };
-  read_faces("velocity", velocity_);
-  if (history_)
-    for (const auto& [name, field] : history_->fields())
-      read_faces(name, *field);
+  load_fields(domain_, fields_, checkpoint);
   prediction_ = velocity_;
-  for (Scalar& scalar : scalars_.all()) {
-    const auto values = checkpoint.read_distributed<double>("fluid/" + scalar.name, ids);
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      scalar.values[cells[i]] = values[i];
-    domain_.halo.fill(scalar.values);
-  }
-  const auto pressure = checkpoint.read_distributed<double>("fluid/scaled_pressure", ids);
-  scaled_pressure_.assign(domain_.grid.n_stored_cells(), 0.0);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    scaled_pressure_[cells[i]] = pressure[i];
-  domain_.halo.fill(scaled_pressure_);
-  accepted_pressure_ = scaled_pressure_;
-  const auto states = checkpoint.read_distributed<double>("fluid/cells_with_pressure", ids);
-  accepted_cells_.assign(domain_.grid.n_stored_cells(), CellState::outside);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    accepted_cells_[cells[i]] = static_cast<CellState>(static_cast<int>(std::max(states[i], 0.0)));
-  fill_flags<dim>(domain_.halo, accepted_cells_);
+  scaled_pressure_ = accepted_pressure_;
+  CellField cells(domain_.grid.n_stored_cells(), static_cast<double>(CellState::outside));
+  load_fields(domain_, {{"cells_with_pressure", {&cells}}}, checkpoint);
+  accepted_cells_.resize(cells.size());
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    accepted_cells_[cell] = static_cast<CellState>(static_cast<int>(cells[cell]));
   time_ = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
   accepted_step_ = last_step_;

@@ -26,7 +26,7 @@ std::vector<FluidSample<dim>> MacFluid<dim>::sample(const std::vector<Point<dim>
   const TiledGrid<dim>& grid = domain_.grid;
   const SampleLattice<dim> lattice(grid);
   const MacState<dim>& state = geometry_.state;
-  const bool has_pressure = last_step_ > 0 && !scaled_pressure_.empty();
+  const bool has_pressure = last_step_ > 0;
   constexpr int n_values = dim + 2;
   // Each rank answers for its own cells; the sum is everybody's answer.
   std::vector<double> values(points.size() * n_values, 0.);

@@ -1,10 +1,9 @@
 #pragma once
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "grid/halo_exchange.hpp"
 #include "mac/state/mac_state.hpp"
+#include "mac/state/stored_fields.hpp"
 
 namespace lockstep {
 
@@ -29,12 +28,10 @@ class VelocityHistory {
   void accept(const FaceField<dim>& before, const FaceField<dim>& after, const MacState<dim>& state,
               double dt);
 
-  /// All that a restart needs, by name.
-  std::vector<std::pair<std::string, FaceField<dim>*>> fields() {
-    return {{"acceleration", &acceleration_}, {"rate", &rate_}, {"free", &free_}};
-  }
-  std::vector<std::pair<std::string, const FaceField<dim>*>> fields() const {
-    return {{"acceleration", &acceleration_}, {"rate", &rate_}, {"free", &free_}};
+  /// All that a restart needs. Valid while this is neither moved nor copied.
+  std::vector<StoredField> fields() {
+    return {stored_faces<dim>("acceleration", acceleration_), stored_faces<dim>("rate", rate_),
+            stored_faces<dim>("free", free_)};
   }
 
  private:
