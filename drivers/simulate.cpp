@@ -54,7 +54,8 @@ template <int dim>
 int simulate(Document document, const Arguments& arguments, const Communicator& comm) {
   // 3. The plug-ins, and what a scene may say about them.
   const Registries<dim> registries = shipped_plug_ins<dim>();
-  const ParameterList valid = scene_parameters<dim>(registries);
+  const ParameterList valid =
+      scene_parameters<dim>(registries, scene_fluid(document, arguments.settings));
 
   // 4. The solver file, the command line, then the strict check of everything.
   complete_scene(document, arguments.settings, valid, comm);

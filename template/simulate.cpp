@@ -19,12 +19,19 @@ ParameterList column_parameters() {
   return list;
 }
 
+ParameterList channel_parameters() {
+  ParameterList list;
+  declare_positive(list, "Length", 2., "Along x, from 0 [m].");
+  declare_positive(list, "Width", 0.5, "Across, from y = 0 [m].");
+  declare_positive(list, "Cells", 20, "Along the channel.");
+  return list;
+}
+
 std::unique_ptr<ColumnFluid> make_column(const ParameterList& list, const ParameterList& domain,
                                          const Communicator& comm) {
-  const auto& upper = domain.get<ParameterArray<double>>("Upper");
-  const int n_cells = domain.get<ParameterArray<int>>("Cells")[0];
   return std::make_unique<ColumnFluid>(
-      ColumnFluid::Options{n_cells, upper[0], upper[1], list.get<double>("Density"),
+      ColumnFluid::Options{domain.get<int>("Cells"), domain.get<double>("Length"),
+                           domain.get<double>("Width"), list.get<double>("Density"),
                            list.get<double>("Gravity")},
       comm);
 }
@@ -51,12 +58,13 @@ std::unique_ptr<Piston> make_piston(const ParameterList&, const NamedLists& pist
 int run(const std::string& scene_file, const std::string& output, const Communicator& comm) {
   Registries<2> registries = shipped_plug_ins<2>();
   registries.fluids.add("column", "A straight channel.", column_parameters, make_column);
+  registries.domains["column"] = channel_parameters;
   registries.solids.add("piston", "A plate across a channel.", piston_parameters, make_piston);
   registries.observers.add(
       "stroke", "How far the first solid has come.", [] { return ParameterList(); },
       [](const ParameterList&) { return std::make_unique<Stroke>(); });
   Document scene = read_xml(scene_file, comm);
-  complete_scene(scene, {}, scene_parameters<2>(registries), comm);
+  complete_scene(scene, {}, scene_parameters<2>(registries, scene_fluid(scene, {})), comm);
   RunOptions options;
   options.scene_file = scene_file;
   options.output_directory = output;

@@ -15,8 +15,8 @@ namespace lockstep {
 template <int dim>
 Registries<dim> shipped_plug_ins() {
   Registries<dim> registries;
-  registries.domain_parameters = domain_parameters<dim>;
   register_mac<dim>(registries.fluids);
+  registries.domains["mac"] = domain_parameters<dim>;
   register_rigid<dim>(registries.solids);
   register_deformable<dim>(registries.solids);
   register_mixed_face<dim>(registries.couplings);

@@ -171,6 +171,9 @@ class FluidDiscretization : public PlugIn {
   /// cells; the velocity that gravity adds within the step counts as well. Infinite at rest.
   /// Default: all cells are as small as the smallest.
   virtual double suggested_step(double n_cells, double solid_speed) const;
+  /// True if its own geometry changes from step to step, as that of a free surface does: then it is
+  /// frozen anew after `advect`, solids or not. The same on all ranks. Local.
+  virtual bool geometry_changes() const { return false; }
   /// Uniform acceleration [m/s^2]. Local.
   virtual Point<dim> gravity() const { return Point<dim>::Zero(); }
   /// Density of the fluid at x [kg/m^dim], for the buoyancy of bodies too small for the grid to

@@ -1,5 +1,7 @@
 #pragma once
 #include <functional>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -58,8 +60,8 @@ struct Registries {
   StrategyRegistry strategies{"solver strategy"};
   ContactRegistry<dim> contacts{"contact model"};
   ObserverRegistry<dim> observers{"observer"};
-  /// Schema of the "Domain" list.
-  std::function<ParameterList()> domain_parameters;
+  /// Schema of the "Domain" list, by the name of the fluid whose domain it is.
+  std::map<std::string, std::function<ParameterList()>> domains;
 };
 
 }  // namespace lockstep

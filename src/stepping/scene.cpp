@@ -139,13 +139,15 @@ std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries
 }  // namespace
 
 template <int dim>
-ParameterList scene_parameters(const Registries<dim>& registries) {
+ParameterList scene_parameters(const Registries<dim>& registries, const std::string& fluid) {
+  const std::string& usual_fluid = registries.fluids.begin()->name;
+  const bool is_known = registries.domains.count(fluid) > 0;
   ParameterList scene("Scene");
   declare_between(scene, "Dimension", dim, 2, 3, "2 or 3.");
   declare(scene, "Title", "", "One line on what the scene shows.");
   declare_list(scene, "Domain", "The box that holds everything, its cells and its sides.") =
-      registries.domain_parameters();
-  declare_typed_sublist(scene, "Fluid", "The fluid.", registries.fluids.schemas(), "mac");
+      registries.domains.at(is_known ? fluid : usual_fluid)();
+  declare_typed_sublist(scene, "Fluid", "The fluid.", registries.fluids.schemas(), usual_fluid);
   declare_named_sublists(scene, "Solids", "One sublist a body, under a name of its own.",
                          registries.solids.schemas());
   declare_typed_sublist(scene, "Coupling", "How fluid and solids exchange momentum.",
@@ -169,6 +171,19 @@ int scene_dimension(const Document& document) {
   check_input(dimension == 2 || dimension == 3, "{}: \"Dimension\" is {}; it must be 2 or 3.",
               document.source.place("Dimension"), dimension);
   return dimension;
+}
+
+std::string scene_fluid(const Document& document, const std::vector<std::string>& settings) {
+  const std::string setting = "Fluid/Type=";
+  std::string fluid;
+  if (document.list.isSublist("Fluid") &&
+      document.list.sublist("Fluid").isType<std::string>("Type"))
+    fluid = document.list.sublist("Fluid").get<std::string>("Type");
+  for (const std::string& set : settings) {
+    if (set.rfind(setting, 0) == 0)
+      fluid = set.substr(setting.size());
+  }
+  return fluid;
 }
 
 void check_time_resolution(const TimeOptions& time) {
@@ -239,8 +254,8 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
   return components;
 }
 
-template ParameterList scene_parameters<2>(const Registries<2>&);
-template ParameterList scene_parameters<3>(const Registries<3>&);
+template ParameterList scene_parameters<2>(const Registries<2>&, const std::string&);
+template ParameterList scene_parameters<3>(const Registries<3>&, const std::string&);
 template Components<2> build_components<2>(const Registries<2>&, const ParameterList&,
                                            const std::string&, const Communicator&);
 template Components<3> build_components<3>(const Registries<3>&, const ParameterList&,

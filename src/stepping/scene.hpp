@@ -7,9 +7,10 @@
 
 namespace lockstep {
 
-/// Schema of a whole scene file (design, section 9), put together from the registered plug-ins.
+/// Schema of a whole scene file (design, section 9), put together from the registered plug-ins. The
+/// list "Domain" is that of the fluid of this name, or else of the first registered.
 template <int dim>
-ParameterList scene_parameters(const Registries<dim>& registries);
+ParameterList scene_parameters(const Registries<dim>& registries, const std::string& fluid = "");
 
 /// When and how far to step.
 struct TimeOptions {
@@ -37,6 +38,8 @@ struct SceneOptions {
 
 /// Reads "Dimension" of a document that is not validated yet. Throws InputError if it is missing.
 int scene_dimension(const Document& document);
+/// The "Type" of its fluid, as the document or a `--set` has it; empty if neither says.
+std::string scene_fluid(const Document& document, const std::vector<std::string>& settings);
 
 /// Throws InputError if times near the start cannot be told apart a step away.
 void check_time_resolution(const TimeOptions& time);

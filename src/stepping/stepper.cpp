@@ -363,7 +363,7 @@ CoupledSolution Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
     fluid.advect(time_, dt, moving);
     {
       ScopedPhase geometry(timers_, "geometry");
-      if (!solids.empty())
+      if (!solids.empty() || fluid.geometry_changes())
         system_.freeze(after);
     }
     fluid.revalidate(moving);
