@@ -111,7 +111,7 @@ SolidInverse::Iterated SolidInverse::prepared(const InverseByCost::Rest& rest) c
 }
 
 void SolidInverse::build_automatic(const BlockSystem& system) {
-  split_.emplace(system.solid_block, system.near_null_space, name_);
+  split_.emplace(system.solid_block, system.near_null_space, name_, &costly_);
   for (const InverseByCost::Rest& rest : split_->rests())
     iterated_.push_back(prepared(rest));
   if (!iterates())

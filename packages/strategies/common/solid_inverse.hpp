@@ -68,7 +68,8 @@ class SolidInverse {
   RCP<const LinearOperator> exact_;
   mutable RCP<const LinearOperator> approximate_;
   std::optional<InverseByCost> split_;  ///< of "Automatic" and "Exact"
-  std::vector<Iterated> iterated_;      ///< of "Automatic" and "Exact" in the order of their rests
+  InverseByCost::Costly costly_;
+  std::vector<Iterated> iterated_;  ///< of "Automatic" and "Exact" in the order of their rests
   std::string name_;
   std::shared_ptr<long> iterations_ = std::make_shared<long>(0);
 };

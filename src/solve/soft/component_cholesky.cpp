@@ -3,90 +3,82 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
-#include <iostream>  // which Eigen's METIS wrapper forgets
 #include <map>
 #include <memory>
 #include <stdexcept>
-
-#include <Eigen/MetisSupport>
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
 
 #include "base/errors.hpp"
 #include "base/interruption.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/gathered_operator.hpp"
-#include "linear/matrix_rows.hpp"
+#include "solve/soft/multifrontal_cholesky.hpp"
 
 namespace lockstep {
 
 namespace {
 
-using SparseMatrix = Eigen::SparseMatrix<double>;
-
-class Cholesky
-    : public Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::MetisOrdering<int>> {
- public:
-  /// Multiplications of `factorize`, from the columns' counts, known after `analyzePattern`.
-  double n_operations() const { return m_nonZerosPerCol.cast<double>().squaredNorm(); }
-};
-
 /// A component's rows, as they stand on rank 0, and its factors.
 struct Factored {
   std::vector<int> rows;
-  Cholesky factors;
+  MultifrontalCholesky factors;
 };
 
-SparseMatrix part_of(const std::vector<std::vector<Entry>>& all, const std::vector<int>& rows,
-                     std::vector<int>& place_of) {
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    place_of[rows[i]] = static_cast<int>(i);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (const Entry& entry : all[rows[i]]) {
-      if (entry.value != 0 && entry.column <= rows[i])
-        entries.emplace_back(static_cast<int>(i), place_of[entry.column], entry.value);
+/// The lower triangle of the block of these rows, taken from the upper one.
+MultifrontalCholesky::Matrix part_of(const CrsMatrix& all, const std::vector<int>& rows,
+                                     std::vector<int>& place_of) {
+  const int n = static_cast<int>(rows.size());
+  for (int i = 0; i < n; ++i)
+    place_of[rows[i]] = i;
+  MultifrontalCholesky::Matrix result(n, n);
+  const auto global = all.getColMap()->getNodeElementList();
+  typename CrsMatrix::local_inds_host_view_type columns;
+  typename CrsMatrix::values_host_view_type values;
+  for (int i = 0; i < n; ++i) {
+    result.startVec(i);
+    all.getLocalRowView(rows[i], columns, values);
+    for (std::size_t k = 0; k < columns.extent(0); ++k) {
+      const auto column = static_cast<int>(global[columns(k)]);
+      if (values(k) != 0 && column >= rows[i])
+        result.insertBack(place_of[column], i) = values(k);
     }
   }
-  SparseMatrix result(static_cast<int>(rows.size()), static_cast<int>(rows.size()));
-  result.setFromTriplets(entries.begin(), entries.end());
+  result.finalize();
   return result;
 }
 
 /// All on rank 0: `components` by row, `is_factored` is written.
 SolveInPlace factor_components(const CrsMatrix& gathered, const Vector& components,
                                double most_operations, Vector& is_factored) {
-  const auto all = rows_of(gathered);
+  const std::size_t n_rows = gathered.getNodeNumRows();
   std::map<double, std::vector<int>> rows_of_component;
   const auto ids = components.getData();
-  for (std::size_t row = 0; row < all.size(); ++row)
+  for (std::size_t row = 0; row < n_rows; ++row)
     rows_of_component[ids[row]].push_back(static_cast<int>(row));
   const auto parts = std::make_shared<std::vector<std::unique_ptr<Factored>>>();
-  std::vector<int> place_of(all.size());
+  std::vector<int> place_of(n_rows);
   for (auto& [id, rows] : rows_of_component) {
     auto part = std::make_unique<Factored>();
     part->rows = std::move(rows);
-    const SparseMatrix matrix = part_of(all, part->rows, place_of);
+    const MultifrontalCholesky::Matrix matrix = part_of(gathered, part->rows, place_of);
     {
       const HeldSignals held;  // METIS
-      part->factors.analyzePattern(matrix);
+      part->factors.analyze(matrix);
     }
     if (part->factors.n_operations() > most_operations)
       continue;
-    part->factors.factorize(matrix);
-    if (part->factors.info() != Eigen::Success)
+    if (!part->factors.factorize(matrix))
       throw std::runtime_error("A pivot of its Cholesky factors is not positive.");
     for (const int row : part->rows)
       is_factored.replaceLocalValue(row, 1.0);
     parts->push_back(std::move(part));
   }
-  return [parts, n = all.size()](double* values) {
-    std::vector<double> result(n, 0);
+  return [parts, n_rows](double* values) {
+    std::vector<double> result(n_rows, 0);
     for (const auto& part : *parts) {
-      Eigen::VectorXd rhs(part->rows.size());
+      Eigen::VectorXd solution(part->rows.size());
       for (std::size_t i = 0; i < part->rows.size(); ++i)
-        rhs[i] = values[part->rows[i]];
-      const Eigen::VectorXd solution = part->factors.solve(rhs);
+        solution[i] = values[part->rows[i]];
+      part->factors.solve(solution);
       for (std::size_t i = 0; i < part->rows.size(); ++i)
         result[part->rows[i]] = solution[i];
     }

@@ -14,19 +14,22 @@ namespace lockstep {
 
 namespace {
 
-/// Components of more entries are not even analysed: a volume's factors would cost too much, and
-/// even a surface's come near the limit.
-constexpr double most_entries = 800000;
-/// About half a second, which pays where the iteration takes a hundred steps an application and is
-/// applied a few dozen times.
-constexpr double most_operations = 1e9;
+/// Components of more entries are not even analysed, which takes a tenth of a second for half of
+/// them: a volume's factors would cost too much, and even a surface's come near the limit.
+constexpr double most_entries = 6e6;
+/// About a second, which pays where the iteration takes a hundred steps an application and is
+/// applied a few dozen times: the factors of a sheet of 14 900 nodes take 3e9 and .25 s.
+constexpr double most_operations = 1e10;
 /// A component of this many rows is judged, and iterated on, by itself; at most so many of them.
 constexpr GlobalIndex fewest_rows_alone = 2000;
 constexpr std::size_t most_alone = 8;
-/// Below this stiffness number an iteration on a cloth of 7 650 rows takes less time than its
-/// factors and the solves with them: .13 s a solve of the coupled system less at 600, the same at
-/// 5 000 to 10 000, .2 s more at 30 000.
-constexpr double least_stiffness_for_factors = 5000;
+/// Below this stiffness number an iteration takes less time than factors and the solves with them:
+/// a few dozen steps on a cloth of 7 650 rows as much as .03 s.
+constexpr double least_stiffness_for_factors = 300;
+/// Up to this one they pay if they take few multiplications an entry, as those of sheets do: 1 150
+/// on one of 14 900 nodes, where S2 takes .5 s with them and 1.9 s without at a stiffness number of
+/// some 2 000. A ball of 8 000 nodes takes 4 700.
+constexpr double great_stiffness = 5000, most_operations_an_entry = 2000;
 
 template <typename Condition>
 std::vector<bool> rows_where(const std::vector<RowComponent>& components, Condition condition) {
@@ -102,8 +105,8 @@ InverseByCost::Rest rest_of(const std::shared_ptr<const MatrixPart>& part,
 }  // namespace
 
 InverseByCost::InverseByCost(const RCP<const LinearOperator>& op, const NearNullSpace& space,
-                             const std::string& name)
-    : map_(domain_map(*op)) {
+                             const std::string& name, Costly* costly)
+    : map_(domain_map(*op)), costly_(costly) {
   const auto matrix = assembled(op);
   if (matrix.is_null())
     rests_.push_back({op, space, 1, nullptr});
@@ -161,17 +164,23 @@ void InverseByCost::take_large(const CrsMatrix& matrix, const NearNullSpace& spa
   const Rest rest = rest_of(std::make_shared<const MatrixPart>(matrix, rows), space);
   const auto& part = rest.part;
   const auto n_rows = static_cast<GlobalIndex>(part->map()->getGlobalNumElements());
-  const bool may_factor =
-      static_cast<double>(part->matrix()->getGlobalNumEntries()) <= most_entries &&
-      (space.empty() || rest.stiffness > least_stiffness_for_factors);
+  const auto n_entries = static_cast<double>(part->matrix()->getGlobalNumEntries());
+  const double most = space.empty() || rest.stiffness > great_stiffness
+                          ? most_operations
+                          : std::min(most_operations, most_operations_an_entry * n_entries);
+  const std::array<double, 3> size{static_cast<double>(n_rows), n_entries, most};
+  const bool may_factor = n_entries <= most_entries &&
+                          (space.empty() || rest.stiffness > least_stiffness_for_factors) &&
+                          (costly_ == nullptr || costly_->count(size) == 0);
   if (may_factor) {
     const std::vector<RowComponent> as_one(part->rows().size(), {0, n_rows});
-    const ComponentCholesky cholesky =
-        cheap_component_cholesky(part->matrix(), as_one, most_operations, name);
+    const ComponentCholesky cholesky = cheap_component_cholesky(part->matrix(), as_one, most, name);
     if (any(cholesky.is_factored, map_->getComm())) {
       cheap_.push_back({part, cholesky.inverse});
       return;
     }
+    if (costly_ != nullptr)
+      costly_->insert(size);
   }
   rests_.push_back(rest);
 }

@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,10 +28,15 @@ class InverseByCost {
   };
   using InverseOfRest = std::function<RCP<const LinearOperator>(const Rest&)>;
 
+  /// Rows, entries and most multiplications of components that were found to cost more.
+  using Costly = std::set<std::array<double, 3>>;
+
   /// Where `space` tells how stiff a large component is, it is factored only if an iteration would
-  /// be slow. `name` is for messages. Throws SolveError if C is not positive definite. Collective.
+  /// be slow. `name` is for messages. `costly`, if given, is kept from one C to the next, so that
+  /// what costs too much is found out once. Throws SolveError if C is not positive definite.
+  /// Collective.
   InverseByCost(const RCP<const LinearOperator>& op, const NearNullSpace& space,
-                const std::string& name);
+                const std::string& name, Costly* costly = nullptr);
 
   /// Nothing is left.
   bool is_complete() const { return rests_.empty(); }
@@ -50,6 +57,7 @@ class InverseByCost {
   RCP<const LinearOperator> whole_;  ///< C^-1, if one method serves all of it
   std::vector<PartInverse> cheap_;
   std::vector<Rest> rests_;
+  Costly* costly_;
 };
 
 }  // namespace lockstep

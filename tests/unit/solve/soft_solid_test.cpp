@@ -19,6 +19,7 @@
 #include "solve/soft/component_cholesky.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "solve/soft/inverse_by_cost.hpp"
+#include "solve/soft/multifrontal_cholesky.hpp"
 #include "solve/soft/single_precision.hpp"
 
 namespace lockstep::test {
@@ -156,6 +157,45 @@ TEST(SoftSolid, ComponentsAreFoundAcrossRanks) {
   const Lattice loose(3, 0);
   for (const RowComponent& component : components_of_rows(*loose.c))
     EXPECT_EQ(component.n_rows, 1);
+}
+
+TEST(SoftSolid, FactorsByFronts) {
+  // Two grids that do not touch and a lone row, three rows a vertex; a far pair of vertices.
+  constexpr int width = 9, n_vertices = 2 * width * width + 1, n = 3 * n_vertices;
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto couple = [&](int p, int q) {
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        if (3 * p + a > 3 * q + b)
+          entries.emplace_back(3 * p + a, 3 * q + b, std::sin(1.0 + 7 * p + 5 * q + 3 * a + b));
+  };
+  for (int grid = 0; grid < 2; ++grid)
+    for (int p = 0; p < width * width; ++p) {
+      const int vertex = grid * width * width + p;
+      couple(vertex, vertex);
+      if (p % width > 0)
+        couple(vertex, vertex - 1);
+      if (p >= width)
+        couple(vertex, vertex - width);
+    }
+  couple(width * width - 1, 0);
+  for (int row = 0; row < n; ++row)
+    entries.emplace_back(row, row, 20);
+  MultifrontalCholesky::Matrix lower(n, n);
+  lower.setFromTriplets(entries.begin(), entries.end());
+  MultifrontalCholesky cholesky;
+  cholesky.analyze(lower);
+  EXPECT_LT(cholesky.n_stored(), 0.3 * n * n);
+  const Eigen::VectorXd rhs = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  for (const double factor : {1.0, 3.0}) {
+    const MultifrontalCholesky::Matrix scaled = factor * lower;
+    ASSERT_TRUE(cholesky.factorize(scaled));
+    Eigen::VectorXd x = rhs;
+    cholesky.solve(x);
+    EXPECT_LT((rhs - scaled.selfadjointView<Eigen::Lower>() * x).norm(), 1e-13 * rhs.norm());
+  }
+  lower.coeffRef(n / 2, n / 2) = -20;
+  EXPECT_FALSE(cholesky.factorize(lower));
 }
 
 TEST(SoftSolid, CholeskyOfCheapComponentsOnly) {
