@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "base/regular_file.hpp"
 #include "linear/matrix_rows.hpp"
+#include "linear/stencil_operator.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "output/checksum.hpp"
 #include "output/hdf5_file.hpp"
@@ -48,6 +49,29 @@ void write_vectors(Hdf5File& file, const std::string& group,
   file.write_attribute<long long>(group, "size", static_cast<long long>(vectors.size()));
   for (std::size_t i = 0; i < vectors.size(); ++i)
     write_vector(file, fmt::format("{}/{}", group, i), *vectors[i]);
+}
+
+/// Where the rows of a stencil lie: nothing that `read_system` wants.
+void write_lattice(Hdf5File& file, const FaceCoefficients& stencil) {
+  const LatticeBlocks& blocks = *stencil.blocks;
+  std::vector<long long> places, cells;
+  for (std::size_t cell = 0; cell < blocks.begins.size() * blocks.block_volume(); ++cell) {
+    if (stencil.row[cell] < 0)
+      continue;
+    places.push_back(stencil.map->getGlobalElement(stencil.row[cell]));
+    const auto& begin = blocks.begins[cell / blocks.block_volume()];
+    auto in_block = static_cast<int>(cell % blocks.block_volume());
+    for (int axis = 0; axis < 3; ++axis, in_block /= blocks.width)
+      cells.push_back(begin[axis] + in_block % blocks.width);
+  }
+  file.create_group("/lattice");
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    file.write_attribute<long long>("/lattice", "cells " + name, blocks.n_cells[axis]);
+    file.write_attribute<long long>("/lattice", "periodic " + name, blocks.periodic[axis] ? 1 : 0);
+  }
+  file.write_slices("/lattice/places", places);
+  file.write_slices("/lattice/cells", cells, 3);
 }
 
 RCP<const CrsMatrix> assembled_block(const RCP<const LinearOperator>& block, const char* name) {
@@ -250,8 +274,8 @@ StoredSystem read_parts(const Hdf5File& file) {
   // Cells all of whose faces are mixed have an empty row.
   std::vector<Triplet> pressure_entries = read_square(file, "/A", n_pressure, 1);
   const auto pressures = even_map(n_pressure, comm);
-  system.pressure_block =
-      as_operator(assemble_triplets(std::move(pressure_entries), pressures, pressures));
+  system.pressure_block = as_operator(
+      RCP<const CrsMatrix>(assemble_triplets(std::move(pressure_entries), pressures, pressures)));
   system.null_space = read_vectors(file, "/null space", n_pressure, pressures);
   system.pressure_null_space = read_vectors(file, "/pressure null space", n_pressure, pressures);
   stored.rhs.pressure = read_vector(file, "/pressure rhs", n_pressure, pressures);
@@ -282,6 +306,8 @@ void write_system(const std::string& path, const BlockSystem& system, const Bloc
   write_vector(file, "/pressure rhs", *rhs.pressure);
   write_vectors(file, "/null space", system.null_space);
   write_vectors(file, "/pressure null space", system.pressure_null_space);
+  if (const FaceCoefficients* stencil = stencil_of(system.pressure_block))
+    write_lattice(file, *stencil);
   if (!solid.is_null()) {
     write_matrix(file, "/B transposed", *system.coupling_transposed);
     write_matrix(file, "/C", *solid);

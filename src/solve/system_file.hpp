@@ -12,7 +12,8 @@ struct StoredSystem {
 };
 
 /// Writes A, B^T, C, the null spaces and the right-hand side to an HDF5 file that any number of
-/// ranks can read: entries (row, column, value) with global numbers. Throws InputError if A or C is
+/// ranks can read: entries (row, column, value) with global numbers, and where A is a stencil the
+/// lattice cell of each row. Throws InputError if A or C is
 /// not assembled, OutputError if the file cannot be written. Collective.
 void write_system(const std::string& path, const BlockSystem& system, const BlockVector& rhs);
 

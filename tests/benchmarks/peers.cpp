@@ -1,0 +1,194 @@
+// Poisson solvers of hypre beside the multigrid here, on one system that `simulate --dump-system`
+// wrote with its lattice, with a random right-hand side, on one rank:
+//
+//   peers system.h5 [tolerance [repeats]]
+//
+// One line a solver: name, iterations, seconds to set up and to solve (CPU, the least of the
+// repeats), true residual |b - A x| / |b|. All start from zero and end at |r| <= tolerance |b|.
+#include <HYPRE_utilities.h>
+#include <fmt/format.h>
+
+#include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "base/errors.hpp"
+#include "linear/stencil_operator.hpp"
+#include "linear/symmetry_check.hpp"
+#include "output/hdf5_file.hpp"
+#include "parameters/registry.hpp"
+#include "peers.hpp"
+#include "solve/system_file.hpp"
+#include "strategies/register_strategies.hpp"
+
+using namespace lockstep;
+
+namespace {
+
+/// The stencil of a stored system, with the matrix beside it.
+class StoredStencil final : public StencilOperator {
+ public:
+  StoredStencil(RCP<const CrsMatrix> matrix, FaceCoefficients coefficients)
+      : matrix_(std::move(matrix)), coefficients_(std::move(coefficients)) {}
+  RCP<const Map> getDomainMap() const override { return matrix_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return matrix_->getRangeMap(); }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, double alpha,
+             double beta) const override {
+    matrix_->apply(x, y, mode, alpha, beta);
+  }
+  const FaceCoefficients& coefficients() const override { return coefficients_; }
+  RCP<const CrsMatrix> assembled() const override { return matrix_; }
+
+ private:
+  RCP<const CrsMatrix> matrix_;
+  FaceCoefficients coefficients_;
+};
+
+FaceCoefficients coefficients_of(const Problem& problem) {
+  constexpr int width = 8;
+  auto blocks = std::make_shared<LatticeBlocks>();
+  blocks->n_cells = problem.n;
+  blocks->periodic = problem.periodic;
+  blocks->width = width;
+  blocks->comm = problem.matrix->getMap()->getComm();
+  std::array<int, 3> n_blocks{};
+  for (int axis = 0; axis < 3; ++axis)
+    n_blocks[axis] = (problem.n[axis] + width - 1) / width;
+  for (int k = 0; k < n_blocks[2]; ++k)
+    for (int j = 0; j < n_blocks[1]; ++j)
+      for (int i = 0; i < n_blocks[0]; ++i)
+        blocks->begins.push_back({width * i, width * j, width * k});
+  FaceCoefficients result;
+  const std::size_t n = blocks->begins.size() * blocks->block_volume();
+  result.map = problem.matrix->getRowMap();
+  result.row.assign(n, -1);
+  result.dirichlet.assign(n, 0);
+  for (auto& lower : result.lower)
+    lower.assign(n, 0);
+  const auto cell_of = [&](int row) {
+    const auto& c = problem.cell_of_row[row];
+    const std::size_t block =
+        c[0] / width + static_cast<std::size_t>(n_blocks[0]) *
+                           (c[1] / width + static_cast<std::size_t>(n_blocks[1]) * (c[2] / width));
+    return block * blocks->block_volume() + c[0] % width +
+           width * (c[1] % width + width * (c[2] % width));
+  };
+  // The largest face is an open one.
+  result.unit = 0;
+  for_each_entry_of(problem, [&](int row, int column, double value) {
+    result.unit = std::max(result.unit, row == column ? 0 : -value);
+  });
+  std::vector<double> sums(problem.n_rows(), 0);
+  for_each_entry_of(problem, [&](int row, int column, double value) {
+    sums[row] += value;
+    if (row == column)
+      return;
+    const int side = side_towards(problem, row, column);
+    if (side % 2 == 0)
+      result.lower[side / 2][cell_of(row)] = static_cast<float>(-value / result.unit);
+  });
+  for (int row = 0; row < problem.n_rows(); ++row) {
+    result.row[cell_of(row)] = row;
+    const double dirichlet = sums[row] / result.unit;
+    result.dirichlet[cell_of(row)] = dirichlet > 1e-6 ? static_cast<float>(dirichlet) : 0;
+  }
+  result.blocks = blocks;
+  return result;
+}
+
+Problem read_problem(const std::string& path, const Communicator& comm) {
+  Problem problem;
+  const StoredSystem stored = read_system(path, comm);
+  problem.system = stored.system;
+  check_input(!problem.system.has_solid(), "{} has a solid block: dump F2 of a scene.", path);
+  problem.matrix = assembled(problem.system.pressure_block);
+  const Hdf5File file = Hdf5File::open(comm, path);
+  const auto places = file.read_all<long long>("/lattice/places");
+  const auto cells = file.read_all<long long>("/lattice/cells");
+  problem.cell_of_row.resize(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      problem.cell_of_row.at(places[i])[axis] = static_cast<int>(cells.at(3 * i + axis));
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    problem.n[axis] = static_cast<int>(file.read_attribute<long long>("/lattice", "cells " + name));
+    problem.periodic[axis] = file.read_attribute<long long>("/lattice", "periodic " + name) != 0;
+  }
+  problem.rhs = make_vector(problem.matrix->getRowMap());
+  pseudo_random(*problem.rhs, 1);
+  for (int pass = 0; pass < 2; ++pass)
+    for (const auto& direction : problem.system.null_space)
+      problem.rhs->update(-direction->dot(*problem.rhs), *direction, 1);
+  return problem;
+}
+
+Outcome lockstep_multigrid(const Problem& problem, double tolerance) {
+  BlockSystem system = problem.system;
+  const RCP<const StencilOperator> stencil =
+      rcp(new StoredStencil(problem.matrix, coefficients_of(problem)));
+  system.pressure_block = as_operator(stencil);
+  StrategyRegistry strategies("solver strategy");
+  register_strategies(strategies);
+  const auto strategy = strategies.create("schur-cg", strategies.valid_parameters("schur-cg"));
+  // What depends on the grid alone is kept from one geometry to the next.
+  strategy->prepare(system);
+  ++system.geometry_stamp;
+  Outcome outcome;
+  const double start = seconds();
+  strategy->prepare(system);
+  outcome.setup = seconds() - start;
+  outcome.x = make_vector(problem.matrix->getDomainMap());
+  BlockVector x{outcome.x, Teuchos::null};
+  outcome.iterations =
+      strategy->solve(system, {problem.rhs, Teuchos::null}, x, {"peers", tolerance}).iterations;
+  outcome.solve = seconds() - start - outcome.setup;
+  return outcome;
+}
+
+double true_residual(const Problem& problem, const Vector& x) {
+  Vector residual(*problem.rhs, Teuchos::Copy);
+  problem.matrix->apply(x, residual, Teuchos::NO_TRANS, -1, 1);
+  return residual.norm2() / problem.rhs->norm2();
+}
+
+int run(int argc, char** argv) {
+  check_input(argc >= 2, "peers SYSTEM.h5 [tolerance [repeats]]");
+  const double tolerance = argc > 2 ? std::atof(argv[2]) : 1e-8;
+  const int n_repeats = argc > 3 ? std::atoi(argv[3]) : 3;
+  const Problem problem = read_problem(argv[1], Tpetra::getDefaultComm());
+  std::cout << "solver,iterations,setup_seconds,solve_seconds,residual,rows,entries\n";
+  using Solve = Outcome (*)(const Problem&, double);
+  const std::vector<std::pair<const char*, Solve>> solvers = {
+      {"Lockstep multigrid CG", lockstep_multigrid},
+      {"hypre PFMG-CG", pfmg},
+      {"hypre BoomerAMG-CG", boomer_amg}};
+  for (const auto& [name, solve] : solvers) {
+    Outcome best;
+    for (int repeat = 0; repeat < n_repeats; ++repeat) {
+      const Outcome outcome = solve(problem, tolerance);
+      best = {outcome.iterations, std::min(best.setup, outcome.setup),
+              std::min(best.solve, outcome.solve), outcome.x};
+    }
+    std::cout << fmt::format("{},{},{:.4f},{:.4f},{:.2e},{},{}", name, best.iterations, best.setup,
+                             best.solve, true_residual(problem, *best.x), problem.n_rows(),
+                             problem.matrix->getGlobalNumEntries())
+              << std::endl;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Tpetra::ScopeGuard scope(&argc, &argv);
+  HYPRE_Init();
+  int code = 0;
+  try {
+    code = run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "peers: " << error.what() << std::endl;
+    code = static_cast<int>(ExitCode::bad_input);
+  }
+  HYPRE_Finalize();
+  return code;
+}
