@@ -4,11 +4,14 @@
 #include <Tpetra_Operator.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "base/errors.hpp"
+#include "linear/residual_operator.hpp"
 #include "linear/vector_sums.hpp"
 #include "multigrid/level_halo.hpp"
 #include "multigrid/multigrid.hpp"
@@ -22,7 +25,8 @@ inline RCP<const LinearOperator> as_thyra_operator(const RCP<const TpetraOperato
 }
 
 /// A symmetric operator on the layout's vectors that overwrites its result.
-class LayoutOperator : public TpetraOperator {
+template <typename Base>
+class LayoutOperator : public Base {
  public:
   explicit LayoutOperator(RCP<const Map> map) : map_(std::move(map)) {}
   RCP<const Map> getDomainMap() const override { return map_; }
@@ -50,13 +54,15 @@ class LayoutOperator : public TpetraOperator {
 /// A in the layout. `empty` are the entries of unknowns whose row A leaves empty: the loops over
 /// cells with faces may pass them by.
 template <int dim>
-class LayoutStencil final : public LayoutOperator {
+class LayoutStencil final : public LayoutOperator<ResidualOperator> {
  public:
   LayoutStencil(const RCP<const Map>& map, const StencilLevel<dim>& level, const LevelHalo& halo,
                 double unit, std::vector<int> empty)
-      : LayoutOperator(map), level_(level), halo_(halo), unit_(unit), empty_(std::move(empty)) {
-    if (!halo.empty())
-      with_ghosts_.resize(2 * level.grid().n_slots);
+      : LayoutOperator<ResidualOperator>(map),
+        level_(level),
+        halo_(halo),
+        unit_(unit),
+        empty_(std::move(empty)) {
     row_.resize(level.grid().row_stride + 16);
   }
 
@@ -75,28 +81,74 @@ class LayoutStencil final : public LayoutOperator {
   }
   const float* diagonal(int colour) const { return level_.diagonal(colour).data(); }
 
+  Norms residual(const Vector& rhs, const Vector& x, Vector& r) const override {
+    const auto b = rhs.getData(), x_values = x.getData();
+    const auto r_values = r.getDataNonConst();
+    const std::ptrdiff_t n_slots = level_.grid().n_slots;
+    std::array<double, 3> squares{};
+    for (const int entry : empty_) {
+      r_values[entry] = b[entry];
+      squares[0] += b[entry] * b[entry];
+      squares[2] += b[entry] * b[entry];
+    }
+    for_each_product(
+        ready(x_values.getRawPtr()), [](int) {},
+        [&](int colour, std::ptrdiff_t at, int n, const double* product) {
+          const std::ptrdiff_t first = colour * n_slots + at;
+          subtract_row(b.getRawPtr() + first, product, diagonal(colour) + at, n,
+                       r_values.getRawPtr() + first, squares);
+        });
+    sum_all(r.getMap()->getComm(), squares.data(), 3);
+    return {std::sqrt(squares[0]), std::sqrt(squares[1]), std::sqrt(squares[2])};
+  }
+
  private:
   void apply_to(const double* x, double* y) const override {
-    std::vector<double> without_empty;
-    if (!empty_.empty()) {
-      without_empty.assign(x, x + 2 * level_.grid().n_slots);
-      for (const int entry : empty_)
-        without_empty[entry] = 0;
-      x = without_empty.data();
-    }
-    if (!halo_.empty()) {
-      std::copy_n(x, with_ghosts_.size(), with_ghosts_.data());
-      for (int colour = 0; colour < 2; ++colour)
-        halo_.fill(colour, with_ghosts_.data() + colour * level_.grid().n_slots);
-      x = with_ghosts_.data();
-    }
     for (const int entry : empty_)
       y[entry] = 0;
     for_each_product(
-        x, [](int) {},
+        ready(x), [](int) {},
         [&](int colour, std::ptrdiff_t at, int n, const double* product) {
           std::copy_n(product, n, y + colour * level_.grid().n_slots + at);
         });
+  }
+
+  /// x, or a copy with what `for_each_product` wants of it.
+  const double* ready(const double* x) const {
+    if (halo_.empty() && empty_.empty())
+      return x;
+    const std::ptrdiff_t n_slots = level_.grid().n_slots;
+    copy_.assign(x, x + 2 * n_slots);
+    for (const int entry : empty_)
+      copy_[entry] = 0;
+    for (int colour = 0; colour < 2; ++colour)
+      halo_.fill(colour, copy_.data() + colour * n_slots);
+    return copy_.data();
+  }
+
+  /// r = b - product; adds the squares of b, product and r, but those of rows that are empty.
+  static void subtract_row(const double* b, const double* product, const float* diagonal, int n,
+                           double* r, std::array<double, 3>& squares) {
+    constexpr int n_lanes = 8;
+    std::array<std::array<double, n_lanes>, 3> sums{};
+    const auto at = [&](int m, int lane) {
+      const double known = diagonal[m] > 0 ? b[m] : 0, value = b[m] - product[m];
+      r[m] = value;
+      const double left = diagonal[m] > 0 ? value : 0;
+      sums[0][lane] += known * known;
+      sums[1][lane] += product[m] * product[m];
+      sums[2][lane] += left * left;
+    };
+    int m = 0;
+    for (; m + n_lanes <= n; m += n_lanes) {
+#pragma GCC ivdep
+      for (int lane = 0; lane < n_lanes; ++lane)
+        at(m + lane, lane);
+    }
+    for (; m < n; ++m)
+      at(m, 0);
+    for (int k = 0; k < 3; ++k)
+      squares[k] = std::accumulate(sums[k].begin(), sums[k].end(), squares[k]);
   }
 
   template <typename Use>
@@ -118,7 +170,7 @@ class LayoutStencil final : public LayoutOperator {
   const LevelHalo& halo_;
   double unit_;
   std::vector<int> empty_;
-  mutable std::vector<double> with_ghosts_, row_;
+  mutable std::vector<double> copy_, row_;
 };
 
 /// A row of the layout that A leaves empty, and the inverse of what stands in for its diagonal.
@@ -130,11 +182,11 @@ struct EmptyRow {
 
 /// One cycle as an approximate inverse of A.
 template <int dim>
-class LayoutInverse final : public LayoutOperator {
+class LayoutInverse final : public LayoutOperator<TpetraOperator> {
  public:
   LayoutInverse(const RCP<const Map>& map, Multigrid<dim>& multigrid, Communicator comm,
                 double unit, std::vector<EmptyRow> empty_rows)
-      : LayoutOperator(map),
+      : LayoutOperator<TpetraOperator>(map),
         multigrid_(multigrid),
         comm_(std::move(comm)),
         unit_(unit),

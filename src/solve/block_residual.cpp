@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "linear/matrix_rows.hpp"
+#include "linear/residual_operator.hpp"
 #include "linear/vector_sums.hpp"
 
 namespace lockstep {
@@ -31,6 +32,24 @@ double gross_force(const RCP<const LinearOperator>& solid_block, const Vector& v
 void add_term(Vector& residual, const Vector& term, double sign, double& scale) {
   scale = std::max(scale, add_and_measure(sign, term, residual));
 }
+
+/// r_1 = rhs_1 - A p̂ with its norm and scale.
+void subtract_product(const BlockSystem& system, const BlockVector& rhs,
+                      const BlockVector& solution, BlockResidual& result) {
+  Vector& r1 = *result.vector.pressure;
+  if (const auto* op = residual_operator_of(system.pressure_block)) {
+    const auto norms = op->residual(*rhs.pressure, *solution.pressure, r1);
+    result.pressure_scale = std::max(norms.rhs, norms.product);
+    result.pressure = norms.residual;
+    return;
+  }
+  Tpetra::deep_copy(r1, *rhs.pressure);
+  result.pressure_scale = norm(r1);
+  Vector term(r1.getMap());
+  apply(*system.pressure_block, *solution.pressure, term);
+  add_term(r1, term, -1, result.pressure_scale);
+  result.pressure = norm(r1);
+}
 }  // namespace
 
 SolidResidual solid_row_residual(const BlockSystem& system, const BlockVector& rhs,
@@ -48,27 +67,31 @@ SolidResidual solid_row_residual(const BlockSystem& system, const BlockVector& r
 BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
                              const BlockVector& solution) {
   BlockResidual result;
-  auto& r1 = result.vector.pressure;
-  r1 = rcp(new Vector(*rhs.pressure, Teuchos::Copy));
-  result.pressure_scale = norm(*r1);
-  Vector term(r1->getMap());
-  apply(*system.pressure_block, *solution.pressure, term);
-  add_term(*r1, term, -1, result.pressure_scale);
-  if (system.has_solid()) {
-    system.coupling_transposed->apply(*solution.solid, term, Teuchos::TRANS);
-    add_term(*r1, term, 1, result.pressure_scale);
-    const double gross_flux =
-        system.coupling_transposed->getFrobeniusNorm() * solution.solid->norm2();
-    result.pressure_scale = std::max(result.pressure_scale, least_flux * gross_flux);
-
-    const SolidResidual row = solid_row_residual(system, rhs, solution);
-    result.vector.solid = row.vector;
-    result.solid_scale =
-        std::max(row.scale, least_force * gross_force(system.solid_block, *solution.solid));
-    result.solid = norm(*row.vector);
-  }
-  result.pressure = norm(*r1);
+  find_block_residual(system, rhs, solution, result);
   return result;
+}
+
+void find_block_residual(const BlockSystem& system, const BlockVector& rhs,
+                         const BlockVector& solution, BlockResidual& result) {
+  auto& r1 = result.vector.pressure;
+  if (r1.is_null())
+    r1 = make_vector(rhs.pressure->getMap());
+  subtract_product(system, rhs, solution, result);
+  if (!system.has_solid())
+    return;
+  Vector term(r1->getMap());
+  system.coupling_transposed->apply(*solution.solid, term, Teuchos::TRANS);
+  add_term(*r1, term, 1, result.pressure_scale);
+  const double gross_flux =
+      system.coupling_transposed->getFrobeniusNorm() * solution.solid->norm2();
+  result.pressure_scale = std::max(result.pressure_scale, least_flux * gross_flux);
+  result.pressure = norm(*r1);
+
+  const SolidResidual row = solid_row_residual(system, rhs, solution);
+  result.vector.solid = row.vector;
+  result.solid_scale =
+      std::max(row.scale, least_force * gross_force(system.solid_block, *solution.solid));
+  result.solid = norm(*row.vector);
 }
 
 }  // namespace lockstep

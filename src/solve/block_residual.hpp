@@ -29,5 +29,8 @@ SolidResidual solid_row_residual(const BlockSystem& system, const BlockVector& r
 /// Collective.
 BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
                              const BlockVector& solution);
+/// The same in the vectors of an earlier residual of a system with the same maps, if it has any.
+void find_block_residual(const BlockSystem& system, const BlockVector& rhs,
+                         const BlockVector& solution, BlockResidual& result);
 
 }  // namespace lockstep

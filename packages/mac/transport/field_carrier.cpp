@@ -104,7 +104,7 @@ void FieldCarrier<dim>::begin(Passenger<dim>& passenger) {
   if (passenger.corrects()) {
     passenger.half_way.resize(passenger.start->size());
     // Every value is set before it is used.
-    passenger.low.reset(new double[frame_.setting.grid.n_owned_cells()]);
+    passenger.low = passenger.result->data();
     passenger.high.reset(new double[frame_.setting.grid.n_owned_cells()]);
   }
 }
@@ -130,7 +130,7 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
       if (passenger.corrects()) {
         block.look_up(rays.end, values, low, high);
         const auto stays_inside = rays.clipped == 0;
-        row_of<dim>(passenger.low.get(), first) = stays_inside.select(low, 1);
+        row_of<dim>(passenger.low, first) = stays_inside.select(low, 1);
         row_of<dim>(passenger.high.get(), first) = stays_inside.select(high, 0);
       } else if (passenger.cubic()) {
         block.look_up_cubic(rays.end, values);
@@ -350,7 +350,7 @@ bool FieldCarrier<dim>::correct_rows(std::vector<Passenger<dim>>& passengers,
       block.look_up(rays.end, returned);
       const RowValues<dim> start = row_of<dim>(passenger.start->data(), first);
       const RowValues<dim> half_way = row_of<dim>(passenger.half_way.data(), first);
-      const RowValues<dim> low = row_of<dim>(passenger.low.get(), first);
+      const RowValues<dim> low = row_of<dim>(passenger.low, first);
       const RowValues<dim> high = row_of<dim>(passenger.high.get(), first);
       const RowValues<dim> better = (half_way - 0.5 * (returned - start)).max(low).min(high);
       row_of<dim>(passenger.result->data(), first) =
@@ -363,9 +363,11 @@ bool FieldCarrier<dim>::correct_rows(std::vector<Passenger<dim>>& passengers,
 template <int dim>
 void FieldCarrier<dim>::correct_single(Passenger<dim>& passenger, const double* carried, int id,
                                        const Point<dim>& x) const {
+  const bool may_correct = passenger.may_correct(id);
+  const double low = passenger.low[id];  // where the result goes
   double& result = (*passenger.result)[id];
   result = passenger.half_way[id];
-  if (!passenger.may_correct(id))
+  if (!may_correct)
     return;
   const Ray<dim> ray = frame_.tracer->trace(x, 1);
   if (!ray.complete || ray.clipped)
@@ -374,7 +376,7 @@ void FieldCarrier<dim>::correct_single(Passenger<dim>& passenger, const double* 
   if (!stencil.complete())
     return;
   const double error = 0.5 * (interpolate<dim>(stencil, carried) - (*passenger.start)[id]);
-  result = std::clamp(result - error, passenger.low[id], passenger.high[id]);
+  result = std::clamp(result - error, low, passenger.high[id]);
 }
 
 template class FieldCarrier<2>;

@@ -16,8 +16,10 @@ struct Passenger {
   std::vector<char>* invalid = nullptr;
   CellField storage;   ///< of field.values
   CellField half_way;  ///< MacCormack's first half: the result of semi-Lagrangian transport
-  /// Range of the samples used, of owned cells; empty (low > high): not to be corrected.
-  std::unique_ptr<double[]> low, high;
+  /// Range of the samples used, of owned cells; empty (low > high): not to be corrected. The first
+  /// is kept where the result will be.
+  double* low = nullptr;
+  std::unique_ptr<double[]> high;
   /// Of the rows of a tile near surfaces that is carried by rows.
   std::vector<RowRays<dim>> back, forth;
 

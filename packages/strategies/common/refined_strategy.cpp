@@ -208,7 +208,15 @@ void RefinedStrategy::refuse_region_closed_by_solid(const BlockSystem& system) c
 }
 
 void RefinedStrategy::relay(const BlockSystem& system) {
-  (system.has_solid() ? relaid_ : relaid_pressure_) = layout_->relaid(system);
+  BlockSystem& relaid = system.has_solid() ? relaid_ : relaid_pressure_;
+  if (relaid.pressure_block.is_null()) {
+    relaid = layout_->relaid(system);
+    return;
+  }
+  // Another C on the same geometry.
+  relaid.solid_block = system.solid_block;
+  relaid.solid_stamp = system.solid_stamp;
+  relaid.near_null_space = system.near_null_space;
 }
 
 bool RefinedStrategy::is_ready(const BlockSystem& system) const {
@@ -301,14 +309,14 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
   const double rhs_norm = norm(*rhs.pressure);
   while (true) {
     back_substitute(system, rhs, solid_, reduction, solution);
-    residual = block_residual(system, rhs, solution);
+    find_block_residual(system, rhs, solution, residual);
     check_finite(name, residual);
     const double removed = project_out(system.null_space, *residual.vector.pressure);
     if (done.n_corrections == 0) {
       done.initial_pressure = residual.relative_pressure();
       done.initial_solid = residual.relative_solid();
     }
-    const double solvable = norm(*residual.vector.pressure);
+    const double solvable = removed > 0 ? norm(*residual.vector.pressure) : residual.pressure;
     const double target =
         std::max(request.tolerance * residual.pressure_scale, request.negligible_pressure_residual);
     if (reduction > 0 && std::min(solvable, residual.pressure) <= target) {
