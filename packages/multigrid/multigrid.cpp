@@ -99,21 +99,22 @@ void Multigrid<dim>::copy_to_natural(const FaceCoefficients& coefficients,
 template <int dim>
 void Multigrid<dim>::set(const FaceCoefficients& coefficients) {
   LOCKSTEP_ASSERT(coefficients.blocks.get() == &layout_->blocks());
-  copy_to_natural(coefficients, fine_);
+  NaturalStencil fine, coarse;
+  copy_to_natural(coefficients, fine);
   transfers_.clear();
   float unit = 1;
   for (int level = 0; level < n_levels(); ++level) {
-    stencils_[level].set(fine_, unit);
+    stencils_[level].set(fine, unit);
     for (AlignedArray<float>& x : work_[level].x)
       std::fill_n(x.data(), x.size(), 0.0F);
     if (level + 1 == n_levels())
       break;
-    transfers_.push_back(coarsen(layout_->levels()[level], fine_, layout_->levels()[level + 1],
-                                 layout_->blocks(), {unit, dirichlet_factor(level)}, coarse_));
-    std::swap(fine_, coarse_);
+    transfers_.push_back(coarsen(layout_->levels()[level], fine, layout_->levels()[level + 1],
+                                 layout_->blocks(), {unit, dirichlet_factor(level)}, coarse));
+    std::swap(fine, coarse);
     unit *= dim == 3 ? 2 : 1;
   }
-  invert_coarsest(fine_);
+  invert_coarsest(fine);
 }
 
 template <int dim>

@@ -73,7 +73,6 @@ class Multigrid {
   Eigen::MatrixXd coarsest_inverse_;
   Eigen::VectorXd coarsest_rhs_, coarsest_solution_;
   std::vector<float> row_, coarse_rows_;  ///< residual of a row; sums of a coarse slab, naturally
-  NaturalStencil fine_, coarse_;          ///< set-up only, kept for its memory
 };
 
 extern template class Multigrid<2>;
