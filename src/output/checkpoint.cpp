@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <regex>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "base/regular_file.hpp"
@@ -110,32 +111,49 @@ struct SortedPart {
 };
 
 template <typename T>
+SortedPart<T> sorted(const std::vector<GlobalIndex>& ids, const std::vector<T>& values,
+                     int n_components) {
+  std::vector<std::size_t> order(ids.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
+  SortedPart<T> part;
+  part.ids.reserve(ids.size());
+  part.values.reserve(values.size());
+  for (const std::size_t i : order) {
+    const auto value = values.begin() + i * n_components;
+    part.ids.push_back(ids[i]);
+    part.values.insert(part.values.end(), value, value + n_components);
+  }
+  return part;
+}
+
+template <typename T>
 SortedPart<T> sorted_part(const Communicator& comm, const std::vector<GlobalIndex>& ids,
                           const std::vector<T>& values, int n_components) {
   const int n_ranks = comm->getSize();
+  if (n_ranks == 1)  // a checkpoint is what takes most memory
+    return sorted(ids, values, n_components);
   const GlobalIndex largest = ids.empty() ? no_index : *std::max_element(ids.begin(), ids.end());
   const GlobalIndex n = max_all(comm, largest) + 1;
-  std::vector<std::vector<long long>> sent_ids(n_ranks);
+  std::vector<std::size_t> counts(n_ranks, 0);
+  for (const GlobalIndex id : ids)
+    ++counts[rank_of(id, n, n_ranks)];
+  std::vector<std::vector<GlobalIndex>> sent_ids(n_ranks);
   std::vector<std::vector<T>> sent_values(n_ranks);
+  for (int rank = 0; rank < n_ranks; ++rank) {
+    sent_ids[rank].reserve(counts[rank]);
+    sent_values[rank].reserve(counts[rank] * n_components);
+  }
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const int rank = rank_of(ids[i], n, n_ranks);
     const auto value = values.begin() + i * n_components;
     sent_ids[rank].push_back(ids[i]);
     sent_values[rank].insert(sent_values[rank].end(), value, value + n_components);
   }
-  const std::vector<long long> my_ids = send_to_ranks(comm, sent_ids);
-  const std::vector<T> my_values = send_to_ranks(comm, sent_values);
-  std::vector<std::size_t> order(my_ids.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return my_ids[a] < my_ids[b]; });
-  SortedPart<T> part;
-  for (const std::size_t i : order) {
-    const auto value = my_values.begin() + i * n_components;
-    part.ids.push_back(my_ids[i]);
-    part.values.insert(part.values.end(), value, value + n_components);
-  }
-  return part;
+  const std::vector<GlobalIndex> my_ids = send_to_ranks(comm, std::exchange(sent_ids, {}));
+  const std::vector<T> my_values = send_to_ranks(comm, std::exchange(sent_values, {}));
+  return sorted(my_ids, my_values, n_components);
 }
 }  // namespace
 
