@@ -272,6 +272,7 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
                                 surface,
                                 advection[0].empty() ? velocity_ : advection,
                                 ray_halo_,
+                                nearby_,
                                 {},
                                 dt,
                                 parameters_.viscosity.viscosity / parameters_.density,
@@ -311,10 +312,10 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
 template <int dim>
 void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
   if (geometry_.state.surface) {
-    revalidate_faces<dim>(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
+    revalidate_faces<dim>(domain_.grid, domain_.halo, geometry_.state, surface, nearby_, invalid_,
                           prediction_);
     for (Scalar& scalar : scalars_.all())
-      revalidate_scalar(domain_.grid, domain_.halo, geometry_.state, surface, invalid_,
+      revalidate_scalar(domain_.grid, domain_.halo, geometry_.state, surface, nearby_, invalid_,
                         scalar.ambient, scalar.values);
     invalid_ = {};
   }

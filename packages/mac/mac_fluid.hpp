@@ -122,6 +122,7 @@ class MacFluid : public FluidDiscretization<dim>,
   MacParameters<dim> parameters_;
   Scalars<dim> scalars_;
   RayHalo<dim> ray_halo_;
+  KeptSurface<dim> nearby_;
   std::shared_ptr<const LatticeBlocks> lattice_blocks_;
 
   MacGeometry<dim> geometry_;

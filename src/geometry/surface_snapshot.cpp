@@ -321,7 +321,6 @@ LatticeCrossings<dim> SurfaceSnapshot<dim>::cross_lattice(const Lattice<dim>& la
   for (int a = 0; a < dim; ++a)
     if (begin[a] >= end[a])
       return result;
-  std::vector<int> candidates;
   std::vector<std::pair<Index<dim>, Crossing<dim>>> found;
   for (int axis = 0; axis < dim; ++axis) {
     Index<dim> last = end;
@@ -331,10 +330,12 @@ LatticeCrossings<dim> SurfaceSnapshot<dim>::cross_lattice(const Lattice<dim>& la
     column.extend(lattice.center(last));
     column.min()[axis] = -std::numeric_limits<double>::infinity();
     column.max()[axis] = std::numeric_limits<double>::infinity();
-    touching(column, candidates);
 
     found.clear();
-    for (const int s : candidates) {
+    for (int s = 0; s < n_simplices(); ++s) {
+      // The column holds most of a surface, or all: the tree would only sort it.
+      if (!column.intersects(bounds(s)))
+        continue;
       const auto points = corners(s);
       Index<dim> first_line = begin, end_line = end;
       shadow<dim>(lattice, bounds(s), axis, first_line, end_line);

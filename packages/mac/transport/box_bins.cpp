@@ -20,6 +20,7 @@ template <int dim>
 bool BoxBins<dim>::lay_out(const Box<dim>& region, const Point<dim>& origin, double width) {
   count_.fill(0);
   used_.clear();
+  boxed_.clear();
   if (region.isEmpty())
     return false;
   per_width_ = 1 / width;
@@ -32,6 +33,7 @@ bool BoxBins<dim>::lay_out(const Box<dim>& region, const Point<dim>& origin, dou
   }
   words_in_row_ = (count_[0] + 63) / 64;
   used_.resize(n_rows * words_in_row_);
+  boxed_.resize(used_.size());
   return true;
 }
 
@@ -57,12 +59,12 @@ void BoxBins<dim>::fill(const std::vector<Entry>& entries) {
 }
 
 template <int dim>
-bool BoxBins<dim>::any_used(const Range& asked) const {
+bool BoxBins<dim>::any_set(const std::vector<std::uint64_t>& bits, const Range& asked) const {
   const int last = asked.end[0] - 1;
   const std::uint64_t first_bits = ~bits_below(asked.begin[0] & 63);
   const std::uint64_t last_bits = ~std::uint64_t{0} >> (63 - (last & 63));
   return any_row(asked, [&](const Index<dim>& bin) {
-    const std::uint64_t* row = used_.data() + row_of(bin);
+    const std::uint64_t* row = bits.data() + row_of(bin);
     const int first_word = bin[0] >> 6, last_word = last >> 6;
     if (first_word == last_word)
       return (row[first_word] & first_bits & last_bits) != 0;
@@ -74,13 +76,13 @@ bool BoxBins<dim>::any_used(const Range& asked) const {
 }
 
 template <int dim>
-bool BoxBins<dim>::clear_within(const Box<dim>& box) const {
+bool BoxBins<dim>::box_within(const Box<dim>& box) const {
   Range within = range(box);
   for (int a = 0; a < dim; ++a) {
     within.begin[a] += lower_[a] + within.begin[a] / per_width_ < box.min()[a];
     within.end[a] -= lower_[a] + within.end[a] / per_width_ > box.max()[a];
   }
-  return !any_used(within);
+  return any_set(boxed_, within);
 }
 
 template <int dim>

@@ -9,7 +9,7 @@
 namespace lockstep {
 
 /// Things in boxes listed by the bins of a uniform lattice, for questions about places much smaller
-/// than the whole. Empty bins take a bit and a half each.
+/// than the whole. Empty bins take three bits each.
 template <int dim>
 class BoxBins {
  public:
@@ -26,9 +26,11 @@ class BoxBins {
              double width, const Counts& counts);
 
   /// True if the bins that this box touches are empty.
-  bool clear(const Box<dim>& box) const { return !any_used(range(box)); }
-  /// True if all bins that lie within this box are empty.
-  bool clear_within(const Box<dim>& box) const;
+  bool clear(const Box<dim>& box) const { return !any_set(used_, range(box)); }
+  /// The same of all boxes, whether they count or not.
+  bool clear_of_boxes(const Box<dim>& box) const { return !any_set(boxed_, range(box)); }
+  /// True if a box touches a bin that lies within this one.
+  bool box_within(const Box<dim>& box) const;
   /// Calls f(list) for the bins that this box touches.
   template <typename Function>
   void visit(const Box<dim>& box, const Function& f) const;
@@ -46,8 +48,7 @@ class BoxBins {
   };
   /// Bins that a box touches; without any if it misses the region.
   Range range(const Box<dim>& box) const;
-  /// True if some bin of a range is not empty.
-  bool any_used(const Range& asked) const;
+  bool any_set(const std::vector<std::uint64_t>& bits, const Range& asked) const;
   /// Sets the bins; false if there are none.
   bool lay_out(const Box<dim>& region, const Point<dim>& origin, double width);
   struct Entry {
@@ -77,9 +78,11 @@ class BoxBins {
   double per_width_ = 0;  ///< bins a metre
   Index<dim> count_{};    ///< of bins along each axis; 0: there are no boxes
   int words_in_row_ = 0;
-  std::vector<std::uint64_t> used_;  ///< a bit for each bin along axis 0, rows start a word
-  std::vector<int> slots_before_;    ///< bits set in the words before
-  std::vector<int> start_;           ///< first item of each bin that is not empty, and the end
+  /// A bit for each bin along axis 0, rows start a word: bins that are not empty, and that a box
+  /// touches.
+  std::vector<std::uint64_t> used_, boxed_;
+  std::vector<int> slots_before_;  ///< bits set in the words before
+  std::vector<int> start_;         ///< first item of each bin that is not empty, and the end
   std::vector<int> items_;
 };
 
@@ -113,9 +116,11 @@ void BoxBins<dim>::build(const std::vector<Box<dim>>& boxes, const Box<dim>& reg
         for (int a = 0; a < dim; ++a)
           center[a] = lower_[a] + (first[a] + 0.5) * width;
         const int row = row_of(first);
-        for (int bin = first[0]; bin < touched.end[0]; ++bin, center[0] += width)
+        for (int bin = first[0]; bin < touched.end[0]; ++bin, center[0] += width) {
+          boxed_[row + (bin >> 6)] |= std::uint64_t{1} << (bin & 63);
           if (counts(i, center))
             entries.push_back({row + (bin >> 6), bin & 63, i});
+        }
         return false;
       });
     }

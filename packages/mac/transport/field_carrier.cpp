@@ -276,15 +276,14 @@ Ray<dim> FieldCarrier<dim>::trace(const Passenger<dim>& passenger, int id, const
 }
 
 template <int dim>
-double FieldCarrier<dim>::longest_way(const Passenger<dim>& passenger, int id,
-                                      const Point<dim>& x) const {
+bool FieldCarrier<dim>::is_far(const Passenger<dim>& passenger, int id, const Point<dim>& x) const {
   const Ray<dim> back = trace(passenger, id, x, -1, passenger.cubic(), true);
   Box<dim> points = Box<dim>(x).extend(back.middle).extend(back.end);
   if (passenger.corrects()) {
     const Ray<dim> forth = trace(passenger, id, x, 1, false, true);
     points.extend(forth.middle).extend(forth.end);
   }
-  return std::max((points.max() - x).maxCoeff(), (x - points.min()).maxCoeff());
+  return frame_.near_surface->clear(points, true, passenger.cubic() ? 2 : 1);
 }
 
 template <int dim>
@@ -311,9 +310,8 @@ void FieldCarrier<dim>::carry_near_surfaces(std::vector<Passenger<dim>>& passeng
                                             bool by_rows) {
   for (Passenger<dim>& passenger : passengers)
     frame_.for_each_sample(passenger.field.kind, tile, [&](int id, const Point<dim>& x) {
-      const double displacement =
-          by_rows ? longest_way(passenger, id, x) : frame_.largest_displacement;
-      if (frame_.near_surface->is_near(x, displacement))
+      const bool near = frame_.near_surface->is_near(x);
+      if (near && !(by_rows && is_far(passenger, id, x)))
         carry_with_care(passenger, id, x, by_rows);
       else if (!by_rows)
         carry_single(passenger, id, x, passenger.cubic());

@@ -54,8 +54,8 @@ class FieldCarrier {
   /// The ray from a sample; `by_rows`: as carried by rows.
   Ray<dim> trace(const Passenger<dim>& passenger, int id, const Point<dim>& x, double direction,
                  bool cubic, bool by_rows) const;
-  /// The farthest that the rays from a sample of a tile carried by rows go along an axis [cells].
-  double longest_way(const Passenger<dim>& passenger, int id, const Point<dim>& x) const;
+  /// True of samples of a tile carried by rows that no surface concerns.
+  bool is_far(const Passenger<dim>& passenger, int id, const Point<dim>& x) const;
   /// `wide`: by cubics.
   void carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x, bool wide);
   void carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x, bool by_rows);

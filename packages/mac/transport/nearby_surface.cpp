@@ -161,18 +161,20 @@ bool NearbySurface<dim>::touches(const Box<dim>& box) const {
     inner = std::min({inner, middle[a] - static_cast<int>(std::ceil(low)), last - 1 - middle[a]});
   }
   const int distance = distance_(middle);
-  return distance <= outer &&
-         (distance <= inner || !bins_.clear_within(box) || any_touches(2 * tolerance_));
+  if (distance > outer || distance <= inner)
+    return distance <= inner;
+  return !bins_.clear_of_boxes(box) && (bins_.box_within(box) || any_touches(2 * tolerance_));
+}
+
+template <int dim>
+Box<dim> NearbySurface<dim>::interior(const Box<dim>& box) const {
+  const Point<dim> middle = box.center(), margin = Point<dim>::Constant(tolerance_);
+  return {(box.min() + margin).cwiseMin(middle), (box.max() - margin).cwiseMax(middle)};
 }
 
 template <int dim>
 bool NearbySurface<dim>::clear(const Box<dim>& box) const {
-  if (empty())
-    return true;
-  // What touches the rim alone reaches into the box by the width of its bounds.
-  const Point<dim> middle = box.center(), margin = Point<dim>::Constant(tolerance_);
-  return reached_.contains(box) && bins_.clear({(box.min() + margin).cwiseMin(middle),
-                                                (box.max() - margin).cwiseMax(middle)});
+  return empty() || (reached_.contains(box) && bins_.clear(interior(box)));
 }
 
 template <int dim>
@@ -230,7 +232,7 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
   };
   std::array<Hit, 1 << dim> first;
   ++question_;
-  bins_.visit(box, [&](const auto& list) {
+  bins_.visit(interior(box), [&](const auto& list) {
     for (const int i : list) {
       if (seen_[i] == question_)
         continue;
@@ -288,7 +290,22 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
   }
 }
 
+template <int dim>
+std::shared_ptr<const NearbySurface<dim>> KeptSurface<dim>::of(
+    const std::shared_ptr<const SurfaceSnapshot<dim>>& snapshot, const TiledGrid<dim>& grid,
+    int reach) {
+  if (!surface_ || snapshot_ != snapshot || reach_ < reach) {
+    snapshot_ = snapshot;
+    reach_ = std::max(reach, last_request_);
+    surface_ = std::make_shared<const NearbySurface<dim>>(snapshot, grid, reach_);
+  }
+  last_request_ = reach;
+  return surface_;
+}
+
 template class NearbySurface<2>;
 template class NearbySurface<3>;
+template class KeptSurface<2>;
+template class KeptSurface<3>;
 
 }  // namespace lockstep

@@ -77,6 +77,8 @@ class NearbySurface {
   /// until f returns true.
   template <typename Function>
   bool any_image(const Box<dim>& box, const Function& f) const;
+  /// The box without its rim: what touches that alone still reaches into this, by its bounds.
+  Box<dim> interior(const Box<dim>& box) const;
   /// Takes the hit on one simplex if it comes before the one found, or is as near and the simplex
   /// comes first.
   void look_at(int near, const Point<dim>& a, const Point<dim>& b, double length, Hit& hit) const;
@@ -92,6 +94,22 @@ class NearbySurface {
   CellDistance<dim> distance_;          ///< to `bounds_`
   mutable std::vector<unsigned> seen_;  ///< the question that each simplex last came up for
   mutable unsigned question_ = 0;
+};
+
+/// Keeps what was made of a surface while it is asked for again.
+template <int dim>
+class KeptSurface {
+ public:
+  /// The surface near owned cells, fast within `reach` cells of them or more. May be null or empty.
+  std::shared_ptr<const NearbySurface<dim>> of(
+      const std::shared_ptr<const SurfaceSnapshot<dim>>& snapshot, const TiledGrid<dim>& grid,
+      int reach);
+
+ private:
+  std::shared_ptr<const SurfaceSnapshot<dim>> snapshot_;
+  std::shared_ptr<const NearbySurface<dim>> surface_;
+  int reach_ = 0;         ///< of `surface_`
+  int last_request_ = 0;  ///< likely to come again
 };
 
 /// The box widened by a distance on all sides.

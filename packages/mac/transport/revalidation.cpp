@@ -170,11 +170,12 @@ class Fronts {
 template <int dim>
 RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                     const MacState<dim>& after, const MovingSurface<dim>& surface,
-                                    const InvalidSamples<dim>& invalid, FaceField<dim>& u) {
+                                    KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
+                                    FaceField<dim>& u) {
   RevalidationReport total;
-  const NearbySurface<dim> nearby(after.surface, grid, sight);
+  const auto nearby = kept.of(after.surface, grid, sight);
   for (int a = 0; a < dim; ++a) {
-    Fronts<dim> fronts(grid, halo, after, surface, nearby, a, invalid.faces[a]);
+    Fronts<dim> fronts(grid, halo, after, surface, *nearby, a, invalid.faces[a]);
     const RevalidationReport report = fronts.fill(u[a]);
     for (const auto& sample : fronts.left_over())
       u[a][sample.id] = fronts.surface_velocity(sample.id);
@@ -190,10 +191,10 @@ RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchan
 template <int dim>
 RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                      const MacState<dim>& after, const MovingSurface<dim>& surface,
-                                     const InvalidSamples<dim>& invalid, double ambient,
-                                     CellField& s) {
-  const NearbySurface<dim> nearby(after.surface, grid, sight);
-  Fronts<dim> fronts(grid, halo, after, surface, nearby, cell_centers, invalid.cells);
+                                     KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
+                                     double ambient, CellField& s) {
+  const auto nearby = kept.of(after.surface, grid, sight);
+  Fronts<dim> fronts(grid, halo, after, surface, *nearby, cell_centers, invalid.cells);
   const RevalidationReport report = fronts.fill(s);
   for (const auto& sample : fronts.left_over())
     s[sample.id] = ambient;
@@ -204,15 +205,19 @@ RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExcha
 
 template RevalidationReport revalidate_faces<2>(const TiledGrid<2>&, const HaloExchange<2>&,
                                                 const MacState<2>&, const MovingSurface<2>&,
-                                                const InvalidSamples<2>&, FaceField<2>&);
+                                                KeptSurface<2>&, const InvalidSamples<2>&,
+                                                FaceField<2>&);
 template RevalidationReport revalidate_faces<3>(const TiledGrid<3>&, const HaloExchange<3>&,
                                                 const MacState<3>&, const MovingSurface<3>&,
-                                                const InvalidSamples<3>&, FaceField<3>&);
+                                                KeptSurface<3>&, const InvalidSamples<3>&,
+                                                FaceField<3>&);
 template RevalidationReport revalidate_scalar<2>(const TiledGrid<2>&, const HaloExchange<2>&,
                                                  const MacState<2>&, const MovingSurface<2>&,
-                                                 const InvalidSamples<2>&, double, CellField&);
+                                                 KeptSurface<2>&, const InvalidSamples<2>&, double,
+                                                 CellField&);
 template RevalidationReport revalidate_scalar<3>(const TiledGrid<3>&, const HaloExchange<3>&,
                                                  const MacState<3>&, const MovingSurface<3>&,
-                                                 const InvalidSamples<3>&, double, CellField&);
+                                                 KeptSurface<3>&, const InvalidSamples<3>&, double,
+                                                 CellField&);
 
 }  // namespace lockstep

@@ -19,12 +19,13 @@ struct RevalidationReport {
 template <int dim>
 RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                     const MacState<dim>& after, const MovingSurface<dim>& surface,
-                                    const InvalidSamples<dim>& invalid, FaceField<dim>& u);
+                                    KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
+                                    FaceField<dim>& u);
 /// The same for a cell-centred scalar; what is left over gets `ambient`.
 template <int dim>
 RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                      const MacState<dim>& after, const MovingSurface<dim>& surface,
-                                     const InvalidSamples<dim>& invalid, double ambient,
-                                     CellField& s);
+                                     KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
+                                     double ambient, CellField& s);
 
 }  // namespace lockstep

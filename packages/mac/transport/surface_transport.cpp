@@ -30,18 +30,16 @@ double largest_move(const MovingSurface<dim>& surface) {
 template <int dim>
 SurfaceTransport<dim>::SurfaceTransport(
     const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice, const RayTracer<dim>& tracer,
-    const UsableSamples<dim>& usable, const MovingSurface<dim>& surface,
+    const UsableSamples<dim>& usable, const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
     double largest_displacement, int stencil_reach, double friction_speed)
     : lattice_(lattice),
       tracer_(tracer),
       surface_(surface),
-      largest_displacement_(largest_displacement),
       surface_displacement_(largest_move(surface) / grid.spacing()),
-      stencil_reach_(stencil_reach),
       // What a ray crosses, and the samples around it, must be clear of surfaces.
-      interpolation_(
-          grid, lattice, usable, surface, friction_speed,
-          cells_reached(largest_displacement + stencil_reach + surface_displacement_) + 2) {
+      near_reach_(cells_reached(largest_displacement + stencil_reach + surface_displacement_)),
+      interpolation_(grid, lattice, usable, surface, friction_speed,
+                     kept.of(surface.before, grid, near_reach_ + 2)) {
   if (interpolation_.nearby().empty())
     return;
   const SurfaceSnapshot<dim>& before = *surface.before;
@@ -73,7 +71,7 @@ bool SurfaceTransport<dim>::is_near_tile(const Index<dim>& tile_begin) const {
   for (int cell = 0; cell < tile_volume<dim>; ++cell) {
     for (int a = 0, rest = cell; a < dim; ++a, rest /= tile_width<dim>)
       x[a] = tile_begin[a] + rest % tile_width<dim>;
-    if (is_near(x, largest_displacement_))
+    if (is_near(x))
       return true;
   }
   return false;
@@ -91,9 +89,13 @@ bool SurfaceTransport<dim>::swept(const Point<dim>& x) const {
   const SurfaceSnapshot<dim>& before = *surface_.before;
   const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
   const double tolerance = interpolation_.nearby().tolerance();
+  const auto lies_on = [&](const std::array<Point<dim>, dim>& corners) {
+    const Point<dim> area = area_vector<dim>(corners);
+    return std::abs(area.dot(position - corners[0])) <= 2 * tolerance * area.norm() &&
+           closest_on_simplex<dim>(corners, position).distance <= tolerance;
+  };
   for (const int s : candidates_)
-    if (closest_on_simplex<dim>(before.corners(s), position).distance <= tolerance ||
-        closest_on_simplex<dim>(after.corners(s), position).distance <= tolerance)
+    if (lies_on(before.corners(s)) || lies_on(after.corners(s)))
       return true;
   return surface_displacement_ > 0 && !candidates_.empty() &&
          swept_over<dim>(before, after, position, candidates_);

@@ -29,15 +29,13 @@ class SurfaceTransport {
   /// which fluid slips. References must outlive this object.
   SurfaceTransport(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
                    const RayTracer<dim>& tracer, const UsableSamples<dim>& usable,
-                   const MovingSurface<dim>& surface, double largest_displacement,
-                   int stencil_reach, double friction_speed);
+                   const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
+                   double largest_displacement, int stencil_reach, double friction_speed);
 
-  /// True if a surface may come into the way of a ray from the sample, forth or back, that goes so
-  /// many cells along an axis, or sweep over the sample.
-  bool is_near(const Point<dim>& x, double displacement) const {
-    return within(x, cells_reached(displacement + stencil_reach_ + surface_displacement_));
-  }
-  /// The same of some sample of the tile that begins there, with the longest of all rays.
+  /// True if a surface may come into the way of a ray from the sample, forth or back, or sweep over
+  /// it.
+  bool is_near(const Point<dim>& x) const { return within(x, near_reach_); }
+  /// The same of some sample of the tile that begins there.
   bool is_near_tile(const Index<dim>& tile_begin) const;
   /// False if no surface comes into the sample's cell during the step.
   bool may_be_swept(const Point<dim>& x) const {
@@ -79,9 +77,8 @@ class SurfaceTransport {
   const SampleLattice<dim>& lattice_;
   const RayTracer<dim>& tracer_;
   const MovingSurface<dim>& surface_;
-  /// Largest of a ray along an axis, and of a vertex over the step [cells].
-  double largest_displacement_, surface_displacement_;
-  int stencil_reach_;
+  double surface_displacement_;  ///< largest of a vertex over the step [cells]
+  int near_reach_;               ///< surfaces within so many cells may matter to a sample
   VisibleInterpolation<dim> interpolation_;
   std::vector<Box<dim>> swept_;  ///< box of each simplex over the step, a little widened [m]
   BoxBins<dim> swept_bins_;

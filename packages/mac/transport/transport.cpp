@@ -72,8 +72,8 @@ Transport<dim>::Implementation::Implementation(const TransportSetting<dim>& sett
   frame.tracer = std::make_unique<RayTracer<dim>>(*frame.lattice, inflow, velocity,
                                                   setting.dt / setting.grid.spacing());
   frame.near_surface = std::make_unique<SurfaceTransport<dim>>(
-      samples, *frame.lattice, *frame.tracer, usable, setting.surface, frame.largest_displacement,
-      stencil_reach,
+      samples, *frame.lattice, *frame.tracer, usable, setting.surface, setting.kept,
+      frame.largest_displacement, stencil_reach,
       resolved_reynolds_number * setting.kinematic_viscosity / setting.grid.spacing());
   if (reach <= TileBlock<dim>::longest_reach)
     frame.block =

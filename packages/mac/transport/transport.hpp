@@ -6,6 +6,7 @@
 
 #include "interfaces/fluid.hpp"
 #include "mac/state/mac_state.hpp"
+#include "mac/transport/nearby_surface.hpp"
 #include "mac/transport/ray_halo.hpp"
 
 namespace lockstep {
@@ -36,6 +37,7 @@ struct TransportSetting {
   const MovingSurface<dim>& surface;         ///< null or empty snapshots: no solids
   const FaceField<dim>& advection_velocity;  ///< u_ADV on all faces that are not inactive [m/s]
   RayHalo<dim>& halo;                        ///< of `grid`
+  KeptSurface<dim>& kept;                    ///< for calls on `grid` alone
   std::array<std::array<TransportSide<dim>, 2>, dim> sides;  ///< [axis][0 lower, 1 upper]
   double dt = 0;                                             ///< [s]
   double kinematic_viscosity = 0;                            ///< [m^2/s]

@@ -34,8 +34,8 @@ void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim
       corners[a][k] = place[a];
   }
   typename NearbySurface<dim>::Hits hits;
-  if (!nearby_.clear(around))
-    nearby_.look_around(eye, around, corners, hits);
+  if (!nearby_->clear(around))
+    nearby_->look_around(eye, around, corners, hits);
   for (int k = 0; k < 1 << dim; ++k)
     if (samples[k].weight != 0)
       f(samples[k], hits[k]);
@@ -120,9 +120,9 @@ Point<dim> VisibleInterpolation<dim>::velocity_at(const Point<dim>& x, const Vel
 
 template <int dim>
 Point<dim> VisibleInterpolation<dim>::nearest_surface_velocity(const Point<dim>& x) const {
-  if (nearby_.empty())
+  if (nearby_->empty())
     return Point<dim>::Zero();
-  const auto closest = nearby_.snapshot().closest(physical(x), 3 * grid_.spacing());
+  const auto closest = nearby_->snapshot().closest(physical(x), 3 * grid_.spacing());
   return closest ? surface_.velocity(*closest) : Point<dim>(Point<dim>::Zero());
 }
 

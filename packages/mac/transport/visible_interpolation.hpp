@@ -34,17 +34,16 @@ class VisibleInterpolation {
   /// All components of a velocity, on the sample grid.
   using Velocity = std::array<const double*, dim>;
 
-  /// All references must outlive this object. `velocity` is that of a surface point. Fast within
-  /// `reach` cells of owned ones.
+  /// All references must outlive this object. `nearby` is made of `surface.before`.
   VisibleInterpolation(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
                        const UsableSamples<dim>& usable, const MovingSurface<dim>& surface,
-                       double friction_speed, int reach)
+                       double friction_speed, std::shared_ptr<const NearbySurface<dim>> nearby)
       : grid_(grid),
         lattice_(lattice),
         usable_(usable),
         surface_(surface),
         friction_speed_(friction_speed),
-        nearby_(surface.before, grid, reach) {}
+        nearby_(std::move(nearby)) {}
 
   /// A velocity component of fluid that slips: samples hidden by a surface have the mean of the
   /// visible ones with the part along the surface's normal replaced by its own; along it the two
@@ -56,7 +55,7 @@ class VisibleInterpolation {
   /// All components of a velocity; where nothing is in sight, that of the nearest surface.
   Point<dim> velocity_at(const Point<dim>& x, const Velocity& field);
 
-  const NearbySurface<dim>& nearby() const { return nearby_; }
+  const NearbySurface<dim>& nearby() const { return *nearby_; }
   Point<dim> physical(const Point<dim>& x) const { return grid_.lower() + grid_.spacing() * x; }
   Box<dim> physical(const Box<dim>& box) const {
     return {physical(Point<dim>(box.min())), physical(Point<dim>(box.max()))};
@@ -89,7 +88,7 @@ class VisibleInterpolation {
   const UsableSamples<dim>& usable_;
   const MovingSurface<dim>& surface_;
   double friction_speed_;  ///< friction takes so much off the speed at which fluid slips [m/s]
-  NearbySurface<dim> nearby_;
+  std::shared_ptr<const NearbySurface<dim>> nearby_;
   std::array<Sight, dim> sight_;  ///< of each component, from the point looked at last
 };
 

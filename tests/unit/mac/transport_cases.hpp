@@ -70,11 +70,12 @@ struct FullTank {
       velocity[a] = faces(a, [&](const Point<dim>& x) { return u(x)[a]; });
   }
   TransportSetting<dim> setting(double dt) {
-    return {grid, state, surface, velocity, ray_halo, sides, dt, 0, 2};
+    return {grid, state, surface, velocity, ray_halo, kept, sides, dt, 0, 2};
   }
 
   TiledGrid<dim> grid;
   RayHalo<dim> ray_halo;
+  KeptSurface<dim> kept;
   HaloExchange<dim> halo;
   MacState<dim> state;
   MovingSurface<dim> surface;

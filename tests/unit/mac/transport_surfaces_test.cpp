@@ -53,8 +53,8 @@ RevalidationReport step(FullTank<dim>& tank, AdvectionScheme scheme, double dt, 
   s.swap(next);
   MacState<dim> after = tank.state;
   after.surface = tank.surface.after;
-  return revalidate_scalar<dim>(tank.grid, tank.halo, after, tank.surface, transport.invalid(), 0,
-                                s);
+  return revalidate_scalar<dim>(tank.grid, tank.halo, after, tank.surface, tank.kept,
+                                transport.invalid(), 0, s);
 }
 
 /// Rough flow that crosses every surface: the solids do not impose themselves on it.
@@ -195,7 +195,7 @@ void expect_stream_undisturbed(double cfl) {
   for (int a = 0; a < dim; ++a)
     std::fill(state_after.faces[a].begin(), state_after.faces[a].end(), FaceState::free);
   const auto report = revalidate_faces<dim>(tank.grid, tank.halo, state_after, tank.surface,
-                                            transport.invalid(), u);
+                                            tank.kept, transport.invalid(), u);
   EXPECT_GT(report.n_invalid, 10);
   for (int a = 0; a < dim; ++a)
     tank.grid.for_each_owned_face(a, [&](int c) {
@@ -285,8 +285,8 @@ TEST(TransportNearSurfaces, LeftOverFacesTakeTheSurfaceVelocity) {
   transport.advect_faces(AdvectionScheme::semi_lagrangian, u, moved);
   MacState<2> after = tank.state;
   after.surface = tank.surface.after;
-  const auto report =
-      revalidate_faces<2>(tank.grid, tank.halo, after, tank.surface, transport.invalid(), moved);
+  const auto report = revalidate_faces<2>(tank.grid, tank.halo, after, tank.surface, tank.kept,
+                                          transport.invalid(), moved);
   EXPECT_EQ(report.n_left_over, 1);
   EXPECT_EQ(report.n_invalid, 2);
   tank.grid.for_each_owned_face(1, [&](int c) {
