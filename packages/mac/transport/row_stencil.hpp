@@ -48,62 +48,37 @@ class RowStencil {
   /// Whole rows are loaded: up to one place before the block and one behind it.
   void interpolate(const double* block, RowValues<dim>& values) const {
     if (in_step_)
-      values = found<dim - 1, false, false>(block + first_).value;
+      values = between<dim - 1, false>(block + first_);
     else if (by_rows_)
-      values = found<dim - 1, true, false>(block + first_).value;
+      values = between<dim - 1, true>(block + first_);
     else
       for (int i = 0; i < tile_width<dim>; ++i)
         values[i] = single<dim - 1>(block + place_of(i), i);
   }
-  /// Also gives the range of the samples.
-  void interpolate(const double* block, RowValues<dim>& values, RowValues<dim>& low,
-                   RowValues<dim>& high) const {
-    if (in_step_) {
-      found<dim - 1, false, true>(block + first_).give(values, low, high);
-      return;
-    }
+  /// The range of the samples.
+  void find_range(const double* block, RowValues<dim>& low, RowValues<dim>& high) const {
     if (by_rows_) {
-      found<dim - 1, true, true>(block + first_).give(values, low, high);
+      const Range found =
+          in_step_ ? range<dim - 1, false>(block + first_) : range<dim - 1, true>(block + first_);
+      low = found.low;
+      high = found.high;
       return;
     }
-    interpolate(block, values);
     for (int i = 0; i < tile_width<dim>; ++i) {
       const double* c = block + place_of(i);
-      low[i] = high[i] = *c;
+      double least = *c, most = *c;
       for (int k = 1; k < 1 << dim; ++k) {
-        low[i] = std::min(low[i], c[corner(k)]);
-        high[i] = std::max(high[i], c[corner(k)]);
+        least = std::min(least, c[corner(k)]);
+        most = std::max(most, c[corner(k)]);
       }
+      low[i] = least;
+      high[i] = most;
     }
   }
 
  private:
-  /// What is found between samples, with or without their range.
-  template <bool with_range>
-  struct Found {
-    explicit Found(const double* c) : value(Eigen::Map<const RowValues<dim>>(c)) {
-      if constexpr (with_range)
-        range = {value, value};
-    }
-    Found(const Found& lower, const Found& upper, const RowValues<dim>& weight)
-        : value(blend<RowValues<dim>>(lower.value, upper.value, weight)) {
-      if constexpr (with_range)
-        range = {lower.range[0].min(upper.range[0]), lower.range[1].max(upper.range[1])};
-    }
-    /// Each point has its own of the two.
-    Found(const RowValues<dim>& takes_first, const Found& first, const Found& second)
-        : value(chosen<dim>(takes_first, first.value, second.value)) {
-      if constexpr (with_range)
-        range = {chosen<dim>(takes_first, first.range[0], second.range[0]),
-                 chosen<dim>(takes_first, first.range[1], second.range[1])};
-    }
-    void give(RowValues<dim>& values, RowValues<dim>& low, RowValues<dim>& high) const {
-      values = value;
-      low = range[0];
-      high = range[1];
-    }
-    RowValues<dim> value;
-    std::array<RowValues<dim>, with_range ? 2 : 0> range;
+  struct Range {
+    RowValues<dim> low, high;
   };
 
   void find_steps() {
@@ -133,20 +108,42 @@ class RowStencil {
     return step;
   }
 
-  /// Along the axes up to this one, from the lowest samples of the row.
-  template <int axis, bool mixed, bool with_range>
-  [[gnu::always_inline]] Found<with_range> found(const double* c) const {
+  static RowValues<dim> row_at(const double* c) { return Eigen::Map<const RowValues<dim>>(c); }
+
+  /// Along the axes up to this one, from the lowest samples of the row. Of three samples along a
+  /// mixed axis the second is everybody's; who is ahead takes the third, others the first.
+  template <int axis, bool mixed>
+  [[gnu::always_inline]] RowValues<dim> between(const double* c) const {
     if constexpr (axis < 0) {
-      return Found<with_range>(c);
+      return row_at(c);
     } else {
       const int step = axis == 0 ? 1 : stride_[axis];
-      const auto lower = found<axis - 1, mixed, with_range>(c);
-      const auto upper = found<axis - 1, mixed, with_range>(c + step);
+      const RowValues<dim> lower = between<axis - 1, mixed>(c);
+      const RowValues<dim> upper = between<axis - 1, mixed>(c + step);
       if (!mixed || !is_mixed_[axis])
-        return {lower, upper, splits_[axis]->weight};
-      // The second of three samples is everybody's; who is ahead needs the third as well.
-      const auto last = found<axis - 1, mixed, with_range>(c + 2 * step);
-      return {upper, {is_ahead_[axis], last, lower}, weight_of_other_[axis]};
+        return blend<RowValues<dim>>(lower, upper, splits_[axis]->weight);
+      const RowValues<dim> last = between<axis - 1, mixed>(c + 2 * step);
+      return blend<RowValues<dim>>(upper, chosen<dim>(is_ahead_[axis], last, lower),
+                                   weight_of_other_[axis]);
+    }
+  }
+  /// The same for the range of the samples.
+  template <int axis, bool mixed>
+  [[gnu::always_inline]] Range range(const double* c) const {
+    const int step = axis == 0 ? 1 : stride_[axis];
+    if constexpr (axis == 0) {
+      const RowValues<dim> lower = row_at(c), upper = row_at(c + 1);
+      if (!mixed || !is_mixed_[0])
+        return {lower.min(upper), lower.max(upper)};
+      const RowValues<dim> other = chosen<dim>(is_ahead_[0], row_at(c + 2), lower);
+      return {upper.min(other), upper.max(other)};
+    } else {
+      const Range lower = range<axis - 1, mixed>(c), upper = range<axis - 1, mixed>(c + step);
+      if (!mixed || !is_mixed_[axis])
+        return {lower.low.min(upper.low), lower.high.max(upper.high)};
+      const Range last = range<axis - 1, mixed>(c + 2 * step);
+      return {upper.low.min(chosen<dim>(is_ahead_[axis], last.low, lower.low)),
+              upper.high.max(chosen<dim>(is_ahead_[axis], last.high, lower.high))};
     }
   }
   /// The same for point i of the row alone.

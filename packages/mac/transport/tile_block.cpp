@@ -185,7 +185,9 @@ template <int dim>
 void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values,
                              RowValues<dim>& low, RowValues<dim>& high) const {
   const SplitPoints<dim> split(points, offset_);
-  RowStencil<dim>(split.splits, stride_).interpolate(field_, values, low, high);
+  const RowStencil<dim> stencil(split.splits, stride_);
+  stencil.interpolate(field_, values);
+  stencil.find_range(field_, low, high);
 }
 
 template <int dim>
