@@ -1,11 +1,13 @@
 #include "contact/contact_shapes.hpp"
 
+#include <Tpetra_CrsMatrix.hpp>
 #include <algorithm>
 #include <iterator>
 #include <map>
 
 #include "contact/inverse_mass.hpp"
 #include "geometry/simplex_queries.hpp"
+#include "linear/matrix_rows.hpp"
 
 namespace lockstep {
 
@@ -100,7 +102,7 @@ bool ContactTopology<dim>::connected(int vertex, int other) const {
 
 template <int dim>
 ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopology<dim>& topology)
-    : solids_(system.solids()), topology_(&topology), mesh_(all_surfaces(system)) {
+    : system_(system), solids_(system.solids()), topology_(&topology), mesh_(all_surfaces(system)) {
   if (!topology.belongs_to(mesh_))
     topology = ContactTopology<dim>(mesh_, solids_);
   solid_bounds_.resize(solids_.size());
@@ -112,15 +114,55 @@ ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopolog
       solid_bounds_[i].extend(bounds_[s]);
     }
   }
-  find_held(system);
+  find_combinations();
+  find_held();
+}
+
+/// Contacts are the same on all ranks, so all know all combinations.
+template <int dim>
+void ContactShapes<dim>::find_combinations() {
+  const Reduction& reduction = system_.reduction();
+  if (!reduction.has_combinations())
+    return;
+  std::vector<double> mine;
+  const Map& rows = *system_.map();
+  for_each_entry(*reduction.combinations(), [&](int row, GlobalIndex dof, double weight) {
+    mine.insert(mine.end(), {double(rows.getGlobalElement(row)), double(dof), weight});
+  });
+  const std::vector<double> all = gather_all(system_.comm(), mine);
+  for (std::size_t k = 0; k + 2 < all.size(); k += 3)
+    combinations_[static_cast<GlobalIndex>(all[k])].emplace_back(
+        static_cast<GlobalIndex>(all[k + 1]), all[k + 2]);
 }
 
 template <int dim>
-void ContactShapes<dim>::find_held(const SolidSystem<dim>& system) {
+void ContactShapes<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
+                                      VelocityRow<dim>& row) const {
+  system_.velocity_row(point, x, row);
+  if (combinations_.empty())
+    return;
+  VelocityRow<dim> reduced;
+  for (std::size_t k = 0; k < row.dofs.size(); ++k) {
+    const auto combination = combinations_.find(row.dofs[k]);
+    if (combination == combinations_.end()) {
+      reduced.dofs.push_back(row.dofs[k]);
+      reduced.coefficients.push_back(row.coefficients[k]);
+      continue;
+    }
+    for (const auto& [dof, weight] : combination->second) {
+      reduced.dofs.push_back(dof);
+      reduced.coefficients.push_back(weight * row.coefficients[k]);
+    }
+  }
+  row = std::move(reduced);
+}
+
+template <int dim>
+void ContactShapes<dim>::find_held() {
   held_.assign(mesh_.vertices.size(), false);
   std::vector<double> free;
-  if (system.has_locks())
-    free = replicated(system, *system.free_mask());
+  if (system_.reduction().has_given())
+    free = replicated(system_, *system_.reduction().unknowns());
   VelocityRow<dim> row;
   for (int i = 0; i < n_solids(); ++i) {
     for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v) {
@@ -128,7 +170,7 @@ void ContactShapes<dim>::find_held(const SolidSystem<dim>& system) {
       const SurfacePoint<dim> point = at_vertex(v);
       if (solids_[i].prescribed || solids_[i].rigid || free.empty() || point.simplex < 0)
         continue;
-      system.velocity_row(point, point.position, row);
+      velocity_row(point, point.position, row);
       held_[v] = std::all_of(row.dofs.begin(), row.dofs.end(),
                              [&free](GlobalIndex dof) { return free[dof] == 0; });
     }

@@ -1,5 +1,7 @@
 #pragma once
 #include <optional>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "coupling/solid_system.hpp"
@@ -40,7 +42,7 @@ class ContactTopology {
 };
 
 /// The surfaces of all solids at one instant, with the numbers of `SolidSystem::snapshot`, and what
-/// the search for contacts asks of them. The same on all ranks.
+/// contacts ask of them. The same on all ranks.
 template <int dim>
 class ContactShapes {
  public:
@@ -54,6 +56,13 @@ class ContactShapes {
 
   const Box<dim>& bounds(int simplex) const { return bounds_[simplex]; }
   const Box<dim>& bounds_of_solid(int solid) const { return solid_bounds_[solid]; }
+  /// What moves a point of a surface: dofs that are unknowns or given, those of combinations
+  /// replaced by the ones that they are made of.
+  void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
+                    VelocityRow<dim>& row) const;
+  Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const {
+    return system_.prescribed_velocity(point, x);
+  }
   /// True if contact cannot move this vertex: of a prescribed solid, or a pinned node.
   bool held(int vertex) const { return held_[vertex]; }
   std::array<Point<dim>, dim> corners(int simplex) const;
@@ -66,12 +75,15 @@ class ContactShapes {
   bool inside(int solid, const Point<dim>& x, double radius) const;
 
  private:
-  void find_held(const SolidSystem<dim>& system);
+  void find_combinations();
+  void find_held();
 
+  const SolidSystem<dim>& system_;
   const std::vector<SolidDescription>& solids_;
   const ContactTopology<dim>* topology_;
   SurfaceMesh<dim> mesh_;
   std::vector<Box<dim>> bounds_, solid_bounds_;
+  std::unordered_map<GlobalIndex, std::vector<std::pair<GlobalIndex, double>>> combinations_;
   std::vector<bool> held_;
 };
 

@@ -6,29 +6,20 @@
 #include "base/errors.hpp"
 #include "contact/contact_problem.hpp"
 #include "contact/impact_zones.hpp"
-#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
 
 namespace {
 
-/// What the locks of dofs gave to the solids while contact acted: what M_S dV has in locked rows
-/// beyond the contact's own impulse. Collective.
+/// What constraints gave to the solids while contact acted: what M_S dV has in their rows beyond
+/// the contact's own impulse. Collective.
 template <int dim>
-Momentum<dim> lock_impulse(const SolidSystem<dim>& solids, const Vector& change,
-                           const Vector& impulse) {
-  const RCP<Vector> reaction = make_vector(solids.map());
-  reaction->update(-1, impulse, 0);
-  apply(*solids.mass(), change, *reaction, 1, 1);
-  const auto free = solids.free_mask()->getData();
-  {
-    const auto values = reaction->getDataNonConst();
-    for (int row = 0; row < values.size(); ++row) {
-      if (free[row] != 0)
-        values[row] = 0;
-    }
-  }
-  return solids.momentum(*reaction);
+Momentum<dim> reaction(const SolidSystem<dim>& solids, const Vector& change,
+                       const Vector& impulse) {
+  Vector reaction(impulse, Teuchos::Copy);
+  apply(*solids.mass(), change, reaction, 1, -1);
+  solids.reduction().keep_reactions(reaction);
+  return solids.momentum(reaction);
 }
 
 void check_names(const std::map<std::string, double>& by_name,
@@ -42,18 +33,9 @@ void check_names(const std::map<std::string, double>& by_name,
 
 template <int dim>
 RCP<Vector> free_part(const SolidSystem<dim>& solids, const Vector& impulse) {
-  const RCP<Vector> part = make_vector(solids.map());
-  part->elementWiseMultiply(1, *solids.free_mask(), impulse, 0);
+  const auto part = rcp(new Vector(impulse, Teuchos::Copy));
+  solids.reduction().select(*part);
   return part;
-}
-
-/// M_S^-1 of an impulse on the free dofs. Collective.
-template <int dim>
-RCP<Vector> velocity_change(const SolidSystem<dim>& solids, const Vector& impulse) {
-  const RCP<Vector> change = make_vector(solids.map());
-  apply(*exact_inverse(solids.solid_block(Teuchos::null, 0), "mass of the solids"),
-        *free_part(solids, impulse), *change);
-  return change;
 }
 
 }  // namespace
@@ -102,13 +84,14 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   } else {
     change->update(-1, *distributed(solids, given), 1);
     if (!inverse_mass.exact && phase == ContactPhase::velocity)
-      change = velocity_change(solids, *impulse);
+      change = solids.velocity_of(*impulse);
   }
-  if (solids.has_locks()) {
+  solids.reduction().follow(*change);
+  if (solids.reduction().has_given()) {
     if (response)  // what acts on locked dofs goes to what holds them
       report.external_impulse += solids.momentum(*report.impulse) - solids.momentum(*impulse);
     else
-      report.external_impulse += lock_impulse(solids, *change, *impulse);
+      report.external_impulse += reaction(solids, *change, *impulse);
   }
   velocity.update(1, *change, 1);
   return report;

@@ -114,7 +114,7 @@ class ImpactZones {
     SurfacePoint<dim> point;
     point.simplex = simplex;
     VelocityRow<dim> row;
-    system_.velocity_row(point, Point<dim>::Zero(), row);
+    shapes_.velocity_row(point, Point<dim>::Zero(), row);
     return row;
   }
 
@@ -128,7 +128,7 @@ class ImpactZones {
     node.vertex = vertex;
     node.solid = solid;
     const SurfacePoint<dim> point = shapes_.at_vertex(vertex);
-    system_.velocity_row(point, point.position, node.row);
+    shapes_.velocity_row(point, point.position, node.row);
     for (std::size_t k = 0; k < node.row.dofs.size(); ++k) {
       const GlobalIndex dof = node.row.dofs[k];
       if (const auto carrier = rigid_of_dof_.find(dof); carrier != rigid_of_dof_.end()) {

@@ -55,7 +55,7 @@ void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& 
 template <int dim>
 void ImpulseSolver<dim>::add_entries(const SurfacePoint<dim>& point, const Point<dim>& x,
                                      const Eigen::Matrix<double, dim, dim>& factor) {
-  system_.velocity_row(point, x, velocity_row_);
+  shapes_.velocity_row(point, x, velocity_row_);
   for (std::size_t k = 0; k < velocity_row_.dofs.size(); ++k) {
     jacobian_.push_back(
         {static_cast<int>(velocity_row_.dofs[k]), factor * velocity_row_.coefficients[k]});

@@ -117,7 +117,9 @@ InverseMass replicated_inverse_mass(const SolidSystem<dim>& system) {
       lump_large_blocks(*mass, *blocks.inverse, triplets);
   }
   const std::vector<double> all = gather_all(system.comm(), triplets);
-  const std::vector<double> free = replicated(system, *system.free_mask());
+  std::vector<double> free(system.n_unknowns(), 1);
+  if (!system.reduction().is_identity())
+    free = replicated(system, *system.reduction().unknowns());
   const auto n = static_cast<double>(free.size());
   result.rows.resize(free.size());
   for (std::size_t k = 0; k + 2 < all.size(); k += 3) {

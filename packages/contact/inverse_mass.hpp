@@ -6,9 +6,9 @@
 
 namespace lockstep {
 
-/// M_S^-1 on the free dofs, replicated: rows of small blocks. Where the blocks of M_S are larger
-/// than those of rigid bodies (consistent mass matrices), lumped masses, the sums of its rows,
-/// stand in.
+/// (P^T M_S P)^-1 on the unknowns, replicated: rows of small blocks. Where the blocks of M_S are
+/// larger than those of rigid bodies (consistent mass matrices), lumped masses, the sums of its
+/// rows, stand in.
 struct InverseMass {
   bool exact = true;
   std::vector<std::vector<std::pair<int, double>>> rows;  ///< by id, without padding

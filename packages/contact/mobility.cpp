@@ -26,7 +26,7 @@ Mobility<dim>::Mobility(const InverseMass& inverse_mass, const SolidSystem<dim>&
       const SurfacePoint<dim> point = shapes.at_vertex(v);
       if (point.simplex < 0)
         continue;
-      system.velocity_row(point, point.position, row);
+      shapes.velocity_row(point, point.position, row);
       dofs.insert(row.dofs.begin(), row.dofs.end());
     }
   }

@@ -25,13 +25,13 @@ AngularVector<3> spin_of(const Eigen::Matrix3d& gradient) {
 }  // namespace
 
 template <int dim>
-Point<dim> point_velocity(const SolidSystem<dim>& system, bool prescribed,
+Point<dim> point_velocity(const ContactShapes<dim>& shapes, bool prescribed,
                           const SurfacePoint<dim>& point, const Point<dim>& x,
                           const std::vector<double>& velocity) {
   if (prescribed)
-    return system.prescribed_velocity(point, x);
+    return shapes.prescribed_velocity(point, x);
   VelocityRow<dim> row;
-  system.velocity_row(point, x, row);
+  shapes.velocity_row(point, x, row);
   Point<dim> sum = Point<dim>::Zero();
   for (std::size_t k = 0; k < row.dofs.size(); ++k)
     sum += velocity[row.dofs[k]] * row.coefficients[k];
@@ -57,7 +57,7 @@ SolidMotion<dim>::SolidMotion(const SolidSystem<dim>& system, const ContactShape
         if (point.simplex < 0)
           continue;
         vertex_velocities_[v] =
-            point_velocity(system, solid.prescribed, point, point.position, velocity);
+            point_velocity(shapes, solid.prescribed, point, point.position, velocity);
         motion.range.extend(vertex_velocities_[v]);
       }
       continue;
@@ -67,7 +67,7 @@ SolidMotion<dim>::SolidMotion(const SolidSystem<dim>& system, const ContactShape
     point.barycentric.fill(1.0 / dim);
     motion.center = states[i].center_of_mass;
     const auto field = [&](const Point<dim>& x) {
-      return point_velocity(system, solid.prescribed, point, x, velocity);
+      return point_velocity(shapes, solid.prescribed, point, x, velocity);
     };
     motion.velocity = field(motion.center);
     const double arm = box.diagonal().norm();
@@ -119,9 +119,9 @@ Point<dim> SolidMotion<dim>::end_of_vertex(int solid, int vertex, double dt) con
 
 template class SolidMotion<2>;
 template class SolidMotion<3>;
-template Point<2> point_velocity<2>(const SolidSystem<2>&, bool, const SurfacePoint<2>&,
+template Point<2> point_velocity<2>(const ContactShapes<2>&, bool, const SurfacePoint<2>&,
                                     const Point<2>&, const std::vector<double>&);
-template Point<3> point_velocity<3>(const SolidSystem<3>&, bool, const SurfacePoint<3>&,
+template Point<3> point_velocity<3>(const ContactShapes<3>&, bool, const SurfacePoint<3>&,
                                     const Point<3>&, const std::vector<double>&);
 
 }  // namespace lockstep

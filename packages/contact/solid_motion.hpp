@@ -41,7 +41,7 @@ class SolidMotion {
 
 /// v(x) of a point of a dynamic or a prescribed solid. Local.
 template <int dim>
-Point<dim> point_velocity(const SolidSystem<dim>& system, bool prescribed,
+Point<dim> point_velocity(const ContactShapes<dim>& shapes, bool prescribed,
                           const SurfacePoint<dim>& point, const Point<dim>& x,
                           const std::vector<double>& velocity);
 

@@ -254,6 +254,21 @@ std::vector<Triplet> consistent_mass_triplets(const CouplingWeights& weights,
   return triplets;
 }
 
+namespace {
+
+/// The dofs of these shares that are combinations of others, ascending. Collective.
+template <int dim>
+std::vector<GlobalIndex> carried_dofs(const std::vector<ControlVolume<dim>>& volumes,
+                                      const std::vector<std::vector<SurfaceShare<dim>>>& shares,
+                                      const SolidSystem<dim>& solids) {
+  if (!solids.reduction().has_combinations())
+    return {};
+  const CouplingWeights weights = coupling_weights<dim>(volumes, shares, solids, false);
+  return solids.reduction().combinations_among(weights.dofs);
+}
+
+}  // namespace
+
 template <int dim>
 std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& volumes,
                                          const std::vector<std::vector<SurfaceShare<dim>>>& shares,
@@ -267,6 +282,10 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
   VelocityRow<dim> scratch;
   std::vector<GlobalIndex> dofs;
   std::vector<double> values;
+  const std::vector<GlobalIndex> carried = carried_dofs<dim>(volumes, shares, solids);
+  const auto is_carried = [&carried](GlobalIndex dof) {
+    return std::binary_search(carried.begin(), carried.end(), dof);
+  };
   for (std::size_t f = 0; f < volumes.size(); ++f) {
     for (const SurfaceShare<dim>& share : shares[f]) {
       const bool is_rigid = solids.solids()[share.solid].rigid;
@@ -274,10 +293,9 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
         continue;  // done body by body
       directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch, dofs,
                         values);
-      // A rigid motion, or that of an element with nodes attached to a rigid body.
+      // A rigid motion, or that of an element with nodes that a rigid body carries.
       const bool is_rigid_motion =
-          is_rigid || std::any_of(dofs.begin(), dofs.end(),
-                                  [&](GlobalIndex dof) { return solids.carries_nodes(dof); });
+          is_rigid || (!carried.empty() && std::any_of(dofs.begin(), dofs.end(), is_carried));
       const double mass = masses[f] * share.weight;
       for (std::size_t i = 0; i < dofs.size(); ++i) {
         if (!is_rigid_motion)

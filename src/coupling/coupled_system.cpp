@@ -25,13 +25,9 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   surface_ = surface;
   fluid_.set_geometry(surface, coupling_);
   coupling_.assemble(fluid_, solids_, *surface);
-  unlocked_transposed_ = coupling_.coupling_transposed();
-  RCP<const CrsMatrix> transposed = unlocked_transposed_;
-  if (!transposed.is_null() && solids_.has_locks()) {
-    const auto masked = rcp(new CrsMatrix(*transposed, Teuchos::Copy));
-    masked->leftScale(*solids_.free_mask());
-    transposed = masked;
-  }
+  RCP<const CrsMatrix> transposed = coupling_.coupling_transposed();
+  if (!transposed.is_null())
+    transposed = solids_.reduction().reduce_rows(transposed);
   const NullSpace null_space = find_null_space(fluid_.regions(), fluid_.pressure_map(), transposed);
 
   ++blocks_.geometry_stamp;
@@ -69,39 +65,38 @@ RCP<Vector> CoupledSystem<dim>::lumped_momentum(const Vector& momentum) const {
 }
 
 template <int dim>
-RCP<Vector> CoupledSystem<dim>::unlocked_momentum(double dt, const Vector& velocity) const {
-  const auto product = make_vector(solids_.map());
-  apply(*solids_.unlocked_block(coupling_.added_mass(), dt), velocity, *product);
-  return product;
+void CoupledSystem<dim>::subtract_given(double dt, const Reduction& constraints,
+                                        Vector& row) const {
+  if (!constraints.offset().is_null())
+    apply(*solids_.full_block(coupling_.added_mass(), dt), *constraints.offset(), row, -1, 1);
 }
 
 template <int dim>
-BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum, double& incompatibility,
-                                                double dt,
-                                                const RCP<const Vector>& locked_velocity) const {
+BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum, double dt,
+                                                const Reduction& constraints,
+                                                double& incompatibility) const {
   BlockVector rhs;
   rhs.pressure = make_vector(fluid_.pressure_map());
   fluid_.divergence(*rhs.pressure);
   coupling_.add_prescribed_divergence(*rhs.pressure);
-  if (!locked_velocity.is_null())
-    unlocked_transposed_->apply(*locked_velocity, *rhs.pressure, Teuchos::TRANS, 1, 1);
+  if (!constraints.offset().is_null())
+    coupling_.coupling_transposed()->apply(*constraints.offset(), *rhs.pressure, Teuchos::TRANS, 1,
+                                           1);
   const bool with_solid = solids_.has_unknowns();
   incompatibility = relative_part_removed(
       with_solid ? blocks_.null_space : pressure_only_.null_space, *rhs.pressure);
   if (with_solid) {
-    const RCP<Vector> full = lumped_momentum(momentum);
-    if (!locked_velocity.is_null())
-      full->update(-1, *unlocked_momentum(dt, *locked_velocity), 1);
-    rhs.solid = make_vector(solids_.map());
-    rhs.solid->elementWiseMultiply(1, *solids_.free_mask(), *full, 0);
+    rhs.solid = lumped_momentum(momentum);
+    subtract_given(dt, constraints, *rhs.solid);
+    constraints.restrict(*rhs.solid);
   }
   return rhs;
 }
 
 namespace {
 
-/// What locked dofs push into the pressure unknowns.
-PrescribedFlux flux_of_locks(const CrsMatrix& coupling_transposed, const Vector& velocity) {
+/// What given dofs push into the pressure unknowns.
+PrescribedFlux flux_of_given(const CrsMatrix& coupling_transposed, const Vector& velocity) {
   PrescribedFlux flux{"what pins move of soft solids", {}};
   const auto speed = velocity.getData();
   for_each_entry(coupling_transposed, [&](int row, GlobalIndex unknown, double area) {
@@ -114,8 +109,7 @@ PrescribedFlux flux_of_locks(const CrsMatrix& coupling_transposed, const Vector&
 }  // namespace
 
 template <int dim>
-std::string CoupledSystem<dim>::impossible_flow(double time,
-                                                const RCP<const Vector>& locked_velocity,
+std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& constraints,
                                                 double negligible) const {
   const bool with_solid = solids_.has_unknowns();
   const auto& null_space = with_solid ? blocks_.null_space : pressure_only_.null_space;
@@ -126,26 +120,24 @@ std::string CoupledSystem<dim>::impossible_flow(double time,
     fluxes.sides = sides->side_fluxes(time);
   if (const auto* pushed = side_of<SolidFluxes<dim>>(coupling_))
     fluxes.solids = pushed->solid_fluxes(solids_);
-  if (with_solid && !locked_velocity.is_null())
-    fluxes.solids.push_back(flux_of_locks(*unlocked_transposed_, *locked_velocity));
+  if (with_solid && !constraints.offset().is_null())
+    fluxes.solids.push_back(flux_of_given(*coupling_.coupling_transposed(), *constraints.offset()));
   constexpr GlobalIndex smallest_region = dim == 2 ? 9 : 27;  // three cells across
   return lockstep::impossible_flow(null_space, fluxes, fluid_.pressure_map(), smallest_region,
                                    negligible, dim == 2 ? "m^2/s" : "m^3/s");
 }
 
 template <int dim>
-RCP<Vector> CoupledSystem<dim>::lock_reaction(double dt, const Vector& momentum,
-                                              const BlockVector& solution) const {
-  if (!solids_.has_locks())
+RCP<Vector> CoupledSystem<dim>::reactions(double dt, const Reduction& constraints,
+                                          const Vector& momentum,
+                                          const BlockVector& solution) const {
+  if (constraints.is_identity())
     return make_vector(solids_.map());
-  const RCP<const Vector> rhs = lumped_momentum(momentum);
-  const RCP<Vector> reaction = unlocked_momentum(dt, *solution.solid);
-  unlocked_transposed_->apply(*solution.pressure, *reaction, Teuchos::NO_TRANS, 1, 1);
-  reaction->update(-1, *rhs, 1);
-  Vector free_part(solids_.map());
-  free_part.elementWiseMultiply(1, *solids_.free_mask(), *reaction, 0);
-  reaction->update(-1, free_part, 1);
-  return reaction;
+  const RCP<Vector> reactions = lumped_momentum(momentum);
+  apply(*solids_.full_block(coupling_.added_mass(), dt), *solution.solid, *reactions, 1, -1);
+  coupling_.coupling_transposed()->apply(*solution.pressure, *reactions, Teuchos::NO_TRANS, 1, 1);
+  constraints.keep_reactions(*reactions);
+  return reactions;
 }
 
 template <int dim>

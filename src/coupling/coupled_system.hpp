@@ -28,26 +28,31 @@ class CoupledSystem {
   /// The solids' D is another one than when `blocks` were asked for last.
   void forget_solid_block() { block_dt_ = -1; }
 
-  /// Row 1: V G_f^T u* + V G_d^T u_d + V G_c^T W_k V_k; row 2: `momentum` + W^T M_F (u*_F - W_k
-  /// V_k), locked and padding rows zero. `momentum` = M_S V_S* (+ the viscous impulse); unused
-  /// without unknowns. The velocities of locked dofs that move, or null, bring B V_locked to row 1
-  /// and -C V_locked, of a step of dt, to row 2; the solution is without them. Incompatible parts
-  /// are projected out; `incompatibility` gets their relative size. Collective.
-  BlockVector right_hand_side(const Vector& momentum, double& incompatibility, double dt = 0,
-                              const RCP<const Vector>& locked_velocity = Teuchos::null) const;
-  /// The row 2 of `right_hand_side` before locked rows are zeroed and without their velocities.
+  /// Row 1: V G_f^T u* + V G_d^T u_d + V G_c^T W_k V_k + B b; row 2: P^T (`momentum` + W^T M_F
+  /// (u*_F
+  /// - W_k V_k) - C b) for a step of dt. `momentum` = M_S V_S* (+ the viscous impulse); unused
+  /// without unknowns. The solution is y, and V = P y + b. Incompatible parts are projected out;
+  /// `incompatibility` gets their relative size. Collective.
+  BlockVector right_hand_side(const Vector& momentum, double dt, const Reduction& constraints,
+                              double& incompatibility) const;
+  /// The same with given dofs at rest.
+  BlockVector right_hand_side(const Vector& momentum, double& incompatibility) const {
+    return right_hand_side(momentum, 0, solids_.reduction(), incompatibility);
+  }
+  /// The row 2 of `right_hand_side` on all dofs, without b.
   RCP<Vector> lumped_momentum(const Vector& momentum) const;
-  /// C V for a step of dt with the rows and columns of locked dofs. Collective.
-  RCP<Vector> unlocked_momentum(double dt, const Vector& velocity) const;
+  /// What a moving b takes from row 2: row -= C b for a step of dt. Collective.
+  void subtract_given(double dt, const Reduction& constraints, Vector& row) const;
 
-  /// A sentence if sides, prescribed solids or locked dofs of these velocities (null: at rest)
-  /// change the volume of fluid that is closed in (`impossible_flow`) by more than `negligible`
-  /// [m^dim/s]. Collective.
-  std::string impossible_flow(double time, const RCP<const Vector>& locked_velocity,
+  /// A sentence if sides, prescribed solids or what constraints give change the volume of fluid
+  /// that is closed in (`impossible_flow`) by more than `negligible` [m^dim/s]. Collective.
+  std::string impossible_flow(double time, const Reduction& constraints,
                               double negligible = 0) const;
 
-  /// Impulses that hold the locked dofs, as generalized momentum; zero without locks. Collective.
-  RCP<Vector> lock_reaction(double dt, const Vector& momentum, const BlockVector& solution) const;
+  /// Impulses of the constraints (`Reduction::keep_reactions`), of a solution with the velocities V
+  /// of all dofs. Collective.
+  RCP<Vector> reactions(double dt, const Reduction& constraints, const Vector& momentum,
+                        const BlockVector& solution) const;
   /// Momentum of the fluid lumped at mixed faces: sum M_F u. Global. Collective.
   Momentum<dim> lumped_fluid_momentum(const std::vector<double>& coupled_velocity) const;
   double lumped_fluid_energy(const std::vector<double>& coupled_velocity) const;
@@ -60,8 +65,7 @@ class CoupledSystem {
   Coupling<dim>& coupling_;
   std::shared_ptr<const SurfaceSnapshot<dim>> surface_;
   BlockSystem blocks_, pressure_only_;
-  RCP<const CrsMatrix> unlocked_transposed_;  ///< B^T with its locked rows
-  double block_dt_ = -1;                      ///< the dt of blocks_.solid_block
+  double block_dt_ = -1;  ///< the dt of blocks_.solid_block
   bool solid_depends_on_dt_ = false;
 };
 

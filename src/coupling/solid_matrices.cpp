@@ -31,44 +31,19 @@ std::vector<int> SolidSystem<dim>::padding_rows() const {
   return rows;
 }
 
-/// Attached nodes' entries go to the solids that carry them.
-template <int dim>
-RCP<CrsMatrix> SolidSystem<dim>::reduced_matrix(const std::vector<StackedPart>& parts, double dt,
-                                                const RCP<const CrsMatrix>& added) const {
-  std::vector<Triplet> triplets = stacked_triplets(parts, dt);
-  attachments_.reduce(triplets, *map_);
-  if (!added.is_null())
-    add_triplets(*added, 0, 1, triplets);
-  for (const int row : padding_rows()) {
-    const GlobalIndex id = map_->getGlobalElement(row);
-    triplets.push_back({id, id, 1});
-  }
-  return assemble_triplets(std::move(triplets), map_, map_);
-}
-
-template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::block(const RCP<const CrsMatrix>& added, double dt,
-                                                  bool eliminate) const {
-  const std::vector<StackedPart> parts = this->parts(dt);
-  if (!all_assembled(parts)) {
-    check_input(
-        attachments_.empty(),
-        "Nodes can only be attached to solids whose mass and forces are assembled matrices.");
-    return as_thyra(
-        rcp(new StackedOperator(parts, dt, added, eliminate ? free_mask_ : Teuchos::null, map_)));
-  }
-  const RCP<CrsMatrix> matrix = attachments_.empty()
-                                    ? stacked_matrix(parts, dt, added, map_, padding_rows())
-                                    : reduced_matrix(parts, dt, added);
-  if (eliminate && has_locks_)
-    eliminate_masked(*matrix, *free_mask_);
-  return as_operator(matrix);
-}
-
 template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::solid_block(const RCP<const CrsMatrix>& added,
                                                         double dt) const {
-  return block(added, dt, true);
+  const std::vector<StackedPart> parts = this->parts(dt);
+  if (!all_assembled(parts))
+    return as_thyra(rcp(new StackedOperator(parts, dt, added, map_, {reduction_, padding_rows()})));
+  return as_operator(reduction_.reduce(stacked_matrix(parts, dt, added, map_, padding_rows())));
+}
+
+template <int dim>
+RCP<const LinearOperator> SolidSystem<dim>::full_block(const RCP<const CrsMatrix>& added,
+                                                       double dt) const {
+  return as_thyra(rcp(new StackedOperator(parts(dt), dt, added, map_)));
 }
 
 template <int dim>
@@ -93,52 +68,56 @@ NearNullSpace SolidSystem<dim>::near_null_space(const RCP<const CrsMatrix>& adde
   all.motions = motions;
   if (all.empty())
     return all;
-  const auto mass = lumped_mass(
-      *as_thyra(rcp(new StackedOperator(parts(0), 0, added, Teuchos::null, map_))), all);
-  const auto values = mass->getDataNonConst();
-  const auto is_free = free_mask_->getData();
-  for (std::size_t row = 0; row < all.body_of_row.size(); ++row) {
-    if (all.body_of_row[row] >= 0 && is_free[row] == 0)
-      values[row] = 1;
+  const auto mass = lumped_mass(*full_block(added, 0), all);
+  if (!reduction_.is_identity()) {
+    const auto values = mass->getDataNonConst();
+    const auto is_unknown = reduction_.unknowns()->getData();
+    for (std::size_t row = 0; row < all.body_of_row.size(); ++row) {
+      if (all.body_of_row[row] >= 0 && is_unknown[row] == 0)
+        values[row] = 1;
+    }
   }
   all.mass = mass;
   return all;
 }
 
 template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::unlocked_block(const RCP<const CrsMatrix>& added,
-                                                           double dt) const {
-  if (!attachments_.empty())
-    return block(added, dt, false);
-  return as_thyra(rcp(new StackedOperator(parts(dt), dt, added, Teuchos::null, map_)));
-}
-
-template <int dim>
-RCP<const LinearOperator> SolidSystem<dim>::mass() const {
-  return unlocked_block(Teuchos::null, 0);
-}
-
-template <int dim>
-RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& generalized_momentum) const {
+RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& momentum, double dt,
+                                          const Reduction& constraints,
+                                          const LinearOperator& inverse) const {
+  Vector rest(momentum, Teuchos::Copy);
+  if (!constraints.offset().is_null())
+    apply(*full_block(Teuchos::null, dt), *constraints.offset(), rest, -1, 1);
+  constraints.restrict(rest);
   const auto velocity = make_vector(map_);
-  apply(*exact_inverse(block(Teuchos::null, 0, false), "mass of the solids"), generalized_momentum,
-        *velocity);
+  apply(inverse, rest, *velocity);
+  constraints.expand(*velocity);
   return velocity;
+}
+
+template <int dim>
+RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& momentum, double dt,
+                                          const Reduction& constraints) const {
+  const auto inverse = exact_inverse(solid_block(Teuchos::null, dt),
+                                     dt == 0 ? "mass of the solids" : "implicit forces of solids");
+  return velocity_of(momentum, dt, constraints, *inverse);
 }
 
 template RCP<const LinearOperator> SolidSystem<2>::solid_block(const RCP<const CrsMatrix>&,
                                                                double) const;
+template RCP<const LinearOperator> SolidSystem<2>::full_block(const RCP<const CrsMatrix>&,
+                                                              double) const;
 template NearNullSpace SolidSystem<2>::near_null_space(const RCP<const CrsMatrix>&) const;
-template RCP<const LinearOperator> SolidSystem<2>::unlocked_block(const RCP<const CrsMatrix>&,
-                                                                  double) const;
-template RCP<const LinearOperator> SolidSystem<2>::mass() const;
-template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&) const;
+template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&,
+                                                 const LinearOperator&) const;
+template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&) const;
 template RCP<const LinearOperator> SolidSystem<3>::solid_block(const RCP<const CrsMatrix>&,
                                                                double) const;
+template RCP<const LinearOperator> SolidSystem<3>::full_block(const RCP<const CrsMatrix>&,
+                                                              double) const;
 template NearNullSpace SolidSystem<3>::near_null_space(const RCP<const CrsMatrix>&) const;
-template RCP<const LinearOperator> SolidSystem<3>::unlocked_block(const RCP<const CrsMatrix>&,
-                                                                  double) const;
-template RCP<const LinearOperator> SolidSystem<3>::mass() const;
-template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&) const;
+template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&,
+                                                 const LinearOperator&) const;
+template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&) const;
 
 }  // namespace lockstep

@@ -38,45 +38,48 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
     ids.push_back(first + i);
   map_ = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
                      Teuchos::arrayViewFromVector(ids), 0, comm));
-  attachments_ = find_attachments(models_, begin_, solids_, comm_);
-  make_free_mask();
+  std::string failure;
+  attached_ = find_attached_nodes(models_, begin_, solids_, failure);
+  throw_on_all(comm_, failure, static_cast<int>(ExitCode::bad_input));
+  std::vector<double> n_attached(n_models(), 0);
+  for (const AttachedNode<dim>& node : attached_)
+    n_attached[node.model] += 1;
+  if (!n_attached.empty())
+    sum_all(comm_, n_attached.data(), n_models());
+  carried_.assign(n_attached.begin(), n_attached.end());
+  find_reduction();
 }
 
+/// Nodes that are attached stay so; where they are, and what is locked, changes.
 template <int dim>
-void SolidSystem<dim>::make_free_mask() {
-  free_mask_ = rcp(new Vector(map_));
-  free_mask_->putScalar(1);
-  const int n_local = static_cast<int>(map_->getNodeNumElements());
-  for (int i = n_local - n_padding_; i < n_local; ++i)
-    free_mask_->replaceLocalValue(i, 0.);
-  GlobalIndex n_locked = 0;
-  for (int m = 0; m < n_models(); ++m) {
-    for (GlobalIndex id : model(m).locked_dofs()) {
-      free_mask_->replaceGlobalValue(begin_[m].id + id, 0.);
-      ++n_locked;
-    }
+void SolidSystem<dim>::find_reduction() {
+  std::vector<Combination> combinations;
+  if (std::any_of(carried_.begin(), carried_.end(), [](char any) { return any != 0; })) {
+    std::string none;
+    attached_ = find_attached_nodes(models_, begin_, solids_, none);
+    combinations = combinations_of(attached_, models_, begin_, solids_);
   }
-  has_locks_ = sum_all(comm_, n_locked) > 0;
-  attachments_.mask(*free_mask_);
+  std::vector<GlobalIndex> locked;
+  for (int m = 0; m < n_models(); ++m) {
+    for (const GlobalIndex id : model(m).locked_dofs())
+      locked.push_back(begin_[m].id + id);
+  }
+  reduction_ = Reduction(map_, std::move(combinations), std::move(locked));
 }
 
 template <int dim>
 bool SolidSystem<dim>::begin_step(double time, double dt) {
   for (const auto& solid_model : models_)
     solid_model->begin_step(time, dt);
-  if (!attachments_.empty())
-    attachments_ = find_attachments(models_, begin_, solids_, comm_);
-  const RCP<const Vector> before = free_mask_;
-  make_free_mask();
-  Vector change(*free_mask_, Teuchos::Copy);
-  change.update(-1, *before, 1);
-  return change.normInf() > 0;
+  const Reduction before = reduction_;
+  find_reduction();
+  return reduction_.differs_in_unknowns(before);
 }
 
 template <int dim>
-RCP<const Vector> SolidSystem<dim>::locked_velocity(double begin, double end) const {
-  if (!has_locks_)
-    return Teuchos::null;
+Reduction SolidSystem<dim>::constraints(double begin, double end) const {
+  if (!reduction_.has_given())
+    return reduction_;
   const auto velocity = make_vector(map_);
   for (int m = 0; m < n_models(); ++m) {
     const std::vector<GlobalIndex> dofs = model(m).locked_dofs();
@@ -84,7 +87,7 @@ RCP<const Vector> SolidSystem<dim>::locked_velocity(double begin, double end) co
     for (std::size_t k = 0; k < dofs.size(); ++k)
       velocity->replaceGlobalValue(begin_[m].id + dofs[k], values[k]);
   }
-  return velocity->normInf() > 0 ? velocity : Teuchos::null;
+  return reduction_.with_velocity(velocity);
 }
 
 template <int dim>
@@ -150,7 +153,6 @@ void SolidSystem<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<
   model(m).velocity_row(local, x, row);
   for (GlobalIndex& id : row.dofs)
     id += begin_[m].id;
-  attachments_.reduce(row);
 }
 
 template <int dim>
@@ -182,16 +184,14 @@ RCP<Vector> SolidSystem<dim>::velocity() const {
   const auto stacked = rcp(new Vector(map_));
   for (int m = 0; m < n_models(); ++m)
     part(*stacked, m)->update(1, *model(m).velocity(), 0);
-  attachments_.mask(*stacked);
+  reduction_.follow(*stacked);
   return stacked;
 }
 
 template <int dim>
 void SolidSystem<dim>::set_velocity(const Vector& velocity) {
-  Vector full(velocity, Teuchos::Copy);
-  attachments_.expand_velocity(full);
   for (int m = 0; m < n_models(); ++m)
-    model(m).set_velocity(*part(std::as_const(full), m));
+    model(m).set_velocity(*part(velocity, m));
 }
 
 template <int dim>
@@ -199,7 +199,6 @@ RCP<Vector> SolidSystem<dim>::explicit_momentum(double time, double dt) const {
   const auto stacked = rcp(new Vector(map_));
   for (int m = 0; m < n_models(); ++m)
     model(m).explicit_momentum(time, dt, *part(*stacked, m));
-  attachments_.reduce_momentum(*stacked);
   return stacked;
 }
 
@@ -213,19 +212,16 @@ void SolidSystem<dim>::add_midpoint_correction(double dt, double implicit_part,
     if (unlinear(m))
       correction->scale(implicit_part);
   }
-  attachments_.reduce_momentum(all);
   momentum.update(1, all, 1);
 }
 
 template <int dim>
 RCP<Vector> SolidSystem<dim>::implicit_impulse(double dt, const Vector& velocity) const {
-  Vector full(velocity, Teuchos::Copy);
-  attachments_.expand_velocity(full);
   const auto stacked = rcp(new Vector(map_));
   for (int m = 0; m < n_models(); ++m) {
     const RCP<const LinearOperator> force = model(m).implicit_force(dt);
     if (!force.is_null())
-      apply(*force, *part(std::as_const(full), m), *part(*stacked, m), dt);
+      apply(*force, *part(velocity, m), *part(*stacked, m), dt);
   }
   return stacked;
 }
@@ -253,10 +249,10 @@ Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
 template <int dim>
 void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
   for (int m = 0; m < n_models(); ++m) {
-    if (!attachments_.holds_model(m))
+    if (!carried_[m])
       model(m).move(*part(velocity, m), time, dt);
   }
-  if (!attachments_.empty())
+  if (reduction_.has_combinations())
     move_attached(velocity, time, dt);
 }
 
@@ -268,20 +264,16 @@ std::function<void()> SolidSystem<dim>::undo() {
   return [this, all = std::move(all)] {
     for (const auto& undo_one : all)
       undo_one();
-    if (!attachments_.empty())
-      attachments_ = find_attachments(models_, begin_, solids_, comm_);
+    find_reduction();
   };
 }
 
 template <int dim>
 bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
-  Vector full(velocity, Teuchos::Copy);
-  attachments_.expand_velocity(full);
   bool any = false;
   for (int m = 0; m < n_models(); ++m) {
     if (unlinear(m))
-      any = side_of<UnlinearSolids<dim>>(model(m))->linearise(dt, *part(std::as_const(full), m)) ||
-            any;
+      any = side_of<UnlinearSolids<dim>>(model(m))->linearise(dt, *part(velocity, m)) || any;
   }
   return any;
 }
@@ -320,21 +312,17 @@ RCP<const Vector> SolidSystem<dim>::linearisation() const {
       all = make_vector(map_);
     part(*all, m)->update(1, *velocity, 0);
   }
-  if (!all.is_null())
-    attachments_.mask(*all);
   return all;
 }
 
 template <int dim>
 ComputedEnergy SolidSystem<dim>::unlinear_energy(double dt, const Vector& velocity) const {
-  Vector full(velocity, Teuchos::Copy);
-  attachments_.expand_velocity(full);
   ComputedEnergy sum;
   for (int m = 0; m < n_models(); ++m) {
     const auto* forces = unlinear(m);
     if (!forces)
       continue;
-    const ComputedEnergy energy = forces->unlinear_energy(dt, *part(std::as_const(full), m));
+    const ComputedEnergy energy = forces->unlinear_energy(dt, *part(velocity, m));
     sum.value += energy.value;
     sum.round_off += energy.round_off;
   }
@@ -343,29 +331,25 @@ ComputedEnergy SolidSystem<dim>::unlinear_energy(double dt, const Vector& veloci
 
 template <int dim>
 void SolidSystem<dim>::limit_motion(double dt, Vector& velocity) {
-  attachments_.expand_velocity(velocity);
   for (int m = 0; m < n_models(); ++m)
     model(m).limit_motion(dt, *part(velocity, m));
-  attachments_.mask(velocity);
 }
 
 /// Attached nodes go where their solids have carried them, round the arc of a rotation.
 template <int dim>
 void SolidSystem<dim>::move_attached(const Vector& velocity, double time, double dt) {
   Vector full(velocity, Teuchos::Copy);
-  for (const auto& node : attachments_.nodes()) {
+  for (const AttachedNode<dim>& node : attached_) {
     const SolidDescription& solid = solids_[node.solid];
     const Point<dim> target = model(solid.model).carried(solid.index_in_model, node.position);
-    for (int a = 0; a < dim; ++a) {
-      if (map_->isNodeGlobalElement(node.dofs[a]))
-        full.replaceGlobalValue(node.dofs[a], (target[a] - node.position[a]) / dt);
-    }
+    for (int a = 0; a < dim; ++a)
+      full.replaceGlobalValue(node.dofs[a], (target[a] - node.position[a]) / dt);
   }
   for (int m = 0; m < n_models(); ++m) {
-    if (attachments_.holds_model(m))
+    if (carried_[m])
       model(m).move(*part(std::as_const(full), m), time, dt);
   }
-  attachments_ = find_attachments(models_, begin_, solids_, comm_);
+  find_reduction();
 }
 
 template <int dim>

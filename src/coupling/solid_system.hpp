@@ -3,16 +3,18 @@
 #include <memory>
 #include <vector>
 
-#include "coupling/attachments.hpp"
+#include "coupling/attached_nodes.hpp"
+#include "coupling/reduction.hpp"
 #include "coupling/stacked_operator.hpp"
 #include "interfaces/solid_sides.hpp"
 
 namespace lockstep {
 
 /// The stack of all solids: one surface, one space of generalized velocities. The models' dofs
-/// follow one another; dofs of nodes attached to rigid solids are not unknowns (zero in all
-/// vectors, see `Attachments`); every rank owns at least one row, if need be an inert padding dof
-/// (unit mass, never coupled), because empty ranks break Thyra's block vectors.
+/// follow one another; which of them are unknowns of a solve `reduction` knows (locked dofs and
+/// those of nodes that rigid solids carry are not). Vectors are those of all dofs, but for what is
+/// said to be reduced. Every rank owns at least one row, if need be an inert padding dof (unit
+/// mass, never coupled), because empty ranks break Thyra's block vectors.
 template <int dim>
 class SolidSystem {
  public:
@@ -42,31 +44,35 @@ class SolidSystem {
   Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const;
   Point<dim> effective_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const;
 
-  /// M_S + added - dt D with unit rows for padding and, symmetrically eliminated, for locked dofs.
-  /// Assembled if all models are, else matrix-free. `added` may be null. Collective.
+  /// P^T (M_S + added - dt D) P, the reduced block, with unit rows for padding. Assembled if all
+  /// models are, else matrix-free. `added` may be null. Collective.
   RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
-  /// The same without eliminating locked dofs, for their reactions; padding rows are zero. Applied
-  /// part by part.
-  RCP<const LinearOperator> unlocked_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// M_S + added - dt D of all dofs; padding rows are zero. Applied part by part.
+  RCP<const LinearOperator> full_block(const RCP<const CrsMatrix>& added, double dt) const;
   /// The models' near null spaces on `map`, with the masses M_S + added. Collective.
   NearNullSpace near_null_space(const RCP<const CrsMatrix>& added) const;
-  /// M_S^-1 q: the velocities of a stacked generalized momentum. Collective.
-  RCP<Vector> velocity_of(const Vector& generalized_momentum) const;
-  /// M_S alone, locked dofs included; padding rows are zero. Applied part by part.
-  RCP<const LinearOperator> mass() const;
-  /// A step begins: true if other dofs are locked than before, on any rank. Collective.
+  /// What solids without fluid do: V = P y + b with P^T (M_S - dt D) V = P^T q for a stacked
+  /// momentum q. `inverse`: of `solid_block` without added mass. Collective.
+  RCP<Vector> velocity_of(const Vector& momentum, double dt, const Reduction& constraints,
+                          const LinearOperator& inverse) const;
+  /// The same, factored anew.
+  RCP<Vector> velocity_of(const Vector& momentum, double dt, const Reduction& constraints) const;
+  /// The same by M_S alone, given dofs at rest.
+  RCP<Vector> velocity_of(const Vector& momentum) const {
+    return velocity_of(momentum, 0, reduction_);
+  }
+  /// M_S alone; padding rows are zero. Applied part by part.
+  RCP<const LinearOperator> mass() const { return full_block(Teuchos::null, 0); }
+  /// A step begins: true if other dofs are unknowns than before, on any rank. Collective.
   bool begin_step(double time, double dt);
-  /// 1 for free dofs, 0 for locked, attached and padding ones.
-  RCP<const Vector> free_mask() const { return free_mask_; }
-  bool has_locks() const { return has_locks_; }
-  /// True for dofs of a rigid solid that nodes are attached to. Local.
-  bool carries_nodes(GlobalIndex dof) const { return attachments_.is_carrier(dof); }
-  /// The velocities at which dofs are locked, zero elsewhere (`SolidModel::locked_velocities`);
-  /// null if all are zero. Collective.
-  RCP<const Vector> locked_velocity(double begin, double end) const;
+  /// P at the present positions, locked dofs at rest.
+  const Reduction& reduction() const { return reduction_; }
+  /// The same with the mean velocities of locked dofs between two times
+  /// (`SolidModel::locked_velocities`). Collective.
+  Reduction constraints(double begin, double end) const;
 
   /// Stacked vectors. Collective.
-  RCP<Vector> velocity() const;
+  RCP<Vector> velocity() const;  ///< carried nodes move as their solids
   void set_velocity(const Vector& velocity);
   RCP<Vector> explicit_momentum(double time, double dt) const;
   /// `implicit_part`: of it, for models with implicit forces [1].
@@ -102,17 +108,13 @@ class SolidSystem {
   }
   /// The same of forces that are not linear, if it has any in this scene.
   const UnlinearSolids<dim>* unlinear(int m) const;
+  void find_reduction();
   void move_attached(const Vector& velocity, double time, double dt);
   std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;
   RCP<const Vector> part(const Vector& stacked, int m) const;
   RCP<Vector> part(Vector& stacked, int m) const;
-  void make_free_mask();
   std::vector<StackedPart> parts(double dt) const;
   std::vector<int> padding_rows() const;
-  RCP<CrsMatrix> reduced_matrix(const std::vector<StackedPart>& parts, double dt,
-                                const RCP<const CrsMatrix>& added) const;
-  RCP<const LinearOperator> block(const RCP<const CrsMatrix>& added, double dt,
-                                  bool eliminate) const;
 
   Communicator comm_;
   std::vector<std::unique_ptr<SolidModel<dim>>> models_;
@@ -120,10 +122,10 @@ class SolidSystem {
   RCP<const Map> map_;
   std::vector<ModelBegin> begin_;  ///< of each model
   GlobalIndex n_unknowns_ = 0;
-  int n_padding_ = 0;  ///< local
-  Attachments<dim> attachments_;
-  RCP<Vector> free_mask_;
-  bool has_locks_ = false;
+  int n_padding_ = 0;                        ///< local
+  std::vector<char> carried_;                ///< models with attached nodes, on any rank
+  std::vector<AttachedNode<dim>> attached_;  ///< of this rank, at the present positions
+  Reduction reduction_;
 };
 
 }  // namespace lockstep

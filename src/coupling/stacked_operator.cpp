@@ -7,13 +7,13 @@
 namespace lockstep {
 
 StackedOperator::StackedOperator(std::vector<StackedPart> parts, double dt,
-                                 RCP<const CrsMatrix> added, RCP<const Vector> mask,
-                                 RCP<const Map> map)
+                                 RCP<const CrsMatrix> added, RCP<const Map> map,
+                                 IdentityRows identity)
     : parts_(std::move(parts)),
       dt_(dt),
       added_(std::move(added)),
-      mask_(std::move(mask)),
-      map_(std::move(map)) {}
+      map_(std::move(map)),
+      identity_(std::move(identity)) {}
 
 void StackedOperator::apply_to(const Vector& x, Vector& y) const {
   y.putScalar(0);
@@ -32,19 +32,23 @@ void StackedOperator::apply_to(const Vector& x, Vector& y) const {
 
 void StackedOperator::apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, double alpha,
                             double beta) const {
+  const Reduction& reduction = identity_.reduction;
   for (std::size_t column = 0; column < x.getNumVectors(); ++column) {
     const RCP<const Vector> given = x.getVector(column);
     const RCP<Vector> target = y.getVectorNonConst(column);
-    Vector masked(*given, Teuchos::Copy), result(map_);
-    if (!mask_.is_null())
-      masked.elementWiseMultiply(1, *mask_, *given, 0);
-    apply_to(masked, result);
-    if (!mask_.is_null()) {
-      Vector kept(*given, Teuchos::Copy);
-      kept.update(-1, masked, 1);
-      result.elementWiseMultiply(1, *mask_, Vector(result, Teuchos::Copy), 0);
-      result.update(1, kept, 1);
+    Vector result(map_);
+    if (reduction.is_identity()) {
+      apply_to(*given, result);
+    } else {
+      Vector velocity(*given, Teuchos::Copy), unknowns(*given, Teuchos::Copy);
+      reduction.expand_change(velocity);
+      apply_to(velocity, result);
+      reduction.restrict(result);
+      reduction.select(unknowns);
+      result.update(1, *given, -1, unknowns, 1);
     }
+    for (const int row : identity_.padding)
+      result.sumIntoLocalValue(row, given->getData()[row]);
     target->update(alpha, result, beta);
   }
 }

@@ -2,6 +2,7 @@
 #include <Tpetra_Operator.hpp>
 #include <vector>
 
+#include "coupling/reduction.hpp"
 #include "linear/types.hpp"
 
 namespace lockstep {
@@ -15,14 +16,20 @@ struct StackedPart {
   int local_begin = 0;       ///< of its rows among this rank's
 };
 
-/// The solid block when a model gives no assembled matrix: mask (blockdiag(mass_m - dt D_m) +
-/// added) mask + (1 - mask), applied without forming anything. The parts' local rows follow one
-/// another in the map.
+/// Rows of the identity in an operator on the stack: of dofs that are no unknowns, and padding.
+struct IdentityRows {
+  Reduction reduction;
+  std::vector<int> padding;  ///< local rows
+};
+
+/// blockdiag(mass_m - dt D_m) + added, reduced if asked, applied without forming anything: the
+/// solid block when a model gives no assembled matrix. The parts' local rows follow one another in
+/// the map.
 class StackedOperator : public Tpetra::Operator<double, int, GlobalIndex> {
  public:
-  /// `added` and `mask` may be null (nothing added, nothing eliminated).
+  /// `added` may be null.
   StackedOperator(std::vector<StackedPart> parts, double dt, RCP<const CrsMatrix> added,
-                  RCP<const Vector> mask, RCP<const Map> map);
+                  RCP<const Map> map, IdentityRows identity = {});
 
   RCP<const Map> getDomainMap() const override { return map_; }
   RCP<const Map> getRangeMap() const override { return map_; }
@@ -36,8 +43,8 @@ class StackedOperator : public Tpetra::Operator<double, int, GlobalIndex> {
   std::vector<StackedPart> parts_;
   double dt_;
   RCP<const CrsMatrix> added_;
-  RCP<const Vector> mask_;
   RCP<const Map> map_;
+  IdentityRows identity_;
 };
 
 /// Thyra view of a Tpetra operator.

@@ -111,22 +111,25 @@ struct ViscousOperator {
   const ViscousSystem<dim>& system;
   const Links<dim>& links;
   const RCP<const LinearOperator>& solid_block;
-  const RCP<const Vector>& free_mask;
+  const Reduction& constraints;
   double dt;
 
-  RCP<Vector> masked(const Vector& v) const {
-    const auto result = rcp(new Vector(v.getMap()));
-    result->elementWiseMultiply(1, *free_mask, v, 0);
-    return result;
+  /// P y, without a copy where it is y.
+  RCP<const Vector> expanded(const RCP<const Vector>& unknowns) const {
+    if (!constraints.has_combinations())
+      return unknowns;
+    const auto velocity = rcp(new Vector(*unknowns, Teuchos::Copy));
+    constraints.expand_change(*velocity);
+    return velocity;
   }
-  /// y = operator x; locked and padding rows see only their own C. K_ff holds the links' diagonal
-  /// already.
+  /// y = operator x; rows of dofs that are no unknowns see only their own C, and are zero. K_ff
+  /// holds the links' diagonal already.
   void apply_to(const Pair& x, Pair& y) const {
     y.fluid->elementWiseMultiply(1, *system.mass, *x.fluid, 0);
     system.stiffness->apply(*x.fluid, *y.fluid, Teuchos::NO_TRANS, dt, 1);
     if (x.solid.is_null())
       return;
-    const RCP<const Vector> end_velocity = links.end_velocity(masked(*x.solid), false);
+    const RCP<const Vector> end_velocity = links.end_velocity(expanded(x.solid), false);
     {
       const auto values = end_velocity->getData();
       const auto result = y.fluid->getDataNonConst();
@@ -140,7 +143,8 @@ struct ViscousOperator {
                            pull->getDataNonConst().getRawPtr());
     links.rows->apply(*pull, drag, Teuchos::TRANS, -dt, 0);
     lockstep::apply(*solid_block, *x.solid, *y.solid);
-    y.solid->update(1, *masked(drag), 1);
+    constraints.restrict(drag);
+    y.solid->update(1, drag, 1);
   }
 };
 
@@ -164,7 +168,8 @@ Pair inverse_diagonal(const ViscousOperator<dim>& op, const Pair& shape) {
     }
     op.links.squares->apply(strength, drag, Teuchos::TRANS);
     matrix->getLocalDiagCopy(solid);
-    solid.update(op.dt, *op.masked(drag), 1);
+    op.constraints.select(drag);
+    solid.update(op.dt, drag, 1);
     inverse.solid->reciprocal(solid);
   }
   return inverse;
@@ -248,13 +253,12 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
                                  const RCP<const LinearOperator>& solid_block,
                                  const NearNullSpace& near_null_space,
                                  const RCP<const Vector>& lumped_momentum, double dt,
-                                 double tolerance, const RCP<const Vector>& locked_velocity) {
+                                 const Reduction& constraints, double tolerance) {
   const Links<dim> links = make_links<dim>(system, solids, coupling);
-  const RCP<const Vector> mask = solids.free_mask();
-  const ViscousOperator<dim> op{system, links, solid_block, mask, dt};
+  const ViscousOperator<dim> op{system, links, solid_block, constraints, dt};
 
-  // The pull of prescribed solids and locked dofs on resting fluid, on the right-hand side.
-  const RCP<const Vector> given = links.end_velocity(locked_velocity, true);
+  // The pull of prescribed solids and given dofs on resting fluid, on the right-hand side.
+  const RCP<const Vector> given = links.end_velocity(constraints.offset(), true);
   const RCP<Vector> prescribed = links.pull(*rcp(new Vector(system.map)), *given);
   Pair rhs{rcp(new Vector(system.map)), RCP<Vector>()};
   rhs.fluid->elementWiseMultiply(1, *system.mass, *system.velocity, 0);
@@ -267,11 +271,12 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
   }
   Pair x{rcp(new Vector(*system.velocity, Teuchos::Copy)), RCP<Vector>()};
   if (solids.has_unknowns()) {
-    Vector pulled(*lumped_momentum, Teuchos::Copy);
+    rhs.solid = rcp(new Vector(*lumped_momentum, Teuchos::Copy));
     prescribed->update(1, *links.couple_pull(*given), 1);
-    links.rows->apply(*prescribed, pulled, Teuchos::TRANS, dt, 1);
-    rhs.solid = op.masked(pulled);
-    x.solid = op.masked(*solids.velocity());
+    links.rows->apply(*prescribed, *rhs.solid, Teuchos::TRANS, dt, 1);
+    constraints.restrict(*rhs.solid);
+    x.solid = solids.velocity();
+    constraints.select(*x.solid);
   }
   ViscousResult<dim> result;
   Preconditioner precondition{inverse_diagonal<dim>(op, rhs), Teuchos::null};
@@ -279,13 +284,11 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
     precondition.stiff = inverse_if_stiff(solid_block, near_null_space, "solids, viscous solve");
   result.iterations = conjugate_gradients<dim>(op, precondition, rhs, x, tolerance);
 
-  RCP<Vector> solid_velocity;
-  if (solids.has_unknowns())
-    solid_velocity = op.masked(*x.solid);
-  if (!locked_velocity.is_null())
-    solid_velocity->update(1, *locked_velocity, 1);
-  result.solid_velocity = solid_velocity;
-  const RCP<const Vector> ends = links.end_velocity(solid_velocity, true);
+  if (solids.has_unknowns()) {
+    result.solid_velocity = rcp(new Vector(*x.solid, Teuchos::Copy));
+    constraints.expand(*result.solid_velocity);
+  }
+  const RCP<const Vector> ends = links.end_velocity(result.solid_velocity, true);
   const RCP<const Vector> pull = links.pull(*x.fluid, *ends);
   const RCP<const Vector> couple_pull = links.couple_pull(*ends);
   if (solids.has_unknowns()) {
@@ -314,12 +317,12 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
 template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, ViscousFluid<2>&,
                                            const SolidSystem<2>&, const ViscousCoupling<2>&,
                                            const RCP<const LinearOperator>&, const NearNullSpace&,
-                                           const RCP<const Vector>&, double, double,
-                                           const RCP<const Vector>&);
+                                           const RCP<const Vector>&, double, const Reduction&,
+                                           double);
 template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, ViscousFluid<3>&,
                                            const SolidSystem<3>&, const ViscousCoupling<3>&,
                                            const RCP<const LinearOperator>&, const NearNullSpace&,
-                                           const RCP<const Vector>&, double, double,
-                                           const RCP<const Vector>&);
+                                           const RCP<const Vector>&, double, const Reduction&,
+                                           double);
 
 }  // namespace lockstep

@@ -10,7 +10,7 @@ template <int dim>
 struct ViscousResult {
   RCP<Vector> solid_impulse;   ///< j_nu = -dt (K_sf u + K_ss V_S) [kg m/s] on the solid map; null
                                ///< without unknowns
-  RCP<Vector> solid_velocity;  ///< V_S of the solution, which is not kept; null without unknowns
+  RCP<Vector> solid_velocity;  ///< V of the solution, which is not kept; null without unknowns
   Momentum<dim> boundary_impulse;  ///< walls and prescribed solids on the fluid, global
   /// Of each solid that is prescribed on the fluid, part of `boundary_impulse`; zero for dynamic
   /// solids. Where several share a face, one of them has it all. Global.
@@ -22,16 +22,17 @@ struct ViscousResult {
 ///   [ M_f + dt K_ff   dt K_fs              ] [ u   ]   [ M_f u*                          ]
 ///   [ dt K_sf         M̃_S - dt D + dt K_ss ] [ V_S ] = [ M_S V_S* + W^T M_F u*_F        ]
 /// The fluid keeps u; of the solid only its viscous impulse is used, so that its own forces are not
-/// applied twice. `lumped_momentum` is row 2 and `solid_block` is C; both null without unknowns.
-/// `locked_velocity` is that of locked dofs that move (null: none do); its share of C V is taken
-/// from `lumped_momentum` already.
-/// The preconditioner is the diagonal, of a stiff C (of this near null space) an inverse of it.
-/// Throws SolveError if CG does not reach `tolerance`. Collective.
+/// applied twice. `lumped_momentum` is row 2 of all dofs, less C b, and `solid_block` is the
+/// reduced C; both null without unknowns. The preconditioner is the diagonal, of a stiff C (of this
+/// near null space) an inverse of it. Throws SolveError if CG does not reach `tolerance`.
+/// Collective.
 template <int dim>
-ViscousResult<dim> solve_viscous(
-    const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid, const SolidSystem<dim>& solids,
-    const ViscousCoupling<dim>& coupling, const RCP<const LinearOperator>& solid_block,
-    const NearNullSpace& near_null_space, const RCP<const Vector>& lumped_momentum, double dt,
-    double tolerance, const RCP<const Vector>& locked_velocity = Teuchos::null);
+ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid,
+                                 const SolidSystem<dim>& solids,
+                                 const ViscousCoupling<dim>& coupling,
+                                 const RCP<const LinearOperator>& solid_block,
+                                 const NearNullSpace& near_null_space,
+                                 const RCP<const Vector>& lumped_momentum, double dt,
+                                 const Reduction& constraints, double tolerance);
 
 }  // namespace lockstep

@@ -33,22 +33,6 @@ class Response {
   RCP<const LinearOperator> inverse_;
 };
 
-template <int dim>
-RCP<Vector> solve_free(const SolidSystem<dim>& solids, const LinearOperator& block,
-                       const LinearOperator& inverse, const Vector& momentum,
-                       const RCP<const Vector>& locked) {
-  Vector rest(momentum, Teuchos::Copy);
-  if (!locked.is_null())
-    apply(block, *locked, rest, -1, 1);
-  Vector free_part(solids.map());
-  free_part.elementWiseMultiply(1, *solids.free_mask(), rest, 0);
-  const RCP<Vector> velocity = make_vector(solids.map());
-  apply(inverse, free_part, *velocity);
-  if (!locked.is_null())
-    velocity->update(1, *locked, 1);
-  return velocity;
-}
-
 /// Phi along a line from the velocity about which forces are linearised.
 template <int dim>
 class Descent {
@@ -108,28 +92,23 @@ double tolerable_part(const Descent<dim>& descent) {
 }  // namespace
 
 template <int dim>
-RCP<Vector> implicit_velocity(const SolidSystem<dim>& solids, double dt, const Vector& momentum,
-                              const RCP<const Vector>& locked) {
-  Response<dim> response(solids, dt);
-  return solve_free(solids, *solids.unlocked_block(Teuchos::null, dt), *response.inverse(),
-                    momentum, locked);
-}
-
-template <int dim>
 SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
-                                 const MotionRequest& request, const Vector& predicted,
-                                 const Vector& first, Vector& momentum) {
-  const double dt = request.dt;
+                                 const StepContext<dim>& context,
+                                 const std::function<void(Vector&)>& adjust,
+                                 const Vector& predicted, const Vector& first, Vector& momentum) {
+  const double dt = context.dt;
+  const ContactPhase phase =
+      context.phase == Phase::S1 ? ContactPhase::position : ContactPhase::velocity;
   SettledMotion<dim> settled;
   Response<dim> response(solids, dt);
-  RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
+  RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   RCP<Vector> at = linearisation_of(solids);
   RCP<Vector> goal = rcp(new Vector(first, Teuchos::Copy));
   Vector impulse(solids.map());
   apply(*block, predicted, impulse);
   for (int k = 1;; ++k) {
     if (contact) {
-      settled.contact = contact->resolve(solids, request.phase, request.contact_dt, *goal,
+      settled.contact = contact->resolve(solids, phase, context.step_dt, *goal,
                                          [&response] { return response.inverse(); });
     }
     Vector gradient(impulse, Teuchos::Copy);
@@ -144,18 +123,18 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
       settled.velocity = at;
       return settled;
     }
-    const RCP<const Vector> before = solids.explicit_momentum(request.time, dt);
+    const RCP<const Vector> before = solids.explicit_momentum(context.time, dt);
     solids.linearise(dt, *at);
     settled.linearised_anew = true;
-    Vector change(*solids.explicit_momentum(request.time, dt), Teuchos::Copy);
+    Vector change(*solids.explicit_momentum(context.time, dt), Teuchos::Copy);
     change.update(-1, *before, 1);
     momentum.update(1, change, 1);
     impulse.update(1, change, 1);
-    block = solids.unlocked_block(Teuchos::null, dt);
+    block = solids.full_block(Teuchos::null, dt);
     response.forget();
-    goal = solve_free(solids, *block, *response.inverse(), impulse, request.locked);
-    if (request.adjust)
-      request.adjust(*goal);
+    goal = solids.velocity_of(impulse, dt, context.constraints, *response.inverse());
+    if (adjust)
+      adjust(*goal);
   }
 }
 
@@ -165,7 +144,7 @@ template <int dim>
 void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before,
                  Vector& velocity) {
   constexpr double largest = 0.01;  // of the energy that the motion has in the model
-  const RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
+  const RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   Vector change(velocity, Teuchos::Copy), product(solids.map());
   change.update(-1, before, 1);
   apply(*block, before, product);
@@ -193,7 +172,7 @@ void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before
 
 template <int dim>
 bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity) {
-  const RCP<const LinearOperator> block = solids.unlocked_block(Teuchos::null, dt);
+  const RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   const RCP<Vector> at = linearisation_of(solids);
   Vector gradient(*at, Teuchos::Copy), product(solids.map());
   gradient.update(-1, velocity, 1);
@@ -201,14 +180,12 @@ bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocit
   return Descent<dim>(solids, dt, *block, *at, product, velocity).excess(1) <= good;
 }
 
-template RCP<Vector> implicit_velocity<2>(const SolidSystem<2>&, double, const Vector&,
-                                          const RCP<const Vector>&);
-template RCP<Vector> implicit_velocity<3>(const SolidSystem<3>&, double, const Vector&,
-                                          const RCP<const Vector>&);
-template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, const MotionRequest&,
-                                           const Vector&, const Vector&, Vector&);
-template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, const MotionRequest&,
-                                           const Vector&, const Vector&, Vector&);
+template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, const StepContext<2>&,
+                                           const std::function<void(Vector&)>&, const Vector&,
+                                           const Vector&, Vector&);
+template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, const StepContext<3>&,
+                                           const std::function<void(Vector&)>&, const Vector&,
+                                           const Vector&, Vector&);
 template void bound_sweep<2>(const SolidSystem<2>&, double, const Vector&, Vector&);
 template void bound_sweep<3>(const SolidSystem<3>&, double, const Vector&, Vector&);
 template bool is_settled<2>(const SolidSystem<2>&, double, const Vector&);

@@ -3,8 +3,16 @@
 
 #include "coupling/solid_system.hpp"
 #include "interfaces/contact.hpp"
+#include "stepping/step_context.hpp"
 
 namespace lockstep {
+
+template <int dim>
+struct SettledMotion {
+  RCP<Vector> velocity;          ///< with contact
+  ContactReport<dim> contact;    ///< of the last linearisation; without contact empty
+  bool linearised_anew = false;  ///< D is another one than before
+};
 
 /// What a solve over dt is to find for the solids alone: with the impulses of the fluid as they
 /// are, the velocity that minimises
@@ -14,35 +22,17 @@ namespace lockstep {
 /// Linearised forces are its quadratic model. Where that is good, nothing is to be done; where it
 /// is not (large turns or strains in one step, of stiff solids above all), Newton's method with
 /// steps that must lower Phi finds the minimum, so that no step gives the solids energy.
-struct MotionRequest {
-  ContactPhase phase = ContactPhase::position;
-  double time = 0;           ///< at the beginning of the step [s]
-  double dt = 0;             ///< of the solve [s]
-  double contact_dt = 0;     ///< over which contacts hold, the whole step [s]
-  RCP<const Vector> locked;  ///< velocities of locked dofs, or null: at rest
-  /// What velocities must fulfil besides, if anything: done to those of every linearisation.
-  std::function<void(Vector&)> adjust = {};
-};
-
-template <int dim>
-struct SettledMotion {
-  RCP<Vector> velocity;          ///< with contact
-  ContactReport<dim> contact;    ///< of the last linearisation; without contact empty
-  bool linearised_anew = false;  ///< D is another one than before
-};
-
-/// (M_S - dt D)^-1 of `momentum`, with the velocities of locked dofs. Collective.
-template <int dim>
-RCP<Vector> implicit_velocity(const SolidSystem<dim>& solids, double dt, const Vector& momentum,
-                              const RCP<const Vector>& locked);
-
+///
 /// `predicted`: of the linearised forces; defines Q. `first`: the same, or what else has been asked
-/// of it, where the search begins. `contact` may be null. `momentum`, the
-/// explicit one of the solve, changes by that of forces linearised anew. Collective.
+/// of it, where the search begins. `contact` may be null; it holds over the whole step. `adjust`:
+/// what velocities must fulfil besides, if anything, done to those of every linearisation.
+/// `momentum`, the explicit one of the solve, changes by that of forces linearised anew.
+/// Collective.
 template <int dim>
 SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
-                                 const MotionRequest& request, const Vector& predicted,
-                                 const Vector& first, Vector& momentum);
+                                 const StepContext<dim>& context,
+                                 const std::function<void(Vector&)>& adjust,
+                                 const Vector& predicted, const Vector& first, Vector& momentum);
 
 /// What `sweep_volumes` has made of velocities is taken back to where it costs the solids little
 /// energy, stiff ones would be strained by it; and left to `settle_motion` where that acts.

@@ -18,23 +18,21 @@ double largest_divergence(const BlockSystem& blocks, const CoupledSolution& solu
 
 template <int dim>
 void audit_solve(const Components<dim>& components, const ComponentSides<dim>& sides,
-                 CoupledSystem<dim>& system, const CoupledSolution& solution,
-                 const ViscousResult<dim>& viscous, double dt, StepReport<dim>& report) {
+                 CoupledSystem<dim>& system, const StepContext<dim>& context,
+                 const CoupledSolution& solution, const ViscousResult<dim>& viscous,
+                 StepReport<dim>& report) {
   const SolidSystem<dim>& solids = *components.solids;
-  const BlockVector& unknowns = solution.unknowns;
-  const Momentum<dim> walls =
-      sides.audited_fluid ? sides.audited_fluid->boundary_pressure_impulse(*unknowns.pressure)
-                          : Momentum<dim>();
+  const BlockVector whole{solution.unknowns.pressure, solution.velocity};
+  const Momentum<dim> walls = sides.audited_fluid
+                                  ? sides.audited_fluid->boundary_pressure_impulse(*whole.pressure)
+                                  : Momentum<dim>();
   report.ledger.add("walls", walls);
   report.boundary_impulse = walls + report.ledger.impulse_of("viscous boundaries");
-  RCP<Vector> velocity = unknowns.solid;
-  if (velocity.is_null())
-    velocity = make_vector(solids.map());
-  const std::vector<double> coupled_after = components.coupling->velocity(*velocity);
+  const std::vector<double> coupled_after = components.coupling->velocity(*whole.solid);
   std::vector<Momentum<dim>> prescribed;
   if (sides.audited_coupling)
     prescribed = sides.audited_coupling->prescribed_impulses(solution.coupled_before, coupled_after,
-                                                             *unknowns.pressure);
+                                                             *whole.pressure);
   report.ledger.add("prescribed solids", total_of(prescribed));
   for (std::size_t s = 0; s < prescribed.size(); ++s)
     report.hydrodynamic_impulse[s] -= prescribed[s];
@@ -42,19 +40,20 @@ void audit_solve(const Components<dim>& components, const ComponentSides<dim>& s
     report.hydrodynamic_impulse[s] -= viscous.prescribed_impulses[s];
   if (!solids.has_unknowns())
     return;
-  const RCP<const Vector> reaction = system.lock_reaction(dt, *solution.momentum, unknowns);
-  report.ledger.add("locks", solids.momentum(*reaction));
+  const RCP<const Vector> reactions =
+      system.reactions(context.dt, context.constraints, *solution.momentum, whole);
+  report.ledger.add("locks", solids.momentum(*reactions));
   if (sides.audited_coupling)
     report.lever_impulse = sides.audited_coupling->lever_impulse(solids, solution.coupled_before,
-                                                                 coupled_after, unknowns);
+                                                                 coupled_after, whole);
   report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lever_impulse});
-  const RCP<const Vector> implicit = solids.implicit_impulse(dt, *unknowns.solid);
+  const RCP<const Vector> implicit = solids.implicit_impulse(context.dt, *whole.solid);
   report.linearisation_impulse =
-      solids.momentum(*implicit).angular + solids.inner_angular_impulse(dt);
+      solids.momentum(*implicit).angular + solids.inner_angular_impulse(context.dt);
   report.ledger.add("linearised forces", {Point<dim>::Zero(), report.linearisation_impulse});
   const RCP<Vector> gained = make_vector(solids.map());
-  apply(*solids.mass(), *unknowns.solid, *gained);
-  gained->update(-1, *solution.momentum, -1, *reaction, 1);
+  apply(*solids.mass(), *whole.solid, *gained);
+  gained->update(-1, *solution.momentum, -1, *reactions, 1);
   gained->update(-1, *implicit, 1);
   if (!viscous.solid_impulse.is_null())
     gained->update(1, *viscous.solid_impulse, 1);
@@ -83,8 +82,10 @@ void audit_momentum(const Components<dim>& components, const ComponentSides<dim>
 template void audit_momentum(const Components<2>&, const ComponentSides<2>&, StepReport<2>&);
 template void audit_momentum(const Components<3>&, const ComponentSides<3>&, StepReport<3>&);
 template void audit_solve(const Components<2>&, const ComponentSides<2>&, CoupledSystem<2>&,
-                          const CoupledSolution&, const ViscousResult<2>&, double, StepReport<2>&);
+                          const StepContext<2>&, const CoupledSolution&, const ViscousResult<2>&,
+                          StepReport<2>&);
 template void audit_solve(const Components<3>&, const ComponentSides<3>&, CoupledSystem<3>&,
-                          const CoupledSolution&, const ViscousResult<3>&, double, StepReport<3>&);
+                          const StepContext<3>&, const CoupledSolution&, const ViscousResult<3>&,
+                          StepReport<3>&);
 
 }  // namespace lockstep

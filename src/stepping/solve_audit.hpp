@@ -4,13 +4,15 @@
 #include "coupling/coupled_system.hpp"
 #include "coupling/viscous_solve.hpp"
 #include "stepping/components.hpp"
+#include "stepping/step_context.hpp"
 #include "stepping/step_report.hpp"
 
 namespace lockstep {
 
 /// A solve of Eq. 16 and what went into it.
 struct CoupledSolution {
-  BlockVector unknowns;
+  BlockVector unknowns;  ///< p̂ and y
+  RCP<Vector> velocity;  ///< V of all dofs, of solids without unknowns zero
   BlockVector rhs;
   std::vector<double> coupled_before;  ///< u*_F
   RCP<Vector> momentum;                ///< M_S V_S* as it entered row 2
@@ -25,8 +27,9 @@ double largest_divergence(const BlockSystem& blocks, const CoupledSolution& solu
 /// fluid without viscosity. Collective.
 template <int dim>
 void audit_solve(const Components<dim>& components, const ComponentSides<dim>& sides,
-                 CoupledSystem<dim>& system, const CoupledSolution& solution,
-                 const ViscousResult<dim>& viscous, double dt, StepReport<dim>& report);
+                 CoupledSystem<dim>& system, const StepContext<dim>& context,
+                 const CoupledSolution& solution, const ViscousResult<dim>& viscous,
+                 StepReport<dim>& report);
 
 /// The errors of momentum that the closed ledger shows; nan if not all plug-ins tell theirs.
 /// Torques of periodic fluids have no common origin. Collective.

@@ -8,8 +8,6 @@
 #include "base/interruption.hpp"
 #include "coupling/swept_volumes.hpp"
 #include "linear/null_space.hpp"
-#include "stepping/implicit_motion.hpp"
-#include "stepping/solve_audit.hpp"
 
 namespace lockstep {
 
@@ -31,7 +29,7 @@ Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options
   // Motions that begin at rest do so but for round-off.
   const double negligible = 1e-12 * components_.fluid->fluid_volume();  // a second
   const std::string impossible =
-      system_.impossible_flow(time_, components_.solids->locked_velocity(time_, time_), negligible);
+      system_.impossible_flow(time_, components_.solids->constraints(time_, time_), negligible);
   check_input(impossible.empty(), "At the start: {}", impossible);
 }
 
@@ -66,48 +64,42 @@ RCP<const Vector> Stepper<dim>::unseen_buoyancy(double dt, StepReport<dim>& repo
 
 /// M_S V_S*: explicit forces, buoyancy the grid does not see, contact, viscous drag.
 template <int dim>
-RCP<Vector> Stepper<dim>::solid_momentum(double time, double dt, MomentumLedger<dim>* ledger,
+RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
+                                         const Prediction<dim>& prediction,
                                          StepReport<dim>& report) {
   auto& solids = *components_.solids;
-  const RCP<Vector> momentum = solids.explicit_momentum(time, dt);
-  if (!ledger)  // S1
+  const double dt = context.dt;
+  const RCP<Vector> momentum = solids.explicit_momentum(context.time, dt);
+  if (context.moves_positions())
     solids.add_midpoint_correction(dt, resolved_part(dt), *momentum);
-  if (ledger)
-    ledger->add("solid forces", solids.external_impulse(time, dt));
   const RCP<const Vector> buoyancy = unseen_buoyancy(dt, report);
   momentum->update(1, *buoyancy, 1);
-  if (ledger)
-    ledger->add("unseen buoyancy", solids.momentum(*buoyancy));
-  if (ledger && components_.contact) {
-    ScopedPhase phase(timers_, "contact");
-    report.contact_velocity = contact_momentum(dt, *momentum);
-    ledger->add("contact", report.contact_velocity.external_impulse);
+  if (context.ledger) {
+    context.ledger->add("solid forces", solids.external_impulse(context.time, dt));
+    context.ledger->add("unseen buoyancy", solids.momentum(*buoyancy));
   }
-  if (!viscous_.solid_impulse.is_null())
-    momentum->update(1, *viscous_.solid_impulse, 1);
+  if (context.phase == Phase::S2 && components_.contact) {
+    ScopedPhase phase(timers_, "contact");
+    report.contact_velocity = contact_momentum(context, *momentum);
+    if (context.ledger)
+      context.ledger->add("contact", report.contact_velocity.external_impulse);
+  }
+  if (!prediction.viscous.solid_impulse.is_null())
+    momentum->update(1, *prediction.viscous.solid_impulse, 1);
   return momentum;
-}
-
-/// The velocities of the locked dofs put in.
-template <int dim>
-RCP<Vector> Stepper<dim>::at_locked_velocity(const Vector& velocity) const {
-  const auto result = make_vector(components_.solids->map());
-  result->elementWiseMultiply(1, *components_.solids->free_mask(), velocity, 0);
-  if (!locked_velocity_.is_null())
-    result->update(1, *locked_velocity_, 1);
-  return result;
 }
 
 /// Contact acts on V_S* = M_S^-1 momentum; its impulses go into the momentum.
 template <int dim>
-ContactReport<dim> Stepper<dim>::contact_momentum(double dt, Vector& momentum) {
+ContactReport<dim> Stepper<dim>::contact_momentum(const StepContext<dim>& context,
+                                                  Vector& momentum) {
   auto& solids = *components_.solids;
   if (solids.has_implicit_forces())
-    return settled_momentum(dt, momentum);
-  const RCP<Vector> velocity = at_locked_velocity(*solids.velocity_of(momentum));
+    return settled_momentum(context, momentum);
+  const RCP<Vector> velocity = solids.velocity_of(momentum, 0, context.constraints);
   Vector change(*velocity, Teuchos::Copy);
   const ContactReport<dim> report =
-      components_.contact->resolve(solids, ContactPhase::velocity, dt, *velocity);
+      components_.contact->resolve(solids, ContactPhase::velocity, context.dt, *velocity);
   if (report.n_contacts > 0) {
     change.update(1, *velocity, -1);
     apply(*solids.mass(), change, momentum, 1, 1);
@@ -125,49 +117,56 @@ RCP<Vector> Stepper<dim>::last_pressure(double dt) const {
 }
 
 template <int dim>
-CoupledSolution Stepper<dim>::solve(double dt, const RCP<Vector>& momentum, const char* name,
-                                    SolveReport& report, double& incompatibility) {
+CoupledSolution Stepper<dim>::solve(const StepContext<dim>& context, const RCP<Vector>& momentum,
+                                    const std::string& name, SolveReport& report,
+                                    double& incompatibility) {
+  const Reduction& constraints = context.constraints;
   CoupledSolution solution;
   solution.momentum = momentum;
   solution.coupled_before = components_.fluid->coupled_velocity();
   {
     ScopedPhase phase(timers_, "right-hand side");
-    solution.rhs = system_.right_hand_side(*momentum, incompatibility, dt, locked_velocity_);
+    solution.rhs = system_.right_hand_side(*momentum, context.dt, constraints, incompatibility);
   }
-  const BlockSystem& blocks = system_.blocks(dt);
-  solution.unknowns.pressure = last_pressure(dt);
+  const BlockSystem& blocks = system_.blocks(context.dt);
+  solution.unknowns.pressure = last_pressure(context.dt);
   project_out(blocks.null_space, *solution.unknowns.pressure);
   if (coupled()) {
-    solution.unknowns.solid = make_vector(components_.solids->map());
-    solution.unknowns.solid->elementWiseMultiply(1, *components_.solids->free_mask(),
-                                                 *components_.solids->velocity(), 0);
+    solution.unknowns.solid = components_.solids->velocity();
+    constraints.select(*solution.unknowns.solid);
   }
   {
     ScopedPhase phase(timers_, "preconditioner");
     components_.strategy->prepare(blocks);
   }
   ScopedPhase phase(timers_, "iterations");
-  report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns, request(name, dt));
-  if (coupled() && !locked_velocity_.is_null())
-    solution.unknowns.solid->update(1, *locked_velocity_, 1);
+  report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns,
+                                       request(name, context.dt));
+  solution.velocity = coupled() ? solution.unknowns.solid : make_vector(components_.solids->map());
+  if (!constraints.is_identity()) {
+    solution.velocity = rcp(new Vector(*solution.velocity, Teuchos::Copy));
+    constraints.expand(*solution.velocity);
+  }
   return solution;
 }
 
 /// Newton's method on the elastic forces at the positions that the solution reaches: every
 /// iteration is a coupled solve, whose explicit momentum differs from the last one's by theirs.
 template <int dim>
-CoupledSolution Stepper<dim>::solve_newton(double dt, const RCP<Vector>& momentum, const char* name,
-                                           SolveReport& report, double& incompatibility) {
+CoupledSolution Stepper<dim>::solve_newton(const StepContext<dim>& context,
+                                           const RCP<Vector>& momentum, SolveReport& report,
+                                           double& incompatibility) {
   auto& solids = *components_.solids;
-  CoupledSolution solution = solve(dt, momentum, name, report, incompatibility);
+  const std::string name = name_of(context.phase);
+  CoupledSolution solution = solve(context, momentum, name, report, incompatibility);
   for (int k = 1; k < options_.newton_iterations && coupled(); ++k) {
-    const RCP<const Vector> before = solids.explicit_momentum(time_, dt);
-    if (!solids.linearise(dt, *solution.unknowns.solid))
+    const RCP<const Vector> before = solids.explicit_momentum(context.time, context.dt);
+    if (!solids.linearise(context.dt, *solution.velocity))
       break;
     system_.forget_solid_block();
-    momentum->update(1, *solids.explicit_momentum(time_, dt), -1, *before, 1);
+    momentum->update(1, *solids.explicit_momentum(context.time, context.dt), -1, *before, 1);
     const int iterations = report.iterations;
-    solution = solve(dt, momentum, name, report, incompatibility);
+    solution = solve(context, momentum, name, report, incompatibility);
     report.iterations += iterations;
   }
   return solution;
@@ -177,7 +176,7 @@ CoupledSolution Stepper<dim>::solve_newton(double dt, const RCP<Vector>& momentu
 /// in each cell a few bits of what passes a face, in the norm over all cells root of their number
 /// as much.
 template <int dim>
-SolveRequest Stepper<dim>::request(const char* name, double dt) const {
+SolveRequest Stepper<dim>::request(const std::string& name, double dt) const {
   const auto& fluid = *components_.fluid;
   const double speed = fluid.largest_speed() + dt * fluid.gravity().norm();
   const double area = std::pow(fluid.smallest_length(), dim - 1);
@@ -188,16 +187,17 @@ SolveRequest Stepper<dim>::request(const char* name, double dt) const {
 /// Soft solids keep the volumes of closed regions, contact acts on V^{n+1/2}, then all solids go to
 /// their positions at t^{n+1}.
 template <int dim>
-void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
+void Stepper<dim>::move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
+                               StepReport<dim>& report) {
   auto& solids = *components_.solids;
+  const double dt = context.step_dt;
   RCP<Vector> half_velocity = make_vector(solids.map());
   SweptRates swept;
   RCP<Vector> momentum;
   if (coupled()) {
     ScopedPhase phase(timers_, "S1");
-    momentum = solid_momentum(time_, dt / 2, nullptr, report);
-    half_velocity =
-        solve_newton(dt / 2, momentum, "S1", report.s1, report.incompatibility_s1).unknowns.solid;
+    momentum = solid_momentum(context, prediction, report);
+    half_velocity = solve_newton(context, momentum, report.s1, report.incompatibility_s1).velocity;
     swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
   }
   ScopedPhase phase(timers_, "solid motion");
@@ -210,41 +210,18 @@ void Stepper<dim>::move_solids(double dt, StepReport<dim>& report) {
   const Vector as_solved(*half_velocity, Teuchos::Copy);
   sweep_volumes(rates_of_kind(swept, solids, true), solids, dt, *half_velocity);
   if (coupled() && solids.has_implicit_forces())
-    bound_sweep<dim>(solids, dt / 2, as_solved, *half_velocity);
+    bound_sweep<dim>(solids, context.dt, as_solved, *half_velocity);
   if (coupled() && solids.has_implicit_forces()) {
     const SettledMotion<dim> settled =
-        settle_motion(solids, components_.contact.get(),
-                      {ContactPhase::position, time_, dt / 2, dt, locked_velocity_, sweep_shells},
-                      as_solved, *half_velocity, *momentum);
+        settle_motion<dim>(solids, components_.contact.get(), context, sweep_shells, as_solved,
+                           *half_velocity, *momentum);
     half_velocity = settled.velocity;
     report.contact_position = settled.contact;
   } else if (components_.contact && coupled()) {
     report.contact_position =
         components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);
   }
-  solids.move(*half_velocity, time_, dt);
-}
-
-/// F2: u_ADV from u^n with the effective solid velocity as Neumann data.
-template <int dim>
-void Stepper<dim>::make_advection_velocity(StepReport<dim>& report) {
-  auto& fluid = *components_.fluid;
-  auto& coupling = *components_.coupling;
-  fluid.begin_advection_velocity(report.dt);
-  if (components_.solids->empty() && last_dt_ > 0)
-    return;  // u^n is divergence-free already
-  ScopedPhase phase(timers_, "F2");
-  const std::vector<double> effective = coupling.effective_velocity(*components_.solids);
-  fluid.set_coupled_velocity(effective);
-  BlockVector rhs{make_vector(fluid.pressure_map()), Teuchos::null}, solution;
-  fluid.divergence(*rhs.pressure);
-  coupling.add_divergence(effective, *rhs.pressure);
-  const BlockSystem& blocks = system_.blocks(0, false);
-  report.incompatibility_f2 = relative_part_removed(blocks.null_space, *rhs.pressure);
-  solution.pressure = make_vector(fluid.pressure_map());
-  components_.strategy->prepare(blocks);
-  report.f2 = components_.strategy->solve(blocks, rhs, solution, request("F2", report.dt));
-  fluid.project(*solution.pressure);
+  solids.move(*half_velocity, context.time, dt);
 }
 
 /// Of u*.
@@ -266,30 +243,28 @@ Momentum<dim> Stepper<dim>::total_momentum() const {
 /// What is prescribed at the end of the step must have a solution, but for what the grid makes of
 /// the solids' shapes.
 template <int dim>
-void Stepper<dim>::check_possible(double dt, double incompatibility) const {
+void Stepper<dim>::check_possible(const StepContext<dim>& context, double incompatibility) const {
   constexpr double round_off = 1e-9;
   if (incompatibility <= round_off)
     return;
-  const std::string impossible = system_.impossible_flow(time_ + dt, locked_velocity_);
-  check_solve(impossible.empty(), "At {:.6g} s: {}", time_ + dt, impossible);
+  const double end = context.time + context.step_dt;
+  const std::string impossible = system_.impossible_flow(end, context.constraints);
+  check_solve(impossible.empty(), "At {:.6g} s: {}", end, impossible);
 }
 
 /// F4 and the end of the audit.
 template <int dim>
-void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport<dim>& report) {
+void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
+  const auto& [context, prediction, solution] = solved;
   auto& fluid = *components_.fluid;
   auto& solids = *components_.solids;
-  const BlockVector& unknowns = solution.unknowns;
   report.max_divergence =
-      largest_divergence(system_.blocks(dt), solution, fluid.smallest_length(), dim);
-  audit_solve<dim>(components_, sides_, system_, solution, viscous_, dt, report);
-  fluid.project(*unknowns.pressure);
-  if (!viscous_pressure_.is_null() && sides_.pressure_memory)
-    sides_.pressure_memory->correct_pressure(*viscous_pressure_);
-  RCP<Vector> velocity = unknowns.solid;
-  if (velocity.is_null())
-    velocity = make_vector(solids.map());
-  const std::vector<double> coupled_after = components_.coupling->velocity(*velocity);
+      largest_divergence(system_.blocks(context.dt), solution, fluid.smallest_length(), dim);
+  audit_solve<dim>(components_, sides_, system_, context, solution, prediction.viscous, report);
+  fluid.project(*solution.unknowns.pressure);
+  if (!prediction.pressure.is_null() && sides_.pressure_memory)
+    sides_.pressure_memory->correct_pressure(*prediction.pressure);
+  const std::vector<double> coupled_after = components_.coupling->velocity(*solution.velocity);
   fluid.set_coupled_velocity(coupled_after);
   fluid.accept();
 
@@ -299,9 +274,9 @@ void Stepper<dim>::finish(const CoupledSolution& solution, double dt, StepReport
     report.fluid_kinetic_energy += sides_.audited_fluid->kinetic_energy();
   report.fluid_volume = fluid.fluid_volume();
   if (coupled()) {
-    solids.set_velocity(*velocity);
+    solids.set_velocity(*solution.velocity);
     const auto after = make_vector(solids.map());
-    apply(*solids.mass(), *velocity, *after);
+    apply(*solids.mass(), *solution.velocity, *after);
     report.solid_momentum = solids.momentum(*after);
   }
   report.n_clamped_elements = solids.n_clamped_elements();
@@ -320,9 +295,9 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
   const std::function<void()> undo = undo_of(components_);
   StepReport<dim> report;
   try {
-    const CoupledSolution solution = solve_step(dt, report);
+    const Solved solved = solve_step(dt, report);
     ScopedPhase phase(timers_, "end");
-    finish(solution, dt, report);
+    finish(solved, report);  // F4
   } catch (const Interrupted&) {
     undo();
     throw;
@@ -332,8 +307,21 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
   return report;
 }
 
+/// F1 and S1: mean velocities of held dofs over the step, so that positions follow their scripts.
 template <int dim>
-CoupledSolution Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
+StepContext<dim> Stepper<dim>::context_of_positions(double dt) const {
+  return {Phase::F1, time_, dt, dt / 2, components_.solids->constraints(time_, time_ + dt)};
+}
+
+/// F3 and S2: those at the end of the step.
+template <int dim>
+StepContext<dim> Stepper<dim>::context_of_velocities(double dt, MomentumLedger<dim>& ledger) const {
+  const double end = time_ + dt;
+  return {Phase::F3, time_, dt, dt, components_.solids->constraints(end, end), &ledger};
+}
+
+template <int dim>
+typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
   const Interruptible interruptible;
   auto& fluid = *components_.fluid;
   auto& solids = *components_.solids;
@@ -341,50 +329,35 @@ CoupledSolution Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
   report.time = time_ + dt;
   report.cfl = dt * fluid.largest_speed() / fluid.smallest_length();
   if (solids.begin_step(time_, dt))
-    freeze();                    // other dofs are locked now
+    freeze();                    // other dofs are unknowns now
   system_.forget_solid_block();  // what is implicit is other in S1 than in S2
-  locked_velocity_ = solids.locked_velocity(time_, time_ + dt);
-  const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
 
+  StepContext<dim> context = context_of_positions(dt);
+  Prediction<dim> prediction;
   if (coupled()) {  // F1 serves S1 only
     ScopedPhase phase(timers_, "F1");
     fluid.begin_prediction();
     reset_unseen_faces();
-    predict_forces(time_, dt / 2, nullptr, report);
+    prediction = predict_forces(context, report);
   }
-  move_solids(dt, report);  // S1
-  const auto after = solids.empty() ? before : solids.snapshot();
-  make_advection_velocity(report);  // F2
-  {
-    ScopedPhase phase(timers_, "F3 advection");
-    const MovingSurface<dim> moving{before, after, [&solids](const SurfacePoint<dim>& point) {
-                                      return solids.effective_velocity(point, point.position);
-                                    }};
-    fluid.advect(time_, dt, moving);
-    {
-      ScopedPhase geometry(timers_, "geometry");
-      if (!solids.empty() || fluid.geometry_changes())
-        system_.freeze(after);
-    }
-    fluid.revalidate(moving);
-    reset_unseen_faces();
-    report.ledger.open(total_momentum());
-    report.transport_change = report.ledger.before() - last_momentum_;
-  }
+  move_solids(context.in(Phase::S1), prediction, report);  // S1
+  make_advection_velocity(dt, report);                     // F2
+  advect(dt, report);                                      // F3
+  context = context_of_velocities(dt, report.ledger);
   {
     ScopedPhase phase(timers_, "F3 forces");
-    locked_velocity_ = solids.locked_velocity(time_ + dt, time_ + dt);
-    predict_forces(time_, dt, &report.ledger, report);
+    prediction = predict_forces(context, report);
   }
   ScopedPhase phase(timers_, "S2");
+  context.phase = Phase::S2;
   RCP<Vector> momentum = make_vector(solids.map());
   if (coupled())
-    momentum = solid_momentum(time_, dt, &report.ledger, report);
+    momentum = solid_momentum(context, prediction, report);
   else
     unseen_buoyancy(dt, report);
-  CoupledSolution solution = solve_settled(dt, momentum, report);
-  check_possible(dt, report.incompatibility_s2);
-  return solution;
+  CoupledSolution solution = solve_settled(context, momentum, report);
+  check_possible(context, report.incompatibility_s2);
+  return {context, prediction, solution};
 }
 
 template class Stepper<2>;

@@ -6,7 +6,9 @@
 #include "coupling/viscous_solve.hpp"
 #include "output/timers.hpp"
 #include "stepping/components.hpp"
+#include "stepping/implicit_motion.hpp"
 #include "stepping/solve_audit.hpp"
+#include "stepping/step_context.hpp"
 #include "stepping/step_report.hpp"
 
 namespace lockstep {
@@ -17,6 +19,13 @@ struct StepperOptions {
   int newton_iterations = 1;         ///< coupled solves each of S1 and S2 takes
   bool incremental_pressure = true;  ///< the viscous solve reads the last step's pressure
   bool rotational_pressure = true;   ///< and corrects it by the divergence that it leaves
+};
+
+/// What F1 or the forces of F3 find beside the velocity of the fluid.
+template <int dim>
+struct Prediction {
+  ViscousResult<dim> viscous;  ///< empty without viscosity
+  RCP<Vector> pressure;        ///< what S2 leaves out for the next step; null: nothing
 };
 
 /// The step F1 S1 F2 F3 S2 F4 of Section 7.
@@ -38,33 +47,48 @@ class Stepper {
   CoupledSystem<dim>& system() { return system_; }
 
  private:
+  /// S2 with all that its end needs.
+  struct Solved {
+    StepContext<dim> context;
+    Prediction<dim> prediction;
+    CoupledSolution solution;
+  };
   void freeze();
   /// All of a step but its end: nothing yet that cannot be undone.
-  CoupledSolution solve_step(double dt, StepReport<dim>& report);
+  Solved solve_step(double dt, StepReport<dim>& report);
   bool coupled() const { return components_.solids->has_unknowns(); }
-  void predict_forces(double time, double dt, MomentumLedger<dim>* ledger, StepReport<dim>& report);
-  void predict_viscosity(double time, double dt, StepReport<dim>& report);
-  RCP<const Vector> expected_pressure(double time, double dt, StepReport<dim>& report);
+  StepContext<dim> context_of_positions(double dt) const;
+  StepContext<dim> context_of_velocities(double dt, MomentumLedger<dim>& ledger) const;
+
+  // F1, and the forces of F3.
+  Prediction<dim> predict_forces(const StepContext<dim>& context, StepReport<dim>& report);
+  Prediction<dim> predict_viscosity(const StepContext<dim>& context, StepReport<dim>& report);
+  RCP<const Vector> expected_pressure(const StepContext<dim>& context, StepReport<dim>& report);
   RCP<Vector> last_pressure(double dt) const;
-  RCP<Vector> viscous_pressure(double viscosity, double dt);
+  RCP<Vector> viscous_pressure(double viscosity, double dt, const RCP<const Vector>& velocity);
   void reset_unseen_faces();
+
+  // S1 and S2.
   RCP<const Vector> unseen_buoyancy(double dt, StepReport<dim>& report) const;
-  double resolved_part(double dt);
-  RCP<Vector> solid_momentum(double time, double dt, MomentumLedger<dim>* ledger,
+  double resolved_part(double dt) const;
+  RCP<Vector> solid_momentum(const StepContext<dim>& context, const Prediction<dim>& prediction,
                              StepReport<dim>& report);
-  CoupledSolution solve(double dt, const RCP<Vector>& momentum, const char* name,
-                        SolveReport& report, double& incompatibility);
-  CoupledSolution solve_newton(double dt, const RCP<Vector>& momentum, const char* name,
+  CoupledSolution solve(const StepContext<dim>& context, const RCP<Vector>& momentum,
+                        const std::string& name, SolveReport& report, double& incompatibility);
+  CoupledSolution solve_newton(const StepContext<dim>& context, const RCP<Vector>& momentum,
                                SolveReport& report, double& incompatibility);
-  void move_solids(double dt, StepReport<dim>& report);
-  void make_advection_velocity(StepReport<dim>& report);
-  void check_possible(double dt, double incompatibility) const;
-  void finish(const CoupledSolution& solution, double dt, StepReport<dim>& report);
-  ContactReport<dim> contact_momentum(double dt, Vector& momentum);
-  ContactReport<dim> settled_momentum(double dt, Vector& momentum);
-  CoupledSolution solve_settled(double dt, const RCP<Vector>& momentum, StepReport<dim>& report);
-  RCP<Vector> at_locked_velocity(const Vector& velocity) const;
-  SolveRequest request(const char* name, double dt) const;
+  CoupledSolution solve_settled(const StepContext<dim>& context, const RCP<Vector>& momentum,
+                                StepReport<dim>& report);
+  ContactReport<dim> contact_momentum(const StepContext<dim>& context, Vector& momentum);
+  ContactReport<dim> settled_momentum(const StepContext<dim>& context, Vector& momentum);
+  void move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
+                   StepReport<dim>& report);
+  SolveRequest request(const std::string& name, double dt) const;
+  void check_possible(const StepContext<dim>& context, double incompatibility) const;
+
+  void make_advection_velocity(double dt, StepReport<dim>& report);  // F2
+  void advect(double dt, StepReport<dim>& report);                   // F3
+  void finish(const Solved& solved, StepReport<dim>& report);        // F4
   Momentum<dim> fluid_momentum() const;
   Momentum<dim> total_momentum() const;
 
@@ -74,11 +98,8 @@ class Stepper {
   PhaseTimers& timers_;
   CoupledSystem<dim> system_;
   double time_;
-  double last_dt_ = 0;                 ///< 0 before the first step
-  Momentum<dim> last_momentum_;        ///< at the end of the last step
-  ViscousResult<dim> viscous_;         ///< of the present prediction; empty without viscosity
-  RCP<Vector> viscous_pressure_;       ///< what S2 leaves out for the next step; null: nothing
-  RCP<const Vector> locked_velocity_;  ///< of locked dofs in the present solve; null: at rest
+  double last_dt_ = 0;           ///< 0 before the first step
+  Momentum<dim> last_momentum_;  ///< at the end of the last step
 };
 
 }  // namespace lockstep

@@ -9,14 +9,14 @@ namespace lockstep {
 /// Of the motion of solids whose inner forces are implicit, the part that the step resolves: one
 /// where it is short for them, V.K V dt^2 small beside V.M V, nothing where it is long.
 template <int dim>
-double Stepper<dim>::resolved_part(double dt) {
+double Stepper<dim>::resolved_part(double dt) const {
   const auto& solids = *components_.solids;
   if (!solids.has_implicit_forces())
     return 1;
   const RCP<const Vector> velocity = solids.velocity();
   const double stiff = -velocity->dot(*solids.implicit_impulse(dt, *velocity));
   Vector product(solids.map());
-  apply(*system_.blocks(dt).solid_block, *velocity, product);
+  apply(*solids.full_block(components_.coupling->added_mass(), dt), *velocity, product);
   const double whole = velocity->dot(product);
   if (!(stiff > 0) || !(whole > stiff))
     return stiff > 0 ? 0 : 1;
@@ -27,12 +27,12 @@ double Stepper<dim>::resolved_part(double dt) {
 /// Where inner forces are implicit contact acts on V_S* = (M_S - dt D)^-1 momentum, so that it
 /// holds what it would have to at the end of the step, and finds the forces of that place.
 template <int dim>
-ContactReport<dim> Stepper<dim>::settled_momentum(double dt, Vector& momentum) {
+ContactReport<dim> Stepper<dim>::settled_momentum(const StepContext<dim>& context,
+                                                  Vector& momentum) {
   auto& solids = *components_.solids;
-  const RCP<const Vector> predicted = implicit_velocity(solids, dt, momentum, locked_velocity_);
-  const SettledMotion<dim> settled = settle_motion(
-      solids, components_.contact.get(), {ContactPhase::velocity, time_, dt, dt, locked_velocity_},
-      *predicted, *predicted, momentum);
+  const RCP<const Vector> predicted = solids.velocity_of(momentum, context.dt, context.constraints);
+  const SettledMotion<dim> settled = settle_motion<dim>(solids, components_.contact.get(), context,
+                                                        {}, *predicted, *predicted, momentum);
   if (settled.linearised_anew)
     system_.forget_solid_block();
   if (!settled.contact.impulse.is_null())
@@ -43,29 +43,32 @@ ContactReport<dim> Stepper<dim>::settled_momentum(double dt, Vector& momentum) {
 /// S2. Where the forces at the end of the step are not those that were linearised, the solids find
 /// their motion under the pressure found, and the solve is repeated about that.
 template <int dim>
-CoupledSolution Stepper<dim>::solve_settled(double dt, const RCP<Vector>& momentum,
-                                            StepReport<dim>& report) {
+CoupledSolution Stepper<dim>::solve_settled(const StepContext<dim>& context,
+                                            const RCP<Vector>& momentum, StepReport<dim>& report) {
   constexpr int most_repeats = 3;
   auto& solids = *components_.solids;
-  CoupledSolution solution = solve_newton(dt, momentum, "S2", report.s2, report.incompatibility_s2);
+  CoupledSolution solution = solve_newton(context, momentum, report.s2, report.incompatibility_s2);
   if (!coupled() || !solids.has_implicit_forces())
     return solution;
-  for (int k = 0; k < most_repeats && !is_settled(solids, dt, *solution.unknowns.solid); ++k) {
-    settle_motion<dim>(solids, nullptr, {ContactPhase::velocity, time_, dt, dt, locked_velocity_},
-                       *solution.unknowns.solid, *solution.unknowns.solid, *momentum);
+  for (int k = 0; k < most_repeats && !is_settled(solids, context.dt, *solution.velocity); ++k) {
+    settle_motion<dim>(solids, nullptr, context, {}, *solution.velocity, *solution.velocity,
+                       *momentum);
     system_.forget_solid_block();
     const int iterations = report.s2.iterations;
-    solution = solve(dt, momentum, "S2", report.s2, report.incompatibility_s2);
+    solution =
+        solve(context, momentum, name_of(context.phase), report.s2, report.incompatibility_s2);
     report.s2.iterations += iterations;
   }
   return solution;
 }
 
-template double Stepper<2>::resolved_part(double);
-template ContactReport<2> Stepper<2>::settled_momentum(double, Vector&);
-template CoupledSolution Stepper<2>::solve_settled(double, const RCP<Vector>&, StepReport<2>&);
-template double Stepper<3>::resolved_part(double);
-template ContactReport<3> Stepper<3>::settled_momentum(double, Vector&);
-template CoupledSolution Stepper<3>::solve_settled(double, const RCP<Vector>&, StepReport<3>&);
+template double Stepper<2>::resolved_part(double) const;
+template ContactReport<2> Stepper<2>::settled_momentum(const StepContext<2>&, Vector&);
+template CoupledSolution Stepper<2>::solve_settled(const StepContext<2>&, const RCP<Vector>&,
+                                                   StepReport<2>&);
+template double Stepper<3>::resolved_part(double) const;
+template ContactReport<3> Stepper<3>::settled_momentum(const StepContext<3>&, Vector&);
+template CoupledSolution Stepper<3>::solve_settled(const StepContext<3>&, const RCP<Vector>&,
+                                                   StepReport<3>&);
 
 }  // namespace lockstep

@@ -1,8 +1,9 @@
+// What is done to the fluid before S1 and S2: F1, F2 and F3.
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
-
 #include <cmath>
 
+#include "linear/null_space.hpp"
 #include "stepping/stepper.hpp"
 
 namespace lockstep {
@@ -28,35 +29,36 @@ void Stepper<dim>::reset_unseen_faces() {
 
 /// F1 and the forces of F3: explicit forces and implicit viscosity on u*.
 template <int dim>
-void Stepper<dim>::predict_forces(double time, double dt, MomentumLedger<dim>* ledger,
-                                  StepReport<dim>& report) {
+Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
+                                             StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   {
     ScopedPhase phase(timers_, "forces");
-    const ForceImpulse<dim> given = fluid.add_forces(time, dt);
-    if (ledger)
-      ledger->add("body forces",
-                  given.impulse + system_.lumped_fluid_momentum(given.coupled_change));
+    const ForceImpulse<dim> given = fluid.add_forces(context.time, context.dt);
+    if (context.ledger)
+      context.ledger->add("body forces",
+                          given.impulse + system_.lumped_fluid_momentum(given.coupled_change));
   }
-  viscous_ = {};
   if (!sides_.viscous_fluid)
-    return;
-  predict_viscosity(time, dt, report);
-  if (ledger)
-    ledger->add("viscous boundaries", viscous_.boundary_impulse);
+    return {};
+  Prediction<dim> prediction = predict_viscosity(context, report);
+  if (context.ledger)
+    context.ledger->add("viscous boundaries", prediction.viscous.boundary_impulse);
+  return prediction;
 }
 
 /// p̂ that the viscous solve reads: that of the last step, before the first one that of a solve
 /// without viscosity.
 template <int dim>
-RCP<const Vector> Stepper<dim>::expected_pressure(double time, double dt, StepReport<dim>& report) {
+RCP<const Vector> Stepper<dim>::expected_pressure(const StepContext<dim>& context,
+                                                  StepReport<dim>& report) {
   if (last_dt_ > 0)
-    return last_pressure(dt);
-  const RCP<Vector> momentum = coupled() ? solid_momentum(time, dt, nullptr, report)
+    return last_pressure(context.dt);
+  const RCP<Vector> momentum = coupled() ? solid_momentum(context.on_trial(), {}, report)
                                          : make_vector(components_.solids->map());
   SolveReport iterations;
   double incompatibility = 0;
-  return solve(dt, momentum, "first pressure", iterations, incompatibility).unknowns.pressure;
+  return solve(context, momentum, "first pressure", iterations, incompatibility).unknowns.pressure;
 }
 
 /// Implicit viscosity in the incremental form of pressure correction (Guermond, Minev and Shen
@@ -65,11 +67,13 @@ RCP<const Vector> Stepper<dim>::expected_pressure(double time, double dt, StepRe
 /// the step, so that forces that the pressure holds (weight, mean gradients) do not shear the fluid
 /// at walls and solids; a steady state does not depend on dt.
 template <int dim>
-void Stepper<dim>::predict_viscosity(double time, double dt, StepReport<dim>& report) {
+Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
+                                                StepReport<dim>& report) {
+  const double dt = context.dt;
   auto& fluid = *components_.fluid;
   RCP<const Vector> pressure;
   if (options_.incremental_pressure)
-    pressure = expected_pressure(time, dt, report);
+    pressure = expected_pressure(context, report);
   ScopedPhase phase(timers_, "viscosity");
   RCP<const LinearOperator> block;
   NearNullSpace near_null_space;
@@ -78,33 +82,35 @@ void Stepper<dim>::predict_viscosity(double time, double dt, StepReport<dim>& re
     const BlockSystem& blocks = system_.blocks(dt);
     block = blocks.solid_block;
     near_null_space = blocks.near_null_space;
-    const RCP<Vector> momentum = components_.solids->explicit_momentum(time, dt);
+    const RCP<Vector> momentum = components_.solids->explicit_momentum(context.time, dt);
     if (!pressure.is_null() && sides_.unseen_buoyancy)
       sides_.unseen_buoyancy->add_unseen_buoyancy(fluid.gravity(), dt, *momentum);
     row = system_.lumped_momentum(*momentum);
     if (!pressure.is_null())
-      blocks.coupling_transposed->apply(*pressure, *row, Teuchos::NO_TRANS, -1, 1);
-    if (!locked_velocity_.is_null())
-      row->update(-1, *system_.unlocked_momentum(dt, *locked_velocity_), 1);
+      components_.coupling->coupling_transposed()->apply(*pressure, *row, Teuchos::NO_TRANS, -1, 1);
+    system_.subtract_given(dt, context.constraints, *row);
   }
   if (!pressure.is_null())
     fluid.project(*pressure);
   const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
-  viscous_ = solve_viscous<dim>(*viscous, *sides_.viscous_fluid, *components_.solids,
-                                *sides_.viscous_coupling, block, near_null_space, row, dt,
-                                options_.viscous_tolerance, locked_velocity_);
-  report.viscous_iterations += viscous_.iterations;
+  Prediction<dim> prediction;
+  prediction.viscous = solve_viscous<dim>(*viscous, *sides_.viscous_fluid, *components_.solids,
+                                          *sides_.viscous_coupling, block, near_null_space, row, dt,
+                                          context.constraints, options_.viscous_tolerance);
+  report.viscous_iterations += prediction.viscous.iterations;
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)
     report.viscous_number =
         viscous->viscosity * dt * std::pow(fluid.smallest_length(), dim - 2) / full_mass;
   if (options_.rotational_pressure)
-    viscous_pressure_ = viscous_pressure(viscous->viscosity, dt);
+    prediction.pressure =
+        viscous_pressure(viscous->viscosity, dt, prediction.viscous.solid_velocity);
   if (!pressure.is_null()) {
     Vector back(*pressure, Teuchos::Copy);
     back.scale(-1);
     fluid.project(back);
   }
+  return prediction;
 }
 
 /// What the projection of a velocity that feels pressure and viscosity leaves out of the pressure,
@@ -113,21 +119,71 @@ void Stepper<dim>::predict_viscosity(double time, double dt, StepReport<dim>& re
 /// pressure would need nu dt / h^2 steps to follow. Where a cell is cut it is less than it might
 /// be.
 template <int dim>
-RCP<Vector> Stepper<dim>::viscous_pressure(double viscosity, double dt) {
+RCP<Vector> Stepper<dim>::viscous_pressure(double viscosity, double dt,
+                                           const RCP<const Vector>& velocity) {
   auto& fluid = *components_.fluid;
   auto& coupling = *components_.coupling;
   const auto result = make_vector(fluid.pressure_map());
   fluid.divergence(*result);
   coupling.add_prescribed_divergence(*result);
   if (coupled())
-    coupling.coupling_transposed()->apply(*viscous_.solid_velocity, *result, Teuchos::TRANS, 1, 1);
+    coupling.coupling_transposed()->apply(*velocity, *result, Teuchos::TRANS, 1, 1);
   result->scale(dt * viscosity);
   return result;
 }
 
+/// F2: u_ADV from u^n with the effective solid velocity as Neumann data.
+template <int dim>
+void Stepper<dim>::make_advection_velocity(double dt, StepReport<dim>& report) {
+  auto& fluid = *components_.fluid;
+  auto& coupling = *components_.coupling;
+  fluid.begin_advection_velocity(dt);
+  if (components_.solids->empty() && last_dt_ > 0)
+    return;  // u^n is divergence-free already
+  ScopedPhase phase(timers_, "F2");
+  const std::vector<double> effective = coupling.effective_velocity(*components_.solids);
+  fluid.set_coupled_velocity(effective);
+  BlockVector rhs{make_vector(fluid.pressure_map()), Teuchos::null}, solution;
+  fluid.divergence(*rhs.pressure);
+  coupling.add_divergence(effective, *rhs.pressure);
+  const BlockSystem& blocks = system_.blocks(0, false);
+  report.incompatibility_f2 = relative_part_removed(blocks.null_space, *rhs.pressure);
+  solution.pressure = make_vector(fluid.pressure_map());
+  components_.strategy->prepare(blocks);
+  report.f2 = components_.strategy->solve(blocks, rhs, solution, request(name_of(Phase::F2), dt));
+  fluid.project(*solution.pressure);
+}
+
+/// F3 but for the forces: along the rays of u_ADV, to the geometry of t^{n+1}.
+template <int dim>
+void Stepper<dim>::advect(double dt, StepReport<dim>& report) {
+  ScopedPhase phase(timers_, "F3 advection");
+  auto& fluid = *components_.fluid;
+  const auto& solids = *components_.solids;
+  const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
+  const auto after = solids.empty() ? before : solids.snapshot();
+  const MovingSurface<dim> moving{before, after, [&solids](const SurfacePoint<dim>& point) {
+                                    return solids.effective_velocity(point, point.position);
+                                  }};
+  fluid.advect(time_, dt, moving);
+  {
+    ScopedPhase geometry(timers_, "geometry");
+    if (!solids.empty() || fluid.geometry_changes())
+      system_.freeze(after);
+  }
+  fluid.revalidate(moving);
+  reset_unseen_faces();
+  report.ledger.open(total_momentum());
+  report.transport_change = report.ledger.before() - last_momentum_;
+}
+
 template void Stepper<2>::reset_unseen_faces();
+template Prediction<2> Stepper<2>::predict_forces(const StepContext<2>&, StepReport<2>&);
+template void Stepper<2>::make_advection_velocity(double, StepReport<2>&);
+template void Stepper<2>::advect(double, StepReport<2>&);
 template void Stepper<3>::reset_unseen_faces();
-template void Stepper<2>::predict_forces(double, double, MomentumLedger<2>*, StepReport<2>&);
-template void Stepper<3>::predict_forces(double, double, MomentumLedger<3>*, StepReport<3>&);
+template Prediction<3> Stepper<3>::predict_forces(const StepContext<3>&, StepReport<3>&);
+template void Stepper<3>::make_advection_velocity(double, StepReport<3>&);
+template void Stepper<3>::advect(double, StepReport<3>&);
 
 }  // namespace lockstep

@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "cloth_world.hpp"
 #include "contact/impact_zones.hpp"
+#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep::test {
 namespace {

@@ -2,7 +2,6 @@
 #include "contact_world.hpp"
 #include "deformable/deformable_solids.hpp"
 #include "deformable/elements/shell_elements.hpp"
-#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep::test {
 
@@ -92,11 +91,7 @@ class ClothWorld {
  private:
   /// (M_S - dt D) V = momentum.
   RCP<Vector> solved(const Vector& momentum, double dt) const {
-    const auto velocity = make_vector(solids->map());
-    Vector free(solids->map());
-    free.elementWiseMultiply(1, *solids->free_mask(), momentum, 0);
-    apply(*exact_inverse(solids->solid_block(Teuchos::null, dt), "solids"), free, *velocity);
-    return velocity;
+    return solids->velocity_of(momentum, dt, solids->reduction());
   }
 };
 

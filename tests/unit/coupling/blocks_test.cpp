@@ -183,7 +183,8 @@ TEST(Eq16, LockedDofsAreEliminatedAndTheirReactionsFound) {
   turning[2] = 2;
   const BlockVector solution{distributed(8 * Eigen::VectorXd::Unit(12, 5), rhs.pressure->getMap()),
                              distributed(turning, c.solids.map())};
-  const Eigen::VectorXd reaction = dense(*c.system.lock_reaction(dt, *momentum, solution));
+  const Eigen::VectorXd reaction =
+      dense(*c.system.reactions(dt, c.solids.reduction(), *momentum, solution));
   EXPECT_NEAR(reaction[0], 2 * 0.25 * -0.25 - 0.25 * 8 - (3 + 0.5 * 0.5 * 8.5), near);
   EXPECT_NEAR(reaction[1], -6, near);
   EXPECT_EQ(reaction[2], 0);
@@ -196,10 +197,11 @@ TEST(Eq16, LockedDofsThatMoveActOnTheOthers) {
   const RCP<Vector> momentum = c.solids.explicit_momentum(0, dt);
   Eigen::VectorXd moving = Eigen::VectorXd::Zero(dense(*momentum).size());
   moving.head(2) << 3, -2;
-  const RCP<const Vector> locked = distributed(moving, c.solids.map());
+  const Reduction constraints =
+      c.solids.reduction().with_velocity(distributed(moving, c.solids.map()));
   double removed = 0;
   const BlockVector still = c.system.right_hand_side(*momentum, removed);
-  const BlockVector rhs = c.system.right_hand_side(*momentum, removed, dt, locked);
+  const BlockVector rhs = c.system.right_hand_side(*momentum, dt, constraints, removed);
   // The blocks with nothing locked say what the velocities do to the two rows.
   CoupledCase<2> loose(two_plate_box(true), plates({}));
   const BlockSystem& blocks = loose.system.blocks(dt);

@@ -43,7 +43,7 @@ ViscousResult<2> solve_viscosity(CoupledCase<2>& c) {
     row = c.system.lumped_momentum(*c.solids.explicit_momentum(0, viscous_dt));
   }
   return solve_viscous<2>(*system, c.fluid, c.solids, c.coupling, block, {}, row, viscous_dt,
-                          1e-14);
+                          c.solids.reduction(), 1e-14);
 }
 
 /// u* = 0 but at the free face of this axis at x.

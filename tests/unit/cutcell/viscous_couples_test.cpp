@@ -59,7 +59,7 @@ struct ViscousCase {
     fluid->set_coupled_velocity(coupling.velocity(*solids->velocity()));
     return solve_viscous<dim>(
         *fluid->viscous_system(), *fluid, *solids, coupling, system->blocks(dt).solid_block, {},
-        system->lumped_momentum(*solids->explicit_momentum(0, dt)), dt, 1e-14);
+        system->lumped_momentum(*solids->explicit_momentum(0, dt)), dt, solids->reduction(), 1e-14);
   }
   std::unique_ptr<MacFluid<dim>> fluid;
   std::unique_ptr<SolidSystem<dim>> solids;

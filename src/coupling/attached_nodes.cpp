@@ -1,0 +1,91 @@
+#include "coupling/attached_nodes.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace lockstep {
+
+namespace {
+
+/// The solids that can carry nodes.
+std::map<std::string, int> carriers_by_name(const std::vector<SolidDescription>& solids) {
+  std::map<std::string, int> carriers;
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    if (solids[s].rigid && !solids[s].prescribed)
+      carriers.emplace(solids[s].name, static_cast<int>(s));
+  }
+  return carriers;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<AttachedNode<dim>> find_attached_nodes(
+    const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
+    const std::vector<ModelBegin>& begin, const std::vector<SolidDescription>& solids,
+    std::string& failure) {
+  std::vector<AttachedNode<dim>> nodes;
+  std::map<std::string, int> carriers;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const std::vector<NodeAttachment<dim>> attachments = models[m]->attachments();
+    if (!attachments.empty() && carriers.empty())
+      carriers = carriers_by_name(solids);
+    for (const NodeAttachment<dim>& attachment : attachments) {
+      const auto carrier = carriers.find(attachment.solid);
+      if (carrier == carriers.end()) {
+        failure = fmt::format(
+            "Nodes are attached to \"{}\", which is no solid that is rigid and dynamic; name one, "
+            "or pin the nodes and give them a motion.",
+            attachment.solid);
+        return {};
+      }
+      AttachedNode<dim> node{attachment.dofs, static_cast<int>(m), carrier->second,
+                             attachment.position};
+      for (GlobalIndex& dof : node.dofs)
+        dof += begin[m].id;
+      nodes.push_back(node);
+    }
+  }
+  return nodes;
+}
+
+template <int dim>
+std::vector<Combination> combinations_of(
+    const std::vector<AttachedNode<dim>>& nodes,
+    const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
+    const std::vector<ModelBegin>& begin, const std::vector<SolidDescription>& solids) {
+  std::vector<Combination> combinations;
+  VelocityRow<dim> row;
+  for (const AttachedNode<dim>& node : nodes) {
+    const SolidDescription& carrier = solids[node.solid];
+    SurfacePoint<dim> point;
+    point.simplex = carrier.simplex_begin - begin[carrier.model].simplex;
+    models[carrier.model]->velocity_row(point, node.position, row);
+    for (int a = 0; a < dim; ++a) {
+      Combination combination{node.dofs[a], {}};
+      for (std::size_t k = 0; k < row.dofs.size(); ++k) {
+        if (row.coefficients[k][a] != 0)
+          combination.terms.emplace_back(begin[carrier.model].id + row.dofs[k],
+                                         row.coefficients[k][a]);
+      }
+      combinations.push_back(std::move(combination));
+    }
+  }
+  return combinations;
+}
+
+template std::vector<AttachedNode<2>> find_attached_nodes(
+    const std::vector<std::unique_ptr<SolidModel<2>>>&, const std::vector<ModelBegin>&,
+    const std::vector<SolidDescription>&, std::string&);
+template std::vector<AttachedNode<3>> find_attached_nodes(
+    const std::vector<std::unique_ptr<SolidModel<3>>>&, const std::vector<ModelBegin>&,
+    const std::vector<SolidDescription>&, std::string&);
+template std::vector<Combination> combinations_of(
+    const std::vector<AttachedNode<2>>&, const std::vector<std::unique_ptr<SolidModel<2>>>&,
+    const std::vector<ModelBegin>&, const std::vector<SolidDescription>&);
+template std::vector<Combination> combinations_of(
+    const std::vector<AttachedNode<3>>&, const std::vector<std::unique_ptr<SolidModel<3>>>&,
+    const std::vector<ModelBegin>&, const std::vector<SolidDescription>&);
+
+}  // namespace lockstep

@@ -1,0 +1,43 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coupling/reduction.hpp"
+#include "interfaces/solid.hpp"
+
+namespace lockstep {
+
+/// Where a model begins in the stack of all solids.
+struct ModelBegin {
+  int simplex = 0;     ///< in the surface of all
+  GlobalIndex id = 0;  ///< in the map of all unknowns
+  int local = 0;       ///< among this rank's rows
+};
+
+/// A node of this rank that a rigid solid of another model carries, in ids of the stacked map and
+/// numbers of all solids.
+template <int dim>
+struct AttachedNode {
+  std::array<GlobalIndex, dim> dofs;
+  int model = -1;       ///< that it belongs to
+  int solid = -1;       ///< that carries it
+  Point<dim> position;  ///< present [m]
+};
+
+/// Those of this rank at their present positions; `failure` gets a sentence if one names a solid
+/// that is not rigid and dynamic. Local.
+template <int dim>
+std::vector<AttachedNode<dim>> find_attached_nodes(
+    const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
+    const std::vector<ModelBegin>& begin, const std::vector<SolidDescription>& solids,
+    std::string& failure);
+
+/// The velocities of nodes as those of their solids where they are. Local.
+template <int dim>
+std::vector<Combination> combinations_of(
+    const std::vector<AttachedNode<dim>>& nodes,
+    const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
+    const std::vector<ModelBegin>& begin, const std::vector<SolidDescription>& solids);
+
+}  // namespace lockstep
