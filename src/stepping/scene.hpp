@@ -3,6 +3,7 @@
 
 #include "interfaces/registries.hpp"
 #include "parameters/source.hpp"
+#include "stepping/step_size.hpp"
 #include "stepping/stepper.hpp"
 
 namespace lockstep {
@@ -11,15 +12,6 @@ namespace lockstep {
 /// list "Domain" is that of the fluid of this name, or else of the first registered.
 template <int dim>
 ParameterList scene_parameters(const Registries<dim>& registries, const std::string& fluid = "");
-
-/// When and how far to step.
-struct TimeOptions {
-  double start = 0, end = 1;         ///< [s]
-  double fixed_step = 0;             ///< [s]; 0: from the CFL number
-  double cfl = 1, largest_step = 1;  ///< [1], [s]
-  long long most_steps = 0;          ///< 0: no limit
-  double growth = 0;                 ///< a step is at most this times the one before; 0: no limit
-};
 
 struct OutputOptions {
   bool frames = true;

@@ -22,17 +22,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Steps of one length that end at `end`, if they get there: the forces of a last one that is much
-/// shorter would be those of another step's errors.
-double even_step(const TimeOptions& time) {
-  const double length = time.end - time.start;
-  if (time.fixed_step == 0 || (time.most_steps > 0 && time.most_steps * time.fixed_step < length))
-    return time.fixed_step;
-  const double n_steps = std::ceil(length / time.fixed_step * (1 - 1e-9));
-  const double step = length / std::max(n_steps, 1.0);
-  return std::abs(step - time.fixed_step) < 1e-9 * time.fixed_step ? time.fixed_step : step;
-}
-
 }  // namespace
 
 template <int dim>
@@ -71,12 +60,10 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
 template <int dim>
 double Simulation<dim>::next_step() const {
   const TimeOptions& time = scene_options_.time;
-  double dt = time.fixed_step;
-  if (dt == 0) {
-    // A resting fluid still has to resolve moving solids.
-    dt = std::min(time.largest_step, components_.fluid->suggested_step(
-                                         time.cfl, components_.solids->largest_surface_speed()));
-  }
+  // A resting fluid still has to resolve moving solids.
+  const double suggested =
+      components_.fluid->suggested_step(time.cfl, components_.solids->largest_surface_speed());
+  double dt = wanted_step(time, suggested);
   dt = std::min(dt, components_.solids->largest_stable_step());
   // A bit of difference between ranks would let one of them take a step more.
   dt = min_all(comm_, dt);
@@ -84,11 +71,7 @@ double Simulation<dim>::next_step() const {
               "The step of {} s at {} s is lost in the round-off of the time; something moves too "
               "fast, or a body is too stiff for explicit forces.",
               dt, stepper_->time());
-  const double left = time.end - stepper_->time();
-  if (dt >= left * (1 - 1e-9))
-    return left;
-  // Without a fixed step, the last two steps share what is left.
-  return time.fixed_step == 0 && left < 2 * dt ? left / 2 : dt;
+  return step_to_end(time, stepper_->time(), dt);
 }
 
 template <int dim>

@@ -75,9 +75,11 @@ class FakeFluid : public FluidDiscretization<dim>,
   double kinetic_energy() const override;
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
 
- private:
+ protected:
   const FluidGeometry<dim>& freeze(const Surface& surface,
                                    const OpenFractionRule<dim>& rule) override;
+
+ private:
   void make_faces();
   int cell_at(const Index<dim>& index) const;  ///< -1 outside the box
   int face_at(int axis, const Index<dim>& index) const;

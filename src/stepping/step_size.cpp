@@ -1,0 +1,28 @@
+#include "stepping/step_size.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lockstep {
+
+double even_step(const TimeOptions& time) {
+  const double length = time.end - time.start;
+  if (time.fixed_step == 0 || (time.most_steps > 0 && time.most_steps * time.fixed_step < length))
+    return time.fixed_step;
+  const double n_steps = std::ceil(length / time.fixed_step * (1 - 1e-9));
+  const double step = length / std::max(n_steps, 1.0);
+  return std::abs(step - time.fixed_step) < 1e-9 * time.fixed_step ? time.fixed_step : step;
+}
+
+double wanted_step(const TimeOptions& time, double suggested) {
+  return time.fixed_step > 0 ? time.fixed_step : std::min(time.largest_step, suggested);
+}
+
+double step_to_end(const TimeOptions& time, double now, double wanted) {
+  const double left = time.end - now;
+  if (wanted >= left * (1 - 1e-9))
+    return left;
+  return time.fixed_step == 0 && left < 2 * wanted ? left / 2 : wanted;
+}
+
+}  // namespace lockstep

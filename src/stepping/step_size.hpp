@@ -1,0 +1,26 @@
+#pragma once
+
+namespace lockstep {
+
+/// What the list "Time" says.
+struct TimeOptions {
+  double start = 0, end = 1;         ///< [s]
+  double fixed_step = 0;             ///< [s]; 0: from the CFL number
+  double cfl = 1, largest_step = 1;  ///< [1], [s]
+  long long most_steps = 0;          ///< 0: no limit
+};
+
+/// The fixed step, made a little shorter so that steps of one length end at the end, if they get
+/// there: the forces of a last one that is much shorter would be those of another step's errors.
+/// 0 without a fixed step.
+double even_step(const TimeOptions& time);
+
+/// The fixed step; without one that in which nothing passes more than "CFL" cells, as the fluid
+/// suggests, at most the largest one.
+double wanted_step(const TimeOptions& time, double suggested);
+
+/// The step to take at `now`, at most `wanted`, so that the last one ends at the end. Without a
+/// fixed step, the last two share what is left.
+double step_to_end(const TimeOptions& time, double now, double wanted);
+
+}  // namespace lockstep

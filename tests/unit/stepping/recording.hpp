@@ -1,0 +1,141 @@
+#pragma once
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "interfaces/contact.hpp"
+#include "strategies/direct/direct.hpp"
+#include "support/fake_fluid.hpp"
+#include "support/fake_solid.hpp"
+
+namespace lockstep::test {
+
+/// What the step asked of its partners, in order: "who: what", with the time it is over where that
+/// matters.
+using Calls = std::vector<std::string>;
+
+/// FakeFluid that writes down what a step does to it.
+class RecordingFluid : public FakeFluid<2> {
+ public:
+  RecordingFluid(const FakeBox<2>& box, const Communicator& comm, Calls& calls)
+      : FakeFluid<2>(box, comm), calls_(calls) {}
+
+  void begin_prediction() override {
+    calls_.push_back("fluid: u* = u");
+    FakeFluid<2>::begin_prediction();
+  }
+  void begin_advection_velocity(double dt) override {
+    calls_.push_back(fmt::format("fluid: u* to advect over {}", dt));
+    FakeFluid<2>::begin_prediction();
+  }
+  ForceImpulse<2> add_forces(double time, double dt) override {
+    calls_.push_back(fmt::format("fluid: forces over {}", dt));
+    return FakeFluid<2>::add_forces(time, dt);
+  }
+  std::unique_ptr<ViscousSystem<2>> viscous_system() const override {
+    calls_.push_back("fluid: viscosity");
+    return FakeFluid<2>::viscous_system();
+  }
+  void project(const Vector& scaled_pressure) override {
+    calls_.push_back("fluid: project");
+    FakeFluid<2>::project(scaled_pressure);
+  }
+  void advect(double time, double dt, const MovingSurface<2>& surface) override {
+    calls_.push_back(fmt::format("fluid: advect over {}", dt));
+    FakeFluid<2>::advect(time, dt, surface);
+  }
+  void revalidate(const MovingSurface<2>&) override { calls_.push_back("fluid: revalidate"); }
+  void accept() override {
+    calls_.push_back("fluid: u = u*");
+    FakeFluid<2>::accept();
+  }
+  std::function<void()> undo() override {
+    return [this] { calls_.push_back("fluid: undo"); };
+  }
+
+ protected:
+  const FluidGeometry<2>& freeze(const Surface& surface, const OpenFractionRule<2>& rule) override {
+    calls_.push_back("fluid: geometry");
+    return FakeFluid<2>::freeze(surface, rule);
+  }
+
+ private:
+  Calls& calls_;
+};
+
+/// FakeSolid that does the same.
+class RecordingSolid : public FakeSolid<2> {
+ public:
+  RecordingSolid(std::vector<FakeBody<2>> bodies, const Communicator& comm, Calls& calls)
+      : FakeSolid<2>(std::move(bodies), {}, comm), calls_(calls) {}
+
+  void begin_step(double time, double dt) override {
+    calls_.push_back(fmt::format("solids: step from {} over {}", time, dt));
+  }
+  std::vector<double> locked_velocities(double begin, double end) const override {
+    calls_.push_back(fmt::format("solids: held from {} to {}", begin, end));
+    return FakeSolid<2>::locked_velocities(begin, end);
+  }
+  void explicit_momentum(double time, double dt, Vector& momentum) const override {
+    if (dt > 0)  // else it is asked for the ledger
+      calls_.push_back(fmt::format("solids: forces over {}", dt));
+    FakeSolid<2>::explicit_momentum(time, dt, momentum);
+  }
+  void add_midpoint_correction(double dt, Vector&) const override {
+    calls_.push_back(fmt::format("solids: midpoint of {}", dt));
+  }
+  void limit_motion(double dt, Vector&) override {
+    calls_.push_back(fmt::format("solids: limit over {}", dt));
+  }
+  void move(const Vector& velocity, double time, double dt) override {
+    calls_.push_back(fmt::format("solids: move over {}", dt));
+    FakeSolid<2>::move(velocity, time, dt);
+  }
+  void set_velocity(const Vector& velocity) override {
+    calls_.push_back("solids: V");
+    FakeSolid<2>::set_velocity(velocity);
+  }
+  std::function<void()> undo() override {
+    return [this] { calls_.push_back("solids: undo"); };
+  }
+
+ private:
+  Calls& calls_;
+};
+
+/// Contact that only writes down when it was asked.
+class RecordingContact : public ContactModel<2> {
+ public:
+  explicit RecordingContact(Calls& calls) : calls_(calls) {}
+  std::string name() const override { return "recording"; }
+  ContactReport<2> resolve(const SolidSystem<2>&, ContactPhase phase, double dt, Vector&,
+                           const ContactResponse&) override {
+    const char* what = phase == ContactPhase::position ? "positions" : "velocities";
+    calls_.push_back(fmt::format("contact: {} over {}", what, dt));
+    return {};
+  }
+
+ private:
+  Calls& calls_;
+};
+
+/// The direct strategy, which writes down what is solved.
+class RecordingStrategy : public SolverStrategy {
+ public:
+  explicit RecordingStrategy(Calls& calls) : direct_(Direct::valid_parameters()), calls_(calls) {}
+  std::string name() const override { return "recording"; }
+  void prepare(const BlockSystem& system) override { direct_.prepare(system); }
+  SolveReport solve(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
+                    const SolveRequest& request) override {
+    calls_.push_back("solve: " + request.name);
+    return direct_.solve(system, rhs, solution, request);
+  }
+
+ private:
+  Direct direct_;
+  Calls& calls_;
+};
+
+}  // namespace lockstep::test

@@ -1,0 +1,159 @@
+// The step F1 S1 F2 F3 S2 F4, call by call.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "base/interruption.hpp"
+#include "mixedface/mixed_face_coupling.hpp"
+#include "recording.hpp"
+#include "stepping/stepper.hpp"
+#include "support/coupled_case.hpp"
+
+namespace lockstep::test {
+namespace {
+
+using ::testing::ElementsAre;
+
+FakeBox<2> tank(double viscosity = 0) {
+  FakeBox<2> box;
+  box.n_cells = {6, 4};
+  box.gravity = {0, -1};
+  box.viscosity = viscosity;
+  box.open_axis = 1;
+  return box;
+}
+
+FakeBody<2> plate() {
+  FakeBody<2> body;
+  body.closed = false;
+  body.surface = polyline({{2, 1}, {2, 3}}, false);
+  body.center = {2, 2};
+  body.angular_velocity[0] = 0.1;
+  return body;
+}
+
+struct Recorded {
+  explicit Recorded(const FakeBox<2>& box, std::vector<FakeBody<2>> bodies = {plate()},
+                    bool with_contact = true) {
+    const Communicator comm = Tpetra::getDefaultComm();
+    components.fluid = std::make_unique<RecordingFluid>(box, comm, calls);
+    Models<2> models;
+    if (!bodies.empty())
+      models.push_back(std::make_unique<RecordingSolid>(std::move(bodies), comm, calls));
+    components.solids = std::make_unique<SolidSystem<2>>(std::move(models), comm);
+    components.coupling = std::make_unique<MixedFaceCoupling<2>>(MixedFaceOptions());
+    components.strategy = std::make_unique<RecordingStrategy>(calls);
+    if (with_contact)
+      components.contact = std::make_unique<RecordingContact>(calls);
+    stepper = std::make_unique<Stepper<2>>(components, StepperOptions(), 3, timers);
+  }
+  /// The calls of a step of .5 s.
+  Calls step() {
+    calls.clear();
+    stepper->advance(0.5);
+    return calls;
+  }
+
+  Calls calls;
+  PhaseTimers timers;
+  Components<2> components;
+  std::unique_ptr<Stepper<2>> stepper;
+};
+
+long count(const Calls& calls, const std::string& call) {
+  return std::count(calls.begin(), calls.end(), call);
+}
+
+}  // namespace
+
+TEST(StepOrder, IsThatOfSection7) {
+  Recorded recorded(tank());
+  for (int i = 0; i < 2; ++i) {
+    const std::string begin = fmt::format("solids: step from {} over 0.5", 3 + 0.5 * i);
+    EXPECT_THAT(recorded.step(),
+                ElementsAre(begin, "fluid: u* = u", "fluid: forces over 0.25",  // F1
+                            "solids: forces over 0.25", "solids: midpoint of 0.25", "solve: S1",
+                            "solids: limit over 0.5", "contact: positions over 0.5",
+                            "solids: move over 0.5",                                        // S1
+                            "fluid: u* to advect over 0.5", "solve: F2", "fluid: project",  // F2
+                            "fluid: advect over 0.5", "fluid: geometry", "fluid: revalidate",
+                            "fluid: forces over 0.5",  // F3
+                            "solids: forces over 0.5", "contact: velocities over 0.5",
+                            "solve: S2",                                       // S2
+                            "fluid: project", "fluid: u = u*", "solids: V"));  // F4
+  }
+  EXPECT_EQ(recorded.stepper->time(), 4);
+}
+
+TEST(StepOrder, FluidAloneTakesOneSolve) {
+  Recorded recorded(tank(), {});
+  EXPECT_EQ(count(recorded.step(), "solve: F2"), 1);  // u^0 may have a divergence
+  EXPECT_THAT(recorded.step(), ElementsAre("fluid: u* to advect over 0.5", "fluid: advect over 0.5",
+                                           "fluid: revalidate", "fluid: forces over 0.5",
+                                           "solve: S2", "fluid: project", "fluid: u = u*"));
+}
+
+TEST(StepOrder, PrescribedSolidsNeedNoFirstSolve) {
+  FakeBody<2> moved = plate();
+  moved.kind = FakeBody<2>::Kind::prescribed;
+  Recorded recorded(tank(), {moved}, false);
+  const Calls calls = recorded.step();
+  EXPECT_EQ(count(calls, "solve: S1"), 0);
+  EXPECT_EQ(count(calls, "solids: move over 0.5"), 1);
+  EXPECT_EQ(count(calls, "solve: F2"), 1);
+  EXPECT_EQ(count(calls, "solve: S2"), 1);
+}
+
+/// Positions follow a script by its mean velocity, velocities have that of the end.
+TEST(StepOrder, HeldDofsMoveAsTheirPhaseWants) {
+  FakeBody<2> held = plate();
+  held.locked = {0};
+  Recorded recorded(tank(), {held}, false);
+  const Calls calls = recorded.step();
+  const auto place = [&calls](const std::string& call) {
+    return std::find(calls.begin(), calls.end(), call);
+  };
+  EXPECT_LT(place("solids: held from 3 to 3.5"), place("solve: S1"));
+  EXPECT_LT(place("solids: move over 0.5"), place("solids: held from 3.5 to 3.5"));
+  EXPECT_LT(place("solids: held from 3.5 to 3.5"), place("solve: S2"));
+  EXPECT_NE(place("solve: S2"), calls.end());
+}
+
+/// The correction of S1 belongs to positions: also where the first pressure is not known, no
+/// velocity gets it.
+TEST(StepOrder, OnlyPositionsAreCorrectedForTheMidpoint) {
+  Recorded recorded(tank(0.1), {plate()}, false);
+  for (const bool first : {true, false}) {
+    const Calls calls = recorded.step();
+    EXPECT_EQ(count(calls, "fluid: viscosity"), 2);  // F1, F3
+    EXPECT_EQ(count(calls, "solve: first pressure"), first ? 2 : 0);
+    const auto advected = std::find(calls.begin(), calls.end(), "fluid: advect over 0.5");
+    EXPECT_EQ(count({calls.begin(), advected}, "solids: midpoint of 0.25"), first ? 2 : 1);
+    for (auto call = advected; call != calls.end(); ++call)
+      EXPECT_THAT(*call, ::testing::Not(::testing::HasSubstr("midpoint")));
+  }
+}
+
+/// The pressure is found before contact acts, whose impulses count once.
+TEST(StepOrder, ContactActsOnceInEachSolve) {
+  Recorded recorded(tank(0.1));
+  const Calls calls = recorded.step();
+  EXPECT_EQ(count(calls, "contact: positions over 0.5"), 1);
+  EXPECT_EQ(count(calls, "contact: velocities over 0.5"), 1);
+}
+
+TEST(StepOrder, ASignalPutsTheStepBack) {
+  Recorded recorded(tank());
+  note_signal(SIGTERM);
+  EXPECT_THROW(recorded.step(), Interrupted);
+  note_signal(0);
+  ASSERT_GE(recorded.calls.size(), 2u);
+  EXPECT_EQ(recorded.calls[recorded.calls.size() - 2], "solids: undo");
+  EXPECT_EQ(recorded.calls.back(), "fluid: undo");
+  EXPECT_EQ(count(recorded.calls, "fluid: u = u*"), 0);
+  EXPECT_EQ(recorded.stepper->time(), 3);
+}
+
+}  // namespace lockstep::test
