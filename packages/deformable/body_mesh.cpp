@@ -16,9 +16,9 @@ const std::vector<ShapeSizes>& shapes() {
   static const std::vector<ShapeSizes> all{{"ball", {"Radius"}},
                                            {"box", {"Size"}},
                                            {"cylinder", {"Radius", "Length"}},
-                                           {"torus", {"Radius", "Tube Radius"}},
+                                           {"torus", {"Radius", "Tube Radius"}, {}, 3},
                                            {"hollow ball", {"Radius", "Thickness"}},
-                                           {"tube", {"Radius", "Thickness", "Length"}},
+                                           {"tube", {"Radius", "Thickness", "Length"}, {}, 3},
                                            {"file", {"File"}, mesh_repair_parameters()}};
   return all;
 }
@@ -48,12 +48,7 @@ void declare_deformable_geometry(ParameterList& body) {
       declare_list(body, "Geometry",
                    "The volume at rest, in coordinates of the body: shapes are centred at their "
                    "origin.");
-  std::vector<std::string> names;
-  for (const auto& shape : shapes()) {
-    if (dim == 3 || (shape.shape != "torus" && shape.shape != "tube"))
-      names.push_back(shape.shape);
-  }
-  declare_required_choice(list, "Shape", names,
+  declare_required_choice(list, "Shape", shape_names(shapes(), dim),
                           "ball, box, cylinder, torus; hollow ball: a ball with a thick wall (2D: "
                           "a ring); tube: a pipe; file: a mesh of triangles (2D) or "
                           "tetrahedra (3D).");

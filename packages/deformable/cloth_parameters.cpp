@@ -10,7 +10,6 @@
 #include "geometry/generators.hpp"
 #include "geometry/mesh_repair.hpp"
 #include "geometry/surface_check.hpp"
-#include "geometry/surface_parts.hpp"
 #include "motion/list_values.hpp"
 #include "parameters/shape_sizes.hpp"
 
@@ -31,12 +30,10 @@ void declare_cloth_geometry(ParameterList& body) {
   ParameterList& list =
       declare_list(body, "Geometry",
                    "The shell, in coordinates of the body: shapes are centred at their origin.");
-  std::vector<std::string> names, axes{"x", "y", "z"};
+  std::vector<std::string> axes{"x", "y", "z"};
   axes.resize(dim);
-  for (const auto& shape : shapes())
-    names.push_back(shape.shape);
   declare_required_choice(
-      list, "Shape", names,
+      list, "Shape", shape_names(shapes(), dim),
       "sheet: flat. bag: a box without its lid (y is up). ball: a closed sphere "
       "(2D: ring). open ball: a sphere with a round hole at its top (y is up). tube: without "
       "ends, about z (2D: two walls along y). file: what the file holds.");
@@ -83,10 +80,7 @@ SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
     mesh = tube_surface<dim>(list.get<double>("Radius"), list.get<double>("Length"), spacing);
   } else {
     mesh = read_shell_mesh<dim>(list.get<std::string>("File"), names);
-    const MeshRepair repair = read_mesh_repair(list);
-    scale_and_weld(repair, mesh.vertices, mesh.simplices, names);
-    if (repair.orient)
-      orient_surface(mesh);
+    repair_surface(list, mesh, names);
   }
   check_surface(mesh, {name, false, true}, names);
   return mesh;

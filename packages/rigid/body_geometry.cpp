@@ -5,7 +5,6 @@
 #include "geometry/mesh_files.hpp"
 #include "geometry/mesh_repair.hpp"
 #include "geometry/surface_check.hpp"
-#include "geometry/surface_parts.hpp"
 #include "motion/list_values.hpp"
 #include "parameters/shape_sizes.hpp"
 
@@ -18,7 +17,7 @@ const std::vector<ShapeSizes>& shapes() {
                                            {"box", {"Size"}},
                                            {"cylinder", {"Radius", "Length"}},
                                            {"capsule", {"Radius", "Length"}},
-                                           {"torus", {"Radius", "Tube Radius"}},
+                                           {"torus", {"Radius", "Tube Radius"}, {}, 3},
                                            {"open box", {"Size"}},
                                            {"plate", {"Size", "Normal"}},
                                            {"file", {"File"}, mesh_repair_parameters()}};
@@ -45,10 +44,7 @@ SurfaceMesh<dim> make_surface(const ParameterList& list, const std::string& shap
   if (shape == "plate")
     return plate_surface<dim>(size(), list.get<std::string>("Normal")[0] - 'x', spacing);
   SurfaceMesh<dim> mesh = read_surface<dim>(list.get<std::string>("File"), names);
-  const MeshRepair repair = read_mesh_repair(list);
-  scale_and_weld(repair, mesh.vertices, mesh.simplices, names);
-  if (repair.orient)
-    orient_surface(mesh);
+  repair_surface(list, mesh, names);
   return mesh;
 }
 
@@ -59,13 +55,9 @@ void declare_geometry(ParameterList& body) {
   ParameterList& list =
       declare_list(body, "Geometry",
                    "The surface, in coordinates of the body: shapes are centred at their origin.");
-  std::vector<std::string> names, axes{"x", "y", "z"};
+  std::vector<std::string> axes{"x", "y", "z"};
   axes.resize(dim);
-  for (const auto& shape : shapes()) {
-    if (dim == 3 || shape.shape != "torus")
-      names.push_back(shape.shape);
-  }
-  declare_required_choice(list, "Shape", names,
+  declare_required_choice(list, "Shape", shape_names(shapes(), dim),
                           "ball, box, capsule, cylinder, torus: volumes. open box (no lid on top, "
                           "y is up), plate: thin "
                           "shells. file: what the file holds.");

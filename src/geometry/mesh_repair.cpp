@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "geometry/surface_parts.hpp"
 #include "geometry/unused_vertices.hpp"
 
 namespace lockstep {
@@ -107,6 +108,14 @@ void scale_and_weld(const MeshRepair& repair, std::vector<Point<dim>>& vertices,
   drop_unused_vertices(vertices, simplices, names.vertices);
 }
 
+template <int dim>
+void repair_surface(const ParameterList& geometry, SurfaceMesh<dim>& mesh, MeshNames& names) {
+  const MeshRepair repair = read_mesh_repair(geometry);
+  scale_and_weld(repair, mesh.vertices, mesh.simplices, names);
+  if (repair.orient)
+    orient_surface(mesh);
+}
+
 template void scale_and_weld<2, 2>(const MeshRepair&, std::vector<Point<2>>&,
                                    std::vector<std::array<int, 2>>&, MeshNames&);
 template void scale_and_weld<2, 3>(const MeshRepair&, std::vector<Point<2>>&,
@@ -115,5 +124,7 @@ template void scale_and_weld<3, 3>(const MeshRepair&, std::vector<Point<3>>&,
                                    std::vector<std::array<int, 3>>&, MeshNames&);
 template void scale_and_weld<3, 4>(const MeshRepair&, std::vector<Point<3>>&,
                                    std::vector<std::array<int, 4>>&, MeshNames&);
+template void repair_surface(const ParameterList&, SurfaceMesh<2>&, MeshNames&);
+template void repair_surface(const ParameterList&, SurfaceMesh<3>&, MeshNames&);
 
 }  // namespace lockstep

@@ -1,5 +1,6 @@
 #pragma once
 #include "geometry/mesh_names.hpp"
+#include "geometry/surface_mesh.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -22,5 +23,9 @@ const std::vector<std::string>& mesh_repair_parameters();
 template <int dim, std::size_t n_corners>
 void scale_and_weld(const MeshRepair& repair, std::vector<Point<dim>>& vertices,
                     std::vector<std::array<int, n_corners>>& simplices, MeshNames& names);
+
+/// Does to the surface of a file all that a "Geometry" asks for.
+template <int dim>
+void repair_surface(const ParameterList& geometry, SurfaceMesh<dim>& mesh, MeshNames& names);
 
 }  // namespace lockstep

@@ -13,6 +13,15 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }
 }  // namespace
 
+std::vector<std::string> shape_names(const std::vector<ShapeSizes>& shapes, int dimension) {
+  std::vector<std::string> names;
+  for (const ShapeSizes& shape : shapes) {
+    if (dimension >= shape.least_dimension)
+      names.push_back(shape.shape);
+  }
+  return names;
+}
+
 void check_shape_sizes(const ParameterList& geometry, const std::vector<ShapeSizes>& shapes,
                        const std::string& name) {
   const auto& shape = geometry.get<std::string>("Shape");

@@ -11,7 +11,11 @@ struct ShapeSizes {
   std::string shape;
   std::vector<std::string> needed;
   std::vector<std::string> optional = {};
+  int least_dimension = 2;
 };
+
+/// Those that there are in 2D or in 3D.
+std::vector<std::string> shape_names(const std::vector<ShapeSizes>& shapes, int dimension);
 
 /// Throws InputError if `geometry` lacks a size that its "Shape" needs, or has one that only others
 /// take. `name`: of the body, for the sentence.
