@@ -35,6 +35,16 @@ int row_in_tile(int id) {
   return (id & (tile_volume<dim> - 1)) / tile_width<dim>;
 }
 
+/// What the centre of a cell is in, or `outside` if its state does not tell: a surface that leaves
+/// faces open in part has cells that are fluid wherever their centres are.
+template <int dim>
+CellState state_of_center(const MacState<dim>& state, int cell) {
+  for (const auto& places : state.open_centers)
+    if (!places.empty())
+      return CellState::outside;
+  return state.cells[cell];
+}
+
 /// The values of a row, of which there is storage for the whole.
 template <int dim>
 Eigen::Map<RowValues<dim>> row_of(double* field, int first) {
@@ -243,7 +253,7 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
   const Ray<dim> ray = trace(passenger, id, x, -1, false, by_rows);
   Box<dim> points = way(ray);
   if (!ray.complete || !near_surface.clear(points, false)) {
-    if (kind != cell_centers && near_surface.inside(x, frame_.setting.state.cells[id]))
+    if (kind != cell_centers && near_surface.inside(x, state_of_center(frame_.setting.state, id)))
       keep(passenger, id, false);
     else if (by_rows && !passenger.cubic() && near_surface.sees_all(kind, x, ray))
       passenger.forbid_correction(id);
@@ -295,7 +305,7 @@ bool FieldCarrier<dim>::carry_open_part(Passenger<dim>& passenger, int id, const
   const auto& places = frame_.setting.state.open_centers[kind];
   const auto place = places.find(id);
   if (place == places.end() ||
-      !(near_surface.inside(x, frame_.setting.state.cells[id]) || near_surface.swept(x)))
+      !(near_surface.inside(x, state_of_center(frame_.setting.state, id)) || near_surface.swept(x)))
     return false;
   const TiledGrid<dim>& grid = frame_.setting.grid;
   const Point<dim> shift = (place->second - grid.face_center(kind, id)) / grid.spacing();
