@@ -25,6 +25,10 @@ Outcome pfmg(const Problem& problem, double tolerance) {
     const int side = side_towards(problem, row, column);
     values[7 * problem.place(problem.cell_of_row[row]) + side + 1] = value;
   });
+  // A row that A leaves empty is a null vector, and a row of the identity does no harm.
+  for (std::size_t cell = 0; cell < n_cells; ++cell)
+    if (values[7 * cell] == 0)
+      values[7 * cell] = 1;
   const auto b = problem.rhs->getData();
   for (int row = 0; row < problem.n_rows(); ++row)
     rhs[problem.place(problem.cell_of_row[row])] = b[row];
