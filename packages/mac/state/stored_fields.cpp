@@ -9,6 +9,8 @@ namespace {
 template <int dim>
 struct SavedCells {
   explicit SavedCells(const TiledGrid<dim>& grid) {
+    cells.reserve(grid.n_owned_cells());
+    ids.reserve(grid.n_owned_cells());
     for (int cell = 0; cell < grid.n_owned_cells(); ++cell) {
       if (!grid.in_lattice(cell))
         continue;
@@ -28,6 +30,7 @@ void save_fields(const MacDomain<dim>& domain, const std::vector<StoredField>& f
   std::vector<double> values;
   for (const StoredField& field : fields) {
     values.clear();
+    values.reserve(saved.cells.size() * field.components.size());
     for (const int cell : saved.cells)
       for (const CellField* component : field.components)
         values.push_back((*component)[cell]);
