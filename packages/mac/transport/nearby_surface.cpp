@@ -141,14 +141,14 @@ template <int dim>
 bool NearbySurface<dim>::touches(const Box<dim>& box) const {
   if (empty())
     return false;
-  const auto any_touches = [&](double margin) {
-    return any_image(box, [&](const Point<dim>& shift) {
+  const auto any_touches = [&](const Box<dim>& place, double margin) {
+    return any_image(place, [&](const Point<dim>& shift) {
       return snapshot_->touches(
           widened<dim>(Box<dim>(box.min() - shift, box.max() - shift), margin));
     });
   };
   if (!reached_.contains(box))
-    return any_touches(0);
+    return any_touches(box, 0);
   // The rings of cells around the middle one that hold the box, and those that it holds.
   Index<dim> middle;
   int outer = 0, inner = NearbySurface::longest_reach;
@@ -163,7 +163,8 @@ bool NearbySurface<dim>::touches(const Box<dim>& box) const {
   const int distance = distance_(middle);
   if (distance > outer || distance <= inner)
     return distance <= inner;
-  return !bins_.clear_of_boxes(box) && (bins_.box_within(box) || any_touches(2 * tolerance_));
+  return !bins_.clear_of_boxes(box) &&
+         (bins_.box_within(box) || any_touches(reached_, 2 * tolerance_));
 }
 
 template <int dim>
@@ -247,7 +248,8 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       Values inside = Values::Constant(std::numeric_limits<double>::infinity());
       for (const Plane& rim : near.rims)
         inside = inside.min(sign * (from * at_corners(rim) - rim(eye) * to));
-      const auto passes_by = inside < -2 * tolerance_ * length && drop.abs() > 1e-9 * length;
+      const Eigen::Array<bool, 1 << dim, 1> passes_by =
+          inside < -2 * tolerance_ * length && drop.abs() > 1e-9 * length && length > tolerance_;
       for (int k = 0; k < 1 << dim; ++k)
         if (!passes_by[k])
           look_at(i, eye, corner(k), length[k], first[k]);
