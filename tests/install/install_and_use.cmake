@@ -18,6 +18,10 @@ run_step("Configuring the template" ${CMAKE_COMMAND} -S "${copy}" -B "${copy}/bu
          "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}")
 run_step("Building the template" ${CMAKE_COMMAND} --build "${copy}/build")
 
+foreach(ranks 1 2)
+  run_step("The template's conformance on ${ranks} ranks" ${MPIEXEC} -np ${ranks}
+           "${copy}/build/conformance")
+endforeach()
 run_step("The template's driver" "${copy}/build/driver" "${copy}/minres-teko.xml")
 if(NOT output MATCHES "1 ranks")
   message(FATAL_ERROR "The template's driver wrote '${output}'.")

@@ -269,6 +269,9 @@ std::vector<SolidState<dim>> FakeSolid<dim>::states() const {
     state.velocity = bodies_[b].velocity;
     if (bodies_[b].kind == Kind::rigid)
       state.velocity = Eigen::Map<const Point<dim>>(velocity_.data() + first_dof_[b]);
+    const int end = b + 1 < bodies_.size() ? first_dof_[b + 1] : static_cast<int>(velocity_.size());
+    for (int dof = first_dof_[b]; dof < end; ++dof)
+      state.kinetic_energy += masses_[dof] * velocity_[dof] * velocity_[dof] / 2;
     all.push_back(state);
   }
   return all;

@@ -1,15 +1,11 @@
 #pragma once
-#include <Teuchos_DefaultComm.hpp>
 #include <string>
 
 #include "parameters/strict_xml.hpp"
 #include "parameters/validate.hpp"
+#include "support/world.hpp"
 
 namespace lockstep::test {
-
-inline Communicator world() {
-  return Teuchos::DefaultComm<int>::getComm();
-}
 
 /// <Parameter .../> of the type that the value has in a scene file.
 inline std::string number(const std::string& name, const std::string& value) {

@@ -1,13 +1,9 @@
 #pragma once
-#include <Teuchos_DefaultComm.hpp>
 
 #include "grid/tiled_grid.hpp"
+#include "support/world.hpp"
 
 namespace lockstep::test {
-
-inline Communicator world() {
-  return Teuchos::DefaultComm<int>::getComm();
-}
 
 /// 20 x 13 cells: partial tiles on both axes, smaller than four ranks need; x periodic, y with a
 /// layer.

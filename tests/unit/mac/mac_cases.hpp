@@ -1,5 +1,4 @@
 #pragma once
-#include <Teuchos_DefaultMpiComm.hpp>
 #include <Tpetra_Vector.hpp>
 #include <functional>
 #include <memory>
@@ -10,12 +9,9 @@
 #include "mac/domain/parameter_values.hpp"
 #include "mac/mac_fluid.hpp"
 #include "parameters/validate.hpp"
+#include "support/world.hpp"
 
 namespace lockstep::test {
-
-inline Communicator world() {
-  return Teuchos::rcp(new Teuchos::MpiComm<int>(MPI_COMM_WORLD));
-}
 
 inline ParameterArray<double> numbers(std::initializer_list<double> values) {
   return ParameterArray<double>(values.begin(), values.end());

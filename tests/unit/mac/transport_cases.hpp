@@ -2,19 +2,15 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 
-#include <Teuchos_DefaultComm.hpp>
-#include <Teuchos_DefaultMpiComm.hpp>
 #include <cmath>
 #include <functional>
 
 #include "mac/transport/revalidation.hpp"
 #include "mac/transport/transport.hpp"
+#include "support/world.hpp"
 
 namespace lockstep::test {
 
-inline Communicator world() {
-  return Teuchos::DefaultComm<int>::getComm();
-}
 inline Communicator alone() {
   return Teuchos::rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
 }
