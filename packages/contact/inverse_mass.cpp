@@ -73,18 +73,14 @@ std::vector<double> lumped_triplets(const LinearOperator& mass, const RCP<const 
 
 template <int dim>
 std::vector<double> replicated(const SolidSystem<dim>& system, const Vector& stacked) {
-  std::vector<double> mine;
+  std::vector<double> result(system.n_unknowns(), 0);  // zero where others have them
   const auto values = stacked.getData();
   for (int row = 0; row < values.size(); ++row) {
-    mine.push_back(static_cast<double>(system.map()->getGlobalElement(row)));
-    mine.push_back(values[row]);
+    const GlobalIndex id = system.map()->getGlobalElement(row);
+    if (id < system.n_unknowns())
+      result[id] = values[row];
   }
-  const std::vector<double> all = gather_all(system.comm(), mine);
-  std::vector<double> result(system.n_unknowns());
-  for (std::size_t k = 0; k + 1 < all.size(); k += 2) {
-    if (all[k] < static_cast<double>(result.size()))
-      result[static_cast<std::size_t>(all[k])] = all[k + 1];
-  }
+  sum_all(system.comm(), result.data(), static_cast<int>(result.size()));
   return result;
 }
 

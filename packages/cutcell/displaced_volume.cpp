@@ -61,59 +61,7 @@ void sum_over_ranks(std::vector<DisplacedOfSolid<dim>>& all, const Communicator&
     }
 }
 
-/// The surface point in the middle of a simplex.
-template <int dim>
-SurfacePoint<dim> middle(const SurfaceSnapshot<dim>& surface, int simplex) {
-  SurfacePoint<dim> point;
-  point.simplex = simplex;
-  point.barycentric.setConstant(1. / dim);
-  for (const Point<dim>& corner : surface.corners(simplex))
-    point.position += corner / dim;
-  return point;
-}
-
-/// Adds scale times the row of a point, taken at x.
-template <int dim>
-void add_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point, const Point<dim>& x,
-             double scale, AxisForce& force) {
-  VelocityRow<dim> row;
-  solids.velocity_row(point, x, row);
-  for (std::size_t k = 0; k < row.dofs.size(); ++k) {
-    force.dofs.push_back(row.dofs[k]);
-    force.values.push_back(scale * row.coefficients[k][force.axis]);
-  }
-}
-
 }  // namespace
-
-template <int dim>
-AxisForce force_of(const DisplacedExcess<dim>& excess, const SolidSystem<dim>& solids,
-                   const SurfaceSnapshot<dim>& surface) {
-  const SolidDescription& solid = surface.solids()[excess.solid];
-  const Point<dim>& center = excess.center;
-  AxisForce force;
-  force.axis = excess.axis;
-  if (solid.rigid) {
-    const SurfacePoint<dim> point = middle<dim>(surface, solid.simplex_begin);
-    const double length = surface.bounds(solid.simplex_begin).diagonal().norm();
-    const double strength = excess.moment.norm() / length;
-    add_row<dim>(solids, point, center, excess.mass, force);
-    if (strength > 0) {  // a couple: rows of a rigid body are linear in x
-      add_row<dim>(solids, point, center + excess.moment / strength, strength, force);
-      add_row<dim>(solids, point, center, -strength, force);
-    }
-    return force;
-  }
-  double total = 0;
-  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s)
-    total += area_vector<dim>(surface.corners(s)).norm();
-  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
-    const SurfacePoint<dim> point = middle<dim>(surface, s);
-    const double share = area_vector<dim>(surface.corners(s)).norm() / total;
-    add_row<dim>(solids, point, point.position, excess.mass * share, force);
-  }
-  return force;
-}
 
 template <int dim>
 std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
@@ -162,14 +110,10 @@ template std::vector<DisplacedExcess<2>> displaced_excess<2>(const std::vector<C
                                                              const std::vector<double>&,
                                                              const SurfaceSnapshot<2>&, double,
                                                              const Box<2>&, const Communicator&);
-template AxisForce force_of<2>(const DisplacedExcess<2>&, const SolidSystem<2>&,
-                               const SurfaceSnapshot<2>&);
 template std::vector<DisplacedExcess<3>> displaced_excess<3>(const std::vector<ControlVolume<3>>&,
                                                              const std::vector<FaceShares<3>>&,
                                                              const std::vector<double>&,
                                                              const SurfaceSnapshot<3>&, double,
                                                              const Box<3>&, const Communicator&);
-template AxisForce force_of<3>(const DisplacedExcess<3>&, const SolidSystem<3>&,
-                               const SurfaceSnapshot<3>&);
 
 }  // namespace lockstep

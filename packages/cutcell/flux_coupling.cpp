@@ -5,27 +5,13 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "faces/added_mass.hpp"
+#include "faces/link_end.hpp"
+#include "faces/solid_fluxes.hpp"
 #include "interfaces/fluid_sides.hpp"
 #include "linear/overlap.hpp"
-#include "linear/triplet_matrix.hpp"
-#include "mixedface/lumping.hpp"
-#include "mixedface/solid_fluxes.hpp"
 
 namespace lockstep {
-namespace {
-
-/// result += weights times the dofs they touch.
-void add_rows(const CouplingWeights& weights, const Import& import, const Vector& dofs,
-              std::vector<double>& result) {
-  Vector overlap(import.getTargetMap());
-  overlap.doImport(dofs, import, Tpetra::INSERT);
-  const auto values = overlap.getData();
-  for (int f = 0; f < weights.n_rows(); ++f)
-    for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k)
-      result[f] += weights.values[k] * values[weights.columns[k]];
-}
-
-}  // namespace
 
 template <int dim>
 double FluxCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool,
@@ -43,25 +29,14 @@ template <int dim>
 void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
                                  const SolidSystem<dim>& solids,
                                  const SurfaceSnapshot<dim>& surface) {
-  surface_ = &surface;
-  volumes_ = fluid.coupled_volumes();
-  const std::size_t n = volumes_.size();
+  this->take_volumes(fluid, surface);
   shares_.clear();
-  masses_.assign(n, 0);
-  std::vector<GlobalIndex> unknowns;
-  for (std::size_t f = 0; f < n; ++f) {
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
     shares_.push_back(face_shares<dim>(volume, surface, options_.weights));
     masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
-    for (const auto& side : volume.sides)
-      if (side.unknown != no_index)
-        unknowns.push_back(side.unknown);
   }
-  pressure_import_ = import_of(std::move(unknowns), fluid.pressure_map());
   find_prescribed_velocity(solids);
-
-  coupling_transposed_ = Teuchos::null;
-  added_mass_ = Teuchos::null;
   weigh_excess(fluid, solids);
   if (solids.has_unknowns())
     assemble_blocks(solids);
@@ -74,10 +49,7 @@ void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
   held_excess_.clear();
   if (!options_.correct_buoyancy || surface_->empty() || fluid.gravity().isZero(0))
     return;
-  double density = volumes_.empty() ? 0 : volumes_.front().density;
-  density = max_all(solids.comm(), density);
-  if (density == 0)
-    density = fluid.density(surface_->bounds_of_solid(0).center());
+  const double density = this->density_around(fluid, solids.comm());
   for (const auto& excess : displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density,
                                                   bounds_of(fluid), solids.comm())) {
     if (surface_->solids()[excess.solid].prescribed)
@@ -100,16 +72,7 @@ void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
         row.emplace_back(dofs[k], share.weight * values[k]);
     }
   });
-  solid_import_ = import_of(weights_.dofs, solids.map());
-  std::vector<Triplet> coupling;
-  for (std::size_t f = 0; f < volumes_.size(); ++f)
-    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k)
-      for (int side = 0; side < 2; ++side)
-        if (volumes_[f].sides[side].unknown != no_index)
-          coupling.push_back({weights_.dofs[weights_.columns[k]], volumes_[f].sides[side].unknown,
-                              push(f, side) * weights_.values[k]});
-  coupling_transposed_ =
-      assemble_triplets(std::move(coupling), solids.map(), pressure_import_->getSourceMap());
+  this->assemble_coupling(solids);
 
   std::vector<std::vector<SurfaceShare<dim>>> thin;
   for (const FaceShares<dim>& shares : shares_)
@@ -126,11 +89,7 @@ void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
 template <int dim>
 std::vector<Momentum<dim>> FluxCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity,
                                                                   double dt, Vector& rhs) const {
-  const RCP<const Map> map = rhs.getMap();
-  for (const AxisForce& force : excess_)
-    for (std::size_t k = 0; k < force.dofs.size(); ++k)
-      if (map->isNodeGlobalElement(force.dofs[k]))
-        rhs.sumIntoGlobalValue(force.dofs[k], gravity[force.axis] * dt * force.values[k]);
+  add_forces<dim>(excess_, gravity, dt, rhs);
   std::vector<Momentum<dim>> on_prescribed(surface_->solids().size());
   for (const DisplacedExcess<dim>& excess : held_excess_) {
     const Point<dim> impulse = Point<dim>::Unit(excess.axis) * (gravity[excess.axis] * dt);
@@ -158,23 +117,6 @@ void FluxCoupling<dim>::find_prescribed_velocity(const SolidSystem<dim>& solids)
 }
 
 template <int dim>
-void FluxCoupling<dim>::add_divergence(const std::vector<double>& coupled_velocity,
-                                       Vector& rhs) const {
-  Vector overlap(pressure_import_->getTargetMap());
-  for (std::size_t f = 0; f < volumes_.size(); ++f)
-    for (int side = 0; side < 2; ++side)
-      if (volumes_[f].sides[side].unknown != no_index)
-        overlap.sumIntoGlobalValue(volumes_[f].sides[side].unknown,
-                                   push(f, side) * coupled_velocity[f]);
-  add_overlap(overlap, *pressure_import_, rhs);
-}
-
-template <int dim>
-void FluxCoupling<dim>::add_prescribed_divergence(Vector& rhs) const {
-  add_divergence(prescribed_velocity_, rhs);
-}
-
-template <int dim>
 std::vector<PrescribedFlux> FluxCoupling<dim>::solid_fluxes(const SolidSystem<dim>& solids) const {
   FluxesOfSolids fluxes(solids.solids());
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
@@ -182,7 +124,8 @@ std::vector<PrescribedFlux> FluxCoupling<dim>::solid_fluxes(const SolidSystem<di
       if (!solids.solids()[share.solid].prescribed)
         continue;
       const Point<dim> v = solids.prescribed_velocity(share.point, share.center);
-      fluxes.add(share.solid, volumes_[f], share.weight * push(f, 1) * v[volumes_[f].direction]);
+      fluxes.add(share.solid, volumes_[f],
+                 share.weight * this->push(f, 1) * v[volumes_[f].direction]);
     }
   }
   return fluxes.take();
@@ -193,15 +136,10 @@ void FluxCoupling<dim>::add_lumped_momentum(const std::vector<double>& coupled_v
                                             Vector& rhs) const {
   if (added_mass_.is_null())
     return;
-  Vector overlap(thin_solid_import_->getTargetMap());
-  {
-    const auto values = overlap.getDataNonConst();
-    for (int f = 0; f < thin_weights_.n_rows(); ++f)
-      for (int k = thin_weights_.row_begin[f]; k < thin_weights_.row_begin[f + 1]; ++k)
-        values[thin_weights_.columns[k]] +=
-            thin_weights_.values[k] * masses_[f] * coupled_velocity[f];
-  }
-  add_overlap(overlap, *thin_solid_import_, rhs);
+  std::vector<double> momentum(volumes_.size());
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    momentum[f] = masses_[f] * coupled_velocity[f];
+  add_transposed(thin_weights_, *thin_solid_import_, momentum, rhs);
 }
 
 /// Fluid lumped on thin parts moves with them alone, so that its momentum is what the solve
@@ -210,8 +148,8 @@ template <int dim>
 std::vector<double> FluxCoupling<dim>::velocity(const Vector& solid_velocity) const {
   std::vector<double> result = prescribed_velocity_, of_thin = prescribed_thin_velocity_;
   if (!coupling_transposed_.is_null()) {
-    add_rows(weights_, *solid_import_, solid_velocity, result);
-    add_rows(thin_weights_, *thin_solid_import_, solid_velocity, of_thin);
+    add_product(weights_, *solid_import_, solid_velocity, result);
+    add_product(thin_weights_, *thin_solid_import_, solid_velocity, of_thin);
   }
   for (std::size_t f = 0; f < volumes_.size(); ++f)
     if (!shares_[f].of_thin.empty())
@@ -230,26 +168,13 @@ std::vector<double> FluxCoupling<dim>::effective_velocity(const SolidSystem<dim>
 }
 
 template <int dim>
-std::vector<double> FluxCoupling<dim>::pushes(const Vector& scaled_pressure) const {
-  Vector beside(pressure_import_->getTargetMap());
-  beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
-  const auto pressure = beside.getData();
-  std::vector<double> result(volumes_.size(), 0);
-  for (std::size_t f = 0; f < volumes_.size(); ++f)
-    for (int side = 0; side < 2; ++side)
-      if (const GlobalIndex unknown = volumes_[f].sides[side].unknown; unknown != no_index)
-        result[f] += push(f, side) * pressure[beside.getMap()->getLocalElement(unknown)];
-  return result;
-}
-
-template <int dim>
 std::vector<Momentum<dim>> FluxCoupling<dim>::prescribed_impulses(
     const std::vector<double>& velocity_before, const std::vector<double>&,
     const Vector& scaled_pressure) const {
   std::vector<Momentum<dim>> impulses(surface_->solids().size());
   if (!any_prescribed(surface_->solids()))
     return impulses;
-  const std::vector<double> of_fluid = pushes(scaled_pressure);
+  const std::vector<double> of_fluid = this->pushes(scaled_pressure);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     for (const FluxShare<dim>& share : shares_[f].all)
       if (surface_->solids()[share.solid].prescribed)
@@ -290,12 +215,7 @@ AngularVector<dim> FluxCoupling<dim>::lever_impulse(const SolidSystem<dim>& soli
   if (coupling_transposed_.is_null() ||
       std::none_of(solids.solids().begin(), solids.solids().end(), is_soft))
     return AngularVector<dim>::Zero();
-  Vector taken(solids.map());
-  add_lumped_momentum(velocity_before, taken);
-  coupling_transposed_->apply(*solution.pressure, taken, Teuchos::NO_TRANS, -1, 1);
-  if (!added_mass_.is_null())
-    added_mass_->apply(*solution.solid, taken, Teuchos::NO_TRANS, -1, 1);
-  const std::vector<double> of_fluid = pushes(*solution.pressure);
+  const std::vector<double> of_fluid = this->pushes(*solution.pressure);
   Momentum<dim> given;
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const int axis = volumes_[f].direction;
@@ -311,7 +231,8 @@ AngularVector<dim> FluxCoupling<dim>::lever_impulse(const SolidSystem<dim>& soli
               masses_[f] * (share * velocity_before[f] -
                             (velocity_after[f] - prescribed_thin_velocity_[f])));
   }
-  return solids.momentum(taken).angular - sum_over_ranks<dim>(given, solids.comm()).angular;
+  return this->taken_by_solids(solids, velocity_before, solution).angular -
+         sum_over_ranks<dim>(given, solids.comm()).angular;
 }
 
 template <int dim>
@@ -320,31 +241,17 @@ void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, in
   VelocityRow<dim> scratch;
   std::vector<GlobalIndex> dofs;
   std::vector<double> values;
-  Point<dim> pulled = Point<dim>::Zero();  // nodes are pulled where the surface is
-  double dynamic_share = 0, largest_share = 0;
+  LinkEnd<dim> end(solids, direction, row);
   for (const FluxShare<dim>& share : shares) {
-    const SolidDescription& solid = solids.solids()[share.solid];
-    if (share.weight > largest_share) {
-      largest_share = share.weight;
-      row.solid = share.solid;
-    }
-    if (solid.prescribed) {
-      row.prescribed +=
-          share.weight * solids.prescribed_velocity(share.point, share.center)[direction];
-      row.prescribed_share += share.weight;
-      row.prescribed_solid = share.solid;
+    const bool rigid = solids.solids()[share.solid].rigid;
+    if (!end.add(share.weight, share.point, share.solid, share.center,
+                 rigid ? share.center : share.point.position))
       continue;
-    }
-    dynamic_share += share.weight;
-    pulled += share.weight * (solid.rigid ? share.center : share.point.position);
     directed_row<dim>(solids, share.point, share.center, direction, scratch, dofs, values);
-    for (std::size_t k = 0; k < dofs.size(); ++k) {
-      row.dofs.push_back(dofs[k]);
-      row.weights.push_back(share.weight * values[k]);
-    }
+    for (std::size_t k = 0; k < dofs.size(); ++k)
+      end.add_entry(dofs[k], share.weight * values[k]);
   }
-  if (dynamic_share > 0)
-    row.position = pulled / dynamic_share;
+  end.finish();
 }
 
 template <int dim>

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "cutcell/closed_parts.hpp"
+#include "faces/surface_shares.hpp"
 #include "interfaces/fluid.hpp"
-#include "mixedface/weights.hpp"
 
 namespace lockstep {
 

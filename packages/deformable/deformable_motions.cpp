@@ -5,8 +5,8 @@
 namespace lockstep {
 
 template <int dim>
-NearNullSpace DeformableSolids<dim>::near_null_space() const {
-  NearNullSpace space;
+RigidMotions DeformableSolids<dim>::near_null_space() const {
+  RigidMotions space;
   space.n_bodies = static_cast<int>(bodies_.size());
   const auto motions = rcp(new MultiVector(space_.dof_map(), dim + n_rotations<dim>));
   for (int j = 0; j < dim + n_rotations<dim>; ++j) {
@@ -26,7 +26,7 @@ NearNullSpace DeformableSolids<dim>::near_null_space() const {
   return space;
 }
 
-template NearNullSpace DeformableSolids<2>::near_null_space() const;
-template NearNullSpace DeformableSolids<3>::near_null_space() const;
+template RigidMotions DeformableSolids<2>::near_null_space() const;
+template RigidMotions DeformableSolids<3>::near_null_space() const;
 
 }  // namespace lockstep

@@ -49,7 +49,7 @@ class DeformableSolids : public SolidModel<dim>,
   /// A CrsMatrix, or null if all bodies are explicit. Of rigid motions it is zero, but for the
   /// torque of fully implicit elasticity, which turns the present forces with the body.
   RCP<const LinearOperator> implicit_force(double dt) const override;
-  NearNullSpace near_null_space() const override;
+  RigidMotions near_null_space() const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
   void add_midpoint_correction(double dt, Vector& momentum) const override;
   Momentum<dim> external_impulse(double time, double dt) const override;

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "geometry/solid_volume.hpp"
 
@@ -100,47 +99,88 @@ std::vector<SolidBalance<dim>> accumulate(const std::vector<ControlVolume<dim>>&
   return balances;
 }
 
-/// True if `factor` keeps the masses of all faces of this solid and axis positive, on all ranks.
+/// The correction of the masses of one solid along one axis.
 template <int dim>
-bool stays_positive(const std::vector<ControlVolume<dim>>& volumes,
-                    const std::vector<std::vector<SurfaceShare<dim>>>& shares, int solid, int axis,
-                    const Point<dim>& center, const Eigen::Matrix<double, dim, 1>& factor,
-                    const std::vector<double>& masses, const Communicator& comm) {
-  double smallest = 1;
+struct MassFactor {
+  int solid, axis;
+  Point<dim> center;
+  Eigen::Matrix<double, dim, 1> factor;
+  bool solvable;
+  Eigen::Matrix<double, dim, 1> excess;  ///< lumped minus wanted mass and its moments
+
+  /// Of a face's mass, less one.
+  double at(const Point<dim>& x) const { return factor.dot(moments_of<dim>(x - center, axis)); }
+};
+
+/// By solid and axis, those that keep the masses of all their faces positive, on all ranks.
+template <int dim>
+std::vector<double> smallest_factors(const std::vector<ControlVolume<dim>>& volumes,
+                                     const std::vector<std::vector<SurfaceShare<dim>>>& shares,
+                                     const std::vector<MassFactor<dim>>& corrections, int n_solids,
+                                     const std::vector<double>& masses, const Communicator& comm) {
+  std::vector<double> smallest(n_solids * dim, 1);
+  std::vector<const MassFactor<dim>*> correction(n_solids * dim, nullptr);
+  for (const MassFactor<dim>& one : corrections)
+    correction[one.solid * dim + one.axis] = &one;
   for (std::size_t f = 0; f < volumes.size(); ++f) {
-    if (volumes[f].direction != axis || masses[f] <= 0)
+    if (masses[f] <= 0)
       continue;
     for (const SurfaceShare<dim>& share : shares[f]) {
-      if (share.solid != solid)
-        continue;
-      smallest =
-          std::min(smallest, 1 + factor.dot(moments_of<dim>(volumes[f].center - center, axis)));
+      const int place = share.solid * dim + volumes[f].direction;
+      if (correction[place])
+        smallest[place] = std::min(smallest[place], 1 + correction[place]->at(volumes[f].center));
     }
   }
-  return min_all(comm, smallest) > 0;
+  MPI_Allreduce(MPI_IN_PLACE, smallest.data(), static_cast<int>(smallest.size()), MPI_DOUBLE,
+                MPI_MIN, raw_communicator(comm));
+  return smallest;
 }
 
 template <int dim>
 void scale_masses(const std::vector<ControlVolume<dim>>& volumes,
-                  const std::vector<std::vector<SurfaceShare<dim>>>& shares, int solid, int axis,
-                  const Point<dim>& center, const Eigen::Matrix<double, dim, 1>& factor,
-                  const std::vector<double>& original, std::vector<double>& masses) {
+                  const std::vector<std::vector<SurfaceShare<dim>>>& shares,
+                  const MassFactor<dim>& correction, const std::vector<double>& original,
+                  std::vector<double>& masses) {
   for (std::size_t f = 0; f < volumes.size(); ++f) {
-    if (volumes[f].direction != axis)
+    if (volumes[f].direction != correction.axis)
       continue;
     for (const SurfaceShare<dim>& share : shares[f]) {
-      if (share.solid != solid)
-        continue;
-      masses[f] += share.weight * original[f] *
-                   factor.dot(moments_of<dim>(volumes[f].center - center, axis));
+      if (share.solid == correction.solid)
+        masses[f] += share.weight * original[f] * correction.at(volumes[f].center);
     }
   }
+}
+
+/// What would balance each closed solid, along every axis on which its columns close.
+template <int dim>
+std::vector<MassFactor<dim>> corrections_of(const std::vector<SolidDescription>& solids,
+                                            const std::vector<SolidBalance<dim>>& balances,
+                                            const std::vector<Point<dim>>& centers,
+                                            const std::vector<double>& solid_volumes,
+                                            double density) {
+  std::vector<MassFactor<dim>> corrections;
+  for (int s = 0; s < static_cast<int>(solids.size()); ++s) {
+    for (int a = 0; a < dim && solids[s].closed && !solids[s].prescribed; ++a) {
+      const AxisBalance<dim>& balance = balances[s][a];
+      // A column that ends at a wall has no lift of its own to balance.
+      if (std::abs(balance.open_area) > 1e-9 * balance.area)
+        continue;
+      MassFactor<dim> one{s, a, centers[s], {}, false, {}};
+      one.excess = balance.normal.col(0) - density * balance.displaced;
+      one.excess[0] += density * solid_volumes[s];
+      one.factor = balance.normal.completeOrthogonalDecomposition().solve(-one.excess);
+      const double unsolved = (balance.normal * one.factor + one.excess).norm();
+      one.solvable = unsolved <= 1e-9 * (one.excess.norm() + 1e-300);
+      corrections.push_back(one);
+    }
+  }
+  return corrections;
 }
 
 }  // namespace
 
 template <int dim>
-std::vector<UnseenMass<dim>> balance_masses(
+std::vector<DisplacedExcess<dim>> balance_masses(
     const std::vector<ControlVolume<dim>>& volumes,
     const std::vector<std::vector<SurfaceShare<dim>>>& shares, const SurfaceSnapshot<dim>& surface,
     double density, const Box<dim>& domain, const Communicator& comm, std::vector<double>& masses) {
@@ -156,173 +196,32 @@ std::vector<UnseenMass<dim>> balance_masses(
   }
   const auto balances = accumulate<dim>(volumes, shares, centers, masses, comm);
   const std::vector<double> original = masses;
-  std::vector<UnseenMass<dim>> unseen;
-  for (std::size_t s = 0; s < solids.size(); ++s) {
-    if (!solids[s].closed || solids[s].prescribed)
+  const auto corrections = corrections_of<dim>(solids, balances, centers, solid_volumes, density);
+  const std::vector<double> smallest = smallest_factors<dim>(
+      volumes, shares, corrections, static_cast<int>(solids.size()), original, comm);
+  std::vector<DisplacedExcess<dim>> unseen;
+  for (const MassFactor<dim>& one : corrections) {
+    if (one.solvable && smallest[one.solid * dim + one.axis] > 0) {
+      scale_masses<dim>(volumes, shares, one, original, masses);
       continue;
-    UnseenMass<dim> left;
-    left.solid = static_cast<int>(s);
-    left.center = centers[s];
-    bool any_left = false;
-    for (int a = 0; a < dim; ++a) {
-      const AxisBalance<dim>& balance = balances[s][a];
-      // A column that ends at a wall has no lift of its own to balance.
-      if (std::abs(balance.open_area) > 1e-9 * balance.area)
-        continue;
-      using Values = Eigen::Matrix<double, dim, 1>;
-      Values excess = balance.normal.col(0) - density * balance.displaced;  // lumped minus wanted
-      excess[0] += density * solid_volumes[s];
-      const Values factor = balance.normal.completeOrthogonalDecomposition().solve(-excess);
-      const double unsolved = (balance.normal * factor + excess).norm();
-      const bool solvable = unsolved <= 1e-9 * (excess.norm() + 1e-300) &&
-                            stays_positive<dim>(volumes, shares, static_cast<int>(s), a, centers[s],
-                                                factor, original, comm);
-      if (solvable) {
-        scale_masses<dim>(volumes, shares, static_cast<int>(s), a, centers[s], factor, original,
-                          masses);
-      } else {
-        any_left = true;
-        left.mass[a] = excess[0];
-        for (int k = 1; k < dim; ++k)
-          left.moment(a, (a + k) % dim) = excess[k];
-      }
     }
-    if (any_left)
+    DisplacedExcess<dim> left{one.solid, one.axis, one.center, -one.excess[0], Point<dim>::Zero()};
+    for (int k = 1; k < dim; ++k)
+      left.moment[(one.axis + k) % dim] = -one.excess[k];
+    if (left.mass != 0 || !left.moment.isZero(0))
       unseen.push_back(left);
   }
   return unseen;
-}
-
-namespace {
-
-/// The rows of each column: faces and values.
-struct Columns {
-  std::vector<int> begin, faces;
-  std::vector<double> values;
-};
-Columns columns_of(const CouplingWeights& weights) {
-  Columns columns;
-  columns.begin.assign(weights.dofs.size() + 1, 0);
-  for (const int column : weights.columns)
-    ++columns.begin[column + 1];
-  std::partial_sum(columns.begin.begin(), columns.begin.end(), columns.begin.begin());
-  std::vector<int> next(columns.begin.begin(), columns.begin.end() - 1);
-  columns.faces.resize(weights.columns.size());
-  columns.values.resize(weights.columns.size());
-  for (int f = 0; f < weights.n_rows(); ++f) {
-    for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k) {
-      const int place = next[weights.columns[k]]++;
-      columns.faces[place] = f;
-      columns.values[place] = weights.values[k];
-    }
-  }
-  return columns;
-}
-
-}  // namespace
-
-// Row by row, each summed in place: the products of all faces one by one would need a hundred times
-// the memory of what they add up to.
-std::vector<Triplet> consistent_mass_triplets(const CouplingWeights& weights,
-                                              const std::vector<double>& masses) {
-  const Columns columns = columns_of(weights);
-  const int n = static_cast<int>(weights.dofs.size());
-  std::vector<Triplet> triplets;
-  std::vector<double> sums(n, 0);
-  std::vector<int> touched;
-  std::vector<char> is_touched(n, 0);
-  for (int i = 0; i < n; ++i) {
-    touched.clear();
-    for (int c = columns.begin[i]; c < columns.begin[i + 1]; ++c) {
-      const int f = columns.faces[c];
-      const double factor = masses[f] * columns.values[c];
-      for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k) {
-        const int j = weights.columns[k];
-        if (!is_touched[j])
-          touched.push_back(j);
-        is_touched[j] = 1;
-        sums[j] += factor * weights.values[k];
-      }
-    }
-    std::sort(touched.begin(), touched.end());
-    for (const int j : touched) {
-      triplets.push_back({weights.dofs[i], weights.dofs[j], sums[j]});
-      sums[j] = 0;
-      is_touched[j] = 0;
-    }
-  }
-  return triplets;
-}
-
-namespace {
-
-/// The dofs of these shares that are combinations of others, ascending. Collective.
-template <int dim>
-std::vector<GlobalIndex> carried_dofs(const std::vector<ControlVolume<dim>>& volumes,
-                                      const std::vector<std::vector<SurfaceShare<dim>>>& shares,
-                                      const SolidSystem<dim>& solids) {
-  if (!solids.reduction().has_combinations())
-    return {};
-  const CouplingWeights weights = coupling_weights<dim>(volumes, shares, solids, false);
-  return solids.reduction().combinations_among(weights.dofs);
-}
-
-}  // namespace
-
-template <int dim>
-std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& volumes,
-                                         const std::vector<std::vector<SurfaceShare<dim>>>& shares,
-                                         const SolidSystem<dim>& solids,
-                                         const std::vector<double>& masses, Lumping lumping) {
-  if (lumping == Lumping::consistent)
-    return consistent_mass_triplets(coupling_weights<dim>(volumes, shares, solids), masses);
-  std::vector<Triplet> triplets;
-  if (lumping == Lumping::paper_diagonal)
-    triplets = paper_diagonal_triplets<dim>(volumes, shares, solids, masses);
-  VelocityRow<dim> scratch;
-  std::vector<GlobalIndex> dofs;
-  std::vector<double> values;
-  const std::vector<GlobalIndex> carried = carried_dofs<dim>(volumes, shares, solids);
-  const auto is_carried = [&carried](GlobalIndex dof) {
-    return std::binary_search(carried.begin(), carried.end(), dof);
-  };
-  for (std::size_t f = 0; f < volumes.size(); ++f) {
-    for (const SurfaceShare<dim>& share : shares[f]) {
-      const bool is_rigid = solids.solids()[share.solid].rigid;
-      if (is_rigid && lumping == Lumping::paper_diagonal)
-        continue;  // done body by body
-      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch, dofs,
-                        values);
-      // A rigid motion, or that of an element with nodes that a rigid body carries.
-      const bool is_rigid_motion =
-          is_rigid || (!carried.empty() && std::any_of(dofs.begin(), dofs.end(), is_carried));
-      const double mass = masses[f] * share.weight;
-      for (std::size_t i = 0; i < dofs.size(); ++i) {
-        if (!is_rigid_motion)
-          triplets.push_back({dofs[i], dofs[i], mass * values[i]});
-        for (std::size_t j = 0; is_rigid_motion && j < dofs.size(); ++j)
-          triplets.push_back({dofs[i], dofs[j], mass * values[i] * values[j]});
-      }
-    }
-  }
-  return triplets;
 }
 
 template std::vector<double> fluid_masses<2>(const std::vector<ControlVolume<2>>&,
                                              const SurfaceSnapshot<2>&, bool);
 template std::vector<double> fluid_masses<3>(const std::vector<ControlVolume<3>>&,
                                              const SurfaceSnapshot<3>&, bool);
-template std::vector<UnseenMass<2>> balance_masses<2>(
+template std::vector<DisplacedExcess<2>> balance_masses<2>(
     const std::vector<ControlVolume<2>>&, const std::vector<std::vector<SurfaceShare<2>>>&,
     const SurfaceSnapshot<2>&, double, const Box<2>&, const Communicator&, std::vector<double>&);
-template std::vector<UnseenMass<3>> balance_masses<3>(
+template std::vector<DisplacedExcess<3>> balance_masses<3>(
     const std::vector<ControlVolume<3>>&, const std::vector<std::vector<SurfaceShare<3>>>&,
     const SurfaceSnapshot<3>&, double, const Box<3>&, const Communicator&, std::vector<double>&);
-template std::vector<Triplet> added_mass_triplets<2>(
-    const std::vector<ControlVolume<2>>&, const std::vector<std::vector<SurfaceShare<2>>>&,
-    const SolidSystem<2>&, const std::vector<double>&, Lumping);
-template std::vector<Triplet> added_mass_triplets<3>(
-    const std::vector<ControlVolume<3>>&, const std::vector<std::vector<SurfaceShare<3>>>&,
-    const SolidSystem<3>&, const std::vector<double>&, Lumping);
-
 }  // namespace lockstep

@@ -24,8 +24,8 @@ RCP<const Vector> flow_from_even_pressure(const BlockSystem& system,
   coupling.apply(*pressure, force);
   {
     const auto values = force.getDataNonConst();
-    for (std::size_t row = 0; row < system.near_null_space.body_of_row.size(); ++row) {
-      if (system.near_null_space.body_of_row[row] < 0)
+    for (std::size_t row = 0; row < system.soft_nodes.body_of_row.size(); ++row) {
+      if (system.soft_nodes.body_of_row[row] < 0)
         values[row] = 0;
     }
   }
@@ -43,7 +43,7 @@ std::optional<std::vector<float>> reaction_of_solids(const BlockSystem& system,
   const RCP<const Vector> flow = flow_from_even_pressure(system, solid_inverse);
   if (flow.is_null())
     return {};
-  const FaceCoefficients& a = *stencil_of(system.pressure_block);
+  const FaceCoefficients& a = *stencil_of(system.pressure.op);
   std::vector<bool> is_empty(flow->getLocalLength(), false);
   for (const int row : empty_rows)
     is_empty[row] = true;
@@ -69,14 +69,14 @@ std::optional<std::vector<float>> reaction_of_solids(const BlockSystem& system,
 std::optional<FaceCoefficients> schur_stencil(const BlockSystem& system,
                                               const LinearOperator& solid_inverse,
                                               const std::vector<int>& empty_rows) {
-  if (!system.has_solid() || system.near_null_space.empty())
+  if (!system.has_solid() || system.soft_nodes.empty())
     return {};
   std::optional<FaceCoefficients> result = conducting_through_sheets(system, empty_rows);
   auto reaction = reaction_of_solids(system, solid_inverse, empty_rows);
   if (!result && !reaction)
     return {};
   if (!result)
-    result = *stencil_of(system.pressure_block);
+    result = *stencil_of(system.pressure.op);
   result->reaction = std::move(reaction);
   return result;
 }

@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "linear/matrix_rows.hpp"
-#include "linear/near_null_space.hpp"
 #include "linear/overlap.hpp"
+#include "linear/soft_nodes.hpp"
 #include "multigrid/lattice_layout.hpp"
 
 namespace lockstep {
@@ -71,7 +71,7 @@ RCP<Vector> cell_numbers(const FaceCoefficients& coefficients, const std::vector
 }
 
 /// The axis that a node's row of C belongs to; -1: no node's.
-std::vector<int> axes_of_rows(const NearNullSpace& space) {
+std::vector<int> axes_of_rows(const SoftNodes& space) {
   std::vector<int> axes(space.body_of_row.size(), -1);
   for (int axis = 0; axis < space.n_axes(); ++axis) {
     const auto translation = space.motions->getData(axis);
@@ -115,7 +115,7 @@ double least_stiffness(const CrsMatrix& c, const std::vector<int>& axes, int row
 MultiVector conductances(const BlockSystem& system, const Vector& numbers,
                          const std::array<int, 3>& n_cells) {
   const CrsMatrix& coupling = *system.coupling_transposed;
-  const std::vector<int> axes = axes_of_rows(system.near_null_space);
+  const std::vector<int> axes = axes_of_rows(system.soft_nodes);
   std::vector<std::vector<Touched>> rows(axes.size());
   const std::array<long, 3> stride{1, n_cells[0], static_cast<long>(n_cells[0]) * n_cells[1]};
   const auto number = numbers.getData();
@@ -130,10 +130,10 @@ MultiVector conductances(const BlockSystem& system, const Vector& numbers,
     const long line = cell < 0 ? -1 - column : cell - place * stride[axis];
     rows[row].push_back({line, place, value, column});
   });
-  const auto solid_block = assembled(system.solid_block);
+  const auto solid_block = assembled(system.solids.op);
   const CrsMatrix& c = *solid_block;
-  const auto masses = system.near_null_space.mass->getData();
-  MultiVector result(coupling.getColMap(), system.near_null_space.n_axes());
+  const auto masses = system.soft_nodes.mass->getData();
+  MultiVector result(coupling.getColMap(), system.soft_nodes.n_axes());
   for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
     if (rows[row].empty() || !(masses[row] > 0))
       continue;
@@ -153,10 +153,9 @@ MultiVector conductances(const BlockSystem& system, const Vector& numbers,
 
 std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& system,
                                                           const std::vector<int>& empty_rows) {
-  if (!system.has_solid() || system.near_null_space.empty() ||
-      assembled(system.solid_block).is_null())
+  if (!system.has_solid() || system.soft_nodes.empty() || assembled(system.solids.op).is_null())
     return {};
-  const FaceCoefficients& a = *stencil_of(system.pressure_block);
+  const FaceCoefficients& a = *stencil_of(system.pressure.op);
   const CrsMatrix& coupling = *system.coupling_transposed;
   const auto importer = coupling.getGraph()->getImporter();
   const RCP<Vector> by_row = cell_numbers(a, empty_rows);

@@ -2,8 +2,8 @@
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
-#include "base/errors.hpp"
 #include "rigid/rigid_parameters.hpp"
 
 namespace lockstep {
@@ -99,9 +99,10 @@ void RigidBodies<dim>::for_each_own(const Function& f) const {
 template <int dim>
 std::vector<RigidVector<dim>> RigidBodies<dim>::gather(const Vector& values) const {
   const auto mine = values.getData();
-  const std::vector<double> all = gather_all(comm_, std::vector<double>(mine.begin(), mine.end()));
   std::vector<RigidVector<dim>> result(dynamic_.size());
-  LOCKSTEP_ASSERT(all.size() == result.size() * n_rigid_dofs<dim>);
+  std::vector<double> all(result.size() * n_rigid_dofs<dim>, 0);  // zero where others have them
+  std::copy(mine.begin(), mine.end(), all.begin() + own_begin_ * n_rigid_dofs<dim>);
+  sum_all(comm_, all.data(), static_cast<int>(all.size()));
   for (std::size_t d = 0; d < result.size(); ++d)
     result[d] = Eigen::Map<const RigidVector<dim>>(all.data() + d * n_rigid_dofs<dim>);
   return result;

@@ -69,6 +69,8 @@ GlobalIndex max_all(const Communicator& comm, GlobalIndex value) {
   return reduce(comm, value, MPI_LONG_LONG, MPI_MAX);
 }
 void sum_all(const Communicator& comm, double* values, int n) {
+  if (n == 0)
+    return;
   MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, raw_communicator(comm));
 }
 GlobalIndex exclusive_sum(const Communicator& comm, GlobalIndex value) {

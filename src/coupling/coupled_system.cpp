@@ -28,30 +28,32 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   RCP<const CrsMatrix> transposed = coupling_.coupling_transposed();
   if (!transposed.is_null())
     transposed = solids_.reduction().reduce_rows(transposed);
-  const NullSpace null_space = find_null_space(fluid_.regions(), fluid_.pressure_map(), transposed);
+  const NullSpaces null_spaces =
+      find_null_spaces(fluid_.regions(), fluid_.pressure_map(), transposed);
 
   ++blocks_.geometry_stamp;
-  ++blocks_.solid_stamp;
-  blocks_.pressure_block = fluid_.pressure_block();
+  ++blocks_.solids.stamp;
+  blocks_.pressure.op = fluid_.pressure_block();
   blocks_.coupling_transposed = transposed;
-  blocks_.solid_block = Teuchos::null;
-  blocks_.near_null_space = solids_.near_null_space(coupling_.added_mass());
-  blocks_.null_space = null_space.coupled;
-  blocks_.pressure_null_space = null_space.pressure;
+  blocks_.solids.op = Teuchos::null;
+  blocks_.solids.blocks = solids_.blocks();
+  blocks_.soft_nodes = solids_.soft_nodes(coupling_.added_mass());
+  blocks_.null_space = null_spaces.coupled;
+  blocks_.pressure_null_space = null_spaces.pressure;
   block_dt_ = -1;
 
   pressure_only_ = blocks_;
   pressure_only_.coupling_transposed = Teuchos::null;
-  pressure_only_.null_space = null_space.pressure;
+  pressure_only_.null_space = null_spaces.pressure;
 }
 
 template <int dim>
 const BlockSystem& CoupledSystem<dim>::blocks(double dt, bool with_solid) {
   if (!with_solid || !solids_.has_unknowns())
     return pressure_only_;
-  if (blocks_.solid_block.is_null() || (solid_depends_on_dt_ && dt != block_dt_)) {
-    blocks_.solid_block = solids_.solid_block(coupling_.added_mass(), dt);
-    ++blocks_.solid_stamp;
+  if (blocks_.solids.op.is_null() || (solid_depends_on_dt_ && dt != block_dt_)) {
+    blocks_.solids.op = solids_.solid_block(coupling_.added_mass(), dt);
+    ++blocks_.solids.stamp;
     block_dt_ = dt;
   }
   return blocks_;
@@ -123,8 +125,8 @@ std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& co
   if (with_solid && !constraints.offset().is_null())
     fluxes.solids.push_back(flux_of_given(*coupling_.coupling_transposed(), *constraints.offset()));
   constexpr GlobalIndex smallest_region = dim == 2 ? 9 : 27;  // three cells across
-  return lockstep::impossible_flow(null_space, fluxes, fluid_.pressure_map(), smallest_region,
-                                   negligible, dim == 2 ? "m^2/s" : "m^3/s");
+  return lockstep::impossible_flow(null_space, fluxes, smallest_region, negligible,
+                                   dim == 2 ? "m^2/s" : "m^3/s");
 }
 
 template <int dim>

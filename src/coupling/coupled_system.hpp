@@ -57,7 +57,7 @@ class CoupledSystem {
   Momentum<dim> lumped_fluid_momentum(const std::vector<double>& coupled_velocity) const;
   double lumped_fluid_energy(const std::vector<double>& coupled_velocity) const;
 
-  const std::vector<RCP<const Vector>>& null_space() const { return blocks_.null_space; }
+  const NullSpace& null_space() const { return blocks_.null_space; }
 
  private:
   FluidDiscretization<dim>& fluid_;
@@ -65,7 +65,7 @@ class CoupledSystem {
   Coupling<dim>& coupling_;
   std::shared_ptr<const SurfaceSnapshot<dim>> surface_;
   BlockSystem blocks_, pressure_only_;
-  double block_dt_ = -1;  ///< the dt of blocks_.solid_block
+  double block_dt_ = -1;  ///< the dt of blocks_.solids.op
   bool solid_depends_on_dt_ = false;
 };
 

@@ -22,25 +22,63 @@ struct Rate {
   double net = 0, gross = 0;
 };
 
-/// The weight of every face's unknown in a null vector, whose largest is 1, source by source.
-std::vector<Rate> rates_of(const std::vector<PrescribedFlux>& sources, const Vector& weights,
-                           const Communicator& comm) {
+/// The region of each unknown that the sources push into (`import`), and what null vectors are
+/// there, scaled to 1 at most.
+struct Weights {
+  std::vector<int> region;
+  RCP<const Map> unknowns;
+  std::vector<std::vector<double>> of_region;  ///< [null vector][region]; in none: at the end, 0
+
+  double operator()(std::size_t k, GlobalIndex unknown) const {
+    return of_region[k][region[unknowns->getLocalElement(unknown)]];
+  }
+};
+
+Weights weights_of(const NullSpace& space, const Import& import) {
+  const RowRegions& regions = space.regions();
+  Weights weights;
+  weights.unknowns = import.getTargetMap();
+  Vector numbers(weights.unknowns);
+  numbers.doImport(*regions.numbers(), import, Tpetra::INSERT);
+  for (const double number : numbers.getData())
+    weights.region.push_back(number < 0 ? regions.n_regions : static_cast<int>(number));
+  for (const auto& parts : space.vectors()) {
+    std::vector<double> values(regions.n_regions + 1, 0);
+    double largest = 0;
+    for (const NullSpace::Part& part : parts)
+      largest = std::max(largest, std::abs(part.value));
+    for (const NullSpace::Part& part : parts)
+      values[part.region] = part.value / largest;
+    weights.of_region.push_back(std::move(values));
+  }
+  return weights;
+}
+
+/// Of each null vector what each source does to its volume. One sum over ranks.
+std::vector<std::vector<Rate>> rates_of(const std::vector<PrescribedFlux>& sources,
+                                        const Weights& weights, const Communicator& comm) {
   std::vector<double> sums;
-  const auto weight = weights.getData();
-  for (const PrescribedFlux& source : sources) {
-    double net = 0, gross = 0;
-    for (const auto& [unknown, rate] : source.into) {
-      const double part = rate * weight[weights.getMap()->getLocalElement(unknown)];
-      net += part;
-      gross += std::abs(part);
+  for (std::size_t k = 0; k < weights.of_region.size(); ++k) {
+    for (const PrescribedFlux& source : sources) {
+      double net = 0, gross = 0;
+      for (const auto& [unknown, rate] : source.into) {
+        const double part = rate * weights(k, unknown);
+        net += part;
+        gross += std::abs(part);
+      }
+      sums.push_back(net);
+      sums.push_back(gross);
     }
-    sums.push_back(net);
-    sums.push_back(gross);
   }
   sum_all(comm, sums.data(), static_cast<int>(sums.size()));
-  std::vector<Rate> rates;
-  for (std::size_t s = 0; s < sources.size(); ++s)
-    rates.push_back({&sources[s], sums[2 * s], sums[2 * s + 1]});
+  std::vector<std::vector<Rate>> rates(weights.of_region.size());
+  auto value = sums.begin();
+  for (auto& of_vector : rates) {
+    for (const PrescribedFlux& source : sources) {
+      of_vector.push_back({&source, value[0], value[1]});
+      value += 2;
+    }
+  }
   return rates;
 }
 
@@ -55,11 +93,12 @@ RCP<Import> import_of_unknowns(const PrescribedFluxes& fluxes, const RCP<const M
   return import_of(std::move(unknowns), map);
 }
 
-GlobalIndex n_cells_of(const Vector& indicator, double largest) {
-  GlobalIndex n = 0;
-  for (const double value : indicator.getData())
-    n += std::abs(value) > 1e-3 * largest;
-  return sum_all(indicator.getMap()->getComm(), n);
+/// The cells in which a null vector counts.
+GlobalIndex n_cells_of(const std::vector<double>& weights, const std::vector<double>& n_rows) {
+  double n = 0;
+  for (std::size_t region = 0; region < n_rows.size(); ++region)
+    n += std::abs(weights[region]) > 1e-3 ? n_rows[region] : 0;
+  return static_cast<GlobalIndex>(n);
 }
 
 /// The sources that change the volume; their sum is `change`, known to `inaccuracy`.
@@ -88,22 +127,20 @@ Verdict verdict_on(const std::vector<Rate>& sides, const std::vector<Rate>& soli
 
 }  // namespace
 
-std::string impossible_flow(const std::vector<RCP<const Vector>>& null_space,
-                            const PrescribedFluxes& fluxes, const RCP<const Map>& pressure_map,
+std::string impossible_flow(const NullSpace& null_space, const PrescribedFluxes& fluxes,
                             GlobalIndex smallest_region, double negligible,
                             const std::string& unit) {
   if (null_space.empty() || (fluxes.sides.empty() && fluxes.solids.empty()))
     return "";
-  const Communicator comm = pressure_map->getComm();
-  const RCP<Import> import = import_of_unknowns(fluxes, pressure_map);
-  for (const auto& null_vector : null_space) {
-    const double largest = null_vector->normInf();
-    Vector weights(import->getTargetMap());
-    weights.doImport(*null_vector, *import, Tpetra::INSERT);
-    weights.scale(1 / largest);
-    const Verdict verdict =
-        verdict_on(rates_of(fluxes.sides, weights, comm), rates_of(fluxes.solids, weights, comm));
-    const GlobalIndex n_cells = n_cells_of(*null_vector, largest);
+  const RCP<const Map> map = null_space.regions().map;
+  const Communicator comm = map->getComm();
+  const Weights weights = weights_of(null_space, *import_of_unknowns(fluxes, map));
+  const auto by_sides = rates_of(fluxes.sides, weights, comm);
+  const auto by_solids = rates_of(fluxes.solids, weights, comm);
+  const std::vector<double> n_rows = null_space.regions().n_rows();
+  for (std::size_t k = 0; k < null_space.size(); ++k) {
+    const Verdict verdict = verdict_on(by_sides[k], by_solids[k]);
+    const GlobalIndex n_cells = n_cells_of(weights.of_region[k], n_rows);
     if (std::abs(verdict.change) <= std::max(verdict.inaccuracy, negligible) ||
         n_cells <= smallest_region)
       continue;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "interfaces/prescribed_flux.hpp"
-#include "linear/types.hpp"
+#include "linear/null_space.hpp"
 
 namespace lockstep {
 
@@ -23,8 +23,7 @@ struct PrescribedFluxes {
 /// passes by; and then up to a tenth of it may be balanced by others not quite. Regions of no more
 /// cells than `smallest_region`, pockets that the grid makes, are let be, and so are changes of no
 /// more than `negligible` [m^dim/s]. Collective.
-std::string impossible_flow(const std::vector<RCP<const Vector>>& null_space,
-                            const PrescribedFluxes& fluxes, const RCP<const Map>& pressure_map,
+std::string impossible_flow(const NullSpace& null_space, const PrescribedFluxes& fluxes,
                             GlobalIndex smallest_region, double negligible,
                             const std::string& unit);
 

@@ -47,13 +47,13 @@ RCP<const LinearOperator> SolidSystem<dim>::full_block(const RCP<const CrsMatrix
 }
 
 template <int dim>
-NearNullSpace SolidSystem<dim>::near_null_space(const RCP<const CrsMatrix>& added) const {
+SoftNodes SolidSystem<dim>::soft_nodes(const RCP<const CrsMatrix>& added) const {
   constexpr int n_motions = dim + n_rotations<dim>;
-  NearNullSpace all;
+  SoftNodes all;
   RCP<MultiVector> motions;
   for (int m = 0; m < n_models(); ++m) {
     const auto* known = side<NearNullSpaces<dim>>(m);
-    const NearNullSpace part = known ? known->near_null_space() : NearNullSpace();
+    const RigidMotions part = known ? known->near_null_space() : RigidMotions();
     if (part.empty())
       continue;
     if (motions.is_null()) {
@@ -107,7 +107,7 @@ template RCP<const LinearOperator> SolidSystem<2>::solid_block(const RCP<const C
                                                                double) const;
 template RCP<const LinearOperator> SolidSystem<2>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
-template NearNullSpace SolidSystem<2>::near_null_space(const RCP<const CrsMatrix>&) const;
+template SoftNodes SolidSystem<2>::soft_nodes(const RCP<const CrsMatrix>&) const;
 template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&,
                                                  const LinearOperator&) const;
 template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&) const;
@@ -115,7 +115,7 @@ template RCP<const LinearOperator> SolidSystem<3>::solid_block(const RCP<const C
                                                                double) const;
 template RCP<const LinearOperator> SolidSystem<3>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
-template NearNullSpace SolidSystem<3>::near_null_space(const RCP<const CrsMatrix>&) const;
+template SoftNodes SolidSystem<3>::soft_nodes(const RCP<const CrsMatrix>&) const;
 template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&,
                                                  const LinearOperator&) const;
 template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&) const;

@@ -68,6 +68,16 @@ void SolidSystem<dim>::find_reduction() {
 }
 
 template <int dim>
+std::vector<Block> SolidSystem<dim>::blocks() const {
+  std::vector<Block> all;
+  for (int m = 0; m < n_models(); ++m) {
+    const int n = static_cast<int>(model(m).dof_map()->getNodeNumElements());
+    all.push_back({model(m).name(), begin_[m].local, begin_[m].local + n});
+  }
+  return all;
+}
+
+template <int dim>
 bool SolidSystem<dim>::begin_step(double time, double dt) {
   for (const auto& solid_model : models_)
     solid_model->begin_step(time, dt);

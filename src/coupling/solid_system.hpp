@@ -6,6 +6,7 @@
 #include "coupling/attached_nodes.hpp"
 #include "coupling/reduction.hpp"
 #include "coupling/stacked_operator.hpp"
+#include "interfaces/block_system.hpp"
 #include "interfaces/solid_sides.hpp"
 
 namespace lockstep {
@@ -49,8 +50,10 @@ class SolidSystem {
   RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
   /// M_S + added - dt D of all dofs; padding rows are zero. Applied part by part.
   RCP<const LinearOperator> full_block(const RCP<const CrsMatrix>& added, double dt) const;
-  /// The models' near null spaces on `map`, with the masses M_S + added. Collective.
-  NearNullSpace near_null_space(const RCP<const CrsMatrix>& added) const;
+  /// The models' dofs in vectors of this rank, by the models' names.
+  std::vector<Block> blocks() const;
+  /// The models' rigid motions on `map`, with the masses M_S + added. Collective.
+  SoftNodes soft_nodes(const RCP<const CrsMatrix>& added) const;
   /// What solids without fluid do: V = P y + b with P^T (M_S - dt D) V = P^T q for a stacked
   /// momentum q. `inverse`: of `solid_block` without added mass. Collective.
   RCP<Vector> velocity_of(const Vector& momentum, double dt, const Reduction& constraints,

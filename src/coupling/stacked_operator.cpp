@@ -55,9 +55,12 @@ void StackedOperator::apply(const MultiVector& x, MultiVector& y, Teuchos::ETran
 
 RCP<const LinearOperator> as_thyra(
     const RCP<const Tpetra::Operator<double, int, GlobalIndex>>& op) {
+  // Making a space takes collectives: one serves both sides where it can.
+  const auto range = Thyra::createVectorSpace<double, int, GlobalIndex>(op->getRangeMap());
+  const bool is_square = op->getDomainMap().get() == op->getRangeMap().get();
   return Thyra::createConstLinearOp<double, int, GlobalIndex>(
-      op, Thyra::createVectorSpace<double, int, GlobalIndex>(op->getRangeMap()),
-      Thyra::createVectorSpace<double, int, GlobalIndex>(op->getDomainMap()));
+      op, range,
+      is_square ? range : Thyra::createVectorSpace<double, int, GlobalIndex>(op->getDomainMap()));
 }
 
 }  // namespace lockstep

@@ -5,114 +5,46 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "coupling/spin_couples.hpp"
-#include "linear/triplet_matrix.hpp"
+#include "coupling/viscous_bonds.hpp"
+#include "linear/conjugate_gradients.hpp"
+#include "linear/matrix_rows.hpp"
+#include "linear/vector_sums.hpp"
+#include "solve/minres.hpp"
 #include "solve/preconditioner.hpp"
 
 namespace lockstep {
 namespace {
 
-/// A pair of vectors: free velocities and solid dofs (null without unknowns).
-struct Pair {
-  RCP<Vector> fluid, solid;
-  double dot(const Pair& other) const {
-    return fluid->dot(*other.fluid) + (solid.is_null() ? 0 : solid->dot(*other.solid));
+/// The rows of the viscous system: free velocities, after them solid dofs.
+struct ViscousRows {
+  RCP<const Map> fluid, solid, all;  ///< `solid` null without unknowns
+
+  ViscousRows(const RCP<const Map>& free_velocities, const RCP<const Map>& solid_dofs)
+      : fluid(free_velocities), solid(solid_dofs) {
+    const auto n_solid = solid.is_null() ? 0 : solid->getNodeNumElements();
+    all = make_map(static_cast<int>(fluid->getNodeNumElements() + n_solid), fluid->getComm());
   }
-  /// this = alpha x + beta this
-  void update(double alpha, const Pair& x, double beta) {
-    fluid->update(alpha, *x.fluid, beta);
-    if (!solid.is_null())
-      solid->update(alpha, *x.solid, beta);
+  /// Parts of a vector on `all`, which share its values.
+  RCP<const Vector> fluid_of(const Vector& x) const { return x.offsetView(fluid, 0)->getVector(0); }
+  RCP<Vector> fluid_of(Vector& x) const {
+    return x.offsetViewNonConst(fluid, 0)->getVectorNonConst(0);
   }
-  Pair same_shape() const {
-    return {rcp(new Vector(fluid->getMap())),
-            solid.is_null() ? RCP<Vector>() : rcp(new Vector(solid->getMap()))};
+  RCP<const Vector> solid_of(const Vector& x) const {
+    return x.offsetView(solid, fluid->getNodeNumElements())->getVector(0);
   }
-  Pair scaled_by(const Pair& weights) const {
-    Pair result = same_shape();
-    result.fluid->elementWiseMultiply(1, *weights.fluid, *fluid, 0);
-    if (!solid.is_null())
-      result.solid->elementWiseMultiply(1, *weights.solid, *solid, 0);
-    return result;
+  RCP<Vector> solid_of(Vector& x) const {
+    return x.offsetViewNonConst(solid, fluid->getNodeNumElements())->getVectorNonConst(0);
   }
 };
-
-/// All links of this rank: link l pulls with c_l (u_row(l) - (L V)_l - prescribed_l) on fluid and
-/// solid; the couples of the transposed gradient come to the solid's end.
-template <int dim>
-struct Links {
-  const std::vector<ViscousLink<dim>>& list;
-  RCP<const Map> map;              ///< links
-  RCP<const CrsMatrix> rows;       ///< L: links x solid dofs; null without unknowns
-  RCP<const CrsMatrix> squares;    ///< entries squared, for the diagonal
-  std::vector<LinkRow<dim>> ends;  ///< dofs and weights emptied once assembled
-  SpinCouples<dim> couples;
-
-  /// Velocities of the ends [m/s] for solid velocities V (null: none), prescribed velocities in or
-  /// out.
-  RCP<Vector> end_velocity(const RCP<const Vector>& solid, bool prescribed) const {
-    const auto result = rcp(new Vector(map));
-    if (!rows.is_null() && !solid.is_null())
-      rows->apply(*solid, *result);
-    if (prescribed) {
-      const auto values = result->getDataNonConst();
-      for (std::size_t l = 0; l < list.size(); ++l)
-        values[l] += ends[l].prescribed;
-    }
-    return result;
-  }
-  /// Pulls of the bonds [N] for fluid velocities u.
-  RCP<Vector> pull(const Vector& u, const Vector& end_velocity) const {
-    const auto result = rcp(new Vector(map));
-    const auto values = result->getDataNonConst();
-    const auto velocity = u.getData(), end = end_velocity.getData();
-    for (std::size_t l = 0; l < list.size(); ++l)
-      values[l] = list[l].coefficient * (velocity[list[l].row] - end[l]);
-    return result;
-  }
-  /// The couples as forces on the solids [N]. Collective.
-  RCP<Vector> couple_pull(const Vector& end_velocity) const {
-    const auto result = rcp(new Vector(map));
-    couples.add_pull(end_velocity.getData().getRawPtr(), result->getDataNonConst().getRawPtr());
-    return result;
-  }
-};
-
-template <int dim>
-Links<dim> make_links(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
-                      const ViscousCoupling<dim>& coupling) {
-  std::vector<LinkRow<dim>> ends(system.links.size());
-  for (std::size_t l = 0; l < system.links.size(); ++l)
-    coupling.link_row(system.links[l], solids, ends[l]);
-  SpinCouples<dim> couples(system.links, ends, solids.solids(), solids.comm());
-  Links<dim> links{system.links,    make_map(static_cast<int>(system.links.size()), solids.comm()),
-                   Teuchos::null,   Teuchos::null,
-                   std::move(ends), std::move(couples)};
-  std::vector<Triplet> rows, squares;
-  for (std::size_t l = 0; l < system.links.size(); ++l) {
-    auto& end = links.ends[l];
-    const GlobalIndex id = links.map->getGlobalElement(static_cast<int>(l));
-    for (std::size_t i = 0; i < end.dofs.size(); ++i) {
-      rows.push_back({id, end.dofs[i], end.weights[i]});
-      squares.push_back({id, end.dofs[i], end.weights[i] * end.weights[i]});
-    }
-    end.dofs.clear();
-    end.weights.clear();
-  }
-  if (solids.has_unknowns()) {
-    links.rows = assemble_triplets(std::move(rows), links.map, solids.map());
-    links.squares = assemble_triplets(std::move(squares), links.map, solids.map());
-  }
-  return links;
-}
 
 template <int dim>
 struct ViscousOperator {
   const ViscousSystem<dim>& system;
-  const Links<dim>& links;
+  const ViscousBonds<dim>& links;
   const RCP<const LinearOperator>& solid_block;
   const Reduction& constraints;
   double dt;
+  ViscousRows rows;
 
   /// P y, without a copy where it is y.
   RCP<const Vector> expanded(const RCP<const Vector>& unknowns) const {
@@ -124,124 +56,155 @@ struct ViscousOperator {
   }
   /// y = operator x; rows of dofs that are no unknowns see only their own C, and are zero. K_ff
   /// holds the links' diagonal already.
-  void apply_to(const Pair& x, Pair& y) const {
-    y.fluid->elementWiseMultiply(1, *system.mass, *x.fluid, 0);
-    system.stiffness->apply(*x.fluid, *y.fluid, Teuchos::NO_TRANS, dt, 1);
-    if (x.solid.is_null())
+  void apply_to(const Vector& x, Vector& y) const {
+    const RCP<const Vector> fluid = rows.fluid_of(x);
+    const RCP<Vector> momentum = rows.fluid_of(y);
+    momentum->elementWiseMultiply(1, *system.mass, *fluid, 0);
+    system.stiffness->apply(*fluid, *momentum, Teuchos::NO_TRANS, dt, 1);
+    if (rows.solid.is_null())
       return;
-    const RCP<const Vector> end_velocity = links.end_velocity(expanded(x.solid), false);
-    {
-      const auto values = end_velocity->getData();
-      const auto result = y.fluid->getDataNonConst();
-      for (std::size_t l = 0; l < links.list.size(); ++l) {
-        result[links.list[l].row] -= dt * links.list[l].coefficient * values[l];
-      }
-    }
-    Vector drag(x.solid->getMap());
-    const RCP<Vector> pull = links.pull(*x.fluid, *end_velocity);
-    links.couples.add_pull(end_velocity->getData().getRawPtr(),
-                           pull->getDataNonConst().getRawPtr());
-    links.rows->apply(*pull, drag, Teuchos::TRANS, -dt, 0);
-    lockstep::apply(*solid_block, *x.solid, *y.solid);
+    const RCP<const Vector> unknowns = rows.solid_of(x);
+    const RCP<const Vector> end_velocity = links.end_velocity(expanded(unknowns), false);
+    links.take_from_fluid(dt, *end_velocity, true, *momentum);
+    Vector drag(rows.solid);
+    const RCP<Vector> pull = links.pull(*fluid, *end_velocity);
+    links.add_couples(*end_velocity, *pull);
+    links.pull_on_solids(-dt, *pull, 0, drag);
+    const RCP<Vector> of_solid = rows.solid_of(y);
+    lockstep::apply(*solid_block, *unknowns, *of_solid);
     constraints.restrict(drag);
-    y.solid->update(1, drag, 1);
+    of_solid->update(1, drag, 1);
   }
 };
 
-/// 1 / diagonal of the viscous operator (ones for a matrix-free C: few outliers, CG deals with
+/// M_f + dt K_ff.
+template <int dim>
+RCP<const CrsMatrix> fluid_matrix(const ViscousSystem<dim>& system, double dt) {
+  const auto matrix = rcp(new CrsMatrix(*system.stiffness, Teuchos::Copy));
+  matrix->resumeFill();
+  matrix->scale(dt);
+  const auto mass = system.mass->getData();
+  for (int row = 0; row < mass.size(); ++row) {
+    const GlobalIndex id = system.map->getGlobalElement(row);
+    matrix->sumIntoGlobalValues(id, 1, &mass[row], &id);
+  }
+  matrix->fillComplete(system.map, system.map);
+  return matrix;
+}
+
+/// 1 / diagonal of the operator (ones for a matrix-free C: few outliers, a Krylov method deals with
 /// them).
 template <int dim>
-Pair inverse_diagonal(const ViscousOperator<dim>& op, const Pair& shape) {
-  Pair inverse = shape.same_shape();
+RCP<Vector> inverse_diagonal(const ViscousOperator<dim>& op) {
+  const auto inverse = make_vector(op.rows.all);
   Vector diagonal(op.system.map);
   op.system.stiffness->getLocalDiagCopy(diagonal);
   diagonal.update(1, *op.system.mass, op.dt);
-  inverse.fluid->reciprocal(diagonal);
-  if (inverse.solid.is_null())
+  op.rows.fluid_of(*inverse)->reciprocal(diagonal);
+  if (op.rows.solid.is_null())
     return inverse;
-  inverse.solid->putScalar(1);
+  const RCP<Vector> solid_inverse = op.rows.solid_of(*inverse);
+  solid_inverse->putScalar(1);
   const RCP<const CrsMatrix> matrix = assembled(op.solid_block);
   if (!matrix.is_null()) {
-    Vector solid(inverse.solid->getMap()), drag(inverse.solid->getMap()), strength(op.links.map);
-    for (std::size_t l = 0; l < op.links.list.size(); ++l) {
-      strength.replaceLocalValue(static_cast<int>(l), op.links.list[l].coefficient);
-    }
-    op.links.squares->apply(strength, drag, Teuchos::TRANS);
-    matrix->getLocalDiagCopy(solid);
-    op.constraints.select(drag);
-    solid.update(op.dt, drag, 1);
-    inverse.solid->reciprocal(solid);
+    const RCP<Vector> solid = diagonal_of(*matrix), drag = op.links.strength_on_solids();
+    op.constraints.select(*drag);
+    solid->update(op.dt, *drag, 1);
+    solid_inverse->reciprocal(*solid);
   }
   return inverse;
 }
 
-struct Preconditioner {
-  Pair inverse_diagonal;
-  RCP<const LinearOperator> stiff;  ///< an inverse of a stiff C; null: the diagonal will do
+/// The inverses that stand for blocks of the operator; null: the diagonal.
+struct ViscousPreconditioner {
+  const ViscousRows& rows;
+  RCP<const Vector> inverse_diagonal;
+  RCP<const LinearOperator> fluid, solid;
 
-  Pair operator()(const Pair& residual) const {
-    Pair result = residual.scaled_by(inverse_diagonal);
-    if (!stiff.is_null())
-      lockstep::apply(*stiff, *residual.solid, *result.solid);
-    return result;
+  void apply_to(const Vector& r, Vector& z) const {
+    z.elementWiseMultiply(1, *inverse_diagonal, r, 0);
+    if (!fluid.is_null())
+      lockstep::apply(*fluid, *rows.fluid_of(r), *rows.fluid_of(z));
+    if (!solid.is_null())
+      lockstep::apply(*solid, *rows.solid_of(r), *rows.solid_of(z));
   }
 };
 
 template <int dim>
-int conjugate_gradients(const ViscousOperator<dim>& op, const Preconditioner& precondition,
-                        const Pair& rhs, Pair& x, double tolerance) {
-  const int most = 2000;
-  Pair residual = rhs.same_shape(), direction, image = rhs.same_shape();
-  op.apply_to(x, residual);
-  residual.update(1, rhs, -1);
-  const double scale = std::sqrt(rhs.dot(precondition(rhs)));
-  if (scale == 0)
-    return 0;
-  Pair z = precondition(residual);
-  double rz = residual.dot(z);
-  direction = z;
-  direction.fluid = rcp(new Vector(*z.fluid, Teuchos::Copy));
-  if (!z.solid.is_null())
-    direction.solid = rcp(new Vector(*z.solid, Teuchos::Copy));
-  for (int iteration = 0; iteration < most; ++iteration) {
-    if (std::sqrt(rz) <= tolerance * scale)
-      return iteration;
-    op.apply_to(direction, image);
-    const double step = rz / direction.dot(image);
-    x.update(step, direction, 1);
-    residual.update(-step, image, 1);
-    z = precondition(residual);
-    const double next = residual.dot(z);
-    direction.update(1, z, next / rz);
-    rz = next;
-  }
-  check_solve(
-      false,
-      "The viscous solve did not converge: {} CG iterations reached a relative residual of {:.2e}, "
-      "asked was {:.1e}. Reduce the time step or the viscosity.",
-      most, std::sqrt(rz) / scale, tolerance);
-  return most;
+ViscousPreconditioner make_preconditioner(const ViscousOperator<dim>& op,
+                                          const SoftNodes& soft_nodes,
+                                          const ViscousOptions& options) {
+  ViscousPreconditioner result{op.rows, inverse_diagonal<dim>(op), Teuchos::null, Teuchos::null};
+  if (options.fluid_inverse.numParams() > 0)
+    result.fluid =
+        preconditioner_from_list(as_operator(fluid_matrix<dim>(op.system, op.dt)),
+                                 options.fluid_inverse, "free velocities of the viscous solve");
+  const std::string name = "solids, viscous solve";
+  if (op.rows.solid.is_null())
+    return result;
+  result.solid =
+      options.solid_inverse.numParams() > 0
+          ? preconditioner_from_list(op.solid_block, options.solid_inverse, name, soft_nodes)
+          : inverse_if_stiff(op.solid_block, soft_nodes, name);
+  return result;
 }
 
-/// The couple of links whose two ends lie apart across their direction, with that of the transposed
-/// gradient, which cancels it and that of the fluid's own bonds; and what each prescribed solid
-/// gives the fluid through its links. This rank's part.
+/// The Krylov method that the options name, from the guess x on; returns its iterations.
 template <int dim>
-Momentum<dim> link_impulse(const Links<dim>& links, const Vector& pull, const Vector& couple_pull,
-                           double dt, std::vector<Momentum<dim>>& of_prescribed) {
-  Momentum<dim> couple;
-  const auto values = pull.getData(), couples = couple_pull.getData();
-  for (std::size_t l = 0; l < links.list.size(); ++l) {
-    const auto& link = links.list[l];
-    const auto& end = links.ends[l];
-    const Point<dim> axis = Point<dim>::Unit(link.direction);
-    if (end.prescribed_share > 0)
-      of_prescribed[end.prescribed_solid].add(
-          end.position, -dt * end.prescribed_share * (values[l] + couples[l]) * axis);
-    couple.angular += cross<dim>(link.position - end.position, -dt * values[l] * axis);
-    couple.add(end.position, dt * couples[l] * axis);
+int solve_by_name(const ViscousOperator<dim>& op, const ViscousPreconditioner& preconditioner,
+                  const Vector& rhs, Vector& x, const ViscousOptions& options) {
+  const bool by_minres = options.krylov_solver == "MINRES";
+  Vector z(op.rows.all);
+  const auto size_of = [&](const Vector& r) {
+    if (by_minres)
+      return norm(r);
+    preconditioner.apply_to(r, z);
+    return std::sqrt(dot(r, z));
+  };
+  const double scale = size_of(rhs);
+  if (scale == 0)
+    return 0;
+  Vector residual(op.rows.all);
+  const auto measure = [&] {
+    op.apply_to(x, residual);
+    residual.update(1, rhs, -1);
+    return size_of(residual) / scale;
+  };
+  const double initial = measure();
+  int iterations = 0;
+  if (by_minres) {
+    Blocks solution{rcpFromRef(x)};
+    iterations =
+        minres([&](const Blocks& from, Blocks& to) { op.apply_to(*from[0], *to[0]); },
+               [&](const Blocks& r, Blocks& to) { preconditioner.apply_to(*r[0], *to[0]); },
+               {rcp(new Vector(rhs, Teuchos::Copy))}, solution,
+               {"The viscous solve", {options.tolerance * scale}, options.maximum_iterations})
+            .n_iterations;
+  } else {
+    Vector correction(op.rows.all);
+    ConjugateGradientsRequest request{"The viscous solve", 0, options.maximum_iterations, {}};
+    request.preconditioned_target = options.tolerance * scale;
+    iterations =
+        conjugate_gradients([&](const Vector& from, Vector& to) { op.apply_to(from, to); },
+                            [&](const Vector& r, Vector& to) { preconditioner.apply_to(r, to); },
+                            residual, correction, request);
+    x.update(1, correction, 1);
   }
-  return couple;
+  // A method that ended before its last iteration has done what it was asked, or what round-off
+  // allows.
+  constexpr double loosest_round_off = 1e-9;
+  const double allowed = iterations < options.maximum_iterations
+                             ? std::max(10 * options.tolerance, loosest_round_off)
+                             : options.tolerance;
+  const double reached = measure();
+  check_solve(reached <= allowed,
+              "The viscous solve did not converge: {} iterations of {} (at most {}) brought the "
+              "relative residual from {:.2e} to {:.2e}, asked was {:.1e}. Raise \"Maximum "
+              "Iterations\" of \"Viscous Solve\", name a stronger \"Fluid Inverse\" or \"Solid "
+              "Inverse\" there, or reduce the time step or the viscosity.",
+              iterations, options.krylov_solver, options.maximum_iterations, initial, reached,
+              options.tolerance);
+  return iterations;
 }
 
 }  // namespace
@@ -251,62 +214,67 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
                                  const SolidSystem<dim>& solids,
                                  const ViscousCoupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
-                                 const NearNullSpace& near_null_space,
+                                 const SoftNodes& soft_nodes,
                                  const RCP<const Vector>& lumped_momentum, double dt,
-                                 const Reduction& constraints, double tolerance) {
-  const Links<dim> links = make_links<dim>(system, solids, coupling);
-  const ViscousOperator<dim> op{system, links, solid_block, constraints, dt};
+                                 const Reduction& constraints, const ViscousOptions& options) {
+  const ViscousBonds<dim> links(system, solids, coupling);
+  const ViscousOperator<dim> op{
+      system,
+      links,
+      solid_block,
+      constraints,
+      dt,
+      ViscousRows(system.map, solids.has_unknowns() ? solids.map() : RCP<const Map>())};
 
   // The pull of prescribed solids and given dofs on resting fluid, on the right-hand side.
   const RCP<const Vector> given = links.end_velocity(constraints.offset(), true);
-  const RCP<Vector> prescribed = links.pull(*rcp(new Vector(system.map)), *given);
-  Pair rhs{rcp(new Vector(system.map)), RCP<Vector>()};
-  rhs.fluid->elementWiseMultiply(1, *system.mass, *system.velocity, 0);
-  rhs.fluid->update(dt, *system.wall_force, 1);
+  const RCP<Vector> prescribed = links.pull(*make_vector(system.map), *given);
+  Vector rhs(op.rows.all), x(op.rows.all);
   {
-    const auto values = prescribed->getData();
-    const auto result = rhs.fluid->getDataNonConst();
-    for (std::size_t l = 0; l < links.list.size(); ++l)
-      result[links.list[l].row] -= dt * values[l];
+    const RCP<Vector> momentum = op.rows.fluid_of(rhs);
+    momentum->elementWiseMultiply(1, *system.mass, *system.velocity, 0);
+    momentum->update(dt, *system.wall_force, 1);
+    links.take_from_fluid(dt, *prescribed, false, *momentum);
   }
-  Pair x{rcp(new Vector(*system.velocity, Teuchos::Copy)), RCP<Vector>()};
+  op.rows.fluid_of(x)->update(1, *system.velocity, 0);
   if (solids.has_unknowns()) {
-    rhs.solid = rcp(new Vector(*lumped_momentum, Teuchos::Copy));
+    Vector pulled(*lumped_momentum, Teuchos::Copy);
     prescribed->update(1, *links.couple_pull(*given), 1);
-    links.rows->apply(*prescribed, *rhs.solid, Teuchos::TRANS, dt, 1);
-    constraints.restrict(*rhs.solid);
-    x.solid = solids.velocity();
-    constraints.select(*x.solid);
+    links.pull_on_solids(dt, *prescribed, 1, pulled);
+    constraints.restrict(pulled);
+    op.rows.solid_of(rhs)->update(1, pulled, 0);
+    const RCP<Vector> guess = solids.velocity();
+    constraints.select(*guess);
+    op.rows.solid_of(x)->update(1, *guess, 0);
   }
   ViscousResult<dim> result;
-  Preconditioner precondition{inverse_diagonal<dim>(op, rhs), Teuchos::null};
-  if (solids.has_unknowns())
-    precondition.stiff = inverse_if_stiff(solid_block, near_null_space, "solids, viscous solve");
-  result.iterations = conjugate_gradients<dim>(op, precondition, rhs, x, tolerance);
+  result.iterations =
+      solve_by_name<dim>(op, make_preconditioner<dim>(op, soft_nodes, options), rhs, x, options);
 
+  const RCP<const Vector> fluid_velocity = op.rows.fluid_of(std::as_const(x));
   if (solids.has_unknowns()) {
-    result.solid_velocity = rcp(new Vector(*x.solid, Teuchos::Copy));
+    result.solid_velocity = rcp(new Vector(*op.rows.solid_of(x), Teuchos::Copy));
     constraints.expand(*result.solid_velocity);
   }
   const RCP<const Vector> ends = links.end_velocity(result.solid_velocity, true);
-  const RCP<const Vector> pull = links.pull(*x.fluid, *ends);
+  const RCP<const Vector> pull = links.pull(*fluid_velocity, *ends);
   const RCP<const Vector> couple_pull = links.couple_pull(*ends);
   if (solids.has_unknowns()) {
-    result.solid_impulse = rcp(new Vector(solids.map()));
-    links.rows->apply(*pull, *result.solid_impulse, Teuchos::TRANS, dt, 0);
-    links.rows->apply(*couple_pull, *result.solid_impulse, Teuchos::TRANS, dt, 1);
+    result.solid_impulse = make_vector(solids.map());
+    links.pull_on_solids(dt, *pull, 0, *result.solid_impulse);
+    links.pull_on_solids(dt, *couple_pull, 1, *result.solid_impulse);
   }
   // u = u* + M^-1 (impulses of the solution): momentum is exact, the residual of CG shows in u
   // alone.
-  Pair residual = rhs.same_shape();
+  Vector residual(op.rows.all);
   op.apply_to(x, residual);
   residual.update(1, rhs, -1);
-  Vector velocity(*x.fluid, Teuchos::Copy), mass_inverse(system.map);
+  Vector velocity(*fluid_velocity, Teuchos::Copy), mass_inverse(system.map);
   mass_inverse.reciprocal(*system.mass);
-  velocity.elementWiseMultiply(1, mass_inverse, *residual.fluid, 1);
-  result.boundary_impulse = fluid.accept_viscous(*x.fluid, velocity, dt);
+  velocity.elementWiseMultiply(1, mass_inverse, *op.rows.fluid_of(residual), 1);
+  result.boundary_impulse = fluid.accept_viscous(*fluid_velocity, velocity, dt);
   std::vector<Momentum<dim>> impulses(solids.solids().size());
-  impulses.push_back(link_impulse<dim>(links, *pull, *couple_pull, dt, impulses));
+  impulses.push_back(links.impulse(*pull, *couple_pull, dt, impulses));
   sum_over_ranks(impulses, solids.comm());
   result.boundary_impulse += total_of(impulses);
   impulses.pop_back();
@@ -316,13 +284,13 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
 
 template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, ViscousFluid<2>&,
                                            const SolidSystem<2>&, const ViscousCoupling<2>&,
-                                           const RCP<const LinearOperator>&, const NearNullSpace&,
+                                           const RCP<const LinearOperator>&, const SoftNodes&,
                                            const RCP<const Vector>&, double, const Reduction&,
-                                           double);
+                                           const ViscousOptions&);
 template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, ViscousFluid<3>&,
                                            const SolidSystem<3>&, const ViscousCoupling<3>&,
-                                           const RCP<const LinearOperator>&, const NearNullSpace&,
+                                           const RCP<const LinearOperator>&, const SoftNodes&,
                                            const RCP<const Vector>&, double, const Reduction&,
-                                           double);
+                                           const ViscousOptions&);
 
 }  // namespace lockstep

@@ -1,7 +1,7 @@
 #pragma once
 #include "coupling/solid_system.hpp"
+#include "coupling/viscous_options.hpp"
 #include "interfaces/viscosity.hpp"
-#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
@@ -18,21 +18,20 @@ struct ViscousResult {
   int iterations = 0;
 };
 
-/// Implicit viscosity over dt, coupled to the solids (design, section 5): CG on
+/// Implicit viscosity over dt, coupled to the solids (design, section 5): a Krylov method on
 ///   [ M_f + dt K_ff   dt K_fs              ] [ u   ]   [ M_f u*                          ]
 ///   [ dt K_sf         M̃_S - dt D + dt K_ss ] [ V_S ] = [ M_S V_S* + W^T M_F u*_F        ]
 /// The fluid keeps u; of the solid only its viscous impulse is used, so that its own forces are not
 /// applied twice. `lumped_momentum` is row 2 of all dofs, less C b, and `solid_block` is the
-/// reduced C; both null without unknowns. The preconditioner is the diagonal, of a stiff C (of this
-/// near null space) an inverse of it. Throws SolveError if CG does not reach `tolerance`.
-/// Collective.
+/// reduced C; both null without unknowns. Throws SolveError with the numbers if the options'
+/// tolerance is not reached. Collective.
 template <int dim>
 ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid,
                                  const SolidSystem<dim>& solids,
                                  const ViscousCoupling<dim>& coupling,
                                  const RCP<const LinearOperator>& solid_block,
-                                 const NearNullSpace& near_null_space,
+                                 const SoftNodes& soft_nodes,
                                  const RCP<const Vector>& lumped_momentum, double dt,
-                                 const Reduction& constraints, double tolerance);
+                                 const Reduction& constraints, const ViscousOptions& options);
 
 }  // namespace lockstep

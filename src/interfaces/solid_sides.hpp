@@ -1,6 +1,6 @@
 #pragma once
 #include "interfaces/solid.hpp"
-#include "linear/near_null_space.hpp"
+#include "linear/soft_nodes.hpp"
 
 namespace lockstep {
 
@@ -57,8 +57,8 @@ class NearNullSpaces {
  public:
   virtual ~NearNullSpaces() = default;
   /// The motions at the present positions that D does not resist, on `dof_map`, of models with
-  /// nodes, without `mass`. Collective.
-  virtual NearNullSpace near_null_space() const = 0;
+  /// nodes. Collective.
+  virtual RigidMotions near_null_space() const = 0;
 };
 
 /// What only pictures and tables show.

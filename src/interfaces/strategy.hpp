@@ -1,43 +1,10 @@
 #pragma once
 #include <string>
-#include <vector>
 
+#include "interfaces/block_system.hpp"
 #include "interfaces/plug_in.hpp"
-#include "linear/near_null_space.hpp"
 
 namespace lockstep {
-
-/// The coupled system, Eq. 16, as named blocks:
-///
-///   [  A    -B ] [ p̂   ]   [  pressure rhs ]
-///   [ -B^T  -C ] [ V_S ] = [ -solid rhs    ]
-///
-/// with A = V G_f^T rho^-1 G_f, B = V G_c^T W, C = M̃_S - dt D (SPD). The solid block may be absent
-/// (no dynamic solids): then `solid_block` and `coupling_transposed` are null and the system is A p̂
-/// = rhs.
-struct BlockSystem {
-  RCP<const LinearOperator> pressure_block;  ///< A
-  RCP<const CrsMatrix>
-      coupling_transposed;  ///< B^T, solid dofs x pressure unknowns. B is never stored.
-  RCP<const LinearOperator> solid_block;  ///< C
-  NearNullSpace near_null_space;          ///< of dt D in C; empty without soft solids
-  /// Orthonormal basis of the null space over (p̂, V_S = 0); empty for a regular system.
-  std::vector<RCP<const Vector>> null_space;
-  /// Null vectors of A alone (regions without a Dirichlet face), for preconditioners. Orthonormal.
-  std::vector<RCP<const Vector>> pressure_null_space;
-  /// Rows of C and the pressure rows that belong to each other's named group, for reports.
-  std::string name = "coupled system";
-  long geometry_stamp = 0;  ///< changes whenever A, B or the maps change
-  long solid_stamp = 0;     ///< changes whenever C changes
-
-  bool has_solid() const { return !solid_block.is_null(); }
-};
-
-/// A right-hand side or solution of the block system. `solid` is null when the system has no solid.
-struct BlockVector {
-  RCP<Vector> pressure;
-  RCP<Vector> solid;
-};
 
 /// What a solve has to reach: each block's residual, scaled to that block's own right-hand side (or
 /// to the largest term of its rows, if that is larger), at most `tolerance`.

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "base/errors.hpp"
-#include "linear/null_space.hpp"
 #include "linear/vector_sums.hpp"
 
 namespace lockstep {
@@ -80,8 +79,8 @@ class RoundOff {
 /// Kernels made of two operators.
 class Actions final : public ConjugateGradientKernels {
  public:
-  Actions(const Action& op, const Action& preconditioner,
-          const std::vector<RCP<const Vector>>& null_space, const RCP<const Map>& map)
+  Actions(const Action& op, const Action& preconditioner, const NullSpace& null_space,
+          const RCP<const Map>& map)
       : op_(op),
         preconditioner_(preconditioner),
         null_space_(null_space),
@@ -107,7 +106,7 @@ class Actions final : public ConjugateGradientKernels {
  private:
   const Action& op_;
   const Action& preconditioner_;
-  const std::vector<RCP<const Vector>>& null_space_;
+  const NullSpace& null_space_;
   Vector z_, direction_, product_;
 };
 
@@ -132,6 +131,8 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, Vector& r, Vector& x,
         "{}: the preconditioner is not positive definite (r . M r = {:.3e} in iteration {}, "
         "|r| = {:.3e}). Choose another sub-block inverse.",
         request.name, r_dot_z, iteration, r_norm);
+    if (std::sqrt(r_dot_z) <= request.preconditioned_target)
+      break;
     const double curvature = kernels.advance_direction(previous == 0 ? 0 : r_dot_z / previous);
     if (round_off.has_lost(r_norm, curvature))
       break;

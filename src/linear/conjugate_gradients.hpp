@@ -1,9 +1,8 @@
 #pragma once
 #include <functional>
 #include <string>
-#include <vector>
 
-#include "linear/types.hpp"
+#include "linear/null_space.hpp"
 
 namespace lockstep {
 
@@ -15,7 +14,7 @@ struct ConjugateGradientsRequest {
   double target = 0;  ///< stop when the recurrence residual's 2-norm is at most this
   int maximum_iterations = 0;
   /// Null vectors of the operator, orthonormal: kept out of every preconditioned residual.
-  std::vector<RCP<const Vector>> null_space;
+  NullSpace null_space;
   /// Asked when the target is reached: the target for this x, if it depends on x. The iteration
   /// goes on if the new one is not reached yet. Collective.
   std::function<double(const Vector& x)> update_target = {};
@@ -23,6 +22,9 @@ struct ConjugateGradientsRequest {
   /// whenever |r| has fallen by another 1e-3, so that rounding never shows ("reliable updates",
   /// Clark et al. 2010). False ends the iteration. Collective.
   std::function<bool(const Vector& x, Vector& r)> true_residual = {};
+  /// Stop as well when sqrt(r . M r) is at most this: the residual in the preconditioner's norm,
+  /// which knows of units.
+  double preconditioned_target = 0;
 };
 
 /// What an iteration does to its vectors, in as few passes over memory as the operators allow. The

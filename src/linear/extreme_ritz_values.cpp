@@ -10,8 +10,8 @@
 namespace lockstep {
 
 RitzValues extreme_ritz_values(const Action& op, const Action& preconditioner,
-                               const RCP<const Map>& map,
-                               const std::vector<RCP<const Vector>>& null_space, int n_steps) {
+                               const RCP<const Map>& map, const NullSpace& null_space,
+                               int n_steps) {
   Vector r(map), z(map), d(map), q(map), seed(map);
   pseudo_random(seed, 1);
   op(seed, r);  // in the range of K, also where K has empty rows

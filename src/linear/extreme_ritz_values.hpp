@@ -11,7 +11,6 @@ struct RitzValues {
 /// of K, both symmetric positive (semi)definite: Lanczos' by way of `n_steps` of conjugate
 /// gradients from a pseudo-random vector that does not depend on the ranks. Collective.
 RitzValues extreme_ritz_values(const Action& op, const Action& preconditioner,
-                               const RCP<const Map>& map,
-                               const std::vector<RCP<const Vector>>& null_space, int n_steps);
+                               const RCP<const Map>& map, const NullSpace& null_space, int n_steps);
 
 }  // namespace lockstep

@@ -5,8 +5,8 @@
 
 #include "linear/action_operator.hpp"
 #include "linear/block_diagonal.hpp"
-#include "linear/local_rows.hpp"
 #include "linear/overlap.hpp"
+#include "linear/row_builder.hpp"
 
 namespace lockstep {
 
@@ -25,27 +25,21 @@ MatrixPart::MatrixPart(const CrsMatrix& matrix, const std::vector<bool>& is_insi
   }
   const auto numbers_of_columns = on_columns(matrix, numbers);
   const auto number = numbers_of_columns->getData();
-  std::vector<GlobalIndex> ids;
-  for (const double id : number) {
-    if (id >= 0)
-      ids.push_back(static_cast<GlobalIndex>(id));
-  }
-  const LocalColumns columns(map_, ids);
+  RowBuilder part(map_);
   std::vector<int> column_of;
   for (const double id : number)
-    column_of.push_back(id < 0 ? -1 : columns.local(static_cast<GlobalIndex>(id)));
-  LocalRows part(columns);
+    column_of.push_back(id < 0 ? -1 : part.column(static_cast<GlobalIndex>(id)));
   for (const int row : rows_) {
     typename CrsMatrix::local_inds_host_view_type indices;
     typename CrsMatrix::values_host_view_type values;
     matrix.getLocalRowView(row, indices, values);
     for (std::size_t k = 0; k < indices.extent(0); ++k) {
       if (column_of[indices(k)] >= 0)
-        part.add(column_of[indices(k)], values(k));
+        part.add_at(column_of[indices(k)], values(k));
     }
     part.end_row();
   }
-  matrix_ = part.matrix();
+  matrix_ = part.finish();
 }
 
 RCP<Vector> MatrixPart::restricted(const Vector& all) const {

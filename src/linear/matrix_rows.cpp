@@ -5,37 +5,29 @@
 #include <Tpetra_Vector.hpp>
 
 #include "base/errors.hpp"
+#include "linear/row_builder.hpp"
 
 namespace lockstep {
 
 RCP<CrsMatrix> matrix_from_rows(const RCP<const Map>& row_map,
                                 const std::vector<std::vector<Entry>>& rows,
-                                const RCP<const Map>& domain, const RCP<const Map>& range) {
-  Teuchos::Array<std::size_t> counts(rows.size());
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    counts[row] = rows[row].size();
+                                const RCP<const Map>& domain) {
+  RowBuilder builder(row_map, domain);
+  std::size_t n_entries = 0;
+  for (const auto& row : rows)
+    n_entries += row.size();
+  builder.reserve(n_entries);
+  for (const auto& row : rows) {
+    for (const Entry& entry : row)
+      builder.add(entry.column, entry.value);
+    builder.end_row();
   }
-  const auto matrix = rcp(new CrsMatrix(row_map, counts()));
-  std::vector<GlobalIndex> columns;
-  std::vector<double> values;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    columns.clear();
-    values.clear();
-    for (const Entry& entry : rows[row]) {
-      columns.push_back(entry.column);
-      values.push_back(entry.value);
-    }
-    if (!columns.empty())
-      matrix->insertGlobalValues(row_map->getGlobalElement(static_cast<int>(row)),
-                                 static_cast<int>(columns.size()), values.data(), columns.data());
-  }
-  matrix->fillComplete(domain, range);
-  return matrix;
+  return builder.finish();
 }
 
 RCP<CrsMatrix> matrix_from_rows(const RCP<const Map>& map,
                                 const std::vector<std::vector<Entry>>& rows) {
-  return matrix_from_rows(map, rows, map, map);
+  return matrix_from_rows(map, rows, map);
 }
 
 std::vector<std::vector<Entry>> rows_of(const CrsMatrix& matrix) {

@@ -26,11 +26,10 @@ struct Entry {
   double value;
 };
 
-/// Assembles a matrix from this rank's rows, in the order of `row_map`; entries of the same column
-/// are summed. Collective.
+/// A matrix from this rank's rows, in the order of `row_map`, by a RowBuilder. Collective.
 RCP<CrsMatrix> matrix_from_rows(const RCP<const Map>& row_map,
                                 const std::vector<std::vector<Entry>>& rows,
-                                const RCP<const Map>& domain_map, const RCP<const Map>& range_map);
+                                const RCP<const Map>& domain_map);
 /// The square case.
 RCP<CrsMatrix> matrix_from_rows(const RCP<const Map>& map,
                                 const std::vector<std::vector<Entry>>& rows);

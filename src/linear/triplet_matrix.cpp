@@ -1,12 +1,12 @@
 #include "linear/triplet_matrix.hpp"
 
-#include <Tpetra_CrsMatrix.hpp>
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "base/errors.hpp"
+#include "linear/row_builder.hpp"
 
 namespace lockstep {
 namespace {
@@ -120,24 +120,20 @@ RCP<CrsMatrix> assemble_triplets(std::vector<Triplet> triplets, const RCP<const 
     triplets = send_to_owners(triplets, *row_map);
     sort_and_merge(triplets);
   }
-  std::vector<std::size_t> counts(row_map->getNodeNumElements(), 0);
-  for (const Triplet& t : triplets)
-    ++counts[row_map->getLocalElement(t.row)];
-  const auto matrix = rcp(new CrsMatrix(row_map, Teuchos::arrayViewFromVector(counts)));
-  std::vector<GlobalIndex> columns;
-  std::vector<double> values;
-  for (std::size_t begin = 0, end; begin < triplets.size(); begin = end) {
-    columns.clear();
-    values.clear();
-    for (end = begin; end < triplets.size() && triplets[end].row == triplets[begin].row; ++end) {
-      columns.push_back(triplets[end].column);
-      values.push_back(triplets[end].value);
-    }
-    matrix->insertGlobalValues(triplets[begin].row, Teuchos::arrayViewFromVector(columns),
-                               Teuchos::arrayViewFromVector(values));
+  // Of each local row the first of its triplets.
+  const int n_rows = static_cast<int>(row_map->getNodeNumElements());
+  std::vector<std::size_t> first(n_rows, triplets.size());
+  for (std::size_t i = triplets.size(); i-- > 0;)
+    first[row_map->getLocalElement(triplets[i].row)] = i;
+  RowBuilder rows(row_map, domain_map);
+  rows.reserve(triplets.size());
+  for (int row = 0; row < n_rows; ++row) {
+    for (std::size_t i = first[row];
+         i < triplets.size() && triplets[i].row == triplets[first[row]].row; ++i)
+      rows.add(triplets[i].column, triplets[i].value);
+    rows.end_row();
   }
-  matrix->fillComplete(domain_map, row_map);
-  return matrix;
+  return rows.finish();
 }
 
 }  // namespace lockstep

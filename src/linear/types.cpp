@@ -50,8 +50,13 @@ RCP<Vector> make_vector(const RCP<const Map>& map) {
 }
 
 RCP<const LinearOperator> as_operator(const RCP<const CrsMatrix>& matrix) {
+  // Making a space takes collectives: one serves both sides where it can.
+  const auto range = Thyra::createVectorSpace<double, int, GlobalIndex>(matrix->getRangeMap());
+  const bool is_square = matrix->getDomainMap().get() == matrix->getRangeMap().get();
   return Thyra::createConstLinearOp<double, int, GlobalIndex>(
-      Teuchos::rcp_implicit_cast<const TpetraOperator>(matrix));
+      Teuchos::rcp_implicit_cast<const TpetraOperator>(matrix), range,
+      is_square ? range
+                : Thyra::createVectorSpace<double, int, GlobalIndex>(matrix->getDomainMap()));
 }
 
 RCP<const CrsMatrix> assembled(const RCP<const LinearOperator>& op) {

@@ -23,6 +23,8 @@ double sum_of_products(const A* a, const B* b, std::ptrdiff_t n) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
+/// The sum of values likewise. Local.
+double sum(const double* values, std::ptrdiff_t n);
 /// x . y over all ranks, as fast as memory: Kokkos Kernels' adds one term at a time. Collective.
 double dot(const Vector& x, const Vector& y);
 /// The 2-norm likewise. Collective.

@@ -10,7 +10,7 @@ namespace lockstep {
 
 RCP<Vector> added_mass_diagonal(const BlockSystem& system, const RCP<const Map>& map) {
   const auto result = make_vector(map);
-  const auto solid = assembled(system.solid_block);
+  const auto solid = assembled(system.solids.op);
   if (solid.is_null())
     return result;
   const CrsMatrix& coupling = *system.coupling_transposed;

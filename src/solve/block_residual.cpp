@@ -1,8 +1,12 @@
 #include "solve/block_residual.hpp"
 
+#include <fmt/format.h>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
 
 #include "linear/matrix_rows.hpp"
 #include "linear/residual_operator.hpp"
@@ -37,7 +41,7 @@ void add_term(Vector& residual, const Vector& term, double sign, double& scale) 
 void subtract_product(const BlockSystem& system, const BlockVector& rhs,
                       const BlockVector& solution, BlockResidual& result) {
   Vector& r1 = *result.vector.pressure;
-  if (const auto* op = residual_operator_of(system.pressure_block)) {
+  if (const auto* op = residual_operator_of(system.pressure.op)) {
     const auto norms = op->residual(*rhs.pressure, *solution.pressure, r1);
     result.pressure_scale = std::max(norms.rhs, norms.product);
     result.pressure = norms.residual;
@@ -46,7 +50,7 @@ void subtract_product(const BlockSystem& system, const BlockVector& rhs,
   Tpetra::deep_copy(r1, *rhs.pressure);
   result.pressure_scale = norm(r1);
   Vector term(r1.getMap());
-  apply(*system.pressure_block, *solution.pressure, term);
+  apply(*system.pressure.op, *solution.pressure, term);
   add_term(r1, term, -1, result.pressure_scale);
   result.pressure = norm(r1);
 }
@@ -59,7 +63,7 @@ SolidResidual solid_row_residual(const BlockSystem& system, const BlockVector& r
   add_term(*result.vector, *rhs.solid, -1, result.scale);
   system.coupling_transposed->apply(*solution.pressure, term);
   add_term(*result.vector, term, 1, result.scale);
-  apply(*system.solid_block, *solution.solid, term);
+  apply(*system.solids.op, *solution.solid, term);
   add_term(*result.vector, term, 1, result.scale);
   return result;
 }
@@ -90,8 +94,24 @@ void find_block_residual(const BlockSystem& system, const BlockVector& rhs,
   const SolidResidual row = solid_row_residual(system, rhs, solution);
   result.vector.solid = row.vector;
   result.solid_scale =
-      std::max(row.scale, least_force * gross_force(system.solid_block, *solution.solid));
+      std::max(row.scale, least_force * gross_force(system.solids.op, *solution.solid));
   result.solid = norm(*row.vector);
+}
+
+std::string by_name(const BlockGroup& group, const Vector& vector, double scale) {
+  if (group.blocks.size() < 2)
+    return "";
+  const auto values = vector.getData();
+  std::vector<double> squares;
+  for (const Block& block : group.blocks)
+    squares.push_back(sum_of_products(values.getRawPtr() + block.begin,
+                                      values.getRawPtr() + block.begin, block.end - block.begin));
+  sum_all(vector.getMap()->getComm(), squares.data(), static_cast<int>(squares.size()));
+  std::vector<std::string> parts;
+  for (std::size_t b = 0; b < squares.size(); ++b)
+    parts.push_back(fmt::format("{} {:.2e}", group.blocks[b].name,
+                                scale > 0 ? std::sqrt(squares[b]) / scale : 0));
+  return fmt::format(" ({})", fmt::join(parts, ", "));
 }
 
 }  // namespace lockstep

@@ -33,4 +33,8 @@ BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
 void find_block_residual(const BlockSystem& system, const BlockVector& rhs,
                          const BlockVector& solution, BlockResidual& result);
 
+/// " (name norm, name norm)", of the blocks of a group in a vector, over `scale`; empty for a group
+/// of fewer than two. Collective.
+std::string by_name(const BlockGroup& group, const Vector& vector, double scale);
+
 }  // namespace lockstep

@@ -34,11 +34,11 @@ void append(const CrsMatrix& matrix, double factor, GlobalIndex column_shift, in
 /// Rows and columns of the multipliers; rank 0 owns them, and the other ranks send their entries.
 void add_border(const BlockSystem& system, double scale, GlobalIndex first_id, CrsMatrix& matrix) {
   for (std::size_t k = 0; k < system.null_space.size(); ++k) {
-    const Vector& null_vector = *system.null_space[k];
-    const auto values = null_vector.getData();
+    const RCP<const Vector> null_vector = system.null_space.vector(k);
+    const auto values = null_vector->getData();
     const GlobalIndex multiplier = first_id + static_cast<GlobalIndex>(k);
     for (int i = 0; i < static_cast<int>(values.size()); ++i) {
-      const GlobalIndex row = null_vector.getMap()->getGlobalElement(i);
+      const GlobalIndex row = null_vector->getMap()->getGlobalElement(i);
       const double value = scale * values[i];
       if (value == 0)
         continue;
@@ -51,7 +51,7 @@ void add_border(const BlockSystem& system, double scale, GlobalIndex first_id, C
 }  // namespace
 
 MergedSystem merge(const BlockSystem& system) {
-  const auto a = need_assembled(system.pressure_block, "pressure block", system);
+  const auto a = need_assembled(system.pressure.op, "pressure block", system);
   MergedSystem merged;
   merged.n_local_pressure = static_cast<int>(a->getNodeNumRows());
   const auto comm = a->getComm();
@@ -65,7 +65,7 @@ MergedSystem merge(const BlockSystem& system) {
   }
   append(*a, 1, 0, 0, rows);
   if (system.has_solid()) {
-    const auto c = need_assembled(system.solid_block, "solid block", system);
+    const auto c = need_assembled(system.solids.op, "solid block", system);
     n_solid = static_cast<GlobalIndex>(c->getGlobalNumRows());
     merged.n_local_solid = static_cast<int>(c->getNodeNumRows());
     rows.resize(merged.n_local_pressure + merged.n_local_solid);

@@ -74,13 +74,12 @@ T value_or(const ParameterList& list, const std::string& name, T standard) {
 
 RCP<const LinearOperator> inner_iteration(const RCP<const LinearOperator>& op,
                                           const ParameterList& list, const std::string& name,
-                                          const NearNullSpace& near_null_space) {
+                                          const SoftNodes& soft_nodes) {
   const double tolerance = value_or(list, "Tolerance", 1e-10);
   const int most = value_or(list, "Maximum Iterations", 1000);
   if (!list.isSublist("Preconditioner"))
     return conjugate_gradient_inverse(op, tolerance, most, name);
-  const auto inner =
-      preconditioner_from_list(op, list.sublist("Preconditioner"), name, near_null_space);
+  const auto inner = preconditioner_from_list(op, list.sublist("Preconditioner"), name, soft_nodes);
   return conjugate_gradient_inverse(op, {inner, Teuchos::null, tolerance, most, name, nullptr});
 }
 
@@ -128,13 +127,13 @@ void check_preconditioner_list(const ParameterList& list, const std::string& whe
 RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperator>& op,
                                                    const ParameterList& list,
                                                    const std::string& name,
-                                                   const NearNullSpace& near_null_space) {
+                                                   const SoftNodes& soft_nodes) {
   check_preconditioner_list(list, "the inverse of the " + name);
   const std::string type = type_of(list, name);
   if (type == "Exact")
     return exact_inverse(op, name);
   if (type == "Conjugate Gradients")
-    return inner_iteration(op, list, name, near_null_space);
+    return inner_iteration(op, list, name, soft_nodes);
   const auto matrix = assembled(op);
   check_solve(
       !matrix.is_null(),
@@ -148,18 +147,18 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
   if (type == "Jacobi")
     return as_operator(jacobi_inverse(*matrix, name));
   if (type == "Additive Multilevel")
-    return additive_multilevel_inverse(matrix, near_null_space, name);
+    return additive_multilevel_inverse(matrix, soft_nodes, name);
   if (type == "Block Diagonal")
     return as_operator(
         block_diagonal_inverse(matrix, value_or(list, "Largest Block", largest_dense_block), name)
             .inverse);
   if (type == "Block Diagonal Mass")
-    return block_diagonal_mass_inverse(matrix, near_null_space, name);
+    return block_diagonal_mass_inverse(matrix, soft_nodes, name);
   ParameterList package = without_type(list);
   if (type == "MueLu" && package.numParams() == 0)
     package = default_muelu();
-  if (type == "MueLu" && !near_null_space.empty())
-    return rigid_motion_multigrid(matrix, near_null_space, package, name);
+  if (type == "MueLu" && !soft_nodes.empty())
+    return rigid_motion_multigrid(matrix, soft_nodes, package, name);
   const auto inverse = stratimikos_preconditioner(as_operator(matrix), type, package, name);
   if (type != "MueLu")
     return inverse;
@@ -168,15 +167,31 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
                          [inverse](const Vector& x, Vector& y) { apply(*inverse, x, y); });
 }
 
+void declare_inverse(ParameterList& list, const std::string& name, const std::string& doc) {
+  declare_free_sublist(
+      list, name,
+      doc +
+          " \"Type\" is Ifpack2 or MueLu (the other parameters go to that package unchanged), "
+          "Incomplete Cholesky, Direct, Block Diagonal, Block Diagonal Mass, Jacobi, Additive "
+          "Multilevel, Conjugate Gradients or Exact.");
+}
+
+ParameterList inverse_list(const ParameterList& list, const std::string& name,
+                           const ParameterList& standard) {
+  if (!list.isSublist(name) || list.sublist(name).numParams() == 0)
+    return standard;
+  check_preconditioner_list(list.sublist(name), "\"" + name + "\"");
+  return list.sublist(name);
+}
+
 RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
-                                           const NearNullSpace& near_null_space,
-                                           const std::string& name) {
+                                           const SoftNodes& soft_nodes, const std::string& name) {
   const auto matrix = assembled(op);
-  if (matrix.is_null() || !is_stiff(stiffness_number(*matrix, near_null_space)))
+  if (matrix.is_null() || !is_stiff(stiffness_number(*matrix, soft_nodes)))
     return Teuchos::null;
   ParameterList list;
   list.set("Type", "MueLu");
-  return InverseByCost(op, near_null_space, name).with([&](const InverseByCost::Rest& rest) {
+  return InverseByCost(op, soft_nodes, name).with([&](const InverseByCost::Rest& rest) {
     return preconditioner_from_list(rest.op, list, name, rest.motions);
   });
 }

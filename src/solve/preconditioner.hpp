@@ -1,8 +1,8 @@
 #pragma once
-#include <Teuchos_ParameterList.hpp>
 #include <string>
 
-#include "linear/near_null_space.hpp"
+#include "linear/soft_nodes.hpp"
+#include "parameters/parameter_list.hpp"
 
 namespace lockstep {
 
@@ -15,7 +15,7 @@ namespace lockstep {
 ///                           incomplete_cholesky_inverse
 ///   "Direct"                gathered KLU2
 ///   "Block Diagonal"        exact inverses of small dense blocks ("Largest Block", 24)
-///   "Block Diagonal Mass"   the same of the mass in C = M̃ - dt D, see near_null_space.hpp
+///   "Block Diagonal Mass"   the same of the mass in C = M̃ - dt D, see soft_nodes.hpp
 ///   "Jacobi"                the diagonal
 ///   "Additive Multilevel"   the same on coarser and coarser aggregates of nodes besides, see
 ///                           additive_multilevel_inverse
@@ -27,16 +27,23 @@ namespace lockstep {
 RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperator>& op,
                                                    const Teuchos::ParameterList& list,
                                                    const std::string& name,
-                                                   const NearNullSpace& near_null_space = {});
+                                                   const SoftNodes& soft_nodes = {});
 
 /// For a soft solid's C in a larger system: an approximate inverse, direct or "MueLu", if dt D
 /// outweighs its mass (is_stiff), else null, and the diagonal will do. Collective.
 RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
-                                           const NearNullSpace& near_null_space,
-                                           const std::string& name);
+                                           const SoftNodes& soft_nodes, const std::string& name);
 
 /// Throws InputError unless the list is one that preconditioner_from_list takes. `where` is for
 /// messages.
 void check_preconditioner_list(const Teuchos::ParameterList& list, const std::string& where);
+
+/// Declares a sublist that preconditioner_from_list reads.
+void declare_inverse(ParameterList& list, const std::string& name, const std::string& doc);
+
+/// The sublist `name` of `list`, or `standard` if it is absent or
+/// empty. Throws InputError if preconditioner_from_list would not take it.
+ParameterList inverse_list(const ParameterList& list, const std::string& name,
+                           const ParameterList& standard);
 
 }  // namespace lockstep

@@ -16,7 +16,7 @@ StratimikosReport solve_with_stratimikos(const BlockSystem& system, const BlockV
                                          BlockVector& solution,
                                          const Teuchos::ParameterList& list) {
   check_no_empty_rank(system, "Stratimikos");
-  const auto op = system.has_solid() ? block_operator(system) : system.pressure_block;
+  const auto op = system.has_solid() ? block_operator(system) : system.pressure.op;
   const BlockVector b = signed_rhs(rhs);
   const auto solver = linear_op_with_solve(op, list);
   StratimikosReport report;

@@ -43,12 +43,11 @@ void write_vector(Hdf5File& file, const std::string& group, const Vector& vector
   file.write_slices(group + "/values", values);
 }
 
-void write_vectors(Hdf5File& file, const std::string& group,
-                   const std::vector<RCP<const Vector>>& vectors) {
+void write_null_space(Hdf5File& file, const std::string& group, const NullSpace& space) {
   file.create_group(group);
-  file.write_attribute<long long>(group, "size", static_cast<long long>(vectors.size()));
-  for (std::size_t i = 0; i < vectors.size(); ++i)
-    write_vector(file, fmt::format("{}/{}", group, i), *vectors[i]);
+  file.write_attribute<long long>(group, "size", static_cast<long long>(space.size()));
+  for (std::size_t i = 0; i < space.size(); ++i)
+    write_vector(file, fmt::format("{}/{}", group, i), *space.vector(i));
 }
 
 /// Where the rows of a stencil lie: nothing that `read_system` wants.
@@ -207,8 +206,8 @@ RCP<Vector> read_vector(const Hdf5File& file, const std::string& group, GlobalIn
   return vector;
 }
 
-std::vector<RCP<const Vector>> read_vectors(const Hdf5File& file, const std::string& group,
-                                            GlobalIndex n, const RCP<const Map>& map) {
+NullSpace read_null_space(const Hdf5File& file, const std::string& group, GlobalIndex n,
+                          const RCP<const Map>& map) {
   if (!file.exists(group))
     refuse(file, fmt::format("'{}' is missing", group));
   const auto n_vectors = file.read_attribute<long long>(group, "size");
@@ -221,7 +220,7 @@ std::vector<RCP<const Vector>> read_vectors(const Hdf5File& file, const std::str
     if (!(vectors.back()->norm2() > 0))
       refuse(file, fmt::format("'{}' is zero", name));
   }
-  return vectors;
+  return null_space_of(vectors);
 }
 
 /// Reads C, and gives each unknown that is added the largest entry found, so that scales stay.
@@ -267,17 +266,17 @@ StoredSystem read_parts(const Hdf5File& file) {
   StoredSystem stored;
   BlockSystem& system = stored.system;
   system.name = file.read_attribute<std::string>("/", "name");
-  system.geometry_stamp = system.solid_stamp = 1;
+  system.geometry_stamp = system.solids.stamp = 1;
   const GlobalIndex n_pressure = n_unknowns(file, "pressure unknowns", 1);
   const GlobalIndex n_solid = n_unknowns(file, "solid unknowns", 0);
   check_size(file, "/pressure rhs", n_pressure);
   // Cells all of whose faces are mixed have an empty row.
   std::vector<Triplet> pressure_entries = read_square(file, "/A", n_pressure, 1);
   const auto pressures = even_map(n_pressure, comm);
-  system.pressure_block = as_operator(
+  system.pressure.op = as_operator(
       RCP<const CrsMatrix>(assemble_triplets(std::move(pressure_entries), pressures, pressures)));
-  system.null_space = read_vectors(file, "/null space", n_pressure, pressures);
-  system.pressure_null_space = read_vectors(file, "/pressure null space", n_pressure, pressures);
+  system.null_space = read_null_space(file, "/null space", n_pressure, pressures);
+  system.pressure_null_space = read_null_space(file, "/pressure null space", n_pressure, pressures);
   stored.rhs.pressure = read_vector(file, "/pressure rhs", n_pressure, pressures);
   if (n_solid == 0)
     return stored;
@@ -285,7 +284,7 @@ StoredSystem read_parts(const Hdf5File& file) {
   const auto solids = even_map(std::max<GlobalIndex>(n_solid, comm->getSize()), comm);
   system.coupling_transposed = assemble_triplets(
       read_entries(file, "/B transposed", n_solid, n_pressure), solids, pressures);
-  system.solid_block = as_operator(read_solid_block(file, n_solid, solids));
+  system.solids.op = as_operator(read_solid_block(file, n_solid, solids));
   stored.rhs.solid = read_vector(file, "/solid rhs", n_solid, solids);
   return stored;
 }
@@ -293,9 +292,9 @@ StoredSystem read_parts(const Hdf5File& file) {
 }  // namespace
 
 void write_system(const std::string& path, const BlockSystem& system, const BlockVector& rhs) {
-  const auto pressure = assembled_block(system.pressure_block, "pressure block");
+  const auto pressure = assembled_block(system.pressure.op, "pressure block");
   const auto solid =
-      system.has_solid() ? assembled_block(system.solid_block, "solid block") : Teuchos::null;
+      system.has_solid() ? assembled_block(system.solids.op, "solid block") : Teuchos::null;
   Hdf5File file = Hdf5File::create(pressure->getRowMap()->getComm(), path);
   file.write_attribute<std::string>("/", "kind", file_kind);
   file.write_attribute<std::string>("/", "name", system.name);
@@ -304,9 +303,9 @@ void write_system(const std::string& path, const BlockSystem& system, const Bloc
                                   solid.is_null() ? 0 : solid->getGlobalNumRows());
   write_matrix(file, "/A", *pressure);
   write_vector(file, "/pressure rhs", *rhs.pressure);
-  write_vectors(file, "/null space", system.null_space);
-  write_vectors(file, "/pressure null space", system.pressure_null_space);
-  if (const FaceCoefficients* stencil = stencil_of(system.pressure_block))
+  write_null_space(file, "/null space", system.null_space);
+  write_null_space(file, "/pressure null space", system.pressure_null_space);
+  if (const FaceCoefficients* stencil = stencil_of(system.pressure.op))
     write_lattice(file, *stencil);
   if (!solid.is_null()) {
     write_matrix(file, "/B transposed", *system.coupling_transposed);

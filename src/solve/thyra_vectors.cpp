@@ -46,10 +46,10 @@ RCP<const LinearOperator> block_operator(const BlockSystem& system, double s, do
     return factor == 1 ? op : Thyra::scale<double>(factor, op);
   };
   const auto coupling = as_operator(system.coupling_transposed);
-  return Thyra::block2x2<double>(scaled(s * s, system.pressure_block),
+  return Thyra::block2x2<double>(scaled(s * s, system.pressure.op),
                                  Thyra::scale<double>(-s * t, Thyra::adjoint<double>(coupling)),
                                  Thyra::scale<double>(-s * t, coupling),
-                                 Thyra::scale<double>(-t * t, system.solid_block), system.name);
+                                 Thyra::scale<double>(-t * t, system.solids.op), system.name);
 }
 
 BlockVector signed_rhs(const BlockVector& rhs) {
@@ -63,7 +63,7 @@ BlockVector signed_rhs(const BlockVector& rhs) {
 }
 
 void check_no_empty_rank(const BlockSystem& system, const std::string& who) {
-  const auto pressure_map = domain_map(*system.pressure_block);
+  const auto pressure_map = domain_map(*system.pressure.op);
   const Communicator comm = pressure_map->getComm();
   const auto fewest = [&](const Map& map) {
     return min_all(comm, static_cast<double>(map.getNodeNumElements()));
@@ -72,7 +72,7 @@ void check_no_empty_rank(const BlockSystem& system, const std::string& who) {
               "{} cannot solve the {}: some rank owns no pressure unknown, with which the inner "
               "products of Belos go wrong. Use fewer ranks, or the strategy schur-cg.",
               who, system.name);
-  check_solve(!system.has_solid() || fewest(*domain_map(*system.solid_block)) > 0,
+  check_solve(!system.has_solid() || fewest(*domain_map(*system.solids.op)) > 0,
               "{} cannot solve the {}: some rank owns no solid unknown, with which the inner "
               "products of Belos go wrong. Spread the solid unknowns or pad them with inert ones, "
               "or use the strategy schur-cg.",

@@ -58,7 +58,7 @@ void declare_solver(ParameterList& scene, const StrategyRegistry& strategies) {
       solver, "Newton Iterations", 1,
       "Coupled solves in each of S1 and S2, with fully-implicit solids linearised anew "
       "about the motion of the one before. 1: linearised at the present positions.");
-  declare_positive(solver, "Viscous Tolerance", 1e-10, "Relative residual of the viscous CG [1].");
+  declare_viscous_solve(solver);
   declare_typed_sublist(solver, "Strategy", "The solver strategy.", strategies.schemas(),
                         "schur-cg");
 }
@@ -219,7 +219,7 @@ SceneOptions scene_options(const ParameterList& scene) {
   const ParameterList& solver = scene.sublist("Solver");
   options.stepper.tolerance = solver.get<double>("Tolerance");
   options.stepper.newton_iterations = solver.get<int>("Newton Iterations");
-  options.stepper.viscous_tolerance = solver.get<double>("Viscous Tolerance");
+  options.stepper.viscous = viscous_options(solver);
   return options;
 }
 

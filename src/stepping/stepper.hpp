@@ -14,8 +14,8 @@
 namespace lockstep {
 
 struct StepperOptions {
-  double tolerance = 1e-8;           ///< of the S1, F2 and S2 solves, per block
-  double viscous_tolerance = 1e-10;  ///< relative, of the viscous CG
+  double tolerance = 1e-8;  ///< of the S1, F2 and S2 solves, per block
+  ViscousOptions viscous;
   int newton_iterations = 1;         ///< coupled solves each of S1 and S2 takes
   bool incremental_pressure = true;  ///< the viscous solve reads the last step's pressure
   bool rotational_pressure = true;   ///< and corrects it by the divergence that it leaves

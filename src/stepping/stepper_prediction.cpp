@@ -76,12 +76,12 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
     pressure = expected_pressure(context, report);
   ScopedPhase phase(timers_, "viscosity");
   RCP<const LinearOperator> block;
-  NearNullSpace near_null_space;
+  SoftNodes soft_nodes;
   RCP<Vector> row;
   if (coupled()) {
     const BlockSystem& blocks = system_.blocks(dt);
-    block = blocks.solid_block;
-    near_null_space = blocks.near_null_space;
+    block = blocks.solids.op;
+    soft_nodes = blocks.soft_nodes;
     const RCP<Vector> momentum = components_.solids->explicit_momentum(context.time, dt);
     if (!pressure.is_null() && sides_.unseen_buoyancy)
       sides_.unseen_buoyancy->add_unseen_buoyancy(fluid.gravity(), dt, *momentum);
@@ -95,8 +95,8 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
   const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
   Prediction<dim> prediction;
   prediction.viscous = solve_viscous<dim>(*viscous, *sides_.viscous_fluid, *components_.solids,
-                                          *sides_.viscous_coupling, block, near_null_space, row, dt,
-                                          context.constraints, options_.viscous_tolerance);
+                                          *sides_.viscous_coupling, block, soft_nodes, row, dt,
+                                          context.constraints, options_.viscous);
   report.viscous_iterations += prediction.viscous.iterations;
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)

@@ -101,7 +101,7 @@ Problem read_problem(const std::string& path, const Communicator& comm) {
   const StoredSystem stored = read_system(path, comm);
   problem.system = stored.system;
   check_input(!problem.system.has_solid(), "{} has a solid block: dump F2 of a scene.", path);
-  problem.matrix = assembled(problem.system.pressure_block);
+  problem.matrix = assembled(problem.system.pressure.op);
   const Hdf5File file = Hdf5File::open(comm, path);
   const auto places = file.read_all<long long>("/lattice/places");
   const auto cells = file.read_all<long long>("/lattice/cells");
@@ -116,9 +116,7 @@ Problem read_problem(const std::string& path, const Communicator& comm) {
   }
   problem.rhs = make_vector(problem.matrix->getRowMap());
   pseudo_random(*problem.rhs, 1);
-  for (int pass = 0; pass < 2; ++pass)
-    for (const auto& direction : problem.system.null_space)
-      problem.rhs->update(-direction->dot(*problem.rhs), *direction, 1);
+  relative_part_removed(problem.system.null_space, *problem.rhs);
   return problem;
 }
 
@@ -126,7 +124,7 @@ Outcome lockstep_multigrid(const Problem& problem, double tolerance) {
   BlockSystem system = problem.system;
   const RCP<const StencilOperator> stencil =
       rcp(new StoredStencil(problem.matrix, coefficients_of(problem)));
-  system.pressure_block = as_operator(stencil);
+  system.pressure.op = as_operator(stencil);
   StrategyRegistry strategies("solver strategy");
   register_strategies(strategies);
   const auto strategy = strategies.create("schur-cg", strategies.valid_parameters("schur-cg"));

@@ -13,7 +13,8 @@ TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".sh", "
 # The sibling packages that a package may include.
 SIBLINGS = {
     "mac": {"grid"},
-    "cutcell": {"grid", "mac", "mixedface"},
+    "cutcell": {"faces"},
+    "mixedface": {"faces"},
     "articulated": {"rigid", "deformable"},
     "strategies": {"multigrid"},
 }

@@ -3,7 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
-#include "mac/pressure/row_builder.hpp"
+#include "linear/row_builder.hpp"
 
 namespace lockstep {
 

@@ -164,6 +164,35 @@ LocalComponents local_components(const MacDomain<dim>& domain, const MacGeometry
   result.joined.erase(std::unique(result.joined.begin(), result.joined.end()), result.joined.end());
   return result;
 }
+
+/// The lists of all ranks, one after the other.
+struct SharedComponents {
+  std::vector<GlobalIndex> labels, fixed, joined;  ///< of `joined` two a pair
+};
+
+/// In one exchange: each rank sends how long its lists are, and the lists.
+SharedComponents shared(const LocalComponents& mine, const Communicator& comm) {
+  std::vector<GlobalIndex> packed = {static_cast<GlobalIndex>(mine.labels.size()),
+                                     static_cast<GlobalIndex>(mine.fixed.size()),
+                                     static_cast<GlobalIndex>(2 * mine.joined.size())};
+  packed.insert(packed.end(), mine.labels.begin(), mine.labels.end());
+  packed.insert(packed.end(), mine.fixed.begin(), mine.fixed.end());
+  for (const auto& [a, b] : mine.joined)
+    packed.insert(packed.end(), {a, b});
+  SharedComponents all;
+  const std::vector<GlobalIndex> received = gather_all(comm, packed);
+  for (auto next = received.begin(); next != received.end();) {
+    const auto sizes = next;
+    next += 3;
+    int list = 0;
+    for (auto* of_all : {&all.labels, &all.fixed, &all.joined}) {
+      const auto end = next + sizes[list++];
+      of_all->insert(of_all->end(), next, end);
+      next = end;
+    }
+  }
+  return all;
+}
 }  // namespace
 
 template <int dim>
@@ -172,29 +201,24 @@ PressureRegions find_regions(const MacDomain<dim>& domain, const MacGeometry<dim
   const LocalComponents mine = local_components(domain, geometry);
 
   // The components of all ranks are few; what joins them is shared by all.
-  std::vector<GlobalIndex> labels = gather_all(grid.comm(), mine.labels);
-  std::sort(labels.begin(), labels.end());
+  SharedComponents all = shared(mine, grid.comm());
+  std::sort(all.labels.begin(), all.labels.end());
   const auto position = [&](GlobalIndex label) {
-    return static_cast<int>(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
+    return static_cast<int>(std::lower_bound(all.labels.begin(), all.labels.end(), label) -
+                            all.labels.begin());
   };
-  std::vector<GlobalIndex> pairs;
-  for (const auto& [a, b] : mine.joined) {
-    pairs.push_back(a);
-    pairs.push_back(b);
-  }
-  pairs = gather_all(grid.comm(), pairs);
-  DisjointSets sets(static_cast<int>(labels.size()));
-  for (std::size_t i = 0; i < pairs.size(); i += 2)
-    sets.join(position(pairs[i]), position(pairs[i + 1]));
+  DisjointSets sets(static_cast<int>(all.labels.size()));
+  for (std::size_t i = 0; i < all.joined.size(); i += 2)
+    sets.join(position(all.joined[i]), position(all.joined[i + 1]));
 
   PressureRegions regions;
-  std::vector<int> region(labels.size());
-  for (std::size_t i = 0; i < labels.size(); ++i) {
+  std::vector<int> region(all.labels.size());
+  for (std::size_t i = 0; i < all.labels.size(); ++i) {
     const int root = sets.root(static_cast<int>(i));
     region[i] = root == static_cast<int>(i) ? regions.n_regions++ : region[root];
   }
   regions.has_dirichlet.assign(regions.n_regions, 0);
-  for (const GlobalIndex label : gather_all(grid.comm(), mine.fixed))
+  for (const GlobalIndex label : all.fixed)
     regions.has_dirichlet[region[position(label)]] = 1;
   regions.of_unknown.reserve(geometry.pressure_map->getNodeNumElements());
   GlobalIndex last_label = no_index;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "mac/pressure/row_builder.hpp"
+#include "linear/row_builder.hpp"
 
 namespace lockstep {
 

@@ -59,12 +59,12 @@ void BramblePasciak::build(const BlockSystem& system, bool, bool solid_changed) 
     return;
   refuse_region_closed_by_solid(system);
   const RitzValues ritz = extreme_ritz_values(
-      [&](const Vector& x, Vector& y) { apply(*system.pressure_block, x, y); },
+      [&](const Vector& x, Vector& y) { apply(*system.pressure.op, x, y); },
       [&](const Vector& r, Vector& z) { apply(*pressure_inverse(), r, z); },
       system.coupling_transposed->getDomainMap(), system.null_space, n_lanczos_steps);
   scaled_inverse_ = Thyra::scale<double>(1 / (margin * ritz.smallest), pressure_inverse());
   solid_schur_inverse_ =
-      system.solid_block->domain()->dim() <= largest_solid_
+      system.solids.op->domain()->dim() <= largest_solid_
           ? SolidSchur::make(system, scaled_inverse_, largest_solid_, name())->inverse()
           : solid_inverse();
 }
@@ -104,7 +104,7 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
     below.update(-1, r.solid, 0);
     coupling.apply(z.pressure, below, Teuchos::NO_TRANS, -1, 1);
     apply(*solid_schur_inverse_, below, z.solid);
-    apply(*system.pressure_block, z.pressure, a_z);
+    apply(*system.pressure.op, z.pressure, a_z);
     z_dot_z = z.pressure.dot(a_z) - z.pressure.dot(r.pressure) + z.solid.dot(below);
     // Near the round-off of A_0^-1, which may be that of single precision, the difference of two
     // nearly equal energies loses its sign: start anew from the true residual.
@@ -121,7 +121,7 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
     // q = [A, -B; -B^T, -C] d, and <[A_0, 0; -B^T, -S_0]^-1 q, d>_H.
     q.pressure.update(1, a_d, 0);
     coupling.apply(d.solid, q.pressure, Teuchos::TRANS, -1, 1);
-    apply(*system.solid_block, d.solid, q.solid);
+    apply(*system.solids.op, d.solid, q.solid);
     coupling.apply(d.pressure, q.solid, Teuchos::NO_TRANS, -1, -1);
     precondition_pressure(q.pressure, q_1);
     below.update(-1, q.solid, 0);

@@ -35,8 +35,8 @@ RCP<const CrsMatrix> sum(const CrsMatrix& a, const CrsMatrix& coupling_transpose
 }  // namespace
 
 RCP<const CrsMatrix> assembled_schur(const BlockSystem& system) {
-  const auto a = need_assembled(system.pressure_block, "pressure block", system);
-  const auto c = need_assembled(system.solid_block, "solid block", system);
+  const auto a = need_assembled(system.pressure.op, "pressure block", system);
+  const auto c = need_assembled(system.solids.op, "solid block", system);
   const auto blocks =
       block_diagonal_inverse(c, largest_dense_block, "solid block of the " + system.name);
   check_solve(
@@ -49,8 +49,8 @@ RCP<const CrsMatrix> assembled_schur(const BlockSystem& system) {
 }
 
 RCP<const CrsMatrix> schur_with_diagonal(const BlockSystem& system) {
-  const auto a = need_assembled(system.pressure_block, "pressure block", system);
-  const auto c = need_assembled(system.solid_block, "solid block", system);
+  const auto a = need_assembled(system.pressure.op, "pressure block", system);
+  const auto c = need_assembled(system.solids.op, "solid block", system);
   return sum(*a, *system.coupling_transposed,
              *jacobi_inverse(*c, "solid block of the " + system.name));
 }

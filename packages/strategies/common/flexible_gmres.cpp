@@ -47,7 +47,7 @@ double size_of(const LinearOperator& op) {
 ScaledSystem scaled_system(const BlockSystem& system, const std::string& who) {
   check_no_empty_rank(system, who);
   ScaledSystem scaled;
-  const double a = size_of(*system.pressure_block), c = size_of(*system.solid_block);
+  const double a = size_of(*system.pressure.op), c = size_of(*system.solids.op);
   scaled.s = a > 0 ? 1 / std::sqrt(a) : 1;
   scaled.t = 1 / std::sqrt(c);
   scaled.op = block_operator(system, scaled.s, scaled.t);

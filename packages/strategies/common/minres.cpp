@@ -87,9 +87,9 @@ int lockstep_minres(const BlockSystem& system, const Vector& rhs, const BlockKry
                     const RCP<const LinearOperator>& solid_inverse, Vector& pressure) {
   const CrsMatrix& coupling = *system.coupling_transposed;
   const BlockAction op = [&](const Blocks& x, Blocks& y) {
-    apply(*system.pressure_block, *x[0], *y[0]);
+    apply(*system.pressure.op, *x[0], *y[0]);
     coupling.apply(*x[1], *y[0], Teuchos::TRANS, -1, 1);
-    apply(*system.solid_block, *x[1], *y[1]);
+    apply(*system.solids.op, *x[1], *y[1]);
     coupling.apply(*x[0], *y[1], Teuchos::NO_TRANS, -1, -1);
   };
   const BlockAction precondition = [&](const Blocks& r, Blocks& z) {

@@ -19,17 +19,27 @@ namespace lockstep {
 namespace {
 
 /// Local rows to pin: of each null vector of A the row of lowest id in its support.
-std::vector<int> pinned_rows(const BlockSystem& system, const RCP<const Map>& map) {
+std::vector<int> pinned_rows(const NullSpace& space, const RCP<const Map>& map) {
+  if (space.empty())
+    return {};
+  std::vector<GlobalIndex> lowest(space.regions().n_regions,
+                                  std::numeric_limits<GlobalIndex>::max());
+  for (const RowRegions::Run& run : space.regions().runs) {
+    for (int row = run.begin; row < run.end; ++row)
+      lowest[run.region] = std::min(lowest[run.region], map->getGlobalElement(row));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, lowest.data(), static_cast<int>(lowest.size()), MPI_LONG_LONG,
+                MPI_MIN, raw_communicator(map->getComm()));
   std::vector<int> rows;
-  for (const auto& null_vector : system.pressure_null_space) {
-    const auto values = null_vector->getData();
-    const double floor = 1e-8 * null_vector->normInf();
-    GlobalIndex lowest = std::numeric_limits<GlobalIndex>::max();
-    for (int row = 0; row < static_cast<int>(values.size()); ++row) {
-      if (std::abs(values[row]) > floor)
-        lowest = std::min(lowest, map->getGlobalElement(row));
+  for (const auto& parts : space.vectors()) {
+    double largest = 0;
+    for (const NullSpace::Part& part : parts)
+      largest = std::max(largest, std::abs(part.value));
+    GlobalIndex pinned = std::numeric_limits<GlobalIndex>::max();
+    for (const NullSpace::Part& part : parts) {
+      if (std::abs(part.value) > 1e-8 * largest)
+        pinned = std::min(pinned, lowest[part.region]);
     }
-    const GlobalIndex pinned = -max_all(map->getComm(), -lowest);
     if (map->isNodeGlobalElement(pinned))
       rows.push_back(map->getLocalElement(pinned));
   }
@@ -67,7 +77,7 @@ std::vector<double> diagonal_shift(const BlockSystem& system, const CrsMatrix& a
       shift[row] = added_values[row] > 0 ? added_values[row] : largest;
   }
   if (pin) {
-    for (const int row : pinned_rows(system, map)) {
+    for (const int row : pinned_rows(system.pressure_null_space, map)) {
       if (shift[row] == 0)
         shift[row] = values[row];
     }
@@ -164,7 +174,7 @@ RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
                                                    const MultigridOptions& options) {
   const auto layout = PressureLayout::make(system, options, nullptr);
   const auto r_layout = make_vector(layout->map()), z_layout = make_vector(layout->map());
-  return action_operator(domain_map(*system.pressure_block), [=](const Vector& r, Vector& z) {
+  return action_operator(domain_map(*system.pressure.op), [=](const Vector& r, Vector& z) {
     layout->to_layout(r, *r_layout);
     apply(*layout->inverse(), *r_layout, *z_layout);
     layout->from_layout(*z_layout, z);
@@ -181,7 +191,7 @@ RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
   Teuchos::ParameterList list(given);
   if (type_of(list) == "Automatic")
     list.set("Type", "MueLu");
-  auto op = system.pressure_block;
+  auto op = system.pressure.op;
   if (const auto a = assembled(op); !a.is_null()) {
     const std::string type = type_of(list);
     const bool factors = type == "Incomplete Cholesky" || type == "Ifpack2" || type == "Direct";

@@ -46,13 +46,16 @@ std::string what_to_try(const Refinement& done, int maximum_iterations) {
          "Symmetry\")";
 }
 
-[[noreturn]] void give_up(const std::string& name, const BlockResidual& residual,
-                          const Refinement& done, double tolerance, int maximum_iterations) {
+[[noreturn]] void give_up(const std::string& name, const BlockSystem& system,
+                          const BlockResidual& residual, const Refinement& done, double tolerance,
+                          int maximum_iterations) {
   throw SolveError(fmt::format(
       "{} did not converge in {} iterations: pressure residual {:.2e} (initially {:.2e}), solid "
-      "residual {:.2e} (initially {:.2e}), required {:.2e} of each block's scale. {}.",
+      "residual {:.2e} (initially {:.2e}), required {:.2e} of each block's scale{}. {}.",
       name, done.n_iterations, residual.relative_pressure(), done.initial_pressure,
       residual.relative_solid(), done.initial_solid, tolerance,
+      system.has_solid() ? by_name(system.solids, *residual.vector.solid, residual.solid_scale)
+                         : "",
       what_to_try(done, maximum_iterations)));
 }
 
@@ -119,21 +122,21 @@ int RefinedStrategy::pressure_cg(const BlockSystem& system, const CorrectionRequ
                                      iteration_null_space(system), request.update_target};
   if (layout_)
     return conjugate_gradients(layout_->kernels(), *request.residual, correction, cg);
-  return conjugate_gradients(
-      [&](const Vector& x, Vector& y) { apply(*system.pressure_block, x, y); },
-      [&](const Vector& x, Vector& y) { apply(*pressure_inverse_, x, y); }, *request.residual,
-      correction, cg);
+  return conjugate_gradients([&](const Vector& x, Vector& y) { apply(*system.pressure.op, x, y); },
+                             [&](const Vector& x, Vector& y) { apply(*pressure_inverse_, x, y); },
+                             *request.residual, correction, cg);
 }
 
 bool RefinedStrategy::geometry_matches(const BlockSystem& system) const {
   return is_prepared_ && prepared_.geometry_stamp == system.geometry_stamp &&
          prepared_.system_name == system.name &&
-         prepared_.pressure_map->isSameAs(*domain_map(*system.pressure_block));
+         prepared_.pressure_map->isSameAs(*domain_map(*system.pressure.op));
 }
 
 bool RefinedStrategy::solid_matches(const BlockSystem& system) const {
-  return !system.has_solid() || (solid_.is_built() && prepared_.solid_stamp == system.solid_stamp &&
-                                 prepared_.solid_map->isSameAs(*domain_map(*system.solid_block)));
+  return !system.has_solid() ||
+         (solid_.is_built() && prepared_.solid_stamp == system.solids.stamp &&
+          prepared_.solid_map->isSameAs(*domain_map(*system.solids.op)));
 }
 
 RefinedStrategy::RefinedStrategy(const Teuchos::ParameterList& list,
@@ -145,9 +148,8 @@ RefinedStrategy::RefinedStrategy(const Teuchos::ParameterList& list,
       solid_(list),
       pressure_list_(std::move(pressure_list)) {}
 
-const std::vector<RCP<const Vector>>& RefinedStrategy::iteration_null_space(
-    const BlockSystem& system) const {
-  static const std::vector<RCP<const Vector>> none;
+const NullSpace& RefinedStrategy::iteration_null_space(const BlockSystem& system) const {
+  static const NullSpace none;
   return layout_ ? none : system.null_space;
 }
 
@@ -175,7 +177,7 @@ bool RefinedStrategy::update_pressure_inverse(const BlockSystem& system) {
     pressure_inverse_ = layout_->inverse();
     return is_another;
   }
-  if (!leaves_rows_empty(system.pressure_block))
+  if (!leaves_rows_empty(system.pressure.op))
     return false;
   build_pressure_inverse(system);
   return true;
@@ -209,18 +211,17 @@ void RefinedStrategy::refuse_region_closed_by_solid(const BlockSystem& system) c
 
 void RefinedStrategy::relay(const BlockSystem& system) {
   BlockSystem& relaid = system.has_solid() ? relaid_ : relaid_pressure_;
-  if (relaid.pressure_block.is_null()) {
+  if (relaid.pressure.op.is_null()) {
     relaid = layout_->relaid(system);
     return;
   }
   // Another C on the same geometry.
-  relaid.solid_block = system.solid_block;
-  relaid.solid_stamp = system.solid_stamp;
-  relaid.near_null_space = system.near_null_space;
+  relaid.solids = system.solids;
+  relaid.soft_nodes = system.soft_nodes;
 }
 
 bool RefinedStrategy::is_ready(const BlockSystem& system) const {
-  const bool is_relaid = !layout_ || !working(system).pressure_block.is_null();
+  const bool is_relaid = !layout_ || !working(system).pressure.op.is_null();
   return geometry_matches(system) && solid_matches(system) && is_relaid &&
          is_built_for(working(system));
 }
@@ -255,10 +256,10 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
   solid_.restart_count(0);
   prepared_.system_name = system.name;
   prepared_.geometry_stamp = system.geometry_stamp;
-  prepared_.pressure_map = domain_map(*system.pressure_block);
+  prepared_.pressure_map = domain_map(*system.pressure.op);
   if (system.has_solid()) {
-    prepared_.solid_stamp = system.solid_stamp;
-    prepared_.solid_map = domain_map(*system.solid_block);
+    prepared_.solid_stamp = system.solids.stamp;
+    prepared_.solid_map = domain_map(*system.solids.op);
   }
   is_prepared_ = true;
   ++n_builds_;
@@ -334,7 +335,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
     else
       done.n_stalls = 0;
     if (done.n_stalls > 1 || done.n_iterations >= maximum_iterations_)
-      give_up(name, residual, done, request.tolerance, maximum_iterations_);
+      give_up(name, system, residual, done, request.tolerance, maximum_iterations_);
     previous = solvable;
     const double aim = is_settled ? safety * target / 1.5 : safety * target;
     const bool is_stage = in_stages && aim < of_a_stage * solvable;
@@ -350,7 +351,7 @@ SolveReport RefinedStrategy::refine(const BlockSystem& system, const BlockVector
     ++done.n_corrections;
   }
   if (residual.relative_solid() > request.tolerance)
-    give_up(name, residual, done, request.tolerance, maximum_iterations_);
+    give_up(name, system, residual, done, request.tolerance, maximum_iterations_);
 
   SolveReport report;
   report.iterations = done.n_iterations;

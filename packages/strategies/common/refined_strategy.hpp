@@ -80,7 +80,7 @@ class RefinedStrategy : public SolverStrategy {
   double symmetry_tolerance() const { return is_single_precision_ ? 1e-5 : 1e-8; }
   /// The null vectors that an iteration must project out of every preconditioned residual; none
   /// where the inverse of A leaves them harmless.
-  const std::vector<RCP<const Vector>>& iteration_null_space(const BlockSystem& system) const;
+  const NullSpace& iteration_null_space(const BlockSystem& system) const;
   /// A correction for a system without solid: conjugate gradients on A with that inverse.
   int pressure_cg(const BlockSystem& system, const CorrectionRequest& request,
                   Vector& correction) const;

@@ -54,7 +54,7 @@ class SolidInverse {
     RCP<const LinearOperator> preconditioner;  ///< of that; null: none
     RCP<const LinearOperator> rounded;         ///< it in single precision; null: not had
     std::string preconditioner_type;           ///< of "Automatic"
-    NearNullSpace motions;
+    SoftNodes motions;
     double stiffness = 1;
   };
 

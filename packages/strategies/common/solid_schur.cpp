@@ -19,7 +19,7 @@ class DenseSolidSchur : public SolidSchur, public std::enable_shared_from_this<D
                   Keep keep)
       : coupling_(system.coupling_transposed),
         pressure_inverse_(pressure_inverse),
-        matrix_(replicated(*assembled(system.solid_block))) {
+        matrix_(replicated(*assembled(system.solids.op))) {
     const auto n = static_cast<int>(matrix_.rows());
     Vector unit(coupling_->getRangeMap()), force(coupling_->getRangeMap());
     Vector column(coupling_->getDomainMap()), kept(coupling_->getDomainMap());
@@ -79,13 +79,13 @@ class DenseSolidSchur : public SolidSchur, public std::enable_shared_from_this<D
 std::shared_ptr<const SolidSchur> SolidSchur::make(
     const BlockSystem& system, const RCP<const LinearOperator>& pressure_inverse, int largest,
     const std::string& who, Keep keep) {
-  const auto n = system.solid_block->domain()->dim();
+  const auto n = system.solids.op->domain()->dim();
   check_solve(
       n <= largest,
       "The strategy {} refuses the {}: it inverts A once for each of the {} solid unknowns, "
       "and \"Largest Solid\" is {}. Raise it, or choose schur-cg.",
       who, system.name, n, largest);
-  check_solve(!assembled(system.solid_block).is_null(),
+  check_solve(!assembled(system.solids.op).is_null(),
               "The strategy {} refuses the {}: its solid block is matrix-free. Choose schur-cg.",
               who, system.name);
   return std::make_shared<DenseSolidSchur>(system, pressure_inverse, keep);

@@ -21,7 +21,7 @@ Direct::Direct(const ParameterList& given)
       maximum_unknowns_(with_defaults(given, valid_parameters()).get<int>("Maximum Unknowns")) {}
 
 void Direct::build(const BlockSystem& system, bool geometry_changed, bool) {
-  const auto n_pressure = system.pressure_block->domain()->dim();
+  const auto n_pressure = system.pressure.op->domain()->dim();
   check_solve(n_pressure <= maximum_unknowns_,
               "The strategy direct refuses the {}: its {} pressure unknowns are more than the "
               "\"Maximum Unknowns\" {}. Choose an iterative strategy.",

@@ -28,15 +28,14 @@ PressureSchur::PressureSchur(const ParameterList& given)
       pressure_list_(pressure_inverse_list(given, "Automatic")) {}
 
 RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system) {
-  if (system.solid_block->domain()->dim() <= largest_solid_ &&
-      !assembled(system.solid_block).is_null())
+  if (system.solids.op->domain()->dim() <= largest_solid_ && !assembled(system.solids.op).is_null())
     return SolidSchur::make(system, pressure_inverse(), largest_solid_, name(),
                             SolidSchur::Keep::columns)
         ->woodbury();
   if (layout() != nullptr)
     return layout()->schur_inverse();
   BlockSystem schur = system;
-  schur.pressure_block = as_operator(schur_with_diagonal(system));
+  schur.pressure.op = as_operator(schur_with_diagonal(system));
   schur.pressure_null_space = system.null_space;
   return lockstep::pressure_inverse(schur, pressure_list_);
 }

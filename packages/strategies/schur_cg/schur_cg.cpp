@@ -99,7 +99,7 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
   }
   return conjugate_gradients(
       [&](const Vector& x, Vector& y) {
-        apply(*system.pressure_block, x, y);
+        apply(*system.pressure.op, x, y);
         eliminated.find(x);
         eliminated.add(1, y);
       },

@@ -33,7 +33,7 @@ RCP<const LinearOperator> explicit_blocks(const RCP<const LinearOperator>& press
   Tpetra::RowMatrixTransposer<double, int, GlobalIndex> transposer(system.coupling_transposed);
   return Thyra::block2x2<double>(pressure_block, scaled_copy(-s * t, *transposer.createTranspose()),
                                  scaled_copy(-s * t, *system.coupling_transposed),
-                                 scaled_copy(-t * t, *assembled(system.solid_block)));
+                                 scaled_copy(-t * t, *assembled(system.solids.op)));
 }
 
 /// Teko asks for the inverse of A and for that of its (negative definite) Schur complement.
@@ -87,7 +87,7 @@ Simple::Simple(const ParameterList& given)
 
 RCP<const LinearOperator> Simple::make_preconditioner(const BlockSystem& system,
                                                       const ScaledSystem& scaled) {
-  const auto a = assembled(system.pressure_block), c = assembled(system.solid_block);
+  const auto a = assembled(system.pressure.op), c = assembled(system.solids.op);
   check_solve(!a.is_null() && !c.is_null(),
               "The strategy simple refuses the {}: a block is matrix-free, but it needs both "
               "assembled. Choose schur-cg.",

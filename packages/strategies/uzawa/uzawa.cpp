@@ -61,7 +61,7 @@ int Uzawa::correct(const BlockSystem& system, const CorrectionRequest& request,
     ++n_iterations;
     correction.update(relaxation_, step, 1);
     // residual -= omega S step
-    apply(*system.pressure_block, step, residual, -relaxation_, 1);
+    apply(*system.pressure.op, step, residual, -relaxation_, 1);
     coupling.apply(step, force);
     apply(*solid_inverse(), force, velocity);
     coupling.apply(velocity, residual, Teuchos::TRANS, -relaxation_, 1);

@@ -69,7 +69,7 @@ std::vector<GlobalIndex> occurrences(const std::vector<GlobalIndex>& ids,
 
 }  // namespace
 
-std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const NearNullSpace& space) {
+std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const SoftNodes& space) {
   const auto row_map = matrix.getRowMap();
   const auto column_map = matrix.getColMap();
   const auto column_of = [&](int row) {

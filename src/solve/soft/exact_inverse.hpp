@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "linear/near_null_space.hpp"
+#include "linear/soft_nodes.hpp"
 
 namespace lockstep {
 

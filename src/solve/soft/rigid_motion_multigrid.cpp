@@ -14,10 +14,10 @@ namespace lockstep {
 namespace {
 
 /// x -> sum_b R_b E_b^-1 R_b^T x with E_b = R_b^T C R_b, R_b the motions of body b.
-class RigidMotions {
+class DeflatedMotions {
  public:
-  RigidMotions(const CrsMatrix& c, const RCP<const MultiVector>& motions, std::vector<int> bodies,
-               int n_bodies)
+  DeflatedMotions(const CrsMatrix& c, const RCP<const MultiVector>& motions,
+                  std::vector<int> bodies, int n_bodies)
       : motions_(motions),
         bodies_(std::move(bodies)),
         n_motions_(static_cast<int>(motions->getNumVectors())),
@@ -89,7 +89,7 @@ class RigidMotions {
 }  // namespace
 
 RCP<const LinearOperator> rigid_motion_multigrid(const RCP<const CrsMatrix>& c,
-                                                 const NearNullSpace& space,
+                                                 const SoftNodes& space,
                                                  const Teuchos::ParameterList& list,
                                                  const std::string& name) {
   std::vector<bool> is_node, is_other;
@@ -106,8 +106,8 @@ RCP<const LinearOperator> rigid_motion_multigrid(const RCP<const CrsMatrix>& c,
   const auto motions = rcp(new MultiVector(nodes.map(), space.motions->getNumVectors()));
   for (std::size_t j = 0; j < motions->getNumVectors(); ++j)
     motions->getVectorNonConst(j)->update(1, *nodes.restricted(*space.motions->getVector(j)), 0);
-  const auto rigid = std::make_shared<const RigidMotions>(*nodes.matrix(), motions,
-                                                          std::move(bodies), space.n_bodies);
+  const auto rigid = std::make_shared<const DeflatedMotions>(*nodes.matrix(), motions,
+                                                             std::move(bodies), space.n_bodies);
   const auto multigrid = muelu_multigrid(nodes.matrix(), space.n_axes(), motions, list, name);
   const auto of_nodes = action_operator(nodes.map(), [=](const Vector& x, Vector& y) {
     apply(*multigrid, x, y);

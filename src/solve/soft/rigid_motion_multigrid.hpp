@@ -2,7 +2,7 @@
 #include <Teuchos_ParameterList.hpp>
 #include <string>
 
-#include "linear/near_null_space.hpp"
+#include "linear/soft_nodes.hpp"
 
 namespace lockstep {
 
@@ -13,7 +13,7 @@ namespace lockstep {
 /// to MueLu. Symmetric positive definite for symmetric smoothers. Throws SolveError if MueLu fails.
 /// Collective.
 RCP<const LinearOperator> rigid_motion_multigrid(const RCP<const CrsMatrix>& c,
-                                                 const NearNullSpace& space,
+                                                 const SoftNodes& space,
                                                  const Teuchos::ParameterList& list,
                                                  const std::string& name);
 

@@ -123,7 +123,7 @@ RCP<const LinearOperator> copy_in_blocks(const RCP<const CrsMatrix>& matrix) {
 }
 
 /// Of the nodes' rows, the largest C_ii over the mass. Collective.
-double largest_stiffness(const CrsMatrix& c, const NearNullSpace& space) {
+double largest_stiffness(const CrsMatrix& c, const SoftNodes& space) {
   const RCP<const Vector> diagonal = diagonal_of(c);
   const auto mass = space.mass->getData(), entry = diagonal->getData();
   double largest = 0;
@@ -137,7 +137,7 @@ double largest_stiffness(const CrsMatrix& c, const NearNullSpace& space) {
 }  // namespace
 
 RCP<const LinearOperator> single_precision_copy(const RCP<const CrsMatrix>& c,
-                                                const NearNullSpace& space) {
+                                                const SoftNodes& space) {
   constexpr double most_stiffness = 1e4;
   if (space.empty() || largest_stiffness(*c, space) > most_stiffness)
     return Teuchos::null;

@@ -74,7 +74,7 @@ Eigen::MatrixXd pressure_block_by_hand(bool open_top) {
 TEST(Eq16, PressureBlockByHand) {
   for (bool open_top : {false, true}) {
     CoupledCase<2> c(two_plate_box(open_top), plates({}));
-    const Eigen::MatrixXd a = dense(c.system.blocks(0.1).pressure_block);
+    const Eigen::MatrixXd a = dense(c.system.blocks(0.1).pressure.op);
     EXPECT_LT((a - pressure_block_by_hand(open_top)).norm(), near);
     const Eigen::VectorXd eigenvalues = a.selfadjointView<Eigen::Lower>().eigenvalues();
     EXPECT_EQ((eigenvalues.array() < 1e-12).count(), open_top ? 0 : 1);
@@ -111,7 +111,7 @@ TEST(Eq16, AddedMassByHand) {
     const double dt = 0.1;
     Eigen::Matrix3d expected = added + dt * 5 * Eigen::Matrix3d::Identity();
     expected.diagonal() += Eigen::Vector3d(3, 3, 0.7);
-    const Eigen::MatrixXd block = dense(c.system.blocks(dt).solid_block);
+    const Eigen::MatrixXd block = dense(c.system.blocks(dt).solids.op);
     EXPECT_LT((block.topLeftCorner(3, 3) - expected).norm(), near);
     EXPECT_LT((block - block.transpose()).norm(), near);
     EXPECT_EQ(block.llt().info(), Eigen::Success);
@@ -165,7 +165,7 @@ TEST(Eq16, LockedDofsAreEliminatedAndTheirReactionsFound) {
   c.fluid.set_velocity(sheared);
   const double dt = 0.1, inertia = 0.7 + 0.5 * 0.5 * 0.0625;
   const BlockSystem& blocks = c.system.blocks(dt);
-  const Eigen::MatrixXd block = dense(blocks.solid_block);
+  const Eigen::MatrixXd block = dense(blocks.solids.op);
   EXPECT_LT(
       (block.topLeftCorner(3, 3) - Eigen::Matrix3d(Eigen::Vector3d(1, 1, inertia).asDiagonal()))
           .norm(),
@@ -210,7 +210,7 @@ TEST(Eq16, LockedDofsThatMoveActOnTheOthers) {
   EXPECT_LT((dense(*rhs.pressure) - dense(*still.pressure) - flux).norm(), near);
   const Eigen::VectorXd push = dense(*rhs.solid) - dense(*still.solid);
   EXPECT_EQ(push.head(2).norm(), 0);
-  const Eigen::VectorXd inertia = dense(blocks.solid_block) * moving;
+  const Eigen::VectorXd inertia = dense(blocks.solids.op) * moving;
   EXPECT_LT((push + inertia).tail(push.size() - 2).norm(), near);
 }
 
@@ -229,7 +229,7 @@ TEST(Eq16, PressureInsideAHalfFilledDualCell) {
   body.mass = rho2 * h * h / 2;
   CoupledCase<2> c(channel, fake_solids<2>({{body}}));
   const Eigen::MatrixXd bt = dense(c.system.blocks(1).coupling_transposed);
-  const Eigen::MatrixXd block = dense(c.system.blocks(1).solid_block);
+  const Eigen::MatrixXd block = dense(c.system.blocks(1).solids.op);
   const Eigen::Vector4d p(0, 11, 2, 0);  // p̂ of the cells; the mixed face lies between 1 and 2
   const Eigen::VectorXd impulse = -bt * p;
   EXPECT_NEAR(impulse[0], h * (11 - 2), near);

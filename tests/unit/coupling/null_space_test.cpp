@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <Tpetra_Core.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "coupling/null_space.hpp"
+#include "linear/matrix_rows.hpp"
 #include "support/coupled_case.hpp"
 #include "support/dense.hpp"
 
@@ -32,17 +35,17 @@ FakeBody<2> square_body(bool hollow, typename FakeBody<2>::Kind kind) {
 /// orthonormal and in the kernel of both rows.
 std::pair<std::size_t, std::size_t> null_space_sizes(CoupledCase<2>& c) {
   const BlockSystem& blocks = c.system.blocks(0.1);
-  const Eigen::MatrixXd a = dense(blocks.pressure_block);
+  const Eigen::MatrixXd a = dense(blocks.pressure.op);
   const Eigen::MatrixXd bt = dense(blocks.coupling_transposed);
   for (std::size_t k = 0; k < blocks.null_space.size(); ++k) {
-    const Eigen::VectorXd n = dense(*blocks.null_space[k]);
+    const Eigen::VectorXd n = dense(*blocks.null_space.vector(k));
     EXPECT_LT((a * n).norm(), 1e-12);
     EXPECT_LT((bt * n).norm(), 1e-12);
     for (std::size_t l = 0; l <= k; ++l)
-      EXPECT_NEAR(n.dot(dense(*blocks.null_space[l])), k == l ? 1 : 0, 1e-12);
+      EXPECT_NEAR(n.dot(dense(*blocks.null_space.vector(l))), k == l ? 1 : 0, 1e-12);
   }
   // The kernel of the whole has no more than these.
-  const Eigen::MatrixXd block = dense(blocks.solid_block);
+  const Eigen::MatrixXd block = dense(blocks.solids.op);
   Eigen::MatrixXd all(a.rows() + block.rows(), a.rows() + block.rows());
   all << a, -bt.transpose(), -bt, -block;
   const Eigen::VectorXd eigenvalues = all.selfadjointView<Eigen::Lower>().eigenvalues();
@@ -64,7 +67,7 @@ TEST(NullSpace, BallInClosedTankLeavesOneLevel) {
 TEST(NullSpace, BalloonInClosedTankLeavesOneJointLevel) {
   CoupledCase<2> c(tank_around(false), fake_solids<2>({{square_body(true, SquareKind::nodal)}}));
   EXPECT_EQ(null_space_sizes(c), Sizes(1, 2));
-  const Eigen::VectorXd n = dense(*c.system.null_space()[0]);
+  const Eigen::VectorXd n = dense(*c.system.null_space().vector(0));
   EXPECT_LT((n.array() - n[0]).matrix().norm(), 1e-12);  // inside and outside together
 }
 
@@ -92,6 +95,50 @@ TEST(NullSpace, PistonBetweenClosedEndsLeavesOneLevel) {
   piston.locked = {0, 1, 2};
   CoupledCase<2> held(tank_around(false, {6, 2}), fake_solids<2>({{piston}}));
   EXPECT_EQ(null_space_sizes(held), Sizes(2, 2));
+}
+
+/// Ten closed regions and an open one, round robin on all ranks, and dofs that compare some of
+/// them: 0 + 1 + 2 in many rows, 3 with 4, 5 on its own; the rest none.
+TEST(NullSpace, ManyRegionsOnAllRanks) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  constexpr int n_regions = 11, n_rows = 600;
+  const auto pressures = make_map(2 * n_regions, comm), dofs = make_map(n_rows, comm);
+  PressureRegions regions;
+  regions.n_regions = n_regions;
+  regions.has_dirichlet.assign(n_regions, 0);
+  regions.has_dirichlet[7] = 1;
+  for (int i = 0; i < 2 * n_regions; ++i)
+    regions.of_unknown.push_back((i + comm->getRank()) % n_regions);
+  // An unknown of region r on any rank, by turns.
+  const auto unknown = [&](int region, int turn) {
+    const int rank = turn % comm->getSize();
+    const int local = (region - rank % n_regions + n_regions) % n_regions;
+    return pressures->getGlobalElement(0) + (rank - comm->getRank()) * 2 * n_regions + local;
+  };
+  std::vector<std::vector<Entry>> rows(n_rows);
+  for (int row = 0; row < n_rows; ++row) {
+    const double size = 1 + row % 5;
+    if (row % 3 == 0)
+      rows[row] = {{unknown(0, row), size}, {unknown(1, row / 3), -size}, {unknown(7, row), 2}};
+    else if (row % 3 == 1)
+      rows[row] = {{unknown(1, row), size}, {unknown(2, row / 3), -size}};
+  }
+  if (comm->getRank() == comm->getSize() - 1) {
+    rows[2] = {{unknown(3, 1), 1}, {unknown(4, 0), -2}};
+    rows[5] = {{unknown(5, 0), 1}};
+  }
+  const RCP<const CrsMatrix> bt = matrix_from_rows(dofs, rows, pressures);
+  const NullSpaces found = find_null_spaces(regions, pressures, bt);
+  EXPECT_EQ(found.pressure.size(), 10u);
+  ASSERT_EQ(found.coupled.size(), 6u);  // {0, 1, 2}, {3, 4}, 6, 8, 9, 10
+  Vector product(dofs);
+  for (std::size_t k = 0; k < found.coupled.size(); ++k) {
+    const RCP<Vector> n = found.coupled.vector(k);
+    bt->apply(*n, product);
+    EXPECT_LT(product.norm2(), 1e-11);
+    for (std::size_t l = 0; l <= k; ++l)
+      EXPECT_NEAR(n->dot(*found.coupled.vector(l)), k == l ? 1 : 0, 1e-12);
+  }
 }
 
 }  // namespace lockstep::test

@@ -4,6 +4,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "base/errors.hpp"
 #include "coupling/viscous_solve.hpp"
 #include "support/coupled_case.hpp"
 #include "support/dense.hpp"
@@ -34,16 +35,23 @@ FakeBody<2> partition(typename FakeBody<2>::Kind kind) {
   return body;
 }
 
-ViscousResult<2> solve_viscosity(CoupledCase<2>& c) {
+ViscousOptions to_round_off() {
+  ViscousOptions options;
+  options.tolerance = 1e-14;
+  return options;
+}
+
+ViscousResult<2> solve_viscosity(CoupledCase<2>& c,
+                                 const ViscousOptions& options = to_round_off()) {
   const auto system = c.fluid.viscous_system();
   RCP<const LinearOperator> block;
   RCP<const Vector> row;
   if (c.solids.has_unknowns()) {
-    block = c.system.blocks(viscous_dt).solid_block;
+    block = c.system.blocks(viscous_dt).solids.op;
     row = c.system.lumped_momentum(*c.solids.explicit_momentum(0, viscous_dt));
   }
   return solve_viscous<2>(*system, c.fluid, c.solids, c.coupling, block, {}, row, viscous_dt,
-                          c.solids.reduction(), 1e-14);
+                          c.solids.reduction(), options);
 }
 
 /// u* = 0 but at the free face of this axis at x.
@@ -124,6 +132,49 @@ TEST(Viscous, SolidAndFluidMeetAtOneVelocity) {
   });
   solve_viscosity(c);
   EXPECT_LT(std::abs(velocity_at(c, 0, {1.5, 0.75})), 1e-3);
+}
+
+TEST(Viscous, AllSolversByNameGiveOneSolution) {
+  const auto inverse = [](const char* type) {
+    ParameterList list;
+    list.set("Type", std::string(type));
+    return list;
+  };
+  const auto velocity_by = [](const ViscousOptions& options) {
+    CoupledCase<2> c(viscous_tank(5), fake_solids<2>({{partition(FakeBody<2>::Kind::nodal)}}));
+    c.fluid.set_velocity(swirl);
+    solve_viscosity(c, options);
+    return velocity_at(c, 0, {1.5, 0.75});
+  };
+  const double expected = velocity_by(to_round_off());
+  for (const char* krylov : {"Conjugate Gradients", "MINRES"}) {
+    for (const char* type : {"Jacobi", "Incomplete Cholesky", "Direct"}) {
+      ViscousOptions options;
+      options.tolerance = 1e-12;
+      options.krylov_solver = krylov;
+      options.fluid_inverse = options.solid_inverse = inverse(type);
+      EXPECT_NEAR(velocity_by(options), expected, 1e-10 * std::abs(expected)) << krylov << type;
+    }
+  }
+}
+
+TEST(Viscous, ToleranceThatIsNotReachedIsAnErrorWithNumbers) {
+  CoupledCase<2> c(viscous_tank(5), fake_solids<2>({{partition(FakeBody<2>::Kind::rigid)}}));
+  for (const char* krylov : {"Conjugate Gradients", "MINRES"}) {
+    c.fluid.set_velocity(swirl);
+    ViscousOptions options;
+    options.krylov_solver = krylov;
+    options.maximum_iterations = 2;
+    try {
+      solve_viscosity(c, options);
+      ADD_FAILURE() << krylov;
+    } catch (const SolveError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("2 iterations of " + std::string(krylov)), std::string::npos)
+          << message;
+      EXPECT_NE(message.find("asked was 1.0e-10"), std::string::npos) << message;
+    }
+  }
 }
 
 TEST(Viscous, VanishingViscosityLeavesEverythingAlone) {

@@ -57,9 +57,12 @@ struct ViscousCase {
   }
   ViscousResult<dim> solve() {
     fluid->set_coupled_velocity(coupling.velocity(*solids->velocity()));
-    return solve_viscous<dim>(
-        *fluid->viscous_system(), *fluid, *solids, coupling, system->blocks(dt).solid_block, {},
-        system->lumped_momentum(*solids->explicit_momentum(0, dt)), dt, solids->reduction(), 1e-14);
+    ViscousOptions options;
+    options.tolerance = 1e-14;
+    return solve_viscous<dim>(*fluid->viscous_system(), *fluid, *solids, coupling,
+                              system->blocks(dt).solids.op, {},
+                              system->lumped_momentum(*solids->explicit_momentum(0, dt)), dt,
+                              solids->reduction(), options);
   }
   std::unique_ptr<MacFluid<dim>> fluid;
   std::unique_ptr<SolidSystem<dim>> solids;

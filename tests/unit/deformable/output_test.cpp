@@ -55,14 +55,14 @@ TEST(Frames, UniformStretchByHand) {
   EXPECT_NEAR(volume, 0.25 * 1.1, 1e-12);
 }
 
-TEST(NearNullSpace, IsWhatImplicitForcesDoNotResist) {
+TEST(RigidMotions, AreWhatImplicitForcesDoNotResist) {
   // At rest, so that no rotation turns a stress.
   const auto solids =
       model<3>({box("1, 0.5, 0.5", "0.25") + material("corotated") + number("Density", "2") +
                     number("Viscosity", "0.1"),
                 box("1, 1, 0.5", "0.5") + material("neo-hookean") + number("Density", "2") +
                     numbers("Position", "3, 2, 1") + text("Time Integration", "fully-implicit")});
-  const NearNullSpace space = solids->near_null_space();
+  const RigidMotions space = solids->near_null_space();
   ASSERT_EQ(space.motions->getNumVectors(), 6u);
   EXPECT_EQ(space.n_bodies, 2);
   EXPECT_EQ(space.n_axes(), 3);

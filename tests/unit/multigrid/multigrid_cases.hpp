@@ -16,8 +16,9 @@ struct Problem {
   Problem(Case<dim>& scene, const std::shared_ptr<const SurfaceSnapshot<dim>>& surface)
       : fluid(scene.make()) {
     fluid->set_geometry(surface, BlockedFaces<dim>());
-    system.pressure_block = fluid->pressure_block();
+    system.pressure.op = fluid->pressure_block();
     const PressureRegions& regions = fluid->regions();
+    std::vector<RCP<const Vector>> vectors;
     for (int region = 0; region < regions.n_regions; ++region) {
       if (regions.has_dirichlet[region])
         continue;
@@ -27,9 +28,9 @@ struct Problem {
           indicator->replaceLocalValue(static_cast<int>(row), 1.0);
       }
       indicator->scale(1 / indicator->norm2());
-      system.pressure_null_space.push_back(indicator);
+      vectors.push_back(indicator);
     }
-    system.null_space = system.pressure_null_space;
+    system.null_space = system.pressure_null_space = null_space_of(vectors);
   }
 };
 

@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "linear/block_diagonal.hpp"
+#include "solve/block_residual.hpp"
 #include "solve/gathered_direct.hpp"
 #include "solve/merge.hpp"
 #include "solve/soft/exact_inverse.hpp"
@@ -65,9 +66,9 @@ TEST(BlockOperator, MatchesTheHandMultiplication) {
     c = {{{0, 4}}};
   }
   BlockSystem system;
-  system.pressure_block = as_operator(matrix_from_rows(cells, a));
-  system.coupling_transposed = matrix_from_rows(dofs, b, cells, dofs);
-  system.solid_block = as_operator(matrix_from_rows(dofs, c));
+  system.pressure.op = as_operator(matrix_from_rows(cells, a));
+  system.coupling_transposed = matrix_from_rows(dofs, b, cells);
+  system.solids.op = as_operator(matrix_from_rows(dofs, c));
   const BlockVector x{make_vector(cells), make_vector(dofs)},
       y{make_vector(cells), make_vector(dofs)};
   if (root) {
@@ -82,6 +83,16 @@ TEST(BlockOperator, MatchesTheHandMultiplication) {
     EXPECT_DOUBLE_EQ(y.pressure->getData()[1], 3);
     EXPECT_DOUBLE_EQ(y.solid->getData()[0], -13);
   }
+}
+
+TEST(BlockGroup, ItsBlocksAreNamedWithTheirParts) {
+  BlockGroup group{"solid block", Teuchos::null, {{"bodies", 0, 3}, {"cloth", 3, 4}}};
+  Vector residual(make_map(4, world()));
+  residual.putScalar(2 / std::sqrt(3. * world()->getSize()));
+  EXPECT_EQ(by_name(group, residual, 4),
+            fmt::format(" (bodies {:.2e}, cloth {:.2e})", 0.5, 0.5 / std::sqrt(3.)));
+  group.blocks.pop_back();
+  EXPECT_EQ(by_name(group, residual, 4), "");
 }
 
 TEST(BlockOperator, IsSymmetricAndEqualsTheMergedMatrix) {
@@ -145,11 +156,11 @@ TEST(BlockDiagonal, AZeroOnOneSideOfTheDiagonalCountsNothingTwice) {
 
 TEST(BlockDiagonal, InvertsBlocksThatSpanRanks) {
   const SaddleProblem problem(world(), {});
-  const auto solid = assembled(problem.system.solid_block);
+  const auto solid = assembled(problem.system.solids.op);
   const auto blocks = block_diagonal_inverse(solid, 24, "test");
   EXPECT_TRUE(blocks.exact);
   EXPECT_EQ(blocks.inverse->getGlobalNumEntries(), 18u);
-  EXPECT_LT(inverse_error(*problem.system.solid_block, *as_operator(blocks.inverse)), 1e-14);
+  EXPECT_LT(inverse_error(*problem.system.solids.op, *as_operator(blocks.inverse)), 1e-14);
 }
 
 TEST(BlockDiagonal, LargeComponentsFallBackToTheDiagonal) {
@@ -165,8 +176,7 @@ TEST(BlockDiagonal, RefusesAnIndefiniteBlock) {
   SaddleOptions options;
   options.plate_mass = -1;
   const SaddleProblem problem(world(), options);
-  EXPECT_THROW(block_diagonal_inverse(assembled(problem.system.solid_block), 24, "test"),
-               SolveError);
+  EXPECT_THROW(block_diagonal_inverse(assembled(problem.system.solids.op), 24, "test"), SolveError);
 }
 
 TEST(ExactInverse, IsExactForEveryKindOfMatrix) {

@@ -112,18 +112,17 @@ TEST(Preconditioner, EveryTypeIsSymmetricPositiveDefinite) {
   for (const std::string& xml : lists) {
     SCOPED_TRACE(xml);
     EXPECT_NO_THROW(check_symmetric_positive(
-        *preconditioner_from_list(problem.system.pressure_block, inverse(xml), "test"), "test"));
+        *preconditioner_from_list(problem.system.pressure.op, inverse(xml), "test"), "test"));
   }
-  EXPECT_NO_THROW(
-      check_symmetric_positive(*preconditioner_from_list(problem.system.solid_block,
-                                                         inverse(typed("Block Diagonal")), "test"),
-                               "test"));
+  EXPECT_NO_THROW(check_symmetric_positive(
+      *preconditioner_from_list(problem.system.solids.op, inverse(typed("Block Diagonal")), "test"),
+      "test"));
 }
 
 TEST(Preconditioner, UnsymmetricSmootherIsCaught) {
   const SaddleProblem problem(Tpetra::getDefaultComm(), {});
   const auto forward = preconditioner_from_list(
-      problem.system.pressure_block,
+      problem.system.pressure.op,
       inverse(
           ifpack2("RELAXATION",
                   R"(<Parameter name="relaxation: type" type="string" value="Gauss-Seidel"/>)")),

@@ -175,8 +175,8 @@ std::pair<int, BlockVector> solve_by(const std::string& name, const SaddleProble
   Teuchos::ParameterList jacobi;
   jacobi.set("Type", "Jacobi");
   const auto preconditioner = Thyra::block2x2<double>(
-      preconditioner_from_list(problem.system.pressure_block, jacobi, "A"), Teuchos::null,
-      Teuchos::null, exact_inverse(problem.system.solid_block, "C"));
+      preconditioner_from_list(problem.system.pressure.op, jacobi, "A"), Teuchos::null,
+      Teuchos::null, exact_inverse(problem.system.solids.op, "C"));
   BlockVector x = problem.zero();
   const BlockVector b = signed_rhs(rhs);
   using Vectors = Thyra::MultiVectorBase<double>;

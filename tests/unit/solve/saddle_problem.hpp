@@ -34,11 +34,11 @@ class SaddleProblem {
     const int n_solid = 6 + (options.elastic_wall ? 1 : 0);
     const auto first_dof = [&](int r) { return r * n_solid / comm->getSize(); };
     dofs_ = make_map(first_dof(rank + 1) - first_dof(rank), comm);
-    system.pressure_block = as_operator(pressure_block());
-    system.geometry_stamp = system.solid_stamp = 1;
+    system.pressure.op = as_operator(pressure_block());
+    system.geometry_stamp = system.solids.stamp = 1;
     if (options.with_solid) {
       system.coupling_transposed = coupling();
-      system.solid_block = as_operator(solid_block());
+      system.solids.op = as_operator(solid_block());
     }
     if (!options.open_top)
       add_null_vectors();
@@ -116,7 +116,7 @@ class SaddleProblem {
         }
       }
     }
-    return matrix_from_rows(dofs_, rows, cells_, dofs_);
+    return matrix_from_rows(dofs_, rows, cells_);
   }
 
   /// Dense 3 x 3 blocks, weakly coupled inside.
@@ -137,9 +137,9 @@ class SaddleProblem {
   void add_null_vectors() {
     const auto constant = make_vector(cells_);
     constant->putScalar(h_);
-    system.pressure_null_space.push_back(constant);
+    system.pressure_null_space = null_space_of({constant});
     if (!options_.elastic_wall || !options_.with_solid)
-      system.null_space.push_back(constant);
+      system.null_space = system.pressure_null_space;
   }
 
   SaddleOptions options_;

@@ -79,7 +79,7 @@ struct Lattice {
   }
 
   RCP<const CrsMatrix> c;
-  NearNullSpace space;
+  SoftNodes space;
 };
 
 Teuchos::ParameterList type(const std::string& name) {
@@ -236,7 +236,7 @@ TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
   ASSERT_EQ(split.rests().size(), 1u);
   const auto rest = assembled(split.rests()[0].op);
   EXPECT_EQ(rest->getGlobalNumRows(), 2 * 160 * 160);
-  const NearNullSpace& motions = split.rests()[0].motions;
+  const SoftNodes& motions = split.rests()[0].motions;
   EXPECT_EQ(std::count(motions.body_of_row.begin(), motions.body_of_row.end(), -1), 0);
   EXPECT_NEAR(motions.mass->norm1(), 2 * 160 * 160, 1e-6);
   const auto inverse = split.with([](const InverseByCost::Rest& one) {
@@ -278,7 +278,7 @@ TEST(SoftSolid, LargePartsAreIteratedOnOneByOne) {
       rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
                   Teuchos::arrayViewFromVector(ids), 0, Tpetra::getDefaultComm()));
   const RCP<const CrsMatrix> both = sum_of({{one.c, 0, 1}, {other.c, n, 1}}, map);
-  NearNullSpace space;
+  SoftNodes space;
   space.n_bodies = 2;
   const auto motions = rcp(new MultiVector(map, 3));
   const auto mass = make_vector(map);
@@ -309,11 +309,11 @@ TEST(SoftSolid, ResidualsAreNotMeasuredBelowRoundOff) {
     const auto pressures = make_map(1, Tpetra::getDefaultComm());
     const auto nothing = [&](const RCP<const Map>& rows) {
       return matrix_from_rows(rows, std::vector<std::vector<Entry>>(rows->getNodeNumElements()),
-                              pressures, rows);
+                              pressures);
     };
-    system.pressure_block = as_operator(RCP<const CrsMatrix>(nothing(pressures)));
+    system.pressure.op = as_operator(RCP<const CrsMatrix>(nothing(pressures)));
     system.coupling_transposed = nothing(solid.c->getRowMap());
-    system.solid_block = as_operator(solid.c);
+    system.solids.op = as_operator(solid.c);
     const auto velocity = make_vector(solid.c->getRowMap()),
                momentum = make_vector(velocity->getMap());
     velocity->update(1, *solid.space.motions->getVector(0), 3, *solid.space.motions->getVector(1),
@@ -347,7 +347,7 @@ struct Nodes {
   }
 
   RCP<const CrsMatrix> c;
-  NearNullSpace space;
+  SoftNodes space;
 };
 
 TEST(SoftSolid, SinglePrecisionCopyIsTheMatrixRounded) {

@@ -56,7 +56,7 @@ TEST(SystemFile, ReadsBackTheSameSystem) {
     EXPECT_NEAR(after.solid, before.solid, 1e-12 * before.solid);
     EXPECT_NEAR(after.rhs, before.rhs, 1e-14 * before.rhs);
     EXPECT_EQ(stored.system.null_space.size(), problem.system.null_space.size());
-    EXPECT_NEAR(stored.system.null_space.at(0)->norm2(), 1, 1e-12);
+    EXPECT_NEAR(stored.system.null_space.vector(0)->norm2(), 1, 1e-12);
     EXPECT_EQ(stored.system.name, problem.system.name);
     EXPECT_EQ(stored.system.has_solid(), with_solid);
     comm->barrier();

@@ -37,7 +37,7 @@ int SteepestDescent::correct(const BlockSystem& system, const CorrectionRequest&
     apply(*pressure_inverse(), r, z);
     project_out(system.null_space, z);
     // S z = A z + B C^-1 B^T z, never assembled
-    apply(*system.pressure_block, z, s_z);
+    apply(*system.pressure.op, z, s_z);
     coupling.apply(z, force);
     apply(*solid_inverse(), force, velocity);
     coupling.apply(velocity, s_z, Teuchos::TRANS, 1, 1);

@@ -169,7 +169,7 @@ TEST_P(EveryStrategy, JudgesABlockWithoutRightHandSideByItsTerms) {
 TEST_P(EveryStrategy, RefusesAnIncompatibleRightHandSide) {
   const SaddleProblem problem(world(), tank(false, false, 50));
   BlockVector rhs = problem.random_rhs(), solution = problem.zero();
-  rhs.pressure->update(1e-3, *problem.system.null_space.front(), 1);
+  rhs.pressure->update(1e-3, *problem.system.null_space.vector(0), 1);
   EXPECT_THAT(solve_error([&] {
                 make_suited(GetParam())->solve(problem.system, rhs, solution, {"test", 1e-10});
               }),
@@ -199,7 +199,7 @@ TEST(Strategies, PreparedPartsAreReusedByStamp) {
   const SolveReport again = solve(*strategy, problem).report;
   EXPECT_EQ(again.preconditioner_builds, 0);
   EXPECT_EQ(again.preconditioner_reuses, 1);
-  ++problem.system.solid_stamp;
+  ++problem.system.solids.stamp;
   EXPECT_EQ(solve(*strategy, problem).report.preconditioner_builds, 1);
 }
 
@@ -318,7 +318,7 @@ TEST(Strategies, EverySolidInverseLeadsToTheSameSolution) {
 
 TEST(Strategies, MomentumIsExactWhereVelocitiesAreIteratedInStages) {
   SaddleProblem problem(world(), {});
-  const RCP<const Map> dofs = domain_map(*problem.system.solid_block);
+  const RCP<const Map> dofs = domain_map(*problem.system.solids.op);
   const auto n = static_cast<GlobalIndex>(dofs->getGlobalNumElements());
   std::vector<std::vector<Entry>> rows;
   for (const GlobalIndex dof : dofs->getNodeElementList()) {
@@ -328,7 +328,7 @@ TEST(Strategies, MomentumIsExactWhereVelocitiesAreIteratedInStages) {
         rows.back().push_back({other, 20.0});
     }
   }
-  problem.system.solid_block = as_operator(RCP<const CrsMatrix>(matrix_from_rows(dofs, rows)));
+  problem.system.solids.op = as_operator(RCP<const CrsMatrix>(matrix_from_rows(dofs, rows)));
   ParameterList list;
   list.sublist("Solid Inverse").set("Type", "Conjugate Gradients");
   const Solved found = solve(*make("schur-cg", list), problem, 1e-3);

@@ -6,9 +6,8 @@
 
 namespace lockstep {
 
-/// The rigid motions of soft solids, which cost no elastic energy, and their mass: what an inverse
-/// of C = M̃ - dt D must know of, and what tells M̃ and dt D apart.
-struct NearNullSpace {
+/// The rigid motions of soft solids, which cost no elastic energy: the near null space of dt D.
+struct RigidMotions {
   /// One column a motion on the rows of C: the translations along the axes, then the rotations
   /// (3 columns in 2D, 6 in 3D). Null: no soft solids. Rows that are no node's are zero; those of a
   /// node follow one another.
@@ -16,35 +15,40 @@ struct NearNullSpace {
   /// Which body a local row belongs to; -1: no node's (rigid bodies, padding).
   std::vector<int> body_of_row;
   int n_bodies = 0;  ///< on all ranks
-  /// M̃ of the nodes' rows, lumped (`lumped_mass`); 1 in the rows of held nodes, as in C; other rows
-  /// 0 [kg]. Not to be had from C, whose rows beside held nodes do not sum to M̃. Null: no motions.
-  RCP<const Vector> mass;
 
   bool empty() const { return motions.is_null(); }
   int n_axes() const { return motions->getNumVectors() == 3 ? 2 : 3; }
 };
 
+/// What an inverse of C = M̃ - dt D must know of the nodes of soft solids; their mass tells M̃ and
+/// dt D apart.
+struct SoftNodes : RigidMotions {
+  /// M̃ of the nodes' rows, lumped (`lumped_mass`); 1 in the rows of held nodes, as in C; other rows
+  /// 0 [kg]. Not to be had from C, whose rows beside held nodes do not sum to M̃. Null: no motions.
+  RCP<const Vector> mass;
+};
+
 /// Of each node the local row of its first axis; the other axes follow.
-std::vector<int> first_rows_of_nodes(const NearNullSpace& space);
+std::vector<int> first_rows_of_nodes(const RigidMotions& space);
 
 /// How much stiffer than heavy soft solids are in this step: trace(C) / trace(M̃) over the nodes'
 /// rows that are not held. Where none are held, the reciprocal of a Rayleigh quotient of
 /// diag(C)^-1 C, whose condition number it bounds from below. 1 where D = 0. Collective.
-double stiffness_number(const CrsMatrix& c, const NearNullSpace& space);
+double stiffness_number(const CrsMatrix& c, const SoftNodes& space);
 /// Whether dt D so outweighs M̃ that a multigrid cycle is worth its price, that of ten iterations
 /// with the diagonal: a stiffness number of 150 or more (measured on a ball of 8 000 nodes, where
 /// both take as long at 200).
 bool is_stiff(double stiffness_number);
 
 /// The sums of the nodes' rows of M̃ along their axes, by one product with each translation of
-/// `space` (its mass is not used); other rows 0 [kg]. Collective.
-RCP<Vector> lumped_mass(const LinearOperator& mass, const NearNullSpace& space);
+/// `space`; other rows 0 [kg]. Collective.
+RCP<Vector> lumped_mass(const LinearOperator& mass, const RigidMotions& space);
 
 /// The inverse of the lumped mass on the nodes' rows, and of dense blocks on the others: the
 /// paper's block-diagonal mass, which knows nothing of D. Throws SolveError where a mass is not
 /// positive. Collective.
 RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>& c,
-                                                      const NearNullSpace& space,
+                                                      const SoftNodes& space,
                                                       const std::string& name);
 
 }  // namespace lockstep

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "coupling/solid_system.hpp"
+#include "faces/local_rotation.hpp"
 #include "interfaces/fluid.hpp"
-#include "mixedface/local_rotation.hpp"
 
 namespace lockstep {
 

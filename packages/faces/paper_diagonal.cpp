@@ -1,6 +1,6 @@
 #include <Eigen/Core>
 
-#include "mixedface/lumping.hpp"
+#include "faces/added_mass.hpp"
 
 namespace lockstep {
 namespace {

@@ -1,4 +1,4 @@
-#include "mixedface/local_rotation.hpp"
+#include "faces/local_rotation.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "mixedface/weights.hpp"
+#include "faces/surface_shares.hpp"
 
 #include <algorithm>
 #include <cmath>

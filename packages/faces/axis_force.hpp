@@ -1,0 +1,38 @@
+#pragma once
+#include <vector>
+
+#include "coupling/solid_system.hpp"
+
+namespace lockstep {
+
+/// On one axis the pressure of a fluid at rest lifts what the grid takes for a body, not quite its
+/// own volume; and it lifts it at another place. The difference, less the fluid lumped on the body,
+/// in masses of fluid: times gravity it is the force that the pressure gives too much.
+template <int dim>
+struct DisplacedExcess {
+  int solid = -1;                          ///< closed; index in the snapshot
+  int axis = 0;                            ///< of the acceleration that it is weighed by
+  Point<dim> center = Point<dim>::Zero();  ///< the solid's centroid [m]
+  double mass = 0;                         ///< at the centroid [kg]
+  Point<dim> moment = Point<dim>::Zero();  ///< of mass about the centroid, across the axis [kg m]
+};
+
+/// The generalized force per unit of acceleration along one axis [kg], as entries of the solid map.
+struct AxisForce {
+  int axis = 0;
+  std::vector<GlobalIndex> dofs;
+  std::vector<double> values;
+};
+
+/// What a dynamic solid takes: a rigid body the force and its moment, a deformable one the force,
+/// over its surface.
+template <int dim>
+AxisForce force_of(const DisplacedExcess<dim>& excess, const SolidSystem<dim>& solids,
+                   const SurfaceSnapshot<dim>& surface);
+
+/// Adds acceleration times dt times the forces to a momentum of the stack. Local.
+template <int dim>
+void add_forces(const std::vector<AxisForce>& forces, const Point<dim>& acceleration, double dt,
+                Vector& momentum);
+
+}  // namespace lockstep

@@ -1,0 +1,132 @@
+#include "faces/face_coupling.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "linear/overlap.hpp"
+#include "linear/triplet_matrix.hpp"
+
+namespace lockstep {
+
+template <int dim>
+void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
+                                     const SurfaceSnapshot<dim>& surface) {
+  surface_ = &surface;
+  volumes_ = fluid.coupled_volumes();
+  masses_.assign(volumes_.size(), 0);
+  prescribed_velocity_.assign(volumes_.size(), 0);
+  coupling_transposed_ = Teuchos::null;
+  added_mass_ = Teuchos::null;
+  closed_area_.clear();
+  std::vector<GlobalIndex> unknowns;
+  for (const ControlVolume<dim>& volume : volumes_) {
+    closed_area_.push_back(closed_area(volume));
+    for (const auto& side : volume.sides) {
+      if (side.unknown != no_index)
+        unknowns.push_back(side.unknown);
+    }
+  }
+  pressure_import_ = import_of(std::move(unknowns), fluid.pressure_map());
+}
+
+template <int dim>
+void FaceCoupling<dim>::assemble_coupling(const SolidSystem<dim>& solids) {
+  solid_import_ = import_of(weights_.dofs, solids.map());
+  std::vector<Triplet> coupling;
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k) {
+      const GlobalIndex dof = weights_.dofs[weights_.columns[k]];
+      for (int side = 0; side < 2; ++side) {
+        const GlobalIndex unknown = volumes_[f].sides[side].unknown;
+        if (unknown != no_index)
+          coupling.push_back({dof, unknown, push(f, side) * weights_.values[k]});
+      }
+    }
+  }
+  coupling_transposed_ =
+      assemble_triplets(std::move(coupling), solids.map(), pressure_import_->getSourceMap());
+}
+
+template <int dim>
+void FaceCoupling<dim>::add_divergence(const std::vector<double>& coupled_velocity,
+                                       Vector& rhs) const {
+  Vector overlap(pressure_import_->getTargetMap());
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (int side = 0; side < 2; ++side) {
+      const GlobalIndex unknown = volumes_[f].sides[side].unknown;
+      if (unknown != no_index)
+        overlap.sumIntoGlobalValue(unknown, push(f, side) * coupled_velocity[f]);
+    }
+  }
+  add_overlap(overlap, *pressure_import_, rhs);
+}
+
+template <int dim>
+void FaceCoupling<dim>::add_prescribed_divergence(Vector& rhs) const {
+  add_divergence(prescribed_velocity_, rhs);
+}
+
+template <int dim>
+std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure) const {
+  Vector beside(pressure_import_->getTargetMap());
+  beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
+  const auto pressure = beside.getData();
+  std::vector<double> result(volumes_.size(), 0);
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    for (int side = 0; side < 2; ++side) {
+      const GlobalIndex unknown = volumes_[f].sides[side].unknown;
+      if (unknown != no_index)
+        result[f] += push(f, side) * pressure[beside.getMap()->getLocalElement(unknown)];
+    }
+  }
+  return result;
+}
+
+template <int dim>
+Momentum<dim> FaceCoupling<dim>::taken_by_solids(const SolidSystem<dim>& solids,
+                                                 const std::vector<double>& velocity_before,
+                                                 const BlockVector& solution) const {
+  Vector taken(solids.map());
+  this->add_lumped_momentum(velocity_before, taken);
+  coupling_transposed_->apply(*solution.pressure, taken, Teuchos::NO_TRANS, -1, 1);
+  if (!added_mass_.is_null())
+    added_mass_->apply(*solution.solid, taken, Teuchos::NO_TRANS, -1, 1);
+  return solids.momentum(taken);
+}
+
+template <int dim>
+double FaceCoupling<dim>::density_around(const FluidDiscretization<dim>& fluid,
+                                         const Communicator& comm) const {
+  const double density = max_all(comm, volumes_.empty() ? 0 : volumes_.front().density);
+  return density > 0 ? density : fluid.density(surface_->bounds_of_solid(0).center());
+}
+
+void add_transposed(const CouplingWeights& weights, const Import& import,
+                    const std::vector<double>& momentum, Vector& rhs) {
+  Vector overlap(import.getTargetMap());
+  {
+    const auto values = overlap.getDataNonConst();
+    for (int f = 0; f < weights.n_rows(); ++f) {
+      for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k)
+        values[weights.columns[k]] += weights.values[k] * momentum[f];
+    }
+  }
+  add_overlap(overlap, import, rhs);
+}
+
+void add_product(const CouplingWeights& weights, const Import& import, const Vector& dofs,
+                 std::vector<double>& result) {
+  Vector overlap(import.getTargetMap());
+  overlap.doImport(dofs, import, Tpetra::INSERT);
+  const auto values = overlap.getData();
+  for (int f = 0; f < weights.n_rows(); ++f) {
+    for (int k = weights.row_begin[f]; k < weights.row_begin[f + 1]; ++k)
+      result[f] += weights.values[k] * values[weights.columns[k]];
+  }
+}
+
+template class FaceCoupling<2>;
+template class FaceCoupling<3>;
+
+}  // namespace lockstep

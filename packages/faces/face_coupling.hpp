@@ -1,0 +1,73 @@
+#pragma once
+#include <vector>
+
+#include "faces/surface_shares.hpp"
+#include "interfaces/coupling.hpp"
+#include "interfaces/coupling_sides.hpp"
+#include "interfaces/prescribed_flux.hpp"
+#include "interfaces/viscosity.hpp"
+
+namespace lockstep {
+
+/// A coupling in which what is closed of a face moves with the solids at W V_S + W_k V_k, and
+/// pushes fluid out of one pressure and into the next: B^T, divergences and pressure forces follow
+/// from W and the closed areas. Who derives from it says what W and the areas are.
+template <int dim>
+class FaceCoupling : public Coupling<dim>,
+                     public AuditedCoupling<dim>,
+                     public UnseenBuoyancy<dim>,
+                     public ViscousCoupling<dim>,
+                     public SolidFluxes<dim> {
+ public:
+  RCP<const CrsMatrix> coupling_transposed() const override { return coupling_transposed_; }
+  RCP<const CrsMatrix> added_mass() const override { return added_mass_; }
+  const std::vector<double>& fluid_mass() const override { return masses_; }
+  void add_divergence(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
+  void add_prescribed_divergence(Vector& rhs) const override;
+
+ protected:
+  /// Starts anew with the fluid's coupled volumes: no solids, masses and velocities zero.
+  /// Collective.
+  void take_volumes(const FluidDiscretization<dim>& fluid, const SurfaceSnapshot<dim>& surface);
+  /// What of a face moves with solids [m^(dim-1)].
+  virtual double closed_area(const ControlVolume<dim>& volume) const = 0;
+  /// The same as the lower or upper pressure sees it: outflow counts negative on the lower cell,
+  /// positive above, for B = V G_c^T W with G^T = -div.
+  double push(std::size_t face, int side) const {
+    return side == 0 ? -closed_area_[face] : closed_area_[face];
+  }
+  /// B^T from `weights_`. Collective.
+  void assemble_coupling(const SolidSystem<dim>& solids);
+  /// What p̂ pushes on the closed part of each face, along its axis [kg m/s]. Collective.
+  std::vector<double> pushes(const Vector& scaled_pressure) const;
+  /// Momentum that the dynamic solids took in a solve: of the fluid lumped on them before, less
+  /// what they hold of it after, and of pressures. Collective.
+  Momentum<dim> taken_by_solids(const SolidSystem<dim>& solids,
+                                const std::vector<double>& velocity_before,
+                                const BlockVector& solution) const;
+  /// Of the fluid at the coupled faces, wherever one has them; else in the middle of a solid, of
+  /// which there must be one. Collective.
+  double density_around(const FluidDiscretization<dim>& fluid, const Communicator& comm) const;
+
+  const SurfaceSnapshot<dim>* surface_ =
+      nullptr;  ///< of the last `assemble`; the caller keeps it alive
+  std::vector<ControlVolume<dim>> volumes_;
+  CouplingWeights weights_;                  ///< W
+  std::vector<double> masses_;               ///< M_F
+  std::vector<double> prescribed_velocity_;  ///< W_k V_k
+  RCP<const CrsMatrix> coupling_transposed_, added_mass_;
+  RCP<Import> solid_import_;     ///< solid map -> this rank's `weights_.dofs`
+  RCP<Import> pressure_import_;  ///< pressure map -> unknowns beside this rank's coupled volumes
+
+ private:
+  std::vector<double> closed_area_;
+};
+
+/// rhs += weights^T momentum, one value a row; `import` brings the dofs of the weights. Collective.
+void add_transposed(const CouplingWeights& weights, const Import& import,
+                    const std::vector<double>& momentum, Vector& rhs);
+/// result += weights times the dofs they touch. Collective.
+void add_product(const CouplingWeights& weights, const Import& import, const Vector& dofs,
+                 std::vector<double>& result);
+
+}  // namespace lockstep

@@ -1,0 +1,32 @@
+#include "faces/link_end.hpp"
+
+namespace lockstep {
+
+template <int dim>
+bool LinkEnd<dim>::add(double weight, const SurfacePoint<dim>& point, int solid,
+                       const Point<dim>& x, const Point<dim>& pulled) {
+  if (weight > largest_share_) {
+    largest_share_ = weight;
+    row_.solid = solid;
+  }
+  if (solids_.solids()[solid].prescribed) {
+    row_.prescribed += weight * solids_.prescribed_velocity(point, x)[direction_];
+    row_.prescribed_share += weight;
+    row_.prescribed_solid = solid;
+    return false;
+  }
+  dynamic_share_ += weight;
+  pulled_ += weight * pulled;
+  return true;
+}
+
+template <int dim>
+void LinkEnd<dim>::finish() {
+  if (dynamic_share_ > 0)
+    row_.position = pulled_ / dynamic_share_;
+}
+
+template class LinkEnd<2>;
+template class LinkEnd<3>;
+
+}  // namespace lockstep

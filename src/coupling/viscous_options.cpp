@@ -1,0 +1,39 @@
+#include "coupling/viscous_options.hpp"
+
+#include "solve/preconditioner.hpp"
+
+namespace lockstep {
+
+void declare_viscous_solve(ParameterList& solver) {
+  const ViscousOptions standard;
+  declare_positive(solver, "Viscous Tolerance", standard.tolerance,
+                   "Relative residual of the viscous solve [1].");
+  ParameterList& list =
+      declare_list(solver, "Viscous Solve",
+                   "How implicit viscosity is solved, for the fluid and the solids together: "
+                   "[M_f + dt K_ff, dt K_fs; dt K_sf, C + dt K_ss], symmetric positive definite.");
+  declare_choice(list, "Krylov Solver", standard.krylov_solver, {"Conjugate Gradients", "MINRES"},
+                 "'Conjugate Gradients' stops by the norm of the preconditioner, 'MINRES' by the "
+                 "2-norm of the residual.");
+  declare_positive(list, "Maximum Iterations", standard.maximum_iterations, "Of one solve.");
+  declare_inverse(
+      list, "Fluid Inverse",
+      "Stands for the inverse of M_f + dt K_ff in the preconditioner. Default: Jacobi.");
+  declare_inverse(list, "Solid Inverse",
+                  "Stands for the inverse of C in the preconditioner. Default: the diagonal of "
+                  "C + dt K_ss, and of solids that are stiff in this step a multigrid cycle or the "
+                  "factors of C.");
+}
+
+ViscousOptions viscous_options(const ParameterList& solver) {
+  const ParameterList& list = solver.sublist("Viscous Solve");
+  ViscousOptions options;
+  options.tolerance = solver.get<double>("Viscous Tolerance");
+  options.maximum_iterations = list.get<int>("Maximum Iterations");
+  options.krylov_solver = list.get<std::string>("Krylov Solver");
+  options.fluid_inverse = inverse_list(list, "Fluid Inverse", {});
+  options.solid_inverse = inverse_list(list, "Solid Inverse", {});
+  return options;
+}
+
+}  // namespace lockstep
