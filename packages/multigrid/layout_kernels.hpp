@@ -10,8 +10,8 @@
 namespace lockstep {
 
 /// A and one cycle, in two passes over memory an iteration beside the cycle's: A d is worked out in
-/// both, which takes less time than to store it. The cycle leaves z on ghost cells too, so that
-/// nothing need be exchanged for d.
+/// both, which takes less time than to store it. Ghosts of d are exchanged once: those of z will
+/// not do, which the cycle does not leave in every cell as their owner has it.
 template <int dim>
 class LayoutKernels final : public ConjugateGradientKernels {
  public:
@@ -19,10 +19,9 @@ class LayoutKernels final : public ConjugateGradientKernels {
                 const LevelHalo& halo, RCP<Vector> direction, Communicator comm)
       : stencil_(std::move(stencil)),
         inverse_(std::move(inverse)),
+        halo_(halo),
         direction_(std::move(direction)),
         comm_(std::move(comm)) {
-    if (!halo.empty())
-      find_ghosts(halo);
     in_empty_rows_.resize(inverse_->empty_rows().size());
   }
 
@@ -55,15 +54,20 @@ class LayoutKernels final : public ConjugateGradientKernels {
           to[m] = back * z[m] + beta * to[m];
       }
     };
-    for (int colour = 0; colour < 2; ++colour)
-      for (const std::ptrdiff_t ghost : ghosts_[colour])
-        turn(colour, ghost, 1);
+    if (!halo_.empty()) {
+      inverse_->for_each_row(turn);
+      for (int colour = 0; colour < 2; ++colour)
+        halo_.fill(colour, d + colour * n_slots);
+    }
+    const auto turn_slab = [&](int slab) {
+      if (halo_.empty())
+        inverse_->for_each_row(slab, turn);
+    };
     double sum = 0;
-    stencil_->for_each_product(
-        d, [&](int slab) { inverse_->for_each_row(slab, turn); },
-        [&](int colour, std::ptrdiff_t at, int n, const double* product) {
-          sum += sum_of_products(d + colour * n_slots + at, product, n);
-        });
+    stencil_->for_each_product(d, turn_slab,
+                               [&](int colour, std::ptrdiff_t at, int n, const double* product) {
+                                 sum += sum_of_products(d + colour * n_slots + at, product, n);
+                               });
     restore_empty_rows(d);
     return sum_all(comm_, sum);
   }
@@ -120,25 +124,12 @@ class LayoutKernels final : public ConjugateGradientKernels {
       d[inverse_->empty_rows()[i].entry] = in_empty_rows_[i];
   }
 
-  /// Those ghosts that no row of the rank's own holds.
-  void find_ghosts(const LevelHalo& halo) {
-    const std::ptrdiff_t n_slots = inverse_->n_slots();
-    std::vector<char> in_row(2 * n_slots);
-    inverse_->for_each_row([&](int colour, std::ptrdiff_t at, int n) {
-      std::fill_n(in_row.begin() + colour * n_slots + at, n, 1);
-    });
-    for (int colour = 0; colour < 2; ++colour)
-      for (const std::ptrdiff_t ghost : halo.ghosts(colour))
-        if (!in_row[colour * n_slots + ghost])
-          ghosts_[colour].push_back(ghost);
-  }
-
   RCP<const LayoutStencil<dim>> stencil_;
   RCP<const LayoutInverse<dim>> inverse_;
+  const LevelHalo& halo_;
   RCP<Vector> direction_;
   Communicator comm_;
-  std::array<std::vector<std::ptrdiff_t>, 2> ghosts_;  ///< by colour
-  std::vector<double> in_empty_rows_;                  ///< d there
+  std::vector<double> in_empty_rows_;  ///< d there
 };
 
 }  // namespace lockstep

@@ -30,13 +30,6 @@ LevelHalo::LevelHalo(const Communicator& comm, const std::vector<Peer>& peers) :
   empty_ = sum_all(comm, n) == 0;
 }
 
-std::vector<std::ptrdiff_t> LevelHalo::ghosts(int colour) const {
-  std::vector<std::ptrdiff_t> all;
-  for (const Part& part : by_colour_[colour])
-    all.insert(all.end(), part.ghosts.begin(), part.ghosts.end());
-  return all;
-}
-
 /// Moves the values of one list of each part to the other list's place on the peer: owned to
 /// ghosts, or back (then they are added).
 template <typename Value>

@@ -31,9 +31,6 @@ class LevelHalo {
   /// True on all ranks if nothing is ever exchanged.
   bool empty() const { return empty_; }
 
-  /// Slots of all ghosts of one colour.
-  std::vector<std::ptrdiff_t> ghosts(int colour) const;
-
   /// Sets the ghosts of one colour, of values in slots.
   template <typename Value>
   void fill(int colour, Value* values) const {
