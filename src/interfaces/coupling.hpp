@@ -24,7 +24,7 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
 
   // Blocks. Null when there are no dynamic solids.
   virtual RCP<const CrsMatrix> coupling_transposed() const = 0;  ///< B^T [m^(dim-1)]
-  virtual RCP<const CrsMatrix> added_mass() const = 0;           ///< dM: M̃_S = M_S + dM [kg]
+  virtual RCP<const CrsMatrix> added_mass() const = 0;  ///< dM: M̃_S = M_S + dM [kg], or null: none
 
   /// rhs += V G_c^T W_k V_k: what prescribed solids push into row 1 [m^dim/s]. Collective.
   virtual void add_prescribed_divergence(Vector& rhs) const = 0;

@@ -142,6 +142,7 @@ class FluidDiscretization : public PlugIn {
   virtual void project(const Vector& scaled_pressure) = 0;
   /// u* of the coupled control volumes, in their order [m/s]. Local.
   virtual std::vector<double> coupled_velocity() const = 0;
+  /// u* of those that are closed (open fraction 0); a partly open one keeps its own.
   virtual void set_coupled_velocity(const std::vector<double>& velocity) = 0;
 
   // The phases of a step.
