@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "../mac/mac_cases.hpp"
+#include "linear/conjugate_gradients.hpp"
 #include "linear/null_space.hpp"
+#include "multigrid/pressure_layout.hpp"
 
 namespace lockstep::test {
 
@@ -43,6 +45,27 @@ RCP<Vector> right_hand_side(const Problem<dim>& problem) {
   });
   project_out(problem.system.null_space, *rhs);
   return rhs;
+}
+
+/// The d.(A d) of a few iterations of the kernels is that of the fluid's own operator, which knows
+/// neither slots nor ghosts.
+template <int dim>
+void expect_products_of_the_operator(const Problem<dim>& problem, const PressureLayout& layout,
+                                     ConjugateGradientKernels& kernels) {
+  Vector r(layout.map()), x(layout.map()), d(problem.fluid->pressure_map()), product(d.getMap());
+  layout.to_layout(*right_hand_side(problem), r);
+  double rr = r.dot(r), rz = kernels.precondition(r, std::sqrt(rr)), beta = 0;
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    const double found = kernels.advance_direction(beta);
+    layout.from_layout(kernels.direction(), d);
+    apply(*problem.system.pressure.op, d, product);
+    const double expected = d.dot(product);
+    ASSERT_NEAR(found, expected, 1e-11 * expected) << "iteration " << iteration;
+    rr = kernels.advance(rz / found, x, r);
+    const double next = kernels.precondition(r, std::sqrt(rr));
+    beta = next / rz;
+    rz = next;
+  }
 }
 
 /// A plate along a plane of cell faces of odd number, so that it cuts coarse cells of the first

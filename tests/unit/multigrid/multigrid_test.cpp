@@ -99,6 +99,18 @@ TEST(Multigrid, ACellWithoutFacesFarFromAllOthersInItsRow) {
   expect_matvec_of_the_layout(problem);
 }
 
+TEST(Multigrid, KernelsMultiplyByTheOperator) {
+  for (const Index<3>& cells : {Index<3>{7, 13, 9}, Index<3>{17, 24, 33}}) {
+    Case<3> scene(cells, 1.0 / 24);
+    scene.side("x lower", "open");
+    for (const auto& surface : {ball<3>(1.0 / 24), plate<3>(1.0 / 24, 5.1 / 24)}) {
+      const Problem<3> problem(scene, surface);
+      const auto layout = PressureLayout::make(problem.system, {}, nullptr);
+      expect_products_of_the_operator(problem, *layout, layout->kernels());
+    }
+  }
+}
+
 /// Bounds of the V cycle, the default, and of the W cycle; a smoother or a transfer that is wrong
 /// takes twice as many.
 template <int dim>

@@ -135,6 +135,18 @@ TEST(SchurStencil, ASheetThatGivesWay) {
   EXPECT_FALSE(PressureLayout::make(problem.system, {}, layout)->has_schur_inverse());
 }
 
+TEST(SchurStencil, KernelsMultiplyByTheOperatorAlone) {
+  for (const Index<3>& cells : {Index<3>{7, 13, 9}, Index<3>{17, 24, 33}}) {
+    Case<3> scene(cells, 1.0 / 24);
+    scene.side("x lower", "open");
+    Problem<3> problem(scene, plate<3>(1.0 / 24, 5.1 / 24));
+    make_sheet(problem);
+    const auto layout = PressureLayout::make(problem.system, {}, nullptr);
+    layout->build_schur_inverse(problem.system, *solid_inverse(problem));
+    expect_products_of_the_operator(problem, *layout, layout->schur_kernels());
+  }
+}
+
 TEST(SchurStencil, SolidsWithFluidOnOneSideConductNothing) {
   Case<3> scene(cube<3>(16), 1.0 / 16);
   Problem<3> problem(scene, plate<3>(1.0 / 16, 7.1 / 16));
