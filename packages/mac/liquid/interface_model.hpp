@@ -1,0 +1,76 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "interfaces/fluid.hpp"
+#include "interfaces/plug_in.hpp"
+#include "mac/domain/mac_domain.hpp"
+#include "mac/transport/nearby_surface.hpp"
+#include "mac/transport/ray_halo.hpp"
+#include "parameters/registry.hpp"
+
+namespace lockstep {
+
+/// Distance of a point to the surface of a liquid, negative inside it [m].
+template <int dim>
+using SignedDistance = std::function<double(const Point<dim>&)>;
+
+/// Where the liquid's volume has gone [m^dim], over all ranks.
+struct LiquidLedger {
+  double volume = 0;  ///< of the liquid outside solids
+  double target = 0;  ///< what known fluxes have left of the initial volume
+  double shift = 0;   ///< what corrections have added and taken away since the start, both positive
+  double lost = 0;    ///< of bodies of liquid that vanished, since the start
+  int n_components = 0;  ///< bodies of liquid
+  double drops = 0;      ///< in drops that the grid does not resolve
+};
+
+/// What moves an interface over one step.
+template <int dim>
+struct InterfaceStep {
+  /// u_ADV [m/s] on all owned faces that are not inside solids, extended from the liquid over
+  /// `band()` cells; what it is beyond does not matter.
+  const FaceField<dim>& advection_velocity;
+  const MovingSurface<dim>& surface;
+  RayHalo<dim>& ray_halo;  ///< of the domain's grid
+  KeptSurface<dim>& kept;
+  double time = 0;  ///< t^n [s]
+  double dt = 0;    ///< [s]
+  /// Liquid is created inside these and removed inside those, at the end of the step.
+  std::vector<SignedDistance<dim>> sources, sinks;
+};
+
+/// The surface of a liquid: where it is, how it moves. A plug-in kind; a model knows no pressure.
+/// The liquid is where `distance` is negative. Nothing of it passes through a surface of solids.
+template <int dim>
+class InterfaceModel : public PlugIn {
+ public:
+  using Surface = std::shared_ptr<const SurfaceSnapshot<dim>>;
+
+  /// Takes the liquid to be where `distance` is negative and outside the solids; near its surface
+  /// it should be a distance. The volume found becomes the target. Collective.
+  virtual void initialise(const SignedDistance<dim>& distance, const Surface& surface) = 0;
+  /// Moves the interface from t^n to t^{n+1}, final for the surfaces at t^{n+1}. Throws SolveError
+  /// if the velocity is not finite. Collective.
+  virtual void advance(const InterfaceStep<dim>& step) = 0;
+  /// phi [m] on all stored cells, ghosts included, continued into solids; cut off at +- `band()` h.
+  virtual const CellField& distance() const = 0;
+  /// The part of the way from the centre of a wet cell to that of its dry neighbour that is under
+  /// water, in (0, 1]. Default: phi is linear between them.
+  virtual double crossing(int wet_cell, int dry_cell) const {
+    const CellField& phi = distance();
+    return phi[wet_cell] / (phi[wet_cell] - phi[dry_cell]);
+  }
+  /// Cells around the liquid's surface over which phi is known and a velocity is wanted, for a step
+  /// in which nothing moves over more than so many cells. Local.
+  virtual int band(double largest_displacement) const = 0;
+  /// At the present time. Local.
+  virtual LiquidLedger ledger() const = 0;
+};
+
+/// Interface models by name. They are built for a domain, which must outlive them.
+template <int dim>
+using InterfaceRegistry = Registry<InterfaceModel<dim>, const MacDomain<dim>&>;
+
+}  // namespace lockstep
