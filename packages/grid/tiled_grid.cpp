@@ -4,8 +4,6 @@
 #include <limits>
 #include <string>
 
-#include "grid/tile_partition.hpp"
-
 namespace lockstep {
 namespace {
 
@@ -83,54 +81,78 @@ TiledGrid<dim>::TiledGrid(const GridDescription<dim>& description, const Communi
                           const TileChoice& tile_is_needed, const TileWeight& weight,
                           int ghost_tiles)
     : TiledGrid(TileLattice<dim>(description), comm) {
-  store_tiles(partition(tile_is_needed, weight), ghost_tiles);
+  const ChosenTiles<dim> chosen = choose_tiles<dim>(lattice_, comm_, tile_is_needed, weight);
+  store_tiles(with_layers(share_tiles(lattice_, comm_, chosen.numbers, chosen.weights)),
+              ghost_tiles);
+}
+
+template <int dim>
+TiledGrid<dim>::TiledGrid(const GridDescription<dim>& description, const Communicator& comm,
+                          const TileOwners& owners, int ghost_tiles)
+    : TiledGrid(TileLattice<dim>(description), comm) {
+  store_tiles(with_layers(owners), ghost_tiles);
 }
 
 template <int dim>
 TiledGrid<dim> TiledGrid<dim>::with_reach(int ghost_tiles) const {
-  std::vector<GlobalIndex> mine;
-  for (int t = 0; t < n_owned_tiles_; ++t) {
-    Index<dim> tile{};
-    for (int a = 0; a < dim; ++a)
-      tile[a] = tiles_[t].begin[a] / tile_width<dim>;
-    mine.push_back(lattice_.tile_number(tile));
-    mine.push_back(comm_->getRank());
-  }
-  const std::vector<GlobalIndex> all = gather_all(comm_, mine);
-  Owners owners;
-  owners.reserve(all.size() / 2);
-  for (std::size_t i = 0; i < all.size(); i += 2)
-    owners[all[i]] = static_cast<int>(all[i + 1]);
   TiledGrid wide(lattice_, comm_);
-  wide.store_tiles(owners, ghost_tiles);
+  wide.store_tiles(with_layers(tile_owners()), ghost_tiles);
   return wide;
 }
 
 template <int dim>
-typename TiledGrid<dim>::Owners TiledGrid<dim>::partition(const TileChoice& tile_is_needed,
-                                                          const TileWeight& weight) const {
-  const ChosenTiles<dim> chosen = choose_tiles<dim>(lattice_, comm_, tile_is_needed, weight);
-  std::vector<int> parts(chosen.numbers.size());
-  std::string failure;
-  if (is_root(comm_)) {
-    try {
-      parts = partition_tiles<dim>(lattice_, chosen.numbers, chosen.weights, comm_->getSize());
-    } catch (const Failure& error) {
-      failure = error.what();
-    }
+TileOwners TiledGrid<dim>::tile_owners() const {
+  std::vector<GlobalIndex> mine;
+  for (int t = 0; t < n_owned_tiles_; ++t) {
+    bool holds_cells = true;
+    for (const int n : tiles_[t].domain_extent)
+      holds_cells = holds_cells && n > 0;
+    if (!holds_cells)
+      continue;
+    mine.push_back(lattice_.tile_number(coordinates_of(tiles_[t])));
+    mine.push_back(comm_->getRank());
   }
-  throw_on_all(comm_, failure, static_cast<int>(ExitCode::bad_input));
-  MPI_Bcast(parts.data(), static_cast<int>(parts.size()), MPI_INT, 0, raw_communicator(comm_));
-
-  Owners owners;
-  owners.reserve(parts.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    owners[chosen.numbers[i]] = parts[i];
-    const Index<dim> tile = lattice_.tile_coordinates(chosen.numbers[i]);
-    for (const GlobalIndex above : layer_tiles_above<dim>(lattice_, tile))
-      owners[above] = parts[i];
+  const std::vector<GlobalIndex> all = gather_all(comm_, mine);
+  std::vector<std::pair<GlobalIndex, int>> pairs;
+  for (std::size_t i = 0; i < all.size(); i += 2)
+    pairs.emplace_back(all[i], static_cast<int>(all[i + 1]));
+  std::sort(pairs.begin(), pairs.end());
+  TileOwners owners;
+  for (const auto& [tile, rank] : pairs) {
+    owners.tiles.push_back(tile);
+    owners.ranks.push_back(rank);
   }
   return owners;
+}
+
+template <int dim>
+typename TiledGrid<dim>::Owners TiledGrid<dim>::with_layers(const TileOwners& owners) const {
+  Owners result;
+  result.reserve(owners.tiles.size());
+  for (std::size_t i = 0; i < owners.tiles.size(); ++i) {
+    result[owners.tiles[i]] = owners.ranks[i];
+    const Index<dim> tile = lattice_.tile_coordinates(owners.tiles[i]);
+    for (const GlobalIndex above : layer_tiles_above<dim>(lattice_, tile))
+      result[above] = owners.ranks[i];
+  }
+  return result;
+}
+
+template <int dim>
+void TiledGrid<dim>::find_extent(const Owners& owners) {
+  GlobalIndex n_in_lattice = 1;
+  for (const int n : lattice_.n_tiles())
+    n_in_lattice *= n;
+  is_complete_ = static_cast<GlobalIndex>(owners.size()) == n_in_lattice;
+  extent_ = {n_cells(), Index<dim>{}};
+  for (const auto& [number, owner] : owners) {
+    const Index<dim> tile = lattice_.tile_coordinates(number);
+    for (int a = 0; a < dim; ++a) {
+      const int begin = tile[a] * tile_width<dim>;
+      extent_[0][a] = std::min(extent_[0][a], begin);
+      extent_[1][a] = std::max(extent_[1][a], std::min(begin + tile_width<dim>, n_cells()[a]));
+    }
+  }
 }
 
 template <int dim>
@@ -183,6 +205,7 @@ void TiledGrid<dim>::store_tiles(const Owners& owners, int ghost_tiles) {
     record.owner = owners.at(number);
     tiles_.push_back(record);
   }
+  find_extent(owners);
   build_directory();
   link_neighbors();
 }
@@ -217,14 +240,18 @@ void TiledGrid<dim>::build_directory() {
 template <int dim>
 void TiledGrid<dim>::link_neighbors() {
   for (Tile& tile : tiles_) {
-    Index<dim> here{};
-    for (int a = 0; a < dim; ++a)
-      here[a] = tile.begin[a] / tile_width<dim>;
+    const Index<dim> here = coordinates_of(tile);
     for (int i = 0; i < 2 * dim; ++i) {
       const GlobalIndex number = lattice_.neighbor_tile(here, i / 2, i % 2);
       tile.neighbors[i] = number == no_index ? -1 : find_tile(lattice_.tile_coordinates(number));
     }
   }
+}
+
+template <int dim>
+bool TiledGrid<dim>::ends_at(int tile, int axis, int side) const {
+  return !is_complete_ && tiles_[tile].neighbors[2 * axis + side] < 0 &&
+         lattice_.neighbor_tile(coordinates_of(tiles_[tile]), axis, side) != no_index;
 }
 
 template <int dim>

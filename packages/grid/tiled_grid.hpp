@@ -9,6 +9,7 @@
 #include "base/types.hpp"
 #include "geometry/surface_snapshot.hpp"
 #include "grid/tile_lattice.hpp"
+#include "grid/tile_owners.hpp"
 
 namespace lockstep {
 
@@ -57,6 +58,9 @@ class TiledGrid {
   TiledGrid(const GridDescription<dim>& description, const Communicator& comm,
             const TileChoice& tile_is_needed = {}, const TileWeight& weight = {},
             int ghost_tiles = 1);
+  /// The same with tiles and ranks as given, the same list on all ranks.
+  TiledGrid(const GridDescription<dim>& description, const Communicator& comm,
+            const TileOwners& owners, int ghost_tiles = 1);
   /// Collective: a grid with the same owned tiles and cell ids, but ghost tiles within
   /// `ghost_tiles` tile widths. The ids of ghost cells differ.
   TiledGrid with_reach(int ghost_tiles) const;
@@ -69,6 +73,15 @@ class TiledGrid {
   /// Cells of the domain along each axis.
   const Index<dim>& n_cells() const { return description().n_cells; }
   Lattice<dim> lattice() const { return {lower(), spacing()}; }
+
+  /// Whether every tile of the lattice exists, on some rank.
+  bool is_complete() const { return is_complete_; }
+  /// Cells [begin, end) of the domain that hold all tiles of all ranks.
+  const std::array<Index<dim>, 2>& extent() const { return extent_; }
+  /// True if the lattice goes on beside an owned tile, but no tile is there.
+  bool ends_at(int tile, int axis, int side) const;
+  /// Collective: which tiles of the domain exist, and who has them.
+  TileOwners tile_owners() const;
 
   int n_owned_tiles() const { return n_owned_tiles_; }
   int n_tiles() const { return static_cast<int>(tiles_.size()); }
@@ -146,6 +159,12 @@ class TiledGrid {
     std::array<int, 2 * dim> neighbors{};  ///< local tiles or -1
     int owner = 0;
   };
+  static Index<dim> coordinates_of(const Tile& tile) {
+    Index<dim> coordinates = tile.begin;
+    for (int& c : coordinates)
+      c /= tile_width<dim>;
+    return coordinates;
+  }
   static constexpr int log_width = log_tile_width<dim>;
   static constexpr int stride(int axis) { return 1 << (log_width * axis); }
   static constexpr int local(int cell, int axis) {
@@ -156,8 +175,9 @@ class TiledGrid {
       : lattice_(lattice), comm_(comm) {}
   /// Rank of every existing tile by tile number.
   using Owners = std::unordered_map<GlobalIndex, int>;
-  Owners partition(const TileChoice& tile_is_needed, const TileWeight& weight) const;
+  Owners with_layers(const TileOwners& owners) const;
   void store_tiles(const Owners& owners, int ghost_tiles);
+  void find_extent(const Owners& owners);
   void build_directory();
   void link_neighbors();
   /// `neighbor` of a lattice cell of that tile.
@@ -174,6 +194,8 @@ class TiledGrid {
   Communicator comm_;
   int ghost_tiles_ = 1;
   int n_owned_tiles_ = 0;
+  bool is_complete_ = true;
+  std::array<Index<dim>, 2> extent_{};
   std::vector<Tile> tiles_;
   Index<dim> directory_lower_{}, directory_size_{};
   std::vector<int> directory_;  ///< local tile or -1 in the bounding box of the stored tiles

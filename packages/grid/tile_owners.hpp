@@ -1,0 +1,29 @@
+#pragma once
+#include <vector>
+
+#include "base/communicator.hpp"
+#include "grid/tile_lattice.hpp"
+
+namespace lockstep {
+
+/// Which tiles of the domain exist, and who has them: the same on every rank.
+struct TileOwners {
+  std::vector<GlobalIndex> tiles;  ///< numbers, ascending
+  std::vector<int> ranks;          ///< of each
+};
+
+/// Collective: divides tiles (ascending, the same on all ranks) among the ranks by METIS. `weights`
+/// is the work of each, on any scale. Throws InputError on all ranks.
+template <int dim>
+TileOwners share_tiles(const TileLattice<dim>& lattice, const Communicator& comm,
+                       std::vector<GlobalIndex> tiles, const std::vector<GlobalIndex>& weights);
+
+/// Collective, for a choice of tiles that follows another: tiles that stay keep their rank, a new
+/// one goes to the rank that has most of its neighbours, so that little moves. Where a rank then
+/// has more than 1.2 times its share of the work, they are divided anew, if that is better.
+template <int dim>
+TileOwners share_tiles_again(const TileLattice<dim>& lattice, const Communicator& comm,
+                             const TileOwners& before, std::vector<GlobalIndex> tiles,
+                             const std::vector<GlobalIndex>& weights);
+
+}  // namespace lockstep
