@@ -13,6 +13,7 @@ TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".sh", "
 # The sibling packages that a package may include.
 SIBLINGS = {
     "mac": {"grid"},
+    "freesurface": {"grid", "mac"},
     "cutcell": {"faces"},
     "mixedface": {"faces"},
     "articulated": {"rigid", "deformable"},

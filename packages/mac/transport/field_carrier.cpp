@@ -88,7 +88,8 @@ void FieldCarrier<dim>::keep(Passenger<dim>& passenger, int id, bool has_value) 
 }
 
 template <int dim>
-void FieldCarrier<dim>::carry(std::vector<Passenger<dim>>& passengers) {
+void FieldCarrier<dim>::carry(std::vector<Passenger<dim>>& passengers,
+                              const std::vector<char>* tiles) {
   for (Passenger<dim>& passenger : passengers)
     begin(passenger);
   if (passengers.front().field.kind != cell_centers)
@@ -96,6 +97,8 @@ void FieldCarrier<dim>::carry(std::vector<Passenger<dim>>& passengers) {
       for (const Passenger<dim>& other : passengers)
         passenger.field.velocity[other.field.kind] = other.field.values;
   for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
+    if (tiles != nullptr && !(*tiles)[tile])
+      continue;
     const bool by_rows = frame_.plans[tile].by_rows && carry_rows(passengers, tile);
     if (frame_.plans[tile].near_surface)
       carry_near_surfaces(passengers, tile, by_rows);

@@ -42,8 +42,8 @@ template <int dim>
 class FieldCarrier {
  public:
   explicit FieldCarrier(TransportFrame<dim>& frame) : frame_(frame) {}
-  /// Collective.
-  void carry(std::vector<Passenger<dim>>& passengers);
+  /// Collective. `tiles`: a flag for each owned tile, 0 where nothing is carried; null: all are.
+  void carry(std::vector<Passenger<dim>>& passengers, const std::vector<char>* tiles = nullptr);
 
  private:
   void begin(Passenger<dim>& passenger);

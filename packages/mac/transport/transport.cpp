@@ -143,7 +143,8 @@ void Transport<dim>::advect_faces(AdvectionScheme scheme, const FaceField<dim>& 
 
 template <int dim>
 void Transport<dim>::advect_scalar(AdvectionScheme scheme, const CellField& s,
-                                   const SideValues<dim>& inflow_values, CellField& result) {
+                                   const SideValues<dim>& inflow_values, CellField& result,
+                                   const std::vector<char>* tiles) {
   std::vector<Passenger<dim>> passengers(1);
   Passenger<dim>& passenger = passengers[0];
   passenger.scheme = scheme;
@@ -154,7 +155,7 @@ void Transport<dim>::advect_scalar(AdvectionScheme scheme, const CellField& s,
   passenger.field.inflow = [&](const Ray<dim>& ray) {
     return inflow_values[ray.inflow_axis][ray.inflow_side];
   };
-  FieldCarrier<dim>(implementation_->frame).carry(passengers);
+  FieldCarrier<dim>(implementation_->frame).carry(passengers, tiles);
 }
 
 template <int dim>

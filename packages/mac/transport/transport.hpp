@@ -76,9 +76,11 @@ class Transport {
   /// values of u are not used, those of `result` not set. `result` may not be `u`.
   void advect_faces(AdvectionScheme scheme, const FaceField<dim>& u, FaceField<dim>& result);
   /// Collective: the same for a cell-centred scalar, given what it is on inflow sides. Cells
-  /// without fluid keep their s.
+  /// without fluid keep their s. `tiles`: a flag for each owned tile, 0 where `result` stays as it
+  /// is (not with maccormack); null: all are carried.
   void advect_scalar(AdvectionScheme scheme, const CellField& s,
-                     const SideValues<dim>& inflow_values, CellField& result);
+                     const SideValues<dim>& inflow_values, CellField& result,
+                     const std::vector<char>* tiles = nullptr);
 
   /// What the calls so far could not give a value. Faces after `advect_faces`, cells after
   /// `advect_scalar` (the same for every scalar).

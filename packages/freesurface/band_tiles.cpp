@@ -1,0 +1,113 @@
+#include "freesurface/band_tiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lockstep {
+
+namespace {
+/// The cells of a tile in the band: the box of their lattice coordinates.
+template <int dim>
+struct CellBox {
+  Index<dim> low, high;
+  bool empty() const { return low[0] > high[0]; }
+};
+
+/// True if a surface comes near the cell and one of its neighbours is of the other kind.
+template <int dim>
+bool may_be_kept_apart(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                       const CellField& phi, int cell) {
+  if (solids.near.empty() || !solids.near[cell])
+    return false;
+  for (int i = 0; i < 2 * dim; ++i) {
+    const int other = grid.neighbor(cell, i / 2, i % 2);
+    if (other >= 0 && grid.in_domain(other) && (phi[cell] < 0) != (phi[other] < 0))
+      return true;
+  }
+  return false;
+}
+
+template <int dim>
+CellBox<dim> box_of_band(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                         const CellField& phi, double cut_off, int tile) {
+  constexpr int width = tile_width<dim>;
+  CellBox<dim> box;
+  box.low.fill(width);
+  box.high.fill(-1);
+  const Index<dim>& extent = grid.tile_domain_extent(tile);
+  for (int first = 0; first < tile_volume<dim>; first += width) {
+    Index<dim> row{};
+    bool exists = true;
+    for (int a = 1, rest = first / width; a < dim; ++a, rest /= width) {
+      row[a] = rest % width;
+      exists = exists && row[a] < extent[a];
+    }
+    if (!exists)
+      continue;
+    for (int x = 0; x < extent[0]; ++x) {
+      const int cell = tile * tile_volume<dim> + first + x;
+      if (std::abs(phi[cell]) >= cut_off && !may_be_kept_apart(grid, solids, phi, cell))
+        continue;
+      row[0] = x;
+      for (int a = 0; a < dim; ++a) {
+        box.low[a] = std::min(box.low[a], row[a]);
+        box.high[a] = std::max(box.high[a], row[a]);
+      }
+    }
+  }
+  for (int a = 0; a < dim; ++a) {
+    box.low[a] += grid.tile_begin(tile)[a];
+    box.high[a] += grid.tile_begin(tile)[a];
+  }
+  return box;
+}
+
+/// Flags the owned tiles that a box of lattice coordinates touches; periodic axes wrap.
+template <int dim>
+void flag_tiles(const TiledGrid<dim>& grid, const CellBox<dim>& box, std::vector<char>& flags) {
+  Index<dim> place = box.low;
+  while (true) {
+    const int cell = grid.cell(place);
+    if (cell >= 0 && grid.owned(cell))
+      flags[TiledGrid<dim>::tile_of(cell)] = 1;
+    int a = 0;
+    for (; a < dim; ++a) {
+      if (place[a] < box.high[a]) {
+        place[a] = std::min(place[a] + tile_width<dim>, box.high[a]);
+        break;
+      }
+      place[a] = box.low[a];
+    }
+    if (a == dim)
+      return;
+  }
+}
+}  // namespace
+
+template <int dim>
+std::vector<char> tiles_near_band(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                                  const CellField& phi, double cut_off, int reach) {
+  std::vector<char> flags(grid.n_owned_tiles(), 0);
+  for (int tile = 0; tile < grid.n_tiles(); ++tile) {
+    CellBox<dim> box = box_of_band(grid, solids, phi, cut_off, tile);
+    if (box.empty())
+      continue;
+    for (int a = 0; a < dim; ++a) {
+      box.low[a] -= reach;
+      box.high[a] += reach;
+      if (!grid.description().periodic[a]) {
+        box.low[a] = std::max(box.low[a], 0);
+        box.high[a] = std::min(box.high[a], grid.n_cells()[a] - 1);
+      }
+    }
+    flag_tiles(grid, box, flags);
+  }
+  return flags;
+}
+
+template std::vector<char> tiles_near_band<2>(const TiledGrid<2>&, const SolidCells<2>&,
+                                              const CellField&, double, int);
+template std::vector<char> tiles_near_band<3>(const TiledGrid<3>&, const SolidCells<3>&,
+                                              const CellField&, double, int);
+
+}  // namespace lockstep
