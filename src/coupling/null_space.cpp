@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/matrix_rows.hpp"
 #include "linear/overlap.hpp"
 
 namespace lockstep {
@@ -209,8 +210,7 @@ NullSpaces find_null_spaces(const PressureRegions& regions, const RCP<const Map>
   const Communicator comm = pressure_map->getComm();
   const ColumnRegions columns = regions_of_columns(*coupling_transposed, pressure);
   const Triangle all = brought_together(local_triangle(*coupling_transposed, columns), comm);
-  // What cancellation is judged against is all of B^T.
-  const double threshold = 1e-11 * coupling_transposed->getFrobeniusNorm();
+  const double threshold = round_off_of_sums(*coupling_transposed);
   std::vector<std::vector<NullSpace::Part>> coupled;
   if (is_root(comm))
     coupled = kernel_of(all, static_cast<int>(pressure.size()), threshold);

@@ -44,6 +44,10 @@ RCP<Vector> diagonal_of(const CrsMatrix& matrix) {
   return diagonal;
 }
 
+double round_off_of_sums(const CrsMatrix& coupling_transposed) {
+  return 1e-11 * coupling_transposed.getFrobeniusNorm();
+}
+
 RCP<const Map> domain_map(const LinearOperator& op) {
   using Space = Thyra::TpetraVectorSpace<double, int, GlobalIndex, Map::node_type>;
   const auto space = Teuchos::rcp_dynamic_cast<const Space>(op.domain());

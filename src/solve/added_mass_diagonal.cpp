@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Export.hpp>
 #include <Tpetra_Vector.hpp>
+#include <cmath>
 
 #include "linear/matrix_rows.hpp"
 
@@ -16,11 +17,13 @@ RCP<Vector> added_mass_diagonal(const BlockSystem& system, const RCP<const Map>&
   const CrsMatrix& coupling = *system.coupling_transposed;
   const auto mass = diagonal_of(*solid);
   const auto masses = mass->getData();
+  // A pressure that the weights of a solid cancel for is not moved by it.
+  const double round_off = round_off_of_sums(coupling);
   Vector on_columns(coupling.getColMap());
   {
     const auto sums = on_columns.getDataNonConst();
     for_each_entry(coupling, [&](int row, GlobalIndex column, double value) {
-      if (masses[row] > 0)
+      if (masses[row] > 0 && std::abs(value) > round_off)
         sums[coupling.getColMap()->getLocalElement(column)] += value * value / masses[row];
     });
   }

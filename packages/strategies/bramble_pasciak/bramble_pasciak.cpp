@@ -17,9 +17,10 @@ namespace lockstep {
 namespace {
 
 /// Lanczos steps for the smallest eigenvalue of M A, and the part of it that is taken, since the
-/// estimate lies above it.
+/// estimate lies above it; where that is not enough, so much less, so many times.
 constexpr int n_lanczos_steps = 15;
-constexpr double margin = 0.8;
+constexpr double margin = 0.8, retreat = 0.5;
+constexpr int most_retreats = 6;
 /// What the residual must have been reduced by for a restart to be worth it.
 constexpr double restart_gain = 0.1;
 /// Iterations without a residual smaller by this factor end a descent.
@@ -62,7 +63,12 @@ void BramblePasciak::build(const BlockSystem& system, bool, bool solid_changed) 
       [&](const Vector& x, Vector& y) { apply(*system.pressure.op, x, y); },
       [&](const Vector& r, Vector& z) { apply(*pressure_inverse(), r, z); },
       system.coupling_transposed->getDomainMap(), system.null_space, n_lanczos_steps);
-  scaled_inverse_ = Thyra::scale<double>(1 / (margin * ritz.smallest), pressure_inverse());
+  scale_below(system, margin * ritz.smallest);
+}
+
+void BramblePasciak::scale_below(const BlockSystem& system, double smallest) {
+  smallest_ = smallest;
+  scaled_inverse_ = Thyra::scale<double>(1 / smallest, pressure_inverse());
   solid_schur_inverse_ =
       system.solids.op->domain()->dim() <= largest_solid_
           ? SolidSchur::make(system, scaled_inverse_, largest_solid_, name())->inverse()
@@ -73,6 +79,19 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
                             Vector& correction) {
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
+  for (int retreats = 0; retreats <= most_retreats; ++retreats) {
+    if (const std::optional<int> n_iterations = descend(system, request, correction))
+      return *n_iterations;
+    scale_below(system, retreat * smallest_);
+  }
+  throw SolveError(fmt::format(
+      "{}: A - A_0 is not positive definite: the estimate of the smallest eigenvalue of the "
+      "preconditioned A is too high, even {:.0f} times lower. Choose another \"Pressure Inverse\".",
+      request.name, std::pow(retreat, -most_retreats)));
+}
+
+std::optional<int> BramblePasciak::descend(const BlockSystem& system,
+                                           const CorrectionRequest& request, Vector& correction) {
   const CrsMatrix& coupling = *system.coupling_transposed;
   Pair x(coupling), r(coupling), z(coupling), d(coupling), q(coupling);
   Vector below(coupling.getRangeMap());
@@ -110,11 +129,8 @@ int BramblePasciak::correct(const BlockSystem& system, const CorrectionRequest& 
     // nearly equal energies loses its sign: start anew from the true residual.
     if (n_iterations > 0 && !(z_dot_z > 0) && norm < restart_gain * request.residual_norm)
       break;
-    check_solve(std::isfinite(z_dot_z) && z_dot_z > 0,
-                "{}: A - A_0 is not positive definite (<z, z> = {:.3e} in iteration {}): the "
-                "estimate of the smallest eigenvalue of the preconditioned A is too high. Choose "
-                "another \"Pressure Inverse\".",
-                request.name, z_dot_z, n_iterations);
+    if (!(z_dot_z > 0))
+      return std::nullopt;
     const double beta = n_iterations == 0 ? 0 : z_dot_z / previous;
     d.update(1, z, beta);
     a_d.update(1, a_z, beta);

@@ -102,6 +102,10 @@ RCP<const CrsMatrix> shifted(const RCP<const CrsMatrix>& a, const std::vector<do
 
 }  // namespace
 
+RCP<const CrsMatrix> with_filled_rows(const BlockSystem& system, const RCP<const CrsMatrix>& a) {
+  return shifted(a, diagonal_shift(system, *a, false));
+}
+
 namespace {
 
 const std::string list_name = "Pressure Inverse";

@@ -36,7 +36,13 @@ struct Refinement {
   double initial_pressure = 0, initial_solid = 0;
 };
 
-std::string what_to_try(const Refinement& done, int maximum_iterations) {
+std::string what_to_try(const Refinement& done, const BlockResidual& residual, double tolerance,
+                        int maximum_iterations) {
+  if (residual.relative_pressure() <= tolerance)
+    return "The rows of the solids do not hold: their block is singular to round-off. A node "
+           "without "
+           "mass that no mixed face sees needs a stiffness or damping that is implicit: give its "
+           "body a mass, bending stiffness or a coarser mesh";
   if (done.n_iterations >= maximum_iterations)
     return fmt::format(
         "\"Maximum Iterations\" is {}: raise it, or choose a stronger \"Pressure Inverse\"",
@@ -56,7 +62,7 @@ std::string what_to_try(const Refinement& done, int maximum_iterations) {
       residual.relative_solid(), done.initial_solid, tolerance,
       system.has_solid() ? by_name(system.solids, *residual.vector.solid, residual.solid_scale)
                          : "",
-      what_to_try(done, maximum_iterations)));
+      what_to_try(done, residual, tolerance, maximum_iterations)));
 }
 
 void check_finite(const std::string& name, const BlockResidual& residual) {

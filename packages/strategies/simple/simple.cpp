@@ -93,7 +93,7 @@ RCP<const LinearOperator> Simple::make_preconditioner(const BlockSystem& system,
               "assembled. Choose schur-cg.",
               system.name);
   const double s = scaled.s;
-  const auto pressure_block = scaled_copy(s * s, *a);
+  const auto pressure_block = scaled_copy(s * s, *with_filled_rows(system, a));
   const auto blocks = explicit_blocks(pressure_block, system, s, scaled.t);
   const auto inverses =
       rcp(new Inverses(pressure_block, Thyra::scale<double>(1 / (s * s), pressure_inverse()),

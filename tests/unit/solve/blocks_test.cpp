@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "linear/block_diagonal.hpp"
+#include "solve/added_mass_diagonal.hpp"
 #include "solve/block_residual.hpp"
 #include "solve/gathered_direct.hpp"
 #include "solve/merge.hpp"
@@ -138,6 +139,26 @@ TEST(GatheredDirect, RefusesASingularMatrix) {
   if (is_root(world()))
     rows = {{{0, 1}, {1, 0}}, {{0, 0}, {1, 0}}};
   EXPECT_THROW(gathered_direct(matrix_from_rows(map, rows), "test"), SolveError);
+}
+
+/// B V B^T / C for one solid dof, which pushes the first pressure and all but cancels for the
+/// second.
+TEST(AddedMassDiagonal, WeightsThatCancelToRoundOffMoveNothing) {
+  const bool mine = world()->getRank() == 0;
+  const auto cells = make_map(mine ? 2 : 0, world()), dofs = make_map(mine ? 1 : 0, world());
+  std::vector<std::vector<Entry>> coupling, solid;
+  if (mine) {
+    coupling.push_back({{0, 3.0}, {1, 2e-14}});
+    solid.push_back({{0, 4.0}});
+  }
+  BlockSystem system;
+  system.coupling_transposed = matrix_from_rows(dofs, coupling, cells);
+  system.solids.op = as_operator(matrix_from_rows(dofs, solid));
+  const auto diagonal = added_mass_diagonal(system, cells);
+  if (mine) {
+    EXPECT_DOUBLE_EQ(diagonal->getData()[0], 9.0 / 4.0);
+    EXPECT_EQ(diagonal->getData()[1], 0);
+  }
 }
 
 /// As in the mass matrix of a turned body, where R J R^T is symmetric up to round-off only.
