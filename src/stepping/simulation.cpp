@@ -157,7 +157,7 @@ void Simulation<dim>::load_checkpoint() {
   observers_.load(checkpoint);
   step_ = checkpoint.header().step;
   last_dt_ = checkpoint.file().template read_attribute<double>("/", "last dt");
-  stepper_->resume(checkpoint.header().time, last_dt_);
+  stepper_->resume(checkpoint.header().time, last_dt_, step_);
 }
 
 template <int dim>

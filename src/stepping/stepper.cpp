@@ -34,9 +34,10 @@ Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options
 }
 
 template <int dim>
-void Stepper<dim>::resume(double time, double last_dt) {
+void Stepper<dim>::resume(double time, double last_dt, long long n_steps) {
   time_ = time;
   last_dt_ = last_dt;
+  n_steps_ = n_steps;
   components_.solids->begin_step(time, 0);
   freeze();
 }
@@ -304,6 +305,7 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
   }
   time_ += dt;
   last_dt_ = dt;
+  ++n_steps_;
   return report;
 }
 

@@ -42,8 +42,8 @@ class Stepper {
   StepReport<dim> advance(double dt);
   double time() const { return time_; }
   /// For restart, after fluid and solids were loaded: freezes the geometry anew. `last_dt` is that
-  /// of the last step taken. Collective.
-  void resume(double time, double last_dt);
+  /// of the last of `n_steps` steps. Collective.
+  void resume(double time, double last_dt, long long n_steps);
   CoupledSystem<dim>& system() { return system_; }
 
  private:
@@ -99,6 +99,7 @@ class Stepper {
   CoupledSystem<dim> system_;
   double time_;
   double last_dt_ = 0;           ///< 0 before the first step
+  long long n_steps_ = 0;        ///< taken
   Momentum<dim> last_momentum_;  ///< at the end of the last step
 };
 

@@ -47,12 +47,13 @@ Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
   return prediction;
 }
 
-/// p̂ that the viscous solve reads: that of the last step, before the first one that of a solve
-/// without viscosity.
+/// p̂ that the viscous solve reads: that of the last step. In the first two steps that of a solve
+/// without viscosity: what the first step's pressure did to velocities that were no flow at the
+/// start is an impulse, and comes once.
 template <int dim>
 RCP<const Vector> Stepper<dim>::expected_pressure(const StepContext<dim>& context,
                                                   StepReport<dim>& report) {
-  if (last_dt_ > 0)
+  if (n_steps_ > 1)
     return last_pressure(context.dt);
   const RCP<Vector> momentum = coupled() ? solid_momentum(context.on_trial(), {}, report)
                                          : make_vector(components_.solids->map());

@@ -29,6 +29,7 @@ class Facts:
     inflow: bool = False
     periodic: bool = False
     explicit: bool = False  # elastic forces of the present positions
+    sub_steps: bool = False  # of elastic forces
     soft: bool = False
     springs: bool = False
     attached: bool = False
@@ -36,6 +37,7 @@ class Facts:
     dynamic_rigid: bool = False
     exact_momentum: bool = True
     needs_full_ranks: bool = False  # Belos' inner products want unknowns on every rank
+    massless: bool = False  # a cloth, of which the fluid may leave nodes without any
     scalar_range: dict = dataclasses.field(default_factory=dict)  # smoke, temperature: [least, most]
     lightest: float = math.inf  # density of a solid over that of the fluid
 

@@ -113,6 +113,7 @@ def integration(world):
         world.facts.explicit = True
         if rng.random() < 0.5:
             chosen["Most Sub-Steps"] = rng.choice([2, 10, 40])
+            world.facts.sub_steps = True
     if rng.random() < 0.25:
         chosen["Mass"] = "consistent"
     if rng.random() < 0.25:
@@ -171,6 +172,7 @@ def cloth(world, center, reach, geometry=None):
         body["Stretch Limit"] = rng.uniform(0.12, 0.3)
     if body["Time Integration"] == "fully-implicit" and rng.random() < 0.1:
         body["Surface Density"] = 0.0  # the fluid lumped on it is all its mass
+        world.facts.massless = True
     world.facts.soft = True
     return body
 

@@ -38,7 +38,7 @@ struct Refinement {
 
 std::string what_to_try(const Refinement& done, const BlockResidual& residual, double tolerance,
                         int maximum_iterations) {
-  if (residual.relative_pressure() <= tolerance)
+  if (residual.relative_solid() > tolerance)
     return "The rows of the solids do not hold: their block is singular to round-off. A node "
            "without "
            "mass that no mixed face sees needs a stiffness or damping that is implicit: give its "
