@@ -17,6 +17,7 @@ NAMES = ["Ball", "Body 2", "x,y 1", "A & B", "Körper", "Körper 2", "b-3", "Zel
 TOLERANCE = 1e-10
 # Strategies that can solve every scene; the others are drawn where docs/solvers.md says they can.
 GENERAL_STRATEGIES = ["schur-cg"] * 8 + ["pressure-schur", "direct", "paper"]
+NEEDS_FLUID_ALONE = {"bramble-pasciak", "uzawa", "block-lu", "solid-schur"}  # refuse a region that a solid closes
 BELOS_STRATEGIES = {"block-lu", "gauss-seidel", "simple"}
 
 
@@ -36,6 +37,7 @@ class Facts:
     closed_shell: bool = False
     dynamic_rigid: bool = False
     exact_momentum: bool = True
+    strategy: str = ""
     needs_full_ranks: bool = False  # Belos' inner products want unknowns on every rank
     massless: bool = False  # a cloth, of which the fluid may leave nodes without any
     scalar_range: dict = dataclasses.field(default_factory=dict)  # smoke, temperature: [least, most]
@@ -318,6 +320,7 @@ def strategy(world, coupling_list, solid_lists):
             limited += ["uzawa"] * 3
     name = rng.choice(limited if limited and rng.random() < 0.5 else names)
     chosen = {"Type": name, "Maximum Iterations": 5000}
+    facts.strategy = name
     facts.needs_full_ranks = name in BELOS_STRATEGIES
     if name == "paper":
         chosen["Krylov Method"] = rng.choice(["Belos MINRES", "Lockstep MINRES"])
