@@ -5,6 +5,7 @@
 
 #include "freesurface/band_tiles.hpp"
 #include "freesurface/continuation.hpp"
+#include "freesurface/voids.hpp"
 #include "mac/state/stored_fields.hpp"
 #include "mac/transport/revalidation.hpp"
 #include "mac/transport/transport.hpp"
@@ -20,16 +21,23 @@ constexpr double negligible_motion = 0.05;
 constexpr int depth_in_solids = 4;
 }  // namespace
 
+template <int dim>
 ParameterList level_set_parameters() {
   ParameterList list;
   declare_between(list, "Band", 6, 4, 20,
                   "Cells on both sides of the surface in which its distance is known.");
+  declare_at_least(list, "Smallest Void", dim == 2 ? 8 : 27, 0,
+                   "Voids of no more cells that liquid touches are filled: they would drain the "
+                   "liquid around them. 0: none is.");
+  declare_volume_correction(list);
   return list;
 }
 
 LevelSetParameters read_level_set_parameters(const ParameterList& list) {
   LevelSetParameters parameters;
   parameters.band = list.get<int>("Band");
+  parameters.smallest_void = list.get<int>("Smallest Void");
+  parameters.volume = read_volume_correction(list);
   return parameters;
 }
 
@@ -39,7 +47,8 @@ LevelSet<dim>::LevelSet(const MacDomain<dim>& domain, const LevelSetParameters& 
       parameters_(parameters),
       phi_(domain.grid.n_stored_cells(), parameters.band * domain.spacing()),
       solids_(find_solid_cells<dim>(domain, nullptr)),
-      redistancer_(domain) {}
+      redistancer_(domain),
+      volume_(domain, parameters.volume) {}
 
 template <int dim>
 int LevelSet<dim>::band(double largest_displacement) const {
@@ -66,10 +75,11 @@ void LevelSet<dim>::initialise(const SignedDistance<dim>& distance, const Surfac
   redistancer_.apply(solids_, all, cut_off(), phi_);
   moved_ = 0;
   finish();
+  volume_.begin(solids_, phi_);
 }
 
 template <int dim>
-void LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
+double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
   const TiledGrid<dim>& grid = domain_.grid;
   TransportSetting<dim> setting{grid,          solids_.state, step.surface, step.advection_velocity,
                                 step.ray_halo, step.kept,     {},           step.dt};
@@ -87,16 +97,50 @@ void LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
     revalidate_scalar(grid, domain_.halo, solids_.state, step.surface, step.kept,
                       transport.invalid(), grid.spacing(), phi_);
   domain_.halo.fill(phi_);
-  if (moved_ < negligible_motion)
-    return;
-  redistancer_.apply(solids_, tiles, cut_off(), phi_);
-  moved_ = 0;
+  if (moved_ >= negligible_motion) {
+    redistancer_.apply(solids_, tiles, cut_off(), phi_);
+    moved_ = 0;
+  }
+  close_voids(domain_, solids_, parameters_.smallest_void, phi_);
+  volume_.inherit(solids_, phi_, transport.invalid().cells,
+                  static_cast<int>(std::ceil(displacement)) + 1);
+  return displacement;
+}
+
+template <int dim>
+void LevelSet<dim>::add_sources(const InterfaceStep<dim>& step) {
+  const auto change = [&](const auto& shape_of) {
+    domain_.grid.for_each_owned_cell(
+        [&](int cell) { phi_[cell] = shape_of(phi_[cell], domain_.grid.center(cell)); });
+    domain_.halo.fill(phi_);
+  };
+  const double most = cut_off();
+  for (const SignedDistance<dim>& sink : step.sinks) {
+    change([&](double phi, const Point<dim>& x) {
+      return std::max(phi, std::clamp(-sink(x), -most, most));
+    });
+    volume_.remove(solids_, phi_);
+  }
+  for (const SignedDistance<dim>& source : step.sources) {
+    const CellField before = phi_;
+    change([&](double phi, const Point<dim>& x) {
+      return std::min(phi, std::clamp(source(x), -most, most));
+    });
+    volume_.create(solids_, before, phi_);
+  }
 }
 
 template <int dim>
 void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
   find_solids(step.surface.before);
-  carry(step);
+  if (loaded_) {
+    volume_.restore(solids_, phi_, *loaded_);
+    loaded_.reset();
+  }
+  volume_.flow_out(solids_, phi_, step.advection_velocity, step.dt);
+  const double displacement = carry(step);
+  add_sources(step);
+  volume_.correct(solids_, displacement, phi_);
   finish();
 }
 
@@ -110,25 +154,34 @@ template <int dim>
 void LevelSet<dim>::save(CheckpointWriter& checkpoint) const {
   CellField phi = phi_;
   save_fields(domain_, {{"interface_distance", {&phi}}}, checkpoint);
-  checkpoint.file().write_attribute("fluid", "interface_moved", moved_);
+  const VolumeTargets& targets = volume_.targets();
+  std::vector<double> numbers = {moved_, targets.loose, targets.lost, targets.shift};
+  numbers.insert(numbers.end(), targets.of_group.begin(), targets.of_group.end());
+  checkpoint.file().write_replicated("fluid/liquid_ledger", numbers);
 }
 
 template <int dim>
 void LevelSet<dim>::load(const CheckpointReader& checkpoint) {
   load_fields(domain_, {{"interface_distance", {&phi_}}}, checkpoint);
   domain_.full_halo.fill(phi_);
-  moved_ = checkpoint.file().read_attribute<double>("fluid", "interface_moved");
+  const auto numbers = checkpoint.file().read_all<double>("fluid/liquid_ledger");
+  moved_ = numbers[0];
+  loaded_ = VolumeTargets{{numbers.begin() + 4, numbers.end()}, numbers[1], numbers[2], numbers[3]};
 }
 
 template <int dim>
 std::function<void()> LevelSet<dim>::undo() {
-  return [this, phi = phi_, moved = moved_, ledger = ledger_] {
+  return [this, phi = phi_, moved = moved_, surface = solids_.state.surface,
+          targets = volume_.targets()] {
     phi_ = phi;
     moved_ = moved;
-    ledger_ = ledger;
+    find_solids(surface);
+    volume_.restore(solids_, phi_, targets);
   };
 }
 
+template ParameterList level_set_parameters<2>();
+template ParameterList level_set_parameters<3>();
 template class LevelSet<2>;
 template class LevelSet<3>;
 

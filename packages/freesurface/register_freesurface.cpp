@@ -7,7 +7,8 @@ namespace lockstep {
 template <int dim>
 void register_freesurface(InterfaceRegistry<dim>& interfaces) {
   interfaces.add("level set", "A distance carried on the grid alone: rounds off what is thin.",
-                 level_set_parameters, [](const ParameterList& list, const MacDomain<dim>& domain) {
+                 level_set_parameters<dim>,
+                 [](const ParameterList& list, const MacDomain<dim>& domain) {
                    return std::make_unique<LevelSet<dim>>(domain, read_level_set_parameters(list));
                  });
 }

@@ -1,37 +1,13 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
+#include "grid/disjoint_sets.hpp"
 #include "mac/pressure/pressure_system.hpp"
 
 namespace lockstep {
 
 namespace {
-/// Disjoint sets of 0 .. n-1; the root is the smallest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int i) {
-    while (parent_[i] != i)
-      i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int i, int j) {
-    i = root(i);
-    j = root(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-  /// Makes every member point at its root.
-  void flatten() {
-    for (int& parent : parent_)  // parents come first
-      parent = parent_[parent];
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 /// What one rank knows of the components in its cells.
 struct LocalComponents {
   std::vector<GlobalIndex> label;  ///< of each stored cell: lattice number of the component's first

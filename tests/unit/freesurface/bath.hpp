@@ -144,7 +144,7 @@ std::shared_ptr<const SurfaceSnapshot<dim>> snapshot(SurfaceMesh<dim> mesh, cons
 template <int dim>
 Point<dim> swirl(const Point<dim>& x) {
   Point<dim> u = Point<dim>::Zero();
-  u[0] = 0.5 - x[1] + 0.3 * std::sin(2 * pi * x[dim - 1]) * (dim - 2);
+  u[0] = 0.5 - x[1] + 0.05 * std::sin(2 * pi * x[dim - 1]) * (dim - 2);
   u[1] = x[0] - 0.5;
   return u;
 }

@@ -1,0 +1,21 @@
+#pragma once
+#include <vector>
+
+#include "freesurface/solid_cells.hpp"
+
+namespace lockstep {
+
+/// Cells that hang together, over all ranks.
+struct CellGroups {
+  std::vector<int> of_cell;  ///< of each stored cell of the halo of width 1 or owned; -1: no member
+  int n = 0;
+};
+
+/// Groups of fluid cells among the members, joined through their faces where no surface comes
+/// between their centres. Numbered by the smallest lattice number in each, so that any number of
+/// ranks finds the same. `is_member`: of stored cells, its halo set. Collective.
+template <int dim>
+CellGroups find_groups(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                       const std::vector<char>& is_member);
+
+}  // namespace lockstep

@@ -1,0 +1,176 @@
+#include "freesurface/liquid_volume.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "freesurface/wet_fraction.hpp"
+#include "geometry/solid_volume.hpp"
+
+namespace lockstep {
+
+namespace {
+/// phi beyond which no corner of a cell's boxes is on the other side [cells]; with what it may
+/// change until then.
+constexpr double far = 2.5;
+/// The shift of phi that shows the area [cells].
+constexpr double probe = 1e-3;
+}  // namespace
+
+double GroupVolumes::total() const {
+  return std::accumulate(volume.begin(), volume.end(), loose);
+}
+
+template <int dim>
+double LiquidVolume<dim>::volume_of_cell(int cell) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const Index<dim> place = grid.coordinates(cell);
+  double volume = domain_.cell_volume();
+  for (int a = 0; a < dim; ++a)
+    if (!grid.description().periodic[a]) {
+      volume *= (place[a] == 0 ? 0.5 : 0.0) + (place[a] + 1 == grid.n_cells()[a] ? 0.5 : 1.0);
+    }
+  return volume;
+}
+
+template <int dim>
+bool LiquidVolume<dim>::is_divided(const SolidCells<dim>& solids,
+                                   const std::array<int, n_corners>& corners) const {
+  for (int k = 0; k < n_corners; ++k)
+    for (int a = 0; a < dim; ++a) {
+      const int upper = corners[k | 1 << a];
+      if ((k >> a & 1) || upper == corners[k] || !solids.is_fluid(corners[k]) ||
+          !solids.is_fluid(upper))
+        continue;
+      if (solids.blocked[upper] >> a & 1)
+        return true;
+    }
+  return false;
+}
+
+template <int dim>
+void LiquidVolume<dim>::list_boxes(const SolidCells<dim>& solids, const CellField& phi, int cell) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const Index<dim> place = grid.coordinates(cell);
+  const double h = domain_.spacing();
+  const bool near = !solids.near.empty() && solids.near[cell];
+  // Bit a: the half box below the first centre along axis a.
+  for (int below = 0; below < n_corners; ++below) {
+    CutBox box;
+    box.volume = 1;
+    Point<dim> low = grid.center(cell), high = low;
+    std::array<bool, dim> flat{};
+    bool exists = true;
+    for (int a = 0; a < dim; ++a) {
+      const bool wraps = grid.description().periodic[a];
+      const bool is_below = below >> a & 1;
+      exists = exists && (!is_below || (!wraps && place[a] == 0));
+      flat[a] = is_below || (!wraps && place[a] + 1 == grid.n_cells()[a]);
+      (is_below ? low : high)[a] += (is_below ? -1 : 1) * (flat[a] ? 0.5 * h : h);
+      box.volume *= flat[a] ? 0.5 * h : h;
+    }
+    if (!exists)
+      continue;
+    box.corners.fill(cell);
+    for (int k = 1; k < n_corners; ++k) {
+      int a = 0;
+      while (!(k >> a & 1))
+        ++a;
+      const int beside = box.corners[k ^ 1 << a];
+      const int upper = flat[a] ? beside : grid.neighbor(beside, a, 1);
+      box.corners[k] = upper < 0 ? beside : upper;
+    }
+    const bool stays_dry = std::none_of(box.corners.begin(), box.corners.end(),
+                                        [&](int corner) { return phi[corner] < 0.5 * h; });
+    if (stays_dry)
+      continue;
+    if (near) {
+      box.is_divided = is_divided(solids, box.corners);
+      box.volume -= solid_volume_in_box<dim>(*solids.state.surface, Box<dim>(low, high));
+    }
+    if (box.volume > 0)
+      cut_.push_back(box);
+  }
+}
+
+template <int dim>
+void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& phi) {
+  const double deep = far * domain_.spacing();
+  cut_.clear();
+  full_.clear();
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    const bool near = !solids.near.empty() && solids.near[cell];
+    if (near || (std::abs(phi[cell]) < deep && solids.is_fluid(cell)))
+      list_boxes(solids, phi, cell);
+    else if (phi[cell] < 0 && solids.is_fluid(cell))
+      full_.push_back(cell);
+  });
+}
+
+template <int dim>
+void LiquidVolume<dim>::add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
+                                std::vector<double>& sums) const {
+  const double shift = probe * domain_.spacing();
+  std::array<double, n_corners> values, lower;
+  int n_wet = 0, n_credited = 0;
+  for (int k = 0; k < n_corners; ++k) {
+    values[k] = phi[box.corners[k]];
+    lower[k] = values[k] - shift;
+    n_wet += values[k] < 0;
+    n_credited += values[k] < 0 && groups.of_cell[box.corners[k]] >= 0;
+  }
+  if (n_wet == 0)
+    return;
+  const double fraction = wet_fraction<dim>(values);
+  const double volume = fraction * box.volume;
+  const double area =
+      n_wet == n_corners ? 0 : (wet_fraction<dim>(lower) - fraction) * box.volume / shift;
+  if (n_credited == 0)
+    sums.back() += volume;
+  for (int k = 0; k < n_corners; ++k)
+    if (const int group = groups.of_cell[box.corners[k]]; values[k] < 0 && group >= 0) {
+      sums[group] += volume / n_credited;
+      sums[groups.n + group] += area / n_credited;
+    }
+}
+
+template <int dim>
+void LiquidVolume<dim>::add_divided(const CutBox& box, const CellField& phi,
+                                    const CellGroups& groups, std::vector<double>& sums) const {
+  const double h = domain_.spacing(), share = box.volume / n_corners;
+  for (const int cell : box.corners) {
+    const double fraction = std::clamp(0.5 - phi[cell] / h, 0.0, 1.0);
+    const int group = phi[cell] < 0 ? groups.of_cell[cell] : -1;
+    if (group < 0) {
+      sums.back() += fraction * share;
+    } else {
+      sums[group] += fraction * share;
+      sums[groups.n + group] += fraction < 1 ? share / h : 0;
+    }
+  }
+}
+
+template <int dim>
+GroupVolumes LiquidVolume<dim>::measure(const CellField& phi, const CellGroups& groups) const {
+  // Volumes, then areas, then what is loose.
+  std::vector<double> sums(2 * groups.n + 1, 0.0);
+  for (const CutBox& box : cut_)
+    if (box.is_divided)
+      add_divided(box, phi, groups, sums);
+    else
+      add_cut(box, phi, groups, sums);
+  for (const int cell : full_) {
+    const int group = groups.of_cell[cell];
+    (group < 0 ? sums.back() : sums[group]) += volume_of_cell(cell);
+  }
+  sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
+  GroupVolumes result;
+  result.volume.assign(sums.begin(), sums.begin() + groups.n);
+  result.area.assign(sums.begin() + groups.n, sums.end() - 1);
+  result.loose = sums.back();
+  return result;
+}
+
+template class LiquidVolume<2>;
+template class LiquidVolume<3>;
+
+}  // namespace lockstep

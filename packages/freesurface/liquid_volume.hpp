@@ -1,0 +1,53 @@
+#pragma once
+#include <vector>
+
+#include "freesurface/cell_groups.hpp"
+#include "freesurface/solid_cells.hpp"
+
+namespace lockstep {
+
+/// Of each group of liquid cells, over all ranks.
+struct GroupVolumes {
+  std::vector<double> volume;  ///< [m^dim]
+  std::vector<double> area;    ///< of its surface: what volume gains as phi sinks [m^(dim-1)]
+  double loose = 0;            ///< liquid beside no liquid cell [m^dim]
+
+  double total() const;
+};
+
+/// The volume of {phi < 0} outside solids: exact for phi linear on the simplices of the boxes
+/// between cell centres (to the sides of the domain phi is constant); in boxes that closed solids
+/// reach into the solids' volume is taken off in proportion; in those that a surface divides, each
+/// corner has its share.
+template <int dim>
+class LiquidVolume {
+ public:
+  explicit LiquidVolume(const MacDomain<dim>& domain) : domain_(domain) {}
+
+  /// Lists the boxes that the liquid's surface or solids may cut. Then phi may change by 0.5 h
+  /// before the list is made anew. `phi` on the halo of width 1. Local.
+  void prepare(const SolidCells<dim>& solids, const CellField& phi);
+  /// What of the listed liquid is beside no cell of a group is loose. Collective.
+  GroupVolumes measure(const CellField& phi, const CellGroups& groups) const;
+
+ private:
+  static constexpr int n_corners = 1 << dim;
+  struct CutBox {
+    std::array<int, n_corners> corners;
+    double volume = 0;        ///< outside closed solids [m^dim]
+    bool is_divided = false;  ///< a surface comes between some of its corners
+  };
+  void list_boxes(const SolidCells<dim>& solids, const CellField& phi, int cell);
+  bool is_divided(const SolidCells<dim>& solids, const std::array<int, n_corners>& corners) const;
+  double volume_of_cell(int cell) const;
+  void add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
+               std::vector<double>& sums) const;
+  void add_divided(const CutBox& box, const CellField& phi, const CellGroups& groups,
+                   std::vector<double>& sums) const;
+
+  const MacDomain<dim>& domain_;
+  std::vector<CutBox> cut_;
+  std::vector<int> full_;  ///< owned cells whose boxes are all full
+};
+
+}  // namespace lockstep

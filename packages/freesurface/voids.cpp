@@ -1,0 +1,74 @@
+#include "freesurface/voids.hpp"
+
+#include <algorithm>
+
+#include "freesurface/cell_groups.hpp"
+
+namespace lockstep {
+
+namespace {
+/// Cells deeper in the void than this belong to one that is too large to be closed [cells].
+constexpr double deep = 3;
+/// How deep a filled cell becomes, at least and at most [cells].
+constexpr double least_depth = 1e-3, most_depth = 0.1;
+
+template <int dim>
+bool at_open_side(const MacDomain<dim>& domain, int cell) {
+  const Index<dim> place = domain.grid.coordinates(cell);
+  for (int a = 0; a < dim; ++a)
+    for (int end = 0; end < 2; ++end)
+      if (place[a] == (end == 0 ? 0 : domain.grid.n_cells()[a] - 1) &&
+          !domain.boundary.side(a, end).closed() && !domain.boundary.periodic(a))
+        return true;
+  return false;
+}
+}  // namespace
+
+template <int dim>
+GlobalIndex close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids, int most_cells,
+                        CellField& phi) {
+  if (most_cells == 0)
+    return 0;
+  const TiledGrid<dim>& grid = domain.grid;
+  const double h = domain.spacing();
+  std::vector<char> is_void(phi.size());
+  for (std::size_t cell = 0; cell < phi.size(); ++cell)
+    is_void[cell] = phi[cell] >= 0 && phi[cell] < deep * h;
+  const CellGroups voids = find_groups(domain, solids, is_void);
+
+  // Cells of each, whether liquid touches it, and whether it is to stay.
+  std::vector<double> sums(3 * voids.n, 0.0);
+  grid.for_each_owned_cell([&](int cell) {
+    const int group = voids.of_cell[cell];
+    if (group < 0)
+      return;
+    sums[3 * group] += 1;
+    sums[3 * group + 2] += at_open_side(domain, cell);
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
+      if (other < 0)
+        continue;
+      sums[3 * group + 1] += phi[other] < 0;
+      sums[3 * group + 2] += phi[other] >= deep * h;
+    }
+  });
+  sum_all(grid.comm(), sums.data(), static_cast<int>(sums.size()));
+  GlobalIndex n_filled = 0;
+  grid.for_each_owned_cell([&](int cell) {
+    const int group = voids.of_cell[cell];
+    if (group < 0 || sums[3 * group] > most_cells || sums[3 * group + 1] == 0 ||
+        sums[3 * group + 2] > 0)
+      return;
+    phi[cell] = -std::clamp(phi[cell], least_depth * h, most_depth * h);
+    ++n_filled;
+  });
+  n_filled = sum_all(grid.comm(), n_filled);
+  if (n_filled > 0)
+    domain.halo.fill(phi);
+  return n_filled;
+}
+
+template GlobalIndex close_voids<2>(const MacDomain<2>&, const SolidCells<2>&, int, CellField&);
+template GlobalIndex close_voids<3>(const MacDomain<3>&, const SolidCells<3>&, int, CellField&);
+
+}  // namespace lockstep

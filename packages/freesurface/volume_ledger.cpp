@@ -1,0 +1,350 @@
+#include "freesurface/volume_ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace lockstep {
+
+namespace {
+/// Layers of dry cells beside the liquid that are shifted with it.
+constexpr int shifted_layers = 3;
+/// How far a body that vanishes looks for one to give its volume to [cells].
+constexpr int giving_reach = 3;
+
+template <int dim>
+std::vector<char> wet_cells(const CellField& phi) {
+  std::vector<char> wet(phi.size());
+  for (std::size_t cell = 0; cell < phi.size(); ++cell)
+    wet[cell] = phi[cell] < 0;
+  return wet;
+}
+
+/// Calls f(cell) for the owned cells beside a side of the domain.
+template <int dim, typename Function>
+void for_each_cell_at_side(const TiledGrid<dim>& grid, int axis, int end, const Function& f) {
+  const int last = end == 0 ? 0 : grid.n_cells()[axis] - 1;
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    const int begin = grid.tile_begin(tile)[axis];
+    if (last < begin || last >= begin + tile_width<dim>)
+      continue;
+    for (int cell = tile * tile_volume<dim>; cell < (tile + 1) * tile_volume<dim>; ++cell)
+      if (grid.in_domain(cell) && grid.coordinates(cell)[axis] == last)
+        f(cell);
+  }
+}
+
+/// Spreads labels >= 0 from seen neighbours over `layers` of fluid cells that have none, as far as
+/// |phi| is not much more than these are deep. Collective.
+template <int dim>
+void spread(const MacDomain<dim>& domain, const SolidCells<dim>& solids, const CellField& phi,
+            int layers, std::vector<int>& label) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const double deepest = (layers + 1) * domain.spacing();
+  std::vector<int> waiting;
+  grid.for_each_owned_cell([&](int cell) {
+    if (label[cell] < 0 && std::abs(phi[cell]) < deepest && solids.is_fluid(cell))
+      waiting.push_back(cell);
+  });
+  const auto neighbor_label = [&](int cell) {
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
+      if (other >= 0 && label[other] >= 0)
+        return label[other];
+    }
+    return -1;
+  };
+  std::vector<int> still_waiting;
+  std::vector<std::pair<int, int>> found;
+  for (int layer = 0; layer < layers; ++layer) {
+    still_waiting.clear();
+    found.clear();
+    for (const int cell : waiting) {
+      const int label_there = neighbor_label(cell);
+      if (label_there >= 0)
+        found.emplace_back(cell, label_there);
+      else
+        still_waiting.push_back(cell);
+    }
+    for (const auto& [cell, value] : found)
+      label[cell] = value;
+    waiting.swap(still_waiting);
+    domain.halo.fill(label);
+  }
+}
+
+/// How often each pair (new group, old group) occurs in one cell, over all ranks.
+using Overlaps = std::map<std::pair<int, int>, double>;
+
+Overlaps gather(const Communicator& comm, const Overlaps& mine) {
+  std::vector<double> packed;
+  for (const auto& [pair, n] : mine)
+    packed.insert(packed.end(),
+                  {static_cast<double>(pair.first), static_cast<double>(pair.second), n});
+  packed = gather_all(comm, packed);
+  Overlaps all;
+  for (std::size_t i = 0; i < packed.size(); i += 3)
+    all[{static_cast<int>(packed[i]), static_cast<int>(packed[i + 1])}] += packed[i + 2];
+  return all;
+}
+}  // namespace
+
+void declare_volume_correction(ParameterList& list) {
+  declare_choice(list, "Volume Correction", "component", {"component", "global", "none"},
+                 "Shifts the surface so that no volume is gained or lost. component: each body of "
+                 "liquid keeps its own, and nothing goes through a shell; global: all together; "
+                 "none: volume is measured only.");
+  declare_between(list, "Largest Shift", 0.1, 0.0, 1.0,
+                  "By which the correction may shift the surface in a step that carries it over no "
+                  "more than a cell; in longer steps as many times as much [cells].");
+}
+
+VolumeParameters read_volume_correction(const ParameterList& list) {
+  VolumeParameters parameters;
+  const auto correction = list.get<std::string>("Volume Correction");
+  parameters.correction = correction == "component" ? VolumeCorrection::component
+                          : correction == "global"  ? VolumeCorrection::global
+                                                    : VolumeCorrection::none;
+  parameters.largest_shift = list.get<double>("Largest Shift");
+  return parameters;
+}
+
+template <int dim>
+VolumeLedger<dim>::VolumeLedger(const MacDomain<dim>& domain, const VolumeParameters& parameters)
+    : domain_(domain), parameters_(parameters), measure_(domain) {}
+
+template <int dim>
+CellGroups VolumeLedger<dim>::find(const SolidCells<dim>& solids, const CellField& phi) const {
+  return find_groups(domain_, solids, wet_cells<dim>(phi));
+}
+
+template <int dim>
+void VolumeLedger<dim>::begin(const SolidCells<dim>& solids, const CellField& phi) {
+  restore(solids, phi, {});
+  targets_.of_group = volumes_.volume;
+  targets_.loose = volumes_.loose;
+}
+
+template <int dim>
+void VolumeLedger<dim>::restore(const SolidCells<dim>& solids, const CellField& phi,
+                                const VolumeTargets& targets) {
+  groups_ = find(solids, phi);
+  measure_.prepare(solids, phi);
+  volumes_ = measure_.measure(phi, groups_);
+  targets_ = targets;
+}
+
+template <int dim>
+void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField& phi,
+                                 const FaceField<dim>& velocity, double dt) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const double per_speed = dt * domain_.face_area(), h = domain_.spacing();
+  std::vector<double> out(groups_.n, 0.0);
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end) {
+      const SideType type = domain_.boundary.side(axis, end).type;
+      if (type != SideType::open && type != SideType::inflow)
+        continue;
+      for_each_cell_at_side(grid, axis, end, [&](int cell) {
+        if (phi[cell] >= 0 || !solids.is_fluid(cell))
+          return;
+        const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
+        const double speed = (end == 0 ? -1 : 1) * velocity[axis][face];
+        out[groups_.of_cell[cell]] += speed * per_speed * std::min(1.0, 0.5 - phi[cell] / h);
+      });
+    }
+  sum_all(grid.comm(), out.data(), groups_.n);
+  for (int group = 0; group < groups_.n; ++group)
+    targets_.of_group[group] -= out[group];
+}
+
+template <int dim>
+void VolumeLedger<dim>::inherit(const SolidCells<dim>& solids, const CellField& phi,
+                                const std::vector<char>& swept, int reach) {
+  measure_.prepare(solids, phi);
+  regroup(solids, phi, swept, reach);
+}
+
+template <int dim>
+void VolumeLedger<dim>::regroup(const SolidCells<dim>& solids, const CellField& phi,
+                                const std::vector<char>& swept, int reach) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  CellGroups groups = find(solids, phi);
+  std::vector<int> ancestor = groups_.of_cell;
+  for (std::size_t cell = 0; cell < swept.size(); ++cell)
+    if (swept[cell])
+      ancestor[cell] = -1;
+  const auto overlaps_of = [&](const auto& counts) {
+    Overlaps mine;
+    std::pair<int, int> last{-1, -1};
+    double n = 0;
+    grid.for_each_owned_cell([&](int cell) {
+      const std::pair<int, int> pair{groups.of_cell[cell], ancestor[cell]};
+      if (pair.first < 0 || pair.second < 0 || !counts(pair.first))
+        return;
+      if (pair != last && n > 0) {
+        mine[last] += n;
+        n = 0;
+      }
+      last = pair;
+      ++n;
+    });
+    if (n > 0)
+      mine[last] += n;
+    return gather(grid.comm(), mine);
+  };
+  Overlaps overlaps = overlaps_of([](int) { return true; });
+  std::vector<char> has_ancestor(groups.n, 0), vanished(groups_.n, 1);
+  for (const auto& [pair, n] : overlaps)
+    has_ancestor[pair.first] = 1;
+  if (std::count(has_ancestor.begin(), has_ancestor.end(), 0) > 0) {
+    // What moves over more than its size comes from the nearest body there was.
+    domain_.halo.fill(ancestor);
+    spread(domain_, solids, phi, reach, ancestor);
+    overlaps.merge(overlaps_of([&](int group) { return !has_ancestor[group]; }));
+  }
+  volumes_ = measure_.measure(phi, groups);
+
+  std::vector<double> n_cells(groups.n, 0.0), claims(groups_.n, 0.0);
+  for (const auto& [pair, n] : overlaps)
+    n_cells[pair.first] += n;
+  const auto claim = [&](const std::pair<int, int>& pair, double n) {
+    return std::max(volumes_.volume[pair.first], 1e-300) * n / n_cells[pair.first];
+  };
+  for (const auto& [pair, n] : overlaps) {
+    claims[pair.second] += claim(pair, n);
+    vanished[pair.second] = 0;
+  }
+  std::vector<double> target(groups.n, 0.0);
+  for (const auto& [pair, n] : overlaps)
+    target[pair.first] += targets_.of_group[pair.second] * claim(pair, n) / claims[pair.second];
+  if (std::count(vanished.begin(), vanished.end(), 1) > 0)
+    give_to_nearest(solids, phi, groups, vanished, target);
+  groups_ = std::move(groups);
+  targets_.of_group = std::move(target);
+}
+
+template <int dim>
+void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
+                                        const CellGroups& groups, const std::vector<char>& vanished,
+                                        std::vector<double>& target) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  std::vector<int> nearest = groups.of_cell;
+  spread(domain_, solids, phi, giving_reach, nearest);
+  Overlaps mine;
+  grid.for_each_owned_cell([&](int cell) {
+    const int old = groups_.of_cell[cell];
+    if (old >= 0 && vanished[old] && nearest[cell] >= 0)
+      mine[{old, nearest[cell]}] += 1;
+  });
+  std::map<int, std::pair<double, int>> heir;  // most cells; the first of several
+  for (const auto& [pair, n] : gather(grid.comm(), mine)) {
+    auto& best = heir[pair.first];
+    if (n > best.first)
+      best = {n, pair.second};
+  }
+  for (int old = 0; old < groups_.n; ++old) {
+    if (!vanished[old])
+      continue;
+    const auto found = heir.find(old);
+    if (found == heir.end())
+      targets_.lost += targets_.of_group[old];
+    else
+      target[found->second.second] += targets_.of_group[old];
+  }
+}
+
+template <int dim>
+void VolumeLedger<dim>::remove(const SolidCells<dim>& solids, const CellField& phi) {
+  measure_.prepare(solids, phi);
+  const GroupVolumes left = measure_.measure(phi, groups_);
+  for (int group = 0; group < groups_.n; ++group)
+    targets_.of_group[group] += left.volume[group] - volumes_.volume[group];
+  inherit(solids, phi, {}, 1);
+}
+
+template <int dim>
+void VolumeLedger<dim>::create(const SolidCells<dim>& solids, const CellField& before,
+                               const CellField& phi) {
+  measure_.prepare(solids, before);
+  const CellGroups groups = find(solids, phi);
+  const GroupVolumes there = measure_.measure(before, groups);
+  inherit(solids, phi, {}, 1);
+  for (int group = 0; group < groups_.n; ++group)
+    targets_.of_group[group] += volumes_.volume[group] - there.volume[group];
+}
+
+template <int dim>
+std::vector<double> VolumeLedger<dim>::wanted_shifts(const GroupVolumes& now) const {
+  std::vector<double> shift(groups_.n, 0.0);
+  const auto ratio = [](double missing, double area) { return area > 0 ? missing / area : 0; };
+  if (parameters_.correction == VolumeCorrection::component)
+    for (int group = 0; group < groups_.n; ++group)
+      shift[group] = ratio(targets_.of_group[group] - now.volume[group], now.area[group]);
+  if (parameters_.correction == VolumeCorrection::global) {
+    const double target = std::accumulate(targets_.of_group.begin(), targets_.of_group.end(), 0.0);
+    const double volume = std::accumulate(now.volume.begin(), now.volume.end(), 0.0);
+    const double area = std::accumulate(now.area.begin(), now.area.end(), 0.0);
+    shift.assign(groups_.n, ratio(target - volume, area));
+  }
+  return shift;
+}
+
+template <int dim>
+void VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl, CellField& phi) {
+  if (parameters_.correction == VolumeCorrection::none || groups_.n == 0)
+    return;
+  const double most = parameters_.largest_shift * domain_.spacing() * std::max(1.0, cfl);
+  std::vector<int> label = groups_.of_cell;
+  spread(domain_, solids, phi, shifted_layers, label);
+  std::vector<double> left(groups_.n, most);
+  // A second time for what is not linear in the shift.
+  for (int pass = 0; pass < 2; ++pass) {
+    std::vector<double> shift = wanted_shifts(volumes_);
+    bool any = false;
+    for (int group = 0; group < groups_.n; ++group) {
+      shift[group] = std::clamp(shift[group], -left[group], left[group]);
+      // Round-off of the measure is not to move what is at rest.
+      if (std::abs(shift[group]) < 1e-13 * domain_.spacing())
+        shift[group] = 0;
+      left[group] -= std::abs(shift[group]);
+      targets_.shift += std::abs(shift[group]) * volumes_.area[group];
+      any = any || shift[group] != 0;
+    }
+    if (!any)
+      return;
+    double n_changed = 0;
+    domain_.grid.for_each_owned_cell([&](int cell) {
+      if (label[cell] < 0 || !solids.is_fluid(cell))
+        return;
+      const bool was_wet = phi[cell] < 0;
+      phi[cell] -= shift[label[cell]];
+      n_changed += was_wet != (phi[cell] < 0);
+    });
+    domain_.halo.fill(phi);
+    if (sum_all(domain_.grid.comm(), n_changed) > 0) {
+      regroup(solids, phi, {}, 1);
+      return;
+    }
+    volumes_ = measure_.measure(phi, groups_);
+  }
+}
+
+template <int dim>
+LiquidLedger VolumeLedger<dim>::state() const {
+  LiquidLedger ledger;
+  ledger.volume = volumes_.total();
+  ledger.target =
+      std::accumulate(targets_.of_group.begin(), targets_.of_group.end(), targets_.loose);
+  ledger.shift = targets_.shift;
+  ledger.lost = targets_.lost;
+  ledger.n_components = groups_.n;
+  return ledger;
+}
+
+template class VolumeLedger<2>;
+template class VolumeLedger<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,83 @@
+#pragma once
+#include <vector>
+
+#include "freesurface/liquid_volume.hpp"
+#include "mac/liquid/interface_model.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+enum class VolumeCorrection {
+  component,  ///< each body of liquid keeps its own volume
+  global,     ///< all of them together
+  none
+};
+
+/// How the volume of a liquid is kept.
+struct VolumeParameters {
+  VolumeCorrection correction = VolumeCorrection::component;
+  double largest_shift = 0.1;  ///< of the surface in a step in which nothing crosses a cell [cells]
+};
+
+/// Declares "Volume Correction" and "Largest Shift".
+void declare_volume_correction(ParameterList& list);
+VolumeParameters read_volume_correction(const ParameterList& list);
+
+/// What the ledger must keep from step to step.
+struct VolumeTargets {
+  std::vector<double> of_group;  ///< what each body of liquid should have [m^dim]
+  double loose = 0, lost = 0, shift = 0;
+};
+
+/// Keeps account of the volume of each body of liquid and sees to it that phi has it. A body's
+/// target changes by known fluxes only; where bodies merge it is added, where one parts it is
+/// shared in proportion to the volumes.
+template <int dim>
+class VolumeLedger {
+ public:
+  VolumeLedger(const MacDomain<dim>& domain, const VolumeParameters& parameters);
+
+  /// Takes the present volumes as targets. Collective.
+  void begin(const SolidCells<dim>& solids, const CellField& phi);
+  /// Takes off what flows out through the sides of the domain in dt. Before phi is carried.
+  /// Collective.
+  void flow_out(const SolidCells<dim>& solids, const CellField& phi, const FaceField<dim>& velocity,
+                double dt);
+  /// Hands the targets on to the bodies of the carried phi. `swept` (may be empty): cells that have
+  /// changed sides of a surface; `reach`: farther than any cell's content has come from [cells].
+  /// Collective.
+  void inherit(const SolidCells<dim>& solids, const CellField& phi, const std::vector<char>& swept,
+               int reach);
+  /// Takes what a sink has left into the targets. Collective.
+  void remove(const SolidCells<dim>& solids, const CellField& phi);
+  /// Takes what a source has made of `before` into the targets. Collective.
+  void create(const SolidCells<dim>& solids, const CellField& before, const CellField& phi);
+  /// Shifts phi until bodies have their targets, over at most `largest_shift` max(1, cfl) cells.
+  /// `phi` on the halo of width 1, which is set on return. Collective.
+  void correct(const SolidCells<dim>& solids, double cfl, CellField& phi);
+
+  LiquidLedger state() const;
+  const CellGroups& groups() const { return groups_; }
+  const VolumeTargets& targets() const { return targets_; }
+  /// Of a restart: groups are found anew. Collective.
+  void restore(const SolidCells<dim>& solids, const CellField& phi, const VolumeTargets& targets);
+
+ private:
+  CellGroups find(const SolidCells<dim>& solids, const CellField& phi) const;
+  /// `inherit` where the list of boxes is still good.
+  void regroup(const SolidCells<dim>& solids, const CellField& phi, const std::vector<char>& swept,
+               int reach);
+  void give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
+                       const CellGroups& groups, const std::vector<char>& vanished,
+                       std::vector<double>& target);
+  std::vector<double> wanted_shifts(const GroupVolumes& now) const;
+
+  const MacDomain<dim>& domain_;
+  VolumeParameters parameters_;
+  LiquidVolume<dim> measure_;
+  CellGroups groups_;
+  VolumeTargets targets_;
+  GroupVolumes volumes_;
+};
+
+}  // namespace lockstep

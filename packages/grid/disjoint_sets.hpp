@@ -1,0 +1,32 @@
+#pragma once
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace lockstep {
+
+/// Disjoint sets of 0 .. n-1; the root is the smallest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int root(int i) {
+    while (parent_[i] != i)
+      i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(int i, int j) {
+    i = root(i);
+    j = root(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+  /// Makes every member point at its root.
+  void flatten() {
+    for (int& parent : parent_)  // parents come first
+      parent = parent_[parent];
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace lockstep

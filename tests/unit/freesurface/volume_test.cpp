@@ -1,0 +1,253 @@
+#include "freesurface/liquid_volume.hpp"
+
+#include <random>
+
+#include "bath.hpp"
+#include "freesurface/voids.hpp"
+#include "freesurface/wet_fraction.hpp"
+#include "geometry/generators.hpp"
+
+namespace lockstep::test {
+namespace {
+
+/// The same by samples, from the values on the simplex that holds each.
+template <int dim>
+double sampled_fraction(const std::array<double, 1 << dim>& phi, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const int n = 40000;
+  int n_wet = 0;
+  for (int i = 0; i < n; ++i) {
+    std::array<std::pair<double, int>, dim> x;
+    for (int a = 0; a < dim; ++a)
+      x[a] = {uniform(random), a};
+    std::sort(x.rbegin(), x.rend());
+    double value = phi[0], at = phi[0];
+    for (int a = 0, corner = 0; a < dim; ++a) {
+      corner |= 1 << x[a].second;
+      value += x[a].first * (phi[corner] - at);
+      at = phi[corner];
+    }
+    n_wet += value < 0;
+  }
+  return static_cast<double>(n_wet) / n;
+}
+
+template <int dim>
+void expect_fractions() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < 40; ++i) {
+    std::array<double, 1 << dim> phi;
+    for (double& value : phi)
+      value = uniform(random) + 0.5 * uniform(random);
+    EXPECT_NEAR(wet_fraction<dim>(phi), sampled_fraction<dim>(phi, random), 0.012);
+  }
+}
+
+TEST(WetFraction, AgreesWithSamples) {
+  expect_fractions<2>();
+  expect_fractions<3>();
+}
+
+template <int dim>
+GroupVolumes volumes(const Bath<dim>& bath, const SolidCells<dim>& solids,
+                     const SignedDistance<dim>& distance) {
+  const auto& grid = bath.domain.grid;
+  CellField phi(grid.n_stored_cells(), 1);
+  grid.for_each_stored_cell([&](int c) { phi[c] = distance(grid.center(c)); });
+  std::vector<char> wet(phi.size());
+  for (std::size_t c = 0; c < phi.size(); ++c)
+    wet[c] = phi[c] < 0;
+  LiquidVolume<dim> measure(bath.domain);
+  measure.prepare(solids, phi);
+  return measure.measure(phi, find_groups(bath.domain, solids, wet));
+}
+
+/// A plane that cuts the sides of the domain: exact where it is not parallel to them too.
+TEST(LiquidVolume, OfATiltedPlaneIsExact) {
+  Bath<2> bath(open_cube<2>(20));
+  const auto solids = find_solid_cells<2>(bath.domain, nullptr);
+  const auto result = volumes<2>(bath, solids, [](const Point<2>& x) { return x[1] - 0.437; });
+  EXPECT_NEAR(result.total(), 0.437, 1e-14);
+  ASSERT_EQ(result.area.size(), 1U);
+  EXPECT_NEAR(result.area[0], 1, 1e-9);
+}
+
+template <int dim>
+double error_of_ball(int n) {
+  Bath<dim> bath(open_cube<dim>(n));
+  const auto solids = find_solid_cells<dim>(bath.domain, nullptr);
+  const double r = 0.31;
+  const auto result = volumes<dim>(bath, solids, ball<dim>(Point<dim>::Constant(0.487), r));
+  const double exact = dim == 2 ? pi * r * r : 4 * pi * r * r * r / 3;
+  EXPECT_NEAR(result.area[0], dim * exact / r, 0.01 * dim * exact / r);
+  return std::abs(result.total() - exact) / exact;
+}
+
+TEST(LiquidVolume, OfABallIsOfSecondOrder) {
+  EXPECT_LT(error_of_ball<2>(32), 2e-3);
+  EXPECT_LT(error_of_ball<2>(64), 0.3 * error_of_ball<2>(32));
+  EXPECT_LT(error_of_ball<3>(24), 0.01);
+  EXPECT_LT(error_of_ball<3>(48), 0.3 * error_of_ball<3>(24));
+}
+
+/// A ball of liquid half full of a solid ball; the volume hardly depends on where the grid is.
+template <int dim>
+void expect_solid_is_taken_off() {
+  Bath<dim> bath(open_cube<dim>(32));
+  const double level = 0.52, r = 0.2, h = 1.0 / 32;
+  for (int i = 0; i < 4; ++i) {
+    const Point<dim> place = Point<dim>::Constant(0.5 + 0.23 * i * h);
+    const auto solid = snapshot<dim>(ball_surface<dim>(r, 0.3 * h), place, true);
+    const auto solids = find_solid_cells<dim>(bath.domain, solid);
+    const auto result =
+        volumes<dim>(bath, solids, [&](const Point<dim>& x) { return x[dim - 1] - level; });
+    const double d = place[dim - 1] - level;  // of the centre above the level
+    const double wet = dim == 2 ? r * r * std::acos(d / r) - d * std::sqrt(r * r - d * d)
+                                : pi * (r - d) * (r - d) * (2 * r + d) / 3;
+    EXPECT_NEAR(result.total(), level - wet, 2e-3 * wet) << i;
+  }
+}
+
+TEST(LiquidVolume, LeavesOutSolids) {
+  expect_solid_is_taken_off<2>();
+  expect_solid_is_taken_off<3>();
+}
+
+/// Letters that touch by corners only, one of them cut by a plate.
+TEST(CellGroups, HangTogetherByOpenFaces) {
+  const std::vector<std::string> rows = {"##...#....", "#..##.....", "#..##..###", "####...#.#",
+                                         ".......#.#", "..#....###", "..#.......", "..#.####..",
+                                         "..#....#..", "..######.."};
+  for (const bool has_plate : {false, true}) {
+    DomainDescription<2> description = open_cube<2>(10, 10);
+    Bath<2> bath(description);
+    std::shared_ptr<const SurfaceSnapshot<2>> plate;
+    if (has_plate)  // between the rows 6 and 7 from above
+      plate = snapshot<2>(plate_surface<2>(Point<2>(3, 3), 1, 0.5), Point<2>(2.5, 3), false);
+    const auto solids = find_solid_cells<2>(bath.domain, plate);
+    const auto& grid = bath.domain.grid;
+    std::vector<char> member(grid.n_stored_cells(), 0);
+    grid.for_each_stored_cell([&](int c) {
+      const Index<2> at = grid.coordinates(c);
+      member[c] = rows[9 - at[1]][at[0]] == '#';
+    });
+    const CellGroups groups = find_groups(bath.domain, solids, member);
+    EXPECT_EQ(groups.n, has_plate ? 5 : 4);
+    const auto of = [&](int x, int row) {
+      const int c = grid.cell({x, 9 - row});
+      return groups.of_cell[c];
+    };
+    if (bath.domain.grid.comm()->getSize() > 1)
+      continue;
+    EXPECT_EQ(of(0, 0), of(4, 1));
+    EXPECT_NE(of(0, 0), of(5, 0));
+    EXPECT_EQ(of(7, 2), of(9, 5));
+    EXPECT_EQ(of(2, 5) == of(2, 9), !has_plate);
+    EXPECT_EQ(of(4, 7), of(2, 9));
+    EXPECT_EQ(of(0, 2), of(0, 0));
+  }
+}
+
+TEST(Voids, SmallOnesUnderWaterAreFilled) {
+  Bath<2> bath(open_cube<2>(32, 32));
+  const auto solids = find_solid_cells<2>(bath.domain, nullptr);
+  const auto& grid = bath.domain.grid;
+  CellField phi(grid.n_stored_cells(), -6);
+  grid.for_each_stored_cell([&](int c) {
+    const Index<2> at = grid.coordinates(c);
+    if ((at[0] == 7 && at[1] > 3 && at[1] < 12) || (at[0] == 20 && at[1] > 3 && at[1] < 13) ||
+        (at[0] == 0 && at[1] == 5))
+      phi[c] = 0.5;
+  });
+  EXPECT_EQ(close_voids(bath.domain, solids, 8, phi), 8);
+  const double n_left = [&] {
+    double n = 0;
+    grid.for_each_owned_cell([&](int c) { n += phi[c] >= 0; });
+    return sum_all(world(), n);
+  }();
+  EXPECT_EQ(n_left, 10);  // the longer one and the one at the open side
+}
+
+template <int dim>
+double volume_of_ball(double r) {
+  return dim == 2 ? pi * r * r : 4 * pi * r * r * r / 3;
+}
+
+/// Two balls swirl; each keeps its own volume. Without correction they do not.
+template <int dim>
+void expect_bodies_keep_volume() {
+  const int n = dim == 2 ? 64 : 32;
+  for (const std::string correction : {"component", "global", "none"}) {
+    Bath<dim> bath(open_cube<dim>(n));
+    ParameterList list;
+    list.set("Volume Correction", correction);
+    auto model = bath.make("level set", list);
+    Point<dim> a = Point<dim>::Constant(0.5), b = a;
+    a[0] = 0.25;
+    b[0] = 0.7;
+    model->initialise(
+        [&](const Point<dim>& x) { return std::min((x - a).norm() - 0.13, (x - b).norm() - 0.19); },
+        nullptr);
+    const double start = model->ledger().volume;
+    EXPECT_NEAR(start, volume_of_ball<dim>(0.13) + volume_of_ball<dim>(0.19), 0.02 * start);
+    bath.set_velocity(swirl<dim>);
+    for (int i = 0; i < 40; ++i)
+      bath.step(*model, 0, 0.05);
+    const LiquidLedger ledger = model->ledger();
+    EXPECT_EQ(ledger.n_components, 2);
+    EXPECT_NEAR(ledger.target, start, 1e-12 * start);
+    if (correction == "none") {
+      EXPECT_GT(std::abs(ledger.volume - start), 0.02 * start);
+      continue;
+    }
+    EXPECT_NEAR(ledger.volume, start, 1e-3 * start);
+    // By samples: the smaller one alone.
+    const double angle = 2;
+    Point<dim> turned = a;
+    turned[0] = 0.5 - 0.25 * std::cos(angle);
+    turned[1] = 0.5 - 0.25 * std::sin(angle);
+    double small = 0;
+    bath.domain.grid.for_each_owned_cell([&](int c) {
+      const Point<dim> x = bath.domain.grid.center(c);
+      if ((x - turned).norm() < 0.2 && model->distance()[c] < 1.0 / n)
+        small += std::clamp(0.5 - model->distance()[c] * n, 0.0, 1.0);
+    });
+    small = sum_all(world(), small) * std::pow(1.0 / n, dim);
+    if (correction == "component") {
+      EXPECT_NEAR(small, volume_of_ball<dim>(0.13), 0.05 * small);
+    }
+  }
+}
+
+TEST(VolumeLedger, EachBodyKeepsItsVolume) {
+  expect_bodies_keep_volume<2>();
+  expect_bodies_keep_volume<3>();
+}
+
+TEST(VolumeLedger, KnowsWhatSourcesSinksAndSidesDo) {
+  Bath<2> bath(open_cube<2>(40));
+  auto model = bath.make("level set");
+  model->initialise([](const Point<2>& x) { return x[1] - 0.3; }, nullptr);
+  // Water leaves through the lower side at 0.1 m/s.
+  bath.set_velocity([](const Point<2>&) { return Point<2>(0, -0.1); });
+  for (int i = 0; i < 10; ++i)
+    bath.step(*model, 0.1 * i, 0.1);
+  EXPECT_NEAR(model->ledger().target, 0.2, 1e-12);
+  EXPECT_NEAR(model->ledger().volume, 0.2, 1e-4);
+  bath.set_velocity([](const Point<2>&) { return Point<2>(0, 0); });
+  bath.sources = {ball<2>(Point<2>(0.3, 0.7), 0.1)};
+  bath.step(*model, 1, 0.1);
+  EXPECT_NEAR(model->ledger().target, 0.2 + pi * 0.01, 5e-4);
+  EXPECT_NEAR(model->ledger().volume, model->ledger().target, 1e-9);
+  EXPECT_EQ(model->ledger().n_components, 2);
+  bath.sources = {};
+  bath.sinks = {ball<2>(Point<2>(0.3, 0.7), 0.12), ball<2>(Point<2>(0.7, 0.2), 0.1)};
+  bath.step(*model, 1.1, 0.1);
+  EXPECT_NEAR(model->ledger().target, 0.2 - pi * 0.005, 5e-4);
+  EXPECT_EQ(model->ledger().n_components, 1);
+  EXPECT_NEAR(model->ledger().lost, 0, 1e-14);
+}
+
+}  // namespace
+}  // namespace lockstep::test
