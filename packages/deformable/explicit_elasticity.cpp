@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "deformable/deformable_solids.hpp"
 #include "deformable/sub_steps.hpp"
 
@@ -85,6 +86,14 @@ void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
     }
     x = space_.with_ghosts(*space_.vector(x));
   }
+  const bool finite =
+      std::all_of(force.begin(), force.end(), [](const Point<dim>& f) { return f.allFinite(); });
+  check_solve(max_all(comm_, static_cast<GlobalIndex>(finite ? 0 : 1)) == 0,
+              "The elastic forces of \"{}\" are not finite after {} sub-steps of {:.3g} s: its "
+              "elements are crushed, and its material does not hold there. Take shorter steps, a "
+              "\"Material\" that resists inversion (\"corotated\", \"neo-hookean\") or an implicit "
+              "\"Time Integration\".",
+              body.name, n, steps.length);
 }
 
 template <int dim>

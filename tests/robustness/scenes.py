@@ -31,6 +31,7 @@ class Facts:
     periodic: bool = False
     explicit: bool = False  # elastic forces of the present positions
     sub_steps: bool = False  # of elastic forces
+    crushed: bool = False  # a material that gives way where it is crushed, at steps that crush it
     soft: bool = False
     springs: bool = False
     attached: bool = False

@@ -147,6 +147,7 @@ def deformable_body(world, center, reach, geometry=None):
                          "Poisson's Ratio": rng.choice([0.0, 0.3, 0.3, 0.45, -0.2])},
             "Density": density, **integration(world),
             **soft_start(world, center, reach, 0.05 if law == "linear" else 3.0), **held(world, geometry, reach)}
+    world.facts.crushed |= law == "st venant-kirchhoff" and "Most Sub-Steps" in body
     if rng.random() < 0.3:
         body["Viscosity"] = density * world.h ** 2 / world.dt * 10 ** rng.uniform(-3, 0)
     world.facts.soft = True
