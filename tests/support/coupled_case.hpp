@@ -2,10 +2,10 @@
 #include <Tpetra_Core.hpp>
 #include <utility>
 
+#include "conformance/fake_fluid.hpp"
+#include "conformance/fake_solid.hpp"
 #include "coupling/coupled_system.hpp"
 #include "mixedface/mixed_face_coupling.hpp"
-#include "support/fake_fluid.hpp"
-#include "support/fake_solid.hpp"
 
 namespace lockstep::test {
 

@@ -6,12 +6,12 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "conformance/fake_solid.hpp"
 #include "coupling/coupled_system.hpp"
 #include "cutcell/flux_coupling.hpp"
 #include "geometry/clipping.hpp"
 #include "linear/symmetry_check.hpp"
 #include "support/dense.hpp"
-#include "support/fake_solid.hpp"
 #include "unit/mac/mac_cases.hpp"
 
 namespace lockstep::test {

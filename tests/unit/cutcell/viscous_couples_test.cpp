@@ -5,11 +5,11 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "conformance/fake_solid.hpp"
 #include "coupling/coupled_system.hpp"
 #include "coupling/viscous_solve.hpp"
 #include "cutcell/flux_coupling.hpp"
 #include "mixedface/mixed_face_coupling.hpp"
-#include "support/fake_solid.hpp"
 #include "unit/mac/mac_cases.hpp"
 
 namespace lockstep::test {

@@ -4,10 +4,10 @@
 #include <Tpetra_Core.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "conformance/fake_fluid.hpp"
+#include "conformance/fake_solid.hpp"
 #include "linear/symmetry_check.hpp"
 #include "support/dense.hpp"
-#include "support/fake_fluid.hpp"
-#include "support/fake_solid.hpp"
 
 namespace lockstep::test {
 namespace {

@@ -4,9 +4,9 @@
 #include <Tpetra_Core.hpp>
 
 #include "base/errors.hpp"
+#include "conformance/fake_fluid.hpp"
 #include "observers/flow.hpp"
 #include "observers/probes.hpp"
-#include "support/fake_fluid.hpp"
 
 namespace lockstep::test {
 namespace {

@@ -6,6 +6,7 @@
 #include <Tpetra_Core.hpp>
 
 #include "base/errors.hpp"
+#include "conformance/saddle_problem.hpp"
 #include "linear/block_diagonal.hpp"
 #include "solve/added_mass_diagonal.hpp"
 #include "solve/block_residual.hpp"
@@ -13,7 +14,6 @@
 #include "solve/merge.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "solve/thyra_vectors.hpp"
-#include "unit/solve/saddle_problem.hpp"
 
 namespace lockstep::test {
 

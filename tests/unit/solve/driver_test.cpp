@@ -4,8 +4,8 @@
 #include <Teuchos_XMLParameterListHelpers.hpp>
 #include <Tpetra_Core.hpp>
 
+#include "conformance/saddle_problem.hpp"
 #include "solve/solve_with_stratimikos.hpp"
-#include "unit/solve/saddle_problem.hpp"
 #include "unit/solve/stratimikos_xml.hpp"
 
 namespace lockstep::test {

@@ -6,10 +6,10 @@
 #include <Tpetra_Core.hpp>
 
 #include "base/errors.hpp"
+#include "conformance/saddle_problem.hpp"
 #include "solve/preconditioner.hpp"
 #include "solve/solve_with_stratimikos.hpp"
 #include "solve/solver_list.hpp"
-#include "unit/solve/saddle_problem.hpp"
 #include "unit/solve/stratimikos_xml.hpp"
 
 namespace lockstep::test {

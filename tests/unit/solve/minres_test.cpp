@@ -8,12 +8,12 @@
 #include <Tpetra_Core.hpp>
 
 #include "base/errors.hpp"
+#include "conformance/saddle_problem.hpp"
 #include "solve/belos_solvers.hpp"
 #include "solve/minres.hpp"
 #include "solve/preconditioner.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "solve/thyra_vectors.hpp"
-#include "unit/solve/saddle_problem.hpp"
 
 namespace lockstep::test {
 namespace {

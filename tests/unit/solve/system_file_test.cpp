@@ -5,11 +5,11 @@
 #include <cstdio>
 
 #include "base/errors.hpp"
+#include "conformance/saddle_problem.hpp"
 #include "output/hdf5_file.hpp"
 #include "solve/block_residual.hpp"
 #include "solve/dumping_strategy.hpp"
 #include "solve/system_file.hpp"
-#include "unit/solve/saddle_problem.hpp"
 
 namespace lockstep::test {
 

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "conformance/fake_fluid.hpp"
+#include "conformance/fake_solid.hpp"
 #include "interfaces/contact.hpp"
 #include "strategies/direct/direct.hpp"
-#include "support/fake_fluid.hpp"
-#include "support/fake_solid.hpp"
 
 namespace lockstep::test {
 

@@ -3,8 +3,8 @@
 
 #include <Tpetra_Core.hpp>
 
+#include "conformance/fake_fluid.hpp"
 #include "stepping/step_size.hpp"
-#include "support/fake_fluid.hpp"
 
 namespace lockstep::test {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "conformance/saddle_problem.hpp"
 #include "linear/matrix_rows.hpp"
 #include "strategies/register_strategies.hpp"
-#include "unit/solve/saddle_problem.hpp"
 #include "unit/strategies/steepest_descent.hpp"
 
 namespace lockstep::test {

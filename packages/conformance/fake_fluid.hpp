@@ -5,7 +5,7 @@
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/viscosity.hpp"
 
-namespace lockstep::test {
+namespace lockstep {
 
 /// A fluid in a box of a few cells between walls.
 template <int dim>
@@ -110,4 +110,4 @@ class FakeFluid : public FluidDiscretization<dim>,
   FluidGeometry<dim> frozen_;
 };
 
-}  // namespace lockstep::test
+}  // namespace lockstep

@@ -1,4 +1,4 @@
-#include "support/fake_fluid.hpp"
+#include "conformance/fake_fluid.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -7,7 +7,7 @@
 
 #include "linear/triplet_matrix.hpp"
 
-namespace lockstep::test {
+namespace lockstep {
 
 template <int dim>
 FakeFluid<dim>::FakeFluid(const FakeBox<dim>& box, const Communicator& comm)
@@ -362,4 +362,4 @@ Momentum<dim> FakeFluid<dim>::boundary_pressure_impulse(const Vector& scaled_pre
 template class FakeFluid<2>;
 template class FakeFluid<3>;
 
-}  // namespace lockstep::test
+}  // namespace lockstep

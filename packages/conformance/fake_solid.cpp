@@ -1,4 +1,4 @@
-#include "support/fake_solid.hpp"
+#include "conformance/fake_solid.hpp"
 
 #include <Thyra_TpetraThyraWrappers.hpp>
 #include <Tpetra_CrsMatrix.hpp>
@@ -7,7 +7,7 @@
 
 #include "linear/triplet_matrix.hpp"
 
-namespace lockstep::test {
+namespace lockstep {
 namespace {
 
 /// A diagonal that no one can take apart.
@@ -280,4 +280,4 @@ std::vector<SolidState<dim>> FakeSolid<dim>::states() const {
 template class FakeSolid<2>;
 template class FakeSolid<3>;
 
-}  // namespace lockstep::test
+}  // namespace lockstep

@@ -9,7 +9,7 @@
 #include "linear/null_space.hpp"
 #include "linear/symmetry_check.hpp"
 
-namespace lockstep::test {
+namespace lockstep {
 
 /// What the small coupled problem below looks like.
 struct SaddleOptions {
@@ -59,6 +59,9 @@ class SaddleProblem {
     }
     return rhs;
   }
+
+  const SaddleOptions& options() const { return options_; }
+  const Communicator& comm() const { return comm_; }
 
   BlockSystem system;
 
@@ -155,4 +158,4 @@ inline double relative_difference(const Vector& a, const Vector& b) {
   return difference.normInf() / a.normInf();
 }
 
-}  // namespace lockstep::test
+}  // namespace lockstep

@@ -3,10 +3,10 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "conformance/fake_fluid.hpp"
 #include "linear/triplet_matrix.hpp"
-#include "support/fake_fluid.hpp"
 
-namespace lockstep::test {
+namespace lockstep {
 
 template <int dim>
 double FakeFluid<dim>::bond() const {
@@ -126,4 +126,4 @@ template std::unique_ptr<ViscousSystem<3>> FakeFluid<3>::viscous_system() const;
 template Momentum<2> FakeFluid<2>::accept_viscous(const Vector&, const Vector&, double);
 template Momentum<3> FakeFluid<3>::accept_viscous(const Vector&, const Vector&, double);
 
-}  // namespace lockstep::test
+}  // namespace lockstep

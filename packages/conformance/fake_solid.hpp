@@ -3,7 +3,7 @@
 
 #include "interfaces/solid_sides.hpp"
 
-namespace lockstep::test {
+namespace lockstep {
 
 /// One solid of a FakeSolid.
 template <int dim>
@@ -80,4 +80,4 @@ class FakeSolid : public SolidModel<dim>, public AuditedSolids<dim> {
   RCP<const LinearOperator> mass_;
 };
 
-}  // namespace lockstep::test
+}  // namespace lockstep

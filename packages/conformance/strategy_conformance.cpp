@@ -1,0 +1,147 @@
+#include "conformance/strategy_conformance.hpp"
+
+#include <Tpetra_Vector.hpp>
+#include <limits>
+#include <optional>
+
+#include "base/errors.hpp"
+#include "conformance/saddle_problem.hpp"
+#include "solve/block_residual.hpp"
+
+namespace lockstep {
+
+namespace {
+
+using Make = std::function<std::unique_ptr<SolverStrategy>()>;
+
+constexpr double tolerance = 1e-10;
+const SolveRequest request{"conformance", tolerance};
+
+std::string described(const SaddleOptions& options) {
+  return fmt::format(
+      " [{} tank{}{}]", options.open_top ? "open" : "closed",
+      options.with_solid ? fmt::format(", plates of {:g} kg", options.plate_mass) : ", no solids",
+      options.elastic_wall ? ", a piston" : "");
+}
+
+/// What the action threw; empty if it went through. A refusal is the same on all ranks.
+std::string refusal_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const SolveError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The solution is one, and the report tells the truth of it.
+void check_solution(const SaddleProblem& problem, const BlockVector& rhs,
+                    const BlockVector& solution, const SolveReport& report,
+                    const std::string& where, Violations& found) {
+  const BlockResidual residual = block_residual(problem.system, rhs, solution);
+  expect_small(found, residual.relative_pressure(), tolerance,
+               "solve: pressure rows not to the tolerance" + where);
+  expect_small(found, report.pressure_residual, tolerance,
+               "solve: reports a pressure residual above the tolerance" + where);
+  if (!problem.system.has_solid())
+    return;
+  expect_small(found, residual.relative_solid(), tolerance,
+               "solve: solid rows not to the tolerance" + where);
+}
+
+/// A second system of the same name: the strategy must see by the stamps that C is another.
+void check_stamps(SolverStrategy& strategy, SaddleProblem& problem, const std::string& where,
+                  Violations& found) {
+  SaddleOptions heavier = problem.options();
+  heavier.plate_mass *= 100;
+  const SaddleProblem other(problem.comm(), heavier);
+  problem.system.solids = other.system.solids;
+  problem.system.solids.stamp = 2;
+  const BlockVector rhs = problem.random_rhs(), solution = problem.zero();
+  BlockVector x = solution;
+  const std::string refusal = refusal_of([&] {
+    strategy.prepare(problem.system);
+    const SolveReport report = strategy.solve(problem.system, rhs, x, request);
+    check_solution(problem, rhs, x, report, where + ", another C", found);
+  });
+  expect_true(found, refusal.empty(),
+              "prepare: fails where C changed and its stamp says so" + where + ": " + refusal);
+}
+
+/// Right-hand sides that have no solution, or are none.
+void check_refusals(const Make& make, const SaddleProblem& problem, const std::string& where,
+                    Violations& found) {
+  const auto strategy = make();
+  strategy->prepare(problem.system);
+  const auto solve = [&](const BlockVector& rhs) {
+    BlockVector x = problem.zero();
+    return refusal_of([&] { strategy->solve(problem.system, rhs, x, request); });
+  };
+  BlockVector rhs = problem.random_rhs();
+  rhs.pressure->putScalar(std::numeric_limits<double>::quiet_NaN());
+  expect_true(found, !solve(rhs).empty(),
+              "solve: takes a right-hand side that is not a number" + where);
+  if (problem.system.null_space.empty())
+    return;
+  rhs = problem.random_rhs();
+  rhs.pressure->update(1e-3, *problem.system.null_space.vector(0), 1);
+  expect_true(found, !solve(rhs).empty(),
+              "solve: takes a right-hand side that no flow can have" + where);
+}
+
+/// False if the strategy refuses this system.
+bool check_system(const Make& make, const SaddleOptions& options, const Communicator& comm,
+                  Violations& found) {
+  const std::string where = described(options);
+  SaddleProblem problem(comm, options);
+  const auto strategy = make();
+  BlockVector x = problem.zero();
+  const BlockVector rhs = problem.random_rhs();
+  std::optional<SolveReport> cold;
+  refusal_of([&] {
+    strategy->prepare(problem.system);
+    cold = strategy->solve(problem.system, rhs, x, request);
+  });
+  if (!cold)
+    return false;
+  check_solution(problem, rhs, x, *cold, where, found);
+  const SolveReport warm = strategy->solve(problem.system, rhs, x, {"conformance", 10 * tolerance});
+  expect_true(found, warm.iterations == 0, "solve: iterates from an exact guess" + where);
+  BlockVector nothing = problem.zero();
+  strategy->solve(problem.system, problem.zero(), nothing, request);
+  double size = nothing.pressure->normInf();
+  if (problem.system.has_solid())
+    size += nothing.solid->normInf();
+  expect_small(found, size, 0, "solve: makes something of nothing" + where);
+  check_refusals(make, problem, where, found);
+  if (problem.system.has_solid())
+    check_stamps(*strategy, problem, where, found);
+  return true;
+}
+
+SaddleOptions tank(bool open_top, bool elastic_wall, double plate_mass, bool with_solid = true) {
+  SaddleOptions options;
+  options.open_top = open_top;
+  options.elastic_wall = elastic_wall;
+  options.plate_mass = plate_mass;
+  options.with_solid = with_solid;
+  return options;
+}
+
+}  // namespace
+
+Violations check_strategy(const Make& make, const Communicator& comm) {
+  Violations found;
+  int n_solved = 0;
+  for (const SaddleOptions& options :
+       {tank(true, false, 50), tank(false, false, 50), tank(false, true, 50), tank(true, false, 1),
+        tank(true, true, 1e5)})
+    n_solved += check_system(make, options, comm, found);
+  expect_true(found, n_solved > 0, "solve: refuses every system with solids");
+  for (const bool open_top : {true, false})
+    expect_true(found, check_system(make, tank(open_top, false, 1, false), comm, found),
+                "solve: refuses a system without solids");
+  return found;
+}
+
+}  // namespace lockstep
