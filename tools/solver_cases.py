@@ -60,8 +60,8 @@ def scene(case, cells):
     return scene_of(*CASES[case], cells)
 
 
-def scene_of(is_open, solids, cells, step=0.005):
-    """The text of a scene file: a unit cube of water, gravity, n^3 cells."""
+def scene_of(is_open, solids, cells, step=0.005, fluid=()):
+    """The text of a scene file: a unit cube of water, gravity, n^3 cells; `fluid` adds to the list of that name."""
     lines = ['<ParameterList name="Scene">', parameter("Dimension", "int", 3), '<ParameterList name="Domain">',
              parameter("Upper", "Array(double)", "{1, 1, 1}"),
              parameter("Cells", "Array(int)", "{" + ", ".join([str(cells)] * 3) + "}")]
@@ -70,7 +70,7 @@ def scene_of(is_open, solids, cells, step=0.005):
                   "</ParameterList></ParameterList>"]
     lines += ["</ParameterList>", '<ParameterList name="Fluid">', parameter("Type", "string", "mac"),
               parameter("Density", "double", "1000.0"), parameter("Gravity", "Array(double)", "{0, -9.8, 0}"),
-              "</ParameterList>", '<ParameterList name="Solids">', *solids, "</ParameterList>",
+              *fluid, "</ParameterList>", '<ParameterList name="Solids">', *solids, "</ParameterList>",
               '<ParameterList name="Time">', parameter("End", "double", "1.0"),
               parameter("Fixed Step", "double", repr(step)), "</ParameterList>", '<ParameterList name="Output">',
               parameter("Frames", "bool", "false"), "</ParameterList>", "</ParameterList>"]
