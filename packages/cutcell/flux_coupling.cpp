@@ -8,6 +8,7 @@
 #include "faces/added_mass.hpp"
 #include "faces/link_end.hpp"
 #include "faces/solid_fluxes.hpp"
+#include "faces/wet_volume.hpp"
 #include "interfaces/fluid_sides.hpp"
 #include "linear/overlap.hpp"
 
@@ -31,10 +32,14 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
                                  const SurfaceSnapshot<dim>& surface) {
   this->take_volumes(fluid, surface);
   shares_.clear();
+  const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
     shares_.push_back(face_shares<dim>(volume, surface, options_.weights));
     masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
+    if (liquid && masses_[f] > 0)
+      masses_[f] = volume.density * shares_[f].thin_part *
+                   std::max(0.0, wet_volume<dim>(volume, surface, true, *liquid));
   }
   find_prescribed_velocity(solids);
   weigh_excess(fluid, solids);
@@ -50,8 +55,14 @@ void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
   if (!options_.correct_buoyancy || surface_->empty() || fluid.gravity().isZero(0))
     return;
   const double density = this->density_around(fluid, solids.comm());
+  // Columns that end above the free surface do not close; nothing is known to be missing there.
+  std::vector<WetBody<dim>> wet;
+  if (const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid))
+    wet = liquid->wet_bodies();
   for (const auto& excess : displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density,
                                                   bounds_of(fluid), solids.comm())) {
+    if (!wet.empty() && wet[excess.solid].partly)
+      continue;
     if (surface_->solids()[excess.solid].prescribed)
       held_excess_.push_back(excess);
     else

@@ -3,6 +3,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "mac/domain/fitting_domain.hpp"
 #include "mac/pressure/extended_pressure.hpp"
 #include "mac/state/face_moments.hpp"
@@ -12,7 +13,7 @@ namespace lockstep {
 
 template <int dim>
 MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
-                        const Communicator& comm)
+                        const Communicator& comm, const InterfaceRegistry<dim>* interfaces)
     : domain_(fitting_domain<dim>(domain, comm), comm),
       parameters_(read_mac_parameters<dim>(fluid)),
       scalars_(domain_, fluid),
@@ -32,37 +33,39 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
   for (Scalar& scalar : scalars_.all())
     fields_.push_back({scalar.name, {&scalar.values}});
   fields_.push_back({"scaled_pressure", {&accepted_pressure_}});
+  if (fluid.isSublist("Free Surface"))
+    liquid_ =
+        std::make_unique<Liquid<dim>>(fluid, parameters_.forces.gravity, *interfaces, domain_);
 }
 
 template <int dim>
 const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
                                                 const OpenFractionRule<dim>& rule) {
-  const bool unchanged = !geometry_.pressure_block.is_null() && !geometry_.state.surface &&
-                         (!surface || surface->empty());
+  const bool is_first = geometry_.pressure_block.is_null();
+  const bool unchanged =
+      !is_first && !geometry_.state.surface && !liquid_ && (!surface || surface->empty());
   if (unchanged)
     return geometry_;
   viscosity_.reset();
   largest_speed_.reset();
-  geometry_ = make_geometry(domain_, parameters_.density, surface, rule);
+  FreeSurface<dim> free_surface;
+  if (liquid_) {
+    liquid_->begin(surface);
+    free_surface = liquid_->surface();
+  }
+  geometry_ =
+      make_geometry(domain_, parameters_.density, surface, rule, liquid_ ? &free_surface : nullptr);
   geometry_.pressure_block = as_operator(pressure_operator(domain_, geometry_, lattice_blocks_));
   geometry_.regions = find_regions(domain_, geometry_);
   geometry_.volume =
       static_cast<double>(geometry_.pressure_map->getGlobalNumElements()) * domain_.cell_volume();
+  check_input(!liquid_ || !is_first || geometry_.volume > 0,
+              "Of what is in \"Liquid\", nothing is in the domain and outside of solids.");
   if (parameters_.viscosity.viscosity > 0)
     viscosity_ = std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.viscosity);
   set_prescribed(velocity_);
   set_prescribed(prediction_);
   return geometry_;
-}
-
-template <int dim>
-void MacFluid<dim>::set_prescribed(FaceField<dim>& velocity) const {
-  for (const auto& [axis, cell] : geometry_.prescribed) {
-    const int end = geometry_.state.cells[cell] == CellState::outside ? 1 : 0;
-    const Box<dim> face = domain_.face_box(axis, cell);
-    velocity[axis][cell] = domain_.boundary.side(axis, end).mean_velocity(axis, face, time_)[axis];
-  }
-  domain_.halo.fill(velocity);
 }
 
 template <int dim>
@@ -151,7 +154,9 @@ std::function<void()> MacFluid<dim>::undo() {
   std::vector<CellField> before;
   for (const Scalar& scalar : scalars_.all())
     before.push_back(scalar.values);
-  return [this, before = std::move(before), time = time_, last_step = last_step_] {
+  const auto undo_liquid = liquid_ ? liquid_->interface().undo() : [] {};
+  return [this, before = std::move(before), undo_liquid, time = time_, last_step = last_step_] {
+    undo_liquid();
     for (std::size_t s = 0; s < before.size(); ++s)
       scalars_.all()[s].values = before[s];
     scaled_pressure_ = accepted_pressure_;
@@ -266,7 +271,9 @@ Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
   // Without solids nothing has changed, and there is nothing to store.
-  const FaceField<dim> advection = prediction_ == velocity_ ? FaceField<dim>() : prediction_;
+  FaceField<dim> advection = prediction_ == velocity_ ? FaceField<dim>() : prediction_;
+  if (liquid_)
+    move_liquid(time, dt, surface, advection[0].empty() ? velocity_ : advection);
   TransportSetting<dim> setting{domain_.grid,
                                 geometry_.state,
                                 surface,

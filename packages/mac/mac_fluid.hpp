@@ -4,7 +4,9 @@
 
 #include "interfaces/field_sampler.hpp"
 #include "interfaces/fluid_sides.hpp"
+#include "interfaces/liquid.hpp"
 #include "interfaces/prescribed_flux.hpp"
+#include "mac/liquid/liquid.hpp"
 #include "mac/pressure/forces.hpp"
 #include "mac/pressure/pressure_operator.hpp"
 #include "mac/pressure/pressure_system.hpp"
@@ -29,16 +31,16 @@ struct MacParameters {
   int order_in_time = 1;  ///< of the splitting of advection from all else
 };
 
-/// Schema of the "Fluid" list, without "Type".
+/// Schema of the "Fluid" list, without "Type"; without interface models it knows no free surface.
 template <int dim>
-ParameterList mac_parameters();
+ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces = nullptr);
 template <int dim>
 MacParameters<dim> read_mac_parameters(const ParameterList& fluid);
 
 /// A single-phase fluid on a staggered Cartesian grid of tiles. Every cell whose centre is not
-/// inside a closed solid is fluid. Momentum of free faces counts M = rho V alpha, half of it at
-/// open sides. With periodic sides, angular momentum is not conserved: a torque has no common
-/// origin there.
+/// inside a closed solid is fluid, or void where it is above a free surface. Momentum of free faces
+/// counts M = rho V alpha, half of it at open sides. With periodic sides, angular momentum is not
+/// conserved: a torque has no common origin there.
 ///
 /// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
 template <int dim>
@@ -47,6 +49,7 @@ class MacFluid : public FluidDiscretization<dim>,
                  public BoundedFluid<dim>,
                  public FieldSampler<dim>,
                  public FluidOutput<dim>,
+                 public LiquidFluid<dim>,
                  public PressureMemory<dim>,
                  public SideFluxes,
                  public ViscousFluid<dim> {
@@ -54,7 +57,8 @@ class MacFluid : public FluidDiscretization<dim>,
   using typename FluidDiscretization<dim>::Surface;
 
   /// Collective. Validated lists "Fluid" and "Domain" of a scene.
-  MacFluid(const ParameterList& fluid, const ParameterList& domain, const Communicator& comm);
+  MacFluid(const ParameterList& fluid, const ParameterList& domain, const Communicator& comm,
+           const InterfaceRegistry<dim>* interfaces = nullptr);
 
   std::string name() const override { return "mac"; }
   void save(CheckpointWriter& checkpoint) const override;
@@ -79,6 +83,12 @@ class MacFluid : public FluidDiscretization<dim>,
 
   double smallest_length() const override { return domain_.spacing(); }
   double largest_speed() const override;
+  double largest_stable_step() const override;
+  bool geometry_changes() const override { return liquid_ != nullptr; }
+  bool has_surface() const override { return liquid_ != nullptr; }
+  double surface_distance(const Point<dim>& x) const override { return liquid_->distance(x); }
+  std::vector<WetBody<dim>> wet_bodies() const override;
+  LiquidReport liquid() const override { return liquid_->report(); }
   Box<dim> bounds() const override;
   std::array<std::array<bool, 2>, dim> closed_sides() const override;
   bool is_periodic() const override;
@@ -89,6 +99,8 @@ class MacFluid : public FluidDiscretization<dim>,
   double kinetic_energy() const override;
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
   void add_frame(std::vector<BoxFrame>& boxes) const override;
+  /// "water"; gathered, since frames are few and a surface small.
+  void add_surfaces(std::vector<SurfaceFrame>& surfaces) const override;
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell
   /// included.
   std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const override;
@@ -117,6 +129,8 @@ class MacFluid : public FluidDiscretization<dim>,
   template <typename Velocity>
   AngularVector<dim> moment_of_shifts(const Velocity& velocity) const;
   Momentum<dim> push_sources(double time);
+  void move_liquid(double time, double dt, const MovingSurface<dim>& surface,
+                   FaceField<dim>& advection);
 
   MacDomain<dim> domain_;
   MacParameters<dim> parameters_;
@@ -124,6 +138,7 @@ class MacFluid : public FluidDiscretization<dim>,
   RayHalo<dim> ray_halo_;
   KeptSurface<dim> nearby_;
   std::shared_ptr<const LatticeBlocks> lattice_blocks_;
+  std::unique_ptr<Liquid<dim>> liquid_;  ///< null: no free surface
 
   MacGeometry<dim> geometry_;
   std::unique_ptr<Viscosity<dim>> viscosity_;

@@ -1,6 +1,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "mac/liquid/liquid_mesh.hpp"
 #include "mac/mac_fluid.hpp"
 #include "output/checkpoint.hpp"
 #include "output/frames.hpp"
@@ -88,7 +89,37 @@ void MacFluid<dim>::add_frame(std::vector<BoxFrame>& boxes) const {
   box.fields.push_back(scalar_field(grid, tiles, "fluid", "1", [&cells](int cell) {
     return cells[cell] == CellState::fluid ? 1.0 : 0.0;
   }));
+  if (liquid_)
+    box.fields.push_back(scalar_field(grid, tiles, "phi", "m", [this](int cell) {
+      return liquid_->interface().distance()[cell];
+    }));
   boxes.push_back(std::move(box));
+}
+
+template <int dim>
+void MacFluid<dim>::add_surfaces(std::vector<SurfaceFrame>& surfaces) const {
+  if (!liquid_)
+    return;
+  const SurfaceMesh<dim> mine = liquid_mesh(domain_, liquid_->interface().distance());
+  std::vector<double> vertices;
+  for (const Point<dim>& vertex : mine.vertices)
+    vertices.insert(vertices.end(), vertex.data(), vertex.data() + dim);
+  const Communicator& comm = domain_.grid.comm();
+  const auto n_mine = static_cast<GlobalIndex>(mine.vertices.size());
+  GlobalIndex n_before = 0;
+  MPI_Exscan(&n_mine, &n_before, 1, MPI_LONG_LONG, MPI_SUM, raw_communicator(comm));
+  std::vector<GlobalIndex> simplices;
+  for (const auto& simplex : mine.simplices)
+    for (const int vertex : simplex)
+      simplices.push_back(n_before + vertex);
+  SurfaceFrame frame;
+  frame.name = "water";
+  frame.dimension = dim;
+  frame.simplex_size = dim;
+  frame.vertices = gather_all(comm, vertices);
+  const std::vector<GlobalIndex> all = gather_all(comm, simplices);
+  frame.simplices.assign(all.begin(), all.end());
+  surfaces.push_back(std::move(frame));
 }
 
 template <int dim>
@@ -100,6 +131,8 @@ void MacFluid<dim>::save(CheckpointWriter& checkpoint) const {
   save_fields(domain_, {{"cells_with_pressure", {&cells}}}, checkpoint);
   checkpoint.file().write_attribute("fluid", "boundary_time", time_);
   checkpoint.file().write_attribute("fluid", "last_step", last_step_);
+  if (liquid_)
+    liquid_->interface().save(checkpoint);
 }
 
 template <int dim>
@@ -115,11 +148,15 @@ void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
   time_ = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
   accepted_step_ = last_step_;
+  if (liquid_)
+    liquid_->interface().load(checkpoint);
   largest_speed_.reset();
 }
 
 template void MacFluid<2>::add_frame(std::vector<BoxFrame>&) const;
 template void MacFluid<3>::add_frame(std::vector<BoxFrame>&) const;
+template void MacFluid<2>::add_surfaces(std::vector<SurfaceFrame>&) const;
+template void MacFluid<3>::add_surfaces(std::vector<SurfaceFrame>&) const;
 template void MacFluid<2>::save(CheckpointWriter&) const;
 template void MacFluid<3>::save(CheckpointWriter&) const;
 template void MacFluid<2>::load(const CheckpointReader&);

@@ -17,7 +17,7 @@ const std::map<std::string, AdvectionScheme>& advection_schemes() {
 }  // namespace
 
 template <int dim>
-ParameterList mac_parameters() {
+ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
   ParameterList list("Fluid");
   declare_positive(list, "Density", 1000.0, "Density [kg/m^3] (2D: [kg/m^2]).");
   declare_at_least(list, "Viscosity", 0.0, 0.0,
@@ -50,6 +50,8 @@ ParameterList mac_parameters() {
           "Relative excess density of fluid with smoke density 1: smoke s feels weight s g [1]; "
           "negative: it rises.");
   declare_scalars<dim>(list);
+  if (interfaces)
+    declare_free_surface<dim>(*interfaces, list);
   declare_initial_state<dim>(list);
   return list;
 }
@@ -78,8 +80,8 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   return parameters;
 }
 
-template ParameterList mac_parameters<2>();
-template ParameterList mac_parameters<3>();
+template ParameterList mac_parameters<2>(const InterfaceRegistry<2>*);
+template ParameterList mac_parameters<3>(const InterfaceRegistry<3>*);
 template MacParameters<2> read_mac_parameters<2>(const ParameterList&);
 template MacParameters<3> read_mac_parameters<3>(const ParameterList&);
 

@@ -44,7 +44,7 @@ std::vector<FluidSample<dim>> MacFluid<dim>::sample(const std::vector<Point<dim>
     ++value;
     for (int axis = 0; axis < dim; ++axis)
       *value++ = mean_of<dim>(lattice, axis, x, prediction_[axis],
-                              [&](int id) { return state.faces[axis][id] != FaceState::inactive; });
+                              [&](int id) { return is_wet(state.faces[axis][id]); });
   }
   sum_all(domain_.grid.comm(), values.data(), static_cast<int>(values.size()));
   std::vector<FluidSample<dim>> samples(points.size());

@@ -4,18 +4,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "faces/wet_volume.hpp"
 #include "geometry/solid_volume.hpp"
 
 namespace lockstep {
 
 template <int dim>
 std::vector<double> fluid_masses(const std::vector<ControlVolume<dim>>& volumes,
-                                 const SurfaceSnapshot<dim>& surface, bool whole_cell) {
+                                 const SurfaceSnapshot<dim>& surface, bool whole_cell,
+                                 const LiquidFluid<dim>* liquid) {
   std::vector<double> masses(volumes.size());
   for (std::size_t f = 0; f < volumes.size(); ++f) {
-    const double whole = volumes[f].box.volume();
-    const double solid = whole_cell ? 0 : solid_volume_in_box<dim>(surface, volumes[f].box);
-    masses[f] = volumes[f].density * std::max(0., whole - solid);
+    double fluid = 0;
+    if (liquid)
+      fluid = wet_volume<dim>(volumes[f], surface, whole_cell, *liquid);
+    else
+      fluid = volumes[f].box.volume() -
+              (whole_cell ? 0 : solid_volume_in_box<dim>(surface, volumes[f].box));
+    masses[f] = volumes[f].density * std::max(0., fluid);
   }
   return masses;
 }
@@ -151,22 +157,39 @@ void scale_masses(const std::vector<ControlVolume<dim>>& volumes,
   }
 }
 
+/// What the discrete pressure lifts of a body that is partly wet, along an axis.
+template <int dim>
+Eigen::Matrix<double, dim, 1> displaced_by(const WetBody<dim>& body, const Point<dim>& center,
+                                           int axis) {
+  Eigen::Matrix<double, dim, 1> displaced;
+  displaced[0] = body.displaced[axis];
+  for (int k = 1; k < dim; ++k) {
+    const int across = (axis + k) % dim;
+    displaced[k] = body.moment[axis][across] - body.displaced[axis] * center[across];
+  }
+  return displaced;
+}
+
 /// What would balance each closed solid, along every axis on which its columns close.
 template <int dim>
 std::vector<MassFactor<dim>> corrections_of(const std::vector<SolidDescription>& solids,
                                             const std::vector<SolidBalance<dim>>& balances,
                                             const std::vector<Point<dim>>& centers,
                                             const std::vector<double>& solid_volumes,
-                                            double density) {
+                                            const std::vector<WetBody<dim>>& wet, double density) {
   std::vector<MassFactor<dim>> corrections;
   for (int s = 0; s < static_cast<int>(solids.size()); ++s) {
     for (int a = 0; a < dim && solids[s].closed && !solids[s].prescribed; ++a) {
       const AxisBalance<dim>& balance = balances[s][a];
+      const bool partly_wet = !wet.empty() && wet[s].partly;
       // A column that ends at a wall has no lift of its own to balance.
-      if (std::abs(balance.open_area) > 1e-9 * balance.area)
+      if (partly_wet ? wet[s].at_side[a] || wet[s].volume <= 0
+                     : std::abs(balance.open_area) > 1e-9 * balance.area)
         continue;
       MassFactor<dim> one{s, a, centers[s], {}, false, {}};
-      one.excess = balance.normal.col(0) - density * balance.displaced;
+      one.excess =
+          balance.normal.col(0) -
+          density * (partly_wet ? displaced_by<dim>(wet[s], centers[s], a) : balance.displaced);
       one.excess[0] += density * solid_volumes[s];
       one.factor = balance.normal.completeOrthogonalDecomposition().solve(-one.excess);
       const double unsolved = (balance.normal * one.factor + one.excess).norm();
@@ -183,20 +206,27 @@ template <int dim>
 std::vector<DisplacedExcess<dim>> balance_masses(
     const std::vector<ControlVolume<dim>>& volumes,
     const std::vector<std::vector<SurfaceShare<dim>>>& shares, const SurfaceSnapshot<dim>& surface,
-    double density, const Box<dim>& domain, const Communicator& comm, std::vector<double>& masses) {
+    double density, const Box<dim>& domain, const std::vector<WetBody<dim>>& wet,
+    const Communicator& comm, std::vector<double>& masses) {
   const auto& solids = surface.solids();
   std::vector<Point<dim>> centers(solids.size(), Point<dim>::Zero());
   std::vector<double> solid_volumes(solids.size(), 0);
   for (std::size_t s = 0; s < solids.size(); ++s) {
     if (!solids[s].closed || solids[s].prescribed)
       continue;
+    if (!wet.empty() && wet[s].partly) {
+      centers[s] = wet[s].centroid;
+      solid_volumes[s] = wet[s].volume;
+      continue;
+    }
     const PartOfSolid<dim> part = part_of_solid<dim>(surface, static_cast<int>(s), domain);
     centers[s] = part.centroid;
     solid_volumes[s] = part.volume;
   }
   const auto balances = accumulate<dim>(volumes, shares, centers, masses, comm);
   const std::vector<double> original = masses;
-  const auto corrections = corrections_of<dim>(solids, balances, centers, solid_volumes, density);
+  const auto corrections =
+      corrections_of<dim>(solids, balances, centers, solid_volumes, wet, density);
   const std::vector<double> smallest = smallest_factors<dim>(
       volumes, shares, corrections, static_cast<int>(solids.size()), original, comm);
   std::vector<DisplacedExcess<dim>> unseen;
@@ -215,13 +245,17 @@ std::vector<DisplacedExcess<dim>> balance_masses(
 }
 
 template std::vector<double> fluid_masses<2>(const std::vector<ControlVolume<2>>&,
-                                             const SurfaceSnapshot<2>&, bool);
+                                             const SurfaceSnapshot<2>&, bool,
+                                             const LiquidFluid<2>*);
 template std::vector<double> fluid_masses<3>(const std::vector<ControlVolume<3>>&,
-                                             const SurfaceSnapshot<3>&, bool);
+                                             const SurfaceSnapshot<3>&, bool,
+                                             const LiquidFluid<3>*);
 template std::vector<DisplacedExcess<2>> balance_masses<2>(
     const std::vector<ControlVolume<2>>&, const std::vector<std::vector<SurfaceShare<2>>>&,
-    const SurfaceSnapshot<2>&, double, const Box<2>&, const Communicator&, std::vector<double>&);
+    const SurfaceSnapshot<2>&, double, const Box<2>&, const std::vector<WetBody<2>>&,
+    const Communicator&, std::vector<double>&);
 template std::vector<DisplacedExcess<3>> balance_masses<3>(
     const std::vector<ControlVolume<3>>&, const std::vector<std::vector<SurfaceShare<3>>>&,
-    const SurfaceSnapshot<3>&, double, const Box<3>&, const Communicator&, std::vector<double>&);
+    const SurfaceSnapshot<3>&, double, const Box<3>&, const std::vector<WetBody<3>>&,
+    const Communicator&, std::vector<double>&);
 }  // namespace lockstep

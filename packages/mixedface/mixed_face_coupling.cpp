@@ -43,15 +43,17 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   shares_ = surface_shares<dim>(volumes_, surface);
   if (options_.carry_rotations)
     add_local_rotations<dim>(volumes_, surface, shares_);
-  masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass);
+  const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid);
+  masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass, liquid);
   find_prescribed(solids);
   unseen_.clear();
   if (!solids.has_unknowns())
     return;
   if (options_.balance) {
     const double density = this->density_around(fluid, solids.comm());
-    for (const auto& left : balance_masses<dim>(volumes_, shares_, surface, density,
-                                                bounds_of(fluid), solids.comm(), masses_))
+    for (const auto& left : balance_masses<dim>(
+             volumes_, shares_, surface, density, bounds_of(fluid),
+             liquid ? liquid->wet_bodies() : std::vector<WetBody<dim>>(), solids.comm(), masses_))
       unseen_.push_back(force_of<dim>(left, solids, surface));
   }
   assemble_weights(solids);

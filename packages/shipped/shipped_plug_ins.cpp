@@ -3,6 +3,7 @@
 #include "contact/register_contact.hpp"
 #include "cutcell/register_flux.hpp"
 #include "deformable/register_deformable.hpp"
+#include "freesurface/register_freesurface.hpp"
 #include "mac/domain/boundary.hpp"
 #include "mac/register_mac.hpp"
 #include "mixedface/register_mixed_face.hpp"
@@ -15,7 +16,9 @@ namespace lockstep {
 template <int dim>
 Registries<dim> shipped_plug_ins() {
   Registries<dim> registries;
-  register_mac<dim>(registries.fluids);
+  auto interfaces = std::make_shared<InterfaceRegistry<dim>>("interface model");
+  register_freesurface<dim>(*interfaces);
+  register_mac<dim>(registries.fluids, interfaces);
   registries.domains["mac"] = domain_parameters<dim>;
   register_rigid<dim>(registries.solids);
   register_deformable<dim>(registries.solids);

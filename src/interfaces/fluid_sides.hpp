@@ -8,7 +8,8 @@
 
 namespace lockstep {
 
-struct BoxFrame;  // output/frames.hpp
+struct BoxFrame;      // output/frames.hpp
+struct SurfaceFrame;  // the same
 
 // Side interfaces of fluids (`side_of`): what audits, solvers and outputs want. Viscosity is
 // another (interfaces/viscosity.hpp), and so are the fluxes of the sides (prescribed_flux.hpp) and
@@ -76,6 +77,8 @@ class FluidOutput {
   virtual ~FluidOutput() = default;
   /// Adds its cell-centred fields to a frame.
   virtual void add_frame(std::vector<BoxFrame>& boxes) const = 0;
+  /// Adds its surfaces, as a liquid with a free surface has one. Collective.
+  virtual void add_surfaces(std::vector<SurfaceFrame>&) const {}
   /// Lines for `--explain`, title and text: how the grid has taken what the scene asks for.
   /// Collective.
   virtual std::vector<std::pair<std::string, std::string>> notes() const { return {}; }

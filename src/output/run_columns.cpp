@@ -28,7 +28,7 @@ void add_rotation(std::vector<HistoryColumn>& columns, const std::string& name,
 }  // namespace
 
 template <int dim>
-std::vector<HistoryColumn> history_columns() {
+std::vector<HistoryColumn> history_columns(bool with_liquid) {
   std::vector<HistoryColumn> columns = {
       {"step", "1", "number of the step"},
       {"time", "s", "at the end of the step"},
@@ -39,7 +39,8 @@ std::vector<HistoryColumn> history_columns() {
       {"s2_iterations", "1", "coupled solve for the velocities"},
       {"viscous_iterations", "1", "implicit viscosity, both solves"},
       {"max_divergence", "1/s", "largest divergence of a cell after the step"},
-      {"liquid_volume", dim == 2 ? "m^2" : "m^3", "of the fluid cells"}};
+      {"liquid_volume", dim == 2 ? "m^2" : "m^3",
+       "of the fluid cells; below the free surface, if there is one"}};
   add_vector<dim>(columns, "fluid_momentum_", "kg m/s", "fluid, lumped fluid included");
   add_vector<dim>(columns, "solid_momentum_", "kg m/s", "all dynamic solids");
   add_vector<dim>(columns, "boundary_impulse_", "kg m/s",
@@ -68,6 +69,16 @@ std::vector<HistoryColumn> history_columns() {
            {"wall_seconds", "s", "wall time of the step"}}) {
     columns.push_back(column);
   }
+  if (with_liquid) {
+    const std::string unit = dim == 2 ? "m^2" : "m^3";
+    for (HistoryColumn column : std::vector<HistoryColumn>{
+             {"liquid_volume_target", unit, "what known fluxes have left of that of the start"},
+             {"volume_shift", unit, "what corrections have added and taken away so far"},
+             {"lost_volume", unit, "of bodies of liquid that became too small to see"},
+             {"liquid_bodies", "1", "connected bodies of liquid"}}) {
+      columns.push_back(column);
+    }
+  }
   return columns;
 }
 
@@ -84,8 +95,8 @@ std::vector<HistoryColumn> body_columns() {
   return columns;
 }
 
-template std::vector<HistoryColumn> history_columns<2>();
-template std::vector<HistoryColumn> history_columns<3>();
+template std::vector<HistoryColumn> history_columns<2>(bool);
+template std::vector<HistoryColumn> history_columns<3>(bool);
 template std::vector<HistoryColumn> body_columns<2>();
 template std::vector<HistoryColumn> body_columns<3>();
 

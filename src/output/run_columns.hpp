@@ -6,9 +6,9 @@
 namespace lockstep {
 
 /// Columns of history.csv and bodies.csv; what is written, and what the formulas of a study may
-/// name.
+/// name. Those of a liquid with a free surface stand at the end.
 template <int dim>
-std::vector<HistoryColumn> history_columns();
+std::vector<HistoryColumn> history_columns(bool with_liquid);
 template <int dim>
 std::vector<HistoryColumn> body_columns();
 

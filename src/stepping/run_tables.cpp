@@ -22,8 +22,8 @@ void append_each(std::vector<HistoryValue>& row, const Values&... values) {
 }  // namespace
 
 template <int dim>
-RunTables<dim>::RunTables(const Communicator& comm, const std::string& directory)
-    : history_(comm, directory + "/history.csv", history_columns<dim>()),
+RunTables<dim>::RunTables(const Communicator& comm, const std::string& directory, bool with_liquid)
+    : history_(comm, directory + "/history.csv", history_columns<dim>(with_liquid)),
       bodies_(comm, directory + "/bodies.csv", body_columns<dim>()) {}
 
 template <int dim>
@@ -64,6 +64,8 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
               static_cast<long long>(report.contact_position.n_contacts),
               report.contact_position.deepest_overlap,
               static_cast<long long>(report.n_clamped_elements), wall_seconds);
+  if (const auto& liquid = report.liquid)
+    append_each(row, liquid->target, liquid->shift, liquid->lost, liquid->n_bodies);
   history_.append_row(row);
 
   std::vector<std::vector<HistoryValue>> rows;

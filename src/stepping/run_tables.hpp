@@ -12,7 +12,8 @@ namespace lockstep {
 template <int dim>
 class RunTables {
  public:
-  RunTables(const Communicator& comm, const std::string& directory);
+  /// `with_liquid`: all steps report a liquid with a free surface.
+  RunTables(const Communicator& comm, const std::string& directory, bool with_liquid);
   void start();
   void resume(long long step);
   /// Collective. `names` and states as the SolidSystem gives them.

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "base/interruption.hpp"
+#include "interfaces/liquid.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
 #include "output/signals.hpp"
@@ -33,7 +34,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
       comm_(comm),
       log_(log),
       components_(build_components<dim>(registries, scene, options.scene_file, comm)),
-      tables_(comm, options.output_directory),
+      tables_(comm, options.output_directory, liquid_of<dim>(*components_.fluid) != nullptr),
       observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory),
       frames_(comm, options.output_directory,
               {scene_options_.output.precision == "double" ? Precision::double_precision
@@ -64,7 +65,8 @@ double Simulation<dim>::next_step() const {
   const double suggested =
       components_.fluid->suggested_step(time.cfl, components_.solids->largest_surface_speed());
   double dt = wanted_step(time, suggested);
-  dt = std::min(dt, components_.solids->largest_stable_step());
+  dt = std::min(
+      {dt, components_.fluid->largest_stable_step(), components_.solids->largest_stable_step()});
   // A bit of difference between ranks would let one of them take a step more.
   dt = min_all(comm_, dt);
   check_solve(stepper_->time() + dt > stepper_->time(),
@@ -133,6 +135,8 @@ void Simulation<dim>::write_frame() {
     if (const auto* output = side_of<SolidOutput<dim>>(components_.solids->model(m)))
       output->add_frames(meshes);
   }
+  if (const auto* output = side_of<FluidOutput<dim>>(*components_.fluid))
+    output->add_surfaces(meshes);
   frames_.write(step_, stepper_->time(), boxes, meshes);
   last_frame_ = stepper_->time();
 }

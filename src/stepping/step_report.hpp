@@ -1,8 +1,10 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "coupling/momentum_ledger.hpp"
 #include "interfaces/contact.hpp"
+#include "interfaces/liquid.hpp"
 #include "interfaces/strategy.hpp"
 
 namespace lockstep {
@@ -30,6 +32,7 @@ struct StepReport {
   AngularVector<dim> linearisation_impulse = AngularVector<dim>::Zero();
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]
   double fluid_volume = 0;
+  std::optional<LiquidReport> liquid;               ///< if it has a free surface
   GlobalIndex n_clamped_elements = 0;               ///< see SolidModel
   std::vector<Momentum<dim>> hydrodynamic_impulse;  ///< per solid over dt, angular about the origin
   ContactReport<dim> contact_position, contact_velocity;

@@ -274,6 +274,10 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
   if (sides_.audited_fluid)
     report.fluid_kinetic_energy += sides_.audited_fluid->kinetic_energy();
   report.fluid_volume = fluid.fluid_volume();
+  if (const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid)) {
+    report.liquid = liquid->liquid();
+    report.fluid_volume = report.liquid->volume;
+  }
   if (coupled()) {
     solids.set_velocity(*solution.velocity);
     const auto after = make_vector(solids.map());

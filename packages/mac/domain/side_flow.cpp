@@ -21,6 +21,16 @@ void for_each_inflow(const Boundary<dim>& boundary, const Function& f) {
 }  // namespace
 
 template <int dim>
+void MacFluid<dim>::set_prescribed(FaceField<dim>& velocity) const {
+  for (const auto& [axis, cell] : geometry_.prescribed) {
+    const int end = geometry_.state.cells[cell] == CellState::outside ? 1 : 0;
+    const Box<dim> face = domain_.face_box(axis, cell);
+    velocity[axis][cell] = domain_.boundary.side(axis, end).mean_velocity(axis, face, time_)[axis];
+  }
+  domain_.halo.fill(velocity);
+}
+
+template <int dim>
 std::vector<PrescribedFlux> MacFluid<dim>::side_fluxes(double time) const {
   std::vector<PrescribedFlux> fluxes;
   for_each_inflow(domain_.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
@@ -66,6 +76,8 @@ std::vector<std::pair<std::string, std::string>> MacFluid<dim>::notes() const {
   return notes;
 }
 
+template void MacFluid<2>::set_prescribed(FaceField<2>&) const;
+template void MacFluid<3>::set_prescribed(FaceField<3>&) const;
 template std::vector<PrescribedFlux> MacFluid<2>::side_fluxes(double) const;
 template std::vector<PrescribedFlux> MacFluid<3>::side_fluxes(double) const;
 template std::vector<std::pair<std::string, std::string>> MacFluid<2>::notes() const;

@@ -3,6 +3,7 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 
+#include "mac/liquid/free_surface.hpp"
 #include "mac/state/covered_sides.hpp"
 #include "mac/state/surface_marks.hpp"
 
@@ -37,6 +38,8 @@ PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
   if (geometry.state.cells[cell] == CellState::solid) {
     side.kind = SideKind::solid;
     side.solid = geometry.state.surface->inside(center);
+  } else if (geometry.state.cells[cell] == CellState::empty) {
+    side.kind = SideKind::empty;
   }
   return side;
 }
@@ -304,7 +307,8 @@ ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometr
 template <int dim>
 MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
                                const std::shared_ptr<const SurfaceSnapshot<dim>>& surface,
-                               const OpenFractionRule<dim>& rule) {
+                               const OpenFractionRule<dim>& rule,
+                               const FreeSurface<dim>* free_surface) {
   const TiledGrid<dim>& grid = domain.grid;
   MacGeometry<dim> geometry;
   geometry.face_table = FaceTable<dim>(domain, density);
@@ -323,6 +327,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
     fractions = find_open_fractions(domain, rule, marks, geometry);
     open_cut_cells<dim>(domain, fractions, geometry);
   }
+  if (free_surface)
+    empty_dry_cells(grid, *free_surface, state.cells);
   number_pressures(domain, geometry);
   const std::vector<char> plain = find_plain_tiles(grid, geometry);
   for (int axis = 0; axis < dim; ++axis) {
@@ -356,6 +362,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   if (cut)
     add_covered_sides(domain, rule, geometry);
   complete_ghost_faces(domain, geometry);
+  if (free_surface)
+    set_closeness_to_void(domain, *free_surface, geometry);
   share_open_fractions(domain, geometry);
   return geometry;
 }
@@ -366,9 +374,9 @@ template ControlVolume<2> control_volume<2>(const MacDomain<2>&, const MacGeomet
 template ControlVolume<3> control_volume<3>(const MacDomain<3>&, const MacGeometry<3>&, int, int);
 template MacGeometry<2> make_geometry<2>(const MacDomain<2>&, double,
                                          const std::shared_ptr<const SurfaceSnapshot<2>>&,
-                                         const OpenFractionRule<2>&);
+                                         const OpenFractionRule<2>&, const FreeSurface<2>*);
 template MacGeometry<3> make_geometry<3>(const MacDomain<3>&, double,
                                          const std::shared_ptr<const SurfaceSnapshot<3>>&,
-                                         const OpenFractionRule<3>&);
+                                         const OpenFractionRule<3>&, const FreeSurface<3>*);
 
 }  // namespace lockstep

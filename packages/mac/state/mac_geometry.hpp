@@ -8,6 +8,9 @@
 
 namespace lockstep {
 
+template <int dim>
+struct FreeSurface;
+
 /// The frozen geometry of one instant with the numbering of the pressures. The coupled volumes are
 /// those of `coupled`, behind them volumes at prescribed sides (add_covered_sides).
 template <int dim>
@@ -21,7 +24,7 @@ struct MacGeometry : FluidGeometry<dim> {
   std::vector<char> near;
   /// Owned faces with open fraction < 1 and fluid on at least one side.
   std::vector<FaceId> coupled;
-  std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows
+  std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows beside fluid
 
   /// The part of a face through which free fluid flows.
   double open_fraction(int axis, int cell) const {
@@ -41,12 +44,13 @@ struct MacGeometry : FluidGeometry<dim> {
 };
 
 /// Judges cells by their centres, asks `rule` about faces near the surface, numbers the pressures.
-/// All of the fluid has this density. `surface` may be null or empty. Pressure block and regions
-/// are left to be made of it. Collective.
+/// All of the fluid has this density. `surface` may be null or empty. Without a free surface the
+/// fluid fills the domain. Pressure block and regions are left to be made of it. Collective.
 template <int dim>
 MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
                                const std::shared_ptr<const SurfaceSnapshot<dim>>& surface,
-                               const OpenFractionRule<dim>& rule);
+                               const OpenFractionRule<dim>& rule,
+                               const FreeSurface<dim>* free_surface = nullptr);
 
 /// The control volume of a face that is not prescribed; its cells must be stored. `open_fraction`
 /// and `seen_by_fluid` are left at 1 and true.

@@ -12,16 +12,27 @@ namespace lockstep {
 enum class CellState : char {
   outside,  ///< beyond the domain
   fluid,    ///< carries a pressure
-  solid     ///< centre inside a closed solid
+  solid,    ///< centre inside a closed solid
+  empty     ///< a void above a free surface: p = 0
 };
 
 /// What a face velocity is.
 enum class FaceState : char {
-  inactive,   ///< no fluid on either side
-  free,       ///< changed by pressure: interior or open side
-  coupled,    ///< closed by the coupling: moves with the solids
-  prescribed  ///< wall or inflow
+  inactive,    ///< no fluid on either side
+  free,        ///< changed by pressure: interior or open side
+  coupled,     ///< closed by the coupling: moves with the solids
+  prescribed,  ///< wall or inflow
+  extended     ///< in the void near a free surface: carries on the velocity of the fluid
 };
+
+/// The velocity of fluid at the face itself.
+inline bool is_wet(FaceState face) {
+  return face != FaceState::inactive && face != FaceState::extended;
+}
+/// Moved by transport.
+inline bool is_carried(FaceState face) {
+  return face == FaceState::free || face == FaceState::coupled || face == FaceState::extended;
+}
 
 /// The frozen geometry of the fluid at one instant, on all stored cells (owned and ghost).
 template <int dim>

@@ -66,7 +66,7 @@ bool FieldCarrier<dim>::is_carried(SampleKind kind, int id, bool& has_value) con
   }
   const FaceState face = state.faces[kind][id];
   has_value = face != FaceState::inactive;
-  return face == FaceState::free || face == FaceState::coupled;
+  return lockstep::is_carried(face);
 }
 
 template <int dim>
@@ -76,7 +76,7 @@ bool FieldCarrier<dim>::all_free(SampleKind kind, int first, int n) const {
   const FaceState* states = frame_.setting.state.faces[kind].data() + first;
   int others = 0;
   for (int i = 0; i < n; ++i)
-    others += states[i] != FaceState::free;
+    others += states[i] != FaceState::free && states[i] != FaceState::extended;
   return others == 0;
 }
 

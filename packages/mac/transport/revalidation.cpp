@@ -37,7 +37,7 @@ class Fronts {
     const auto look_at = [&](int id) {
       const bool has_no_value = !invalid.empty() && invalid[id];
       valid_[id] = in_fluid(id) && !has_no_value;
-      if (in_fluid(id) && has_no_value)
+      if (in_fluid(id) && has_no_value && !is_extended(id))
         look_around(id);
     };
     if (kind == cell_centers)
@@ -87,6 +87,10 @@ class Fronts {
   bool in_fluid(int id) const {
     return kind_ == cell_centers ? state_.cells[id] == CellState::fluid
                                  : state_.faces[kind_][id] != FaceState::inactive;
+  }
+  /// Filled when the fluid is carried on, not before; one that has a value may be looked at.
+  bool is_extended(int id) const {
+    return kind_ != cell_centers && state_.faces[kind_][id] == FaceState::extended;
   }
   /// Prescribed faces are set by their side, whatever passed over them.
   bool is_prescribed(int id) const {

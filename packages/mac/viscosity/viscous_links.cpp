@@ -145,6 +145,7 @@ class Builder {
         add_side_link(face_.axis, end, coefficient);
         break;
       case FaceState::inactive:
+      case FaceState::extended:
         add_hidden_link(face_, across, end, other, coefficient);
         break;
     }

@@ -1,0 +1,93 @@
+#include "mac/liquid/liquid.hpp"
+
+#include "base/errors.hpp"
+#include "mac/transport/sample_lattice.hpp"
+
+namespace lockstep {
+
+namespace {
+template <int dim>
+std::array<bool, dim> periodic_axes(const MacDomain<dim>& domain) {
+  std::array<bool, dim> periodic;
+  for (int axis = 0; axis < dim; ++axis)
+    periodic[axis] = domain.boundary.periodic(axis);
+  return periodic;
+}
+
+/// Along an axis, over all ranks [cells].
+template <int dim>
+double largest_displacement(const MacDomain<dim>& domain, const MacState<dim>& state,
+                            const FaceField<dim>& velocity, double dt) {
+  double fastest = 0;
+  for (int axis = 0; axis < dim; ++axis)
+    domain.grid.for_each_owned_face(axis, [&](int cell) {
+      if (is_wet(state.faces[axis][cell]))
+        fastest = std::max(fastest, std::abs(velocity[axis][cell]));
+    });
+  return max_all(domain.grid.comm(), fastest) * dt / domain.spacing();
+}
+}  // namespace
+
+template <int dim>
+Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
+                    const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain)
+    : domain_(domain) {
+  check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
+  const ParameterList& list = fluid.sublist("Free Surface");
+  parameters_ = read_free_surface(list);
+  initial_distance_ = read_liquid<dim>(list, gravity);
+  const ParameterList& interface = list.sublist("Interface");
+  interface_ = interfaces.create(interface.get<std::string>("Type"), interface, domain);
+}
+
+template <int dim>
+void Liquid<dim>::begin(const Surface& surface) {
+  if (!initial_distance_)
+    return;
+  interface_->initialise(initial_distance_, surface);
+  initial_distance_ = nullptr;
+}
+
+template <int dim>
+FreeSurface<dim> Liquid<dim>::surface() const {
+  FreeSurface<dim> surface;
+  surface.distance = &interface_->distance();
+  surface.crossing = [this](int wet, int dry) { return interface_->crossing(wet, dry); };
+  surface.smallest_distance = parameters_.smallest_distance;
+  surface.at_true_place = parameters_.pressure_order == 2;
+  return surface;
+}
+
+template <int dim>
+void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
+                          FaceField<dim>& advection_velocity, FaceField<dim>& velocity) {
+  const double displacement =
+      largest_displacement<dim>(domain_, geometry.state, advection_velocity, step.dt);
+  const double band = interface_->band(displacement) * domain_.spacing();
+  const auto solids = step.kept.of(geometry.state.surface, domain_.grid, 2);
+  const VelocityExtension<dim> extension(domain_, interface_->distance(), band, geometry.near,
+                                         *solids, geometry.state);
+  extension.extend(step.time, step.surface.velocity, advection_velocity);
+  if (&velocity != &advection_velocity)
+    extension.extend(step.time, step.surface.velocity, velocity);
+  interface_->advance(step);
+}
+
+template <int dim>
+double Liquid<dim>::distance(const Point<dim>& x) const {
+  const SampleLattice<dim> lattice(domain_.grid);
+  const Point<dim> place = (domain_.grid.wrap(x) - domain_.grid.lower()) / domain_.spacing();
+  const auto stencil = lattice.locate(cell_centers, place);
+  return interpolate<dim>(stencil, interface_->distance().data());
+}
+
+template <int dim>
+LiquidReport Liquid<dim>::report() const {
+  const LiquidLedger ledger = interface_->ledger();
+  return {ledger.volume, ledger.target, ledger.shift, ledger.lost, ledger.n_components};
+}
+
+template class Liquid<2>;
+template class Liquid<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,44 @@
+#pragma once
+#include <memory>
+
+#include "interfaces/liquid.hpp"
+#include "mac/liquid/free_surface.hpp"
+#include "mac/liquid/interface_model.hpp"
+#include "mac/liquid/liquid_parameters.hpp"
+#include "mac/liquid/velocity_extension.hpp"
+
+namespace lockstep {
+
+/// The liquid of a fluid that has a free surface: its interface, and what a step does with it.
+template <int dim>
+class Liquid {
+ public:
+  using Surface = std::shared_ptr<const SurfaceSnapshot<dim>>;
+
+  /// Validated list "Fluid" with a list "Free Surface". `domain` must outlive this. Collective.
+  Liquid(const ParameterList& fluid, const Point<dim>& gravity,
+         const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain);
+
+  /// The first call fills the liquid in, outside of the solids. Collective.
+  void begin(const Surface& surface);
+  /// At the present time; valid while this is.
+  FreeSurface<dim> surface() const;
+  /// Carries u_ADV and u^n on into the void, marks those faces in `geometry`, and moves the
+  /// interface. Halos must be valid, and are so afterwards. Collective.
+  void advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
+               FaceField<dim>& advection_velocity, FaceField<dim>& velocity);
+
+  InterfaceModel<dim>& interface() { return *interface_; }
+  const InterfaceModel<dim>& interface() const { return *interface_; }
+  /// Linear between the centres of cells; near cells that this rank owns. Local.
+  double distance(const Point<dim>& x) const;
+  LiquidReport report() const;
+
+ private:
+  const MacDomain<dim>& domain_;
+  FreeSurfaceParameters parameters_;
+  SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
+  std::unique_ptr<InterfaceModel<dim>> interface_;
+};
+
+}  // namespace lockstep

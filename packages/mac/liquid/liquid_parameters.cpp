@@ -1,0 +1,152 @@
+#include "mac/liquid/liquid_parameters.hpp"
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "mac/domain/parameter_values.hpp"
+
+namespace lockstep {
+
+namespace {
+/// A level with waves a cos(k (x - x0)) along the first axis across gravity.
+template <int dim>
+SignedDistance<dim> level(const std::string& name, const ParameterList& list,
+                          const Point<dim>& gravity) {
+  check_input(
+      gravity.norm() > 0,
+      "In \"Liquid\", \"{}\" is a level, but \"Gravity\" is 0, so that nothing says where up "
+      "is; give a box, or gravity.",
+      name);
+  const Point<dim> up = -gravity.normalized();
+  const double height = list.get<double>("Height"), amplitude = list.get<double>("Amplitude");
+  const double k = 2 * M_PI / list.get<double>("Wavelength"), crest = list.get<double>("Crest");
+  int along = 0;
+  while (std::abs(up[along]) > 0.9)
+    ++along;
+  return [=](const Point<dim>& x) {
+    const double phase = k * (x[along] - crest);
+    const double slope = amplitude * k * std::sin(phase);
+    return (x.dot(up) - height - amplitude * std::cos(phase)) / std::sqrt(1 + slope * slope);
+  };
+}
+
+template <int dim>
+SignedDistance<dim> box(const std::string& name, const ParameterList& list) {
+  const Point<dim> lower = point_value<dim>(list, "Lower"), upper = point_value<dim>(list, "Upper");
+  check_input(
+      (upper - lower).minCoeff() > 0,
+      "In \"Liquid\", the box \"{}\" is empty: \"Upper\" must be above \"Lower\" along every "
+      "axis.",
+      name);
+  return [=](const Point<dim>& x) {
+    const Point<dim> out = (lower - x).cwiseMax(x - upper);
+    return std::min(out.maxCoeff(), 0.0) + out.cwiseMax(0).norm();
+  };
+}
+
+template <int dim>
+SignedDistance<dim> ball(const ParameterList& list) {
+  const Point<dim> center = point_value<dim>(list, "Center");
+  const double radius = list.get<double>("Radius");
+  return [=](const Point<dim>& x) { return (x - center).norm() - radius; };
+}
+
+template <int dim>
+std::vector<TypedSchema> liquid_schemas() {
+  ParameterList level, box, ball;
+  declare(level, "Height", 0.0, "Of the surface, measured against gravity from the origin [m].");
+  declare_at_least(level, "Amplitude", 0.0, 0.0, "Of waves on it [m].");
+  declare_positive(level, "Wavelength", 1.0, "Of these waves [m].");
+  declare(level, "Crest", 0.0,
+          "Where along the first axis across gravity one of them has its "
+          "crest [m].");
+  declare_vector(box, "Lower", filled_array(dim, 0.0), dim, "Lower corner [m].");
+  declare_vector(box, "Upper", filled_array(dim, 1.0), dim, "Upper corner [m].");
+  declare_vector(ball, "Center", filled_array(dim, 0.0), dim, "Centre [m].");
+  declare_positive(ball, "Radius", 0.1, "Radius [m].");
+  return {{"level", "All below a height.", level},
+          {"box", "A box along the axes.", box},
+          {"ball", "A ball (2D: a disc).", ball}};
+}
+}  // namespace
+
+template <int dim>
+void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterList& fluid) {
+  ParameterList& list = declare_optional_list(
+      fluid, "Free Surface",
+      "The fluid is a liquid with a free surface, above which is void (p = 0). Absent: the fluid "
+      "fills the domain.");
+  const std::string usual = "particle level set";
+  declare_typed_sublist(list, "Interface", "How the surface is kept and moved.",
+                        interfaces.schemas(),
+                        interfaces.contains(usual) ? usual : interfaces.begin()->name);
+  declare_named_sublists(list, "Liquid",
+                         "Where the liquid is at the start: all of these together, "
+                         "outside of solids.",
+                         liquid_schemas<dim>());
+  declare_between(
+      list, "Smallest Distance", 0.01, 0.01, 1.0,
+      "Pressures are taken to be no nearer to the surface than this part of a cell [1].");
+  declare_between(list, "Pressure Order", 2, 1, 2,
+                  "2: p = 0 where the surface is. 1: at the centre of the first cell above it, to "
+                  "show what that costs: waves lower than half a cell do not exist then.");
+}
+
+FreeSurfaceParameters read_free_surface(const ParameterList& list) {
+  return {list.get<double>("Smallest Distance"), list.get<int>("Pressure Order")};
+}
+
+template <int dim>
+SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gravity) {
+  const ParameterList& liquids = list.sublist("Liquid");
+  std::vector<SignedDistance<dim>> parts;
+  for (auto it = liquids.begin(); it != liquids.end(); ++it) {
+    const std::string& name = liquids.name(it);
+    const ParameterList& liquid = liquids.sublist(name);
+    const auto type = liquid.get<std::string>("Type");
+    parts.push_back(type == "level" ? level<dim>(name, liquid, gravity)
+                    : type == "box" ? box<dim>(name, liquid)
+                                    : ball<dim>(liquid));
+  }
+  check_input(!parts.empty(),
+              "\"Free Surface\" has no liquid; say where it is in the list \"Liquid\".");
+  return [parts = std::move(parts)](const Point<dim>& x) {
+    double nearest = parts.front()(x);
+    for (const SignedDistance<dim>& part : parts)
+      nearest = std::min(nearest, part(x));
+    return nearest;
+  };
+}
+
+template <int dim>
+void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
+                        const std::array<bool, dim>& periodic) {
+  for (const char* scalar : {"Smoke", "Temperature"})
+    check_input(
+        !fluid.isSublist(scalar),
+        "\"{}\" and \"Free Surface\" are both given, but a liquid with a surface carries no "
+        "scalars yet; leave one of them out.",
+        scalar);
+  check_input(
+      fluid.get<int>("Order in Time") == 1,
+      "\"Order in Time\" 2 and \"Free Surface\" do not go together: pressures act at the new "
+      "surface, which moves with the old velocity, so that waves keep their height; an "
+      "advection velocity from the middle of the step would damp them. Leave the order at 1.");
+  for (int axis = 0; axis < dim; ++axis)
+    check_input(
+        !periodic[axis] || gravity[axis] == 0,
+        "With a \"Free Surface\", gravity may not act along the periodic axis {}: the liquid "
+        "would fall for ever.",
+        "xyz"[axis]);
+}
+
+template void declare_free_surface<2>(const InterfaceRegistry<2>&, ParameterList&);
+template void declare_free_surface<3>(const InterfaceRegistry<3>&, ParameterList&);
+template SignedDistance<2> read_liquid<2>(const ParameterList&, const Point<2>&);
+template SignedDistance<3> read_liquid<3>(const ParameterList&, const Point<3>&);
+template void check_free_surface<2>(const ParameterList&, const Point<2>&,
+                                    const std::array<bool, 2>&);
+template void check_free_surface<3>(const ParameterList&, const Point<3>&,
+                                    const std::array<bool, 3>&);
+
+}  // namespace lockstep

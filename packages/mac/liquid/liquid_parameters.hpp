@@ -1,0 +1,28 @@
+#pragma once
+#include "mac/liquid/interface_model.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// What a scene says of its free surface, beside its interface model.
+struct FreeSurfaceParameters {
+  double smallest_distance = 0.01;  ///< see FreeSurface
+  int pressure_order = 2;
+};
+
+/// Declares the list "Free Surface" of a fluid.
+template <int dim>
+void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterList& fluid);
+/// Validated list "Free Surface".
+FreeSurfaceParameters read_free_surface(const ParameterList& list);
+/// Of the liquids of a validated list "Free Surface", united. Throws InputError if there is none,
+/// or a level without gravity.
+template <int dim>
+SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gravity);
+/// Throws InputError if the fluid's list asks for what does not go together with a free surface.
+/// `periodic`: the axes of the domain that are.
+template <int dim>
+void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
+                        const std::array<bool, dim>& periodic);
+
+}  // namespace lockstep

@@ -1,0 +1,63 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "mac/state/mac_geometry.hpp"
+#include "mac/transport/nearby_surface.hpp"
+
+namespace lockstep {
+
+/// Carries velocities on into the void above a free surface, over the faces of a band, so that the
+/// surface and the fluid behind it can move up there. A face takes the mean of its neighbours along
+/// the axes that are nearer to the fluid than itself and that it sees; never through a surface, nor
+/// into a solid. Beside the fluid it goes on as the velocity there changes, in so far as that is
+/// steady over three faces (minmod): or else the surface of a wave of number k would lag by kh/4.
+/// What a solid or a closed side shuts moves as they do.
+///
+/// Since only nearer neighbours count, the values depend neither on an order nor on the ranks.
+template <int dim>
+class VelocityExtension {
+ public:
+  /// Finds the faces and marks them `extended` in `state`: those without fluid on either side and
+  /// with a void cell that has a distance below `band` [m] on one. `near` as in MacGeometry, the
+  /// surface at the same instant. References must outlive this object. Collective.
+  VelocityExtension(const MacDomain<dim>& domain, const CellField& distance, double band,
+                    const std::vector<char>& near, const NearbySurface<dim>& surface,
+                    MacState<dim>& state);
+
+  /// Sets the velocity of those faces, ghosts included. `on_surface`: of a surface point; `time`:
+  /// of the sides. Collective.
+  void extend(double time, const std::function<Point<dim>(const SurfacePoint<dim>&)>& on_surface,
+              FaceField<dim>& velocity) const;
+
+ private:
+  struct Source {
+    int face = -1;
+    /// The fluid's own next two in that direction, if both are known and no surface is near.
+    int second = -1, third = -1;
+  };
+  struct Face {
+    int cell = 0;
+    int n_sources = 0;  ///< 0: shut, or alone
+    std::array<Source, 2 * dim> sources{};
+  };
+  void find_faces(double band, MacState<dim>& state);
+  void find_sources(int axis, const MacState<dim>& state);
+  Source source(int axis, int face, int side, const MacState<dim>& state) const;
+  double distance_of_face(int axis, int cell, const MacState<dim>& state) const;
+  bool is_shut(int axis, int cell, const FaceCells& cells, const MacState<dim>& state) const;
+  /// Of a face beyond a source.
+  static double carried_on(const Source& source, const CellField& velocity);
+  /// Of a face that no fluid reaches.
+  double given(int axis, int cell, double time,
+               const std::function<Point<dim>(const SurfacePoint<dim>&)>& on_surface) const;
+
+  const MacDomain<dim>& domain_;
+  const CellField& distance_;
+  const std::vector<char>& near_;
+  const NearbySurface<dim>& surface_;
+  std::array<std::vector<Face>, dim> faces_;  ///< owned, each behind its sources on this rank
+  std::array<std::vector<char>, dim> known_;  ///< of stored faces: the fluid's own
+};
+
+}  // namespace lockstep

@@ -1,0 +1,210 @@
+#include "mac/liquid/wet_bodies.hpp"
+
+#include "geometry/solid_volume.hpp"
+
+namespace lockstep {
+
+namespace {
+/// The part of the way between two cells that is wet, phi being linear there.
+double wet_fraction(double lower, double upper) {
+  if ((lower < 0) == (upper < 0))
+    return lower < 0 ? 1 : 0;
+  return (lower < 0 ? lower : upper) / (lower < 0 ? lower - upper : upper - lower);
+}
+
+template <int dim>
+class WetBodyFinder {
+ public:
+  WetBodyFinder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                const CellField& distance, const LiquidFluid<dim>& liquid)
+      : grid_(domain.grid),
+        domain_(domain),
+        geometry_(geometry),
+        distance_(distance),
+        liquid_(liquid),
+        surface_(*geometry.state.surface),
+        bodies_(surface_.solids().size()) {}
+
+  std::vector<WetBody<dim>> find() {
+    find_partly_wet();
+    if (std::any_of(bodies_.begin(), bodies_.end(), [](const auto& b) { return b.partly; })) {
+      add_volumes();
+      for (int axis = 0; axis < dim; ++axis)
+        grid_.for_each_owned_face(axis, [&](int cell) { add_face(axis, cell); });
+      sum();
+    }
+    return std::move(bodies_);
+  }
+
+ private:
+  bool is_solid(int cell) const {
+    return cell >= 0 && geometry_.state.cells[cell] == CellState::solid;
+  }
+  /// The solid that holds the centre of a solid cell.
+  int owner(int cell) const {
+    const Point<dim> x = grid_.center(cell);
+    surface_.solids_touching(Box<dim>(x, x), candidates_);
+    int closed = -1, n = 0;
+    for (const int s : candidates_)
+      if (surface_.solids()[s].closed) {
+        closed = s;
+        ++n;
+      }
+    return n == 1 ? closed : surface_.inside(x);
+  }
+  /// Calls f(cell) for the owned cells of the domain that a box touches.
+  template <typename Function>
+  void for_each_cell_in(const Box<dim>& box, const Function& f) const {
+    for (int tile = 0; tile < grid_.n_owned_tiles(); ++tile) {
+      Index<dim> begin, end, cell;
+      bool any = true;
+      for (int a = 0; a < dim; ++a) {
+        const auto place = [&](double x) {
+          return static_cast<int>(
+              std::floor(std::min(std::max((x - grid_.lower()[a]) / grid_.spacing(), -1.0), 1e9)));
+        };
+        begin[a] = std::max(place(box.min()[a]), grid_.tile_begin(tile)[a]);
+        end[a] = std::min(place(box.max()[a]) + 1,
+                          grid_.tile_begin(tile)[a] + grid_.tile_domain_extent(tile)[a]);
+        any = any && begin[a] < end[a];
+      }
+      cell = begin;
+      while (any) {
+        f(grid_.cell(cell));
+        int a = 0;
+        while (a < dim && ++cell[a] == end[a])
+          cell[a] = begin[a], ++a;
+        any = a < dim;
+      }
+    }
+  }
+  Box<dim> near_solid(int solid) const {
+    const Point<dim> margin = Point<dim>::Constant(grid_.spacing());
+    const Box<dim> box = surface_.bounds_of_solid(solid);
+    return Box<dim>(box.min() - margin, box.max() + margin);
+  }
+
+  /// Those with a cell in or beside them that the free surface comes near.
+  void find_partly_wet() {
+    std::vector<double> partly(bodies_.size(), 0);
+    const double near = grid_.spacing() * std::sqrt(double(dim));
+    for (std::size_t s = 0; s < bodies_.size(); ++s)
+      if (surface_.solids()[s].closed)
+        for_each_cell_in(near_solid(static_cast<int>(s)), [&](int cell) {
+          if (distance_[cell] > -near)
+            partly[s] = 1;
+        });
+    sum_all(grid_.comm(), partly.data(), static_cast<int>(partly.size()));
+    for (std::size_t s = 0; s < bodies_.size(); ++s)
+      bodies_[s].partly = partly[s] > 0;
+  }
+
+  void add_volumes() {
+    const Point<dim> half = Point<dim>::Constant(0.5 * grid_.spacing());
+    for (std::size_t s = 0; s < bodies_.size(); ++s) {
+      WetBody<dim>& body = bodies_[s];
+      if (!body.partly)
+        continue;
+      for_each_cell_in(near_solid(static_cast<int>(s)), [&](int cell) {
+        const bool near_surface = geometry_.near_surface(cell);
+        if (!near_surface && !is_solid(cell))
+          return;
+        const Point<dim> x = grid_.center(cell);
+        const Box<dim> wet = wet_part<dim>(liquid_, Box<dim>(x - half, x + half));
+        if (wet.isEmpty())
+          return;
+        double volume = 0;
+        if (near_surface)
+          volume = solid_volume_in_box<dim>(surface_, wet, static_cast<int>(s));
+        else if (owner(cell) == static_cast<int>(s))
+          volume = wet.volume();
+        body.volume += volume;
+        body.centroid += volume * wet.center();
+      });
+    }
+  }
+
+  /// A dual cell that a solid blocks or fills.
+  void add_face(int axis, int cell) {
+    const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, axis, cell);
+    const bool lower = is_solid(cells.lower), upper = is_solid(cells.upper);
+    if (!lower && !upper)
+      return;
+    std::array<int, 2> owners{lower ? owner(cells.lower) : -1, upper ? owner(cells.upper) : -1};
+    const int n = lower && upper && owners[0] != owners[1] ? 2 : 1;
+    if (n == 1)
+      owners[0] = std::max(owners[0], owners[1]);
+    for (int k = 0; k < n; ++k) {
+      if (owners[k] < 0 || !bodies_[owners[k]].partly)
+        continue;
+      WetBody<dim>& body = bodies_[owners[k]];
+      if (cells.at_side()) {
+        body.at_side[axis] |= distance_[std::max(cells.lower, cells.upper)] < 0;
+        continue;
+      }
+      const double volume =
+          domain_.cell_volume() / n * wet_fraction(distance_[cells.lower], distance_[cells.upper]);
+      body.displaced[axis] += volume;
+      body.moment[axis] += volume * grid_.face_center(axis, cell);
+    }
+    if (!grid_.description().store_upper_face[axis] && upper && owners[n - 1] >= 0 &&
+        grid_.neighbor(cell, axis, 1) < 0)
+      bodies_[owners[n - 1]].at_side[axis] |= distance_[cell] < 0;
+  }
+
+  void sum() {
+    std::vector<double> flat;
+    const auto each = [&](const auto& f) {
+      for (WetBody<dim>& body : bodies_) {
+        f(body.volume);
+        for (int a = 0; a < dim; ++a)
+          f(body.centroid[a]);
+        for (int axis = 0; axis < dim; ++axis) {
+          f(body.displaced[axis]);
+          for (int a = 0; a < dim; ++a)
+            f(body.moment[axis][a]);
+        }
+      }
+    };
+    each([&](double value) { flat.push_back(value); });
+    for (const WetBody<dim>& body : bodies_)
+      for (const bool at_side : body.at_side)
+        flat.push_back(at_side);
+    sum_all(grid_.comm(), flat.data(), static_cast<int>(flat.size()));
+    const double* value = flat.data();
+    each([&](double& mine) { mine = *value++; });
+    for (WetBody<dim>& body : bodies_) {
+      for (bool& at_side : body.at_side)
+        at_side = *value++ > 0;
+      if (body.volume > 0)
+        body.centroid /= body.volume;
+    }
+  }
+
+  const TiledGrid<dim>& grid_;
+  const MacDomain<dim>& domain_;
+  const MacGeometry<dim>& geometry_;
+  const CellField& distance_;
+  const LiquidFluid<dim>& liquid_;
+  const SurfaceSnapshot<dim>& surface_;
+  std::vector<WetBody<dim>> bodies_;
+  mutable std::vector<int> candidates_;
+};
+}  // namespace
+
+template <int dim>
+std::vector<WetBody<dim>> find_wet_bodies(const MacDomain<dim>& domain,
+                                          const MacGeometry<dim>& geometry,
+                                          const CellField& distance,
+                                          const LiquidFluid<dim>& liquid) {
+  if (!geometry.state.surface)
+    return {};
+  return WetBodyFinder<dim>(domain, geometry, distance, liquid).find();
+}
+
+template std::vector<WetBody<2>> find_wet_bodies<2>(const MacDomain<2>&, const MacGeometry<2>&,
+                                                    const CellField&, const LiquidFluid<2>&);
+template std::vector<WetBody<3>> find_wet_bodies<3>(const MacDomain<3>&, const MacGeometry<3>&,
+                                                    const CellField&, const LiquidFluid<3>&);
+
+}  // namespace lockstep

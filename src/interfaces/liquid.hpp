@@ -1,0 +1,82 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/types.hpp"
+#include "geometry/surface_snapshot.hpp"
+
+namespace lockstep {
+
+/// How much liquid there is, and what became of it. Global.
+struct LiquidReport {
+  double volume = 0;  ///< [m^dim]
+  double target = 0;  ///< what it should be: of the start, with all that flowed in and out [m^dim]
+  double shift = 0;   ///< volume that corrections have moved so far [m^dim]
+  double lost = 0;    ///< that vanished with drops too small to see [m^dim]
+  long long n_bodies = 0;  ///< connected bodies of liquid
+};
+
+/// What of a closed solid lies in a liquid, and what the grid takes that for. Global.
+template <int dim>
+struct WetBody {
+  /// The free surface crosses it, or it is above. False: it is all in the liquid, and the rest is
+  /// not set.
+  bool partly = false;
+  double volume = 0;                         ///< below the free surface [m^dim]
+  Point<dim> centroid = Point<dim>::Zero();  ///< of that; zero without volume
+  /// By axis: the wet parts of the dual cells that the solid blocks or fills, which the pressure
+  /// lifts along that axis, and their first moment [m^dim, m^(dim+1)].
+  std::array<double, dim> displaced{};
+  std::array<Point<dim>, dim> moment{};
+  /// By axis: a wet column of it ends at a side of the domain, where the pressure does not reach.
+  std::array<bool, dim> at_side{};
+};
+
+/// Side interface of fluids: a liquid with a free surface, above which nothing pushes.
+template <int dim>
+class LiquidFluid {
+ public:
+  virtual ~LiquidFluid() = default;
+  virtual bool has_surface() const = 0;  ///< false: the fluid fills the domain. Local.
+  /// From x to the free surface, negative in the liquid [m]; linear between the centres of cells,
+  /// carried on into solids, cut off a few cells away. Near cells that this rank owns. Local.
+  virtual double surface_distance(const Point<dim>& x) const = 0;
+  /// By solid of the frozen surface; those that are not closed have nothing. Collective.
+  virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
+  virtual LiquidReport liquid() const = 0;
+};
+
+/// Null unless it is a liquid that has a free surface. Local.
+template <int dim, typename Fluid>
+const LiquidFluid<dim>* liquid_of(const Fluid& fluid) {
+  const auto* liquid = dynamic_cast<const LiquidFluid<dim>*>(&fluid);
+  return liquid && liquid->has_surface() ? liquid : nullptr;
+}
+
+/// The part of a box of the size of a cell that is in the liquid, as a box: the free surface there
+/// is taken to be across the axis that it is most nearly normal to, which keeps the volume. May be
+/// empty. Local.
+template <int dim>
+Box<dim> wet_part(const LiquidFluid<dim>& liquid, Box<dim> box) {
+  const Point<dim> center = box.center(), size = box.sizes();
+  const double distance = liquid.surface_distance(center);
+  if (std::abs(distance) > size.norm())
+    return distance < 0 ? box : Box<dim>();
+  Point<dim> slope;
+  for (int a = 0; a < dim; ++a) {
+    const Point<dim> half = 0.5 * size[a] * Point<dim>::Unit(a);
+    slope[a] =
+        (liquid.surface_distance(center + half) - liquid.surface_distance(center - half)) / size[a];
+  }
+  int axis = 0;
+  if (slope.cwiseAbs().maxCoeff(&axis) == 0)
+    return distance < 0 ? box : Box<dim>();
+  const double place = center[axis] - distance / slope[axis];
+  double& end = slope[axis] > 0 ? box.max()[axis] : box.min()[axis];
+  end = std::min(std::max(place, box.min()[axis]), box.max()[axis]);
+  return box;
+}
+
+}  // namespace lockstep

@@ -1,0 +1,266 @@
+#include <gtest/gtest.h>
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "liquid_cases.hpp"
+#include "mac/liquid/velocity_extension.hpp"
+
+namespace lockstep::test {
+namespace {
+
+template <int dim>
+ParameterArray<double> components(const Point<dim>& x) {
+  return ParameterArray<double>(x.data(), x.data() + dim);
+}
+
+/// The pressure that takes the divergence from u*, which it changes.
+template <int dim>
+RCP<Vector> solve_and_project(MacFluid<dim>& fluid) {
+  const auto rhs = make_vector(fluid.pressure_map()), pressure = make_vector(fluid.pressure_map());
+  fluid.divergence(*rhs);
+  const auto multiply = [&](const Vector& x, Vector& y) { apply(*fluid.pressure_block(), x, y); };
+  conjugate_gradients(multiply, *rhs, *pressure, 1e-14);
+  fluid.project(*pressure);
+  return pressure;
+}
+
+template <int dim>
+double fastest_free_face(const MacFluid<dim>& fluid) {
+  double fastest = 0;
+  for (int axis = 0; axis < dim; ++axis)
+    fluid.domain().grid.for_each_owned_face(axis, [&](int cell) {
+      if (fluid.geometry().state.faces[axis][cell] == FaceState::free)
+        fastest = std::max(fastest, std::abs(fluid.prediction()[axis][cell]));
+    });
+  return max_all(fluid.domain().grid.comm(), fastest);
+}
+
+/// Between the centres of cells: what lies below must not move, and know its depth.
+template <int dim>
+void expect_rest(const Point<dim>& gravity, double height, double fastest) {
+  constexpr int n = 20;
+  Case<dim> scene(cube<dim>(n), 1.0 / n);
+  scene.fluid.set("Density", 3.0).set("Gravity", components<dim>(gravity));
+  add_level<dim>(scene, height);
+  const auto fluid = make_liquid<dim>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<dim>());
+  EXPECT_EQ(fluid->regions().n_regions, 1);
+  EXPECT_TRUE(fluid->regions().has_dirichlet[0]);
+  const double dt = 0.1;
+  fluid->begin_prediction();
+  fluid->add_forces(0, dt);
+  EXPECT_GT(fastest_free_face<dim>(*fluid), 0.5);
+  const RCP<Vector> pressure = solve_and_project<dim>(*fluid);
+  EXPECT_LT(fastest_free_face<dim>(*fluid), fastest);
+  const Point<dim> up = -gravity.normalized();
+  const auto expected = pressure_vector<dim>(
+      *fluid, [&](const Point<dim>& x) { return dt * 3 * gravity.norm() * (height - x.dot(up)); });
+  const double of_a_cell = dt * 3 * gravity.norm() / n;
+  pressure->update(-1, *expected, 1);
+  // Weights are rounded to 2^-13, and depths below a hundredth of a cell count as that.
+  EXPECT_LT(pressure->normInf(), 0.011 * of_a_cell);
+  EXPECT_LT(pressure->norm1() / static_cast<double>(pressure->getGlobalLength()), 2e-4 * of_a_cell);
+}
+TEST(FreeSurface, WaterRestsWithAPressureOfItsDepth) {
+  expect_rest<2>({0, -9.81}, 0.5 + 0.37 / 20, 1e-12);
+  expect_rest<3>({0, 0, -9.81}, 0.5 + 0.37 / 20, 1e-12);
+}
+/// Cells with several faces to the void have one pressure, and weights that are rounded to 2^-13.
+TEST(FreeSurface, TiltedWaterRestsToo) {
+  const double gravity_in_a_step = 0.1 * 10;
+  expect_rest<2>({3, -9}, 0.31, gravity_in_a_step / 8192);
+  expect_rest<3>({2, -3, -9}, 0.37, gravity_in_a_step / 8192);
+}
+
+TEST(FreeSurface, FacesOfAColumnByHand) {
+  Case<2> scene({4, 8}, 0.5);
+  scene.fluid.set("Density", 2.0).set("Gravity", numbers({0.0, -10.0}));
+  add_level<2>(scene, 1.95);  // cell 3 has its centre at 1.75, cell 4 at 2.25
+  const auto fluid = make_liquid<2>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  const auto& grid = fluid->domain().grid;
+  const auto& geometry = fluid->geometry();
+  const int wet = grid.cell({1, 3}), dry = grid.cell({1, 4});
+  EXPECT_EQ(fluid->fluid_volume(), 16 * 0.25);
+  if (dry < 0 || !grid.owned(dry))
+    return;
+  EXPECT_EQ(geometry.state.cells[wet], CellState::fluid);
+  EXPECT_EQ(geometry.state.cells[dry], CellState::empty);
+  EXPECT_EQ(geometry.state.faces[1][dry], FaceState::free);
+  EXPECT_EQ(geometry.state.faces[0][dry], FaceState::inactive);
+  // theta = 0.4: two and a half times as near, and so much less mass.
+  EXPECT_NEAR(geometry.face_table(1, dry).closeness, 2.5, 1e-4);
+  EXPECT_NEAR(geometry.mass(1, dry), 2 * 0.25 / 2.5, 1e-4);
+  EXPECT_NEAR(geometry.face_table(1, dry).gradient, 2.5 / (2 * 0.5), 1e-4);
+}
+
+/// What the free faces gain is what the walls give: p = 0 at the surface gives nothing.
+template <int dim>
+void expect_impulses_telescope() {
+  Case<dim> scene(cube<dim>(20), 0.05);
+  scene.fluid.set("Density", 3.0);
+  add_ball<dim>(scene, Point<dim>::Constant(0.3), 0.38);
+  const auto fluid = make_liquid<dim>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<dim>());
+  const auto pressure = pressure_vector<dim>(*fluid, wavy<dim>);
+  fluid->begin_prediction();
+  const Momentum<dim> before = fluid->momentum();
+  fluid->project(*pressure);
+  Momentum<dim> gained = fluid->momentum() - before;
+  const Momentum<dim> given = fluid->boundary_pressure_impulse(*pressure);
+  EXPECT_LT((gained.linear - given.linear).norm(), 1e-13) << given.linear.transpose();
+  EXPECT_LT((gained.angular - given.angular).norm(), 1e-13) << given.angular.transpose();
+  EXPECT_GT(given.linear.norm(), 0.01);
+}
+TEST(FreeSurface, ImpulsesTelescope) {
+  expect_impulses_telescope<2>();
+  expect_impulses_telescope<3>();
+}
+
+template <int dim>
+void expect_symmetric_positive() {
+  Case<dim> scene(cube<dim>(20), 0.05);
+  add_ball<dim>(scene, Point<dim>::Constant(0.43), 0.31);
+  const auto fluid = make_liquid<dim>(scene);
+  Solids<dim> solids;
+  solids.add(ball_surface<dim>(0.171, 0.05), Point<dim>::Constant(0.62), true);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
+  const auto x = pressure_vector<dim>(*fluid, wavy<dim>);
+  const auto y = pressure_vector<dim>(
+      *fluid, [](const Point<dim>& p) { return wavy<dim>(Point<dim>(3 * p)) - 0.2; });
+  Vector ax(x->getMap()), ay(x->getMap()), with_matrix(x->getMap());
+  apply(*fluid->pressure_block(), *x, ax);
+  apply(*fluid->pressure_block(), *y, ay);
+  EXPECT_NEAR(y->dot(ax), x->dot(ay), 1e-12 * std::abs(x->dot(ax)));
+  EXPECT_GT(x->dot(ax), 0);
+  assembled(fluid->pressure_block())->apply(*x, with_matrix);
+  with_matrix.update(-1, ax, 1);
+  EXPECT_LT(with_matrix.normInf(), 1e-13 * ax.normInf());
+}
+TEST(FreeSurface, PressureBlockIsSymmetricPositive) {
+  expect_symmetric_positive<2>();
+  expect_symmetric_positive<3>();
+}
+
+/// Extends what is `velocity` in the liquid and 1e3 elsewhere; the state it was done in.
+template <int dim>
+struct Extended {
+  FaceField<dim> velocity;
+  MacState<dim> state;
+};
+template <int dim>
+Extended<dim> extended(const MacFluid<dim>& fluid, const CellField& distance, double band,
+                       const std::function<Point<dim>(const Point<dim>&)>& inside) {
+  const MacDomain<dim>& domain = fluid.domain();
+  Extended<dim> result{{}, fluid.geometry().state};
+  for (int axis = 0; axis < dim; ++axis) {
+    result.velocity[axis].assign(domain.grid.n_stored_cells(), 1e3);
+    domain.grid.for_each_owned_face(axis, [&](int cell) {
+      if (is_wet(result.state.faces[axis][cell]))
+        result.velocity[axis][cell] = inside(domain.grid.face_center(axis, cell))[axis];
+    });
+  }
+  domain.halo.fill(result.velocity);
+  KeptSurface<dim> kept;
+  const auto nearby = kept.of(result.state.surface, domain.grid, 2);
+  const VelocityExtension<dim> extension(domain, distance, band, fluid.geometry().near, *nearby,
+                                         result.state);
+  extension.extend(
+      0, [](const SurfacePoint<dim>&) { return Point<dim>(Point<dim>::Constant(7)); },
+      result.velocity);
+  return result;
+}
+
+template <int dim>
+void expect_constants_go_on() {
+  const double h = 0.05;
+  Case<dim> scene(cube<dim>(20), h);
+  add_ball<dim>(scene, Point<dim>::Constant(0.48), 0.2);
+  const auto fluid = make_liquid<dim>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<dim>());
+  CellField distance(fluid->domain().grid.n_stored_cells());
+  fluid->domain().grid.for_each_stored_cell([&](int cell) {
+    distance[cell] = (fluid->domain().grid.center(cell) - Point<dim>::Constant(0.48)).norm() - 0.2;
+  });
+  const Point<dim> constant = Point<dim>::Constant(-2.5);
+  const auto result = extended<dim>(*fluid, distance, 4 * h, [&](const auto&) { return constant; });
+  GlobalIndex n = 0;
+  for (int axis = 0; axis < dim; ++axis)
+    fluid->domain().grid.for_each_owned_face(axis, [&](int cell) {
+      if (result.state.faces[axis][cell] != FaceState::extended)
+        return;
+      ++n;
+      EXPECT_EQ(result.velocity[axis][cell], -2.5);
+    });
+  EXPECT_GT(sum_all(world(), n), dim == 2 ? 200 : 2000);
+}
+TEST(FreeSurface, ConstantVelocitiesAreCarriedOnExactly) {
+  expect_constants_go_on<2>();
+  expect_constants_go_on<3>();
+}
+
+/// A thin shell between liquid and void: beyond it nothing is known of the liquid.
+TEST(FreeSurface, VelocitiesAreNotCarriedThroughAShell) {
+  const double h = 0.05;
+  Case<2> scene({20, 20}, h);
+  scene.fluid.set("Gravity", numbers({0.0, -1.0}));
+  add_level<2>(scene, 0.512);
+  const auto fluid = make_liquid<2>(scene);
+  Solids<2> solids;
+  solids.add(plate_surface<2>({1.2, 0}, 1, h), Point<2>(0.5, 0.522), false);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  const auto& grid = fluid->domain().grid;
+  CellField distance(grid.n_stored_cells());
+  grid.for_each_stored_cell([&](int cell) { distance[cell] = grid.center(cell)[1] - 0.512; });
+  const auto result =
+      extended<2>(*fluid, distance, 4 * h, [](const Point<2>&) { return Point<2>(1, 1); });
+  // Faces along the plate beyond it see no fluid; the shut ones move with it.
+  for (const ControlVolume<2>& volume : fluid->coupled_volumes()) {
+    EXPECT_EQ(volume.sides[0].kind, SideKind::unknown);
+    EXPECT_EQ(volume.sides[1].kind, SideKind::empty);
+  }
+  EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(fluid->coupled_volumes().size())), 20);
+  grid.for_each_owned_face(0, [&](int cell) {
+    if (result.state.faces[0][cell] == FaceState::extended) {
+      EXPECT_NE(result.velocity[0][cell], 1);
+    }
+  });
+}
+
+TEST(FreeSurface, BadListsSayWhatIsWrong) {
+  const auto message = [](const std::function<void(Case<2>&)>& spoil) {
+    Case<2> scene({8, 8}, 0.1);
+    scene.fluid.set("Gravity", numbers({0.0, -1.0}));
+    spoil(scene);
+    try {
+      make_liquid<2>(scene)->set_geometry(nullptr, BlockedFaces<2>());
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message([](Case<2>& scene) { add_level<2>(scene, 0.4); }), "");
+  EXPECT_NE(
+      message([](Case<2>& scene) { scene.fluid.sublist("Free Surface"); }).find("has no liquid"),
+      std::string::npos);
+  EXPECT_NE(message([](Case<2>& scene) {
+              add_level<2>(scene, 0.4);
+              scene.fluid.set("Gravity", numbers({0.0, 0.0}));
+            }).find("where up"),
+            std::string::npos);
+  EXPECT_NE(message([](Case<2>& scene) {
+              add_level<2>(scene, 0.4);
+              scene.fluid.sublist("Smoke");
+            }).find("carries no scalars"),
+            std::string::npos);
+  EXPECT_NE(message([](Case<2>& scene) {
+              add_level<2>(scene, 0.4);
+              scene.all_periodic();
+            }).find("periodic axis y"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace lockstep::test
