@@ -5,6 +5,10 @@
 
 #include "freesurface/band_tiles.hpp"
 #include "freesurface/continuation.hpp"
+#include "freesurface/particle_correction.hpp"
+#include "freesurface/particle_motion.hpp"
+#include "freesurface/particle_seeding.hpp"
+#include "freesurface/particle_storage.hpp"
 #include "freesurface/voids.hpp"
 #include "mac/state/stored_fields.hpp"
 #include "mac/transport/revalidation.hpp"
@@ -33,11 +37,20 @@ ParameterList level_set_parameters() {
   return list;
 }
 
+template <int dim>
+ParameterList particle_level_set_parameters() {
+  ParameterList list = level_set_parameters<dim>();
+  declare_particles(list);
+  return list;
+}
+
 LevelSetParameters read_level_set_parameters(const ParameterList& list) {
   LevelSetParameters parameters;
   parameters.band = list.get<int>("Band");
   parameters.smallest_void = list.get<int>("Smallest Void");
   parameters.volume = read_volume_correction(list);
+  if (list.isParameter("Particles per Cell"))
+    parameters.particles = read_particles(list);
   return parameters;
 }
 
@@ -48,7 +61,9 @@ LevelSet<dim>::LevelSet(const MacDomain<dim>& domain, const LevelSetParameters& 
       phi_(domain.grid.n_stored_cells(), parameters.band * domain.spacing()),
       solids_(find_solid_cells<dim>(domain, nullptr)),
       redistancer_(domain),
-      volume_(domain, parameters.volume) {}
+      volume_(domain, parameters.volume),
+      particles_(domain.grid.n_owned_tiles()),
+      in_band_(domain.grid.n_owned_cells(), 0) {}
 
 template <int dim>
 int LevelSet<dim>::band(double largest_displacement) const {
@@ -76,6 +91,10 @@ void LevelSet<dim>::initialise(const SignedDistance<dim>& distance, const Surfac
   moved_ = 0;
   finish();
   volume_.begin(solids_, phi_);
+  particles_.assign(grid.n_owned_tiles(), {});
+  n_restored_ = 0;
+  KeptSurface<dim> kept;
+  seed(kept, true);
 }
 
 template <int dim>
@@ -91,20 +110,63 @@ double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
   CellField carried = phi_;
   transport.advect_scalar(AdvectionScheme::semi_lagrangian, phi_, {}, carried, &tiles);
   phi_.swap(carried);
+  if (parameters_.particles)
+    n_lost_ += move_particles(domain_, transport.frame(), step.ray_halo, particles_);
   const bool had_solids = solids_.state.surface != nullptr;
   find_solids(step.surface.after);
   if (had_solids || solids_.state.surface)
     revalidate_scalar(grid, domain_.halo, solids_.state, step.surface, step.kept,
                       transport.invalid(), grid.spacing(), phi_);
   domain_.halo.fill(phi_);
-  if (moved_ >= negligible_motion) {
-    redistancer_.apply(solids_, tiles, cut_off(), phi_);
-    moved_ = 0;
-  }
-  close_voids(domain_, solids_, parameters_.smallest_void, phi_);
+  if (moved_ >= negligible_motion)
+    restore(step, tiles);
   volume_.inherit(solids_, phi_, transport.invalid().cells,
                   static_cast<int>(std::ceil(displacement)) + 1);
   return displacement;
+}
+
+template <int dim>
+void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<char>& tiles) {
+  const auto correct = [&] {
+    if (parameters_.particles)
+      correct_by_particles(domain_, solids_, step.kept, particles_, phi_);
+  };
+  correct();
+  redistancer_.apply(solids_, tiles, cut_off(), phi_);
+  correct();
+  fill_voids();
+  moved_ = 0;
+  ++n_restored_;
+  if (!parameters_.particles)
+    return;
+  set_radii(domain_, solids_, step.kept, phi_, particles_);
+  seed(step.kept, n_restored_ % parameters_.particles->interval == 0);
+}
+
+template <int dim>
+void LevelSet<dim>::fill_voids() {
+  const std::vector<int> filled = close_voids(domain_, solids_, parameters_.smallest_void, phi_);
+  if (!parameters_.particles)
+    return;
+  std::vector<char> cells(domain_.grid.n_stored_cells(), 0);
+  for (const int cell : filled) {
+    cells[cell] = 1;
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int other = domain_.grid.neighbor(cell, i / 2, i % 2);
+      if (other >= 0 && phi_[other] < 0)
+        cells[other] = 1;
+    }
+  }
+  remove_particles(1, cells, particles_);
+}
+
+template <int dim>
+void LevelSet<dim>::seed(KeptSurface<dim>& kept, bool all) {
+  if (!parameters_.particles)
+    return;
+  domain_.full_halo.fill(phi_);
+  seed_particles(domain_, solids_, kept, phi_, *parameters_.particles,
+                 all ? Seeding::all_cells : Seeding::new_cells, n_restored_, in_band_, particles_);
 }
 
 template <int dim>
@@ -114,12 +176,20 @@ void LevelSet<dim>::add_sources(const InterfaceStep<dim>& step) {
         [&](int cell) { phi_[cell] = shape_of(phi_[cell], domain_.grid.center(cell)); });
     domain_.halo.fill(phi_);
   };
+  const auto take_out = [&](int side, const SignedDistance<dim>& shape) {
+    std::vector<char> inside(domain_.grid.n_owned_cells(), 0);
+    if (parameters_.particles)
+      domain_.grid.for_each_owned_cell(
+          [&](int cell) { inside[cell] = shape(domain_.grid.center(cell)) < 0; });
+    remove_particles(side, inside, particles_);
+  };
   const double most = cut_off();
   for (const SignedDistance<dim>& sink : step.sinks) {
     change([&](double phi, const Point<dim>& x) {
       return std::max(phi, std::clamp(-sink(x), -most, most));
     });
     volume_.remove(solids_, phi_);
+    take_out(-1, sink);
   }
   for (const SignedDistance<dim>& source : step.sources) {
     const CellField before = phi_;
@@ -127,6 +197,7 @@ void LevelSet<dim>::add_sources(const InterfaceStep<dim>& step) {
       return std::min(phi, std::clamp(source(x), -most, most));
     });
     volume_.create(solids_, before, phi_);
+    take_out(1, source);
   }
 }
 
@@ -155,9 +226,12 @@ void LevelSet<dim>::save(CheckpointWriter& checkpoint) const {
   CellField phi = phi_;
   save_fields(domain_, {{"interface_distance", {&phi}}}, checkpoint);
   const VolumeTargets& targets = volume_.targets();
-  std::vector<double> numbers = {moved_, targets.loose, targets.lost, targets.shift};
+  std::vector<double> numbers = {moved_, static_cast<double>(n_restored_), targets.loose,
+                                 targets.lost, targets.shift};
   numbers.insert(numbers.end(), targets.of_group.begin(), targets.of_group.end());
   checkpoint.file().write_replicated("fluid/liquid_ledger", numbers);
+  if (parameters_.particles)
+    save_particles(domain_, particles_, in_band_, checkpoint);
 }
 
 template <int dim>
@@ -166,22 +240,31 @@ void LevelSet<dim>::load(const CheckpointReader& checkpoint) {
   domain_.full_halo.fill(phi_);
   const auto numbers = checkpoint.file().read_all<double>("fluid/liquid_ledger");
   moved_ = numbers[0];
-  loaded_ = VolumeTargets{{numbers.begin() + 4, numbers.end()}, numbers[1], numbers[2], numbers[3]};
+  n_restored_ = static_cast<long long>(numbers[1]);
+  loaded_ = VolumeTargets{{numbers.begin() + 5, numbers.end()}, numbers[2], numbers[3], numbers[4]};
+  if (parameters_.particles)
+    load_particles(domain_, checkpoint, particles_, in_band_);
 }
 
 template <int dim>
 std::function<void()> LevelSet<dim>::undo() {
   return [this, phi = phi_, moved = moved_, surface = solids_.state.surface,
-          targets = volume_.targets()] {
+          targets = volume_.targets(), particles = particles_, in_band = in_band_,
+          n_restored = n_restored_] {
     phi_ = phi;
     moved_ = moved;
     find_solids(surface);
     volume_.restore(solids_, phi_, targets);
+    particles_ = particles;
+    in_band_ = in_band;
+    n_restored_ = n_restored;
   };
 }
 
 template ParameterList level_set_parameters<2>();
 template ParameterList level_set_parameters<3>();
+template ParameterList particle_level_set_parameters<2>();
+template ParameterList particle_level_set_parameters<3>();
 template class LevelSet<2>;
 template class LevelSet<3>;
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "freesurface/particles.hpp"
 #include "freesurface/redistance.hpp"
 #include "freesurface/solid_cells.hpp"
 #include "freesurface/volume_ledger.hpp"
@@ -14,14 +15,19 @@ struct LevelSetParameters {
   int band = 6;           ///< cells around the surface in which phi is known
   int smallest_void = 0;  ///< cells of the largest void that is closed
   VolumeParameters volume;
+  std::optional<ParticleParameters> particles;  ///< none: phi alone
 };
 
-/// Schema of the interface "level set".
+/// Schema of the interfaces "level set" and "particle level set".
 template <int dim>
 ParameterList level_set_parameters();
+template <int dim>
+ParameterList particle_level_set_parameters();
+/// Of either.
 LevelSetParameters read_level_set_parameters(const ParameterList& list);
 
-/// phi as a signed distance at cell centres, carried along rays and made a distance again.
+/// phi as a signed distance at cell centres, carried along rays and made a distance again; where
+/// there are particles, corrected by them (Enright et al. 2002).
 template <int dim>
 class LevelSet : public InterfaceModel<dim> {
  public:
@@ -29,7 +35,9 @@ class LevelSet : public InterfaceModel<dim> {
 
   LevelSet(const MacDomain<dim>& domain, const LevelSetParameters& parameters);
 
-  std::string name() const override { return "level set"; }
+  std::string name() const override {
+    return parameters_.particles ? "particle level set" : "level set";
+  }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
   std::function<void()> undo() override;
@@ -40,11 +48,20 @@ class LevelSet : public InterfaceModel<dim> {
   int band(double largest_displacement) const override;
   LiquidLedger ledger() const override { return volume_.state(); }
 
+  const ParticleTiles<dim>& particles() const { return particles_; }
+  /// Particles that surfaces have cost so far, on this rank.
+  GlobalIndex n_particles_lost() const { return n_lost_; }
+
  private:
   double cut_off() const { return parameters_.band * domain_.spacing(); }
   void find_solids(const Surface& surface);
   /// Returns how far the fastest fluid goes [cells].
   double carry(const InterfaceStep<dim>& step);
+  /// Makes phi a distance again, as the particles know it. Sets the halo of width 1.
+  void restore(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
+  /// Fills small voids and takes their particles out of them.
+  void fill_voids();
+  void seed(KeptSurface<dim>& kept, bool all);
   void add_sources(const InterfaceStep<dim>& step);
   void finish();
 
@@ -55,6 +72,10 @@ class LevelSet : public InterfaceModel<dim> {
   Redistancer<dim> redistancer_;
   double moved_ = 0;  ///< since phi was made a distance, at most [cells]
   VolumeLedger<dim> volume_;
+  ParticleTiles<dim> particles_;
+  std::vector<char> in_band_;  ///< owned cells that have been given particles
+  long long n_restored_ = 0;   ///< how often phi has been made a distance
+  GlobalIndex n_lost_ = 0;
   std::optional<VolumeTargets> loaded_;  ///< of a checkpoint, until the solids are known
 };
 

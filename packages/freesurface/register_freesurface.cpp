@@ -6,11 +6,15 @@ namespace lockstep {
 
 template <int dim>
 void register_freesurface(InterfaceRegistry<dim>& interfaces) {
+  const auto make = [](const ParameterList& list, const MacDomain<dim>& domain) {
+    return std::make_unique<LevelSet<dim>>(domain, read_level_set_parameters(list));
+  };
+  interfaces.add("particle level set",
+                 "A distance carried on the grid, which particles on both sides of the surface "
+                 "correct: keeps what is thin (Enright et al. 2002).",
+                 particle_level_set_parameters<dim>, make);
   interfaces.add("level set", "A distance carried on the grid alone: rounds off what is thin.",
-                 level_set_parameters<dim>,
-                 [](const ParameterList& list, const MacDomain<dim>& domain) {
-                   return std::make_unique<LevelSet<dim>>(domain, read_level_set_parameters(list));
-                 });
+                 level_set_parameters<dim>, make);
 }
 
 template void register_freesurface<2>(InterfaceRegistry<2>&);

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// Registers the interface "level set".
+/// Registers the interfaces "particle level set" and "level set".
 template <int dim>
 void register_freesurface(InterfaceRegistry<dim>& interfaces);
 

@@ -25,10 +25,11 @@ bool at_open_side(const MacDomain<dim>& domain, int cell) {
 }  // namespace
 
 template <int dim>
-GlobalIndex close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids, int most_cells,
-                        CellField& phi) {
+std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                             int most_cells, CellField& phi) {
+  std::vector<int> filled;
   if (most_cells == 0)
-    return 0;
+    return filled;
   const TiledGrid<dim>& grid = domain.grid;
   const double h = domain.spacing();
   std::vector<char> is_void(phi.size());
@@ -53,22 +54,21 @@ GlobalIndex close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& sol
     }
   });
   sum_all(grid.comm(), sums.data(), static_cast<int>(sums.size()));
-  GlobalIndex n_filled = 0;
   grid.for_each_owned_cell([&](int cell) {
     const int group = voids.of_cell[cell];
     if (group < 0 || sums[3 * group] > most_cells || sums[3 * group + 1] == 0 ||
         sums[3 * group + 2] > 0)
       return;
     phi[cell] = -std::clamp(phi[cell], least_depth * h, most_depth * h);
-    ++n_filled;
+    filled.push_back(cell);
   });
-  n_filled = sum_all(grid.comm(), n_filled);
-  if (n_filled > 0)
-    domain.halo.fill(phi);
-  return n_filled;
+  domain.halo.fill(phi);
+  return filled;
 }
 
-template GlobalIndex close_voids<2>(const MacDomain<2>&, const SolidCells<2>&, int, CellField&);
-template GlobalIndex close_voids<3>(const MacDomain<3>&, const SolidCells<3>&, int, CellField&);
+template std::vector<int> close_voids<2>(const MacDomain<2>&, const SolidCells<2>&, int,
+                                         CellField&);
+template std::vector<int> close_voids<3>(const MacDomain<3>&, const SolidCells<3>&, int,
+                                         CellField&);
 
 }  // namespace lockstep

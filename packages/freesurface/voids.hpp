@@ -5,10 +5,10 @@ namespace lockstep {
 
 /// Fills voids of at most `most_cells` cells that liquid touches: a void whose pressure is held
 /// would drain the liquid around it for ever. Those at an open side stay, and so does a void that
-/// solids alone surround. `phi` on the halo of width 1, which is set on return. Returns the number
-/// of cells filled, over all ranks. Collective.
+/// solids alone surround. `phi` on the halo of width 1, which is set on return. Returns the owned
+/// cells filled. Collective.
 template <int dim>
-GlobalIndex close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids, int most_cells,
-                        CellField& phi);
+std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                             int most_cells, CellField& phi);
 
 }  // namespace lockstep

@@ -245,15 +245,54 @@ void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const Cel
     if (n > best.first)
       best = {n, pair.second};
   }
-  for (int old = 0; old < groups_.n; ++old) {
-    if (!vanished[old])
-      continue;
-    const auto found = heir.find(old);
-    if (found == heir.end())
-      targets_.lost += targets_.of_group[old];
-    else
-      target[found->second.second] += targets_.of_group[old];
+  std::vector<char> homeless = vanished;
+  for (const auto& [old, best] : heir) {
+    target[best.second] += targets_.of_group[old];
+    homeless[old] = 0;
   }
+  if (std::count(homeless.begin(), homeless.end(), 1) > 0)
+    share_out(solids, groups, homeless, target);
+}
+
+template <int dim>
+void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
+                                  const std::vector<char>& homeless, std::vector<double>& target) {
+  // Which closed space each body is in, and each that was.
+  const CellGroups spaces =
+      find_groups(domain_, solids, std::vector<char>(groups.of_cell.size(), 1));
+  Overlaps of_new, of_old;
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    const int old = groups_.of_cell[cell], now = groups.of_cell[cell];
+    if (now >= 0)
+      of_new[{now, spaces.of_cell[cell]}] = 1;
+    if (old >= 0 && homeless[old] && solids.is_fluid(cell))
+      of_old[{old, spaces.of_cell[cell]}] += 1;
+  });
+  std::vector<double> volume_in_space(spaces.n, 0.0);
+  std::vector<int> space(groups.n, 0);
+  for (const auto& [pair, n] : gather(domain_.grid.comm(), of_new)) {
+    space[pair.first] = pair.second;
+    volume_in_space[pair.second] += volumes_.volume[pair.first];
+  }
+  std::map<int, std::pair<double, int>> space_of_old;
+  for (const auto& [pair, n] : gather(domain_.grid.comm(), of_old)) {
+    auto& most = space_of_old[pair.first];
+    if (n > most.first)
+      most = {n, pair.second};
+  }
+  std::vector<double> given(spaces.n, 0.0);
+  for (int old = 0; old < groups_.n; ++old) {
+    if (!homeless[old])
+      continue;
+    const auto found = space_of_old.find(old);
+    if (found != space_of_old.end() && volume_in_space[found->second.second] > 0)
+      given[found->second.second] += targets_.of_group[old];
+    else
+      targets_.lost += targets_.of_group[old];
+  }
+  for (int group = 0; group < groups.n; ++group)
+    if (given[space[group]] != 0)
+      target[group] += given[space[group]] * volumes_.volume[group] / volume_in_space[space[group]];
 }
 
 template <int dim>

@@ -70,6 +70,9 @@ class VolumeLedger {
   void give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
                        const CellGroups& groups, const std::vector<char>& vanished,
                        std::vector<double>& target);
+  /// The targets of those that have no heir near go to all bodies in the same closed space.
+  void share_out(const SolidCells<dim>& solids, const CellGroups& groups,
+                 const std::vector<char>& homeless, std::vector<double>& target);
   std::vector<double> wanted_shifts(const GroupVolumes& now) const;
 
   const MacDomain<dim>& domain_;

@@ -135,4 +135,11 @@ std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
                                             const SurfaceSnapshot<dim>& after, const Point<dim>& x,
                                             const std::vector<int>& candidates);
 
+/// The same over a point that moves linearly as well, from -> to; `position` is meaningless.
+template <int dim>
+std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
+                                            const SurfaceSnapshot<dim>& after,
+                                            const Point<dim>& from, const Point<dim>& to,
+                                            const std::vector<int>& candidates);
+
 }  // namespace lockstep

@@ -136,11 +136,39 @@ std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
   return first;
 }
 
+template <int dim>
+std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
+                                            const SurfaceSnapshot<dim>& after,
+                                            const Point<dim>& from, const Point<dim>& to,
+                                            const std::vector<int>& candidates) {
+  LOCKSTEP_ASSERT(before.n_simplices() == after.n_simplices());
+  std::optional<SurfacePoint<dim>> first;
+  for (const int s : candidates) {
+    // As the point sees it.
+    auto corners = after.corners(s);
+    for (Point<dim>& corner : corners)
+      corner -= to - from;
+    auto passage = first_passage<dim>(before.corners(s), corners, from);
+    if (!passage || (first && passage->fraction >= first->fraction))
+      continue;
+    first = passage;
+    first->simplex = s;
+  }
+  return first;
+}
+
 template std::optional<SurfacePoint<2>> swept_over<2>(const SurfaceSnapshot<2>&,
                                                       const SurfaceSnapshot<2>&, const Point<2>&,
                                                       const std::vector<int>&);
 template std::optional<SurfacePoint<3>> swept_over<3>(const SurfaceSnapshot<3>&,
                                                       const SurfaceSnapshot<3>&, const Point<3>&,
                                                       const std::vector<int>&);
+
+template std::optional<SurfacePoint<2>> swept_over<2>(const SurfaceSnapshot<2>&,
+                                                      const SurfaceSnapshot<2>&, const Point<2>&,
+                                                      const Point<2>&, const std::vector<int>&);
+template std::optional<SurfacePoint<3>> swept_over<3>(const SurfaceSnapshot<3>&,
+                                                      const SurfaceSnapshot<3>&, const Point<3>&,
+                                                      const Point<3>&, const std::vector<int>&);
 
 }  // namespace lockstep

@@ -21,7 +21,7 @@ struct LiquidLedger {
   double volume = 0;  ///< of the liquid outside solids
   double target = 0;  ///< what known fluxes have left of the initial volume
   double shift = 0;   ///< what corrections have added and taken away since the start, both positive
-  double lost = 0;    ///< of bodies of liquid that vanished, since the start
+  double lost = 0;    ///< of bodies that vanished and left no other in their closed space
   int n_components = 0;  ///< bodies of liquid
   double drops = 0;      ///< in drops that the grid does not resolve
 };

@@ -11,6 +11,8 @@ namespace {
 
 /// How far before a surface a ray stops [cells].
 constexpr double stand_off = 1e-3;
+/// How far from a surface what is followed stays [cells].
+constexpr double clearance = 0.1;
 
 /// Largest displacement of a vertex over the step [m].
 template <int dim>
@@ -223,6 +225,56 @@ double SurfaceTransport<dim>::carry_beside(const CarriedField<dim>& field, const
   const double way =
       std::max((ray.end - x).norm(), tracer_.cells_per_velocity() * std::abs(own - here));
   return (carried ? *carried : here) + std::max(0.0, 1 - way) * (own - here);
+}
+
+template <int dim>
+std::optional<SurfacePoint<dim>> SurfaceTransport<dim>::passage(const Point<dim>& from,
+                                                                const Point<dim>& to) const {
+  const SurfaceSnapshot<dim>& before = *surface_.before;
+  const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
+  const Point<dim> a = interpolation_.physical(from), b = interpolation_.physical(to);
+  const double reach =
+      surface_displacement_ * interpolation_.spacing() + interpolation_.nearby().tolerance();
+  before.touching(widened<dim>(Box<dim>(a).extend(b), reach), candidates_);
+  return candidates_.empty() ? std::nullopt : swept_over<dim>(before, after, a, b, candidates_);
+}
+
+template <int dim>
+std::optional<Point<dim>> SurfaceTransport<dim>::follow(const Point<dim>& x) {
+  const double scale = tracer_.cells_per_velocity();
+  Point<dim> displacement = scale * interpolation_.velocity_at(x, tracer_.velocity());
+  Ray<dim> half;
+  half.end = x + 0.5 * displacement;
+  tracer_.clip(x, half);
+  if (!hit_on_way(x, half.end))
+    displacement = scale * interpolation_.velocity_at(half.end, tracer_.velocity());
+  Ray<dim> ray;
+  ray.end = x + displacement;
+  tracer_.clip(x, ray);
+  const SurfaceSnapshot<dim>& before = *surface_.before;
+  const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
+  const double gap = clearance * interpolation_.spacing();
+  Point<dim> end = interpolation_.physical(ray.end);
+  if (const auto met = passage(x, ray.end)) {
+    const auto from = before.corners(met->simplex), to = after.corners(met->simplex);
+    const Point<dim> there = area_vector<dim>(from);
+    const bool in_front = there.dot(interpolation_.physical(x) - from[0]) > 0;
+    end.setZero();
+    for (int k = 0; k < dim; ++k)
+      end += met->barycentric[k] * to[k];
+    end += (in_front ? gap : -gap) * area_vector<dim>(to).normalized();
+  } else if (const auto closest = after.closest(end, gap)) {
+    const Point<dim> away = end - closest->position;
+    if (away.squaredNorm() == 0)
+      return std::nullopt;
+    end = closest->position + gap * away.normalized();
+  } else {
+    return ray.end;
+  }
+  const Point<dim> stop = interpolation_.place_of(end);
+  if (passage(x, stop) || after.inside(end) >= 0)
+    return std::nullopt;
+  return stop;
 }
 
 template class SurfaceTransport<2>;

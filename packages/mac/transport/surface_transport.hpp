@@ -54,6 +54,9 @@ class SurfaceTransport {
   bool sees_all(SampleKind kind, const Point<dim>& x, const Ray<dim>& ray) const;
   /// The value carried to the sample at x; none if it sees no valid sample.
   std::optional<double> carry(const CarriedField<dim>& field, const Point<dim>& x);
+  /// Where fluid at x goes in the step, or none if a surface would pass it: then it is kept a tenth
+  /// of a cell from the surface, on its side, and given up if there is no room.
+  std::optional<Point<dim>> follow(const Point<dim>& x);
   /// A velocity `own` of the sample whose fluid is at x, beside it: changes as what is seen at x
   /// does, and becomes that as fluid passes, so that nothing gathers in it.
   double carry_beside(const CarriedField<dim>& field, const Point<dim>& x, double own);
@@ -68,6 +71,8 @@ class SurfaceTransport {
   /// Where the fluid of x came from, as far as it can be seen; sets `hit` if a surface is in the
   /// way.
   Ray<dim> trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit);
+  /// The first surface that passes over a point that moves on a line during the step.
+  std::optional<SurfacePoint<dim>> passage(const Point<dim>& from, const Point<dim>& to) const;
   std::optional<SurfacePoint<dim>> hit_on_way(const Point<dim>& x, const Point<dim>& end) const;
   /// Looks up the value at the end of a ray from x.
   std::optional<double> fetch(const CarriedField<dim>& field, const Point<dim>& x, Ray<dim> ray,

@@ -149,7 +149,6 @@ template <int dim>
 RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, bool cubic) const {
   const double factor = direction * tracer_.cells_per_velocity();
   int place = 0;
-  RowRays<dim> rays;
   RowPoints<dim> start;
   for (int a = 0; a < dim; ++a) {
     const int cell = margin_[a] + (a == 0 ? 0 : in_tile[a]);
@@ -163,12 +162,25 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, 
     for (int a = 0; a < dim; ++a)
       velocity[a] = velocity_at_samples(a, place);
   }
+  return rays_from(start, velocity, factor, cubic);
+}
+
+template <int dim>
+RowRays<dim> TileBlock<dim>::follow(const RowPoints<dim>& start, double direction) const {
+  return rays_from(start, velocity_at(start, false), direction * tracer_.cells_per_velocity(),
+                   false);
+}
+
+template <int dim>
+RowRays<dim> TileBlock<dim>::rays_from(const RowPoints<dim>& start, const RowPoints<dim>& velocity,
+                                       double factor, bool cubic) const {
+  RowRays<dim> rays;
   for (int a = 0; a < dim; ++a)
     rays.middle[a] = clamped(start[a] + 0.5 * factor * velocity[a], a);
-  velocity = velocity_at(rays.middle, cubic);
+  const RowPoints<dim> halfway = velocity_at(rays.middle, cubic);
   rays.clipped.setZero();
   for (int a = 0; a < dim; ++a) {
-    const RowValues<dim> wanted = start[a] + factor * velocity[a];
+    const RowValues<dim> wanted = start[a] + factor * halfway[a];
     rays.end[a] = clamped(wanted, a);
     rays.clipped += (rays.end[a] - wanted).abs();
   }

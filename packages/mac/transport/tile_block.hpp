@@ -37,6 +37,10 @@ class TileBlock {
   /// samples of the loaded field with these coordinates within the tile (x is ignored).
   /// `cubic`: the velocity is interpolated by cubics.
   RowRays<dim> trace(const Index<dim>& in_tile, double direction, bool cubic = false) const;
+  /// The same from any points of the tile, relative to the block; linear alone.
+  RowRays<dim> follow(const RowPoints<dim>& start, double direction) const;
+  /// Where points, in cells from the lower corner of the tile, are in the block.
+  int margin(int axis) const { return margin_[axis]; }
   /// One of a row of points, in lattice units.
   Point<dim> place(const RowPoints<dim>& points, int i) const {
     Point<dim> x;
@@ -60,6 +64,9 @@ class TileBlock {
   std::array<double, 2> sample_limits(int axis, SampleKind kind) const;
   /// Velocity component at a row of samples of the loaded field, the first at that place.
   RowValues<dim> velocity_at_samples(int axis, int place) const;
+  /// The midpoint rule, given the velocity at the start; displacements are `factor` times velocity.
+  RowRays<dim> rays_from(const RowPoints<dim>& start, const RowPoints<dim>& velocity, double factor,
+                         bool cubic) const;
   /// Coordinates along an axis, moved to where rays may go.
   RowValues<dim> clamped(const RowValues<dim>& x, int axis) const;
 

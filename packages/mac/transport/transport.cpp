@@ -168,6 +168,11 @@ double Transport<dim>::largest_displacement() const {
   return implementation_->frame.largest_displacement;
 }
 
+template <int dim>
+TransportFrame<dim>& Transport<dim>::frame() {
+  return implementation_->frame;
+}
+
 template class Transport<2>;
 template class Transport<3>;
 

@@ -11,6 +11,9 @@
 
 namespace lockstep {
 
+template <int dim>
+struct TransportFrame;
+
 enum class AdvectionScheme {
   semi_lagrangian,  ///< first order in time, unconditionally stable
   maccormack,       ///< second order (Selle et al. 2008), clamped; semi-Lagrangian near surfaces
@@ -87,6 +90,8 @@ class Transport {
   const InvalidSamples<dim>& invalid() const;
   /// The largest displacement along an axis over all ranks, in cells.
   double largest_displacement() const;
+  /// For those who carry something else along the same rays.
+  TransportFrame<dim>& frame();
 
  private:
   struct Implementation;

@@ -57,6 +57,11 @@ class VisibleInterpolation {
 
   const NearbySurface<dim>& nearby() const { return *nearby_; }
   Point<dim> physical(const Point<dim>& x) const { return grid_.lower() + grid_.spacing() * x; }
+  /// The inverse: lattice units.
+  Point<dim> place_of(const Point<dim>& position) const {
+    return (position - grid_.lower()) / grid_.spacing();
+  }
+  double spacing() const { return grid_.spacing(); }
   Box<dim> physical(const Box<dim>& box) const {
     return {physical(Point<dim>(box.min())), physical(Point<dim>(box.max()))};
   }

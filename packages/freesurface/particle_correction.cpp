@@ -1,0 +1,129 @@
+#include "freesurface/particle_correction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lockstep {
+
+namespace {
+/// What a particle wants phi to be at a cell.
+struct Wish {
+  int cell = 0;
+  int side = 0;
+  double phi = 0;
+};
+
+/// Farther than this from a cell's centre phi cannot have another sign in the cell [cells].
+constexpr double farthest_in_cell = 0.9;
+
+template <int dim>
+class Wishes {
+ public:
+  Wishes(const MacDomain<dim>& domain, const SolidCells<dim>& solids, KeptSurface<dim>& kept,
+         const CellField& phi)
+      : grid_(domain.grid),
+        solids_(solids),
+        phi_(phi),
+        lattice_(grid_),
+        lookup_(grid_, lattice_, solids, kept, phi),
+        messages_(grid_) {}
+
+  void look_at(int tile, const std::vector<Particle<dim>>& particles) {
+    const double h = grid_.spacing();
+    bool has_entered = false;
+    for (const Particle<dim>& particle : particles) {
+      const int cell = tile * tile_volume<dim> + particle.cell_in_tile();
+      if (particle.side() * phi_[cell] > farthest_in_cell * h)
+        continue;
+      if (!has_entered)
+        lookup_.enter(tile);
+      has_entered = true;
+      const auto phi = lookup_.value(particle.position());
+      if (phi && particle.side() * *phi < -particle.size() * h)
+        wish(particle);
+    }
+  }
+  /// Those for cells of this rank.
+  const std::vector<Wish>& collect() {
+    if (grid_.comm()->getSize() > 1) {
+      const std::vector<double> arrived = messages_.exchange();
+      for (std::size_t i = 0; i < arrived.size(); i += 3)
+        wishes_.push_back({grid_.cell_of_global_id(static_cast<GlobalIndex>(arrived[i])),
+                           static_cast<int>(arrived[i + 1]), arrived[i + 2]});
+    }
+    return wishes_;
+  }
+
+ private:
+  void wish(const Particle<dim>& particle) {
+    const Point<dim> x = particle.position(), place = lookup_.place(x);
+    const bool may_be_hidden = lookup_.may_be_hidden(x);
+    for (const StencilCorner<dim>& corner : lattice_.corners(cell_centers, place)) {
+      if (corner.id < 0 || corner.weight == 0 || !solids_.is_fluid(corner.id))
+        continue;
+      if (may_be_hidden && lookup_.hidden(x, x + (corner.position - place)))
+        continue;
+      const double distance = (corner.position - place).norm();
+      const double phi = particle.side() * (particle.size() - distance) * grid_.spacing();
+      if (grid_.owned(corner.id)) {
+        wishes_.push_back({corner.id, particle.side(), phi});
+        continue;
+      }
+      auto& message = messages_.to_owner(grid_, corner.id);
+      message.insert(message.end(), {static_cast<double>(grid_.global_id(corner.id)),
+                                     static_cast<double>(particle.side()), phi});
+    }
+  }
+
+  const TiledGrid<dim>& grid_;
+  const SolidCells<dim>& solids_;
+  const CellField& phi_;
+  SampleLattice<dim> lattice_;
+  PhiLookup<dim> lookup_;
+  NeighborMessages<dim> messages_;
+  std::vector<Wish> wishes_;
+};
+}  // namespace
+
+template <int dim>
+void correct_by_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                          KeptSurface<dim>& kept, const ParticleTiles<dim>& tiles, CellField& phi) {
+  Wishes<dim> found(domain, solids, kept, phi);
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile)
+    found.look_at(static_cast<int>(tile), tiles[tile]);
+  std::vector<Wish> wishes = found.collect();
+  std::sort(wishes.begin(), wishes.end(),
+            [](const Wish& a, const Wish& b) { return a.cell < b.cell; });
+  for (std::size_t i = 0; i < wishes.size();) {
+    const int cell = wishes[i].cell;
+    double highest = phi[cell], lowest = phi[cell];
+    for (; i < wishes.size() && wishes[i].cell == cell; ++i) {
+      if (wishes[i].side > 0)
+        highest = std::max(highest, wishes[i].phi);
+      else
+        lowest = std::min(lowest, wishes[i].phi);
+    }
+    phi[cell] = std::abs(highest) <= std::abs(lowest) ? highest : lowest;
+  }
+  domain.halo.fill(phi);
+}
+
+template <int dim>
+void remove_particles(int side, const std::vector<char>& cells, ParticleTiles<dim>& tiles) {
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+    auto& particles = tiles[tile];
+    const auto goes = [&](const Particle<dim>& particle) {
+      return particle.side() == side && cells[tile * tile_volume<dim> + particle.cell_in_tile()];
+    };
+    particles.erase(std::remove_if(particles.begin(), particles.end(), goes), particles.end());
+  }
+}
+
+template void correct_by_particles<2>(const MacDomain<2>&, const SolidCells<2>&, KeptSurface<2>&,
+                                      const ParticleTiles<2>&, CellField&);
+template void correct_by_particles<3>(const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,
+                                      const ParticleTiles<3>&, CellField&);
+template void remove_particles<2>(int, const std::vector<char>&, ParticleTiles<2>&);
+template void remove_particles<3>(int, const std::vector<char>&, ParticleTiles<3>&);
+
+}  // namespace lockstep

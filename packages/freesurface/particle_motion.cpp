@@ -1,0 +1,129 @@
+#include "freesurface/particle_motion.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace lockstep {
+
+namespace {
+/// How near to a closed side a particle may come [cells].
+constexpr double at_wall = 1e-3;
+
+/// Moves the particles of one tile after the other.
+template <int dim>
+class Mover {
+ public:
+  Mover(const MacDomain<dim>& domain, TransportFrame<dim>& frame, ParticlePost<dim>& post)
+      : domain_(domain), frame_(frame), post_(post) {}
+
+  void move(int tile, std::vector<Particle<dim>>& particles) {
+    begin_ = domain_.grid.tile_begin(tile);
+    is_near_surface_ = frame_.plans[tile].near_surface;
+    const bool by_rows = frame_.plans[tile].by_rows && frame_.block->enter(begin_);
+    std::size_t n_kept = 0;
+    for (std::size_t first = 0; first < particles.size(); first += tile_width<dim>) {
+      const int n =
+          static_cast<int>(std::min<std::size_t>(tile_width<dim>, particles.size() - first));
+      RowRays<dim> rays;
+      if (by_rows)
+        rays = follow(particles.data() + first, n);
+      for (int i = 0; i < n; ++i) {
+        const Particle<dim> particle = particles[first + i];
+        std::optional<Point<dim>> end;
+        if (by_rows && !needs_care(particle))
+          end = frame_.block->place(rays.end, i);
+        else
+          end = follow_single(particle);
+        if (!end || !stays_in_domain(*end))
+          continue;
+        if (keep(*end, particle, particles[n_kept]))
+          ++n_kept;
+        else
+          post_.put(*end, particle.radius);
+      }
+    }
+    particles.resize(n_kept);
+  }
+  GlobalIndex n_given_up() const { return n_given_up_; }
+
+ private:
+  Point<dim> place(const Particle<dim>& particle) const {
+    Point<dim> x = particle.position();
+    for (int a = 0; a < dim; ++a)
+      x[a] += begin_[a];
+    return x;
+  }
+  bool needs_care(const Particle<dim>& particle) const {
+    return is_near_surface_ && frame_.near_surface->is_near(place(particle));
+  }
+  RowRays<dim> follow(const Particle<dim>* particles, int n) const {
+    RowPoints<dim> start;
+    for (int a = 0; a < dim; ++a)
+      for (int i = 0; i < tile_width<dim>; ++i)
+        start[a][i] = particles[std::min(i, n - 1)].x[a] + frame_.block->margin(a);
+    return frame_.block->follow(start, 1);
+  }
+  std::optional<Point<dim>> follow_single(const Particle<dim>& particle) {
+    const Point<dim> x = place(particle);
+    if (needs_care(particle)) {
+      const auto end = frame_.near_surface->follow(x);
+      n_given_up_ += !end;
+      return end;
+    }
+    const Ray<dim> ray = frame_.tracer->trace(x, 1);
+    return ray.complete ? std::optional<Point<dim>>(ray.end) : std::nullopt;
+  }
+  /// Keeps the place off closed sides; false if it has left through another.
+  bool stays_in_domain(Point<dim>& x) const {
+    for (int a = 0; a < dim; ++a) {
+      if (domain_.boundary.periodic(a))
+        continue;
+      const double n = domain_.grid.n_cells()[a];
+      if ((x[a] <= 0 && !domain_.boundary.side(a, 0).closed()) ||
+          (x[a] >= n && !domain_.boundary.side(a, 1).closed()))
+        return false;
+      x[a] = std::clamp(x[a], at_wall, n - at_wall);
+    }
+    return true;
+  }
+  /// Puts a particle that stays in the tile to its new place there.
+  bool keep(const Point<dim>& end, const Particle<dim>& particle, Particle<dim>& result) const {
+    Particle<dim> moved = particle;
+    for (int a = 0; a < dim; ++a) {
+      const double x = end[a] - begin_[a];
+      moved.x[a] = static_cast<float>(x);
+      // The place as float decides, as it does after the next step.
+      if (!(x >= 0 && moved.x[a] < tile_width<dim>) || end[a] >= domain_.grid.n_cells()[a])
+        return false;
+    }
+    result = moved;
+    return true;
+  }
+
+  const MacDomain<dim>& domain_;
+  TransportFrame<dim>& frame_;
+  ParticlePost<dim>& post_;
+  Index<dim> begin_{};
+  bool is_near_surface_ = false;
+  GlobalIndex n_given_up_ = 0;
+};
+}  // namespace
+
+template <int dim>
+GlobalIndex move_particles(const MacDomain<dim>& domain, TransportFrame<dim>& frame,
+                           const RayHalo<dim>& ray_halo, ParticleTiles<dim>& tiles) {
+  ParticlePost<dim> post(ray_halo.sample_grid());
+  Mover<dim> mover(domain, frame, post);
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile)
+    if (!tiles[tile].empty())
+      mover.move(static_cast<int>(tile), tiles[tile]);
+  post.deliver(tiles);
+  return mover.n_given_up();
+}
+
+template GlobalIndex move_particles<2>(const MacDomain<2>&, TransportFrame<2>&, const RayHalo<2>&,
+                                       ParticleTiles<2>&);
+template GlobalIndex move_particles<3>(const MacDomain<3>&, TransportFrame<3>&, const RayHalo<3>&,
+                                       ParticleTiles<3>&);
+
+}  // namespace lockstep

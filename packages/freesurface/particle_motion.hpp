@@ -1,0 +1,16 @@
+#pragma once
+#include "freesurface/particles.hpp"
+#include "mac/domain/mac_domain.hpp"
+#include "mac/transport/ray_halo.hpp"
+#include "mac/transport/transport_frame.hpp"
+
+namespace lockstep {
+
+/// Moves all with the flow of the frame, by the midpoint rule, to the tiles they are in then. What
+/// a surface of solids would pass stays on its side of it or goes, and so does what leaves through
+/// an open side. Returns how many a surface has cost on this rank. Collective.
+template <int dim>
+GlobalIndex move_particles(const MacDomain<dim>& domain, TransportFrame<dim>& frame,
+                           const RayHalo<dim>& ray_halo, ParticleTiles<dim>& tiles);
+
+}  // namespace lockstep

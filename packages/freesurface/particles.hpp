@@ -1,0 +1,67 @@
+#pragma once
+#include <vector>
+
+#include "grid/neighbor_messages.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+/// The numbers of the particles that watch over a level set.
+struct ParticleParameters {
+  int per_cell = 16;
+  int band = 3;       ///< cells on both sides of the surface in which they are
+  int interval = 20;  ///< steps between two reseedings
+};
+
+/// Declares "Particles per Cell", "Particle Band" and "Reseed Interval".
+void declare_particles(ParameterList& list);
+ParticleParameters read_particles(const ParameterList& list);
+
+/// A ball that belongs to one side of the surface.
+template <int dim>
+struct Particle {
+  std::array<float, dim> x;  ///< cells from the lower corner of its tile
+  float radius;              ///< [cells]; negative: of the liquid
+
+  int side() const { return radius < 0 ? -1 : 1; }
+  double size() const { return radius < 0 ? -radius : radius; }
+  Point<dim> position() const {
+    Point<dim> result;
+    for (int a = 0; a < dim; ++a)
+      result[a] = x[a];
+    return result;
+  }
+  /// The cell that holds it, as offset in its tile.
+  int cell_in_tile() const {
+    int offset = 0;
+    for (int a = 0; a < dim; ++a)
+      offset += static_cast<int>(x[a]) << (log_tile_width<dim> * a);
+    return offset;
+  }
+};
+
+/// Those in each owned tile. Nothing may depend on their order: it is not the same on any number of
+/// ranks.
+template <int dim>
+using ParticleTiles = std::vector<std::vector<Particle<dim>>>;
+
+/// Brings particles to the tiles they are in, on whatever rank.
+template <int dim>
+class ParticlePost {
+ public:
+  /// Particles reach tiles that `lookup` stores; ids of owned cells are those of the base grid.
+  explicit ParticlePost(const TiledGrid<dim>& lookup) : grid_(lookup), messages_(lookup) {}
+
+  /// At a place in lattice units, within the domain; periodic axes wrap. Where no tile exists it is
+  /// lost.
+  void put(const Point<dim>& place, float radius);
+  /// Collective.
+  void deliver(ParticleTiles<dim>& tiles);
+
+ private:
+  const TiledGrid<dim>& grid_;
+  NeighborMessages<dim> messages_;
+  std::vector<std::pair<int, Particle<dim>>> here_;  ///< with their tiles
+};
+
+}  // namespace lockstep

@@ -1,0 +1,47 @@
+// Bodies that a flow should bring back as they were. The bounds are a fifth above what a separate
+// prototype of the method has shown.
+#include "advection_cases.hpp"
+
+namespace lockstep::test {
+namespace {
+
+ParameterList uncorrected() {
+  ParameterList list;
+  list.set("Volume Correction", "none");
+  return list;
+}
+
+TEST(Advection, ZalesaksDiscKeepsItsSlot) {
+  const Return plain = zalesak("particle level set", uncorrected());
+  EXPECT_LT(std::abs(plain.loss), 0.036);
+  EXPECT_LT(plain.shape, 0.048);
+  const Return corrected = zalesak("particle level set", {});
+  EXPECT_LT(std::abs(corrected.ledger), 1e-9);
+  EXPECT_LT(std::abs(corrected.loss), 0.002);
+  EXPECT_LT(corrected.shape, 0.053);
+  EXPECT_EQ(corrected.n_components, 1);
+  // Without particles most of the slot is gone: the measure sees it.
+  const Return without = zalesak("level set", uncorrected());
+  EXPECT_GT(without.shape, 0.3);
+  EXPECT_LT(without.shape, 0.65);
+  EXPECT_GT(without.loss, 0.2);
+}
+
+TEST(Advection, TheVortexGivesTheDiscBack) {
+  const Return plain = vortex("particle level set", uncorrected(), 64);
+  EXPECT_LT(std::abs(plain.loss), 0.036);
+  EXPECT_LT(plain.shape, 0.052);
+  const Return corrected = vortex("particle level set", {}, 64);
+  EXPECT_LT(std::abs(corrected.ledger), 1e-3);
+  EXPECT_LT(corrected.shape, 0.06);
+}
+
+TEST(Advection, TheSheetBecomesABallAgain) {
+  const Return plain = deformation("particle level set", uncorrected(), 32, 1.5);
+  const Return without = deformation("level set", uncorrected(), 32, 1.5);
+  EXPECT_LT(plain.shape, 0.5 * without.shape);
+  EXPECT_LT(plain.shape, 0.25);
+}
+
+}  // namespace
+}  // namespace lockstep::test

@@ -1,0 +1,26 @@
+// The cases of advection_test.cpp at the sizes for which figures are known.
+#include "advection_cases.hpp"
+
+namespace lockstep::test {
+namespace {
+
+ParameterList uncorrected() {
+  ParameterList list;
+  list.set("Volume Correction", "none");
+  return list;
+}
+
+TEST(LargeAdvection, TheVortexGivesTheDiscBack) {
+  const Return plain = vortex("particle level set", uncorrected(), 128);
+  EXPECT_LT(std::abs(plain.loss), 0.017);
+  EXPECT_LT(plain.shape, 0.0204);
+}
+
+TEST(LargeAdvection, TheSheetBecomesABallAgain) {
+  const Return plain = deformation("particle level set", uncorrected(), 64);
+  EXPECT_LT(std::abs(plain.loss), 0.103);
+  EXPECT_LT(plain.shape, 0.106);
+}
+
+}  // namespace
+}  // namespace lockstep::test
