@@ -151,7 +151,9 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
         if (phi[cell] >= 0 || !solids.is_fluid(cell))
           return;
         const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
-        const double speed = (end == 0 ? -1 : 1) * velocity[axis][face];
+        double speed = (end == 0 ? -1 : 1) * velocity[axis][face];
+        if (type == SideType::open)
+          speed = std::max(speed, 0.0);
         out[groups_.of_cell[cell]] += speed * per_speed * std::min(1.0, 0.5 - phi[cell] / h);
       });
     }

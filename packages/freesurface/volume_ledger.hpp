@@ -39,7 +39,8 @@ class VolumeLedger {
 
   /// Takes the present volumes as targets. Collective.
   void begin(const SolidCells<dim>& solids, const CellField& phi);
-  /// Takes off what flows out through the sides of the domain in dt. Before phi is carried.
+  /// Takes off what flows out through the sides of the domain in dt; through open sides no liquid
+  /// comes in. Before phi is carried.
   /// Collective.
   void flow_out(const SolidCells<dim>& solids, const CellField& phi, const FaceField<dim>& velocity,
                 double dt);

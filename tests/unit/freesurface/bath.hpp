@@ -31,6 +31,15 @@ DomainDescription<dim> open_cube(int n, double length = 1) {
   return description;
 }
 
+/// The same with walls.
+template <int dim>
+DomainDescription<dim> closed_cube(int n) {
+  DomainDescription<dim> description;
+  description.grid.spacing = 1.0 / n;
+  description.grid.n_cells.fill(n);
+  return description;
+}
+
 /// An interface in a given flow.
 template <int dim>
 struct Bath {

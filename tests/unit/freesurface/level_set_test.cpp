@@ -132,7 +132,7 @@ TEST(LevelSet, IsTheSameOnAnyNumberOfRanks) {
 template <int dim>
 void expect_shell_holds(const std::string& name, bool full) {
   const int n = dim == 2 ? 48 : 24;
-  Bath<dim> bath(open_cube<dim>(n));
+  Bath<dim> bath(closed_cube<dim>(n));
   auto model = bath.make(name);
   const double dt = 1.5 / n, radius = 0.21;
   const auto center = [&](int i) {

@@ -165,7 +165,7 @@ TEST(Particles, AStepCanBeTakenBack) {
 template <int dim>
 void expect_shell_in_pool(bool half_full) {
   const int n = dim == 2 ? 48 : 24;
-  Bath<dim> bath(open_cube<dim>(n));
+  Bath<dim> bath(closed_cube<dim>(n));
   const auto model = bath.make(name);
   const double dt = 1.2 / n, radius = 0.21;
   const auto center = [&](int i) {

@@ -250,5 +250,29 @@ TEST(VolumeLedger, KnowsWhatSourcesSinksAndSidesDo) {
   EXPECT_NEAR(model->ledger().lost, 0, 1e-14);
 }
 
+/// Liquid goes out through a side and does not come back in.
+TEST(VolumeLedger, NothingWetComesInThroughAnOpenSide) {
+  for (const char* const name : {"level set", "particle level set"}) {
+    Bath<2> bath(open_cube<2>(40));
+    auto model = bath.make(name);
+    model->initialise([](const Point<2>& x) { return x[0] - 0.3; }, nullptr);
+    for (int i = 0; i < 20; ++i) {
+      const double u = i < 10 ? -0.1 : 0.1;
+      bath.set_velocity([u](const Point<2>&) { return Point<2>(u, 0); });
+      bath.step(*model, 0.1 * i, 0.1);
+    }
+    EXPECT_NEAR(model->ledger().target, 0.2, 1e-12);
+    EXPECT_NEAR(model->ledger().volume, 0.2, 2e-3);
+    bath.domain.grid.for_each_owned_cell([&](int c) {
+      const double x = bath.domain.grid.center(c)[0];
+      if (x < 0.07 || x > 0.33) {
+        EXPECT_GT(model->distance()[c], 0) << x;
+      } else if (x > 0.13 && x < 0.27) {
+        EXPECT_LT(model->distance()[c], 0) << x;
+      }
+    });
+  }
+}
+
 }  // namespace
 }  // namespace lockstep::test
