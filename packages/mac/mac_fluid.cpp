@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "mac/domain/fitting_domain.hpp"
 #include "mac/pressure/extended_pressure.hpp"
 #include "mac/state/face_moments.hpp"
 #include "mac/state/initial_state.hpp"
@@ -14,7 +13,7 @@ namespace lockstep {
 template <int dim>
 MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
                         const Communicator& comm, const InterfaceRegistry<dim>* interfaces)
-    : domain_(fitting_domain<dim>(domain, comm), comm),
+    : domain_(make_domain<dim>(fluid, domain, comm)),
       parameters_(read_mac_parameters<dim>(fluid)),
       scalars_(domain_, fluid),
       ray_halo_(domain_.grid),
@@ -31,11 +30,16 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
       fields_.push_back(std::move(field));
   }
   for (Scalar& scalar : scalars_.all())
-    fields_.push_back({scalar.name, {&scalar.values}});
+    fields_.push_back({scalar.name, {&scalar.values}, scalar.ambient});
   fields_.push_back({"scaled_pressure", {&accepted_pressure_}});
   if (fluid.isSublist("Free Surface"))
     liquid_ =
         std::make_unique<Liquid<dim>>(fluid, parameters_.forces.gravity, *interfaces, domain_);
+  if (fluid.isSublist("Moving Tiles")) {
+    moving_tiles_.emplace(fluid,
+                          DomainDescription<dim>{domain_.grid.description(), domain_.boundary});
+    owners_ = domain_.grid.tile_owners();
+  }
 }
 
 template <int dim>
@@ -46,6 +50,10 @@ const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
       !is_first && !geometry_.state.surface && !liquid_ && (!surface || surface->empty());
   if (unchanged)
     return geometry_;
+  if (moving_tiles_ && !has_room_)
+    make_room_for(surface);
+  if (moving_tiles_ && surface)
+    moving_tiles_->check_room(*surface, owners_, domain_.grid.comm());
   viscosity_.reset();
   largest_speed_.reset();
   FreeSurface<dim> free_surface;
@@ -190,32 +198,6 @@ AngularVector<dim> MacFluid<dim>::moment_of_shifts(const Velocity& velocity) con
 }
 
 template <int dim>
-Box<dim> MacFluid<dim>::bounds() const {
-  const Point<dim> lower = domain_.grid.lower();
-  Point<dim> upper = lower;
-  for (int a = 0; a < dim; ++a)
-    upper[a] += domain_.grid.n_cells()[a] * domain_.spacing();
-  return Box<dim>(lower, upper);
-}
-
-template <int dim>
-std::array<std::array<bool, 2>, dim> MacFluid<dim>::closed_sides() const {
-  std::array<std::array<bool, 2>, dim> closed{};
-  for (int axis = 0; axis < dim; ++axis)
-    for (int end = 0; end < 2; ++end)
-      closed[axis][end] = domain_.boundary.side(axis, end).closed();
-  return closed;
-}
-
-template <int dim>
-bool MacFluid<dim>::is_periodic() const {
-  bool any = false;
-  for (int axis = 0; axis < dim; ++axis)
-    any = any || domain_.boundary.periodic(axis);
-  return any;
-}
-
-template <int dim>
 ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   time_ = time + dt;
   last_step_ = dt;
@@ -237,6 +219,8 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
     });
     mine += moments.total();
   }
+  if (moving_tiles_)
+    mine += push_at_rim(force.of_surroundings(), dt);
   mine.angular += moment_of_shifts([&](int axis, int cell) { return dt * force(axis, cell); });
   domain_.halo.fill(prediction_);
   given.impulse += sum_over_ranks(mine, domain_.grid.comm());
@@ -307,7 +291,8 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
     SideValues<dim> inflow;
     std::copy(scalar.inflow.begin(), scalar.inflow.end(), inflow.begin());
     CellField carried(scalar.values.size(), 0.0);
-    transport.advect_scalar(parameters_.advection, scalar.values, inflow, carried);
+    transport.advect_scalar(parameters_.advection, scalar.values, inflow, carried, nullptr,
+                            scalar.ambient);
     scalar.values.swap(carried);
   }
   invalid_ = transport.invalid();

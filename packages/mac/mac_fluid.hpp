@@ -10,6 +10,7 @@
 #include "mac/pressure/forces.hpp"
 #include "mac/pressure/pressure_operator.hpp"
 #include "mac/pressure/pressure_system.hpp"
+#include "mac/state/moving_tiles.hpp"
 #include "mac/state/stored_fields.hpp"
 #include "mac/state/velocity_history.hpp"
 #include "mac/transport/ray_halo.hpp"
@@ -70,6 +71,7 @@ class MacFluid : public FluidDiscretization<dim>,
   /// Partly open volumes keep their own velocity.
   void set_coupled_velocity(const std::vector<double>& velocity) override;
 
+  bool begin_step(double time, double dt, const std::function<double()>& solid_speed) override;
   void begin_prediction() override;
   void begin_advection_velocity(double dt) override;
   ForceImpulse<dim> add_forces(double time, double dt) override;
@@ -124,6 +126,18 @@ class MacFluid : public FluidDiscretization<dim>,
     return state == FaceState::free || state == FaceState::coupled;
   }
   void set_prescribed(FaceField<dim>& velocity) const;
+  /// Other tiles: all fields move; what else was made of the grid waits for `freeze`.
+  void regrid(const TileOwners& owners);
+  void rest_at_rim();
+  typename MovingTiles<dim>::Present present(const MacState<dim>& state, double time,
+                                             double dt) const;
+  /// What the pressure beyond the stored tiles does to the faces there in dt: that of fluid at rest
+  /// under this acceleration. Of this rank.
+  Momentum<dim> push_at_rim(const Point<dim>& force, double dt);
+  /// Tiles for the first surface, before any step.
+  void make_room_for(const Surface& surface);
+  void save_tiles(CheckpointWriter& checkpoint) const;
+  void load_tiles(const CheckpointReader& checkpoint);
   /// What partly open faces of this rank add to an angular momentum, because their fluid moves
   /// beside their centres; velocity(axis, cell).
   template <typename Velocity>
@@ -133,6 +147,9 @@ class MacFluid : public FluidDiscretization<dim>,
                    FaceField<dim>& advection);
 
   MacDomain<dim> domain_;
+  std::optional<MovingTiles<dim>> moving_tiles_;  ///< none: all tiles exist, always
+  TileOwners owners_;                             ///< of the tiles, if they move
+  bool has_room_ = false;                         ///< for the first surface
   MacParameters<dim> parameters_;
   Scalars<dim> scalars_;
   RayHalo<dim> ray_halo_;

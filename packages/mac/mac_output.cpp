@@ -125,6 +125,7 @@ void MacFluid<dim>::add_surfaces(std::vector<SurfaceFrame>& surfaces) const {
 template <int dim>
 void MacFluid<dim>::save(CheckpointWriter& checkpoint) const {
   save_fields(domain_, fields_, checkpoint);
+  save_tiles(checkpoint);
   CellField cells(domain_.grid.n_stored_cells(), static_cast<double>(CellState::outside));
   std::transform(accepted_cells_.begin(), accepted_cells_.end(), cells.begin(),
                  [](CellState state) { return static_cast<double>(state); });
@@ -137,6 +138,7 @@ void MacFluid<dim>::save(CheckpointWriter& checkpoint) const {
 
 template <int dim>
 void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
+  load_tiles(checkpoint);
   load_fields(domain_, fields_, checkpoint);
   prediction_ = velocity_;
   scaled_pressure_ = accepted_pressure_;

@@ -52,6 +52,7 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
   declare_scalars<dim>(list);
   if (interfaces)
     declare_free_surface<dim>(*interfaces, list);
+  declare_moving_tiles<dim>(list);
   declare_initial_state<dim>(list);
   return list;
 }

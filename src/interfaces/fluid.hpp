@@ -147,6 +147,14 @@ class FluidDiscretization : public PlugIn {
 
   // The phases of a step.
 
+  /// A step from `time` to time + dt begins: room may be made where things will move. True if
+  /// u^n now lives on other cells, without being free of divergence there: then the geometry is to
+  /// be frozen anew. `solid_speed`: that of the fastest solid [m/s]; collective, for those who want
+  /// it. Default: the fluid always has room.
+  virtual bool begin_step(double /*time*/, double /*dt*/,
+                          const std::function<double()>& /*solid_speed*/) {
+    return false;
+  }
   virtual void begin_prediction() = 0;  ///< u* := u^n
   /// u* := the velocity to carry things over a step of dt, before F2 makes it free of divergence:
   /// u^n, or nearer to the middle of the step.

@@ -10,10 +10,11 @@
 namespace lockstep {
 
 /// Where a rank's cells lie in a Cartesian lattice: in blocks of `width` cells along each axis,
-/// whose cells are numbered block after block, x fastest. Fixed for the life of a grid.
+/// whose cells are numbered block after block, x fastest. Fixed as long as the grid has the same
+/// blocks.
 struct LatticeBlocks {
   int dimension = 3;
-  std::array<int, 3> n_cells{1, 1, 1};  ///< of the domain; 1 beyond `dimension`
+  std::array<int, 3> n_cells{1, 1, 1};  ///< of the lattice; 1 beyond `dimension`
   std::array<bool, 3> periodic{};
   int width = 8;                           ///< a power of two
   std::vector<std::array<int, 3>> begins;  ///< lattice coordinates, multiples of `width`

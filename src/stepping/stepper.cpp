@@ -49,6 +49,20 @@ void Stepper<dim>::freeze() {
   last_momentum_ = total_momentum();
 }
 
+/// A step that is interrupted afterwards leaves the fluid on its new cells.
+template <int dim>
+void Stepper<dim>::make_room(double dt) {
+  const auto& solids = *components_.solids;
+  fluid_moved_ = components_.fluid->begin_step(
+      time_, dt, [&solids] { return solids.largest_surface_speed(); });
+  if (!fluid_moved_)
+    return;
+  // What is lost with cells that are gone counts as carried away.
+  const Momentum<dim> before = last_momentum_;
+  freeze();
+  last_momentum_ = before;
+}
+
 /// On the dynamic solids. Users see it, and that on prescribed solids, among the forces of the
 /// fluid.
 template <int dim>
@@ -297,6 +311,7 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
 
 template <int dim>
 StepReport<dim> Stepper<dim>::advance(double dt) {
+  make_room(dt);
   const std::function<void()> undo = undo_of(components_);
   StepReport<dim> report;
   try {

@@ -54,6 +54,7 @@ class Stepper {
     CoupledSolution solution;
   };
   void freeze();
+  void make_room(double dt);
   /// All of a step but its end: nothing yet that cannot be undone.
   Solved solve_step(double dt, StepReport<dim>& report);
   bool coupled() const { return components_.solids->has_unknowns(); }
@@ -100,6 +101,7 @@ class Stepper {
   double time_;
   double last_dt_ = 0;           ///< 0 before the first step
   long long n_steps_ = 0;        ///< taken
+  bool fluid_moved_ = false;     ///< to other cells, before this step
   Momentum<dim> last_momentum_;  ///< at the end of the last step
 };
 

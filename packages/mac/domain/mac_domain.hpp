@@ -15,6 +15,21 @@ struct MacDomain {
         halo(grid, 1),
         full_halo(grid, grid.ghost_width()) {}
 
+  /// Only these tiles are there.
+  MacDomain(const DomainDescription<dim>& description, const TileOwners& owners,
+            const Communicator& comm)
+      : grid(description.grid, comm, owners),
+        boundary(description.boundary),
+        halo(grid, 1),
+        full_halo(grid, grid.ghost_width()) {}
+
+  /// Other tiles; cell ids change, so all that was made of the grid must be made anew. Collective.
+  void set_grid(TiledGrid<dim> other) {
+    grid = std::move(other);
+    halo = HaloExchange<dim>(grid, 1);
+    full_halo = HaloExchange<dim>(grid, grid.ghost_width());
+  }
+
   TiledGrid<dim> grid;
   Boundary<dim> boundary;
   HaloExchange<dim> halo;       ///< neighbours of owned cells, for stencils

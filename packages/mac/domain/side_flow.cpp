@@ -53,6 +53,13 @@ std::vector<PrescribedFlux> MacFluid<dim>::side_fluxes(double time) const {
 template <int dim>
 std::vector<std::pair<std::string, std::string>> MacFluid<dim>::notes() const {
   std::vector<std::pair<std::string, std::string>> notes;
+  if (moving_tiles_) {
+    GlobalIndex n_tiles = 1;
+    for (const int n : domain_.grid.tile_lattice().n_domain_tiles())
+      n_tiles *= n;
+    notes.emplace_back("moving tiles",
+                       fmt::format("{} of {} at the start", owners_.tiles.size(), n_tiles));
+  }
   for_each_inflow(domain_.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
     double sums[3] = {0, 0, 0};  // open area, faces, faces in part
     InflowShape<dim> opening = side.shape;
@@ -76,6 +83,38 @@ std::vector<std::pair<std::string, std::string>> MacFluid<dim>::notes() const {
   return notes;
 }
 
+template <int dim>
+Box<dim> MacFluid<dim>::bounds() const {
+  const Point<dim> lower = domain_.grid.lower();
+  Point<dim> upper = lower;
+  for (int a = 0; a < dim; ++a)
+    upper[a] += domain_.grid.n_cells()[a] * domain_.spacing();
+  return Box<dim>(lower, upper);
+}
+
+template <int dim>
+std::array<std::array<bool, 2>, dim> MacFluid<dim>::closed_sides() const {
+  std::array<std::array<bool, 2>, dim> closed{};
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end)
+      closed[axis][end] = domain_.boundary.side(axis, end).closed();
+  return closed;
+}
+
+template <int dim>
+bool MacFluid<dim>::is_periodic() const {
+  bool any = false;
+  for (int axis = 0; axis < dim; ++axis)
+    any = any || domain_.boundary.periodic(axis);
+  return any;
+}
+
+template Box<2> MacFluid<2>::bounds() const;
+template Box<3> MacFluid<3>::bounds() const;
+template std::array<std::array<bool, 2>, 2> MacFluid<2>::closed_sides() const;
+template std::array<std::array<bool, 2>, 3> MacFluid<3>::closed_sides() const;
+template bool MacFluid<2>::is_periodic() const;
+template bool MacFluid<3>::is_periodic() const;
 template void MacFluid<2>::set_prescribed(FaceField<2>&) const;
 template void MacFluid<3>::set_prescribed(FaceField<3>&) const;
 template std::vector<PrescribedFlux> MacFluid<2>::side_fluxes(double) const;

@@ -31,10 +31,20 @@ double ForceField<dim>::operator()(int axis, int cell) const {
   double weight = 1;
   if (gravity != 0 && temperature_)
     weight -= parameters_.expansion *
-              (mean(*temperature_, axis, cell) - parameters_.reference_temperature);
+              (mean(temperature_->values, axis, cell) - parameters_.reference_temperature);
   if (gravity != 0 && smoke_)
-    weight += parameters_.smoke_weight * mean(*smoke_, axis, cell);
+    weight += parameters_.smoke_weight * mean(smoke_->values, axis, cell);
   return weight * gravity + parameters_.body[axis];
+}
+
+template <int dim>
+Point<dim> ForceField<dim>::of_surroundings() const {
+  double weight = 1;
+  if (temperature_)
+    weight -= parameters_.expansion * (temperature_->ambient - parameters_.reference_temperature);
+  if (smoke_)
+    weight += parameters_.smoke_weight * smoke_->ambient;
+  return weight * parameters_.gravity + parameters_.body;
 }
 
 template class ForceField<2>;

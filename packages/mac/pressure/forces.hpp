@@ -22,6 +22,8 @@ class ForceField {
   ForceField(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
              const ForceParameters<dim>& parameters, const Scalars<dim>& scalars);
   double operator()(int axis, int cell) const;
+  /// Where all scalars are ambient.
+  Point<dim> of_surroundings() const;
   /// True if the fluid feels nothing along `axis`, anywhere.
   bool vanishes(int axis) const {
     return parameters_.gravity[axis] == 0 && parameters_.body[axis] == 0;
@@ -33,8 +35,8 @@ class ForceField {
   const MacDomain<dim>& domain_;
   const MacGeometry<dim>& geometry_;
   const ForceParameters<dim>& parameters_;
-  const CellField* temperature_;  ///< null if it does nothing
-  const CellField* smoke_;
+  const Scalar* temperature_;  ///< null if it does nothing
+  const Scalar* smoke_;
 };
 
 }  // namespace lockstep

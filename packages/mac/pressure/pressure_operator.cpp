@@ -160,15 +160,17 @@ std::shared_ptr<const LatticeBlocks> lattice_blocks(const TiledGrid<dim>& grid) 
   blocks.dimension = dim;
   blocks.width = tile_width<dim>;
   blocks.comm = grid.comm();
+  Index<dim> begin{};
   for (int axis = 0; axis < dim; ++axis) {
-    blocks.n_cells[axis] = grid.n_cells()[axis];
     blocks.periodic[axis] = grid.description().periodic[axis];
+    begin[axis] = blocks.periodic[axis] ? 0 : grid.extent()[0][axis];
+    const int end = blocks.periodic[axis] ? grid.n_cells()[axis] : grid.extent()[1][axis];
+    blocks.n_cells[axis] = end - begin[axis];
   }
   for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
-    std::array<int, 3> begin{};
+    std::array<int, 3>& block = blocks.begins.emplace_back();
     for (int axis = 0; axis < dim; ++axis)
-      begin[axis] = grid.tile_begin(tile)[axis];
-    blocks.begins.push_back(begin);
+      block[axis] = grid.tile_begin(tile)[axis] - begin[axis];
   }
   return std::make_shared<const LatticeBlocks>(std::move(blocks));
 }

@@ -4,7 +4,8 @@
 
 namespace lockstep {
 
-/// The owned tiles of a grid as blocks of cells, in the order of the cell ids.
+/// The owned tiles of a grid as blocks of cells, in the order of the cell ids, in the smallest box
+/// that holds all tiles.
 template <int dim>
 std::shared_ptr<const LatticeBlocks> lattice_blocks(const TiledGrid<dim>& grid);
 

@@ -5,6 +5,7 @@
 
 #include "mac/liquid/free_surface.hpp"
 #include "mac/state/covered_sides.hpp"
+#include "mac/state/moving_tiles.hpp"
 #include "mac/state/surface_marks.hpp"
 
 namespace lockstep {
@@ -63,6 +64,12 @@ FaceState state_far_from_surfaces(const MacDomain<dim>& domain, const std::vecto
   if (face.at_side() && domain.boundary.side(axis, face.lower < 0 ? 0 : 1).prescribed())
     return FaceState::prescribed;
   return FaceState::free;
+}
+
+/// A free face between fluid and a cell whose pressure is known.
+bool leads_to_empty(const std::vector<CellState>& cells, const FaceCells& face) {
+  const auto empty = [&](int cell) { return cell >= 0 && cells[cell] == CellState::empty; };
+  return empty(face.lower) || empty(face.upper);
 }
 
 template <int dim>
@@ -315,6 +322,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   MacState<dim>& state = geometry.state;
   state.cells.assign(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { state.cells[cell] = CellState::fluid; });
+  empty_rim(domain, state.cells);
+  const bool has_rim = !grid.is_complete() && !free_surface;
   SurfaceMarks<dim> marks;
   if (surface && !surface->empty()) {
     state.surface = surface;
@@ -353,6 +362,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       }
       if (result == FaceState::prescribed)
         geometry.prescribed.push_back({axis, cell});
+      if (has_rim && result == FaceState::free && leads_to_empty(state.cells, face))
+        geometry.rim.push_back({axis, cell});
       if (result == FaceState::free && face.at_side())
         geometry.face_table.set_closeness(axis, cell, 2);
     });

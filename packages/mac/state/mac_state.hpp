@@ -13,7 +13,8 @@ enum class CellState : char {
   outside,  ///< beyond the domain
   fluid,    ///< carries a pressure
   solid,    ///< centre inside a closed solid
-  empty     ///< a void above a free surface: p = 0
+  empty     ///< its pressure is known: a void above a free surface, p = 0, or fluid at rest at the
+            ///< rim of the stored tiles
 };
 
 /// What a face velocity is.

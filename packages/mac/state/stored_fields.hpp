@@ -13,6 +13,7 @@ namespace lockstep {
 struct StoredField {
   std::string name;                    ///< in checkpoints
   std::vector<CellField*> components;  ///< of a velocity on faces one an axis, else one
+  double at_rest = 0;                  ///< value in tiles that are new
 };
 
 template <int dim>

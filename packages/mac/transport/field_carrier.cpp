@@ -112,7 +112,8 @@ void FieldCarrier<dim>::carry(std::vector<Passenger<dim>>& passengers,
 
 template <int dim>
 void FieldCarrier<dim>::begin(Passenger<dim>& passenger) {
-  passenger.field.values = frame_.setting.halo.fetch(*passenger.start, passenger.storage).data();
+  passenger.field.values =
+      frame_.setting.halo.fetch(*passenger.start, passenger.storage, passenger.beyond).data();
   passenger.result->resize(passenger.start->size());
   if (passenger.corrects()) {
     passenger.half_way.resize(passenger.start->size());
@@ -335,7 +336,8 @@ template <int dim>
 void FieldCarrier<dim>::correct(std::vector<Passenger<dim>>& passengers) {
   std::vector<const double*> carried;
   for (Passenger<dim>& passenger : passengers)
-    carried.push_back(frame_.setting.halo.fetch(passenger.half_way, passenger.storage).data());
+    carried.push_back(
+        frame_.setting.halo.fetch(passenger.half_way, passenger.storage, passenger.beyond).data());
   for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
     if (frame_.plans[tile].by_rows && correct_rows(passengers, carried, tile))
       continue;

@@ -14,6 +14,7 @@ struct Passenger {
   CarriedField<dim> field;           ///< kind and inflow set by the caller
   CellField* result = nullptr;
   std::vector<char>* invalid = nullptr;
+  double beyond = 0;   ///< the field where no tile exists
   CellField storage;   ///< of field.values
   CellField half_way;  ///< MacCormack's first half: the result of semi-Lagrangian transport
   /// Range of the samples used, of owned cells; empty (low > high): not to be corrected. The first

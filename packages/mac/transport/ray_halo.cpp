@@ -31,27 +31,38 @@ void RayHalo<dim>::require(int reach) {
 template <int dim>
 template <typename Value>
 const std::vector<Value>& RayHalo<dim>::fetch(const std::vector<Value>& field,
-                                              std::vector<Value>& storage) const {
-  if (grid_.comm()->getSize() == 1)
+                                              std::vector<Value>& storage, Value beyond) const {
+  const bool alone = grid_.comm()->getSize() == 1;
+  if (alone && grid_.is_complete())
     return field;
   if (wide_) {
     wide_halo_->fill(field, storage);
   } else {
     storage = field;
-    exchange_->fill(storage);
+    if (!alone)
+      exchange_->fill(storage);
   }
+  if (!grid_.is_complete())
+    storage.insert(storage.end(), tile_volume<dim>, beyond);
   return storage;
+}
+
+template <int dim>
+void RayHalo<dim>::forget() {
+  exchange_.reset();
+  wide_halo_.reset();
+  wide_.reset();
 }
 
 template class RayHalo<2>;
 template class RayHalo<3>;
 template const std::vector<double>& RayHalo<2>::fetch(const std::vector<double>&,
-                                                      std::vector<double>&) const;
+                                                      std::vector<double>&, double) const;
 template const std::vector<double>& RayHalo<3>::fetch(const std::vector<double>&,
-                                                      std::vector<double>&) const;
-template const std::vector<char>& RayHalo<2>::fetch(const std::vector<char>&,
-                                                    std::vector<char>&) const;
-template const std::vector<char>& RayHalo<3>::fetch(const std::vector<char>&,
-                                                    std::vector<char>&) const;
+                                                      std::vector<double>&, double) const;
+template const std::vector<char>& RayHalo<2>::fetch(const std::vector<char>&, std::vector<char>&,
+                                                    char) const;
+template const std::vector<char>& RayHalo<3>::fetch(const std::vector<char>&, std::vector<char>&,
+                                                    char) const;
 
 }  // namespace lockstep

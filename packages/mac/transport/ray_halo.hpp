@@ -10,7 +10,7 @@ namespace lockstep {
 
 /// Brings the samples that rays of many cells' length reach onto the rank that traces them: through
 /// the ghost tiles of the grid if they suffice, else through a wider grid, built when first needed.
-/// Keep one for the life of the grid; it must not outlive the grid.
+/// Keep one as long as the grid has the same tiles; it must not outlive the grid.
 template <int dim>
 class RayHalo {
  public:
@@ -22,10 +22,14 @@ class RayHalo {
   /// The grid whose cell ids fetched fields have. Ids of owned cells are those of the base grid.
   const TiledGrid<dim>& sample_grid() const { return wide_ ? *wide_ : grid_; }
   /// Collective: the field with all samples within reach; ghost values of `field` are not used.
-  /// Returns `field` itself where nothing has to be brought, else `storage`.
+  /// Where tiles do not exist it has one more behind the others, all of whose samples are `beyond`,
+  /// the value there (SampleLattice). Returns `field` itself where nothing has to be brought, else
+  /// `storage`.
   template <typename Value>
-  const std::vector<Value>& fetch(const std::vector<Value>& field,
-                                  std::vector<Value>& storage) const;
+  const std::vector<Value>& fetch(const std::vector<Value>& field, std::vector<Value>& storage,
+                                  Value beyond) const;
+  /// After the tiles of the grid have changed.
+  void forget();
 
  private:
   const TiledGrid<dim>& grid_;

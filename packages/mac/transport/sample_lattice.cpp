@@ -44,7 +44,7 @@ void copy_part(const Index<3>& size, const double* from, const Index<3>& stride,
 }  // namespace
 
 template <int dim>
-SampleLattice<dim>::SampleLattice(const TiledGrid<dim>& grid)
+SampleLattice<dim>::SampleLattice(const TiledGrid<dim>& grid, bool beyond)
     : n_cells_(grid.n_cells()), periodic_(grid.description().periodic) {
   constexpr int log_width = log_tile_width<dim>;
   Index<dim> lower{}, upper{};
@@ -62,7 +62,7 @@ SampleLattice<dim>::SampleLattice(const TiledGrid<dim>& grid)
     table_stride_[a] = size;
     size *= table_size_[a];
   }
-  table_.assign(size, -1);
+  table_.assign(size, beyond && !grid.is_complete() ? grid.n_tiles() : -1);
   for (int tile = 0; tile < grid.n_tiles(); ++tile) {
     int place = 0;
     for (int a = 0; a < dim; ++a)

@@ -95,7 +95,9 @@ double interpolate(const WideStencil<dim>& stencil, const double* field) {
 template <int dim>
 class SampleLattice {
  public:
-  explicit SampleLattice(const TiledGrid<dim>& grid);
+  /// `beyond`: fields have one more tile, behind those stored, that stands for all that do not
+  /// exist (RayHalo::fetch); else samples there are missing.
+  explicit SampleLattice(const TiledGrid<dim>& grid, bool beyond = false);
 
   /// Samples around x: periodic axes wrap, others stop at their last sample.
   Stencil<dim> locate(SampleKind kind, const Point<dim>& x) const;
@@ -149,7 +151,8 @@ class SampleLattice {
   Index<dim> n_cells_;
   std::array<bool, dim> periodic_;
   std::array<bool, dim> virtual_wall_;  ///< the upper side's faces are not stored: zero velocity
-  Index<dim> table_lower_{}, table_size_{}, table_stride_{};  ///< one ring of -1 around the tiles
+  Index<dim> table_lower_{}, table_size_{},
+      table_stride_{};  ///< one ring without tiles around them
   std::vector<int> table_;
 };
 

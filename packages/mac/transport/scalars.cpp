@@ -106,10 +106,10 @@ Scalars<dim>::Scalars(const MacDomain<dim>& domain, const ParameterList& fluid) 
 }
 
 template <int dim>
-const CellField* Scalars<dim>::find(const std::string& name) const {
+const Scalar* Scalars<dim>::find(const std::string& name) const {
   for (const Scalar& scalar : scalars_)
     if (scalar.name == name)
-      return &scalar.values;
+      return &scalar;
   return nullptr;
 }
 

@@ -43,8 +43,8 @@ class Scalars {
   bool empty() const { return scalars_.empty(); }
   std::vector<Scalar>& all() { return scalars_; }
   const std::vector<Scalar>& all() const { return scalars_; }
-  /// The values of a scalar, or null if the scene has none of that name.
-  const CellField* find(const std::string& name) const;
+  /// A scalar, or null if the scene has none of that name.
+  const Scalar* find(const std::string& name) const;
   /// Feeds the fluid cells inside the sources that are active at `time`, over dt. Sets owned cells.
   /// Local.
   void feed(const MacGeometry<dim>& geometry, double time, double dt);

@@ -60,12 +60,13 @@ Transport<dim>::Implementation::Implementation(const TransportSetting<dim>& sett
   const int stencil_reach = setting.stencil_reach;
   setting.halo.require(reach + 2 + stencil_reach);
   const TiledGrid<dim>& samples = setting.halo.sample_grid();
-  frame.lattice = std::make_unique<SampleLattice<dim>>(samples);
+  frame.lattice = std::make_unique<SampleLattice<dim>>(samples, true);
 
   std::array<const double*, dim> velocity;
   std::array<std::array<bool, 2>, dim> inflow;
   for (int a = 0; a < dim; ++a) {
-    velocity[a] = setting.halo.fetch(setting.advection_velocity[a], velocity_storage[a]).data();
+    velocity[a] =
+        setting.halo.fetch(setting.advection_velocity[a], velocity_storage[a], 0.0).data();
     inflow[a] = {setting.sides[a][0].inflow, setting.sides[a][1].inflow};
   }
   mark_usable();
@@ -92,12 +93,12 @@ void Transport<dim>::Implementation::mark_usable() {
     frame.invalid.faces[a].assign(n, 0);
     for (int i = 0; i < n; ++i)
       usable_samples[a][i] = setting.state.faces[a][i] != FaceState::inactive;
-    usable.faces[a] = setting.halo.fetch(usable_samples[a], usable_storage[a]).data();
+    usable.faces[a] = setting.halo.fetch(usable_samples[a], usable_storage[a], '\1').data();
   }
   frame.invalid.cells.assign(n, 0);
   for (int i = 0; i < n; ++i)
     usable_samples[dim][i] = setting.state.cells[i] == CellState::fluid;
-  usable.cells = setting.halo.fetch(usable_samples[dim], usable_storage[dim]).data();
+  usable.cells = setting.halo.fetch(usable_samples[dim], usable_storage[dim], '\1').data();
 }
 
 template <int dim>
@@ -144,9 +145,10 @@ void Transport<dim>::advect_faces(AdvectionScheme scheme, const FaceField<dim>& 
 template <int dim>
 void Transport<dim>::advect_scalar(AdvectionScheme scheme, const CellField& s,
                                    const SideValues<dim>& inflow_values, CellField& result,
-                                   const std::vector<char>* tiles) {
+                                   const std::vector<char>* tiles, double beyond) {
   std::vector<Passenger<dim>> passengers(1);
   Passenger<dim>& passenger = passengers[0];
+  passenger.beyond = beyond;
   passenger.scheme = scheme;
   passenger.start = &s;
   passenger.result = &result;

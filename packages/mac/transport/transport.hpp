@@ -65,7 +65,7 @@ struct InvalidSamples {
 ///
 /// Constant fields stay exactly constant. A scalar never leaves the range of the field and the
 /// inflow values, a velocity grows no longer than the fastest of field, surfaces and inflows.
-/// Results do not depend on the number of ranks.
+/// In tiles that do not exist fluid is at rest. Results do not depend on the number of ranks.
 template <int dim>
 class Transport {
  public:
@@ -78,12 +78,12 @@ class Transport {
   /// Collective: `result` = u carried over dt. Prescribed and inactive faces keep their u. Ghost
   /// values of u are not used, those of `result` not set. `result` may not be `u`.
   void advect_faces(AdvectionScheme scheme, const FaceField<dim>& u, FaceField<dim>& result);
-  /// Collective: the same for a cell-centred scalar, given what it is on inflow sides. Cells
-  /// without fluid keep their s. `tiles`: a flag for each owned tile, 0 where `result` stays as it
-  /// is (not with maccormack); null: all are carried.
+  /// Collective: the same for a cell-centred scalar, given what it is on inflow sides and,
+  /// `beyond`, in tiles that do not exist. Cells without fluid keep their s. `tiles`: a flag for
+  /// each owned tile, 0 where `result` stays as it is (not with maccormack); null: all are carried.
   void advect_scalar(AdvectionScheme scheme, const CellField& s,
                      const SideValues<dim>& inflow_values, CellField& result,
-                     const std::vector<char>* tiles = nullptr);
+                     const std::vector<char>* tiles = nullptr, double beyond = 0);
 
   /// What the calls so far could not give a value. Faces after `advect_faces`, cells after
   /// `advect_scalar` (the same for every scalar).

@@ -1,0 +1,180 @@
+// How the grid of a MacFluid follows what happens in it.
+#include "grid/tile_migration.hpp"
+#include "mac/mac_fluid.hpp"
+#include "output/checkpoint.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Where the pressure of fluid at rest is 0: the middle of an open side, else of the domain.
+template <int dim>
+Point<dim> origin_of_pressure(const MacDomain<dim>& domain, const Box<dim>& bounds) {
+  Point<dim> origin = bounds.center();
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end)
+      if (domain.boundary.side(axis, end).type == SideType::open)
+        origin[axis] = end == 0 ? bounds.min()[axis] : bounds.max()[axis];
+  return origin;
+}
+
+}  // namespace
+
+template <int dim>
+typename MovingTiles<dim>::Present MacFluid<dim>::present(const MacState<dim>& state, double time,
+                                                          double dt) const {
+  typename MovingTiles<dim>::Present present{domain_.grid, owners_, state, velocity_, 0,
+                                             {},           time,    dt,    0};
+  for (const Scalar& scalar : scalars_.all())
+    present.scalars.push_back({scalar.values, scalar.ambient});
+  return present;
+}
+
+template <int dim>
+bool MacFluid<dim>::begin_step(double time, double dt, const std::function<double()>& solid_speed) {
+  if (!moving_tiles_)
+    return false;
+  auto now = present(geometry_.state, time, dt);
+  now.largest_speed = largest_speed();
+  now.solid_speed = solid_speed();
+  const std::optional<TileOwners> owners = moving_tiles_->change(now);
+  if (owners)
+    regrid(*owners);
+  return owners.has_value();
+}
+
+template <int dim>
+void MacFluid<dim>::make_room_for(const Surface& surface) {
+  MacState<dim> state;
+  state.surface = surface;
+  state.cells.assign(domain_.grid.n_stored_cells(), CellState::fluid);
+  constexpr double any_step = 1;
+  if (const auto owners = moving_tiles_->change(present(state, time_, any_step)))
+    regrid(*owners);
+  has_room_ = true;
+}
+
+template <int dim>
+void MacFluid<dim>::regrid(const TileOwners& owners) {
+  TiledGrid<dim> grid(domain_.grid.description(), domain_.grid.comm(), owners);
+  const TileMigration<dim> migration(domain_.grid, grid);
+  for (const StoredField& field : fields_)
+    migration.move(field.components, CellField(field.components.size(), field.at_rest));
+  if (!accepted_cells_.empty()) {
+    std::vector<char> cells(accepted_cells_.size());
+    std::transform(accepted_cells_.begin(), accepted_cells_.end(), cells.begin(),
+                   [](CellState state) { return static_cast<char>(state); });
+    migration.move(cells, static_cast<char>(CellState::empty));
+    accepted_cells_.resize(cells.size());
+    std::transform(cells.begin(), cells.end(), accepted_cells_.begin(),
+                   [](char state) { return static_cast<CellState>(state); });
+  }
+  viscosity_.reset();
+  geometry_ = {};
+  largest_speed_.reset();
+  invalid_ = {};
+  ray_halo_.forget();
+  nearby_ = {};
+  domain_.set_grid(std::move(grid));
+  lattice_blocks_ = lattice_blocks(domain_.grid);
+  owners_ = owners;
+  has_room_ = true;
+  rest_at_rim();
+  prediction_ = velocity_;
+  scaled_pressure_ = accepted_pressure_;
+}
+
+/// Nothing of what left the tiles that are gone may come back from their rim.
+template <int dim>
+void MacFluid<dim>::rest_at_rim() {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const std::vector<char> rim = find_rim(domain_);
+  if (rim.empty())
+    return;
+  grid.for_each_owned_cell([&](int cell) {
+    if (!rim[cell])
+      return;
+    for (Scalar& scalar : scalars_.all())
+      scalar.values[cell] = scalar.ambient;
+    for (int axis = 0; axis < dim; ++axis) {
+      const int lower = grid.neighbor(cell, axis, 0);
+      if (lower < 0 || rim[lower])
+        velocity_[axis][cell] = 0;
+    }
+  });
+  domain_.full_halo.fill(velocity_);
+  for (Scalar& scalar : scalars_.all())
+    domain_.full_halo.fill(scalar.values);
+}
+
+template <int dim>
+Momentum<dim> MacFluid<dim>::push_at_rim(const Point<dim>& force, double dt) {
+  Momentum<dim> given;
+  if (force == Point<dim>::Zero())
+    return given;
+  const TiledGrid<dim>& grid = domain_.grid;
+  const Point<dim> origin = origin_of_pressure(domain_, bounds());
+  for (const auto& [axis, cell] : geometry_.rim) {
+    const bool is_above = geometry_.state.cells[cell] == CellState::empty;
+    const Point<dim> face = grid.face_center(axis, cell);
+    const Point<dim> beyond =
+        face + (is_above ? 0.5 : -0.5) * grid.spacing() * Point<dim>::Unit(axis);
+    const double pressure = parameters_.density * force.dot(beyond - origin);
+    const double change =
+        (is_above ? -dt : dt) * geometry_.face_table(axis, cell).gradient * pressure;
+    prediction_[axis][cell] += change;
+    given.add(face, axis, geometry_.mass(axis, cell) * change);
+  }
+  return given;
+}
+
+/// With their ranks: the sums of a run that goes on are those of one that never stopped.
+template <int dim>
+void MacFluid<dim>::save_tiles(CheckpointWriter& checkpoint) const {
+  if (!moving_tiles_)
+    return;
+  const int rank = domain_.grid.comm()->getRank();
+  std::vector<GlobalIndex> mine;
+  for (std::size_t i = 0; i < owners_.tiles.size(); ++i)
+    if (owners_.ranks[i] == rank)
+      mine.push_back(owners_.tiles[i]);
+  checkpoint.write_distributed("fluid/tiles", mine, std::vector<long long>(mine.size(), rank));
+  checkpoint.file().write_attribute<long long>("fluid/tiles", "ranks",
+                                               domain_.grid.comm()->getSize());
+}
+
+template <int dim>
+void MacFluid<dim>::load_tiles(const CheckpointReader& checkpoint) {
+  if (!moving_tiles_)
+    return;
+  const Hdf5File& file = checkpoint.file();
+  TileOwners owners;
+  for (const long long tile : file.read_all<long long>("fluid/tiles/ids"))
+    owners.tiles.push_back(tile);
+  for (const long long rank : file.read_all<long long>("fluid/tiles/values"))
+    owners.ranks.push_back(static_cast<int>(rank));
+  const Communicator& comm = domain_.grid.comm();
+  if (file.read_attribute<long long>("fluid/tiles", "ranks") != comm->getSize())
+    owners = share_tiles(domain_.grid.tile_lattice(), comm, owners.tiles,
+                         std::vector<GlobalIndex>(owners.tiles.size(), 1));
+  regrid(owners);
+}
+
+template MovingTiles<2>::Present MacFluid<2>::present(const MacState<2>&, double, double) const;
+template MovingTiles<3>::Present MacFluid<3>::present(const MacState<3>&, double, double) const;
+template bool MacFluid<2>::begin_step(double, double, const std::function<double()>&);
+template bool MacFluid<3>::begin_step(double, double, const std::function<double()>&);
+template void MacFluid<2>::make_room_for(const Surface&);
+template void MacFluid<3>::make_room_for(const Surface&);
+template void MacFluid<2>::regrid(const TileOwners&);
+template void MacFluid<3>::regrid(const TileOwners&);
+template void MacFluid<2>::rest_at_rim();
+template void MacFluid<3>::rest_at_rim();
+template Momentum<2> MacFluid<2>::push_at_rim(const Point<2>&, double);
+template Momentum<3> MacFluid<3>::push_at_rim(const Point<3>&, double);
+template void MacFluid<2>::save_tiles(CheckpointWriter&) const;
+template void MacFluid<3>::save_tiles(CheckpointWriter&) const;
+template void MacFluid<2>::load_tiles(const CheckpointReader&);
+template void MacFluid<3>::load_tiles(const CheckpointReader&);
+
+}  // namespace lockstep

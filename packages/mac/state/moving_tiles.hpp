@@ -1,0 +1,79 @@
+#pragma once
+#include <vector>
+
+#include "grid/needed_tiles.hpp"
+#include "mac/domain/mac_domain.hpp"
+#include "mac/domain/region_shape.hpp"
+#include "mac/state/mac_state.hpp"
+
+namespace lockstep {
+
+/// Which tiles a single fluid needs: those where it moves or carries something, those near solids,
+/// and those where something enters or was asked for. Read once from the fluid's list.
+template <int dim>
+class MovingTiles {
+ public:
+  MovingTiles(const ParameterList& fluid, const DomainDescription<dim>& domain);
+
+  /// Collective: those where something is asked for at the start.
+  TileOwners first(const Communicator& comm) const;
+
+  /// A scalar that is carried, and its value in fluid at rest.
+  struct Carried {
+    const CellField& values;
+    double ambient;
+  };
+  /// What is there at the beginning of a step.
+  struct Present {
+    const TiledGrid<dim>& grid;
+    const TileOwners& owners;  ///< of its tiles
+    const MacState<dim>& state;
+    const FaceField<dim>& velocity;
+    double largest_speed;  ///< [m/s]
+    std::vector<Carried> scalars;
+    double time, dt;     ///< [s]
+    double solid_speed;  ///< of the fastest solid [m/s]
+  };
+  /// Collective: other tiles, if they are needed.
+  std::optional<TileOwners> change(const Present& present) const;
+  /// Collective: throws SolveError if a surface is where no tile is.
+  void check_room(const SurfaceSnapshot<dim>& surface, const TileOwners& owners,
+                  const Communicator& comm) const;
+
+ private:
+  /// A region that is stored until a time.
+  struct Asked {
+    Box<dim> region;
+    double until;
+  };
+  void ask_for(const ParameterList& regions, double until);
+  void ask_for_sides(const DomainDescription<dim>& domain);
+  void add_regions(double time, NeededTiles<dim>& needed) const;
+  static void add_surface(const SurfaceSnapshot<dim>& surface, const Communicator& comm,
+                          NeededTiles<dim>& needed);
+
+  TileLattice<dim> lattice_;
+  int margin_;
+  double threshold_;
+  std::vector<Asked> asked_;
+};
+
+/// Declares "Moving Tiles" in the fluid's list.
+template <int dim>
+void declare_moving_tiles(ParameterList& fluid);
+
+/// The domain of a fluid with the tiles that it has at the start: all, or those it needs.
+/// Throws InputError. Collective.
+template <int dim>
+MacDomain<dim> make_domain(const ParameterList& fluid, const ParameterList& domain,
+                           const Communicator& comm);
+
+/// The domain's cells beside tiles that do not exist, of all stored cells: the fluid's state is
+/// known there, at rest. Empty if all tiles exist. Collective.
+template <int dim>
+std::vector<char> find_rim(const MacDomain<dim>& domain);
+/// Makes the fluid cells of the rim empty. Collective.
+template <int dim>
+void empty_rim(const MacDomain<dim>& domain, std::vector<CellState>& cells);
+
+}  // namespace lockstep

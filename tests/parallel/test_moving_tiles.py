@@ -1,0 +1,112 @@
+"""Tiles that come and go: a plume and a disc that sinks away from it, against the same with all tiles stored, on any
+number of ranks, and continued from a checkpoint."""
+import csv
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+
+SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
+N_STEPS = 40
+SECONDS = 300  # of a run; a few are usual
+
+
+def scene(tiles):
+    fluid = {"Density": 1.2, "Viscosity": 1e-3, "Gravity": (0., -9.8), "Smoke Weight": -.2, "Smoke": {"Ambient": 0.},
+             "Temperature": {"Ambient": 300.},
+             "Sources": {"Fire": {"Shape": "ball", "Center": (-1., .6), "Radius": .3, "Smoke": 1.,
+                                  "Temperature": 350.}}}
+    if tiles:
+        fluid["Moving Tiles"] = {}
+    return xml("Scene", {
+        "Dimension": 2, "Domain": {"Lower": (-3., 0.), "Upper": (3., 16.), "Cells": (96, 256)}, "Fluid": fluid,
+        "Solids": {"Disc": {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .3}, "Density": 1.6,
+                            "Position": (1., 13.)}},
+        "Solver": {"Tolerance": 1e-10},
+        "Time": {"End": 2., "Fixed Step": .025}, "Output": {"Checkpoint Interval": .25, "Keep Checkpoints": 9}})
+
+
+def table(path):
+    lines = path.read_text().splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+class MovingTiles(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.folder.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def run_scene(self, name, tiles=True, ranks=1, restart=None, steps=N_STEPS):
+        """Histories of fluid and disc, run once a name."""
+        output = self.root / name
+        if restart:
+            output = Path(shutil.copytree(output, f"{output}-again-{ranks}"))
+        if restart or not output.exists():
+            file = self.root / f"{'tiles' if tiles else 'all'}.xml"
+            file.write_text(scene(tiles))
+            command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
+            command += [SIMULATE, str(file), "--output", str(output), "--steps", str(steps), "--quiet"]
+            command += ["--restart", str(output / restart)] if restart else []
+            result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                    timeout=SECONDS)
+            self.assertEqual(result.returncode, 0, result.stdout)
+        return table(output / "history.csv"), table(output / "bodies.csv")
+
+    def assert_close(self, one, other, columns, tolerance):
+        for column in columns:
+            largest = max(abs(float(row[column])) for row in one)
+            apart = max(abs(float(a[column]) - float(b[column])) for a, b in zip(one, other))
+            self.assertLessEqual(apart, tolerance * largest, column)
+
+    def test_moves_as_with_all_tiles(self):
+        all_history, all_bodies = self.run_scene("all", tiles=False)
+        history, bodies = self.run_scene("tiles")
+        self.assert_close(all_bodies, bodies, ("y", "vy"), .01)
+        self.assert_close(all_history, history, ("fluid_kinetic_energy",), .02)
+        for row in history:
+            self.assertLessEqual(float(row["momentum_error"]), 1e-10)
+            self.assertLessEqual(float(row["max_divergence"]), 1e-6)
+
+    def test_tiles_come_and_go(self):
+        history, _ = self.run_scene("tiles")
+        volumes = [float(row["liquid_volume"]) for row in history]
+        self.assertLess(max(volumes), .7 * 96)
+        self.assertLess(volumes[0], .3 * 96)
+        self.assertGreater(len(set(volumes)), 5)
+
+    def test_is_the_same_on_any_number_of_ranks(self):
+        history, bodies = self.run_scene("tiles")
+        for ranks, steps in ((2, N_STEPS), (3, 8)):
+            other, other_bodies = self.run_scene(f"ranks-{ranks}", ranks=ranks, steps=steps)
+            self.assert_close(bodies, other_bodies, ("x", "y", "vx", "vy"), 1e-8)
+            self.assert_close(history, other, ("liquid_volume", "fluid_momentum_y", "fluid_kinetic_energy"), 1e-8)
+
+    def test_goes_on_from_a_checkpoint_bit_for_bit(self):
+        for ranks in (1, 2):
+            name = "tiles" if ranks == 1 else f"ranks-{ranks}"
+            history, bodies = self.run_scene(name, ranks=ranks)
+            again, bodies_again = self.run_scene(name, ranks=ranks, restart="checkpoint-000020.h5")
+            self.assertEqual(bodies, bodies_again)
+            for row in (*history, *again):
+                row.pop("wall_seconds")
+            self.assertEqual(history, again)
+
+    def test_goes_on_on_another_number_of_ranks(self):
+        history, _ = self.run_scene("tiles")
+        self.run_scene("ranks-2", ranks=2)
+        again, _ = self.run_scene("ranks-2", restart="checkpoint-000020.h5")
+        self.assert_close(history, again, ("liquid_volume", "fluid_momentum_y", "fluid_kinetic_energy"), 1e-8)
+
+
+unittest.main()
