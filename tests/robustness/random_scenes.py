@@ -27,6 +27,7 @@ from scenes import NEEDS_FLUID_ALONE, random_scene
 # What a strategy or a scene may be refused for, in the program's words.
 NO_UNKNOWNS = re.compile(r"some rank owns no (pressure|solid) unknown")
 CLOSED_REGION = re.compile(r"a moving\s+solid closes a region of fluid")
+MUELU = re.compile(r"MueLu\s+cannot\s+build\s+a\s+preconditioner\s+for\s+the\s+solid\s+block")
 CRUSHED = re.compile(r"elastic forces of .* are\s+not finite")
 NO_MASS = re.compile(r"node without\s+mass that no mixed face sees")
 
@@ -57,6 +58,7 @@ class Seed:
     def may_refuse(self, errors, ranks):
         facts = self.scene.facts
         return (ranks > 1 and facts.needs_full_ranks and NO_UNKNOWNS.search(errors) or
+                ranks > 1 and facts.solid_by_muelu and MUELU.search(errors) or
                 facts.crushed and CRUSHED.search(errors) or
                 facts.massless and NO_MASS.search(errors) or
                 facts.strategy in NEEDS_FLUID_ALONE and CLOSED_REGION.search(errors))
@@ -150,7 +152,7 @@ def main():
     n_failed = sum(bool(runs.failures) for runs in results)
     core_seconds = sum(runs.core_seconds for runs in results)
     print(f"{len(results)} scenes, {n_failed} failed, {sum(runs.refused for runs in results)} runs refused (ranks without "
-          f"unknowns, nodes without mass, closed regions, crushed elements); {core_seconds:.0f} s of a core, {time.monotonic() - begin:.0f} s")
+          f"unknowns, nodes without mass, closed regions, crushed elements, MueLu); {core_seconds:.0f} s of a core, {time.monotonic() - begin:.0f} s")
     if arguments.report:
         report.write_scenes(Path(arguments.report), arguments.seeds, results, arguments.quick)
     sys.exit(1 if n_failed else 0)

@@ -39,6 +39,7 @@ class Facts:
     dynamic_rigid: bool = False
     exact_momentum: bool = True
     strategy: str = ""
+    solid_by_muelu: bool = False  # which on several ranks cannot multiply matrices of which one holds no neighbours
     needs_full_ranks: bool = False  # Belos' inner products want unknowns on every rank
     massless: bool = False  # a cloth, of which the fluid may leave nodes without any
     scalar_range: dict = dataclasses.field(default_factory=dict)  # smoke, temperature: [least, most]
@@ -332,6 +333,7 @@ def strategy(world, coupling_list, solid_lists):
     if name in ("schur-cg", "pressure-schur") and solid_lists and rng.random() < 0.25:
         kinds = ["Exact", "Jacobi", "Additive Multilevel", "MueLu"] if facts.soft else ["Exact", "Block Diagonal"]
         chosen["Solid Inverse"] = {"Type": rng.choice(kinds)}
+        facts.solid_by_muelu = chosen["Solid Inverse"]["Type"] == "MueLu"
     return chosen
 
 
