@@ -195,20 +195,22 @@ bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
 /// roughly. A shell has nothing that answers: what it pushes out of the regions on one of its
 /// sides, if they are all closed and it is all of that side.
 double rate_of(const Pushes& pushes, const PressureRegions& regions, int s, bool is_closed) {
-  constexpr double least_part = 0.5;  // of the side: 1 on a fine grid
+  constexpr double least_part = 0.5;   // of the side: 1 on a fine grid
+  constexpr double round_off = 1e-12;  // of terms that cancel
   for (const int sign : {1, -1}) {
     bool all_closed = true;
-    double along = 0, rate = 0;
+    double along = 0, size = 0, rate = 0;
     for (int r = 0; r < pushes.n_regions; ++r) {
       const Push& push = pushes.of[std::size_t(s) * pushes.n_regions + r];
       if (push.size == 0 || (!is_closed && sign * push.along <= 0))
         continue;
       all_closed = all_closed && !regions.has_dirichlet[r];
       along += sign * push.along;
+      size += push.size;
       rate += sign * push.rate;
     }
     if (is_closed)
-      return all_closed && along != 0 ? pushes.swept[s] : as_they_like;
+      return all_closed && std::abs(along) > round_off * size ? pushes.swept[s] : as_they_like;
     if (all_closed && along > least_part * pushes.norm[s])
       return rate;
   }

@@ -7,7 +7,7 @@
 | finite | every number of history.csv, bodies.csv and of all frames |
 | scalar | smoke and temperature between their least and most initial, inflowing and held values |
 | energy | kinetic and elastic, at most GROWTH times the start's and gravity's work, where nothing else does work |
-| ranks | bodies and energies equal on 1, 2 and 3 ranks to RANKS of their scale, until contact decides by inequalities: then to RANKS_IN_CONTACT, or CHAOS times what another tolerance changes on one rank |
+| ranks | bodies and energies equal on 1, 2 and 3 ranks to RANKS of their scale, once contact decides by inequalities to RANKS_IN_CONTACT, or to CHAOS times what another tolerance changes on one rank |
 | restart | tables and last frame bit for bit |
 """
 import math

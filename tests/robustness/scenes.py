@@ -39,6 +39,7 @@ class Facts:
     dynamic_rigid: bool = False
     exact_momentum: bool = True
     strategy: str = ""
+    pressure_by_muelu: bool = False  # of A + B C^-1 B^T, which Chebyshev's polynomials may take for smaller than it is
     solid_by_muelu: bool = False  # which on several ranks cannot multiply matrices of which one holds no neighbours
     needs_full_ranks: bool = False  # Belos' inner products want unknowns on every rank
     massless: bool = False  # a cloth, of which the fluid may leave nodes without any
@@ -330,6 +331,7 @@ def strategy(world, coupling_list, solid_lists):
     if name in ("schur-cg", "pressure-schur") and rng.random() < 0.25:
         kind = rng.choice(["MueLu", "Incomplete Cholesky", "Multigrid"])  # the last wants whole tiles along periodic axes
         chosen["Pressure Inverse"] = {"Type": "Automatic" if kind == "Multigrid" and world.facts.periodic else kind}
+        facts.pressure_by_muelu = kind == "MueLu" and name == "pressure-schur"
     if name in ("schur-cg", "pressure-schur") and solid_lists and rng.random() < 0.25:
         kinds = ["Exact", "Jacobi", "Additive Multilevel", "MueLu"] if facts.soft else ["Exact", "Block Diagonal"]
         chosen["Solid Inverse"] = {"Type": rng.choice(kinds)}
