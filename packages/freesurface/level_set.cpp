@@ -115,7 +115,8 @@ double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
   const std::vector<char> tiles = tiles_near_band(grid, solids_, phi_, cut_off(),
                                                   static_cast<int>(std::ceil(displacement)) + 1);
   CellField carried = phi_;
-  transport.advect_scalar(AdvectionScheme::semi_lagrangian, phi_, beyond_sides, carried, &tiles);
+  transport.advect_scalar(AdvectionScheme::semi_lagrangian, phi_, beyond_sides, carried, &tiles,
+                          cut_off());
   phi_.swap(carried);
   if (parameters_.particles)
     n_lost_ += move_particles(domain_, transport.frame(), step.ray_halo, particles_);
@@ -265,6 +266,20 @@ std::function<void()> LevelSet<dim>::undo() {
     particles_ = particles;
     in_band_ = in_band;
     n_restored_ = n_restored;
+  };
+}
+
+template <int dim>
+std::function<void()> LevelSet<dim>::migrate(const TileMigration<dim>& migration) {
+  in_band_.resize(phi_.size(), 0);  // ghosts come from their owners
+  migration.move(phi_, cut_off());
+  migration.move(in_band_);
+  migration.move_lists(particles_);
+  return [this] {
+    in_band_.resize(domain_.grid.n_owned_cells());
+    solids_ = find_solid_cells(domain_, solids_.state.surface);
+    if (!loaded_)
+      volume_.restore(solids_, phi_, VolumeTargets(volume_.targets()));
   };
 }
 

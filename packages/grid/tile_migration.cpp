@@ -126,6 +126,8 @@ void TileMigration<dim>::move(const std::vector<std::vector<Value>*>& fields,
   LOCKSTEP_ASSERT(fields.size() == fill.size());
   Bytes outgoing(peers_.size()), incoming(peers_.size());
   for (std::size_t p = 0; p < peers_.size(); ++p) {
+    if (peers_[p].rank == comm_->getRank())
+      continue;
     outgoing[p].resize(peers_[p].sent.size() * fields.size() * bytes_per_tile);
     incoming[p].resize(peers_[p].received.size() * fields.size() * bytes_per_tile);
     char* to = outgoing[p].data();
@@ -140,10 +142,16 @@ void TileMigration<dim>::move(const std::vector<std::vector<Value>*>& fields,
   transfer(outgoing, incoming);
   for (std::size_t f = 0; f < fields.size(); ++f) {
     std::vector<Value>& field = *fields[f];
-    field.assign(static_cast<std::size_t>(n_tiles_) * tile_volume<dim>, fill[f]);
-    field.shrink_to_fit();
+    const std::vector<Value> before = std::move(field);
+    field = std::vector<Value>(static_cast<std::size_t>(n_tiles_) * tile_volume<dim>, fill[f]);
     for (std::size_t p = 0; p < peers_.size(); ++p) {
       const std::vector<int>& tiles = peers_[p].received;
+      if (peers_[p].rank == comm_->getRank()) {
+        for (std::size_t i = 0; i < tiles.size(); ++i)
+          std::memcpy(field.data() + tiles[i] * tile_volume<dim>,
+                      before.data() + peers_[p].sent[i] * tile_volume<dim>, bytes_per_tile);
+        continue;
+      }
       const char* from = incoming[p].data() + f * tiles.size() * bytes_per_tile;
       for (const int tile : tiles) {
         std::memcpy(field.data() + tile * tile_volume<dim>, from, bytes_per_tile);

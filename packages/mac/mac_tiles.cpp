@@ -23,10 +23,14 @@ Point<dim> origin_of_pressure(const MacDomain<dim>& domain, const Box<dim>& boun
 template <int dim>
 typename MovingTiles<dim>::Present MacFluid<dim>::present(const MacState<dim>& state, double time,
                                                           double dt) const {
-  typename MovingTiles<dim>::Present present{domain_.grid, owners_, state, velocity_, 0,
-                                             {},           time,    dt,    0};
+  typename MovingTiles<dim>::Present present{domain_.grid, owners_, state, velocity_, 0, {},
+                                             time,         dt,      0,     nullptr,   0, false};
   for (const Scalar& scalar : scalars_.all())
     present.scalars.push_back({scalar.values, scalar.ambient});
+  if (liquid_) {
+    present.distance = &liquid_->interface().distance();
+    present.band = (1 - 1e-6) * liquid_->interface().band(0) * domain_.spacing();
+  }
   return present;
 }
 
@@ -49,7 +53,9 @@ void MacFluid<dim>::make_room_for(const Surface& surface) {
   state.surface = surface;
   state.cells.assign(domain_.grid.n_stored_cells(), CellState::fluid);
   constexpr double any_step = 1;
-  if (const auto owners = moving_tiles_->change(present(state, time_, any_step)))
+  auto now = present(state, time_, any_step);
+  now.is_start = true;
+  if (const auto owners = moving_tiles_->change(now))
     regrid(*owners);
   has_room_ = true;
 }
@@ -69,6 +75,8 @@ void MacFluid<dim>::regrid(const TileOwners& owners) {
     std::transform(cells.begin(), cells.end(), accepted_cells_.begin(),
                    [](char state) { return static_cast<CellState>(state); });
   }
+  const std::function<void()> finish_liquid =
+      liquid_ ? liquid_->interface().migrate(migration) : std::function<void()>();
   viscosity_.reset();
   geometry_ = {};
   largest_speed_.reset();
@@ -76,6 +84,8 @@ void MacFluid<dim>::regrid(const TileOwners& owners) {
   ray_halo_.forget();
   nearby_ = {};
   domain_.set_grid(std::move(grid));
+  if (finish_liquid)
+    finish_liquid();
   lattice_blocks_ = lattice_blocks(domain_.grid);
   owners_ = owners;
   has_room_ = true;

@@ -17,7 +17,7 @@ N_STEPS = 40
 SECONDS = 300  # of a run; a few are usual
 
 
-def scene(tiles):
+def plume(tiles):
     fluid = {"Density": 1.2, "Viscosity": 1e-3, "Gravity": (0., -9.8), "Smoke Weight": -.2, "Smoke": {"Ambient": 0.},
              "Temperature": {"Ambient": 300.},
              "Sources": {"Fire": {"Shape": "ball", "Center": (-1., .6), "Radius": .3, "Smoke": 1.,
@@ -30,6 +30,21 @@ def scene(tiles):
                             "Position": (1., 13.)}},
         "Solver": {"Tolerance": 1e-10},
         "Time": {"End": 2., "Fixed Step": .025}, "Output": {"Checkpoint Interval": .25, "Keep Checkpoints": 9}})
+
+
+def dam_break(tiles):
+    """A column of water that falls in a tall tank."""
+    fluid = {"Density": 1000., "Gravity": (0., -9.8),
+             "Free Surface": {"Liquid": {"Column": {"Type": "box", "Lower": (-1., -1.), "Upper": (.8, 1.2)}}}}
+    if tiles:
+        fluid["Moving Tiles"] = {}
+    return xml("Scene", {
+        "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (2., 12.), "Cells": (48, 288)}, "Fluid": fluid,
+        "Solver": {"Tolerance": 1e-11},
+        "Time": {"End": 2., "Fixed Step": .02}, "Output": {"Checkpoint Interval": .4, "Keep Checkpoints": 9}})
+
+
+SCENES = {"plume": plume, "dam": dam_break}
 
 
 def table(path):
@@ -47,14 +62,14 @@ class MovingTiles(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
-    def run_scene(self, name, tiles=True, ranks=1, restart=None, steps=N_STEPS):
+    def run_scene(self, name, tiles=True, ranks=1, restart=None, steps=N_STEPS, scene="plume"):
         """Histories of fluid and disc, run once a name."""
         output = self.root / name
         if restart:
             output = Path(shutil.copytree(output, f"{output}-again-{ranks}"))
         if restart or not output.exists():
-            file = self.root / f"{'tiles' if tiles else 'all'}.xml"
-            file.write_text(scene(tiles))
+            file = self.root / f"{scene}-{'tiles' if tiles else 'all'}.xml"
+            file.write_text(SCENES[scene](tiles))
             command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
             command += [SIMULATE, str(file), "--output", str(output), "--steps", str(steps), "--quiet"]
             command += ["--restart", str(output / restart)] if restart else []
@@ -107,6 +122,19 @@ class MovingTiles(unittest.TestCase):
         self.run_scene("ranks-2", ranks=2)
         again, _ = self.run_scene("ranks-2", restart="checkpoint-000020.h5")
         self.assert_close(history, again, ("liquid_volume", "fluid_momentum_y", "fluid_kinetic_energy"), 1e-8)
+
+    def test_water_does_not_feel_them(self):
+        """Beyond the tiles is void, where p = 0 holds."""
+        columns = ("fluid_momentum_x", "fluid_momentum_y", "fluid_kinetic_energy", "liquid_volume")
+        history, _ = self.run_scene("dam-all", tiles=False, scene="dam")
+        of_tiles, _ = self.run_scene("dam", scene="dam")
+        self.assert_close(history, of_tiles, columns, 1e-6)
+        on_two, _ = self.run_scene("dam-2", ranks=2, scene="dam")
+        self.assert_close(history, on_two, columns, 1e-6)
+        again, _ = self.run_scene("dam-2", ranks=2, scene="dam", restart="checkpoint-000020.h5")
+        for row in (*on_two, *again):
+            row.pop("wall_seconds")
+        self.assertEqual(on_two, again)
 
 
 unittest.main()

@@ -3,6 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "base/errors.hpp"
+#include "grid/tile_migration.hpp"
 #include "interfaces/fluid.hpp"
 #include "interfaces/plug_in.hpp"
 #include "mac/domain/mac_domain.hpp"
@@ -67,6 +69,13 @@ class InterfaceModel : public PlugIn {
   virtual int band(double largest_displacement) const = 0;
   /// At the present time. Local.
   virtual LiquidLedger ledger() const = 0;
+  /// The tiles of the domain are about to change, between two steps; new ones are dry. Carries over
+  /// what lives on them, and returns what is to be done once the domain has its new grid.
+  /// Collective. Default: throws InputError.
+  virtual std::function<void()> migrate(const TileMigration<dim>&) {
+    throw InputError(fmt::format(
+        "The interface \"{}\" cannot follow \"Moving Tiles\"; leave them out.", this->name()));
+  }
 };
 
 /// Interface models by name. They are built for a domain, which must outlive them.

@@ -40,15 +40,17 @@ void declare_moving_tiles(ParameterList& fluid) {
   ParameterList& list = declare_optional_list(
       fluid, "Moving Tiles",
       "Store and solve only where something moves or was asked for, in tiles of 16 x 16 cells (2D) "
-      "or 8 x 8 x 8 that come and go. Beyond them the fluid is taken to be at rest, with ambient "
+      "or 8 x 8 x 8 that come and go. With a free surface: where liquid is; what is left out is "
+      "void. Without, beyond them the fluid is taken to be at rest, with ambient "
       "scalars and the pressure of fluid at rest, as in an unbounded surrounding: fluid flows in "
       "and out there freely, and what goes out is forgotten. docs/method.md, \"Moving tiles\", "
       "tells how far that is from the whole domain. Absent: all tiles are stored, always.");
   declare_at_least(list, "Tile Margin", 16, 4,
                    "Tiles are stored within so many cells of what moves, is solid or was asked for "
                    "[1]; at least 4 more than anything moves in a step.");
-  declare_between(list, "Threshold", 0.02, 1e-6, 0.5,
-                  "What moves: fluid faster than this part of the fastest, and scalars that differ "
+  declare_between(list, "Threshold", 0.01, 1e-6, 0.5,
+                  "What moves, without a free surface: fluid faster than this part of the fastest, "
+                  "and scalars that differ "
                   "from their ambient value by more than this part of the largest difference [1].");
   ParameterList region;
   declare_shape<dim>(region);
@@ -58,9 +60,6 @@ void declare_moving_tiles(ParameterList& fluid) {
 template <int dim>
 MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescription<dim>& domain)
     : lattice_(domain.grid) {
-  check_input(
-      !fluid.isSublist("Free Surface"),
-      "In \"Fluid\", \"Moving Tiles\" do not yet follow a \"Free Surface\"; leave one out.");
   const Point<dim> force =
       point_value<dim>(fluid, "Gravity") + point_value<dim>(fluid, "Body Force");
   for (int axis = 0; axis < dim; ++axis)
@@ -84,6 +83,8 @@ MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescriptio
     asked_.push_back({Box<dim>(-far, far), only_at_start});
   }
   ask_for_sides(domain);
+  if (fluid.isSublist("Free Surface"))
+    liquid_ = read_liquid<dim>(fluid.sublist("Free Surface"), point_value<dim>(fluid, "Gravity"));
 }
 
 template <int dim>
@@ -119,24 +120,44 @@ void MovingTiles<dim>::add_regions(double time, NeededTiles<dim>& needed) const 
       needed.add(asked.region);
 }
 
+/// Tiles that may hold some of it at the start; the ranks share the work.
+template <int dim>
+void MovingTiles<dim>::add_liquid(const Communicator& comm, NeededTiles<dim>& needed) const {
+  if (!liquid_)
+    return;
+  const GridDescription<dim>& grid = lattice_.description();
+  const double half_diagonal = 0.5 * tile_width<dim> * std::sqrt(dim) * grid.spacing;
+  GlobalIndex n = 1;
+  for (const int along : lattice_.n_tiles())
+    n *= along;
+  for (GlobalIndex i = comm->getRank(); i < n; i += comm->getSize()) {
+    Index<dim> begin = lattice_.tile_coordinates(i), end{};
+    Point<dim> center;
+    for (int a = 0; a < dim; ++a) {
+      begin[a] *= tile_width<dim>;
+      end[a] = begin[a] + tile_width<dim>;
+      center[a] = grid.lower[a] + 0.5 * (begin[a] + end[a]) * grid.spacing;
+    }
+    if (liquid_(center) < half_diagonal)
+      needed.add(begin, end);
+  }
+}
+
 template <int dim>
 TileOwners MovingTiles<dim>::first(const Communicator& comm) const {
   NeededTiles<dim> needed(lattice_, 0, margin_);
   add_regions(only_at_start, needed);
+  add_liquid(comm, needed);
   return needed.first(comm);
 }
 
+/// Fluid that is fast, and scalars that differ.
 template <int dim>
-std::optional<TileOwners> MovingTiles<dim>::change(const Present& present) const {
+void MovingTiles<dim>::add_moving(const Present& present, NeededTiles<dim>& needed) const {
   const TiledGrid<dim>& grid = present.grid;
-  const double cells_per_speed = present.dt / grid.spacing();
-  const double fastest = std::max(present.largest_speed, present.solid_speed);
-  NeededTiles<dim> needed(lattice_, static_cast<int>(std::ceil(fastest * cells_per_speed)) + 4,
-                          margin_);
-  add_regions(present.time, needed);
-
   constexpr double still = 1e-6;  // cells a step
-  const double slow = std::max(threshold_ * present.largest_speed, still / cells_per_speed);
+  const double slow =
+      std::max(threshold_ * present.largest_speed, still * grid.spacing() / present.dt);
   std::vector<double> least;
   for (const Carried& scalar : present.scalars) {
     double largest = 0;
@@ -158,6 +179,27 @@ std::optional<TileOwners> MovingTiles<dim>::change(const Present& present) const
         return true;
     return false;
   });
+}
+
+template <int dim>
+std::optional<TileOwners> MovingTiles<dim>::change(const Present& present) const {
+  const TiledGrid<dim>& grid = present.grid;
+  const double fastest = std::max(present.largest_speed, present.solid_speed);
+  int reach = static_cast<int>(std::ceil(fastest * present.dt / grid.spacing())) + 4;
+  int margin = margin_;
+  if (present.distance) {
+    // What looks around tiles that a surface passes finds all of those beside them.
+    reach = std::max(reach, tile_width<dim>);
+    margin = std::max(margin, reach + 4);
+  }
+  NeededTiles<dim> needed(lattice_, reach, margin);
+  add_regions(present.is_start ? only_at_start : present.time, needed);
+  if (present.is_start)
+    add_liquid(grid.comm(), needed);
+  if (present.distance)
+    needed.add_cells(grid, [&](int cell) { return (*present.distance)[cell] < present.band; });
+  else
+    add_moving(present, needed);
   if (present.state.surface)
     add_surface(*present.state.surface, grid.comm(), needed);
   return needed.change(grid.comm(), present.owners);

@@ -4,12 +4,14 @@
 #include "grid/needed_tiles.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "mac/domain/region_shape.hpp"
+#include "mac/liquid/liquid_parameters.hpp"
 #include "mac/state/mac_state.hpp"
 
 namespace lockstep {
 
-/// Which tiles a single fluid needs: those where it moves or carries something, those near solids,
-/// and those where something enters or was asked for. Read once from the fluid's list.
+/// Which tiles a fluid needs: those where it moves or carries something, or that a liquid with a
+/// free surface fills, those near solids, and those where something enters or was asked for. Read
+/// once from the fluid's list.
 template <int dim>
 class MovingTiles {
  public:
@@ -33,6 +35,10 @@ class MovingTiles {
     std::vector<Carried> scalars;
     double time, dt;     ///< [s]
     double solid_speed;  ///< of the fastest solid [m/s]
+    /// Of a liquid, else null: it is needed where this is less than `band` [m].
+    const CellField* distance = nullptr;
+    double band = 0;
+    bool is_start = false;  ///< before the first step: what is asked for at the start counts
   };
   /// Collective: other tiles, if they are needed.
   std::optional<TileOwners> change(const Present& present) const;
@@ -49,6 +55,8 @@ class MovingTiles {
   void ask_for(const ParameterList& regions, double until);
   void ask_for_sides(const DomainDescription<dim>& domain);
   void add_regions(double time, NeededTiles<dim>& needed) const;
+  void add_liquid(const Communicator& comm, NeededTiles<dim>& needed) const;
+  void add_moving(const Present& present, NeededTiles<dim>& needed) const;
   static void add_surface(const SurfaceSnapshot<dim>& surface, const Communicator& comm,
                           NeededTiles<dim>& needed);
 
@@ -56,6 +64,7 @@ class MovingTiles {
   int margin_;
   double threshold_;
   std::vector<Asked> asked_;
+  SignedDistance<dim> liquid_;  ///< at the start; empty without a free surface
 };
 
 /// Declares "Moving Tiles" in the fluid's list.
