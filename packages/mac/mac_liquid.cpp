@@ -23,7 +23,8 @@ double MacFluid<dim>::largest_stable_step() const {
 
 template <int dim>
 std::vector<WetBody<dim>> MacFluid<dim>::wet_bodies() const {
-  return find_wet_bodies<dim>(domain_, geometry_, liquid_->interface().distance(), *this);
+  return find_wet_bodies<dim>(domain_, geometry_, liquid_->interface().distance(),
+                              parameters_.forces.gravity);
 }
 
 template std::vector<WetBody<2>> MacFluid<2>::wet_bodies() const;

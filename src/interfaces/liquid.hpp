@@ -18,14 +18,15 @@ struct LiquidReport {
   long long n_bodies = 0;  ///< connected bodies of liquid
 };
 
-/// What of a closed solid lies in a liquid, and what the grid takes that for. Global.
+/// What of a closed solid lies in a liquid, and what the grid takes that for: below the plane that
+/// the free surface around it lies in most nearly. Global.
 template <int dim>
 struct WetBody {
   /// The free surface crosses it, or it is above. False: it is all in the liquid, and the rest is
   /// not set.
   bool partly = false;
   double volume = 0;                         ///< below the free surface [m^dim]
-  Point<dim> centroid = Point<dim>::Zero();  ///< of that; zero without volume
+  Point<dim> centroid = Point<dim>::Zero();  ///< of that, about; zero without volume
   /// By axis: the wet parts of the dual cells that the solid blocks or fills, which the pressure
   /// lifts along that axis, and their first moment [m^dim, m^(dim+1)].
   std::array<double, dim> displaced{};
@@ -55,28 +56,33 @@ const LiquidFluid<dim>* liquid_of(const Fluid& fluid) {
   return liquid && liquid->has_surface() ? liquid : nullptr;
 }
 
-/// The part of a box of the size of a cell that is in the liquid, as a box: the free surface there
-/// is taken to be across the axis that it is most nearly normal to, which keeps the volume. May be
-/// empty. Local.
-template <int dim>
-Box<dim> wet_part(const LiquidFluid<dim>& liquid, Box<dim> box) {
+/// The part of a box of the size of a cell in which `distance` of a point is negative, as a box:
+/// the surface there is taken to be across the axis that it is most nearly normal to, which keeps
+/// the volume. May be empty. Local.
+template <int dim, typename Distance>
+Box<dim> part_below(const Distance& distance, Box<dim> box) {
   const Point<dim> center = box.center(), size = box.sizes();
-  const double distance = liquid.surface_distance(center);
-  if (std::abs(distance) > size.norm())
-    return distance < 0 ? box : Box<dim>();
+  const double middle = distance(center);
+  if (std::abs(middle) > size.norm())
+    return middle < 0 ? box : Box<dim>();
   Point<dim> slope;
   for (int a = 0; a < dim; ++a) {
     const Point<dim> half = 0.5 * size[a] * Point<dim>::Unit(a);
-    slope[a] =
-        (liquid.surface_distance(center + half) - liquid.surface_distance(center - half)) / size[a];
+    slope[a] = (distance(center + half) - distance(center - half)) / size[a];
   }
   int axis = 0;
   if (slope.cwiseAbs().maxCoeff(&axis) == 0)
-    return distance < 0 ? box : Box<dim>();
-  const double place = center[axis] - distance / slope[axis];
+    return middle < 0 ? box : Box<dim>();
+  const double place = center[axis] - middle / slope[axis];
   double& end = slope[axis] > 0 ? box.max()[axis] : box.min()[axis];
   end = std::min(std::max(place, box.min()[axis]), box.max()[axis]);
   return box;
+}
+
+/// The part of a box that is in the liquid. Local.
+template <int dim>
+Box<dim> wet_part(const LiquidFluid<dim>& liquid, const Box<dim>& box) {
+  return part_below<dim>([&](const Point<dim>& x) { return liquid.surface_distance(x); }, box);
 }
 
 }  // namespace lockstep

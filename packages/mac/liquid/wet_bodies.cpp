@@ -1,5 +1,7 @@
 #include "mac/liquid/wet_bodies.hpp"
 
+#include <Eigen/Dense>
+
 #include "geometry/solid_volume.hpp"
 
 namespace lockstep {
@@ -12,22 +14,63 @@ double wet_fraction(double lower, double upper) {
   return (lower < 0 ? lower : upper) / (lower < 0 ? lower - upper : upper - lower);
 }
 
+/// The plane through the free surface around a body: height + slope . (x - origin) across `up`.
+template <int dim>
+struct WaterPlane {
+  using Values = Eigen::Matrix<double, dim, 1>;
+  Point<dim> origin = Point<dim>::Zero(), up = Point<dim>::Zero();
+  Eigen::Matrix<double, dim, dim> normal = Eigen::Matrix<double, dim, dim>::Zero();
+  Values sums = Values::Zero();
+
+  bool known() const { return normal(0, 0) > 0; }
+  /// 1 and the coordinates across `up`.
+  Values row(const Point<dim>& x) const {
+    int vertical = 0;
+    up.cwiseAbs().maxCoeff(&vertical);
+    Values row;
+    row[0] = 1;
+    for (int k = 1; k < dim; ++k) {
+      const int axis = (vertical + k) % dim;
+      row[k] = (x - origin - up.dot(x - origin) * up)[axis];
+    }
+    return row;
+  }
+  void add(const Point<dim>& x) {
+    const Values r = row(x);
+    normal += r * r.transpose();
+    sums += up.dot(x - origin) * r;
+  }
+  /// `spacing`: what points nearer than that to a line do not tell is left level.
+  void solve(double spacing) {
+    Eigen::Matrix<double, dim, dim> matrix = normal;
+    for (int k = 1; k < dim; ++k)
+      matrix(k, k) += 1e-3 * normal(0, 0) * spacing * spacing;
+    values_ = matrix.ldlt().solve(sums);
+  }
+  double operator()(const Point<dim>& x) const { return up.dot(x - origin) - values_.dot(row(x)); }
+
+ private:
+  Values values_ = Values::Zero();
+};
+
 template <int dim>
 class WetBodyFinder {
  public:
   WetBodyFinder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                const CellField& distance, const LiquidFluid<dim>& liquid)
+                const CellField& distance, const Point<dim>& gravity)
       : grid_(domain.grid),
         domain_(domain),
         geometry_(geometry),
         distance_(distance),
-        liquid_(liquid),
+        gravity_(gravity),
         surface_(*geometry.state.surface),
-        bodies_(surface_.solids().size()) {}
+        bodies_(surface_.solids().size()),
+        planes_(bodies_.size()) {}
 
   std::vector<WetBody<dim>> find() {
     find_partly_wet();
     if (std::any_of(bodies_.begin(), bodies_.end(), [](const auto& b) { return b.partly; })) {
+      find_planes();
       add_volumes();
       for (int axis = 0; axis < dim; ++axis)
         grid_.for_each_owned_face(axis, [&](int cell) { add_face(axis, cell); });
@@ -99,18 +142,64 @@ class WetBodyFinder {
       bodies_[s].partly = partly[s] > 0;
   }
 
+  /// Through where liquid meets void within two cells.
+  void find_planes() {
+    if (gravity_.isZero(0))
+      return;
+    const double h = grid_.spacing();
+    std::vector<double> flat;
+    const auto each = [&](const auto& f) {
+      for (WaterPlane<dim>& plane : planes_) {
+        for (int i = 0; i < dim * dim; ++i)
+          f(plane.normal.data()[i]);
+        for (int i = 0; i < dim; ++i)
+          f(plane.sums[i]);
+      }
+    };
+    for (std::size_t s = 0; s < bodies_.size(); ++s) {
+      if (!bodies_[s].partly)
+        continue;
+      Box<dim> around = near_solid(static_cast<int>(s));
+      planes_[s].origin = around.center();
+      planes_[s].up = -gravity_.normalized();
+      around =
+          Box<dim>(around.min() - Point<dim>::Constant(h), around.max() + Point<dim>::Constant(h));
+      for_each_cell_in(around, [&](int cell) {
+        const CellState own = geometry_.state.cells[cell];
+        for (int axis = 0; axis < dim; ++axis) {
+          const int lower = grid_.neighbor(cell, axis, 0);
+          if (lower < 0)
+            continue;
+          const CellState other = geometry_.state.cells[lower];
+          if ((own != CellState::fluid || other != CellState::empty) &&
+              (own != CellState::empty || other != CellState::fluid))
+            continue;
+          const double part = distance_[cell] / (distance_[cell] - distance_[lower]);
+          planes_[s].add(grid_.center(cell) - part * h * Point<dim>::Unit(axis));
+        }
+      });
+    }
+    each([&](double value) { flat.push_back(value); });
+    sum_all(grid_.comm(), flat.data(), static_cast<int>(flat.size()));
+    const double* value = flat.data();
+    each([&](double& mine) { mine = *value++; });
+    for (WaterPlane<dim>& plane : planes_)
+      if (plane.known())
+        plane.solve(h);
+  }
+
   void add_volumes() {
     const Point<dim> half = Point<dim>::Constant(0.5 * grid_.spacing());
     for (std::size_t s = 0; s < bodies_.size(); ++s) {
       WetBody<dim>& body = bodies_[s];
-      if (!body.partly)
+      if (!planes_[s].known())
         continue;
       for_each_cell_in(near_solid(static_cast<int>(s)), [&](int cell) {
         const bool near_surface = geometry_.near_surface(cell);
         if (!near_surface && !is_solid(cell))
           return;
         const Point<dim> x = grid_.center(cell);
-        const Box<dim> wet = wet_part<dim>(liquid_, Box<dim>(x - half, x + half));
+        const Box<dim> wet = part_below<dim>(planes_[s], Box<dim>(x - half, x + half));
         if (wet.isEmpty())
           return;
         double volume = 0;
@@ -135,15 +224,17 @@ class WetBodyFinder {
     if (n == 1)
       owners[0] = std::max(owners[0], owners[1]);
     for (int k = 0; k < n; ++k) {
-      if (owners[k] < 0 || !bodies_[owners[k]].partly)
+      if (owners[k] < 0 || !planes_[owners[k]].known())
         continue;
       WetBody<dim>& body = bodies_[owners[k]];
+      const WaterPlane<dim>& plane = planes_[owners[k]];
       if (cells.at_side()) {
         body.at_side[axis] |= distance_[std::max(cells.lower, cells.upper)] < 0;
         continue;
       }
       const double volume =
-          domain_.cell_volume() / n * wet_fraction(distance_[cells.lower], distance_[cells.upper]);
+          domain_.cell_volume() / n *
+          wet_fraction(plane(grid_.center(cells.lower)), plane(grid_.center(cells.upper)));
       body.displaced[axis] += volume;
       body.moment[axis] += volume * grid_.face_center(axis, cell);
     }
@@ -185,9 +276,10 @@ class WetBodyFinder {
   const MacDomain<dim>& domain_;
   const MacGeometry<dim>& geometry_;
   const CellField& distance_;
-  const LiquidFluid<dim>& liquid_;
+  Point<dim> gravity_;
   const SurfaceSnapshot<dim>& surface_;
   std::vector<WetBody<dim>> bodies_;
+  std::vector<WaterPlane<dim>> planes_;
   mutable std::vector<int> candidates_;
 };
 }  // namespace
@@ -195,16 +287,15 @@ class WetBodyFinder {
 template <int dim>
 std::vector<WetBody<dim>> find_wet_bodies(const MacDomain<dim>& domain,
                                           const MacGeometry<dim>& geometry,
-                                          const CellField& distance,
-                                          const LiquidFluid<dim>& liquid) {
+                                          const CellField& distance, const Point<dim>& gravity) {
   if (!geometry.state.surface)
     return {};
-  return WetBodyFinder<dim>(domain, geometry, distance, liquid).find();
+  return WetBodyFinder<dim>(domain, geometry, distance, gravity).find();
 }
 
 template std::vector<WetBody<2>> find_wet_bodies<2>(const MacDomain<2>&, const MacGeometry<2>&,
-                                                    const CellField&, const LiquidFluid<2>&);
+                                                    const CellField&, const Point<2>&);
 template std::vector<WetBody<3>> find_wet_bodies<3>(const MacDomain<3>&, const MacGeometry<3>&,
-                                                    const CellField&, const LiquidFluid<3>&);
+                                                    const CellField&, const Point<3>&);
 
 }  // namespace lockstep

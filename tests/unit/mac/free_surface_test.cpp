@@ -229,6 +229,43 @@ TEST(FreeSurface, VelocitiesAreNotCarriedThroughAShell) {
   });
 }
 
+/// What the pressure lifts of a box that water goes halfway up, and what of it is in the water.
+template <int dim>
+void expect_wet_part_of_a_box() {
+  const double h = 0.05;
+  const Point<dim> up = Point<dim>::Unit(dim - 1);
+  Case<dim> scene(cube<dim>(20), h);
+  scene.fluid.set("Gravity", components<dim>(-9.81 * up));
+  add_level<dim>(scene, 0.5 + 0.3 * h);
+  const auto fluid = make_liquid<dim>(scene);
+  Solids<dim> solids;
+  const Point<dim> size = Point<dim>::Constant(0.41), center = Point<dim>::Constant(0.49);
+  solids.add(box_surface<dim>(size, h), center, true);
+  solids.add(box_surface<dim>(Point<dim>::Constant(0.11), h), Point<dim>::Constant(0.12), true);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
+  const std::vector<WetBody<dim>> bodies = fluid->wet_bodies();
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_FALSE(bodies[1].partly);
+  const WetBody<dim>& body = bodies[0];
+  EXPECT_TRUE(body.partly);
+  const double bottom = 0.49 - 0.205, depth = 0.5 + 0.3 * h - bottom;
+  EXPECT_NEAR(body.volume, std::pow(0.41, dim - 1) * depth, 1e-12);
+  // Of cells that the box cuts, the middle counts.
+  EXPECT_NEAR(body.centroid.dot(up), bottom + 0.5 * depth, 0.03 * h);
+  EXPECT_NEAR(body.centroid[0], 0.49, 0.03 * h);
+  // Eight columns: from the centre of the wet cell under the box to the surface.
+  const double column = 0.5 + 0.3 * h - 0.275, section = std::pow(8 * h, dim - 1);
+  EXPECT_NEAR(body.displaced[dim - 1], section * column, 1e-12);
+  EXPECT_NEAR(body.moment[dim - 1][0], section * column * 0.5, 1e-12);
+  // Across, rows of nine dual cells below it, and none above.
+  EXPECT_NEAR(body.displaced[0], std::pow(8 * h, dim - 2) * 9 * h * 4 * h, 1e-12);
+  EXPECT_FALSE(body.at_side[0] || body.at_side[dim - 1]);
+}
+TEST(FreeSurface, WetPartOfABox) {
+  expect_wet_part_of_a_box<2>();
+  expect_wet_part_of_a_box<3>();
+}
+
 TEST(FreeSurface, BadListsSayWhatIsWrong) {
   const auto message = [](const std::function<void(Case<2>&)>& spoil) {
     Case<2> scene({8, 8}, 0.1);
