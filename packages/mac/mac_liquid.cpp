@@ -9,7 +9,9 @@ namespace lockstep {
 template <int dim>
 void MacFluid<dim>::move_liquid(double time, double dt, const MovingSurface<dim>& surface,
                                 FaceField<dim>& advection) {
-  const InterfaceStep<dim> step{advection, surface, ray_halo_, nearby_, time, dt, {}, {}};
+  const InterfaceStep<dim> step{
+      advection,       surface, ray_halo_, nearby_, time, dt, scalars_.liquid_sources(time),
+      liquid_->sinks()};
   liquid_->advance(step, geometry_, advection, velocity_);
 }
 

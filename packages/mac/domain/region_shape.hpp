@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <string>
 
 #include "base/types.hpp"
@@ -18,6 +19,13 @@ struct RegionShape {
     if (ball)
       return (x - center).squaredNorm() <= radius * radius;
     return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
+  }
+  /// Negative inside [m].
+  double distance(const Point<dim>& x) const {
+    if (ball)
+      return (x - center).norm() - radius;
+    const Point<dim> out = (lower - x).cwiseMax(x - upper);
+    return std::min(out.maxCoeff(), 0.0) + out.cwiseMax(0).norm();
   }
 };
 

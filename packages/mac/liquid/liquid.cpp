@@ -36,6 +36,7 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
   const ParameterList& list = fluid.sublist("Free Surface");
   parameters_ = read_free_surface(list);
   initial_distance_ = read_liquid<dim>(list, gravity);
+  sinks_ = read_sinks<dim>(list);
   const ParameterList& interface = list.sublist("Interface");
   interface_ = interfaces.create(interface.get<std::string>("Type"), interface, domain);
 }

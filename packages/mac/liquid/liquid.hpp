@@ -28,6 +28,7 @@ class Liquid {
   void advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
                FaceField<dim>& advection_velocity, FaceField<dim>& velocity);
 
+  const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
   InterfaceModel<dim>& interface() { return *interface_; }
   const InterfaceModel<dim>& interface() const { return *interface_; }
   /// Linear between the centres of cells; near cells that this rank owns. Local.
@@ -37,6 +38,7 @@ class Liquid {
  private:
   const MacDomain<dim>& domain_;
   FreeSurfaceParameters parameters_;
+  std::vector<SignedDistance<dim>> sinks_;
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
   std::unique_ptr<InterfaceModel<dim>> interface_;
 };

@@ -4,6 +4,7 @@
 
 #include "base/errors.hpp"
 #include "mac/domain/parameter_values.hpp"
+#include "mac/domain/region_shape.hpp"
 
 namespace lockstep {
 
@@ -32,16 +33,15 @@ SignedDistance<dim> level(const std::string& name, const ParameterList& list,
 
 template <int dim>
 SignedDistance<dim> box(const std::string& name, const ParameterList& list) {
-  const Point<dim> lower = point_value<dim>(list, "Lower"), upper = point_value<dim>(list, "Upper");
+  RegionShape<dim> shape;
+  shape.lower = point_value<dim>(list, "Lower");
+  shape.upper = point_value<dim>(list, "Upper");
   check_input(
-      (upper - lower).minCoeff() > 0,
+      (shape.upper - shape.lower).minCoeff() > 0,
       "In \"Liquid\", the box \"{}\" is empty: \"Upper\" must be above \"Lower\" along every "
       "axis.",
       name);
-  return [=](const Point<dim>& x) {
-    const Point<dim> out = (lower - x).cwiseMax(x - upper);
-    return std::min(out.maxCoeff(), 0.0) + out.cwiseMax(0).norm();
-  };
+  return [shape](const Point<dim>& x) { return shape.distance(x); };
 }
 
 template <int dim>
@@ -84,6 +84,12 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
                          "Where the liquid is at the start: all of these together, "
                          "outside of solids.",
                          liquid_schemas<dim>());
+  ParameterList sink;
+  declare_shape<dim>(sink);
+  declare_named_sublists(list, "Sinks",
+                         "Boxes and balls that take the liquid away that is in them; "
+                         "\"Fluid/Sources\" bring it.",
+                         sink);
   declare_between(
       list, "Smallest Distance", 0.01, 0.01, 1.0,
       "Pressures are taken to be no nearer to the surface than this part of a cell [1].");
@@ -119,6 +125,17 @@ SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gra
 }
 
 template <int dim>
+std::vector<SignedDistance<dim>> read_sinks(const ParameterList& list) {
+  const ParameterList& sinks = list.sublist("Sinks");
+  std::vector<SignedDistance<dim>> shapes;
+  for (auto it = sinks.begin(); it != sinks.end(); ++it)
+    shapes.push_back([shape = read_shape<dim>(sinks.sublist(sinks.name(it)))](const Point<dim>& x) {
+      return shape.distance(x);
+    });
+  return shapes;
+}
+
+template <int dim>
 void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
                         const std::array<bool, dim>& periodic) {
   for (const char* scalar : {"Smoke", "Temperature"})
@@ -142,6 +159,8 @@ void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
 
 template void declare_free_surface<2>(const InterfaceRegistry<2>&, ParameterList&);
 template void declare_free_surface<3>(const InterfaceRegistry<3>&, ParameterList&);
+template std::vector<SignedDistance<2>> read_sinks<2>(const ParameterList&);
+template std::vector<SignedDistance<3>> read_sinks<3>(const ParameterList&);
 template SignedDistance<2> read_liquid<2>(const ParameterList&, const Point<2>&);
 template SignedDistance<3> read_liquid<3>(const ParameterList&, const Point<3>&);
 template void check_free_surface<2>(const ParameterList&, const Point<2>&,

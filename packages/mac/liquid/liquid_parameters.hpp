@@ -19,6 +19,9 @@ FreeSurfaceParameters read_free_surface(const ParameterList& list);
 /// or a level without gravity.
 template <int dim>
 SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gravity);
+/// Shapes whose liquid is taken away.
+template <int dim>
+std::vector<SignedDistance<dim>> read_sinks(const ParameterList& list);
 /// Throws InputError if the fluid's list asks for what does not go together with a free surface.
 /// `periodic`: the axes of the domain that are.
 template <int dim>

@@ -59,6 +59,7 @@ ScalarSource<dim> read_source(const ParameterList& list) {
     if (list.isParameter(name + " Rate"))
       source.feeds.push_back({scalar, true, list.get<double>(name + " Rate")});
   }
+  source.liquid = list.get<bool>("Liquid");
   if (list.isParameter("Velocity"))
     source.velocity = point_value<dim>(list, "Velocity");
   return source;
@@ -82,8 +83,12 @@ void declare_scalars(ParameterList& fluid) {
   set_length(source, "Velocity", dim);
   declare(source, "Begin Time", 0.0, "When the source starts [s].");
   declare_optional<double>(source, "End Time", "When it stops [s]; never if it is left out.");
-  declare_named_sublists(fluid, "Sources", "Boxes and balls that feed smoke, heat and momentum.",
-                         source);
+  declare(
+      source, "Liquid", false,
+      "Fill it with liquid at every step, which its velocity carries away: a jet. For fluids with "
+      "a \"Free Surface\".");
+  declare_named_sublists(fluid, "Sources",
+                         "Boxes and balls that feed liquid, smoke, heat and momentum.", source);
 }
 
 template <int dim>
@@ -96,6 +101,11 @@ Scalars<dim>::Scalars(const MacDomain<dim>& domain, const ParameterList& fluid) 
   for (auto it = sources.begin(); it != sources.end(); ++it) {
     const std::string name = sources.name(it);
     sources_.push_back(read_source<dim>(sources.sublist(name)));
+    check_input(
+        !sources_.back().liquid || fluid.isSublist("Free Surface"),
+        "The source \"{}\" in \"Fluid/Sources\" feeds liquid, but the fluid fills its domain "
+        "already; add the list \"Fluid/Free Surface\".",
+        name);
     for (const auto& feed : sources_.back().feeds)
       check_input(
           find(feed.scalar) != nullptr,
@@ -129,6 +139,16 @@ void Scalars<dim>::feed(const MacGeometry<dim>& geometry, double time, double dt
             scalar.values[cell] = feed.rate ? scalar.values[cell] + dt * feed.value : feed.value;
     });
   }
+}
+
+template <int dim>
+std::vector<std::function<double(const Point<dim>&)>> Scalars<dim>::liquid_sources(
+    double time) const {
+  std::vector<std::function<double(const Point<dim>&)>> shapes;
+  for (const ScalarSource<dim>& source : sources_)
+    if (source.liquid && source.active(time))
+      shapes.push_back([shape = source.shape](const Point<dim>& x) { return shape.distance(x); });
+  return shapes;
 }
 
 template <int dim>

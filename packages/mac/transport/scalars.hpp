@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct ScalarSource {
   };
   RegionShape<dim> shape;
   std::vector<Feed> feeds;
+  bool liquid = false;                      ///< fills its shape with liquid
   std::optional<Point<dim>> velocity;       ///< set inside [m/s]
   double begin_time = 0, end_time = 1e300;  ///< [s]
 
@@ -48,6 +50,8 @@ class Scalars {
   /// Feeds the fluid cells inside the sources that are active at `time`, over dt. Sets owned cells.
   /// Local.
   void feed(const MacGeometry<dim>& geometry, double time, double dt);
+  /// Of the shapes that are filled with liquid at `time`, the distance from each [m].
+  std::vector<std::function<double(const Point<dim>&)>> liquid_sources(double time) const;
   /// True if a source that is active at `time` sets the velocity.
   bool sources_push(double time) const;
   /// Sets the velocity of owned free faces inside such sources. Local.
