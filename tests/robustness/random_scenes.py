@@ -2,7 +2,7 @@
 """Random valid scenes and what must hold for them.
 
   tests/robustness/random_scenes.py --seeds 0-39,107,185,258,341,845    as ./check does
-  tests/robustness/random_scenes.py --seeds 0-999 --jobs 2 --keep output/random --report docs/results/robustness.md
+  tests/robustness/random_scenes.py --seeds 0-999 --quick --keep output/random --log output/random.jsonl --report docs/results/robustness.md
   tests/robustness/random_scenes.py --print 17                      the scene of a seed
 
 Each seed runs on 1, 2 and 3 ranks, again from a checkpoint, and once with a tiny step for the energy of the start.
@@ -10,6 +10,8 @@ Prints a line for each failing seed; with --keep its scene stays in DIR/SEED. Ex
 """
 import argparse
 import concurrent.futures
+import dataclasses
+import json
 import random
 import re
 import shutil
@@ -119,7 +121,22 @@ def check_seed(seed, arguments):
             for name in ("scene.xml", *runs.scene.files):
                 shutil.copy(Path(folder) / name, kept)
             (kept / "failures.txt").write_text("\n".join(runs.failures) + "\n")
-        return runs
+        return Result(seed, runs.failures, runs.refused, runs.core_seconds, report.build())
+
+
+@dataclasses.dataclass
+class Result:
+    seed: int
+    failures: list
+    refused: int  # runs
+    core_seconds: float
+    build: str  # of which commit the program is
+
+
+def logged(path):
+    """Results of seeds that an earlier, perhaps killed, run has finished; by seed, the last ones."""
+    lines = path.read_text().splitlines() if path and path.exists() else []
+    return {result.seed: result for result in (Result(**json.loads(line)) for line in lines)}
 
 
 def seed_list(text):
@@ -138,21 +155,29 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one of the other numbers of ranks, by turns")
     parser.add_argument("--timeout", type=float, default=120, help="seconds of a run")
     parser.add_argument("--keep", metavar="DIR", help="where the scenes of failing seeds go")
+    parser.add_argument("--log", type=Path, metavar="FILE",
+                        help="results are kept here as they come; seeds that passed in it are not run again")
     parser.add_argument("--report", metavar="FILE", help="page whose section on random scenes is written")
     parser.add_argument("--print", type=int, metavar="SEED", help="print a scene; nothing runs")
     arguments = parser.parse_args()
     if arguments.print is not None:
         sys.exit(print(random_scene(arguments.print).xml, end=""))
-    begin, results = time.monotonic(), []
+    begin, known = time.monotonic(), logged(arguments.log)
+    missing = [seed for seed in arguments.seeds if seed not in known or known[seed].failures]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        for runs in pool.map(lambda seed: check_seed(seed, arguments), arguments.seeds):
-            results.append(runs)
-            for failure in runs.failures:
-                print(f"seed {runs.scene.seed}: {failure}", flush=True)
-    n_failed = sum(bool(runs.failures) for runs in results)
-    core_seconds = sum(runs.core_seconds for runs in results)
-    print(f"{len(results)} scenes, {n_failed} failed, {sum(runs.refused for runs in results)} runs refused (ranks without "
-          f"unknowns, nodes without mass, closed regions, crushed elements, MueLu); {core_seconds:.0f} s of a core, {time.monotonic() - begin:.0f} s")
+        for result in pool.map(lambda seed: check_seed(seed, arguments), missing):
+            known[result.seed] = result
+            if arguments.log:
+                with open(arguments.log, "a") as file:
+                    file.write(json.dumps(dataclasses.asdict(result)) + "\n")
+            for failure in result.failures:
+                print(f"seed {result.seed}: {failure}", flush=True)
+    results = [known[seed] for seed in arguments.seeds]
+    n_failed = sum(bool(result.failures) for result in results)
+    core_seconds = sum(result.core_seconds for result in results)
+    print(f"{len(results)} scenes, {n_failed} failed, {sum(result.refused for result in results)} runs refused (ranks "
+          "without unknowns, nodes without mass, closed regions, crushed elements, MueLu); "
+          f"{core_seconds:.0f} s of a core, {time.monotonic() - begin:.0f} s")
     if arguments.report:
         report.write_scenes(Path(arguments.report), arguments.seeds, results, arguments.quick)
     sys.exit(1 if n_failed else 0)

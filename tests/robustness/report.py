@@ -5,6 +5,7 @@ import re
 import subprocess
 
 from runs import program
+from scenes import random_scene
 
 TITLE = "# robustness\n\nRandom scenes and damaged files, and whether what must hold for every one of them holds.\n"
 # Solids, and how often each thing that a scene may say was drawn.
@@ -53,22 +54,27 @@ def table(heads, rows):
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
 
 
-def made_by(command):
-    """With the commit that the program was built from."""
+def build():
+    """The commit that the program was built from."""
     version = subprocess.run([program("simulate"), "--version"], capture_output=True, text=True).stdout
     built = re.search(r"\((.+)\)", version)
-    return f"Made by `{command}` on {datetime.date.today()} with a build of {built.group(1) if built else version.strip()}."
+    return built.group(1) if built else version.strip()
+
+
+def made_by(command, builds=()):
+    return f"Made by `{command}` on {datetime.date.today()} with a build of {' and '.join(sorted(builds) or [build()])}."
 
 
 def write_scenes(page, seeds, results, quick):
     """What was drawn, what failed, and the largest of what is bounded."""
     failures = collections.Counter()
-    for runs in results:
-        failures.update({failure.partition(":")[0] for failure in runs.failures})
-    failing = {runs.scene.seed for runs in results if runs.failures}
+    for result in results:
+        failures.update({failure.partition(":")[0] for failure in result.failures})
+    failing = {result.seed for result in results if result.failures}
+    contents = {result.seed: random_scene(result.seed).content for result in results}
     rows = []
     for name, has in FEATURES.items():
-        drawn = [runs.scene.seed for runs in results if has(runs.scene.content)]
+        drawn = [seed for seed, content in contents.items() if has(content)]
         rows.append([name, len(drawn), len(failing.intersection(drawn))])
     classes = "".join(f"\n- {name}: {n} scenes" for name, n in failures.most_common())
     named = f"\nFailing seeds: {', '.join(map(str, sorted(failing)))}.\n" if failing else ""
@@ -81,7 +87,7 @@ there are tiles, and again from a checkpoint. What is checked, with its bounds: 
 {named}
 {table(["scenes with", "drawn", "failing"], rows)}
 
-{sum(runs.core_seconds for runs in results):.0f} s of a core. {made_by(command)}"""
+{sum(result.core_seconds for result in results):.0f} s of a core. {made_by(command, {result.build for result in results})}"""
     write_section(page, "Random scenes", body)
 
 
