@@ -1,9 +1,10 @@
-// The same two plug-ins, and an observer, under names of their own in scene files: simulate
-// SCENE.xml OUTPUT_FOLDER
+// The same two plug-ins, an observer and an interface model, under names of their own in scene
+// files: simulate SCENE.xml OUTPUT_FOLDER
 #include <Tpetra_Core.hpp>
 #include <iostream>
 
 #include "column_fluid.hpp"
+#include "given_level.hpp"
 #include "parameters/strict_xml.hpp"
 #include "piston.hpp"
 #include "shipped/shipped_plug_ins.hpp"
@@ -55,8 +56,22 @@ std::unique_ptr<Piston> make_piston(const ParameterList&, const NamedLists& pist
       setting.comm);
 }
 
+ParameterList level_parameters() {
+  ParameterList list;
+  declare(list, "Height", 0., "Of the surface at the start [m].");
+  declare(list, "Speed", 0., "At which it rises [m/s].");
+  return list;
+}
+
+std::unique_ptr<GivenLevel> make_level(const ParameterList& list, const MacDomain<2>& domain) {
+  return std::make_unique<GivenLevel>(
+      GivenLevel::Options{list.get<double>("Height"), list.get<double>("Speed")}, domain);
+}
+
 int run(const std::string& scene_file, const std::string& output, const Communicator& comm) {
-  Registries<2> registries = shipped_plug_ins<2>();
+  const auto interfaces = shipped_interface_models<2>();
+  interfaces->add("given level", "A flat surface at a given height.", level_parameters, make_level);
+  Registries<2> registries = shipped_plug_ins<2>(interfaces);
   registries.fluids.add("column", "A straight channel.", column_parameters, make_column);
   registries.domains["column"] = channel_parameters;
   registries.solids.add("piston", "A plate across a channel.", piston_parameters, make_piston);

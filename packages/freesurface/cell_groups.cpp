@@ -1,6 +1,7 @@
 #include "freesurface/cell_groups.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "grid/disjoint_sets.hpp"
@@ -121,6 +122,47 @@ CellGroups find_groups(const MacDomain<dim>& domain, const SolidCells<dim>& soli
   return groups;
 }
 
+template <int dim>
+void spread_labels(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                   const CellField& phi, int layers, std::vector<int>& label) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const double deepest = (layers + 1) * domain.spacing();
+  std::vector<int> waiting;
+  grid.for_each_owned_cell([&](int cell) {
+    if (label[cell] < 0 && std::abs(phi[cell]) < deepest && solids.is_fluid(cell))
+      waiting.push_back(cell);
+  });
+  const auto neighbor_label = [&](int cell) {
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
+      if (other >= 0 && label[other] >= 0)
+        return label[other];
+    }
+    return -1;
+  };
+  std::vector<int> still_waiting;
+  std::vector<std::pair<int, int>> found;
+  for (int layer = 0; layer < layers; ++layer) {
+    still_waiting.clear();
+    found.clear();
+    for (const int cell : waiting) {
+      const int label_there = neighbor_label(cell);
+      if (label_there >= 0)
+        found.emplace_back(cell, label_there);
+      else
+        still_waiting.push_back(cell);
+    }
+    for (const auto& [cell, value] : found)
+      label[cell] = value;
+    waiting.swap(still_waiting);
+    domain.halo.fill(label);
+  }
+}
+
+template void spread_labels<2>(const MacDomain<2>&, const SolidCells<2>&, const CellField&, int,
+                               std::vector<int>&);
+template void spread_labels<3>(const MacDomain<3>&, const SolidCells<3>&, const CellField&, int,
+                               std::vector<int>&);
 template CellGroups find_groups<2>(const MacDomain<2>&, const SolidCells<2>&,
                                    const std::vector<char>&);
 template CellGroups find_groups<3>(const MacDomain<3>&, const SolidCells<3>&,

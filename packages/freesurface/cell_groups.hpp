@@ -18,4 +18,10 @@ template <int dim>
 CellGroups find_groups(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                        const std::vector<char>& is_member);
 
+/// Spreads labels >= 0 from seen neighbours over `layers` of fluid cells that have none, as far as
+/// |phi| is not much more than these are deep. Collective.
+template <int dim>
+void spread_labels(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                   const CellField& phi, int layers, std::vector<int>& label);
+
 }  // namespace lockstep

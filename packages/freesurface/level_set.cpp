@@ -219,7 +219,9 @@ void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
   volume_.flow_out(solids_, phi_, step.advection_velocity, step.dt);
   const double displacement = carry(step);
   add_sources(step);
-  volume_.correct(solids_, displacement, phi_);
+  const VolumeShift shift = volume_.correct(solids_, displacement, phi_);
+  if (parameters_.particles)
+    shift_particles(domain_, solids_, step.kept, shift, phi_, particles_);
   finish();
 }
 

@@ -1,6 +1,7 @@
 #include "freesurface/particle_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace lockstep {
@@ -8,6 +9,11 @@ namespace lockstep {
 namespace {
 /// How near to a closed side a particle may come [cells].
 constexpr double at_wall = 1e-3;
+/// Cells farther from the surface have no particle that a shift would make escape [cells].
+constexpr double shifted_band = 2;
+/// The part of a shift that particles follow: what they know of the shape is worth more than a
+/// correction that is the same all over a body, but not for ever.
+constexpr double followed = 0.2;
 
 /// Moves the particles of one tile after the other.
 template <int dim>
@@ -121,6 +127,54 @@ GlobalIndex move_particles(const MacDomain<dim>& domain, TransportFrame<dim>& fr
   return mover.n_given_up();
 }
 
+template <int dim>
+void shift_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                     KeptSurface<dim>& kept, const VolumeShift& shift, const CellField& phi,
+                     ParticleTiles<dim>& tiles) {
+  if (shift.of_body.empty())
+    return;
+  const double h = domain.spacing();
+  const SampleLattice<dim> lattice(domain.grid);
+  PhiLookup<dim> lookup(domain.grid, lattice, solids, kept, phi);
+  ParticlePost<dim> post(domain.grid);
+  const auto is_inside = [&](const Point<dim>& place) {
+    for (int a = 0; a < dim; ++a)
+      if (!domain.boundary.periodic(a) &&
+          !(place[a] > at_wall && place[a] < domain.grid.n_cells()[a] - at_wall))
+        return false;
+    return true;
+  };
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+    bool has_entered = false;
+    std::size_t n_kept = 0;
+    for (const Particle<dim> particle : tiles[tile]) {
+      tiles[tile][n_kept++] = particle;
+      const std::size_t cell = tile * tile_volume<dim> + particle.cell_in_tile();
+      const int body = shift.body_of_cell[cell];
+      if (body < 0 || shift.of_body[body] == 0 || std::abs(phi[cell]) > shifted_band * h)
+        continue;
+      if (!has_entered)
+        lookup.enter(static_cast<int>(tile));
+      has_entered = true;
+      const Point<dim> x = particle.position(), gradient = lookup.gradient(x);
+      const double steepness = gradient.norm();
+      if (steepness < 0.1 * h)
+        continue;
+      const Point<dim> end = x + followed * shift.of_body[body] / h * gradient / steepness;
+      if ((lookup.may_be_hidden(x) && lookup.hidden(x, end)) || !is_inside(lookup.place(end)))
+        continue;
+      --n_kept;
+      post.put(lookup.place(end), particle.radius);
+    }
+    tiles[tile].resize(n_kept);
+  }
+  post.deliver(tiles);
+}
+
+template void shift_particles<2>(const MacDomain<2>&, const SolidCells<2>&, KeptSurface<2>&,
+                                 const VolumeShift&, const CellField&, ParticleTiles<2>&);
+template void shift_particles<3>(const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,
+                                 const VolumeShift&, const CellField&, ParticleTiles<3>&);
 template GlobalIndex move_particles<2>(const MacDomain<2>&, TransportFrame<2>&, const RayHalo<2>&,
                                        ParticleTiles<2>&);
 template GlobalIndex move_particles<3>(const MacDomain<3>&, TransportFrame<3>&, const RayHalo<3>&,

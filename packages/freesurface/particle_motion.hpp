@@ -1,5 +1,7 @@
 #pragma once
 #include "freesurface/particles.hpp"
+#include "freesurface/phi_lookup.hpp"
+#include "freesurface/volume_ledger.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "mac/transport/ray_halo.hpp"
 #include "mac/transport/transport_frame.hpp"
@@ -12,5 +14,12 @@ namespace lockstep {
 template <int dim>
 GlobalIndex move_particles(const MacDomain<dim>& domain, TransportFrame<dim>& frame,
                            const RayHalo<dim>& ray_halo, ParticleTiles<dim>& tiles);
+
+/// Moves the particles near the surface along with it where a volume correction has shifted phi:
+/// else they would pull it back. `phi` on the halo of width 1. Collective.
+template <int dim>
+void shift_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                     KeptSurface<dim>& kept, const VolumeShift& shift, const CellField& phi,
+                     ParticleTiles<dim>& tiles);
 
 }  // namespace lockstep

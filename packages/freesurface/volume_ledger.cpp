@@ -9,8 +9,6 @@
 namespace lockstep {
 
 namespace {
-/// Layers of dry cells beside the liquid that are shifted with it.
-constexpr int shifted_layers = 3;
 /// How far a body that vanishes looks for one to give its volume to [cells].
 constexpr int giving_reach = 3;
 
@@ -36,45 +34,6 @@ void for_each_cell_at_side(const TiledGrid<dim>& grid, int axis, int end, const 
   }
 }
 
-/// Spreads labels >= 0 from seen neighbours over `layers` of fluid cells that have none, as far as
-/// |phi| is not much more than these are deep. Collective.
-template <int dim>
-void spread(const MacDomain<dim>& domain, const SolidCells<dim>& solids, const CellField& phi,
-            int layers, std::vector<int>& label) {
-  const TiledGrid<dim>& grid = domain.grid;
-  const double deepest = (layers + 1) * domain.spacing();
-  std::vector<int> waiting;
-  grid.for_each_owned_cell([&](int cell) {
-    if (label[cell] < 0 && std::abs(phi[cell]) < deepest && solids.is_fluid(cell))
-      waiting.push_back(cell);
-  });
-  const auto neighbor_label = [&](int cell) {
-    for (int i = 0; i < 2 * dim; ++i) {
-      const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
-      if (other >= 0 && label[other] >= 0)
-        return label[other];
-    }
-    return -1;
-  };
-  std::vector<int> still_waiting;
-  std::vector<std::pair<int, int>> found;
-  for (int layer = 0; layer < layers; ++layer) {
-    still_waiting.clear();
-    found.clear();
-    for (const int cell : waiting) {
-      const int label_there = neighbor_label(cell);
-      if (label_there >= 0)
-        found.emplace_back(cell, label_there);
-      else
-        still_waiting.push_back(cell);
-    }
-    for (const auto& [cell, value] : found)
-      label[cell] = value;
-    waiting.swap(still_waiting);
-    domain.halo.fill(label);
-  }
-}
-
 /// How often each pair (new group, old group) occurs in one cell, over all ranks.
 using Overlaps = std::map<std::pair<int, int>, double>;
 
@@ -90,26 +49,6 @@ Overlaps gather(const Communicator& comm, const Overlaps& mine) {
   return all;
 }
 }  // namespace
-
-void declare_volume_correction(ParameterList& list) {
-  declare_choice(list, "Volume Correction", "component", {"component", "global", "none"},
-                 "Shifts the surface so that no volume is gained or lost. component: each body of "
-                 "liquid keeps its own, and nothing goes through a shell; global: all together; "
-                 "none: volume is measured only.");
-  declare_between(list, "Largest Shift", 0.1, 0.0, 1.0,
-                  "By which the correction may shift the surface in a step that carries it over no "
-                  "more than a cell; in longer steps as many times as much [cells].");
-}
-
-VolumeParameters read_volume_correction(const ParameterList& list) {
-  VolumeParameters parameters;
-  const auto correction = list.get<std::string>("Volume Correction");
-  parameters.correction = correction == "component" ? VolumeCorrection::component
-                          : correction == "global"  ? VolumeCorrection::global
-                                                    : VolumeCorrection::none;
-  parameters.largest_shift = list.get<double>("Largest Shift");
-  return parameters;
-}
 
 template <int dim>
 VolumeLedger<dim>::VolumeLedger(const MacDomain<dim>& domain, const VolumeParameters& parameters)
@@ -204,7 +143,7 @@ void VolumeLedger<dim>::regroup(const SolidCells<dim>& solids, const CellField& 
   if (std::count(has_ancestor.begin(), has_ancestor.end(), 0) > 0) {
     // What moves over more than its size comes from the nearest body there was.
     domain_.halo.fill(ancestor);
-    spread(domain_, solids, phi, reach, ancestor);
+    spread_labels(domain_, solids, phi, reach, ancestor);
     overlaps.merge(overlaps_of([&](int group) { return !has_ancestor[group]; }));
   }
   volumes_ = measure_.measure(phi, groups);
@@ -234,7 +173,7 @@ void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const Cel
                                         std::vector<double>& target) {
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<int> nearest = groups.of_cell;
-  spread(domain_, solids, phi, giving_reach, nearest);
+  spread_labels(domain_, solids, phi, giving_reach, nearest);
   Overlaps mine;
   grid.for_each_owned_cell([&](int cell) {
     const int old = groups_.of_cell[cell];
@@ -257,25 +196,40 @@ void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const Cel
 }
 
 template <int dim>
+CellGroups VolumeLedger<dim>::find_spaces(const SolidCells<dim>& solids) const {
+  return find_groups(domain_, solids, std::vector<char>(groups_.of_cell.size(), 1));
+}
+
+template <int dim>
+std::vector<int> VolumeLedger<dim>::spaces_of_bodies(const CellGroups& spaces,
+                                                     const CellGroups& bodies) const {
+  Overlaps mine;
+  std::pair<int, int> last{-1, -1};
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    const std::pair<int, int> pair{bodies.of_cell[cell], spaces.of_cell[cell]};
+    if (pair.first >= 0 && pair != last)
+      mine[last = pair] = 1;
+  });
+  std::vector<int> space(bodies.n, 0);
+  for (const auto& [pair, n] : gather(domain_.grid.comm(), mine))
+    space[pair.first] = pair.second;
+  return space;
+}
+
+template <int dim>
 void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
                                   const std::vector<char>& homeless, std::vector<double>& target) {
-  // Which closed space each body is in, and each that was.
-  const CellGroups spaces =
-      find_groups(domain_, solids, std::vector<char>(groups.of_cell.size(), 1));
-  Overlaps of_new, of_old;
+  const CellGroups spaces = find_spaces(solids);
+  Overlaps of_old;
   domain_.grid.for_each_owned_cell([&](int cell) {
-    const int old = groups_.of_cell[cell], now = groups.of_cell[cell];
-    if (now >= 0)
-      of_new[{now, spaces.of_cell[cell]}] = 1;
+    const int old = groups_.of_cell[cell];
     if (old >= 0 && homeless[old] && solids.is_fluid(cell))
       of_old[{old, spaces.of_cell[cell]}] += 1;
   });
+  const std::vector<int> space = spaces_of_bodies(spaces, groups);
   std::vector<double> volume_in_space(spaces.n, 0.0);
-  std::vector<int> space(groups.n, 0);
-  for (const auto& [pair, n] : gather(domain_.grid.comm(), of_new)) {
-    space[pair.first] = pair.second;
-    volume_in_space[pair.second] += volumes_.volume[pair.first];
-  }
+  for (int group = 0; group < groups.n; ++group)
+    volume_in_space[space[group]] += volumes_.volume[group];
   std::map<int, std::pair<double, int>> space_of_old;
   for (const auto& [pair, n] : gather(domain_.grid.comm(), of_old)) {
     auto& most = space_of_old[pair.first];
@@ -315,62 +269,6 @@ void VolumeLedger<dim>::create(const SolidCells<dim>& solids, const CellField& b
   inherit(solids, phi, {}, 1);
   for (int group = 0; group < groups_.n; ++group)
     targets_.of_group[group] += volumes_.volume[group] - there.volume[group];
-}
-
-template <int dim>
-std::vector<double> VolumeLedger<dim>::wanted_shifts(const GroupVolumes& now) const {
-  std::vector<double> shift(groups_.n, 0.0);
-  const auto ratio = [](double missing, double area) { return area > 0 ? missing / area : 0; };
-  if (parameters_.correction == VolumeCorrection::component)
-    for (int group = 0; group < groups_.n; ++group)
-      shift[group] = ratio(targets_.of_group[group] - now.volume[group], now.area[group]);
-  if (parameters_.correction == VolumeCorrection::global) {
-    const double target = std::accumulate(targets_.of_group.begin(), targets_.of_group.end(), 0.0);
-    const double volume = std::accumulate(now.volume.begin(), now.volume.end(), 0.0);
-    const double area = std::accumulate(now.area.begin(), now.area.end(), 0.0);
-    shift.assign(groups_.n, ratio(target - volume, area));
-  }
-  return shift;
-}
-
-template <int dim>
-void VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl, CellField& phi) {
-  if (parameters_.correction == VolumeCorrection::none || groups_.n == 0)
-    return;
-  const double most = parameters_.largest_shift * domain_.spacing() * std::max(1.0, cfl);
-  std::vector<int> label = groups_.of_cell;
-  spread(domain_, solids, phi, shifted_layers, label);
-  std::vector<double> left(groups_.n, most);
-  // A second time for what is not linear in the shift.
-  for (int pass = 0; pass < 2; ++pass) {
-    std::vector<double> shift = wanted_shifts(volumes_);
-    bool any = false;
-    for (int group = 0; group < groups_.n; ++group) {
-      shift[group] = std::clamp(shift[group], -left[group], left[group]);
-      // Round-off of the measure is not to move what is at rest.
-      if (std::abs(shift[group]) < 1e-13 * domain_.spacing())
-        shift[group] = 0;
-      left[group] -= std::abs(shift[group]);
-      targets_.shift += std::abs(shift[group]) * volumes_.area[group];
-      any = any || shift[group] != 0;
-    }
-    if (!any)
-      return;
-    double n_changed = 0;
-    domain_.grid.for_each_owned_cell([&](int cell) {
-      if (label[cell] < 0 || !solids.is_fluid(cell))
-        return;
-      const bool was_wet = phi[cell] < 0;
-      phi[cell] -= shift[label[cell]];
-      n_changed += was_wet != (phi[cell] < 0);
-    });
-    domain_.halo.fill(phi);
-    if (sum_all(domain_.grid.comm(), n_changed) > 0) {
-      regroup(solids, phi, {}, 1);
-      return;
-    }
-    volumes_ = measure_.measure(phi, groups_);
-  }
 }
 
 template <int dim>

@@ -29,6 +29,12 @@ struct VolumeTargets {
   double loose = 0, lost = 0, shift = 0;
 };
 
+/// By how much phi has been lowered, for each body.
+struct VolumeShift {
+  std::vector<int> body_of_cell;  ///< of stored cells on and beside a body, else -1
+  std::vector<double> of_body;    ///< [m]
+};
+
 /// Keeps account of the volume of each body of liquid and sees to it that phi has it. A body's
 /// target changes by known fluxes only; where bodies merge it is added, where one parts it is
 /// shared in proportion to the volumes.
@@ -54,8 +60,9 @@ class VolumeLedger {
   /// Takes what a source has made of `before` into the targets. Collective.
   void create(const SolidCells<dim>& solids, const CellField& before, const CellField& phi);
   /// Shifts phi until bodies have their targets, over at most `largest_shift` max(1, cfl) cells.
-  /// `phi` on the halo of width 1, which is set on return. Collective.
-  void correct(const SolidCells<dim>& solids, double cfl, CellField& phi);
+  /// `phi` on the halo of width 1, which is set on return. Returns what it has done, empty:
+  /// nothing. Collective.
+  VolumeShift correct(const SolidCells<dim>& solids, double cfl, CellField& phi);
 
   LiquidLedger state() const;
   const CellGroups& groups() const { return groups_; }
@@ -74,7 +81,12 @@ class VolumeLedger {
   /// The targets of those that have no heir near go to all bodies in the same closed space.
   void share_out(const SolidCells<dim>& solids, const CellGroups& groups,
                  const std::vector<char>& homeless, std::vector<double>& target);
+  /// The closed spaces that surfaces of solids leave, and the one that each body is in.
+  CellGroups find_spaces(const SolidCells<dim>& solids) const;
+  std::vector<int> spaces_of_bodies(const CellGroups& spaces, const CellGroups& bodies) const;
   std::vector<double> wanted_shifts(const GroupVolumes& now) const;
+  std::vector<double> limited_shifts(const SolidCells<dim>& solids,
+                                     const std::vector<double>& left) const;
 
   const MacDomain<dim>& domain_;
   VolumeParameters parameters_;

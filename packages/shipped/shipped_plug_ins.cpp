@@ -14,10 +14,17 @@
 namespace lockstep {
 
 template <int dim>
-Registries<dim> shipped_plug_ins() {
-  Registries<dim> registries;
+std::shared_ptr<InterfaceRegistry<dim>> shipped_interface_models() {
   auto interfaces = std::make_shared<InterfaceRegistry<dim>>("interface model");
   register_freesurface<dim>(*interfaces);
+  return interfaces;
+}
+
+template <int dim>
+Registries<dim> shipped_plug_ins(std::shared_ptr<const InterfaceRegistry<dim>> interfaces) {
+  Registries<dim> registries;
+  if (!interfaces)
+    interfaces = shipped_interface_models<dim>();
   register_mac<dim>(registries.fluids, interfaces);
   registries.domains["mac"] = domain_parameters<dim>;
   register_rigid<dim>(registries.solids);
@@ -30,7 +37,9 @@ Registries<dim> shipped_plug_ins() {
   return registries;
 }
 
-template Registries<2> shipped_plug_ins<2>();
-template Registries<3> shipped_plug_ins<3>();
+template std::shared_ptr<InterfaceRegistry<2>> shipped_interface_models<2>();
+template std::shared_ptr<InterfaceRegistry<3>> shipped_interface_models<3>();
+template Registries<2> shipped_plug_ins<2>(std::shared_ptr<const InterfaceRegistry<2>>);
+template Registries<3> shipped_plug_ins<3>(std::shared_ptr<const InterfaceRegistry<3>>);
 
 }  // namespace lockstep

@@ -49,6 +49,14 @@ foreach(ranks 1 2)
   endif()
 endforeach()
 
+# A tank three eighths full, whose surface the template's interface model gives.
+run_step("The template's level" "${copy}/build/simulate" "${copy}/level.xml" "${copy}/run-level")
+file(STRINGS "${copy}/run-level/history.csv" rows)
+list(GET rows -1 last)
+if(NOT last MATCHES ",0\\.375,")
+  message(FATAL_ERROR "The tank of the template ended with '${last}'.")
+endif()
+
 # Nothing installed may point back to the trees it came from; the prefix itself lies in the build tree.
 file(GLOB_RECURSE installed "${prefix}/lib/*.cmake")
 foreach(file IN LISTS installed)

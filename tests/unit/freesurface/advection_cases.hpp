@@ -1,4 +1,6 @@
 #pragma once
+#include <ctime>
+
 #include "bath.hpp"
 
 namespace lockstep::test {
@@ -9,6 +11,9 @@ struct Return {
   double shape = 0;   ///< volume that is wet or dry though it should not be
   double ledger = 0;  ///< how far the ledger's volume is from its start
   int n_components = 0;
+  int n_steps = 0;
+  double seconds = 0;     ///< of processor time in the model's steps
+  double band_cells = 0;  ///< with |phi| below its cut-off, summed over the steps
 };
 
 template <int dim>
@@ -22,14 +27,23 @@ Return carry_and_return(Bath<dim>& bath, InterfaceModel<dim>& model,
   model.initialise(start, nullptr);
   const double before = model.ledger().volume;
   const auto first = bath.measure(model.distance(), start, 8);
+  Return result;
   for (int i = 0; i < n_steps; ++i) {
     const double middle = (i + 0.5) * dt;
     bath.set_velocity([&](const Point<dim>& x) { return flow(x, middle); });
+    const std::clock_t begin = std::clock();
     bath.step(model, i * dt, dt);
+    result.seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    for (const double phi : model.distance())
+      result.band_cells += std::abs(phi) < 5.999 * bath.domain.spacing();
   }
   const auto last = bath.measure(model.distance(), start, 8);
-  return {1 - last.liquid / first.liquid, last.wrong / first.liquid,
-          model.ledger().volume / before - 1, model.ledger().n_components};
+  result.loss = 1 - last.liquid / first.liquid;
+  result.shape = last.wrong / first.liquid;
+  result.ledger = model.ledger().volume / before - 1;
+  result.n_components = model.ledger().n_components;
+  result.n_steps = n_steps;
+  return result;
 }
 
 /// Zalesak's disc, a turn in the square of side 100: radius 15, a slot 5 wide and 25 deep.

@@ -1,5 +1,7 @@
 // Bodies that a flow should bring back as they were. The bounds are a fifth above what a separate
 // prototype of the method has shown.
+#include <gtest/gtest.h>
+
 #include "advection_cases.hpp"
 
 namespace lockstep::test {

@@ -1,4 +1,6 @@
 // The cases of advection_test.cpp at the sizes for which figures are known.
+#include <gtest/gtest.h>
+
 #include "advection_cases.hpp"
 
 namespace lockstep::test {

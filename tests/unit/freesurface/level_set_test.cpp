@@ -1,3 +1,5 @@
+#include <gtest/gtest.h>
+
 #include "bath.hpp"
 #include "freesurface/redistance.hpp"
 #include "geometry/generators.hpp"

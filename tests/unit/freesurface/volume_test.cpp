@@ -1,3 +1,5 @@
+#include <gtest/gtest.h>
+
 #include "freesurface/liquid_volume.hpp"
 
 #include <random>

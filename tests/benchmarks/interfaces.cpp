@@ -1,0 +1,40 @@
+// What interface models lose in flows that should bring a body of liquid back, and what they cost:
+// one line a run, comma-separated. interfaces CASE..., with CASE one of zalesak, vortex-64,
+// vortex-128, deformation-32, deformation-64.
+#include <Tpetra_Core.hpp>
+#include <cstdio>
+#include <string>
+
+#include "freesurface/advection_cases.hpp"
+
+using namespace lockstep;
+using namespace lockstep::test;
+
+namespace {
+Return run(const std::string& name, const std::string& model, const ParameterList& list) {
+  if (name == "zalesak")
+    return zalesak(model, list);
+  const int n = std::stoi(name.substr(name.find('-') + 1));
+  if (name.rfind("vortex-", 0) == 0)
+    return vortex(model, list, n);
+  check_input(name.rfind("deformation-", 0) == 0, "There is no case \"{}\".", name);
+  return deformation(model, list, n);
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  Tpetra::ScopeGuard scope(&argc, &argv);
+  std::printf("case,model,correction,loss,shape,ledger,bodies,steps,ms_a_step,ns_a_band_cell\n");
+  for (int i = 1; i < argc; ++i)
+    for (const char* const model : {"level set", "particle level set"})
+      for (const char* const correction : {"none", "component"}) {
+        ParameterList list;
+        list.set("Volume Correction", std::string(correction));
+        const Return found = run(argv[i], model, list);
+        std::printf("%s,%s,%s,%.5f,%.5f,%.2e,%d,%d,%.3f,%.0f\n", argv[i], model, correction,
+                    found.loss, found.shape, found.ledger, found.n_components, found.n_steps,
+                    1e3 * found.seconds / found.n_steps, 1e9 * found.seconds / found.band_cells);
+        std::fflush(stdout);
+      }
+  return 0;
+}
