@@ -8,6 +8,8 @@ simple._DisableFirstRenderCameraReset()
 
 SOLID_COLOURS = [(.80, .36, .25), (.30, .50, .72), (.87, .70, .30), (.45, .65, .42), (.58, .45, .68), (.55, .55, .55)]
 
+WATER, WATER_COLOUR = "water", (.32, .56, .78)
+
 
 def open_grids(job, names):
     """A reader of some of the grids of the run."""
@@ -68,15 +70,12 @@ def show_fluid(job, view):
     bar.Title, bar.ComponentTitle = job["field"], "magnitude" if job["is_vector"] else ""
     bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
     display.SetScalarBarVisibility(view, True)
-    if job["dim"] == 3:
-        box = simple.Show(simple.Outline(Input=fluid), view)
-        box.AmbientColor = box.DiffuseColor = [0.4, 0.4, 0.4]
     return bounds
 
 
 def show_solids(job, view):
     bounds = None
-    for number, name in enumerate(job["surfaces"]):
+    for number, name in enumerate(name for name in job["surfaces"] if name != WATER):
         solid = open_grids(job, [name])
         solid.UpdatePipeline(job["times"][0])
         display = simple.Show(solid, view)
@@ -88,6 +87,25 @@ def show_solids(job, view):
         bounds = box if bounds is None else [pick(a, b) for pick, a, b in
                                              zip((min, max) * 3, bounds, box)]
     return bounds
+
+
+def show_water(job, view):
+    """Its surface and its walls, so that what is in it shines through."""
+    # Grids that differ from frame to frame come as many blocks; one surface has normals throughout.
+    surface = simple.ExtractSurface(Input=simple.MergeBlocks(Input=open_grids(job, [WATER])))
+    display = simple.Show(simple.GenerateSurfaceNormals(Input=surface, FeatureAngle=60), view)
+    display.SetRepresentationType("Surface")
+    display.ColorArrayName = ["POINTS", ""]
+    display.AmbientColor = display.DiffuseColor = WATER_COLOUR
+    display.Opacity, display.Specular, display.SpecularPower = 0.45, 0.6, 40
+
+
+def show_outline(job, view):
+    fluid = open_grids(job, job["boxes"])
+    fluid.UpdatePipeline(job["times"][0])
+    box = simple.Show(simple.Outline(Input=fluid), view)
+    box.AmbientColor = box.DiffuseColor = [0.4, 0.4, 0.4]
+    return fluid.GetDataInformation().GetBounds()
 
 
 def place_camera(job, view, bounds):
@@ -112,9 +130,16 @@ def main():
     view.UseColorPaletteForBackground = 0
     view.Background = [1.0, 1.0, 1.0]
     view.OrientationAxesVisibility = job["dim"] == 3
-    fluid_bounds = show_fluid(job, view) if job["field"] else None
+    view.UseFXAA = 1
+    bounds = show_fluid(job, view) if job["field"] else None
+    if job["boxes"] and job["dim"] == 3:
+        bounds = show_outline(job, view)
     solid_bounds = show_solids(job, view)
-    place_camera(job, view, fluid_bounds or solid_bounds)
+    if WATER in job["surfaces"]:
+        show_water(job, view)
+        # Peels of what shines through, so that nearer and farther faces are told apart.
+        view.DepthPeeling = 1
+    place_camera(job, view, bounds or solid_bounds)
     for time, picture in zip(job["times"], job["pictures"]):
         view.ViewTime = time
         simple.Render(view)
