@@ -25,7 +25,8 @@ class Mover {
   void move(int tile, std::vector<Particle<dim>>& particles) {
     begin_ = domain_.grid.tile_begin(tile);
     is_near_surface_ = frame_.plans[tile].near_surface;
-    const bool by_rows = frame_.plans[tile].by_rows && frame_.block->enter(begin_);
+    // Rows know no inflow sides, but with the flow nothing comes from there.
+    const bool by_rows = frame_.block && frame_.block->enter(begin_);
     std::size_t n_kept = 0;
     for (std::size_t first = 0; first < particles.size(); first += tile_width<dim>) {
       const int n =
