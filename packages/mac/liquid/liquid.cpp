@@ -1,6 +1,7 @@
 #include "mac/liquid/liquid.hpp"
 
 #include "base/errors.hpp"
+#include "mac/liquid/dry_cells.hpp"
 #include "mac/transport/sample_lattice.hpp"
 
 namespace lockstep {
@@ -37,6 +38,7 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
   parameters_ = read_free_surface(list);
   initial_distance_ = read_liquid<dim>(list, gravity);
   sinks_ = read_sinks<dim>(list);
+  dry_points_ = read_dry_points<dim>(list);
   const ParameterList& interface = list.sublist("Interface");
   interface_ = interfaces.create(interface.get<std::string>("Type"), interface, domain);
 }
@@ -45,6 +47,16 @@ template <int dim>
 void Liquid<dim>::begin(const Surface& surface) {
   if (!initial_distance_)
     return;
+  if (!dry_points_.empty()) {
+    const NearbySurface<dim> nearby(surface && !surface->empty() ? surface : nullptr, domain_.grid,
+                                    2);
+    const auto dry = find_dry_cells<dim>(domain_, initial_distance_, nearby, dry_points_);
+    initial_distance_ = [this, dry, filled = initial_distance_](const Point<dim>& x) {
+      const int cell = domain_.grid.cell_containing(x);
+      const double distance = filled(x);
+      return cell >= 0 && dry[cell] ? std::max(std::abs(distance), domain_.spacing()) : distance;
+    };
+  }
   interface_->initialise(initial_distance_, surface);
   initial_distance_ = nullptr;
 }

@@ -39,6 +39,7 @@ class Liquid {
   const MacDomain<dim>& domain_;
   FreeSurfaceParameters parameters_;
   std::vector<SignedDistance<dim>> sinks_;
+  std::vector<Point<dim>> dry_points_;
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
   std::unique_ptr<InterfaceModel<dim>> interface_;
 };

@@ -84,6 +84,10 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
                          "Where the liquid is at the start: all of these together, "
                          "outside of solids.",
                          liquid_schemas<dim>());
+  declare_optional<ParameterArray<double>>(
+      list, "Dry Points",
+      "Points below the surface, a component an axis, one after the other [m]: what can be reached "
+      "from them without passing through a solid is dry at the start, as the inside of a boat.");
   ParameterList sink;
   declare_shape<dim>(sink);
   declare_named_sublists(list, "Sinks",
@@ -125,6 +129,21 @@ SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gra
 }
 
 template <int dim>
+std::vector<Point<dim>> read_dry_points(const ParameterList& list) {
+  if (!list.isParameter("Dry Points"))
+    return {};
+  const auto& numbers = list.get<ParameterArray<double>>("Dry Points");
+  check_input(numbers.size() % dim == 0,
+              "In \"Free Surface\", \"Dry Points\" has {} numbers; it takes {} a point.",
+              numbers.size(), dim);
+  std::vector<Point<dim>> points(numbers.size() / dim);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (int a = 0; a < dim; ++a)
+      points[p][a] = numbers[p * dim + a];
+  return points;
+}
+
+template <int dim>
 std::vector<SignedDistance<dim>> read_sinks(const ParameterList& list) {
   const ParameterList& sinks = list.sublist("Sinks");
   std::vector<SignedDistance<dim>> shapes;
@@ -159,6 +178,8 @@ void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
 
 template void declare_free_surface<2>(const InterfaceRegistry<2>&, ParameterList&);
 template void declare_free_surface<3>(const InterfaceRegistry<3>&, ParameterList&);
+template std::vector<Point<2>> read_dry_points<2>(const ParameterList&);
+template std::vector<Point<3>> read_dry_points<3>(const ParameterList&);
 template std::vector<SignedDistance<2>> read_sinks<2>(const ParameterList&);
 template std::vector<SignedDistance<3>> read_sinks<3>(const ParameterList&);
 template SignedDistance<2> read_liquid<2>(const ParameterList&, const Point<2>&);

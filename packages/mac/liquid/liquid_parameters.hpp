@@ -19,6 +19,9 @@ FreeSurfaceParameters read_free_surface(const ParameterList& list);
 /// or a level without gravity.
 template <int dim>
 SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gravity);
+/// Throws InputError if numbers are missing.
+template <int dim>
+std::vector<Point<dim>> read_dry_points(const ParameterList& list);
 /// Shapes whose liquid is taken away.
 template <int dim>
 std::vector<SignedDistance<dim>> read_sinks(const ParameterList& list);

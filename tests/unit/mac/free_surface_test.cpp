@@ -266,6 +266,23 @@ TEST(FreeSurface, WetPartOfABox) {
   expect_wet_part_of_a_box<3>();
 }
 
+/// A box without lid in the water: nothing is in it, wherever a rank's part of it ends.
+TEST(FreeSurface, TheInsideOfAHullIsDry) {
+  Case<2> scene({48, 48}, 0.1);
+  scene.fluid.set("Gravity", numbers({0.0, -1.0}));
+  add_level<2>(scene, 3.02);
+  scene.fluid.sublist("Free Surface").set("Dry Points", numbers({1.6, 2.0}));
+  Solids<2> solids;
+  solids.add(open_box_surface<2>(Point<2>(3.03, 2.03), 0.1), Point<2>(2.401, 2.601), false);
+  const auto fluid = make_liquid<2>(scene);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  // 48 x 30 cells are below the surface, 30 x 14 of them in the hull.
+  EXPECT_NEAR(fluid->fluid_volume(), 0.01 * (48 * 30 - 30 * 14), 1e-12);
+  scene.fluid.sublist("Free Surface").set("Dry Points", numbers({1.6, 20.0}));
+  EXPECT_THROW(make_liquid<2>(scene)->set_geometry(solids.snapshot(), BlockedFaces<2>()),
+               InputError);
+}
+
 TEST(FreeSurface, BadListsSayWhatIsWrong) {
   const auto message = [](const std::function<void(Case<2>&)>& spoil) {
     Case<2> scene({8, 8}, 0.1);

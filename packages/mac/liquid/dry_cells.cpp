@@ -1,0 +1,68 @@
+#include "mac/liquid/dry_cells.hpp"
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+
+template <int dim>
+std::vector<char> find_dry_cells(const MacDomain<dim>& domain, const SignedDistance<dim>& distance,
+                                 const NearbySurface<dim>& surface,
+                                 const std::vector<Point<dim>>& points) {
+  const TiledGrid<dim>& grid = domain.grid;
+  std::vector<char> dry(grid.n_stored_cells(), 0);
+  std::vector<int> front;
+  for (const Point<dim>& point : points) {
+    const int cell = grid.cell_containing(point);
+    const bool here = cell >= 0 && grid.owned(cell);
+    check_input(sum_all(grid.comm(), static_cast<GlobalIndex>(here)) > 0,
+                "The dry point {} in \"Free Surface\" lies outside of the domain.",
+                fmt::join(point.data(), point.data() + dim, ", "));
+    check_input(surface.empty() || surface.snapshot().inside(point) < 0,
+                "The dry point {} in \"Free Surface\" lies inside a solid.",
+                fmt::join(point.data(), point.data() + dim, ", "));
+    if (here && !dry[cell]) {
+      dry[cell] = 1;
+      front.push_back(cell);
+    }
+  }
+  const auto may_pass = [&](int cell, int other) {
+    const Point<dim> x = grid.center(other);
+    return distance(x) < 0 && (surface.empty() || (!surface.first_hit(grid.center(cell), x) &&
+                                                   surface.snapshot().inside(x) < 0));
+  };
+  GlobalIndex n_found = 1;
+  while (n_found > 0) {
+    while (!front.empty()) {
+      const int cell = front.back();
+      front.pop_back();
+      for (int side = 0; side < 2 * dim; ++side) {
+        const int other = grid.neighbor(cell, side / 2, side % 2);
+        if (other < 0 || !grid.owned(other) || !grid.in_domain(other) || dry[other] ||
+            !may_pass(cell, other))
+          continue;
+        dry[other] = 1;
+        front.push_back(other);
+      }
+    }
+    domain.full_halo.fill(dry);
+    // On from where other ranks came.
+    grid.for_each_owned_cell([&](int cell) {
+      for (int side = 0; side < 2 * dim && !dry[cell]; ++side) {
+        const int other = grid.neighbor(cell, side / 2, side % 2);
+        if (other < 0 || grid.owned(other) || !dry[other] || !may_pass(other, cell))
+          continue;
+        dry[cell] = 1;
+        front.push_back(cell);
+      }
+    });
+    n_found = sum_all(grid.comm(), static_cast<GlobalIndex>(front.size()));
+  }
+  return dry;
+}
+
+template std::vector<char> find_dry_cells<2>(const MacDomain<2>&, const SignedDistance<2>&,
+                                             const NearbySurface<2>&, const std::vector<Point<2>>&);
+template std::vector<char> find_dry_cells<3>(const MacDomain<3>&, const SignedDistance<3>&,
+                                             const NearbySurface<3>&, const std::vector<Point<3>>&);
+
+}  // namespace lockstep
