@@ -179,31 +179,35 @@ void LevelSet<dim>::seed(KeptSurface<dim>& kept, bool all) {
 
 template <int dim>
 void LevelSet<dim>::add_sources(const InterfaceStep<dim>& step) {
-  const auto change = [&](const auto& shape_of) {
-    domain_.grid.for_each_owned_cell(
-        [&](int cell) { phi_[cell] = shape_of(phi_[cell], domain_.grid.center(cell)); });
-    domain_.halo.fill(phi_);
+  // The distance from all of them together, cell by cell.
+  const auto distance_from = [&](const std::vector<SignedDistance<dim>>& shapes) {
+    CellField distance(phi_.size(), cut_off());
+    domain_.grid.for_each_owned_cell([&](int cell) {
+      const Point<dim> x = domain_.grid.center(cell);
+      for (const SignedDistance<dim>& shape : shapes)
+        distance[cell] = std::min(distance[cell], shape(x));
+      distance[cell] = std::max(distance[cell], -cut_off());
+    });
+    domain_.halo.fill(distance);
+    return distance;
   };
-  const auto take_out = [&](int side, const SignedDistance<dim>& shape) {
-    std::vector<char> inside(domain_.grid.n_owned_cells(), 0);
-    if (parameters_.particles)
-      domain_.grid.for_each_owned_cell(
-          [&](int cell) { inside[cell] = shape(domain_.grid.center(cell)) < 0; });
+  const auto take_out = [&](int side, const CellField& distance) {
+    std::vector<char> inside(domain_.grid.n_owned_cells());
+    for (std::size_t cell = 0; cell < inside.size(); ++cell)
+      inside[cell] = distance[cell] < 0;
     remove_particles(side, inside, particles_);
   };
-  const double most = cut_off();
-  for (const SignedDistance<dim>& sink : step.sinks) {
-    change([&](double phi, const Point<dim>& x) {
-      return std::max(phi, std::clamp(-sink(x), -most, most));
-    });
+  if (!step.sinks.empty()) {
+    const CellField sink = distance_from(step.sinks);
+    for (std::size_t cell = 0; cell < phi_.size(); ++cell)
+      phi_[cell] = std::max(phi_[cell], -sink[cell]);
     volume_.remove(solids_, phi_);
     take_out(-1, sink);
   }
-  for (const SignedDistance<dim>& source : step.sources) {
-    const CellField before = phi_;
-    change([&](double phi, const Point<dim>& x) {
-      return std::min(phi, std::clamp(source(x), -most, most));
-    });
+  if (!step.sources.empty()) {
+    const CellField source = distance_from(step.sources), before = phi_;
+    for (std::size_t cell = 0; cell < phi_.size(); ++cell)
+      phi_[cell] = std::min(phi_[cell], source[cell]);
     volume_.create(solids_, before, phi_);
     take_out(1, source);
   }
