@@ -66,7 +66,8 @@ void MacFluid<dim>::regrid(const TileOwners& owners) {
   const TileMigration<dim> migration(domain_.grid, grid);
   for (const StoredField& field : fields_)
     migration.move(field.components, CellField(field.components.size(), field.at_rest));
-  if (!accepted_cells_.empty()) {
+  // A rank without tiles has none, whatever was accepted.
+  if (max_all(domain_.grid.comm(), static_cast<GlobalIndex>(accepted_cells_.size())) > 0) {
     std::vector<char> cells(accepted_cells_.size());
     std::transform(accepted_cells_.begin(), accepted_cells_.end(), cells.begin(),
                    [](CellState state) { return static_cast<char>(state); });
