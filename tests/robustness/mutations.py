@@ -30,7 +30,7 @@ import mesh_files
 import mutators
 import report
 from parameter_list import to_xml
-from random_scenes import seed_range
+from random_scenes import seed_list
 from runs import program, read_table, run
 from scenes import random_scene
 
@@ -249,7 +249,7 @@ def try_mutation(number, arguments):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--mutations", type=seed_range, default=seed_range("0-299"), metavar="A-B")
+    parser.add_argument("--mutations", type=seed_list, default=seed_list("0-299"), metavar="A-B")
     parser.add_argument("--kind", choices=[kind[0] for kind in KINDS], help="of one kind only")
     parser.add_argument("--jobs", type=int, default=1, help="at a time")
     parser.add_argument("--timeout", type=float, default=60, help="seconds of wall time after which a program hangs")

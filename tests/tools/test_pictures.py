@@ -91,7 +91,9 @@ class PlotFrame(Pictures):
         cube.vertices, cube.simplices = FixedArray(vertices), FixedArray(tetrahedra)
         for axis, nearest in ((0, 1.0), (1, 0.0), (2, 1.0)):
             corners = plot_frame.boundary(cube)
-            triangles, colours = plot_frame.lit(cube, axis, (1.0, 0.5, 0.2))
+            triangles, colours, nearness = plot_frame.lit(cube, axis, (1.0, 0.5, 0.2), 1.0)
+            order = numpy.argsort(nearness, kind="stable")
+            triangles, colours = triangles[order], colours[order]
             self.assertEqual(triangles.shape, (12, 3, 2))
             keep = [i for i in range(3) if i != axis]
             front = corners[(corners[..., axis] == nearest).all(axis=1)][..., keep]
