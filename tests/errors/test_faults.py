@@ -122,7 +122,7 @@ class Faults(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(simulate(folder, "--steps", 2, scene=slow).returncode, 0)
             kept = newest_checkpoint(folder)
-            again = ["--restart", kept, "--set", "Solver/Newton Iterations=3000", "--output"]
+            again = ["--restart", kept, "--set", "Solver/Newton Iterations=300000", "--output"]
             for seconds in (1, 3, 6):
                 other = Path(folder) / str(seconds)
                 with self.subTest(seconds=seconds), started(folder, *again, other, scene=slow) as process:
