@@ -70,7 +70,7 @@ std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& sol
     return shift;
   std::vector<int> space(groups_.n, 0);
   int n_spaces = 1;
-  if (!solids.blocked.empty()) {
+  if (solids.state.surface) {
     const CellGroups spaces = find_spaces(solids);
     space = spaces_of_bodies(spaces, groups_);
     n_spaces = spaces.n;

@@ -254,14 +254,17 @@ Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector
 
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
-  // Without solids nothing has changed, and there is nothing to store.
-  FaceField<dim> advection = prediction_ == velocity_ ? FaceField<dim>() : prediction_;
+  // Without solids nothing has changed, and there is nothing to store. All ranks must agree: what
+  // follows extends and sends one field or two.
+  const bool has_own = max_all(domain_.grid.comm(), GlobalIndex(prediction_ != velocity_)) > 0;
+  FaceField<dim> own = has_own ? prediction_ : FaceField<dim>();
+  FaceField<dim>& advection = has_own ? own : velocity_;
   if (liquid_)
-    move_liquid(time, dt, surface, advection[0].empty() ? velocity_ : advection);
+    move_liquid(time, dt, surface, advection);
   TransportSetting<dim> setting{domain_.grid,
                                 geometry_.state,
                                 surface,
-                                advection[0].empty() ? velocity_ : advection,
+                                advection,
                                 ray_halo_,
                                 nearby_,
                                 {},

@@ -8,11 +8,12 @@ import dataclasses
 import math
 import random
 
+import liquids
+from liquids import AXES
 from parameter_list import to_xml
 from rigid_solids import rigid_body
 from soft_solids import carried, cloth, deformable_body
 
-AXES = "xyz"
 NAMES = ["Ball", "Body 2", "x,y 1", "A & B", "Körper", "Körper 2", "b-3", "Zelt"]
 TOLERANCE = 1e-10
 # Strategies that can solve every scene; the others are drawn where docs/solvers.md says they can.
@@ -32,6 +33,7 @@ class Facts:
     explicit: bool = False  # elastic forces of the present positions
     sub_steps: bool = False  # of elastic forces
     crushed: bool = False  # a material that gives way where it is crushed, at steps that crush it
+    liquid: bool = False  # with a free surface
     soft: bool = False
     springs: bool = False
     attached: bool = False
@@ -385,6 +387,8 @@ def random_scene(seed):
     content = {"Dimension": world.dimension, "Title": f"Random scene {seed}",
                "Domain": {"Lower": world.lower, "Upper": world.upper, "Cells": world.cells, "Sides": side_lists},
                "Fluid": fluid(world, side_lists), "Solids": solids(world)}
+    if seed >= liquids.FIRST_SEED:
+        liquids.fill_with_liquid(world, content, seed)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])
     content["Solver"] = solver(world, content["Coupling"], content["Solids"])
