@@ -71,10 +71,13 @@ int LevelSet<dim>::band(double largest_displacement) const {
 }
 
 template <int dim>
-void LevelSet<dim>::find_solids(const Surface& surface) {
+std::optional<SolidCells<dim>> LevelSet<dim>::find_solids(const Surface& surface) {
   const Surface present = surface && !surface->empty() ? surface : nullptr;
-  if (solids_.state.surface != present)
-    solids_ = find_solid_cells(domain_, present);
+  if (solids_.state.surface == present)
+    return {};
+  std::optional<SolidCells<dim>> before = std::move(solids_);
+  solids_ = find_solid_cells(domain_, present);
+  return before;
 }
 
 template <int dim>
@@ -121,14 +124,14 @@ double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
   if (parameters_.particles)
     n_lost_ += move_particles(domain_, transport.frame(), step.ray_halo, particles_);
   const bool had_solids = solids_.state.surface != nullptr;
-  find_solids(step.surface.after);
+  const auto replaced = find_solids(step.surface.after);
   if (had_solids || solids_.state.surface)
     revalidate_scalar(grid, domain_.halo, solids_.state, step.surface, step.kept,
                       transport.invalid(), grid.spacing(), phi_);
   domain_.halo.fill(phi_);
   if (moved_ >= negligible_motion)
     restore(step, tiles);
-  volume_.inherit(solids_, phi_, transport.invalid().cells,
+  volume_.inherit(replaced ? *replaced : solids_, solids_, phi_, transport.invalid().cells,
                   static_cast<int>(std::ceil(displacement)) + 1);
   return displacement;
 }
@@ -227,6 +230,17 @@ void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
   if (parameters_.particles)
     shift_particles(domain_, solids_, step.kept, shift, phi_, particles_);
   finish();
+}
+
+template <int dim>
+LiquidCells LevelSet<dim>::cells_with_liquid(const Surface& surface, KeptSurface<dim>& kept) {
+  find_solids(surface);
+  LiquidCells cells{std::vector<char>(phi_.size(), 0), std::vector<char>(phi_.size(), 0)};
+  for (std::size_t cell = 0; cell < phi_.size(); ++cell)
+    cells.seen[cell] = phi_[cell] < 0 && solids_.is_fluid(static_cast<int>(cell));
+  if (parameters_.particles)
+    add_cells_seen(-1, domain_, solids_, kept, phi_, particles_, cells.seen, cells.hidden);
+  return cells;
 }
 
 template <int dim>

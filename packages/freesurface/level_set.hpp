@@ -48,6 +48,10 @@ class LevelSet : public InterfaceModel<dim> {
   const CellField& distance() const override { return phi_; }
   int band(double largest_displacement) const override;
   LiquidLedger ledger() const override { return volume_.state(); }
+  LiquidCells cells_with_liquid(const Surface& surface, KeptSurface<dim>& kept) override;
+  WatchedLiquid liquid_in(const std::vector<char>& cells) const override {
+    return volume_.in_cells(phi_, cells);
+  }
 
   const ParticleTiles<dim>& particles() const { return particles_; }
   /// Particles that surfaces have cost so far, on this rank.
@@ -55,7 +59,8 @@ class LevelSet : public InterfaceModel<dim> {
 
  private:
   double cut_off() const { return parameters_.band * domain_.spacing(); }
-  void find_solids(const Surface& surface);
+  /// Returns those that there were, if they are others now.
+  std::optional<SolidCells<dim>> find_solids(const Surface& surface);
   /// Returns how far the fastest fluid goes [cells].
   double carry(const InterfaceStep<dim>& step);
   /// Makes phi a distance again, as the particles know it. Sets the halo of width 1.

@@ -130,7 +130,7 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
     domain_.halo.fill(phi);
     has_regrouped = sum_all(domain_.grid.comm(), n_changed) > 0;
     if (has_regrouped)
-      regroup(solids, phi, {}, 1);
+      regroup(solids, solids, phi, {}, 1);
     else
       volumes_ = measure_.measure(phi, groups_);
   }

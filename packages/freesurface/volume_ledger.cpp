@@ -102,15 +102,15 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
 }
 
 template <int dim>
-void VolumeLedger<dim>::inherit(const SolidCells<dim>& solids, const CellField& phi,
-                                const std::vector<char>& swept, int reach) {
+void VolumeLedger<dim>::inherit(const SolidCells<dim>& before, const SolidCells<dim>& solids,
+                                const CellField& phi, const std::vector<char>& swept, int reach) {
   measure_.prepare(solids, phi);
-  regroup(solids, phi, swept, reach);
+  regroup(before, solids, phi, swept, reach);
 }
 
 template <int dim>
-void VolumeLedger<dim>::regroup(const SolidCells<dim>& solids, const CellField& phi,
-                                const std::vector<char>& swept, int reach) {
+void VolumeLedger<dim>::regroup(const SolidCells<dim>& before, const SolidCells<dim>& solids,
+                                const CellField& phi, const std::vector<char>& swept, int reach) {
   const TiledGrid<dim>& grid = domain_.grid;
   CellGroups groups = find(solids, phi);
   std::vector<int> ancestor = groups_.of_cell;
@@ -162,23 +162,42 @@ void VolumeLedger<dim>::regroup(const SolidCells<dim>& solids, const CellField& 
   for (const auto& [pair, n] : overlaps)
     target[pair.first] += targets_.of_group[pair.second] * claim(pair, n) / claims[pair.second];
   if (std::count(vanished.begin(), vanished.end(), 1) > 0)
-    give_to_nearest(solids, phi, groups, vanished, target);
+    give_to_nearest(solids, phi, groups, places_of(vanished, before, phi, swept), vanished, target);
   groups_ = std::move(groups);
   targets_.of_group = std::move(target);
 }
 
 template <int dim>
+std::vector<int> VolumeLedger<dim>::places_of(const std::vector<char>& vanished,
+                                              const SolidCells<dim>& before, const CellField& phi,
+                                              const std::vector<char>& swept) const {
+  std::vector<int> places = groups_.of_cell;
+  for (int& group : places)
+    if (group >= 0 && !vanished[group])
+      group = -1;
+  double n_swept = 0;
+  for (std::size_t cell = 0; cell < swept.size(); ++cell)
+    n_swept += swept[cell] && places[cell] >= 0;
+  if (sum_all(domain_.grid.comm(), n_swept) == 0)
+    return places;
+  spread_labels(domain_, before, phi, giving_reach, places);
+  for (std::size_t cell = 0; cell < swept.size(); ++cell)
+    if (swept[cell])
+      places[cell] = -1;
+  return places;
+}
+
+template <int dim>
 void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
-                                        const CellGroups& groups, const std::vector<char>& vanished,
-                                        std::vector<double>& target) {
+                                        const CellGroups& groups, const std::vector<int>& places,
+                                        std::vector<char> homeless, std::vector<double>& target) {
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<int> nearest = groups.of_cell;
   spread_labels(domain_, solids, phi, giving_reach, nearest);
   Overlaps mine;
   grid.for_each_owned_cell([&](int cell) {
-    const int old = groups_.of_cell[cell];
-    if (old >= 0 && vanished[old] && nearest[cell] >= 0)
-      mine[{old, nearest[cell]}] += 1;
+    if (places[cell] >= 0 && nearest[cell] >= 0)
+      mine[{places[cell], nearest[cell]}] += 1;
   });
   std::map<int, std::pair<double, int>> heir;  // most cells; the first of several
   for (const auto& [pair, n] : gather(grid.comm(), mine)) {
@@ -186,13 +205,12 @@ void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const Cel
     if (n > best.first)
       best = {n, pair.second};
   }
-  std::vector<char> homeless = vanished;
   for (const auto& [old, best] : heir) {
     target[best.second] += targets_.of_group[old];
     homeless[old] = 0;
   }
   if (std::count(homeless.begin(), homeless.end(), 1) > 0)
-    share_out(solids, groups, homeless, target);
+    share_out(solids, groups, places, homeless, target);
 }
 
 template <int dim>
@@ -218,11 +236,12 @@ std::vector<int> VolumeLedger<dim>::spaces_of_bodies(const CellGroups& spaces,
 
 template <int dim>
 void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
-                                  const std::vector<char>& homeless, std::vector<double>& target) {
+                                  const std::vector<int>& places, const std::vector<char>& homeless,
+                                  std::vector<double>& target) {
   const CellGroups spaces = find_spaces(solids);
   Overlaps of_old;
   domain_.grid.for_each_owned_cell([&](int cell) {
-    const int old = groups_.of_cell[cell];
+    const int old = places[cell];
     if (old >= 0 && homeless[old] && solids.is_fluid(cell))
       of_old[{old, spaces.of_cell[cell]}] += 1;
   });
@@ -257,7 +276,7 @@ void VolumeLedger<dim>::remove(const SolidCells<dim>& solids, const CellField& p
   const GroupVolumes left = measure_.measure(phi, groups_);
   for (int group = 0; group < groups_.n; ++group)
     targets_.of_group[group] += left.volume[group] - volumes_.volume[group];
-  inherit(solids, phi, {}, 1);
+  inherit(solids, solids, phi, {}, 1);
 }
 
 template <int dim>
@@ -266,9 +285,27 @@ void VolumeLedger<dim>::create(const SolidCells<dim>& solids, const CellField& b
   measure_.prepare(solids, before);
   const CellGroups groups = find(solids, phi);
   const GroupVolumes there = measure_.measure(before, groups);
-  inherit(solids, phi, {}, 1);
+  inherit(solids, solids, phi, {}, 1);
   for (int group = 0; group < groups_.n; ++group)
     targets_.of_group[group] += volumes_.volume[group] - there.volume[group];
+}
+
+template <int dim>
+WatchedLiquid VolumeLedger<dim>::in_cells(const CellField& phi,
+                                          const std::vector<char>& cells) const {
+  CellGroups there = groups_;
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    if (!cells[cell])
+      there.of_cell[cell] = -1;
+  const GroupVolumes volumes = measure_.measure(phi, there);
+  WatchedLiquid liquid;
+  for (int group = 0; group < groups_.n; ++group) {
+    if (volumes.volume[group] == 0)
+      continue;
+    liquid.volume += volumes.volume[group];
+    liquid.target += targets_.of_group[group] * volumes.volume[group] / volumes_.volume[group];
+  }
+  return liquid;
 }
 
 template <int dim>

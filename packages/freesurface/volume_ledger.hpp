@@ -51,10 +51,10 @@ class VolumeLedger {
   void flow_out(const SolidCells<dim>& solids, const CellField& phi, const FaceField<dim>& velocity,
                 double dt);
   /// Hands the targets on to the bodies of the carried phi. `swept` (may be empty): cells that have
-  /// changed sides of a surface; `reach`: farther than any cell's content has come from [cells].
-  /// Collective.
-  void inherit(const SolidCells<dim>& solids, const CellField& phi, const std::vector<char>& swept,
-               int reach);
+  /// changed sides of a surface since `before`; `reach`: farther than any cell's content has come
+  /// from [cells]. Collective.
+  void inherit(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
+               const std::vector<char>& swept, int reach);
   /// Takes what a sink has left into the targets. Collective.
   void remove(const SolidCells<dim>& solids, const CellField& phi);
   /// Takes what a source has made of `before` into the targets. Collective.
@@ -65,6 +65,8 @@ class VolumeLedger {
   VolumeShift correct(const SolidCells<dim>& solids, double cfl, CellField& phi);
 
   LiquidLedger state() const;
+  /// What of the measured bodies is in some cells (1), and which part of their targets. Collective.
+  WatchedLiquid in_cells(const CellField& phi, const std::vector<char>& cells) const;
   const CellGroups& groups() const { return groups_; }
   const VolumeTargets& targets() const { return targets_; }
   /// Of a restart: groups are found anew. Collective.
@@ -73,14 +75,19 @@ class VolumeLedger {
  private:
   CellGroups find(const SolidCells<dim>& solids, const CellField& phi) const;
   /// `inherit` where the list of boxes is still good.
-  void regroup(const SolidCells<dim>& solids, const CellField& phi, const std::vector<char>& swept,
-               int reach);
+  void regroup(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
+               const std::vector<char>& swept, int reach);
+  /// Where the vanished bodies were; of those that surfaces passed over, what was around.
+  std::vector<int> places_of(const std::vector<char>& vanished, const SolidCells<dim>& before,
+                             const CellField& phi, const std::vector<char>& swept) const;
+  /// `places`: old bodies that have vanished.
   void give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
-                       const CellGroups& groups, const std::vector<char>& vanished,
-                       std::vector<double>& target);
+                       const CellGroups& groups, const std::vector<int>& places,
+                       std::vector<char> homeless, std::vector<double>& target);
   /// The targets of those that have no heir near go to all bodies in the same closed space.
   void share_out(const SolidCells<dim>& solids, const CellGroups& groups,
-                 const std::vector<char>& homeless, std::vector<double>& target);
+                 const std::vector<int>& places, const std::vector<char>& homeless,
+                 std::vector<double>& target);
   /// The closed spaces that surfaces of solids leave, and the one that each body is in.
   CellGroups find_spaces(const SolidCells<dim>& solids) const;
   std::vector<int> spaces_of_bodies(const CellGroups& spaces, const CellGroups& bodies) const;

@@ -91,6 +91,7 @@ class MacFluid : public FluidDiscretization<dim>,
   double surface_distance(const Point<dim>& x) const override { return liquid_->distance(x); }
   std::vector<WetBody<dim>> wet_bodies() const override;
   LiquidReport liquid() const override { return liquid_->report(); }
+  std::vector<std::string> watch_names() const override { return liquid_->watch_names(); }
   Box<dim> bounds() const override;
   std::array<std::array<bool, 2>, dim> closed_sides() const override;
   bool is_periodic() const override;
@@ -101,6 +102,9 @@ class MacFluid : public FluidDiscretization<dim>,
   double kinetic_energy() const override;
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
   void add_frame(std::vector<BoxFrame>& boxes) const override;
+  std::vector<std::string> surface_names() const override {
+    return liquid_ ? std::vector<std::string>{"water"} : std::vector<std::string>();
+  }
   /// "water"; gathered, since frames are few and a surface small.
   void add_surfaces(std::vector<SurfaceFrame>& surfaces) const override;
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell

@@ -79,6 +79,8 @@ class FluidOutput {
   virtual void add_frame(std::vector<BoxFrame>& boxes) const = 0;
   /// Adds its surfaces, as a liquid with a free surface has one. Collective.
   virtual void add_surfaces(std::vector<SurfaceFrame>&) const {}
+  /// Their names, which no solid may have. Local.
+  virtual std::vector<std::string> surface_names() const { return {}; }
   /// Lines for `--explain`, title and text: how the grid has taken what the scene asks for.
   /// Collective.
   virtual std::vector<std::pair<std::string, std::string>> notes() const { return {}; }

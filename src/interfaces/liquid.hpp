@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -9,13 +10,21 @@
 
 namespace lockstep {
 
+/// The liquid of a watched place. Global.
+struct WatchedLiquid {
+  double volume = 0;  ///< [m^dim]
+  double target = 0;  ///< what it should be [m^dim]
+  double leak = 0;    ///< of it what came through solids; with a leak a step fails [m^dim]
+};
+
 /// How much liquid there is, and what became of it. Global.
 struct LiquidReport {
   double volume = 0;  ///< [m^dim]
   double target = 0;  ///< what it should be: of the start, with all that flowed in and out [m^dim]
   double shift = 0;   ///< volume that corrections have moved so far [m^dim]
   double lost = 0;    ///< that vanished with drops too small to see [m^dim]
-  long long n_bodies = 0;  ///< connected bodies of liquid
+  long long n_bodies = 0;              ///< connected bodies of liquid
+  std::vector<WatchedLiquid> watches;  ///< in the order of their names
 };
 
 /// What of a closed solid lies in a liquid, and what the grid takes that for: below the plane that
@@ -47,6 +56,8 @@ class LiquidFluid {
   /// By solid of the frozen surface; those that are not closed have nothing. Collective.
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
   virtual LiquidReport liquid() const = 0;
+  /// Of the watched places, as columns have them. Local.
+  virtual std::vector<std::string> watch_names() const { return {}; }
 };
 
 /// Null unless it is a liquid that has a free surface. Local.

@@ -28,7 +28,8 @@ void add_rotation(std::vector<HistoryColumn>& columns, const std::string& name,
 }  // namespace
 
 template <int dim>
-std::vector<HistoryColumn> history_columns(bool with_liquid) {
+std::vector<HistoryColumn> history_columns(bool with_liquid,
+                                           const std::vector<std::string>& watches) {
   std::vector<HistoryColumn> columns = {
       {"step", "1", "number of the step"},
       {"time", "s", "at the end of the step"},
@@ -78,6 +79,13 @@ std::vector<HistoryColumn> history_columns(bool with_liquid) {
              {"liquid_bodies", "1", "connected bodies of liquid"}}) {
       columns.push_back(column);
     }
+    for (const std::string& name : watches) {
+      const std::string watch = "watch_" + name;
+      columns.push_back({watch + "_volume", unit, "of liquid in this watched place"});
+      columns.push_back({watch + "_volume_target", unit, "what it should be"});
+      columns.push_back(
+          {watch + "_leak", unit, "of it what came through solids: 0, or the run ends"});
+    }
   }
   return columns;
 }
@@ -95,8 +103,8 @@ std::vector<HistoryColumn> body_columns() {
   return columns;
 }
 
-template std::vector<HistoryColumn> history_columns<2>(bool);
-template std::vector<HistoryColumn> history_columns<3>(bool);
+template std::vector<HistoryColumn> history_columns<2>(bool, const std::vector<std::string>&);
+template std::vector<HistoryColumn> history_columns<3>(bool, const std::vector<std::string>&);
 template std::vector<HistoryColumn> body_columns<2>();
 template std::vector<HistoryColumn> body_columns<3>();
 

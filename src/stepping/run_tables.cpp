@@ -22,8 +22,11 @@ void append_each(std::vector<HistoryValue>& row, const Values&... values) {
 }  // namespace
 
 template <int dim>
-RunTables<dim>::RunTables(const Communicator& comm, const std::string& directory, bool with_liquid)
-    : history_(comm, directory + "/history.csv", history_columns<dim>(with_liquid)),
+RunTables<dim>::RunTables(const Communicator& comm, const std::string& directory,
+                          const LiquidFluid<dim>* liquid)
+    : history_(comm, directory + "/history.csv",
+               history_columns<dim>(liquid != nullptr,
+                                    liquid ? liquid->watch_names() : std::vector<std::string>())),
       bodies_(comm, directory + "/bodies.csv", body_columns<dim>()) {}
 
 template <int dim>
@@ -64,8 +67,11 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
               static_cast<long long>(report.contact_position.n_contacts),
               report.contact_position.deepest_overlap,
               static_cast<long long>(report.n_clamped_elements), wall_seconds);
-  if (const auto& liquid = report.liquid)
+  if (const auto& liquid = report.liquid) {
     append_each(row, liquid->target, liquid->shift, liquid->lost, liquid->n_bodies);
+    for (const WatchedLiquid& watched : liquid->watches)
+      append_each(row, watched.volume, watched.target, watched.leak);
+  }
   history_.append_row(row);
 
   std::vector<std::vector<HistoryValue>> rows;

@@ -12,8 +12,8 @@ namespace lockstep {
 template <int dim>
 class RunTables {
  public:
-  /// `with_liquid`: all steps report a liquid with a free surface.
-  RunTables(const Communicator& comm, const std::string& directory, bool with_liquid);
+  /// `liquid`: not null if all steps report a liquid with a free surface.
+  RunTables(const Communicator& comm, const std::string& directory, const LiquidFluid<dim>* liquid);
   void start();
   void resume(long long step);
   /// Collective. `names` and states as the SolidSystem gives them.

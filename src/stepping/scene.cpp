@@ -230,8 +230,10 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
     return scene.sublist(list).get<std::string>("Type");
   };
   Components<dim> components;
-  components.fluid = registries.fluids.create(type_of("Fluid"), scene.sublist("Fluid"),
-                                              scene.sublist("Domain"), comm);
+  ParameterList fluid_list = scene.sublist("Fluid");
+  resolve_files(fluid_list, scene_file);
+  components.fluid =
+      registries.fluids.create(type_of("Fluid"), fluid_list, scene.sublist("Domain"), comm);
   const FluidDiscretization<dim>& fluid = *components.fluid;
   const Box<dim> bounds = bounds_of(fluid);
   const SolidSetting<dim> solid_setting{fluid.smallest_length(), fluid.gravity(),

@@ -10,6 +10,7 @@
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
 #include "output/signals.hpp"
+#include "output/xdmf.hpp"
 #include "parameters/write.hpp"
 #include "stepping/restart_check.hpp"
 #include "stepping/surface_frames.hpp"
@@ -34,7 +35,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
       comm_(comm),
       log_(log),
       components_(build_components<dim>(registries, scene, options.scene_file, comm)),
-      tables_(comm, options.output_directory, liquid_of<dim>(*components_.fluid) != nullptr),
+      tables_(comm, options.output_directory, liquid_of<dim>(*components_.fluid)),
       observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory),
       frames_(comm, options.output_directory,
               {scene_options_.output.precision == "double" ? Precision::double_precision
@@ -56,6 +57,21 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
   ScopedPhase phase(timers_, "start");
   stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
                                             scene_options_.time.start, timers_);
+  check_names();
+}
+
+/// Surfaces of fluid and solids lie side by side in frames.
+template <int dim>
+void Simulation<dim>::check_names() const {
+  const auto* output = side_of<FluidOutput<dim>>(*components_.fluid);
+  if (!output)
+    return;
+  for (const std::string& name : output->surface_names())
+    for (const SolidDescription& solid : stepper_->system().surface()->solids())
+      check_input(
+          xdmf::stored_name(solid.name) != name,
+          "The solid \"{}\" has the name of the fluid's surface in frames; give it another.",
+          solid.name);
 }
 
 template <int dim>

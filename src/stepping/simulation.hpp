@@ -42,6 +42,7 @@ class Simulation {
   std::optional<StepReport<dim>> take_step(double dt, int& signal);
   void begin_outputs();
   RunView<dim> view(const std::vector<SolidState<dim>>& states) const;
+  void check_names() const;
   void write_frame();
   void write_checkpoint();
   void load_checkpoint();

@@ -32,6 +32,7 @@ std::vector<std::string> names_in(const std::string& formula) {
 /// The solids of a scene, as far as the file itself says.
 struct Bodies {
   std::set<std::string> names;
+  std::vector<std::string> watches;  ///< of the liquid
   bool complete = false;
 };
 
@@ -45,6 +46,9 @@ Bodies bodies_of(const std::string& scene_file) {
     bodies.complete = !scene.isParameter("Include") && !scene.isParameter("Copies");
     for (const auto& [name, entry] : entries(scene.sublist("Solids")))
       bodies.names.insert(variable_name(name));
+    for (const auto& [name, entry] :
+         entries(scene.sublist("Fluid").sublist("Free Surface").sublist("Watch")))
+      bodies.watches.push_back(variable_name(name));
   } catch (const InputError&) {
     bodies.complete = false;  // simulate will say what is wrong with it
   }
@@ -65,7 +69,8 @@ Variables names_of_run(const Study& study, const StudyCase& study_case) {
 
 /// Adds the columns of history.csv, and those of bodies.csv that the formula names.
 void add_columns(const std::string& formula, const Bodies& bodies, Variables& variables) {
-  for (const auto& columns : {history_columns<2>(true), history_columns<3>(true)}) {
+  for (const auto& columns :
+       {history_columns<2>(true, bodies.watches), history_columns<3>(true, bodies.watches)}) {
     for (const HistoryColumn& column : columns)
       variables[column.name] = 1;
   }

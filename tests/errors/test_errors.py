@@ -101,6 +101,31 @@ def mesh(text, name="body.obj"):
             "change": (GEOMETRY, value("Shape", "string", "file") + value("File", "string", name))}
 
 
+FREE_SURFACE = """<ParameterList name="Free Surface"> <ParameterList name="Liquid"> <ParameterList name="Pool">
+  <Parameter name="Type" type="string" value="level"/> <Parameter name="Height" type="double" value="1.2"/>
+  </ParameterList> </ParameterList> REST </ParameterList>"""
+
+
+def water(rest="", liquid=None, solid="Ball"):
+    """The good scene with a free surface."""
+    scene = SCENE.replace(value("Order in Time", "int", "2"), FREE_SURFACE.replace("REST", rest)).replace(NAME, f'<ParameterList name="{solid}">')
+    return {"scene": scene if liquid is None else scene.replace(value("Type", "string", "level") + " " +
+                                                                value("Height", "double", "1.2"), liquid)}
+
+
+def watch(*places):
+    """Watched places: names, points and more."""
+    lists = [f'<ParameterList name="{name}">' + value("Point", "Array(double)", point) + more + "</ParameterList>"
+             for name, point, more in places]
+    return water('<ParameterList name="Watch">' + "".join(lists) + "</ParameterList>")
+
+
+def filled(name, text=None):
+    """Liquid in what a file holds."""
+    return {"files": [(name, text)] if text else [],
+            **water(liquid=value("Type", "string", "mesh") + value("File", "string", name))}
+
+
 CASES = [
     # The command line.
     Case("no such option", "--ouput", arguments=["--ouput", "here"]),
@@ -256,6 +281,19 @@ CASES = [
     Case("a mesh without faces", "no triangles", **mesh(TETRAHEDRON.split("f", 1)[0])),
     Case("an unknown kind of file", "body.ply", **mesh(TETRAHEDRON, "body.ply")),
     Case("a mesh that is no mesh", "OFF", **mesh("solid", "body.off")),
+
+    # Water.
+    Case("a solid with the water's name", ["\"water\"", "fluid's surface in frames"], **water(solid="water")),
+    Case("a watch in a solid", ["watch \"Hold\"", "inside a solid"], **watch(("Hold", "{0.5, 0.5}", ""))),
+    Case("a watch outside", ["watch \"Hold\"", "outside of the domain"], **watch(("Hold", "{0.5, 7}", ""))),
+    Case("two watches of one column", ["\"Watch\"", "watch_B_1_volume"],
+         **watch(("B 1", "{0.1, 0.1}", ""), ("B_1", "{0.1, 0.2}", ""))),
+    Case("a watch that moves with nobody", ["watch \"Hold\"", "\"Boat\"", "no solid"],
+         **watch(("Hold", "{0.1, 0.1}", value("Solid", "string", "Boat")))),
+    Case("a watch of a hair", ["\"Radius\"", "greater than 0"],
+         **watch(("Hold", "{0.1, 0.1}", value("Radius", "double", "0")))),
+    Case("liquid in no file", ["pool.obj", "cannot open this surface file"], **filled("pool.obj")),
+    Case("liquid in an open line", ["Pool", "pool.obj"], **filled("pool.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\n")),
 ]
 
 

@@ -1,6 +1,7 @@
 #include "mac/liquid/dry_cells.hpp"
 
 #include "base/errors.hpp"
+#include "mac/liquid/flood.hpp"
 
 namespace lockstep {
 
@@ -30,33 +31,8 @@ std::vector<char> find_dry_cells(const MacDomain<dim>& domain, const SignedDista
     return distance(x) < 0 && (surface.empty() || (!surface.first_hit(grid.center(cell), x) &&
                                                    surface.snapshot().inside(x) < 0));
   };
-  GlobalIndex n_found = 1;
-  while (n_found > 0) {
-    while (!front.empty()) {
-      const int cell = front.back();
-      front.pop_back();
-      for (int side = 0; side < 2 * dim; ++side) {
-        const int other = grid.neighbor(cell, side / 2, side % 2);
-        if (other < 0 || !grid.owned(other) || !grid.in_domain(other) || dry[other] ||
-            !may_pass(cell, other))
-          continue;
-        dry[other] = 1;
-        front.push_back(other);
-      }
-    }
-    domain.full_halo.fill(dry);
-    // On from where other ranks came.
-    grid.for_each_owned_cell([&](int cell) {
-      for (int side = 0; side < 2 * dim && !dry[cell]; ++side) {
-        const int other = grid.neighbor(cell, side / 2, side % 2);
-        if (other < 0 || grid.owned(other) || !dry[other] || !may_pass(other, cell))
-          continue;
-        dry[cell] = 1;
-        front.push_back(cell);
-      }
-    });
-    n_found = sum_all(grid.comm(), static_cast<GlobalIndex>(front.size()));
-  }
+  flood(domain, std::move(front), may_pass, dry);
+  domain.full_halo.fill(dry);
   return dry;
 }
 

@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "grid/tile_migration.hpp"
 #include "interfaces/fluid.hpp"
+#include "interfaces/liquid.hpp"
 #include "interfaces/plug_in.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "mac/transport/nearby_surface.hpp"
@@ -26,6 +27,12 @@ struct LiquidLedger {
   double lost = 0;    ///< of bodies that vanished and left no other in their closed space
   int n_components = 0;  ///< bodies of liquid
   double drops = 0;      ///< in drops that the grid does not resolve
+};
+
+/// Stored cells (1) with liquid, owned and of the halo of width 1.
+struct LiquidCells {
+  std::vector<char> seen;    ///< not solid; wet, or a drop that the grid does not show is in sight
+  std::vector<char> hidden;  ///< owned: such a drop is in a gap that no centre of a cell sees
 };
 
 /// What moves an interface over one step.
@@ -69,6 +76,20 @@ class InterfaceModel : public PlugIn {
   virtual int band(double largest_displacement) const = 0;
   /// At the present time. Local.
   virtual LiquidLedger ledger() const = 0;
+  /// Where there is liquid among the present solids. Collective. Default: the wet cells.
+  virtual LiquidCells cells_with_liquid(const Surface&, KeptSurface<dim>&) {
+    const CellField& phi = distance();
+    LiquidCells cells{std::vector<char>(phi.size()), std::vector<char>(phi.size(), 0)};
+    for (std::size_t cell = 0; cell < phi.size(); ++cell)
+      cells.seen[cell] = phi[cell] < 0;
+    return cells;
+  }
+  /// What of the liquid is in some stored cells (1), and should be; after a step. Collective.
+  /// Default: throws InputError.
+  virtual WatchedLiquid liquid_in(const std::vector<char>& /*cells*/) const {
+    throw InputError(fmt::format(
+        "The interface \"{}\" cannot tell how much is where; leave out \"Watch\".", this->name()));
+  }
   /// The tiles of the domain are about to change, between two steps; new ones are dry. Carries over
   /// what lives on them, and returns what is to be done once the domain has its new grid.
   /// Collective. Default: throws InputError.

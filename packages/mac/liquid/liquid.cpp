@@ -39,6 +39,9 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
   initial_distance_ = read_liquid<dim>(list, gravity);
   sinks_ = read_sinks<dim>(list);
   dry_points_ = read_dry_points<dim>(list);
+  auto watches = read_watches<dim>(list);
+  if (!watches.empty())
+    audit_ = std::make_unique<LeakAudit<dim>>(domain, std::move(watches));
   const ParameterList& interface = list.sublist("Interface");
   interface_ = interfaces.create(interface.get<std::string>("Type"), interface, domain);
 }
@@ -57,6 +60,8 @@ void Liquid<dim>::begin(const Surface& surface) {
       return cell >= 0 && dry[cell] ? std::max(std::abs(distance), domain_.spacing()) : distance;
     };
   }
+  if (audit_)
+    audit_->begin(surface);
   interface_->initialise(initial_distance_, surface);
   initial_distance_ = nullptr;
 }
@@ -83,7 +88,11 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
   extension.extend(step.time, step.surface.velocity, advection_velocity);
   if (&velocity != &advection_velocity)
     extension.extend(step.time, step.surface.velocity, velocity);
+  if (audit_)
+    audit_->open(step, *interface_);
   interface_->advance(step);
+  if (audit_)
+    audit_->close(step, *interface_, displacement);
 }
 
 template <int dim>
@@ -97,7 +106,18 @@ double Liquid<dim>::distance(const Point<dim>& x) const {
 template <int dim>
 LiquidReport Liquid<dim>::report() const {
   const LiquidLedger ledger = interface_->ledger();
-  return {ledger.volume, ledger.target, ledger.shift, ledger.lost, ledger.n_components};
+  return {ledger.volume,       ledger.target,
+          ledger.shift,        ledger.lost,
+          ledger.n_components, audit_ ? audit_->report() : std::vector<WatchedLiquid>()};
+}
+
+template <int dim>
+std::vector<std::string> Liquid<dim>::watch_names() const {
+  std::vector<std::string> names;
+  if (audit_)
+    for (const Watch<dim>& watch : audit_->watches())
+      names.push_back(watch.name);
+  return names;
 }
 
 template class Liquid<2>;

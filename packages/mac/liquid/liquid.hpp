@@ -4,6 +4,7 @@
 #include "interfaces/liquid.hpp"
 #include "mac/liquid/free_surface.hpp"
 #include "mac/liquid/interface_model.hpp"
+#include "mac/liquid/leak_audit.hpp"
 #include "mac/liquid/liquid_parameters.hpp"
 #include "mac/liquid/velocity_extension.hpp"
 
@@ -34,6 +35,7 @@ class Liquid {
   /// Linear between the centres of cells; near cells that this rank owns. Local.
   double distance(const Point<dim>& x) const;
   LiquidReport report() const;
+  std::vector<std::string> watch_names() const;
 
  private:
   const MacDomain<dim>& domain_;
@@ -42,6 +44,7 @@ class Liquid {
   std::vector<Point<dim>> dry_points_;
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
   std::unique_ptr<InterfaceModel<dim>> interface_;
+  std::unique_ptr<LeakAudit<dim>> audit_;  ///< null: nothing is watched
 };
 
 }  // namespace lockstep

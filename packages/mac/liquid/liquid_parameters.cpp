@@ -3,8 +3,13 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "geometry/mesh_files.hpp"
+#include "geometry/mesh_repair.hpp"
+#include "geometry/surface_check.hpp"
+#include "geometry/surface_snapshot.hpp"
 #include "mac/domain/parameter_values.hpp"
 #include "mac/domain/region_shape.hpp"
+#include "mac/liquid/watch.hpp"
 
 namespace lockstep {
 
@@ -51,9 +56,31 @@ SignedDistance<dim> ball(const ParameterList& list) {
   return [=](const Point<dim>& x) { return (x - center).norm() - radius; };
 }
 
+/// The distance from a closed mesh, negative inside.
+template <int dim>
+SignedDistance<dim> mesh(const std::string& name, const ParameterList& list) {
+  MeshNames names;
+  SurfaceMesh<dim> surface = read_surface<dim>(list.get<std::string>("File"), names);
+  repair_surface(list, surface, names);
+  check_surface(surface, {name, true, false}, names);
+  const Point<dim> position = point_value<dim>(list, "Position");
+  for (Point<dim>& vertex : surface.vertices)
+    vertex += position;
+  SolidDescription whole;
+  whole.name = name;
+  whole.simplex_end = static_cast<int>(surface.simplices.size());
+  whole.vertex_end = static_cast<int>(surface.vertices.size());
+  const auto snapshot =
+      std::make_shared<const SurfaceSnapshot<dim>>(std::move(surface), std::vector{whole});
+  return [snapshot](const Point<dim>& x) {
+    const double distance = snapshot->closest_on_solid(x, 0).fraction;
+    return snapshot->inside(x) < 0 ? distance : -distance;
+  };
+}
+
 template <int dim>
 std::vector<TypedSchema> liquid_schemas() {
-  ParameterList level, box, ball;
+  ParameterList level, box, ball, mesh;
   declare(level, "Height", 0.0, "Of the surface, measured against gravity from the origin [m].");
   declare_at_least(level, "Amplitude", 0.0, 0.0, "Of waves on it [m].");
   declare_positive(level, "Wavelength", 1.0, "Of these waves [m].");
@@ -64,9 +91,16 @@ std::vector<TypedSchema> liquid_schemas() {
   declare_vector(box, "Upper", filled_array(dim, 1.0), dim, "Upper corner [m].");
   declare_vector(ball, "Center", filled_array(dim, 0.0), dim, "Centre [m].");
   declare_positive(ball, "Radius", 0.1, "Radius [m].");
+  declare_required<std::string>(
+      mesh, "File",
+      "Closed surface: .obj, .off or (3D) .stl; relative to the folder of the scene.");
+  declare_mesh_repair(mesh);
+  declare_vector(mesh, "Position", filled_array(dim, 0.0), dim,
+                 "Where the origin of the file's coordinates lies [m].");
   return {{"level", "All below a height.", level},
           {"box", "A box along the axes.", box},
-          {"ball", "A ball (2D: a disc).", ball}};
+          {"ball", "A ball (2D: a disc).", ball},
+          {"mesh", "The inside of a closed mesh of a file.", mesh}};
 }
 }  // namespace
 
@@ -94,6 +128,7 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
                          "Boxes and balls that take the liquid away that is in them; "
                          "\"Fluid/Sources\" bring it.",
                          sink);
+  declare_watches<dim>(list);
   declare_between(
       list, "Smallest Distance", 0.01, 0.01, 1.0,
       "Pressures are taken to be no nearer to the surface than this part of a cell [1].");
@@ -114,9 +149,10 @@ SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gra
     const std::string& name = liquids.name(it);
     const ParameterList& liquid = liquids.sublist(name);
     const auto type = liquid.get<std::string>("Type");
-    parts.push_back(type == "level" ? level<dim>(name, liquid, gravity)
-                    : type == "box" ? box<dim>(name, liquid)
-                                    : ball<dim>(liquid));
+    parts.push_back(type == "level"  ? level<dim>(name, liquid, gravity)
+                    : type == "box"  ? box<dim>(name, liquid)
+                    : type == "mesh" ? mesh<dim>(name, liquid)
+                                     : ball<dim>(liquid));
   }
   check_input(!parts.empty(),
               "\"Free Surface\" has no liquid; say where it is in the list \"Liquid\".");
