@@ -16,8 +16,8 @@ from scene_xml import xml  # noqa: E402
 SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
 N_STEPS = 1000 if os.environ.get("LOCKSTEP_LONG_STORM") else 60
 H = 1.5 / 36  # of the cells [m]
-# Beside the shell, whole cells come and go: a quarter of its length in cells may be off.
-CELLS_BESIDE = H * 3.14 * .25 / 2 / (3.14 * .25**2)
+# Beside the shell, whole cells come and go: those of half its length may be off.
+CELLS_BESIDE = H * 3.14 * .25 / (3.14 * .25**2)
 PADDLE = {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (0., .9), "Normal": "x"},
           "Position": (.2, .3), "Motion": {"Type": "sinusoid", "Amplitude": (.12, 0.), "Frequency": 1.1}}
 
