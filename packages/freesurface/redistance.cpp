@@ -103,11 +103,12 @@ void Redistancer<dim>::wait(int cell) {
 
 template <int dim>
 void Redistancer<dim>::set_near_cells(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                                      const CellField& phi) {
+                                      const CellField& phi, NearCells near_cells) {
   for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) {
     if (std::abs(phi[cell]) >= cut_off_ || !is_near(solids, phi, cell))
       return;
-    distance_[cell] = scaled(solids, phi, cell);
+    distance_[cell] =
+        near_cells == NearCells::scale ? scaled(solids, phi, cell) : std::abs(phi[cell]);
     is_set_[cell] = 1;
     wait(cell);
   });
@@ -165,13 +166,13 @@ bool Redistancer<dim>::take_from_others(const SolidCells<dim>& solids, const Cel
 
 template <int dim>
 void Redistancer<dim>::apply(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                             double cut_off, CellField& phi) {
+                             double cut_off, CellField& phi, NearCells near_cells) {
   cut_off_ = cut_off;
   distance_.assign(phi.size(), cut_off);
   is_set_.assign(phi.size(), 0);
   waiting_.resize(static_cast<std::size_t>(cut_off * classes_per_cell / domain_.spacing()) + 1);
   first_waiting_ = waiting_.size();
-  set_near_cells(solids, tiles, phi);
+  set_near_cells(solids, tiles, phi, near_cells);
   do
     march(solids, phi);
   while (take_from_others(solids, phi));

@@ -5,6 +5,12 @@
 
 namespace lockstep {
 
+/// What is done with phi beside the surface.
+enum class NearCells {
+  scale,  ///< it becomes a distance, as the slope there has it
+  keep    ///< it is one already
+};
+
 /// Makes phi a distance again without moving its zero: cells with a seen neighbour of the other
 /// sign keep their share, |phi| / |grad phi| (after Russo & Smereka 2000), the others are reached
 /// from those in the order of their distance, first order, across ranks until nothing changes.
@@ -18,7 +24,7 @@ class Redistancer {
   /// be; the farther ones become +-cut_off [m]. Sets the halo of width 1, which must be set
   /// before. Collective.
   void apply(const SolidCells<dim>& solids, const std::vector<char>& tiles, double cut_off,
-             CellField& phi);
+             CellField& phi, NearCells near_cells = NearCells::scale);
 
  private:
   bool is_near(const SolidCells<dim>& solids, const CellField& phi, int cell) const;
@@ -26,7 +32,7 @@ class Redistancer {
   /// The smallest distance that the cell's neighbours allow.
   double arrival(const SolidCells<dim>& solids, const CellField& phi, int cell) const;
   void set_near_cells(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                      const CellField& phi);
+                      const CellField& phi, NearCells near_cells);
   void wait(int cell);
   void update_around(const SolidCells<dim>& solids, const CellField& phi, int cell);
   void march(const SolidCells<dim>& solids, const CellField& phi);

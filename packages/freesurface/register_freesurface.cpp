@@ -1,6 +1,7 @@
 #include "freesurface/register_freesurface.hpp"
 
 #include "freesurface/level_set.hpp"
+#include "freesurface/volume_of_fluid.hpp"
 
 namespace lockstep {
 
@@ -15,6 +16,13 @@ void register_freesurface(InterfaceRegistry<dim>& interfaces) {
                  particle_level_set_parameters<dim>, make);
   interfaces.add("level set", "A distance carried on the grid alone: rounds off what is thin.",
                  level_set_parameters<dim>, make);
+  interfaces.add(
+      "volume of fluid",
+      "The part of each cell that is liquid, moved by what passes its faces: loses "
+      "nothing but to round-off (Weymouth & Yue 2010).",
+      volume_of_fluid_parameters, [](const ParameterList& list, const MacDomain<dim>& domain) {
+        return std::make_unique<VolumeOfFluid<dim>>(domain, read_volume_of_fluid_parameters(list));
+      });
 }
 
 template void register_freesurface<2>(InterfaceRegistry<2>&);

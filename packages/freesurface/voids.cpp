@@ -11,6 +11,7 @@ namespace {
 constexpr double deep = 3;
 /// How deep a filled cell becomes, at least and at most [cells].
 constexpr double least_depth = 1e-3, most_depth = 0.1;
+}  // namespace
 
 template <int dim>
 bool at_open_side(const MacDomain<dim>& domain, int cell) {
@@ -22,8 +23,6 @@ bool at_open_side(const MacDomain<dim>& domain, int cell) {
         return true;
   return false;
 }
-}  // namespace
-
 template <int dim>
 std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                              int most_cells, CellField& phi) {
@@ -66,6 +65,8 @@ std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>
   return filled;
 }
 
+template bool at_open_side<2>(const MacDomain<2>&, int);
+template bool at_open_side<3>(const MacDomain<3>&, int);
 template std::vector<int> close_voids<2>(const MacDomain<2>&, const SolidCells<2>&, int,
                                          CellField&);
 template std::vector<int> close_voids<3>(const MacDomain<3>&, const SolidCells<3>&, int,

@@ -3,6 +3,10 @@
 
 namespace lockstep {
 
+/// Whether a cell lies at a side of the domain through which liquid may leave.
+template <int dim>
+bool at_open_side(const MacDomain<dim>& domain, int cell);
+
 /// Fills voids of at most `most_cells` cells that liquid touches: a void whose pressure is held
 /// would drain the liquid around it for ever. Those at an open side stay, and so does a void that
 /// solids alone surround. `phi` on the halo of width 1, which is set on return. Returns the owned

@@ -26,14 +26,19 @@ int main(int argc, char** argv) {
   Tpetra::ScopeGuard scope(&argc, &argv);
   std::printf("case,model,correction,loss,shape,ledger,bodies,steps,ms_a_step,ns_a_band_cell\n");
   for (int i = 1; i < argc; ++i)
-    for (const char* const model : {"level set", "particle level set"})
-      for (const char* const correction : {"none", "component"}) {
+    for (const std::string model : {"level set", "particle level set", "volume of fluid"})
+      for (const bool corrects : {false, true}) {
         ParameterList list;
-        list.set("Volume Correction", std::string(correction));
+        const bool is_vof = model == "volume of fluid";
+        const std::string correction = is_vof     ? (corrects ? "return" : "keep")
+                                       : corrects ? "component"
+                                                  : "none";
+        list.set(is_vof ? "Crumbs" : "Volume Correction", correction);
         const Return found = run(argv[i], model, list);
-        std::printf("%s,%s,%s,%.5f,%.5f,%.2e,%d,%d,%.3f,%.0f\n", argv[i], model, correction,
-                    found.loss, found.shape, found.ledger, found.n_components, found.n_steps,
-                    1e3 * found.seconds / found.n_steps, 1e9 * found.seconds / found.band_cells);
+        std::printf("%s,%s,%s,%.5f,%.5f,%.2e,%d,%d,%.3f,%.0f\n", argv[i], model.c_str(),
+                    correction.c_str(), found.loss, found.shape, found.ledger, found.n_components,
+                    found.n_steps, 1e3 * found.seconds / found.n_steps,
+                    1e9 * found.seconds / found.band_cells);
         std::fflush(stdout);
       }
   return 0;

@@ -61,9 +61,9 @@ TEST(Redistancing, ShowsTheDistanceToAnEllipse) {
 }
 
 template <int dim>
-void expect_rest() {
+void expect_rest(const std::string& name) {
   Bath<dim> bath(open_cube<dim>(20));
-  auto model = bath.make("level set");
+  auto model = bath.make(name);
   Point<dim> normal = Point<dim>::Constant(0.3);
   normal[dim - 1] = 1;
   normal.normalize();
@@ -76,16 +76,18 @@ void expect_rest() {
 }
 
 TEST(LevelSet, StaysAtRest) {
-  expect_rest<2>();
-  expect_rest<3>();
+  for (const char* const name : {"level set", "volume of fluid"}) {
+    expect_rest<2>(name);
+    expect_rest<3>(name);
+  }
 }
 
 /// By whole cells, so that nothing is interpolated.
 template <int dim>
-void expect_ball_travels(int n_cells, double tolerance) {
+void expect_ball_travels(const std::string& name, int n_cells, double tolerance) {
   const int n = dim == 2 ? 64 : 32;
   Bath<dim> bath(open_cube<dim>(n));
-  auto model = bath.make("level set");
+  auto model = bath.make(name);
   const Point<dim> start = Point<dim>::Constant(0.35), u = Point<dim>::Ones();
   model->initialise(ball<dim>(start, 0.2), nullptr);
   bath.set_velocity([&](const Point<dim>&) { return u; });
@@ -100,10 +102,11 @@ void expect_ball_travels(int n_cells, double tolerance) {
 }
 
 TEST(LevelSet, CarriesABall) {
-  for (const int n_cells : {1, 3}) {
-    expect_ball_travels<2>(n_cells, 0.01);
-    expect_ball_travels<3>(n_cells, 0.04);
-  }
+  for (const char* const name : {"level set", "volume of fluid"})
+    for (const int n_cells : {1, 3}) {
+      expect_ball_travels<2>(name, n_cells, 0.01);
+      expect_ball_travels<3>(name, n_cells, 0.04);
+    }
 }
 
 template <int dim>
@@ -125,8 +128,10 @@ void expect_same_on_any_ranks(const std::string& name) {
 }
 
 TEST(LevelSet, IsTheSameOnAnyNumberOfRanks) {
-  expect_same_on_any_ranks<2>("level set");
-  expect_same_on_any_ranks<3>("level set");
+  for (const char* const name : {"level set", "volume of fluid"}) {
+    expect_same_on_any_ranks<2>(name);
+    expect_same_on_any_ranks<3>(name);
+  }
 }
 
 /// A closed shell, full or empty, is driven through rough water or air: each cell is what its side
@@ -169,10 +174,11 @@ void expect_shell_holds(const std::string& name, bool full) {
 }
 
 TEST(LevelSet, AClosedShellLetsNothingThrough) {
-  for (const bool full : {true, false}) {
-    expect_shell_holds<2>("level set", full);
-    expect_shell_holds<3>("level set", full);
-  }
+  for (const char* const name : {"level set", "volume of fluid"})
+    for (const bool full : {true, false}) {
+      expect_shell_holds<2>(name, full);
+      expect_shell_holds<3>(name, full);
+    }
 }
 
 /// phi is continued into a solid as the plane that it is outside; where the solid hides the surface

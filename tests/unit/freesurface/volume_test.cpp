@@ -228,9 +228,9 @@ TEST(VolumeLedger, EachBodyKeepsItsVolume) {
   expect_bodies_keep_volume<3>();
 }
 
-TEST(VolumeLedger, KnowsWhatSourcesSinksAndSidesDo) {
+void expect_known_fluxes(const std::string& name) {
   Bath<2> bath(open_cube<2>(40));
-  auto model = bath.make("level set");
+  auto model = bath.make(name);
   model->initialise([](const Point<2>& x) { return x[1] - 0.3; }, nullptr);
   // Water leaves through the lower side at 0.1 m/s.
   bath.set_velocity([](const Point<2>&) { return Point<2>(0, -0.1); });
@@ -252,9 +252,14 @@ TEST(VolumeLedger, KnowsWhatSourcesSinksAndSidesDo) {
   EXPECT_NEAR(model->ledger().lost, 0, 1e-14);
 }
 
+TEST(VolumeLedger, KnowsWhatSourcesSinksAndSidesDo) {
+  expect_known_fluxes("level set");
+  expect_known_fluxes("volume of fluid");
+}
+
 /// Liquid goes out through a side and does not come back in.
 TEST(VolumeLedger, NothingWetComesInThroughAnOpenSide) {
-  for (const char* const name : {"level set", "particle level set"}) {
+  for (const char* const name : {"level set", "particle level set", "volume of fluid"}) {
     Bath<2> bath(open_cube<2>(40));
     auto model = bath.make(name);
     model->initialise([](const Point<2>& x) { return x[0] - 0.3; }, nullptr);

@@ -1,0 +1,159 @@
+// The fraction of each cell that is liquid, and the planes it stands for.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "bath.hpp"
+#include "freesurface/cell_plane.hpp"
+#include "freesurface/volume_of_fluid.hpp"
+#include "geometry/generators.hpp"
+
+namespace lockstep::test {
+namespace {
+
+const std::string model_name = "volume of fluid";
+
+template <int dim>
+void expect_planes() {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < 300; ++i) {
+    Point<dim> normal;
+    for (int a = 0; a < dim; ++a)
+      normal[a] = std::pow(uniform(random), i % 4 * 2 + 1);  // some of them nearly along an axis
+    const double fraction = 0.5 + 0.5 * uniform(random);
+    const CellPlane<dim> plane = plane_of_fraction<dim>(normal, fraction);
+    EXPECT_NEAR(plane.normal.template lpNorm<1>(), 1, 1e-14);
+    EXPECT_NEAR(fraction_below(plane), fraction, 1e-9) << normal.transpose();
+    // The slabs on both sides of a cut are the whole, and each is what samples find.
+    const int axis = i % dim;
+    const double width = 0.5 + 0.5 * uniform(random);
+    const double low = liquid_in_slab(plane, axis, 0, width);
+    // But for slopes of less than 1e-6, which count as none.
+    EXPECT_NEAR(low + liquid_in_slab(plane, axis, 1, 1 - width), fraction, 1e-6);
+    int n_wet = 0;
+    constexpr int n = 4000;
+    for (int k = 0; k < n; ++k) {
+      Point<dim> x;
+      for (int a = 0; a < dim; ++a)
+        x[a] = (0.5 + 0.5 * uniform(random)) * (a == axis ? width : 1);
+      n_wet += plane.normal.dot(x) < plane.constant;
+    }
+    EXPECT_NEAR(low, width * n_wet / n, 0.04 * width);
+  }
+}
+
+TEST(CellPlane, CutsOffItsFraction) {
+  expect_planes<2>();
+  expect_planes<3>();
+}
+
+/// phi of a tilted plane is its distance.
+template <int dim>
+void expect_plane_is_found() {
+  Bath<dim> bath(open_cube<dim>(20));
+  auto model = bath.make(model_name);
+  Point<dim> normal = Point<dim>::Constant(0.3);
+  normal[dim - 1] = 1;
+  normal.normalize();
+  const SignedDistance<dim> plane = [&](const Point<dim>& x) { return normal.dot(x) - 0.537; };
+  model->initialise(plane, nullptr);
+  bath.domain.grid.for_each_owned_cell([&](int c) {
+    const Point<dim> x = bath.domain.grid.center(c);
+    if (std::abs(plane(x)) < 0.05 && (x - Point<dim>::Constant(0.5)).cwiseAbs().maxCoeff() < 0.4) {
+      EXPECT_NEAR(model->distance()[c], plane(x), 1e-3) << x.transpose();
+    }
+  });
+}
+
+TEST(VolumeOfFluid, ShowsTheDistanceToAPlane) {
+  expect_plane_is_found<2>();
+  expect_plane_is_found<3>();
+}
+
+/// Two balls in a flow that tears them up: the volume is that of the start, whatever the step. In
+/// one that is not free of divergence too, with what waits for a body that has room.
+template <int dim>
+void expect_nothing_is_lost(double cfl, bool is_solenoidal) {
+  const int n = dim == 2 ? 48 : 20;
+  Bath<dim> bath(closed_cube<dim>(n));
+  auto model = bath.make(model_name);
+  Point<dim> a = Point<dim>::Constant(0.5), b = a;
+  a[0] = 0.25;
+  b[0] = 0.7;
+  model->initialise(
+      [&](const Point<dim>& x) { return std::min((x - a).norm() - 0.13, (x - b).norm() - 0.19); },
+      nullptr);
+  const double start = model->ledger().volume;
+  bath.set_velocity([is_solenoidal](const Point<dim>& x) {
+    const auto s = [&](int i) { return std::sin(2 * pi * x[i]); };
+    const auto c = [&](int i) { return std::cos(2 * pi * x[i]); };
+    Point<dim> u = Point<dim>::Zero();
+    u[0] = s(0) * c(1);
+    u[1] = is_solenoidal ? -c(0) * s(1) : 0.5 * s(1) * c(0);
+    return u;
+  });
+  for (int i = 0; i < 40; ++i) {
+    bath.step(*model, 0, cfl / n);
+    EXPECT_NEAR(model->ledger().target, start, 1e-14);
+    if (is_solenoidal) {
+      EXPECT_NEAR(model->ledger().volume, start, 1e-3 * start) << i;
+    }
+  }
+  const auto& vof = dynamic_cast<VolumeOfFluid<dim>&>(*model);
+  double all = 0;
+  bath.domain.grid.for_each_owned_cell([&](int c) {
+    all += vof.fractions().liquid[c] + vof.fractions().owed[c];
+    EXPECT_GE(vof.fractions().liquid[c], 0);
+    EXPECT_LE(vof.fractions().liquid[c], 1);
+  });
+  EXPECT_NEAR(sum_all(world(), all) * bath.domain.cell_volume(), start, 2e-14);
+}
+
+TEST(VolumeOfFluid, LosesNothing) {
+  for (const double cfl : {0.3, 2.5})
+    for (const bool is_solenoidal : {true, false}) {
+      expect_nothing_is_lost<2>(cfl, is_solenoidal);
+      expect_nothing_is_lost<3>(cfl, is_solenoidal);
+    }
+}
+
+/// A solid goes slowly down into liquid that does not move, and comes up again: the surface makes
+/// room for it.
+template <int dim>
+void expect_solid_dips() {
+  const int n = dim == 2 ? 40 : 20, n_steps = 480;
+  Bath<dim> bath(closed_cube<dim>(n));
+  auto model = bath.make(model_name);
+  const double dt = 0.1 / n, level = 0.45;
+  const auto mesh = ball_surface<dim>(0.15, 0.5 / n);
+  const auto at = [&](int i) {
+    Point<dim> place = Point<dim>::Constant(0.5);
+    place[dim - 1] = 0.75 - 0.3 * std::sin(pi * i / n_steps);
+    return snapshot<dim>(mesh, place, true);
+  };
+  auto before = at(0);
+  model->initialise([&](const Point<dim>& x) { return x[dim - 1] - level; }, before);
+  const double start = model->ledger().volume;
+  EXPECT_NEAR(start, level, 1e-3);
+  double worst = 0;
+  for (int i = 0; i < n_steps; ++i) {
+    auto after = at(i + 1);
+    bath.move(before, after, dt);
+    bath.step(*model, i * dt, dt);
+    before = after;
+    EXPECT_NEAR(model->ledger().target, start, 1e-13);
+    EXPECT_NEAR(model->ledger().lost, 0, 1e-14);
+    worst = std::max(worst, std::abs(model->ledger().volume - start));
+  }
+  EXPECT_LT(worst, 5e-3 * start);  // what a step has displaced is made good in the next
+  EXPECT_NEAR(model->ledger().volume, start, 1e-4 * start);
+}
+
+TEST(VolumeOfFluid, ASolidThatDipsDisplacesLiquid) {
+  expect_solid_dips<2>();
+  expect_solid_dips<3>();
+}
+
+}  // namespace
+}  // namespace lockstep::test
