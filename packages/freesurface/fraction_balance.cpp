@@ -128,7 +128,7 @@ class Books {
     if (!space_of_body_.empty())
       return;
     spaces_ = CellGroups{std::vector<int>(body_.size(), 0), 1};
-    if (!solids_.blocked.empty())
+    if (solids_.state.surface)
       spaces_ = find_groups(domain_, solids_, std::vector<char>(body_.size(), 1));
     // Of each body cells, and the sum of their spaces' numbers.
     std::vector<double> sums(2 * n_, 0.0);

@@ -38,6 +38,18 @@ TEST(Advection, TheVortexGivesTheDiscBack) {
   EXPECT_LT(corrected.shape, 0.06);
 }
 
+TEST(Advection, FractionsLoseNothing) {
+  const Return disc = zalesak("volume of fluid", {});
+  EXPECT_LT(std::abs(disc.ledger), 1e-14);
+  EXPECT_LT(disc.shape, 0.035);
+  const Return tail = vortex("volume of fluid", {}, 64);
+  EXPECT_LT(std::abs(tail.ledger), 1e-14);
+  EXPECT_LT(tail.shape, 0.28);
+  const Return sheet = deformation("volume of fluid", {}, 32, 1.5);
+  EXPECT_LT(std::abs(sheet.ledger), 1e-12);
+  EXPECT_LT(sheet.shape, 0.25);
+}
+
 TEST(Advection, TheSheetBecomesABallAgain) {
   const Return plain = deformation("particle level set", uncorrected(), 32, 1.5);
   const Return without = deformation("level set", uncorrected(), 32, 1.5);

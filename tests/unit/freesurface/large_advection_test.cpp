@@ -18,6 +18,12 @@ TEST(LargeAdvection, TheVortexGivesTheDiscBack) {
   EXPECT_LT(plain.shape, 0.0204);
 }
 
+TEST(LargeAdvection, FractionsLoseNothing) {
+  const Return tail = vortex("volume of fluid", {}, 128, 8, 0.25);
+  EXPECT_LT(std::abs(tail.ledger), 1e-13);
+  EXPECT_LT(tail.shape, 0.0288);
+}
+
 TEST(LargeAdvection, TheSheetBecomesABallAgain) {
   const Return plain = deformation("particle level set", uncorrected(), 64);
   EXPECT_LT(std::abs(plain.loss), 0.103);
