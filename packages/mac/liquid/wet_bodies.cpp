@@ -142,7 +142,18 @@ class WetBodyFinder {
       bodies_[s].partly = partly[s] > 0;
   }
 
-  /// Through where liquid meets void within two cells.
+  /// True if another solid comes between two points.
+  bool parted(int solid, const Point<dim>& a, const Point<dim>& b) const {
+    const auto hit = surface_.first_hit(a, b);
+    return hit && surface_.solid_of(hit->simplex) != solid;
+  }
+  /// The free surface beyond a hull is none to what lies in it, nor is the hull.
+  bool sees_surface(int solid, int cell, int other, const Point<dim>& place) const {
+    return !parted(solid, grid_.center(cell), grid_.center(other)) &&
+           !parted(solid, place, surface_.closest_on_solid(place, solid).position);
+  }
+
+  /// Through where liquid meets void within two cells, in its sight.
   void find_planes() {
     if (gravity_.isZero(0))
       return;
@@ -164,6 +175,8 @@ class WetBodyFinder {
       planes_[s].up = -gravity_.normalized();
       around =
           Box<dim>(around.min() - Point<dim>::Constant(h), around.max() + Point<dim>::Constant(h));
+      surface_.solids_touching(around, candidates_);
+      const bool is_alone = candidates_.size() == 1;
       for_each_cell_in(around, [&](int cell) {
         const CellState own = geometry_.state.cells[cell];
         for (int axis = 0; axis < dim; ++axis) {
@@ -175,7 +188,9 @@ class WetBodyFinder {
               (own != CellState::empty || other != CellState::fluid))
             continue;
           const double part = distance_[cell] / (distance_[cell] - distance_[lower]);
-          planes_[s].add(grid_.center(cell) - part * h * Point<dim>::Unit(axis));
+          const Point<dim> place = grid_.center(cell) - part * h * Point<dim>::Unit(axis);
+          if (is_alone || sees_surface(static_cast<int>(s), cell, lower, place))
+            planes_[s].add(place);
         }
       });
     }

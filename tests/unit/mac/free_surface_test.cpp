@@ -283,6 +283,26 @@ TEST(FreeSurface, TheInsideOfAHullIsDry) {
                InputError);
 }
 
+/// On the bottom of a dry hull, below the level of the sea around.
+TEST(FreeSurface, WhatLiesInADryHullIsDry) {
+  Case<2> scene({48, 48}, 0.1);
+  scene.fluid.set("Gravity", numbers({0.0, -1.0}));
+  add_level<2>(scene, 3.02);
+  scene.fluid.sublist("Free Surface").set("Dry Points", numbers({1.6, 2.0}));
+  Solids<2> solids;
+  solids.add(open_box_surface<2>(Point<2>(3.03, 2.03), 0.1), Point<2>(2.401, 2.601), false);
+  solids.add(ball_surface<2>(0.4, 0.1), Point<2>(2.5, 2.03), true);
+  solids.add(ball_surface<2>(0.4, 0.1), Point<2>(1.32, 3.02), true);
+  const auto fluid = make_liquid<2>(scene);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  const std::vector<WetBody<2>> bodies = fluid->wet_bodies();
+  for (const int ball : {1, 2}) {
+    EXPECT_EQ(bodies[ball].volume, 0);
+    for (const double displaced : bodies[ball].displaced)
+      EXPECT_EQ(displaced, 0);
+  }
+}
+
 TEST(FreeSurface, BadListsSayWhatIsWrong) {
   const auto message = [](const std::function<void(Case<2>&)>& spoil) {
     Case<2> scene({8, 8}, 0.1);
