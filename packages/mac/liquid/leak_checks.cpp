@@ -186,9 +186,9 @@ void LeakAudit<dim>::complain(const InterfaceStep<dim>& step, const Look& now,
                             surface->solids()[surface->solid_of(nearest->simplex)].name,
                             nearest->simplex);
   throw SolveError(fmt::format(
-      "A leak: in {} cells of the watch \"{}\", the first at {:.6g}, is liquid at {:.6g} s "
-      "that no open "
-      "way led to in the step; {}. This is an error of the program: please report it.",
+      "A leak: in {} cells of the watch \"{}\", the first at {:.6g}, is liquid at {:.6g} s that no "
+      "open way led to in the step; {}. If there is a gap narrower than an eighth of a cell, close "
+      "it; else this is an error of the program: please report it.",
       mine.size() / 2, watches_[watch].name, fmt::join(x.data(), x.data() + dim, ", "),
       step.time + step.dt, through));
 }
