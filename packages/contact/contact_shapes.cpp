@@ -165,10 +165,14 @@ void ContactShapes<dim>::find_held() {
     free = replicated(system_, *system_.reduction().unknowns());
   VelocityRow<dim> row;
   for (int i = 0; i < n_solids(); ++i) {
+    if (solids_[i].prescribed)
+      std::fill(held_.begin() + solids_[i].vertex_begin, held_.begin() + solids_[i].vertex_end,
+                true);
+    if (solids_[i].prescribed || solids_[i].rigid || free.empty())
+      continue;
     for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v) {
-      held_[v] = solids_[i].prescribed;
       const SurfacePoint<dim> point = at_vertex(v);
-      if (solids_[i].prescribed || solids_[i].rigid || free.empty() || point.simplex < 0)
+      if (point.simplex < 0)
         continue;
       velocity_row(point, point.position, row);
       held_[v] = std::all_of(row.dofs.begin(), row.dofs.end(),

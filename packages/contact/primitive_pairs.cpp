@@ -1,59 +1,18 @@
 #include "contact/primitive_pairs.hpp"
 
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
-#include <iterator>
-#include <tuple>
+
+#include "geometry/box_tree.hpp"
 
 namespace lockstep {
 
 namespace {
-
-namespace bg = boost::geometry;
-namespace bgi = boost::geometry::index;
 
 /// Vertices with the simplex that holds them: a vertex, an edge or a simplex.
 template <int n>
 struct Primitive {
   std::array<int, n> vertices{};
   int simplex = -1;
-};
-
-template <int dim>
-struct Tree {
-  using TreePoint = bg::model::point<double, dim, bg::cs::cartesian>;
-  using TreeBox = bg::model::box<TreePoint>;
-  using Entry = std::pair<TreeBox, int>;
-
-  static TreePoint point(const Point<dim>& x) {
-    TreePoint result;
-    bg::set<0>(result, x[0]);
-    bg::set<1>(result, x[1]);
-    if constexpr (dim == 3)
-      bg::set<2>(result, x[2]);
-    return result;
-  }
-  static TreeBox box(const Box<dim>& box) { return {point(box.min()), point(box.max())}; }
-  static std::vector<Entry> entries(const std::vector<Box<dim>>& boxes) {
-    std::vector<Entry> all;
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      all.emplace_back(box(boxes[i]), static_cast<int>(i));
-    return all;
-  }
-  explicit Tree(const std::vector<Box<dim>>& boxes) : tree(entries(boxes)) {}
-
-  /// In ascending order.
-  void touching(const Box<dim>& around, std::vector<int>& found) const {
-    std::vector<Entry> hits;
-    tree.query(bgi::intersects(box(around)), std::back_inserter(hits));
-    found.clear();
-    for (const Entry& hit : hits)
-      found.push_back(hit.second);
-    std::sort(found.begin(), found.end());
-  }
-
-  bgi::rtree<Entry, bgi::quadratic<16>> tree;
 };
 
 template <int dim>
@@ -125,7 +84,7 @@ class PairFinder {
     std::vector<Box<dim>> boxes;
     for (const Primitive<m>& primitive : second)
       boxes.push_back(box_of<m>(primitive.vertices));
-    const Tree<dim> tree(boxes);
+    const BoxTree<dim> tree(std::move(boxes));
     std::vector<int> found;
     for (int i = 0; i < static_cast<int>(first.size()); ++i) {
       tree.touching(inflated(box_of<n>(first[i].vertices)), found);

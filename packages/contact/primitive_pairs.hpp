@@ -17,7 +17,7 @@ struct PrimitivePair {
 
 /// All pairs of primitives of two solids (or of one with itself) whose boxes, the union of those of
 /// their vertices, come closer than `margin` in every direction; what contact cannot move is left
-/// out. By an R-tree. The order does not depend on the ranks. Local.
+/// out. By a tree of boxes. The order does not depend on the ranks. Local.
 template <int dim>
 std::vector<PrimitivePair<dim>> find_primitive_pairs(const ContactShapes<dim>& shapes,
                                                      const std::vector<Box<dim>>& vertex_boxes,

@@ -113,7 +113,9 @@ std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot() const {
       all.simplices.push_back(simplex);
     }
   }
-  return std::make_shared<const SurfaceSnapshot<dim>>(std::move(all), solids_);
+  auto surface = std::make_shared<const SurfaceSnapshot<dim>>(std::move(all), solids_, order_);
+  order_ = surface->order();
+  return surface;
 }
 
 template <int dim>

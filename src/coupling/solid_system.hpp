@@ -122,6 +122,7 @@ class SolidSystem {
   Communicator comm_;
   std::vector<std::unique_ptr<SolidModel<dim>>> models_;
   std::vector<SolidDescription> solids_;
+  mutable BoxOrder order_;  ///< of snapshots
   RCP<const Map> map_;
   std::vector<ModelBegin> begin_;  ///< of each model
   GlobalIndex n_unknowns_ = 0;

@@ -1,5 +1,7 @@
 #include "geometry/clipping.hpp"
 
+#include <algorithm>
+
 #include "geometry/convex_part.hpp"
 #include "geometry/surface_mesh.hpp"
 
@@ -8,6 +10,15 @@ namespace lockstep {
 template <int dim>
 ClippedSimplex<dim> clip_to_box(const std::array<Point<dim>, dim>& corners, const Box<dim>& box) {
   ClippedSimplex<dim> clipped;
+  // Most simplices of a fine mesh.
+  if (std::all_of(corners.begin(), corners.end(),
+                  [&](const Point<dim>& corner) { return box.contains(corner); })) {
+    clipped.measure = area_vector<dim>(corners).norm();
+    clipped.barycentric.setConstant(1.0 / dim);
+    for (const Point<dim>& corner : corners)
+      clipped.centroid += corner / dim;
+    return clipped;
+  }
   ConvexPart<dim, true> part(corners);
   for (int a = 0; a < dim; ++a) {
     part.keep(a, box.min()[a], +1);

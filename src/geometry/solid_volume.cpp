@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "geometry/convex_part.hpp"
 
@@ -41,10 +42,35 @@ Flux flux_through(const ConvexPart<dim, false>& part, int axis, double offset) {
   return flux;
 }
 
+/// The integral below of a simplex of which the column cuts nothing off, as of most of a fine mesh;
+/// none if it does or the exit cuts it.
+template <int dim>
+std::optional<double> whole_flux(const std::array<Point<dim>, dim>& corners,
+                                 const Column<dim>& column) {
+  Point<dim> lower = corners[0], upper = corners[0], sum = corners[0];
+  for (int k = 1; k < dim; ++k) {
+    lower = lower.cwiseMin(corners[k]);
+    upper = upper.cwiseMax(corners[k]);
+    sum += corners[k];
+  }
+  const int axis = column.axis;
+  for (int a = 0; a < dim; ++a)
+    if (a != axis && (lower[a] < column.box.min()[a] || upper[a] > column.box.max()[a]))
+      return std::nullopt;
+  const double area = area_vector<dim>(corners)[axis];
+  if (column.side > 0 ? lower[axis] > column.exit() : upper[axis] < column.exit())
+    return area * (column.exit() - column.root());
+  if (column.box.min()[axis] <= lower[axis] && upper[axis] <= column.box.max()[axis])
+    return area * (sum[axis] / dim - column.root());
+  return std::nullopt;
+}
+
 /// The integral over a simplex of n_axis F dA, where F rises from 0 at the root of the column to
 /// +-height at its exit and stays constant beyond.
 template <int dim>
 double column_flux(const std::array<Point<dim>, dim>& corners, const Column<dim>& column) {
+  if (const auto flux = whole_flux<dim>(corners, column))
+    return *flux;
   ConvexPart<dim, false> part(corners);
   for (int a = 0; a < dim; ++a) {
     if (a == column.axis)
@@ -97,9 +123,9 @@ double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& 
   Box<dim> reach = box;
   (column.side > 0 ? reach.max() : reach.min())[column.axis] =
       (column.side > 0 ? bounds.max() : bounds.min())[column.axis];
+  double volume = 0;
   std::vector<int> simplices;
   surface.touching(reach, simplices);
-  double volume = 0;
   for (const int s : simplices)
     if (surface.solid_of(s) == solid)
       volume += column_flux<dim>(surface.corners(s), column);
@@ -162,6 +188,26 @@ void add_below(const ConvexPart<dim, false>& part, double root, double exit, Mom
   }
 }
 
+/// Volume and centroid of a closed solid.
+template <int dim>
+PartOfSolid<dim> whole_solid(const SurfaceSnapshot<dim>& surface, int solid) {
+  const Point<dim> origin = surface.bounds_of_solid(solid).center();  // less round-off
+  const SolidDescription& description = surface.solids()[solid];
+  Moments<dim> sum;
+  for (int s = description.simplex_begin; s < description.simplex_end; ++s) {
+    auto corners = surface.corners(s);
+    Point<dim> of_corners = Point<dim>::Zero();
+    for (Point<dim>& corner : corners)
+      of_corners += corner -= origin;
+    const double cone = area_vector<dim>(corners).dot(corners[0]) / dim;
+    sum.volume += cone;
+    sum.first += cone / (dim + 1) * of_corners;
+  }
+  if (sum.volume == 0)
+    return {0, origin};
+  return {sum.volume, origin + sum.first / sum.volume};
+}
+
 }  // namespace
 
 // As above, with the column along axis 0 and the fields whose divergences are 1 and x in the box.
@@ -169,9 +215,9 @@ template <int dim>
 PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
                                const Box<dim>& box) {
   const Box<dim> bounds = surface.bounds_of_solid(solid);
-  const MassProperties<dim> whole = volume_properties<dim>(surface.mesh_of_solid(solid));
+  const PartOfSolid<dim> whole = whole_solid<dim>(surface, solid);
   if (box.contains(bounds))
-    return {whole.measure, whole.centroid};
+    return whole;
   PartOfSolid<dim> part{0, whole.centroid};
   if (!box.intersects(bounds))
     return part;
@@ -200,7 +246,7 @@ PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
       add_below<dim>(beyond, lower[0], upper[0], sum);
     }
   }
-  if (sum.volume > 1e-14 * whole.measure) {
+  if (sum.volume > 1e-14 * whole.volume) {
     part.volume = sum.volume;
     part.centroid = origin + sum.first / sum.volume;
   }

@@ -29,7 +29,14 @@ void check_surface(SurfaceMesh<dim>& mesh, bool closed, const std::string& name)
 
 /// Normal times length (2D) or area (3D) of a simplex [m, m^2].
 template <int dim>
-Point<dim> area_vector(const std::array<Point<dim>, dim>& corners);
+Point<dim> area_vector(const std::array<Point<dim>, dim>& corners) {
+  if constexpr (dim == 2) {
+    const Point<2> edge = corners[1] - corners[0];
+    return {edge.y(), -edge.x()};
+  } else {
+    return 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  }
+}
 
 /// Volume (2D: area per unit depth), centroid and second moments of the solid inside a closed
 /// surface of unit density; for a shell, of its surface of unit surface density.

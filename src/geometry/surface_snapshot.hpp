@@ -1,9 +1,9 @@
 #pragma once
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "geometry/box_tree.hpp"
 #include "geometry/surface_mesh.hpp"
 
 namespace lockstep {
@@ -73,18 +73,26 @@ struct Lattice {
 template <int dim>
 class SurfaceSnapshot {
  public:
-  SurfaceSnapshot(SurfaceMesh<dim> mesh, std::vector<SolidDescription> solids);
-  ~SurfaceSnapshot();
-  SurfaceSnapshot(SurfaceSnapshot&&) noexcept;
+  /// `order`: that of an earlier snapshot of the same solids, which saves sorting.
+  SurfaceSnapshot(SurfaceMesh<dim> mesh, std::vector<SolidDescription> solids,
+                  BoxOrder order = nullptr);
+  SurfaceSnapshot(const SurfaceSnapshot&) = delete;
+  SurfaceSnapshot(SurfaceSnapshot&&) = default;
 
-  const SurfaceMesh<dim>& mesh() const;
-  const std::vector<SolidDescription>& solids() const;
-  int n_simplices() const { return static_cast<int>(mesh().simplices.size()); }
+  const SurfaceMesh<dim>& mesh() const { return mesh_; }
+  const std::vector<SolidDescription>& solids() const { return solids_; }
+  const BoxOrder& order() const { return tree_.order(); }
+  int n_simplices() const { return static_cast<int>(mesh_.simplices.size()); }
   bool empty() const { return n_simplices() == 0; }
-  int solid_of(int simplex) const;
-  std::array<Point<dim>, dim> corners(int simplex) const;
-  Box<dim> bounds(int simplex) const;
-  Box<dim> bounds_of_solid(int solid) const;
+  int solid_of(int simplex) const { return solid_of_[simplex]; }
+  std::array<Point<dim>, dim> corners(int simplex) const {
+    std::array<Point<dim>, dim> points;
+    for (int k = 0; k < dim; ++k)
+      points[k] = mesh_.vertices[mesh_.simplices[simplex][k]];
+    return points;
+  }
+  const Box<dim>& bounds(int simplex) const { return tree_.box(simplex); }
+  const Box<dim>& bounds_of_solid(int solid) const { return solid_tree_.box(solid); }
   /// The surface of one solid, vertices numbered from 0.
   SurfaceMesh<dim> mesh_of_solid(int solid) const;
 
@@ -120,8 +128,11 @@ class SurfaceSnapshot {
                                       const Index<dim>& end) const;
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  SurfaceMesh<dim> mesh_;
+  std::vector<SolidDescription> solids_;
+  std::vector<int> solid_of_;  ///< per simplex, -1: none
+  double typical_size_ = 0;    ///< mean diagonal of the simplices' boxes [m]
+  BoxTree<dim> tree_, solid_tree_;
 };
 
 /// First passage of the surface, whose vertices move linearly from `before` to `after` (same

@@ -102,10 +102,18 @@ void for_each_index(const Index<dim>& begin, const Index<dim>& end, const Functi
   }
 }
 
-/// Marks cells that, grown by h/2, touch both the bounds and the plane of a simplex.
+/// A box of cells.
+template <int dim>
+struct Cells {
+  Index<dim> begin{}, end{};
+};
+
+/// Marks cells that, grown by h/2, touch both the bounds and the plane of a simplex. `marked`: a
+/// box of cells that are already, in a fine mesh often those of the next simplex too.
 template <int dim>
 void mark_near(const TiledGrid<dim>& grid, const SurfaceSnapshot<dim>& surface, int simplex,
-               const Index<dim>& begin, const Index<dim>& end, std::vector<char>& near) {
+               const Index<dim>& begin, const Index<dim>& end, Cells<dim>& marked,
+               std::vector<char>& near) {
   const double h = grid.spacing();
   const Box<dim> bounds = surface.bounds(simplex);
   Index<dim> first{}, last{};
@@ -120,13 +128,18 @@ void mark_near(const TiledGrid<dim>& grid, const SurfaceSnapshot<dim>& surface, 
     first[a] = std::max(first[a], begin[a] - slack);
     last[a] = std::min(last[a], end[a] + 1);
   }
+  if (first == marked.begin && last == marked.end)
+    return;
+  marked = {first, last};
   const auto corners = surface.corners(simplex);
   const Point<dim> normal = area_vector<dim>(corners);
   const double reach = 1.02 * h * normal.template lpNorm<1>();
   const Lattice<dim> lattice = grid.lattice();
   for_each_index<dim>(first, last, [&](const Index<dim>& c) {
-    if (std::abs(normal.dot(lattice.center(c) - corners[0])) > reach)
+    if (std::abs(normal.dot(lattice.center(c) - corners[0])) > reach) {
+      marked = {};
       return;
+    }
     const int cell = grid.cell(c);
     if (cell >= 0)
       near[cell] = 1;
@@ -151,8 +164,9 @@ SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapsh
   for (int axis = 0; axis < dim; ++axis)
     for (const auto& line : crossings.lines[axis])
       mark_blocked(domain, axis, line, marks.blocked);
+  Cells<dim> marked;
   for (int s = 0; s < surface.n_simplices(); ++s)
-    mark_near<dim>(grid, surface, s, begin, end, marks.near);
+    mark_near<dim>(grid, surface, s, begin, end, marked, marks.near);
   return marks;
 }
 

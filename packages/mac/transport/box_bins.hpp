@@ -15,6 +15,7 @@ class BoxBins {
  public:
   struct List {
     const int *first = nullptr, *last = nullptr;
+    int place = -1;  ///< of the bin among those that are not empty
     const int* begin() const { return first; }
     const int* end() const { return last; }
   };
@@ -25,6 +26,8 @@ class BoxBins {
   void build(const std::vector<Box<dim>>& boxes, const Box<dim>& region, const Point<dim>& origin,
              double width, const Counts& counts);
 
+  /// Bins that are not empty.
+  int n_used() const { return static_cast<int>(start_.size()) - 1; }
   /// True if the bins that this box touches are empty.
   bool clear(const Box<dim>& box) const { return !any_set(used_, range(box)); }
   /// The same of all boxes, whether they count or not.
@@ -71,7 +74,7 @@ class BoxBins {
     return slots_before_[word] + __builtin_popcountll(used_[word] & bits_below(bit));
   }
   List list(int slot) const {
-    return {items_.data() + start_[slot], items_.data() + start_[slot + 1]};
+    return {items_.data() + start_[slot], items_.data() + start_[slot + 1], slot};
   }
 
   Point<dim> lower_ = Point<dim>::Zero();
@@ -82,7 +85,7 @@ class BoxBins {
   /// touches.
   std::vector<std::uint64_t> used_, boxed_;
   std::vector<int> slots_before_;  ///< bits set in the words before
-  std::vector<int> start_;         ///< first item of each bin that is not empty, and the end
+  std::vector<int> start_{0};      ///< first item of each bin that is not empty, and the end
   std::vector<int> items_;
 };
 

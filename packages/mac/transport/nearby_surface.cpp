@@ -46,13 +46,15 @@ NearbySurface<dim>::NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid,
 
 template <int dim>
 void NearbySurface<dim>::list_near() {
+  bounds_.reserve(snapshot_->n_simplices());
+  near_.reserve(snapshot_->n_simplices());
   any_image(reached_, [&](const Point<dim>& shift) {
     const Box<dim> place(reached_.min() - shift, reached_.max() - shift);
     for (int s = 0; s < snapshot_->n_simplices(); ++s) {
-      Box<dim> bounds = snapshot_->bounds(s);
+      const Box<dim>& bounds = snapshot_->bounds(s);
       if (!place.intersects(bounds))
         continue;
-      bounds_.push_back(widened<dim>(bounds.translate(shift), 2 * tolerance_));
+      bounds_.push_back(widened<dim>(bounds.translated(shift), 2 * tolerance_));
       near_.push_back(picture(s, shift));
     }
     return false;
@@ -104,10 +106,43 @@ void NearbySurface<dim>::make_bins() {
          region.volume() / std::pow(0.5 * width, dim) < most_bins)
     width *= 0.5;
   small_simplices_ = width < 0.5 * spacing_;
+  if (small_simplices_)
+    make_patches();
   seen_.assign(near_.size(), 0);
   bins_.build(bounds_, region, lower_, width, [&](int i, const Point<dim>& center) {
     const Plane& plane = near_[i].plane;
     return std::abs(plane(center)) <= 0.5 * width * plane.normal.cwiseAbs().sum() + 4 * tolerance_;
+  });
+}
+
+/// Most of a fine mesh is nearly flat over half a cell.
+template <int dim>
+void NearbySurface<dim>::make_patches() {
+  std::vector<Box<dim>> middles;
+  middles.reserve(bounds_.size());
+  for (const Box<dim>& box : bounds_) {
+    middles.emplace_back(Point<dim>(box.center()));
+    patch_reach_ = std::max(patch_reach_, 0.5 * box.sizes().maxCoeff());
+  }
+  Box<dim> region;
+  for (const Box<dim>& box : middles)
+    region.extend(box);
+  patch_bins_.build(middles, region, lower_, 0.5 * spacing_,
+                    [](int, const Point<dim>&) { return true; });
+  patches_.resize(patch_bins_.n_used());
+  patch_bins_.visit(region, [&](const auto& list) {
+    Patch& patch = patches_[list.place];
+    for (const int i : list)
+      patch.plane.normal += near_[i].plane.normal;
+    patch.plane.normal.normalize();
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const int i : list)
+      for (const Point<dim>& corner : corners(near_[i])) {
+        low = std::min(low, patch.plane(corner));
+        high = std::max(high, patch.plane(corner));
+      }
+    patch.plane.offset = 0.5 * (low + high);
+    patch.half_thickness = 0.5 * (high - low) + 3 * tolerance_;
   });
 }
 
@@ -215,22 +250,33 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       x[a] = corners[a][k];
     return x;
   };
-  // Walks cost by the bins on the way, the rest of this by the simplices in the box.
-  if (empty() || small_simplices_ || !reached_.contains(box)) {
+  if (empty() || !reached_.contains(box)) {
     for (int k = 0; k < 1 << dim; ++k)
       hits[k] = first_hit(eye, corner(k));
     return;
   }
-  Values square = Values::Zero();
-  for (int a = 0; a < dim; ++a)
-    square += (corners[a] - eye[a]).square();
-  const Values length = square.sqrt();
   const auto at_corners = [&](const Plane& plane) {
     Values value = Values::Constant(-plane.offset);
     for (int a = 0; a < dim; ++a)
       value += plane.normal[a] * corners[a];
     return value;
   };
+  // Walks cost by the bins on the way, the rest of this by the simplices in the box.
+  if (small_simplices_) {
+    Eigen::Array<bool, 1 << dim, 1> is_free = Eigen::Array<bool, 1 << dim, 1>::Constant(true);
+    patch_bins_.visit(widened<dim>(box, patch_reach_), [&](const auto& list) {
+      const Patch& patch = patches_[list.place];
+      const double from = patch.plane(eye), side = from < 0 ? -1 : 1;
+      is_free = is_free && (side * at_corners(patch.plane)).min(side * from) > patch.half_thickness;
+    });
+    for (int k = 0; k < 1 << dim; ++k)
+      hits[k] = is_free[k] ? std::nullopt : first_hit(eye, corner(k));
+    return;
+  }
+  Values square = Values::Zero();
+  for (int a = 0; a < dim; ++a)
+    square += (corners[a] - eye[a]).square();
+  const Values length = square.sqrt();
   std::array<Hit, 1 << dim> first;
   ++question_;
   bins_.visit(interior(box), [&](const auto& list) {
@@ -238,18 +284,22 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       if (seen_[i] == question_)
         continue;
       seen_[i] = question_;
+      if (!bounds_[i].intersects(box))
+        continue;
       const Near& near = near_[i];
       const double from = near.plane(eye);
       const Values to = at_corners(near.plane);
-      if (std::min(from, to.minCoeff()) > 3 * tolerance_ ||
-          std::max(from, to.maxCoeff()) < -3 * tolerance_)
+      const Eigen::Array<bool, 1 << dim, 1> stays =
+          to.min(from) > 3 * tolerance_ || to.max(from) < -3 * tolerance_;
+      if (stays.all())
         continue;
       const Values drop = from - to, sign = (drop < 0).select(Values::Constant(-1), 1);
       Values inside = Values::Constant(std::numeric_limits<double>::infinity());
       for (const Plane& rim : near.rims)
         inside = inside.min(sign * (from * at_corners(rim) - rim(eye) * to));
       const Eigen::Array<bool, 1 << dim, 1> passes_by =
-          inside < -2 * tolerance_ * length && drop.abs() > 1e-9 * length && length > tolerance_;
+          stays ||
+          (inside < -2 * tolerance_ * length && drop.abs() > 1e-9 * length && length > tolerance_);
       for (int k = 0; k < 1 << dim; ++k)
         if (!passes_by[k])
           look_at(i, eye, corner(k), length[k], first[k]);

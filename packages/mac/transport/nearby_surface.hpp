@@ -65,6 +65,12 @@ class NearbySurface {
     /// How far inside the rim opposite to each corner a point of its plane is [m].
     std::array<Plane, dim> rims;
   };
+  /// The simplices whose middles are in one bin, between two parallel planes: so far at most is a
+  /// point of theirs from this one [m].
+  struct Patch {
+    Plane plane;
+    double half_thickness = 0;
+  };
   struct Hit {
     std::optional<SurfacePoint<dim>> point;
     int near = -1;
@@ -73,6 +79,7 @@ class NearbySurface {
   Near picture(int simplex, const Point<dim>& shift) const;
   std::array<Point<dim>, dim> corners(const Near& near) const;
   void make_bins();
+  void make_patches();
   /// Calls f(shift) for each period by which the surface may have to be moved to touch the box,
   /// until f returns true.
   template <typename Function>
@@ -90,6 +97,9 @@ class NearbySurface {
   std::vector<Near> near_;  ///< ascending by image and simplex
   std::vector<Box<dim>> bounds_;        ///< of the images, widened by twice the tolerance
   bool small_simplices_ = false;        ///< bins are smaller than half a cell
+  BoxBins<dim> patch_bins_;             ///< of middles, of half cells; for small simplices alone
+  std::vector<Patch> patches_;          ///< of those bins
+  double patch_reach_ = 0;              ///< of a simplex beyond the bin of its middle [m]
   BoxBins<dim> bins_;                   ///< of `near_`; every half cell is one or several bins
   CellDistance<dim> distance_;          ///< to `bounds_`
   mutable std::vector<unsigned> seen_;  ///< the question that each simplex last came up for

@@ -14,8 +14,9 @@ using RowValues = Eigen::Array<double, tile_width<dim>, 1>;
 template <int dim>
 using RowPoints = std::array<RowValues<dim>, dim>;
 
+// Not inlined, rows go through memory: twice the time of what is done with them.
 template <typename Values>
-Values blend(const Values& a, const Values& b, const Values& weight) {
+[[gnu::always_inline]] inline Values blend(const Values& a, const Values& b, const Values& weight) {
   return a + weight * (b - a);
 }
 

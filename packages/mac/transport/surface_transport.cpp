@@ -47,6 +47,7 @@ SurfaceTransport<dim>::SurfaceTransport(
   const SurfaceSnapshot<dim>& before = *surface.before;
   const SurfaceSnapshot<dim>& after = surface.after ? *surface.after : before;
   Box<dim> region;
+  swept_.reserve(before.n_simplices());
   for (int s = 0; s < before.n_simplices(); ++s) {
     const Box<dim> both = before.bounds(s).merged(after.bounds(s));
     swept_.push_back(widened<dim>(both, 2 * interpolation_.nearby().tolerance()));

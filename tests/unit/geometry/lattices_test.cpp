@@ -225,7 +225,7 @@ TEST(SolidVolume, PartInABox) {
   const Box<3> all(Point<3>(-2, -2, -2), Point<3>(2, 2, 2)),
       corner(Point<3>(-1, 0, -0.3), Point<3>(0.3, 0.45, 2));
   const MassProperties<3> whole = volume_properties<3>(ball.mesh_of_solid(0));
-  EXPECT_EQ(part_of_solid<3>(ball, 0, all).volume, whole.measure);
+  EXPECT_DOUBLE_EQ(part_of_solid<3>(ball, 0, all).volume, whole.measure);
   EXPECT_EQ(part_of_solid<3>(ball, 0, Box<3>(Point<3>(1, -2, -2), Point<3>(2, 2, 2))).volume, 0);
   const PartOfSolid<3> part = part_of_solid<3>(ball, 0, corner);
   EXPECT_NEAR(part.volume, solid_volume_in_box<3>(ball, corner), 1e-13);

@@ -1,0 +1,106 @@
+#pragma once
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace lockstep {
+
+/// Which boxes are near each other: places of a balanced binary tree.
+using BoxOrder = std::shared_ptr<const std::vector<int>>;
+
+/// Finds those of many boxes that touch another or are near a point. What it finds does not depend
+/// on the order, so that boxes that have moved a little may be sorted as they were before.
+template <int dim>
+class BoxTree {
+ public:
+  BoxTree() = default;
+  /// Sorts the boxes; or takes the `order` of a tree of as many.
+  explicit BoxTree(std::vector<Box<dim>> boxes, BoxOrder order = nullptr);
+
+  const BoxOrder& order() const { return order_; }
+  const Box<dim>& box(int i) const { return boxes_[i]; }
+  /// Calls f(i) for the boxes that touch this one, until f returns true. True if f did.
+  template <typename Function>
+  bool any_touching(const Box<dim>& box, const Function& f) const;
+  /// Those that touch `box`, ascending; replaces the content of `found`.
+  void touching(const Box<dim>& box, std::vector<int>& found) const;
+  /// Calls f(i) for the boxes whose square distance from x is no more than `reach()`, which may
+  /// shrink on the way: the near ones come early.
+  template <typename Function, typename Reach>
+  void near(const Point<dim>& x, const Reach& reach, const Function& f) const;
+
+ private:
+  static constexpr int in_leaf = 4;  ///< boxes, at most
+  int n_boxes() const { return static_cast<int>(boxes_.size()); }
+  int first_of(int leaf) const {
+    return static_cast<int>(static_cast<long long>(leaf) * n_boxes() / n_leaves_);
+  }
+  void sort(std::vector<int>& order, int begin_leaf, int end_leaf) const;
+
+  std::vector<Box<dim>> boxes_;
+  BoxOrder order_;
+  int n_leaves_ = 0;             ///< a power of two, or 0: no boxes
+  std::vector<Box<dim>> nodes_;  ///< 1: the root; below i are 2 i and 2 i + 1
+};
+
+template <int dim>
+template <typename Function>
+bool BoxTree<dim>::any_touching(const Box<dim>& box, const Function& f) const {
+  if (n_leaves_ == 0 || box.isEmpty())
+    return false;
+  std::array<int, 64> waiting;
+  int n_waiting = 0;
+  for (int node = 1;;) {
+    if (nodes_[node].intersects(box)) {
+      if (node < n_leaves_) {
+        waiting[n_waiting++] = 2 * node + 1;
+        node *= 2;
+        continue;
+      }
+      const int leaf = node - n_leaves_, end = first_of(leaf + 1);
+      for (int k = first_of(leaf); k < end; ++k)
+        if (const int i = (*order_)[k]; boxes_[i].intersects(box) && f(i))
+          return true;
+    }
+    if (n_waiting == 0)
+      return false;
+    node = waiting[--n_waiting];
+  }
+}
+
+template <int dim>
+template <typename Function, typename Reach>
+void BoxTree<dim>::near(const Point<dim>& x, const Reach& reach, const Function& f) const {
+  if (n_leaves_ == 0)
+    return;
+  struct Node {
+    int node;
+    double square;
+  };
+  std::array<Node, 64> waiting;
+  int n_waiting = 0;
+  const auto at = [&](int node) { return Node{node, nodes_[node].squaredExteriorDistance(x)}; };
+  for (Node now = at(1);;) {
+    if (now.square <= reach()) {
+      if (now.node < n_leaves_) {
+        const Node one = at(2 * now.node), other = at(2 * now.node + 1);
+        waiting[n_waiting++] = one.square <= other.square ? other : one;
+        now = one.square <= other.square ? one : other;
+        continue;
+      }
+      const int leaf = now.node - n_leaves_, end = first_of(leaf + 1);
+      for (int k = first_of(leaf); k < end; ++k) {
+        const int i = (*order_)[k];
+        if (const double square = boxes_[i].squaredExteriorDistance(x); square <= reach())
+          f(i);
+      }
+    }
+    if (n_waiting == 0)
+      return;
+    now = waiting[--n_waiting];
+  }
+}
+
+}  // namespace lockstep
