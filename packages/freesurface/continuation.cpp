@@ -5,15 +5,43 @@
 namespace lockstep {
 
 namespace {
+/// Beyond a shell that comes first lies other fluid than what is around the solid.
+template <int dim>
+class Neighbors {
+ public:
+  Neighbors(const MacDomain<dim>& domain, const SolidCells<dim>& solids)
+      : grid_(domain.grid), solids_(solids) {
+    for (const SolidDescription& solid : solids.state.surface->solids())
+      has_shells_ = has_shells_ || !solid.closed;
+  }
+  /// The neighbour of a solid cell, or -1 if it is fluid that a shell hides.
+  int operator()(int cell, int axis, int side) const {
+    const int other = grid_.neighbor(cell, axis, side);
+    if (!has_shells_ || other < 0 || !solids_.is_fluid(other))
+      return other;
+    const SurfaceSnapshot<dim>& surface = *solids_.state.surface;
+    const Point<dim> x = grid_.center(cell);
+    const auto hit =
+        surface.first_hit(x + (side == 0 ? -1 : 1) * grid_.spacing() * Point<dim>::Unit(axis), x);
+    return hit && !surface.solids()[surface.solid_of(hit->simplex)].closed ? -1 : other;
+  }
+
+ private:
+  const TiledGrid<dim>& grid_;
+  const SolidCells<dim>& solids_;
+  bool has_shells_ = false;
+};
+
 /// Owned solid cells that have a fluid neighbour.
 template <int dim>
-std::vector<int> first_front(const MacDomain<dim>& domain, const SolidCells<dim>& solids) {
+std::vector<int> first_front(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                             const Neighbors<dim>& neighbor) {
   std::vector<int> front;
   domain.grid.for_each_owned_cell([&](int cell) {
     if (solids.state.cells[cell] != CellState::solid)
       return;
     for (int i = 0; i < 2 * dim; ++i) {
-      const int other = domain.grid.neighbor(cell, i / 2, i % 2);
+      const int other = neighbor(cell, i / 2, i % 2);
       if (other >= 0 && solids.is_fluid(other)) {
         front.push_back(cell);
         return;
@@ -47,7 +75,8 @@ void continue_into_solids(const MacDomain<dim>& domain, const SolidCells<dim>& s
   std::vector<char> is_set(grid.n_stored_cells());
   for (std::size_t cell = 0; cell < is_set.size(); ++cell)
     is_set[cell] = solids.is_fluid(static_cast<int>(cell));
-  std::vector<int> front = first_front(domain, solids);
+  const Neighbors<dim> neighbor(domain, solids);
+  std::vector<int> front = first_front(domain, solids, neighbor);
   std::vector<double> values;
   for (int layer = 0; layer < depth; ++layer) {
     values.clear();
@@ -55,7 +84,7 @@ void continue_into_solids(const MacDomain<dim>& domain, const SolidCells<dim>& s
       double sum = 0;
       int n = 0;
       for (int i = 0; i < 2 * dim; ++i) {
-        const int other = grid.neighbor(cell, i / 2, i % 2);
+        const int other = neighbor(cell, i / 2, i % 2);
         if (other < 0 || !is_set[other])
           continue;
         sum += led_to(domain, solids, is_set, phi, other, i / 2, i % 2);
@@ -74,7 +103,7 @@ void continue_into_solids(const MacDomain<dim>& domain, const SolidCells<dim>& s
       if (is_set[cell] || solids.state.cells[cell] != CellState::solid)
         return;
       for (int i = 0; i < 2 * dim; ++i) {
-        const int other = grid.neighbor(cell, i / 2, i % 2);
+        const int other = neighbor(cell, i / 2, i % 2);
         if (other >= 0 && is_set[other]) {
           next.push_back(cell);
           return;

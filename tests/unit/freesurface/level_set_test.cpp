@@ -209,5 +209,34 @@ TEST(LevelSet, GoesOnIntoSolids) {
   expect_plane_goes_on<3>();
 }
 
+/// A ball lies on a sheet that water is under: none of it reaches into the ball.
+TEST(LevelSet, DoesNotGoOnThroughShells) {
+  SurfaceMesh<2> mesh = plate_surface<2>(Point<2>(3, 3), 1, 0.5);
+  for (Point<2>& x : mesh.vertices)
+    x += Point<2>(0.5, 0.492);
+  SolidDescription sheet, disc;
+  sheet.closed = false;
+  sheet.simplex_end = disc.simplex_begin = static_cast<int>(mesh.simplices.size());
+  sheet.vertex_end = disc.vertex_begin = static_cast<int>(mesh.vertices.size());
+  const SurfaceMesh<2> round = ball_surface<2>(0.15, 0.02);
+  for (const auto& [a, b] : round.simplices)
+    mesh.simplices.push_back({a + disc.vertex_begin, b + disc.vertex_begin});
+  for (const Point<2>& x : round.vertices)
+    mesh.vertices.emplace_back(x + Point<2>(0.5, 0.645));
+  disc.simplex_end = static_cast<int>(mesh.simplices.size());
+  disc.vertex_end = static_cast<int>(mesh.vertices.size());
+  const auto solids =
+      std::make_shared<const SurfaceSnapshot<2>>(std::move(mesh), std::vector{sheet, disc});
+  Bath<2> bath(open_cube<2>(32));
+  auto model = bath.make("level set");
+  model->initialise([](const Point<2>& x) { return x[1] - 0.49; }, solids);
+  bath.domain.grid.for_each_owned_cell([&](int c) {
+    const Point<2> x = bath.domain.grid.center(c);
+    if ((x - Point<2>(0.5, 0.645)).norm() < 0.15) {
+      EXPECT_GT(model->distance()[c], 0) << x.transpose();
+    }
+  });
+}
+
 }  // namespace
 }  // namespace lockstep::test
