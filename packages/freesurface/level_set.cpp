@@ -108,8 +108,10 @@ double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
   SideValues<dim> beyond_sides{};
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
+      const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
       // Through an open side comes what is no liquid.
-      setting.sides[axis][end].inflow = domain_.boundary.side(axis, end).type == SideType::open;
+      setting.sides[axis][end].inflow = side.type == SideType::open;
+      setting.sides[axis][end].closed = side.closed();
       beyond_sides[axis][end] = cut_off();
     }
   Transport<dim> transport(setting);

@@ -276,6 +276,7 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
       const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
       TransportSide<dim>& seen = setting.sides[axis][end];
       seen.inflow = side.type == SideType::inflow;
+      seen.closed = side.closed();
       seen.velocity = [&side, axis, time](const Point<dim>& x) {
         return side.velocity_at(axis, x, time);
       };

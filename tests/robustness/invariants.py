@@ -8,6 +8,7 @@
 | finite | every number of history.csv, bodies.csv and of all frames |
 | scalar | smoke and temperature between their least and most initial, inflowing and held values |
 | energy | kinetic and elastic, at most GROWTH times the start's and gravity's work, where nothing else does work |
+| image | bodies and energies equal, as ranks', of the scene with its axes turned (images.py) |
 | ranks | bodies and energies equal on 1, 2 and 3 ranks to RANKS of their scale, once contact decides by inequalities to RANKS_IN_CONTACT, or to CHAOS times what another tolerance changes on one rank |
 | restart | tables and last frame bit for bit |
 """
@@ -184,9 +185,9 @@ def energy_at_speed(scene, speed):
     return scene.content["Fluid"]["Density"] * volume * speed ** 2 / 2
 
 
-def check_ranks(scene, one, other, ranks, twin=None):
+def check_same(scene, one, other, kind, twin=None):
     """Bodies and energies; forces and residuals are differences of these and carry the solver's tolerance over dt.
-    `twin`, on one rank too, was disturbed by as much as solves are inexact: ranks may part CHAOS times as far."""
+    `twin`, on one rank too, was disturbed by as much as solves are inexact: others may part CHAOS times as far."""
     _, h, speed = scales(scene, one)
     energy = max(one.energy().max(), ROUND_OFF * energy_at_speed(scene, speed))
     compared = [("history", c, energy) for c in ("fluid_kinetic_energy", "solid_kinetic_energy", "elastic_energy")]
@@ -197,14 +198,14 @@ def check_ranks(scene, one, other, ranks, twin=None):
     for table, column, scale in compared:
         mine, theirs = getattr(one, table), getattr(other, table)
         if len(mine) != len(theirs):
-            yield f"ranks: {len(theirs)} rows of {table}.csv on {ranks}, {len(mine)} on 1"
+            yield f"{kind}: {len(theirs)} rows of {table}.csv, not {len(mine)}"
             return
         if not mine or column not in mine[0]:
             continue
         apart = abs(number(mine, column) - number(theirs, column)).max() / scale
         disturbed = abs(number(mine, column) - number(getattr(twin, table), column)).max() / scale if twin else 0
         if not apart <= max(bound, CHAOS * disturbed):
-            yield f"ranks: {column} of {table}.csv differs by {apart:.1e} on {ranks}"
+            yield f"{kind}: {column} of {table}.csv differs by {apart:.1e}"
             return
 
 

@@ -94,6 +94,7 @@ void Transport<dim>::Implementation::mark_usable() {
     for (int i = 0; i < n; ++i)
       usable_samples[a][i] = setting.state.faces[a][i] != FaceState::inactive;
     usable.faces[a] = setting.halo.fetch(usable_samples[a], usable_storage[a], '\1').data();
+    usable.closed_below[a] = setting.sides[a][0].closed;
   }
   frame.invalid.cells.assign(n, 0);
   for (int i = 0; i < n; ++i)

@@ -25,6 +25,7 @@ enum class AdvectionScheme {
 template <int dim>
 struct TransportSide {
   bool inflow = false;
+  bool closed = false;                                    ///< no velocity through it
   std::function<Point<dim>(const Point<dim>&)> velocity;  ///< of the inflow, at a point of the side
 };
 

@@ -49,7 +49,8 @@ void VisibleInterpolation<dim>::look(int axis, const Point<dim>& x, const double
   for_each_sample(axis, x, [&](const StencilCorner<dim>& corner, const auto& hit) {
     if (hit)
       sight.hidden.push_back({corner.weight, *hit});
-    else if (corner.id == Stencil<dim>::wall_sample)
+    else if (corner.id == Stencil<dim>::wall_sample ||
+             (usable_.closed_below[axis] && corner.position[axis] == 0))
       sight.visible.add(corner.weight, 0);
     else if (corner.id >= 0 && usable_.faces[axis][corner.id])
       sight.visible.add(corner.weight, field[corner.id]);
@@ -74,12 +75,16 @@ std::optional<double> VisibleInterpolation<dim>::seen_velocity(int axis) const {
   const std::vector<Hidden>& hidden = sight_[axis].hidden;
   if (hidden.empty())
     return mean.value();
-  // A component of which nothing is visible is the surface's.
-  Point<dim> seen = surface_.velocity(hidden.front().hit);
+  std::array<std::optional<double>, dim> visible;
   for (int a = 0; a < dim; ++a)
-    seen[a] = sight_[a].visible.value().value_or(seen[a]);
-  for (const Hidden& sample : hidden)
+    visible[a] = sight_[a].visible.value();
+  for (const Hidden& sample : hidden) {
+    // A component of which nothing is visible is that of the surface before the sample.
+    Point<dim> seen = surface_.velocity(sample.hit);
+    for (int a = 0; a < dim; ++a)
+      seen[a] = visible[a].value_or(seen[a]);
     mean.add(sample.weight, slipping(axis, seen, sample.hit));
+  }
   return mean.value();
 }
 

@@ -14,6 +14,9 @@ template <int dim>
 struct UsableSamples {
   std::array<const char*, dim> faces;
   const char* cells = nullptr;
+  /// Of lower sides: whether no velocity goes through. Upper ones have their samples only if it
+  /// does (Stencil::wall_sample).
+  std::array<bool, dim> closed_below{};
 };
 
 /// A weighted mean that is exact for equal values and never leaves their range.
