@@ -117,6 +117,19 @@ class Leaks(unittest.TestCase):
     def inside(self, rows, watch="Inside"):
         return [float(row[f"watch_{watch}_volume"]) for row in rows]
 
+    def test_a_restart_goes_on_the_same(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file, whole, parts = (Path(folder) / name for name in ("scene.xml", "whole", "parts"))
+            file.write_text(SCENES["hull"])
+            for output, steps, more in ((whole, 30, []), (parts, 15, []),
+                                        (parts, 30, ["--restart", str(parts / "checkpoint-000015.h5")])):
+                subprocess.run([SIMULATE, str(file), "--output", str(output), "--steps", str(steps), "--quiet", *more],
+                               check=True, timeout=300)
+            one, other = (table(output / "history.csv") for output in (whole, parts))
+            for row in (*one, *other):
+                del row["wall_seconds"]
+            self.assertEqual(one, other)
+
     def test_hull(self):
         rows = self.storm("hull")
         self.assertGreater(min(self.inside(rows, "Outside")), .5)
