@@ -167,7 +167,7 @@ GridDescription<2> duct() {
 
 /// Fluid at (1, 4) enters where fluid at (1, 0) flows.
 void let_in(FullTank<2>& tank) {
-  tank.sides[0][0] = {true, [](const Point<2>&) { return Point<2>(1, 4); }};
+  tank.sides[0][0] = {true, false, [](const Point<2>&) { return Point<2>(1, 4); }};
   tank.set_velocity([](const Point<2>&) { return Point<2>(1, 0); });
 }
 
