@@ -85,7 +85,9 @@ typename NearbySurface<dim>::Near NearbySurface<dim>::picture(int simplex,
     const Point<dim>&rim = points[(k + 1) % dim], &end = points[(k + dim - 1) % dim];
     const Point<dim> along = end - rim, inward = points[k] - rim;
     const double square = along.squaredNorm();
-    near.rims[k] = plane(inward - (square > 0 ? along.dot(inward) / square : 0) * along, rim);
+    static_cast<Plane&>(near.rims[k]) =
+        plane(inward - (square > 0 ? along.dot(inward) / square : 0) * along, rim);
+    near.rims[k].height = near.rims[k](points[k]);
   }
   return near;
 }
@@ -295,7 +297,7 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
         continue;
       const Values drop = from - to, sign = (drop < 0).select(Values::Constant(-1), 1);
       Values inside = Values::Constant(std::numeric_limits<double>::infinity());
-      for (const Plane& rim : near.rims)
+      for (const Rim& rim : near.rims)
         inside = inside.min(sign * (from * at_corners(rim) - rim(eye) * to));
       const Eigen::Array<bool, 1 << dim, 1> passes_by =
           stays ||
@@ -316,14 +318,8 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
   const double from = near.plane(a), to = near.plane(b);
   if (i == first.near || std::min(from, to) > 3 * tolerance_ ||
       std::max(from, to) < -3 * tolerance_ ||
-      !bounds_[i].intersects(Box<dim>(a.cwiseMin(b), a.cwiseMax(b))))
+      (!small_simplices_ && !bounds_[i].intersects(Box<dim>(a.cwiseMin(b), a.cwiseMax(b)))))
     return;
-  // Most that cross the plane pass by the simplex, which is clear long before the hit is known.
-  const double drop = from - to;
-  if (length > tolerance_ && std::abs(drop) > 1e-9 * length)
-    for (const Plane& rim : near.rims)
-      if (std::copysign(1.0, drop) * (from * rim(b) - to * rim(a)) < -2 * tolerance_ * length)
-        return;
   const auto take = [&](const Barycentric<dim>& barycentric, const Point<dim>& position,
                         double fraction) {
     if (first.point &&
@@ -332,6 +328,26 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
     first.near = i;
     first.point = SurfacePoint<dim>{near.simplex, barycentric, position - near.shift, fraction};
   };
+  // Most that cross the plane pass by the simplex, and most others cross it clear of its rims,
+  // where its neighbours are.
+  const double drop = from - to;
+  if (length > tolerance_ && std::abs(drop) > 1e-9 * length) {
+    const double slack = 2 * tolerance_ * length;
+    Barycentric<dim> shares;
+    bool is_clear = from * to < 0;
+    for (int k = 0; k < dim; ++k) {
+      const Rim& rim = near.rims[k];
+      const double inside = std::copysign(1.0, drop) * (from * rim(b) - to * rim(a));
+      if (inside < -slack)
+        return;
+      is_clear = is_clear && inside > slack;
+      shares[k] = inside / rim.height;
+    }
+    if (is_clear) {
+      const double fraction = from / drop;
+      return take(shares / shares.sum(), a + fraction * (b - a), fraction);
+    }
+  }
   // A segment shorter than the tolerance has no direction to speak of.
   if (length <= tolerance_) {
     const auto closest = closest_on_simplex<dim>(corners(near), a);

@@ -57,13 +57,17 @@ class NearbySurface {
     Point<dim> normal = Point<dim>::Zero();
     double offset = 0;
   };
+  /// How far inside the rim opposite to a corner a point of the simplex' plane is, and the corner
+  /// [m].
+  struct Rim : Plane {
+    double height = 0;
+  };
   /// The image of a simplex near here.
   struct Near {
     int simplex = -1;
     Point<dim> shift;  ///< from the real place to the image
     Plane plane;       ///< its own, [m]; zero if it is degenerate
-    /// How far inside the rim opposite to each corner a point of its plane is [m].
-    std::array<Plane, dim> rims;
+    std::array<Rim, dim> rims;
   };
   /// The simplices whose middles are in one bin, between two parallel planes: so far at most is a
   /// point of theirs from this one [m].

@@ -3,6 +3,8 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <list>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -46,6 +48,40 @@ MultifrontalCholesky::Matrix part_of(const CrsMatrix& all, const std::vector<int
   return result;
 }
 
+/// An analysis, and the places of the entries of which it is.
+struct Analysis {
+  explicit Analysis(const MultifrontalCholesky::Matrix& matrix)
+      : begin(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.outerSize() + 1),
+        rows(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros()) {
+    const HeldSignals held;  // METIS
+    factors.analyze(matrix);
+  }
+  bool is_of(const MultifrontalCholesky::Matrix& matrix) const {
+    return matrix.outerSize() + 1 == static_cast<Eigen::Index>(begin.size()) &&
+           matrix.nonZeros() == static_cast<Eigen::Index>(rows.size()) &&
+           std::equal(begin.begin(), begin.end(), matrix.outerIndexPtr()) &&
+           std::equal(rows.begin(), rows.end(), matrix.innerIndexPtr());
+  }
+  std::vector<int> begin, rows;
+  MultifrontalCholesky factors;  ///< without values
+};
+
+/// Not yet factored. The last analyses are kept: the matrices of a solid, several a step, mostly
+/// have their entries in the same places, and an analysis takes as long as the factors.
+MultifrontalCholesky analyzed(const MultifrontalCholesky::Matrix& matrix) {
+  constexpr std::size_t most = 8;
+  static std::list<Analysis> kept;  // the last one used first
+  const auto found = std::find_if(kept.begin(), kept.end(),
+                                  [&](const Analysis& one) { return one.is_of(matrix); });
+  if (found != kept.end())
+    kept.splice(kept.begin(), kept, found);
+  else
+    kept.emplace_front(matrix);
+  if (kept.size() > most)
+    kept.pop_back();
+  return kept.front().factors;
+}
+
 /// All on rank 0: `components` by row, `is_factored` is written.
 SolveInPlace factor_components(const CrsMatrix& gathered, const Vector& components,
                                double most_operations, Vector& is_factored) {
@@ -60,10 +96,7 @@ SolveInPlace factor_components(const CrsMatrix& gathered, const Vector& componen
     auto part = std::make_unique<Factored>();
     part->rows = std::move(rows);
     const MultifrontalCholesky::Matrix matrix = part_of(gathered, part->rows, place_of);
-    {
-      const HeldSignals held;  // METIS
-      part->factors.analyze(matrix);
-    }
+    part->factors = analyzed(matrix);
     if (part->factors.n_operations() > most_operations)
       continue;
     if (!part->factors.factorize(matrix))

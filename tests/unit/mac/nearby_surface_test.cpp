@@ -88,6 +88,13 @@ void expect_first_hits(double edge) {
     const auto hit = tank.surface->first_hit(a, b);
     expect_equal<dim>(hit, tank.expected_hit(a, b));
     n_hits += hit.has_value();
+    if (hit) {
+      const auto corners = tank.snapshot->corners(hit->simplex);
+      Point<dim> x = -hit->position;
+      for (int k = 0; k < dim; ++k)
+        x += hit->barycentric[k] * corners[k];
+      EXPECT_LE(x.norm(), 1e-9);
+    }
     EXPECT_TRUE(!hit || !tank.surface->clear(box));
     EXPECT_EQ(tank.surface->touches(box), tank.expected_touch(box));
   }
