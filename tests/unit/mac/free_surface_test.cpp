@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include <Tpetra_CrsMatrix.hpp>
 #include <cmath>
 
@@ -264,6 +267,25 @@ void expect_wet_part_of_a_box() {
 TEST(FreeSurface, WetPartOfABox) {
   expect_wet_part_of_a_box<2>();
   expect_wet_part_of_a_box<3>();
+}
+
+/// A diamond from a file, moved.
+TEST(FreeSurface, LiquidFillsAMesh) {
+  const std::string file = fmt::format("liquid-{}.obj", world()->getRank());
+  std::ofstream(file) << "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nl 1 2\nl 2 3\nl 3 4\nl 4 1\n";
+  Case<2> scene({48, 48}, 0.1);
+  ParameterList& mesh = scene.fluid.sublist("Free Surface").sublist("Liquid").sublist("diamond");
+  mesh.set("Type", "mesh").set("File", file);
+  mesh.set("Position", numbers({2.4, 2.41}));
+  const auto fluid = make_liquid<2>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  std::filesystem::remove(file);
+  EXPECT_NEAR(fluid->fluid_volume(), 2, 0.1);
+  fluid->domain().grid.for_each_owned_cell([&](int cell) {
+    const Point<2> x = fluid->domain().grid.center(cell);
+    const double excess = std::abs(x[0] - 2.4) + std::abs(x[1] - 2.41) - 1;
+    EXPECT_EQ(fluid->geometry().state.cells[cell] == CellState::fluid, excess < 0);
+  });
 }
 
 /// A box without lid in the water: nothing is in it, wherever a rank's part of it ends.
