@@ -222,6 +222,10 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   if (moving_tiles_)
     mine += push_at_rim(force.of_surroundings(), dt);
   mine.angular += moment_of_shifts([&](int axis, int cell) { return dt * force(axis, cell); });
+  if (liquid_ && liquid_->tension() > 0) {
+    push_surface(dt);
+    given.impulse += surface_impulse_;
+  }
   domain_.halo.fill(prediction_);
   given.impulse += sum_over_ranks(mine, domain_.grid.comm());
   given.coupled_change.reserve(geometry_.coupled_volumes.size());

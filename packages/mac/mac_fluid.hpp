@@ -91,6 +91,7 @@ class MacFluid : public FluidDiscretization<dim>,
   double surface_distance(const Point<dim>& x) const override { return liquid_->distance(x); }
   std::vector<WetBody<dim>> wet_bodies() const override;
   LiquidReport liquid() const override { return liquid_->report(); }
+  Momentum<dim> surface_impulse() const override { return surface_impulse_; }
   std::vector<std::string> watch_names() const override { return liquid_->watch_names(); }
   Box<dim> bounds() const override;
   std::array<std::array<bool, 2>, dim> closed_sides() const override;
@@ -147,6 +148,7 @@ class MacFluid : public FluidDiscretization<dim>,
   template <typename Velocity>
   AngularVector<dim> moment_of_shifts(const Velocity& velocity) const;
   Momentum<dim> push_sources(double time);
+  void push_surface(double dt);  ///< by surface tension
   void move_liquid(double time, double dt, const MovingSurface<dim>& surface,
                    FaceField<dim>& advection);
 
@@ -173,8 +175,9 @@ class MacFluid : public FluidDiscretization<dim>,
   double accepted_step_ = 0;                     ///< its dt
   std::vector<StoredField> fields_;              ///< all that are kept from step to step
   InvalidSamples<dim> invalid_;
-  double time_ = 0;       ///< of walls and inflows
-  double last_step_ = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures
+  double time_ = 0;                ///< of walls and inflows
+  Momentum<dim> surface_impulse_;  ///< of surface tension in the last forces
+  double last_step_ = 0;           ///< dt of the last forces, for p = p̂ / dt in pictures
 };
 
 }  // namespace lockstep

@@ -7,6 +7,7 @@
 
 #include "base/types.hpp"
 #include "geometry/surface_snapshot.hpp"
+#include "interfaces/momentum.hpp"
 
 namespace lockstep {
 
@@ -56,6 +57,8 @@ class LiquidFluid {
   /// By solid of the frozen surface; those that are not closed have nothing. Collective.
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
   virtual LiquidReport liquid() const = 0;
+  /// What surface tension gave in the last `add_forces`, as part of its impulse. Global. Local.
+  virtual Momentum<dim> surface_impulse() const { return {}; }
   /// Of the watched places, as columns have them. Local.
   virtual std::vector<std::string> watch_names() const { return {}; }
 };

@@ -35,9 +35,15 @@ Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
   {
     ScopedPhase phase(timers_, "forces");
     const ForceImpulse<dim> given = fluid.add_forces(context.time, context.dt);
-    if (context.ledger)
-      context.ledger->add("body forces",
-                          given.impulse + system_.lumped_fluid_momentum(given.coupled_change));
+    if (context.ledger) {
+      const auto* liquid = liquid_of<dim>(fluid);
+      const Momentum<dim> tension = liquid ? liquid->surface_impulse() : Momentum<dim>();
+      context.ledger->add(
+          "body forces",
+          given.impulse + system_.lumped_fluid_momentum(given.coupled_change) - tension);
+      if (liquid)
+        context.ledger->add("surface tension", tension);
+    }
   }
   if (!sides_.viscous_fluid)
     return {};

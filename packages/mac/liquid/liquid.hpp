@@ -29,6 +29,7 @@ class Liquid {
   void advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
                FaceField<dim>& advection_velocity, FaceField<dim>& velocity);
 
+  double tension() const { return parameters_.tension; }  ///< of the surface [N/m]
   const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
   InterfaceModel<dim>& interface() { return *interface_; }
   const InterfaceModel<dim>& interface() const { return *interface_; }

@@ -132,13 +132,19 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
   declare_between(
       list, "Smallest Distance", 0.01, 0.01, 1.0,
       "Pressures are taken to be no nearer to the surface than this part of a cell [1].");
+  declare_at_least(
+      list, "Surface Tension", 0.0, 0.0,
+      "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature. Explicit, so that "
+      "steps are at most 0.28 sqrt(density h^3 / sigma); the surface meets solids and sides at 90 "
+      "degrees. 0: none.");
   declare_between(list, "Pressure Order", 2, 1, 2,
                   "2: p = 0 where the surface is. 1: at the centre of the first cell above it, to "
                   "show what that costs: waves lower than half a cell do not exist then.");
 }
 
 FreeSurfaceParameters read_free_surface(const ParameterList& list) {
-  return {list.get<double>("Smallest Distance"), list.get<int>("Pressure Order")};
+  return {list.get<double>("Smallest Distance"), list.get<int>("Pressure Order"),
+          list.get<double>("Surface Tension")};
 }
 
 template <int dim>

@@ -8,6 +8,7 @@ namespace lockstep {
 struct FreeSurfaceParameters {
   double smallest_distance = 0.01;  ///< see FreeSurface
   int pressure_order = 2;
+  double tension = 0;  ///< of the surface [N/m]
 };
 
 /// Declares the list "Free Surface" of a fluid.

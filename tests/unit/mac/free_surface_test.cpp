@@ -18,17 +18,6 @@ ParameterArray<double> components(const Point<dim>& x) {
   return ParameterArray<double>(x.data(), x.data() + dim);
 }
 
-/// The pressure that takes the divergence from u*, which it changes.
-template <int dim>
-RCP<Vector> solve_and_project(MacFluid<dim>& fluid) {
-  const auto rhs = make_vector(fluid.pressure_map()), pressure = make_vector(fluid.pressure_map());
-  fluid.divergence(*rhs);
-  const auto multiply = [&](const Vector& x, Vector& y) { apply(*fluid.pressure_block(), x, y); };
-  conjugate_gradients(multiply, *rhs, *pressure, 1e-14);
-  fluid.project(*pressure);
-  return pressure;
-}
-
 template <int dim>
 double fastest_free_face(const MacFluid<dim>& fluid) {
   double fastest = 0;

@@ -51,6 +51,17 @@ std::unique_ptr<MacFluid<dim>> make_liquid(Case<dim>& scene) {
   return std::make_unique<MacFluid<dim>>(scene.fluid, scene.domain, world(), &interfaces);
 }
 
+/// The pressure that takes the divergence from u*, which it changes.
+template <int dim>
+RCP<Vector> solve_and_project(MacFluid<dim>& fluid) {
+  const auto rhs = make_vector(fluid.pressure_map()), pressure = make_vector(fluid.pressure_map());
+  fluid.divergence(*rhs);
+  const auto multiply = [&](const Vector& x, Vector& y) { apply(*fluid.pressure_block(), x, y); };
+  conjugate_gradients(multiply, *rhs, *pressure, 1e-14);
+  fluid.project(*pressure);
+  return pressure;
+}
+
 /// All below a height, measured against gravity.
 template <int dim>
 void add_level(Case<dim>& scene, double height) {

@@ -1,0 +1,100 @@
+// Surface tension: how the surface is bent, and what that does.
+#include <gtest/gtest.h>
+
+#include <Tpetra_Vector.hpp>
+
+#include "liquid_cases.hpp"
+#include "mac/liquid/surface_tension.hpp"
+
+namespace lockstep::test {
+namespace {
+
+/// Largest error of the curvature of a ball, times its radius, at all lines that its surface
+/// crosses; an eighth of it, so that the sides mirror the rest.
+template <int dim>
+double error_of_curvature(int n, double radius) {
+  Case<dim> scene(cube<dim>(n), 1.0 / n);
+  add_ball<dim>(scene, Point<dim>::Zero(), radius);
+  const auto fluid = make_liquid<dim>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<dim>());
+  const MacDomain<dim>& domain = fluid->domain();
+  CellField phi(domain.grid.n_stored_cells(), 1);
+  domain.grid.for_each_stored_cell([&](int c) { phi[c] = domain.grid.center(c).norm() - radius; });
+  double worst = 0;
+  domain.grid.for_each_owned_cell([&](int c) {
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int other = domain.grid.neighbor(c, i / 2, i % 2);
+      if (other < 0 || phi[c] >= 0 || phi[other] < 0)
+        continue;
+      const double place = phi[c] / (phi[c] - phi[other]);
+      const double kappa = curvature(domain, phi, c, i / 2, i % 2, place);
+      worst = std::max(worst, std::abs(kappa * radius - (dim - 1)));
+    }
+  });
+  return max_all(world(), worst);
+}
+
+TEST(SurfaceTension, FindsTheCurvatureOfABall) {
+  const double coarse = error_of_curvature<2>(16, 0.61), fine = error_of_curvature<2>(32, 0.61);
+  EXPECT_LT(coarse, 0.02);
+  EXPECT_LT(fine, 0.35 * coarse);
+  EXPECT_LT(error_of_curvature<3>(16, 0.61), 0.04);
+  EXPECT_LT(error_of_curvature<3>(32, 0.61), 0.02);
+}
+
+/// The velocity gains what the ledger is told, and each face what its area bears.
+template <int dim>
+void expect_impulse_is_known() {
+  const double tension = 0.7, dt = 0.01;
+  Case<dim> scene(cube<dim>(20), 0.05);
+  scene.fluid.set("Density", 3.0);
+  add_ball<dim>(scene, Point<dim>::Constant(0.31), 0.38);  // cut by walls
+  scene.fluid.sublist("Free Surface").set("Surface Tension", tension);
+  const auto fluid = make_liquid<dim>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<dim>());
+  EXPECT_NEAR(fluid->largest_stable_step(), 0.28 * std::sqrt(3 * std::pow(0.05, 3) / tension),
+              1e-12);
+  fluid->begin_prediction();
+  const Momentum<dim> before = fluid->momentum();
+  const ForceImpulse<dim> given = fluid->add_forces(0, dt);
+  const Momentum<dim> gained = fluid->momentum() - before, surface = fluid->surface_impulse();
+  EXPECT_LT((gained.linear - surface.linear).norm(), 1e-13);
+  EXPECT_LT((gained.angular - surface.angular).norm(), 1e-13);
+  EXPECT_EQ(given.impulse.linear, surface.linear);
+  // A quarter of a disc is drawn to its corner by p_s times the width of what is open (3D alike).
+  const double radius = 0.38, push = tension * (dim - 1) / radius * dt;
+  EXPECT_LT(surface.linear.maxCoeff(), -0.5 * push * std::pow(radius, dim - 1));
+}
+
+TEST(SurfaceTension, ItsImpulseIsKnown) {
+  expect_impulse_is_known<2>();
+  expect_impulse_is_known<3>();
+}
+
+/// A round drop at rest: the pressure jumps by sigma (dim - 1) / R, and hardly anything moves.
+template <int dim>
+void expect_jump(double tolerance) {
+  const double tension = 0.7, dt = 0.01, radius = 0.31;
+  Case<dim> scene(cube<dim>(20), 0.05);
+  add_ball<dim>(scene, Point<dim>::Constant(0.49), radius);
+  scene.fluid.sublist("Free Surface").set("Surface Tension", tension);
+  const auto fluid = make_liquid<dim>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<dim>());
+  fluid->begin_prediction();
+  fluid->add_forces(0, dt);
+  const double pushed = fluid->kinetic_energy();
+  const auto pressure = solve_and_project<dim>(*fluid);
+  const double jump = dt * tension * (dim - 1) / radius;
+  const auto values = pressure->getData();
+  for (int i = 0; i < static_cast<int>(values.size()); ++i)
+    EXPECT_NEAR(values[i], jump, tolerance * jump);
+  EXPECT_LT(fluid->kinetic_energy(), tolerance * tolerance * pushed);
+}
+
+TEST(SurfaceTension, ARoundDropRests) {
+  expect_jump<2>(0.02);
+  expect_jump<3>(0.06);
+}
+
+}  // namespace
+}  // namespace lockstep::test
