@@ -12,10 +12,10 @@ namespace lockstep {
 namespace {
 /// How far from a place of the surface those lie that say how it is bent [cells].
 template <int dim>
-constexpr int reach = dim == 2 ? 4 : 2;
+constexpr int reach = dim == 2 ? 4 : 3;
 /// How many of them count, in the main [cells].
 template <int dim>
-constexpr double bell = dim == 2 ? 1.2 : 0.8;
+constexpr double bell = dim == 2 ? 1.2 : 1.0;
 template <int dim>
 constexpr int width = 2 * reach<dim> + 1;
 
