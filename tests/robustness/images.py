@@ -93,8 +93,10 @@ def turn_list(content, name, dimension):
 
 
 def has_image(scene):
-    """Not where directions or numbers of cells are built in, and not where contact decides by inequalities."""
-    return not any(word in scene.xml for word in NOT_TURNED) and scene.content["Contact"]["Type"] == "none"
+    """Not where directions or numbers of cells are built in, not where contact decides by inequalities, and not where a
+    body may stick through a periodic side: it is not repeated at the other."""
+    return (not any(word in scene.xml for word in NOT_TURNED) and scene.content["Contact"]["Type"] == "none" and
+            not (scene.facts.periodic and scene.content["Solids"]))
 
 
 def image(content):

@@ -25,6 +25,7 @@ SMALLEST_VOID = {2: 8, 3: 27}  # cells, the default
 DIVERGENCE = 1e-6
 RANKS = 1e-6
 RANKS_IN_CONTACT = 1e-2
+CUBIC_IMAGES = 1e-3  # near surfaces cubic rays become linear ones; where, is told by cells, which do not turn about points
 CHAOS = 10
 # The largest amplification of a mode's energy by the scheme's own map in any number of steps: implicit schemes at any
 # step; explicit ones at 0.9 of their stable step. A twentieth more for the clamped interpolation of advection.
@@ -195,6 +196,8 @@ def check_same(scene, one, other, kind, twin=None):
     for c in "xyz":
         compared += [("bodies", c, h), ("bodies", "v" + c, speed), ("bodies", "w" + c, speed / h)]
     bound = RANKS_IN_CONTACT if touched(one, other) else RANKS
+    if kind == "image" and scene.content["Fluid"]["Advection"] == "cubic":
+        bound = max(bound, CUBIC_IMAGES)
     for table, column, scale in compared:
         mine, theirs = getattr(one, table), getattr(other, table)
         if len(mine) != len(theirs):

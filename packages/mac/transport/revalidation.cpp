@@ -18,6 +18,7 @@ struct Waiting {
   int id = 0;
   std::array<int, 2 * dim> visible{};
   int n_visible = 0;
+  bool sees_wall = false;  ///< an upper side that has no samples: its velocity is zero
 };
 
 /// Fills the invalid samples of one kind.
@@ -96,6 +97,12 @@ class Fronts {
   bool is_prescribed(int id) const {
     return kind_ != cell_centers && state_.faces[kind_][id] == FaceState::prescribed;
   }
+  bool is_below_wall(int face) const {
+    const auto& description = grid_.description();
+    return !description.periodic[kind_] && !description.store_upper_face[kind_] &&
+           grid_.coordinates(face)[kind_] == description.n_cells[kind_] - 1 &&
+           state_.cells[face] == CellState::fluid;
+  }
   Point<dim> position(int id) const {
     return kind_ == cell_centers ? grid_.center(id) : grid_.face_center(kind_, id);
   }
@@ -121,10 +128,12 @@ class Fronts {
     for (int a = 0; a < dim; ++a)
       for (int side = 0; side < 2; ++side) {
         const int neighbor = grid_.neighbor(id, a, side);
+        const Point<dim> beside = x + (side == 0 ? -h : h) * Point<dim>::Unit(a);
+        if (neighbor < 0 && a == kind_ && side == 1 && is_below_wall(id))
+          sample.sees_wall = !nearby_.first_hit(eye, beside);
         if (neighbor < 0 || !in_fluid(neighbor))
           continue;
-        const Point<dim> other = x + (side == 0 ? -h : h) * Point<dim>::Unit(a) + shift(neighbor);
-        if (!nearby_.first_hit(eye, other))
+        if (!nearby_.first_hit(eye, beside + shift(neighbor)))
           sample.visible[sample.n_visible++] = neighbor;
       }
     waiting_.push_back(sample);
@@ -136,7 +145,7 @@ class Fronts {
     std::vector<Waiting<dim>> still_waiting;
     for (const Waiting<dim>& sample : waiting_) {
       double sum = 0, base = 0;
-      int n = 0;
+      int n = sample.sees_wall ? 1 : 0;
       for (int k = 0; k < sample.n_visible; ++k) {
         const int neighbor = sample.visible[k];
         if (!valid_[neighbor])
