@@ -57,7 +57,7 @@ def fill_with_liquid(world, content, seed):
             side.pop(name, None)
     fluid["Order in Time"] = 1
     fluid["Gravity"] = gravity(rng, world, axes)
-    surface = fluid["Free Surface"] = {"Interface": {"Type": rng.choice(["level set", "particle level set", "volume of fluid"])},
+    surface = fluid["Free Surface"] = {"Interface": {"Type": rng.choice(["level set", "particle level set"])},
                                        "Liquid": liquid(rng, world, fluid["Gravity"])}
     if rng.random() < 0.2:
         surface["Interface"]["Volume Correction"] = rng.choice(["global", "none"])
