@@ -35,6 +35,8 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
   if (fluid.isSublist("Free Surface"))
     liquid_ =
         std::make_unique<Liquid<dim>>(fluid, parameters_.forces.gravity, *interfaces, domain_);
+  if (liquid_)
+    fields_.push_back({"surface_lead", {&liquid_->lead()}});
   if (fluid.isSublist("Moving Tiles")) {
     moving_tiles_.emplace(fluid,
                           DomainDescription<dim>{domain_.grid.description(), domain_.boundary});
@@ -90,6 +92,9 @@ void MacFluid<dim>::project(const Vector& scaled_pressure) {
 
 template <int dim>
 void MacFluid<dim>::correct_pressure(const Vector& inflow) {
+  // Beside a void p = 0 leaves nothing to correct: it would feed on itself where nu dt > h^2 / 5.
+  if (liquid_)
+    return;
   const CellField field = pressure_field(domain_, geometry_, inflow);
   const double per_volume = 1 / domain_.cell_volume();
   for (std::size_t cell = 0; cell < field.size(); ++cell)
@@ -162,7 +167,7 @@ std::function<void()> MacFluid<dim>::undo() {
   std::vector<CellField> before;
   for (const Scalar& scalar : scalars_.all())
     before.push_back(scalar.values);
-  const auto undo_liquid = liquid_ ? liquid_->interface().undo() : [] {};
+  const auto undo_liquid = liquid_ ? liquid_->undo() : [] {};
   return [this, before = std::move(before), undo_liquid, time = time_, last_step = last_step_] {
     undo_liquid();
     for (std::size_t s = 0; s < before.size(); ++s)

@@ -53,16 +53,24 @@ class LayoutOperator : public Base {
 
 /// A in the layout. `empty` are the entries of unknowns whose row A leaves empty: the loops over
 /// cells with faces may pass them by.
+/// A coefficient on the diagonal that A has besides those of the stencil.
+struct DiagonalRest {
+  int row = 0;  ///< of cells along x, 2 * (j + n_y k) + colour
+  std::ptrdiff_t slot = 0;
+  double value = 0;
+};
+
 template <int dim>
 class LayoutStencil final : public LayoutOperator<ResidualOperator> {
  public:
   LayoutStencil(const RCP<const Map>& map, const StencilLevel<dim>& level, const LevelHalo& halo,
-                double unit, std::vector<int> empty)
+                double unit, std::vector<int> empty, std::vector<DiagonalRest> rests)
       : LayoutOperator<ResidualOperator>(map),
         level_(level),
         halo_(halo),
         unit_(unit),
-        empty_(std::move(empty)) {
+        empty_(std::move(empty)),
+        rests_(std::move(rests)) {
     row_.resize(level.grid().row_stride + 16);
   }
 
@@ -160,16 +168,30 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
       for (int colour = 0; colour < 2; ++colour) {
         level_.multiply(colour, j, rows.k, unit_, x + colour * grid.n_slots,
                         x + (1 - colour) * grid.n_slots, row_.data());
+        add_rests(colour, j, rows.k, x + colour * grid.n_slots);
         use(colour, grid.slot(range.first, j, rows.k), range.last - range.first,
             row_.data() + range.first);
       }
     }
   }
 
+  void add_rests(int colour, int j, int k, const double* x) const {
+    if (rests_.empty())
+      return;
+    const LevelGrid& grid = level_.grid();
+    const int row = 2 * (j + grid.n[1] * k) + colour;
+    const std::ptrdiff_t first = grid.slot(0, j, k);
+    for (auto rest = std::lower_bound(rests_.begin(), rests_.end(), row,
+                                      [](const DiagonalRest&r, int of) { return r.row < of; });
+         rest != rests_.end() && rest->row == row; ++rest)
+      row_[rest->slot - first] += unit_ * rest->value * x[rest->slot];
+  }
+
   const StencilLevel<dim>& level_;
   const LevelHalo& halo_;
   double unit_;
   std::vector<int> empty_;
+  std::vector<DiagonalRest> rests_;  ///< sorted by row
   mutable std::vector<double> copy_, row_;
 };
 

@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <tuple>
 
 #include "base/errors.hpp"
 #include "linear/matrix_rows.hpp"
@@ -33,7 +34,8 @@ class PressureLayoutOf final : public PressureLayout {
     for (const int row : empty_rows_)
       entries.push_back(entry_of_row_[row]);
     stencil_ = rcp(new LayoutStencil<dim>(map_, multigrid_.finest(), layout_->levels().front().halo,
-                                          coefficients.unit, std::move(entries)));
+                                          coefficients.unit, std::move(entries),
+                                          diagonal_rests(coefficients)));
     if (direction_.is_null())
       direction_ = make_vector(map_);
     direction_->putScalar(0);
@@ -88,6 +90,7 @@ class PressureLayoutOf final : public PressureLayout {
 
  private:
   void number_rows(const FaceCoefficients& coefficients);
+  std::vector<DiagonalRest> diagonal_rests(const FaceCoefficients& coefficients) const;
   std::vector<int> find_empty_rows() const;
   bool some_row_is_empty() const {
     return sum_all(layout_->blocks().comm, static_cast<GlobalIndex>(empty_rows_.size())) > 0;
@@ -130,6 +133,27 @@ void PressureLayoutOf<dim>::number_rows(const FaceCoefficients& coefficients) {
     entry_of_row_[row] =
         static_cast<int>(LevelGrid::colour(x, y, z) * grid.n_slots + grid.slot_of_cell(x, y, z));
   });
+}
+
+template <int dim>
+std::vector<DiagonalRest> PressureLayoutOf<dim>::diagonal_rests(
+    const FaceCoefficients& coefficients) const {
+  const LevelGrid& grid = layout_->finest();
+  const LatticeBlocks& blocks = layout_->blocks();
+  std::vector<DiagonalRest> rests;
+  for (const auto& [cell, value] : coefficients.dirichlet_rest) {
+    std::array<int, 3> at = blocks.begins[cell / blocks.block_volume()];
+    for (int axis = 0, in_block = cell % blocks.block_volume(); axis < dim;
+         ++axis, in_block /= blocks.width)
+      at[axis] += in_block % blocks.width - grid.begin[axis];
+    const int x = at[0], y = at[1], z = dim == 3 ? at[2] : 0;
+    rests.push_back(
+        {2 * (y + grid.n[1] * z) + LevelGrid::colour(x, y, z), grid.slot_of_cell(x, y, z), value});
+  }
+  std::sort(rests.begin(), rests.end(), [](const DiagonalRest& a, const DiagonalRest& b) {
+    return std::tie(a.row, a.slot) < std::tie(b.row, b.slot);
+  });
+  return rests;
 }
 
 template <int dim>

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "linear/types.hpp"
@@ -25,8 +26,9 @@ struct LatticeBlocks {
 
 /// A pressure block as a stencil: on the row of cell c
 ///   (A p)_c = unit * [ sum over faces a (p_c - p_neighbour) + (dirichlet_c + reaction_c) p_c ].
-/// The coefficients are exact in single precision: what cannot be, belongs rounded into `unit`
-/// or into the fluid's own open fractions, so that the fluid and its solver see the same operator.
+/// The coefficients of faces are exact in single precision: what cannot be, belongs rounded into
+/// `unit` or into the fluid's own open fractions, so that the fluid and its solver see the same
+/// operator.
 struct FaceCoefficients {
   std::shared_ptr<const LatticeBlocks> blocks;
   RCP<const Map> map;  ///< of the rows
@@ -35,6 +37,9 @@ struct FaceCoefficients {
   /// By cell: coefficient of the face to its lower neighbour along each axis, 0 without coupling.
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;  ///< by cell: what fixed pressures beside it add to the diagonal
+  /// Of A too: what rounding has taken from that, so that single precision may add up a row; by
+  /// cell in rising order, where it is not 0.
+  std::vector<std::pair<int, double>> dirichlet_rest;
   /// By cell: what gives way to the pressure in it. Null on all ranks or on none: a rank without
   /// cells has an empty one. A fluid has none.
   std::optional<std::vector<float>> reaction;

@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include "mac/state/mac_geometry.hpp"
@@ -15,18 +14,14 @@ struct FreeSurface {
   /// Part of the way from the centre of a wet cell to that of a dry neighbour at which the surface
   /// is, in (0, 1]. Local.
   std::function<double(int wet, int dry)> crossing;
-  double smallest_distance = 0.01;  ///< of a pressure from the surface [cells]
+  double smallest_distance = 1e-5;  ///< of a pressure from the surface [cells]
   /// True: p = 0 where the surface is. False: at the centre of the dry cell, first order.
   bool at_true_place = true;
 
   bool wet(int cell) const { return (*distance)[cell] < 0; }
-  /// w of the face between them, h over the distance of the pressure from the surface. A multiple
-  /// of 2^-13 and no more than 100: of such numbers single precision adds six exactly, so that all
-  /// who use A have the same.
+  /// w of the face between them, h over the distance of the pressure from the surface.
   double closeness(int wet, int dry) const {
-    if (!at_true_place)
-      return 1;
-    return std::round(8192 / std::max(crossing(wet, dry), smallest_distance)) / 8192;
+    return at_true_place ? 1 / std::max(crossing(wet, dry), smallest_distance) : 1;
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "mac/liquid/dry_cells.hpp"
+#include "mac/liquid/wave_damping.hpp"
 #include "mac/transport/sample_lattice.hpp"
 
 namespace lockstep {
@@ -32,7 +33,7 @@ double largest_displacement(const MacDomain<dim>& domain, const MacState<dim>& s
 template <int dim>
 Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
                     const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain)
-    : domain_(domain) {
+    : domain_(domain), gravity_(gravity.norm()), lead_(domain.grid.n_stored_cells(), 0.0) {
   check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
   const ParameterList& list = fluid.sublist("Free Surface");
   parameters_ = read_free_surface(list);
@@ -70,7 +71,11 @@ template <int dim>
 FreeSurface<dim> Liquid<dim>::surface() const {
   FreeSurface<dim> surface;
   surface.distance = &interface_->distance();
-  surface.crossing = [this](int wet, int dry) { return interface_->crossing(wet, dry); };
+  surface.crossing = [this, &phi = interface_->distance()](int wet, int dry) {
+    const double part = interface_->crossing(wet, dry);
+    const double lead = (1 - part) * lead_[wet] + part * lead_[dry];
+    return lead == 0 ? part : std::min(part - lead / (phi[dry] - phi[wet]), 1.0);
+  };
   surface.smallest_distance = parameters_.smallest_distance;
   surface.at_true_place = parameters_.pressure_order == 2;
   return surface;
@@ -88,6 +93,9 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
   extension.extend(step.time, step.surface.velocity, advection_velocity);
   if (&velocity != &advection_velocity)
     extension.extend(step.time, step.surface.velocity, velocity);
+  if (gravity_ > 0)
+    lead_ = lead_of_short_waves<dim>(domain_, geometry, interface_->distance(), advection_velocity,
+                                     gravity_, step.dt);
   if (audit_)
     audit_->open(step, *interface_);
   interface_->advance(step);
@@ -118,6 +126,14 @@ std::vector<std::string> Liquid<dim>::watch_names() const {
     for (const Watch<dim>& watch : audit_->watches())
       names.push_back(watch.name);
   return names;
+}
+
+template <int dim>
+std::function<void()> Liquid<dim>::undo() {
+  return [this, undo_interface = interface_->undo(), lead = lead_] {
+    undo_interface();
+    lead_ = lead;
+  };
 }
 
 template class Liquid<2>;

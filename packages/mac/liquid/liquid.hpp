@@ -31,16 +31,22 @@ class Liquid {
 
   double tension() const { return parameters_.tension; }  ///< of the surface [N/m]
   const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
+  /// By how much the pressure's phi is ahead of the interface's [m], from the last step.
+  CellField& lead() { return lead_; }
   InterfaceModel<dim>& interface() { return *interface_; }
   const InterfaceModel<dim>& interface() const { return *interface_; }
   /// Linear between the centres of cells; near cells that this rank owns. Local.
   double distance(const Point<dim>& x) const;
   LiquidReport report() const;
   std::vector<std::string> watch_names() const;
+  /// Takes back what `advance` does.
+  std::function<void()> undo();
 
  private:
   const MacDomain<dim>& domain_;
   FreeSurfaceParameters parameters_;
+  double gravity_ = 0;  ///< [m/s^2]
+  CellField lead_;
   std::vector<SignedDistance<dim>> sinks_;
   std::vector<Point<dim>> dry_points_;
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in

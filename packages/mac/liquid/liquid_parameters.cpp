@@ -130,7 +130,7 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
                          sink);
   declare_watches<dim>(list);
   declare_between(
-      list, "Smallest Distance", 0.01, 0.01, 1.0,
+      list, "Smallest Distance", 1e-5, 1e-6, 1.0,
       "Pressures are taken to be no nearer to the surface than this part of a cell [1].");
   declare_at_least(
       list, "Surface Tension", 0.0, 0.0,

@@ -6,6 +6,11 @@
 
 namespace lockstep {
 
+namespace {
+/// Of sources that are no nearer: they count where there are no others [cells].
+constexpr double least_weight = 1e-12;
+}  // namespace
+
 template <int dim>
 VelocityExtension<dim>::VelocityExtension(const MacDomain<dim>& domain, const CellField& distance,
                                           double band, const std::vector<char>& near,
@@ -92,7 +97,10 @@ void VelocityExtension<dim>::find_sources(int axis, const MacState<dim>& state) 
           Point<dim>::Unit(side / 2) * (side % 2 == 0 ? -grid.spacing() : grid.spacing());
       if ((is_near || (!near_.empty() && near_[other])) && surface_.first_hit(x, x + step))
         continue;
-      face.sources[face.n_sources++] = source(axis, other, side, state);
+      Source& source = face.sources[face.n_sources++];
+      source = find_source(axis, other, side, state);
+      const double nearer = (std::get<0>(own) - std::get<0>(key(other))) / grid.spacing();
+      source.weight = std::max(nearer, least_weight);
     }
     sorted.emplace_back(own, face);
   }
@@ -104,7 +112,7 @@ void VelocityExtension<dim>::find_sources(int axis, const MacState<dim>& state) 
 
 /// `side` is that at which the source is seen.
 template <int dim>
-typename VelocityExtension<dim>::Source VelocityExtension<dim>::source(
+typename VelocityExtension<dim>::Source VelocityExtension<dim>::find_source(
     int axis, int face, int side, const MacState<dim>& state) const {
   const auto is_plain = [&](int other) {
     return other >= 0 && state.faces[axis][other] == FaceState::free &&
@@ -174,14 +182,15 @@ void VelocityExtension<dim>::extend(
           behind.push_back(face);
           continue;
         }
-        double sum = 0, base = 0;  // equal values have themselves as mean
+        double sum = 0, weights = 0, base = 0;  // equal values have themselves as mean
         for (auto source = face->sources.begin(); source != end; ++source) {
           const double value = carried_on(*source, u);
           base = source == face->sources.begin() ? value : base;
-          sum += value - base;
+          sum += source->weight * (value - base);
+          weights += source->weight;
         }
-        u[face->cell] = face->n_sources > 0 ? base + sum / face->n_sources
-                                            : given(axis, face->cell, time, on_surface);
+        u[face->cell] =
+            face->n_sources > 0 ? base + sum / weights : given(axis, face->cell, time, on_surface);
         known[face->cell] = 1;
       }
       waiting.swap(behind);

@@ -9,10 +9,11 @@ namespace lockstep {
 
 /// Carries velocities on into the void above a free surface, over the faces of a band, so that the
 /// surface and the fluid behind it can move up there. A face takes the mean of its neighbours along
-/// the axes that are nearer to the fluid than itself and that it sees; never through a surface, nor
-/// into a solid. Beside the fluid it goes on as the velocity there changes, in so far as that is
-/// steady over three faces (minmod): or else the surface of a wave of number k would lag by kh/4.
-/// What a solid or a closed side shuts moves as they do.
+/// the axes that are nearer to the fluid than itself and that it sees, each counted by how much
+/// nearer it is: the velocity goes on at right angles to the surface. Never through a surface of a
+/// solid, nor into a solid. Beside the fluid it goes on as the velocity there changes, in so far as
+/// that is steady over three faces (minmod): or else the surface of a wave of number k would lag by
+/// kh/4. What a solid or a closed side shuts moves as they do.
 ///
 /// Since only nearer neighbours count, the values depend neither on an order nor on the ranks.
 template <int dim>
@@ -33,6 +34,7 @@ class VelocityExtension {
  private:
   struct Source {
     int face = -1;
+    double weight = 0;  ///< by how much it is nearer to the fluid [cells], or next to nothing
     /// The fluid's own next two in that direction, if both are known and no surface is near.
     int second = -1, third = -1;
   };
@@ -43,7 +45,7 @@ class VelocityExtension {
   };
   void find_faces(double band, MacState<dim>& state);
   void find_sources(int axis, const MacState<dim>& state);
-  Source source(int axis, int face, int side, const MacState<dim>& state) const;
+  Source find_source(int axis, int face, int side, const MacState<dim>& state) const;
   double distance_of_face(int axis, int cell, const MacState<dim>& state) const;
   bool is_shut(int axis, int cell, const FaceCells& cells, const MacState<dim>& state) const;
   /// Of a face beyond a source.

@@ -2,12 +2,23 @@
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include "linear/row_builder.hpp"
 
 namespace lockstep {
 
 namespace {
+
+/// To a multiple of a power of 2, 2^-13 or so much larger that single precision adds six ones to it
+/// exactly.
+double rounded_for_sums(double value) {
+  int exponent = 0;
+  std::frexp(value, &exponent);
+  const double unit = std::exp2(std::max(-13, exponent - 22));
+  return std::round(value / unit) * unit;
+}
 
 /// Coefficients of all faces of owned cells: the upper ones of the last cells belong to stored
 /// ghost cells, whose geometry is known here too.
@@ -29,19 +40,24 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
     if (cells[cell] != CellState::fluid)
       return;
     result.row[cell] = row++;
+    double dirichlet = 0;
     for (int axis = 0; axis < dim; ++axis) {
       for (int end = 0; end < 2; ++end) {
         const int other = neighbors[2 * axis + end];
         const int face = end == 0 ? cell : other;
         if (face < 0 || geometry.open_fraction(axis, face) == 0)
           continue;
-        const auto coefficient = static_cast<float>(geometry.face_table(axis, face).coefficient);
+        const double coefficient = geometry.face_table(axis, face).coefficient;
         if (other < 0 || cells[other] != CellState::fluid)
-          result.dirichlet[cell] += coefficient;
+          dirichlet += coefficient;
         else
-          result.lower[axis][face] = coefficient;
+          result.lower[axis][face] = static_cast<float>(coefficient);
       }
     }
+    const double rounded = rounded_for_sums(dirichlet);
+    result.dirichlet[cell] = static_cast<float>(rounded);
+    if (rounded != dirichlet)
+      result.dirichlet_rest.emplace_back(cell, dirichlet - rounded);
   });
   return result;
 }
@@ -118,6 +134,8 @@ void MacPressureOperator<dim>::apply_to(const Vector& x, Vector& y, double alpha
     }
     out[row] = scale * sum + (beta == 0 ? 0 : beta * out[row]);
   });
+  for (const auto& [cell, rest] : coefficients_.dirichlet_rest)
+    out[coefficients_.row[cell]] += scale * rest * field_[cell];
 }
 
 template <int dim>
@@ -131,8 +149,11 @@ RCP<const CrsMatrix> MacPressureOperator<dim>::assembled() const {
   });
   domain_.halo.fill(unknown);
   RowBuilder rows(coefficients_.map, 2 * dim + 1);
+  auto rest = coefficients_.dirichlet_rest.begin();
   for_each_row([&](int cell, int, const auto& neighbors, const auto& face) {
     double diagonal = coefficients_.dirichlet[cell];
+    if (rest != coefficients_.dirichlet_rest.end() && rest->first == cell)
+      diagonal += (rest++)->second;
     const auto add = [&](int side) {
       if (face[side] == 0)
         return;

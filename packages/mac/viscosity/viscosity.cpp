@@ -19,6 +19,7 @@ Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& 
   links_ = std::move(found.links);
   sides_ = std::move(found.sides);
   couples_ = std::move(found.couples);
+  cross_pulls_ = std::move(found.cross_pulls);
   viscosity_ = found.viscosity;
 }
 
@@ -64,6 +65,11 @@ Momentum<dim> Viscosity<dim>::impulse(const FaceField<dim>& velocity, double tim
   for (const SideLink& side : sides_) {
     const auto [axis, cell] = faces_[side.row];
     const double pull = side.coefficient * (side_velocity(side, time) - velocity[axis][cell]);
+    result.add(grid.face_center(axis, cell), axis, dt * pull);
+  }
+  for (const CrossPull& cross : cross_pulls_) {
+    const auto [axis, cell] = faces_[cross.row];
+    const double pull = -cross.coefficient * velocity[cross.from.axis][cross.from.cell];
     result.add(grid.face_center(axis, cell), axis, dt * pull);
   }
   const double h = grid.spacing();

@@ -5,13 +5,13 @@
 
 namespace lockstep {
 
-/// Implicit viscosity in the Laplacian form, component by component: a velocity and its neighbour
-/// at distance d across an area pull on each other with mu area / d. What a velocity is tied to is
-/// found once per geometry, for the matrix as for the impulses.
+/// Implicit viscosity in the Laplacian form, component by component, but beside a void: a velocity
+/// and its neighbour at distance d across an area pull on each other with mu area / d. What a
+/// velocity is tied to is found once per geometry, for the matrix as for the impulses.
 ///
 /// A wall pulls from h/2 (its tangential velocities) or from the next face (its normal ones); slip
 /// walls and open sides do not pull. A neighbour behind a surface, or inside a solid, is replaced
-/// by the point where the link meets the surface.
+/// by the point where the link meets the surface. Beside a void see StressAtVoid.
 template <int dim>
 class Viscosity {
  public:
@@ -40,6 +40,7 @@ class Viscosity {
   std::vector<ViscousLink<dim>> links_;
   std::vector<SideLink> sides_;
   std::vector<CoupleEnd> couples_;
+  std::vector<CrossPull> cross_pulls_;
   double viscosity_;
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "linear/row_builder.hpp"
+#include "mac/viscosity/stress_at_void.hpp"
 
 namespace lockstep {
 
@@ -38,12 +39,16 @@ class Builder {
  public:
   Builder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
           const ViscosityParameters& parameters)
-      : domain_(domain), geometry_(geometry), grid_(domain.grid), parameters_(parameters) {}
+      : domain_(domain), geometry_(geometry), grid_(domain.grid), parameters_(parameters) {
+    if (parameters.has_void)
+      at_void_.emplace(domain, geometry);
+  }
 
   ViscousLinks<dim> build() {
     number_faces();
     index_coupled_volumes();
-    RowBuilder rows(result_.map, 2 * dim + 1);
+    const int n_partners = at_void_ && dim == 3 ? 4 * (dim - 1) : 0;
+    RowBuilder rows(result_.map, 2 * dim + 1 + n_partners);
     const int n = static_cast<int>(result_.faces.size());
     for (row_ = 0; row_ < n; ++row_) {
       start_row(result_.faces[row_]);
@@ -54,6 +59,8 @@ class Builder {
       for (int across = 0; across < dim; ++across)
         add_link(across, 1, rows);
       rows.set(middle, diagonal_);
+      if (at_void_)
+        add_partners(rows);
       rows.end_row();
       for (int across = 0; across < dim; ++across)
         if (balance_[across] != 0)
@@ -112,13 +119,24 @@ class Builder {
     return across != face_.axis && cells_.at_side() ? 0.5 * unit : unit;
   }
 
+  void add_partners(RowBuilder& rows) {
+    const double unit = parameters_.viscosity * domain_.face_area() / domain_.spacing();
+    at_void_->for_each_partner(face_, [&](const auto& partner) {
+      rows.add(ids_[partner.face.axis][partner.face.cell], unit * partner.coefficient);
+      if (partner.beside_void != 0)
+        result_.cross_pulls.push_back({row_, partner.face, unit * partner.beside_void});
+    });
+  }
+
   void add_link(int across, int end, RowBuilder& rows) {
-    const double coefficient = full_coefficient(across);
+    double coefficient = full_coefficient(across);
     if (across == face_.axis) {
       const int between = end == 0 ? cells_.lower : cells_.upper;
       // Beyond an open side, and in a void, nothing pulls.
       if (between < 0 || geometry_.state.cells[between] != CellState::fluid)
         return;
+      if (at_void_)
+        coefficient *= 1 + at_void_->extra_bond(between);
     }
     const int other = grid_.neighbor(face_.cell, across, end);
     const FaceState state =
@@ -133,6 +151,8 @@ class Builder {
     }
     switch (state) {
       case FaceState::free:
+        if (at_void_ && across != face_.axis && at_void_->parts(face_, across, end))
+          return;
         rows.add(ids_[face_.axis][other], -coefficient);
         diagonal_ += coefficient;
         if (across != face_.axis)
@@ -227,6 +247,7 @@ class Builder {
   const MacGeometry<dim>& geometry_;
   const TiledGrid<dim>& grid_;
   ViscosityParameters parameters_;
+  std::optional<StressAtVoid<dim>> at_void_;
   ViscousLinks<dim> result_;
   std::array<std::vector<GlobalIndex>, dim> ids_;
   std::vector<Coupled> coupled_;

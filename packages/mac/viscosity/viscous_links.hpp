@@ -7,6 +7,7 @@ namespace lockstep {
 struct ViscosityParameters {
   double viscosity = 0;                 ///< dynamic, mu [Pa s]
   double smallest_link_fraction = 0.2;  ///< of h: a link to a surface is never taken shorter
+  bool has_void = false;  ///< above a free surface: the form is that of the symmetric stress there
 };
 
 /// A side of the domain pulls on a free velocity.
@@ -26,6 +27,13 @@ struct CoupleEnd {
   double coefficient = 0;  ///< [kg/s], negative at the lower end
 };
 
+/// A free velocity at right angles to another pulls on it: with -coefficient times itself.
+struct CrossPull {
+  int row = 0;  ///< local
+  FaceId from;
+  double coefficient = 0;  ///< [kg/s]
+};
+
 /// Everything that free velocities are viscously tied to.
 template <int dim>
 struct ViscousLinks {
@@ -36,7 +44,8 @@ struct ViscousLinks {
   std::vector<ViscousLink<dim>> links;
   std::vector<SideLink> sides;
   std::vector<CoupleEnd> couples;
-  double viscosity = 0;  ///< [Pa s]
+  std::vector<CrossPull> cross_pulls;  ///< beside a void
+  double viscosity = 0;                ///< [Pa s]
 };
 
 /// Collective.

@@ -1,0 +1,70 @@
+#pragma once
+#include <vector>
+
+#include "mac/state/mac_geometry.hpp"
+
+namespace lockstep {
+
+/// What makes the viscous form that of the symmetric stress beside a void, where nothing may pull:
+/// sum over the cells of 2 mu (d_a u_a)^2, over the edges all of whose faces have fluid of
+/// mu (d_b u_a + d_a u_b)^2. The bonds of the Laplacian have half of the first, and the squares of
+/// the second. In the middle of the fluid the rest cancels, pair by pair of faces at right angles
+/// to each other, each of which shares a cell and an edge; in 3D but for mu (div u)^2, without
+/// which the form would not be positive.
+///
+/// Where solids or sides are near, the form is that of the bonds alone.
+template <int dim>
+class StressAtVoid {
+ public:
+  /// A part of the form: 2 coefficient u_own u_other.
+  struct Partner {
+    FaceId face;
+    double coefficient = 0;  ///< in units of that of a bond
+    double beside_void = 0;  ///< of that, what is not mu (div u)^2, which turns nothing
+  };
+
+  /// For fluids with a free surface. References must outlive this. Collective.
+  StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
+
+  /// True if a face and its neighbour across have the void beside them: no bond.
+  bool parts(const FaceId& face, int across, int end) const;
+  /// Bonds along a velocity's own axis, through this cell, count so much more: 0 or 1.
+  double extra_bond(int cell) const { return dim == 3 && has_divergence_[cell] ? 1 : 0; }
+  /// Calls f(partner) for the free faces at right angles to this one.
+  template <typename Function>
+  void for_each_partner(const FaceId& face, const Function& f) const {
+    for (int across = 0; across < dim; ++across)
+      for (int end = 0; end < 2 && across != face.axis; ++end)
+        add_partners(face, across, end, f);
+  }
+
+ private:
+  enum class Edge { other, whole, parted };
+  Edge edge(const FaceId& face, int across, int end) const;
+  bool is_fluid(int cell) const { return geometry_.state.cells[cell] == CellState::fluid; }
+
+  /// The two cells of the face, each with the face across at that end.
+  template <typename Function>
+  void add_partners(const FaceId& face, int across, int end, const Function& f) const {
+    const Edge kind = edge(face, across, end);
+    if (kind == Edge::other)
+      return;
+    for (int side = 0; side < 2; ++side) {
+      const int cell = side == 0 ? domain_.grid.neighbor(face.cell, face.axis, 0) : face.cell;
+      const double beside_void = (kind == Edge::whole ? 1 : 0) - (is_fluid(cell) ? 1 : 0);
+      const double weight = beside_void + extra_bond(cell);
+      const int other = end == 0 ? cell : domain_.grid.neighbor(cell, across, 1);
+      // The face is the cell's upper one if the cell is on its lower side.
+      const double sign = (side == 0) == (end == 1) ? 1 : -1;
+      if (weight != 0 && geometry_.state.faces[across][other] == FaceState::free)
+        f(Partner{{across, other}, sign * weight, sign * beside_void});
+    }
+  }
+
+  const MacDomain<dim>& domain_;
+  const MacGeometry<dim>& geometry_;
+  std::vector<char> is_plain_;        ///< stored cells of fluid or void, far from solids
+  std::vector<char> has_divergence_;  ///< stored cells that have mu (div u)^2; empty in 2D
+};
+
+}  // namespace lockstep
