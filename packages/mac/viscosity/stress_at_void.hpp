@@ -56,7 +56,8 @@ class StressAtVoid {
       const int other = end == 0 ? cell : domain_.grid.neighbor(cell, across, 1);
       // The face is the cell's upper one if the cell is on its lower side.
       const double sign = (side == 0) == (end == 1) ? 1 : -1;
-      if (weight != 0 && geometry_.state.faces[across][other] == FaceState::free)
+      if ((weight != 0 || beside_void != 0) &&
+          geometry_.state.faces[across][other] == FaceState::free)
         f(Partner{{across, other}, sign * weight, sign * beside_void});
     }
   }

@@ -122,7 +122,8 @@ class Builder {
   void add_partners(RowBuilder& rows) {
     const double unit = parameters_.viscosity * domain_.face_area() / domain_.spacing();
     at_void_->for_each_partner(face_, [&](const auto& partner) {
-      rows.add(ids_[partner.face.axis][partner.face.cell], unit * partner.coefficient);
+      if (partner.coefficient != 0)
+        rows.add(ids_[partner.face.axis][partner.face.cell], unit * partner.coefficient);
       if (partner.beside_void != 0)
         result_.cross_pulls.push_back({row_, partner.face, unit * partner.beside_void});
     });
