@@ -48,8 +48,9 @@ bool TileBlock<dim>::enter(const Index<dim>& tile_begin) {
     for (int on_faces = 0; on_faces < 2; ++on_faces)
       runs_[a][on_faces] = lattice_.find_runs(a, on_faces == 1, begin_[a], width_[a]);
     // Whatever the velocity is where there is no fluid, no ray may look outside the block.
+    // All places of the tile are inside, even if nothing moves: the margin is the stencil's then.
     lower_[a] = stencil_reach_ - 0.5;
-    upper_[a] = width_[a] - 0.5 - stencil_reach_;
+    upper_[a] = width_[a] - stencil_reach_ - 1e-9;
     if (lattice_.periodic(a))
       continue;
     lower_[a] = std::max<double>(lower_[a], -begin_[a]);
