@@ -228,7 +228,10 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
     mine += push_at_rim(force.of_surroundings(), dt);
   mine.angular += moment_of_shifts([&](int axis, int cell) { return dt * force(axis, cell); });
   if (liquid_ && liquid_->tension() > 0) {
-    push_surface(dt);
+    const auto now = [&](int axis, int cell) { return prediction_[axis][cell]; };
+    const AngularVector<dim> shifts_before = moment_of_shifts(now);
+    push_surface(dt);  // at the faces' centres, but the momentum counts where the fluid is
+    mine.angular += moment_of_shifts(now) - shifts_before;
     given.impulse += surface_impulse_;
   }
   domain_.halo.fill(prediction_);

@@ -7,7 +7,7 @@ DIRECTIONS = {"Velocity", "Gravity", "Body Force", "Force", "Amplitude", "Offset
 AXIAL = {"Angular Velocity", "Torque", "Angular Amplitude"}  # turn as directions do, numbers in 2D
 IN_SPACE = {"Center", "Position"}
 BOXES_OF_BODIES = {"Pin", "Pull", "Spring", "Root"}  # in the body's own coordinates
-NOT_TURNED = ("taylor green", '"linear"', "particle level set", "Vortices", "Wavelength")
+NOT_TURNED = ("taylor green", '"linear"', "particle level set", "volume of fluid", "Vortices", "Wavelength")
 QUARTER = math.pi / 2
 
 

@@ -59,10 +59,12 @@ def fill_with_liquid(world, content, seed):
     fluid["Gravity"] = gravity(rng, world, axes)
     surface = fluid["Free Surface"] = {"Interface": {"Type": rng.choice(["level set", "particle level set"])},
                                        "Liquid": liquid(rng, world, fluid["Gravity"])}
-    if rng.random() < 0.2:
+    if rng.random() < 0.2 and surface["Interface"]["Type"] != "volume of fluid":
         surface["Interface"]["Volume Correction"] = rng.choice(["global", "none"])
     if rng.random() < 0.1:
         surface["Pressure Order"] = 1
+    if rng.random() < 0.2:
+        surface["Surface Tension"] = world.density * world.h ** 3 / world.dt ** 2 * 10 ** rng.uniform(-3, -1)
     if rng.random() < 0.4:
         fluid["Moving Tiles"] = {"Tile Margin": 16}
     world.facts.liquid = world.facts.works = True
