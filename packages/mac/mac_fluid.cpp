@@ -231,7 +231,8 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
     const auto now = [&](int axis, int cell) { return prediction_[axis][cell]; };
     const AngularVector<dim> shifts_before = moment_of_shifts(now);
     push_surface(dt);  // at the faces' centres, but the momentum counts where the fluid is
-    mine.angular += moment_of_shifts(now) - shifts_before;
+    const Momentum<dim> shifts{Point<dim>::Zero(), moment_of_shifts(now) - shifts_before};
+    surface_impulse_ += sum_over_ranks(shifts, domain_.grid.comm());
     given.impulse += surface_impulse_;
   }
   domain_.halo.fill(prediction_);
