@@ -59,6 +59,30 @@ bool StressAtVoid<dim>::parts(const FaceId& face, int across, int end) const {
   return edge(face, across, end) == Edge::parted;
 }
 
+template <int dim>
+bool void_is_clear(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const auto at_open_side = [&](int cell) {
+    const Index<dim> place = grid.coordinates(cell);
+    for (int axis = 0; axis < dim; ++axis)
+      for (int end = 0; end < 2; ++end)
+        if (place[axis] == (end == 0 ? 0 : grid.n_cells()[axis] - 1) &&
+            domain.boundary.side(axis, end).type == SideType::open)
+          return true;
+    return false;
+  };
+  GlobalIndex found = 0;
+  grid.for_each_owned_cell([&](int cell) {
+    const CellState state = geometry.state.cells[cell];
+    if ((state == CellState::empty && geometry.near_surface(cell)) ||
+        (state == CellState::fluid && at_open_side(cell)))
+      found = 1;
+  });
+  return max_all(grid.comm(), found) == 0;
+}
+
+template bool void_is_clear<2>(const MacDomain<2>&, const MacGeometry<2>&);
+template bool void_is_clear<3>(const MacDomain<3>&, const MacGeometry<3>&);
 template class StressAtVoid<2>;
 template class StressAtVoid<3>;
 

@@ -12,7 +12,8 @@ namespace lockstep {
 /// to each other, each of which shares a cell and an edge; in 3D but for mu (div u)^2, without
 /// which the form would not be positive.
 ///
-/// Where solids or sides are near, the form is that of the bonds alone.
+/// Where solids or sides are near, the form is that of the bonds alone. What cancels in the middle
+/// leaves a term of either sign where that ends: only for what void_is_clear says is safe.
 template <int dim>
 class StressAtVoid {
  public:
@@ -67,5 +68,10 @@ class StressAtVoid {
   std::vector<char> is_plain_;        ///< stored cells of fluid or void, far from solids
   std::vector<char> has_divergence_;  ///< stored cells that have mu (div u)^2; empty in 2D
 };
+
+/// False if a solid is near the void or fluid stands at an open side, on any rank: there the form
+/// might not be positive, and is to be that of the bonds everywhere. Collective.
+template <int dim>
+bool void_is_clear(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
 }  // namespace lockstep

@@ -40,7 +40,7 @@ class Builder {
   Builder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
           const ViscosityParameters& parameters)
       : domain_(domain), geometry_(geometry), grid_(domain.grid), parameters_(parameters) {
-    if (parameters.has_void)
+    if (parameters.has_void && void_is_clear(domain, geometry))
       at_void_.emplace(domain, geometry);
   }
 
