@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "freesurface/particles.hpp"
+#include "freesurface/particles/particles.hpp"
 #include "freesurface/redistance.hpp"
 #include "freesurface/solid_cells.hpp"
 #include "freesurface/volume_ledger.hpp"

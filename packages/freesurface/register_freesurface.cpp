@@ -1,7 +1,7 @@
 #include "freesurface/register_freesurface.hpp"
 
+#include "freesurface/fractions/volume_of_fluid.hpp"
 #include "freesurface/level_set.hpp"
-#include "freesurface/volume_of_fluid.hpp"
 
 namespace lockstep {
 

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "bath.hpp"
-#include "freesurface/cell_plane.hpp"
-#include "freesurface/volume_of_fluid.hpp"
+#include "freesurface/fractions/cell_plane.hpp"
+#include "freesurface/fractions/volume_of_fluid.hpp"
 #include "geometry/generators.hpp"
 
 namespace lockstep::test {

@@ -1,5 +1,5 @@
 #pragma once
-#include "freesurface/cell_plane.hpp"
+#include "freesurface/fractions/cell_plane.hpp"
 #include "freesurface/solid_cells.hpp"
 
 namespace lockstep {

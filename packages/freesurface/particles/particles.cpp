@@ -1,4 +1,4 @@
-#include "freesurface/particles.hpp"
+#include "freesurface/particles/particles.hpp"
 
 #include <cmath>
 

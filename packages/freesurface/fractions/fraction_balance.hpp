@@ -1,6 +1,6 @@
 #pragma once
 #include "freesurface/cell_groups.hpp"
-#include "freesurface/fraction_transport.hpp"
+#include "freesurface/fractions/fraction_transport.hpp"
 
 namespace lockstep {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "freesurface/fraction_transport.hpp"
+#include "freesurface/fractions/fraction_transport.hpp"
 #include "freesurface/redistance.hpp"
 #include "mac/liquid/interface_model.hpp"
 #include "mac/transport/transport.hpp"

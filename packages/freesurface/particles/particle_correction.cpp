@@ -1,4 +1,4 @@
-#include "freesurface/particle_correction.hpp"
+#include "freesurface/particles/particle_correction.hpp"
 
 #include <algorithm>
 #include <cmath>

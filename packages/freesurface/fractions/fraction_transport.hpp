@@ -1,5 +1,5 @@
 #pragma once
-#include "freesurface/fraction_planes.hpp"
+#include "freesurface/fractions/fraction_planes.hpp"
 
 namespace lockstep {
 

@@ -1,4 +1,4 @@
-#include "freesurface/fraction_balance.hpp"
+#include "freesurface/fractions/fraction_balance.hpp"
 
 #include <algorithm>
 #include <cmath>

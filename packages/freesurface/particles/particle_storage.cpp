@@ -1,4 +1,4 @@
-#include "freesurface/particle_storage.hpp"
+#include "freesurface/particles/particle_storage.hpp"
 
 namespace lockstep {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "freesurface/particles.hpp"
+#include "freesurface/particles/particles.hpp"
 #include "freesurface/phi_lookup.hpp"
 
 namespace lockstep {

@@ -1,4 +1,4 @@
-#include "freesurface/fraction_planes.hpp"
+#include "freesurface/fractions/fraction_planes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include "freesurface/volume_of_fluid.hpp"
+#include "freesurface/fractions/volume_of_fluid.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "freesurface/band_tiles.hpp"
 #include "freesurface/continuation.hpp"
-#include "freesurface/fraction_balance.hpp"
-#include "freesurface/fraction_solids.hpp"
+#include "freesurface/fractions/fraction_balance.hpp"
+#include "freesurface/fractions/fraction_solids.hpp"
 #include "freesurface/wet_fraction.hpp"
 #include "mac/state/stored_fields.hpp"
 #include "mac/transport/revalidation.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-#include "freesurface/particles.hpp"
+#include "freesurface/particles/particles.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "output/checkpoint.hpp"
 

@@ -1,4 +1,4 @@
-#include "freesurface/particle_seeding.hpp"
+#include "freesurface/particles/particle_seeding.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "freesurface/particle_motion.hpp"
+#include "freesurface/particles/particle_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

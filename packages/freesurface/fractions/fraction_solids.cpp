@@ -1,4 +1,4 @@
-#include "freesurface/fraction_solids.hpp"
+#include "freesurface/fractions/fraction_solids.hpp"
 
 #include <algorithm>
 

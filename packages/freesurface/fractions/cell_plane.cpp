@@ -1,4 +1,4 @@
-#include "freesurface/cell_plane.hpp"
+#include "freesurface/fractions/cell_plane.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "freesurface/fraction_transport.hpp"
+#include "freesurface/fractions/fraction_transport.hpp"
 
 #include <algorithm>
 #include <cmath>
