@@ -267,9 +267,9 @@ Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector
 
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
-  // Without solids nothing has changed, and there is nothing to store. All ranks must agree: what
-  // follows extends and sends one field or two.
-  const bool has_own = max_all(domain_.grid.comm(), GlobalIndex(prediction_ != velocity_)) > 0;
+  // Without solids nothing has changed: one field to store, and to extend. All ranks must agree.
+  const bool differs = prediction_ != velocity_;
+  const bool has_own = liquid_ ? max_all(domain_.grid.comm(), GlobalIndex(differs)) > 0 : differs;
   FaceField<dim> own = has_own ? prediction_ : FaceField<dim>();
   FaceField<dim>& advection = has_own ? own : velocity_;
   if (liquid_)

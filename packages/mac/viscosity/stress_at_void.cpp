@@ -1,5 +1,8 @@
 #include "mac/viscosity/stress_at_void.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace lockstep {
 
 namespace {
@@ -62,14 +65,15 @@ bool StressAtVoid<dim>::parts(const FaceId& face, int across, int end) const {
 template <int dim>
 bool void_is_clear(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry) {
   const TiledGrid<dim>& grid = domain.grid;
+  std::vector<std::pair<int, int>> open_layers;  // axis, place along it
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end)
+      if (domain.boundary.side(axis, end).type == SideType::open)
+        open_layers.emplace_back(axis, end == 0 ? 0 : grid.n_cells()[axis] - 1);
   const auto at_open_side = [&](int cell) {
-    const Index<dim> place = grid.coordinates(cell);
-    for (int axis = 0; axis < dim; ++axis)
-      for (int end = 0; end < 2; ++end)
-        if (place[axis] == (end == 0 ? 0 : grid.n_cells()[axis] - 1) &&
-            domain.boundary.side(axis, end).type == SideType::open)
-          return true;
-    return false;
+    return std::any_of(open_layers.begin(), open_layers.end(), [&](const auto& layer) {
+      return grid.coordinates(cell)[layer.first] == layer.second;
+    });
   };
   GlobalIndex found = 0;
   grid.for_each_owned_cell([&](int cell) {
