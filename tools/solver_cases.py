@@ -89,6 +89,10 @@ def triad(build):
     return float(re.search(r"[0-9.]+", text).group())
 
 
-def commit():
+def describe_commit():
     return subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True,
                           text=True).stdout.strip()
+
+
+# Asked for before anything is measured: the figures that a tool writes would make the tree dirty.
+COMMIT = describe_commit()
