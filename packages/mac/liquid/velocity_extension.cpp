@@ -1,7 +1,7 @@
 #include "mac/liquid/velocity_extension.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <tuple>
 
 namespace lockstep {
@@ -9,6 +9,8 @@ namespace lockstep {
 namespace {
 /// Of sources that are no nearer: they count where there are no others [cells].
 constexpr double least_weight = 1e-12;
+/// Distances that differ by less are equal, so that round-off does not order faces [cells].
+constexpr double same_distance = 1e-9;
 }  // namespace
 
 template <int dim>
@@ -78,7 +80,8 @@ void VelocityExtension<dim>::find_sources(int axis, const MacState<dim>& state) 
 
   using Key = std::tuple<double, GlobalIndex>;
   const auto key = [&](int cell) {
-    return Key(distance_of_face(axis, cell, state), grid.global_id(cell));
+    const double rank = distance_of_face(axis, cell, state) / (same_distance * grid.spacing());
+    return Key(std::round(rank), grid.global_id(cell));
   };
   std::vector<std::pair<Key, Face>> sorted;
   for (Face face : faces_[axis]) {
@@ -99,7 +102,7 @@ void VelocityExtension<dim>::find_sources(int axis, const MacState<dim>& state) 
         continue;
       Source& source = face.sources[face.n_sources++];
       source = find_source(axis, other, side, state);
-      const double nearer = (std::get<0>(own) - std::get<0>(key(other))) / grid.spacing();
+      const double nearer = same_distance * (std::get<0>(own) - std::get<0>(key(other)));
       source.weight = std::max(nearer, least_weight);
     }
     sorted.emplace_back(own, face);
