@@ -1,6 +1,6 @@
 """Reads the frames of a run from its frames.xmf: names, times, geometry and where each array lies.
 
-Only the index is read at once; arrays are opened when asked for. Used by plot-frame and render.
+Only the index is read at once; arrays are opened when asked for. Used by plot-frame, render and report.
 """
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field

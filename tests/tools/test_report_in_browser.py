@@ -1,0 +1,153 @@
+"""The page of tools/report in a Chromium without windows and without network: it draws what it should where it should,
+plays, and complains of nothing."""
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import matplotlib
+import numpy
+from matplotlib.image import imread
+
+import make_run
+from browser import Browser
+
+TOOLS = Path(__file__).resolve().parents[2] / "tools"
+READY = "document.body && document.body.dataset.ready === 'yes'"
+BODY = numpy.array((0xcc, 0x5c, 0x40)) / 255  # the first of the solids' colours
+
+
+class PageInBrowser(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        cls.browser = cls.enterClassContext(Browser()) if hasattr(cls, "enterClassContext") else Browser()
+
+    def setUp(self):
+        self.browser.complaints.clear()
+
+    def open(self, *dims):
+        folders = [self.folder / f"run-{dim}d" for dim in dims]
+        for dim, folder in zip(dims, folders):
+            make_run.main(folder, dim)
+        page = self.folder / f"{len(dims)}-{dims[0]}.html"
+        subprocess.run([TOOLS / "report", *folders, "--output", page], check=True, stdout=subprocess.DEVNULL)
+        self.browser.open(page.as_uri())
+        self.browser.wait_for(f"location.href === '{page.as_uri()}' && {READY}")
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints, [])
+
+    def player(self, number=0):
+        """The pixels [row][column][3] of a player, as one sees them."""
+        self.browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        self.browser.run("window.scrollTo(0, 0)")
+        self.browser.picture(self.folder / "page.png")
+        box = self.browser.run(f"(({{left, top, width, height}}) => [left, top, width, height])"
+                               f"(document.querySelectorAll('.player canvas')[{number}].getBoundingClientRect())")
+        left, top, width, height = (round(length) for length in box)
+        picture = imread(self.folder / "page.png")[top:top + height, left:left + width, :3]
+        self.assertGreater(min(picture.shape[:2]), 100)
+        return picture
+
+    def text(self, name):
+        return self.browser.run(f"document.getElementById('{name}').textContent")
+
+    def choose(self, name, value):
+        self.browser.run(f"(() => {{ const of = document.getElementById('{name}'); of.value = '{value}';"
+                         " of.dispatchEvent(new Event(of.type === 'range' ? 'input' : 'change')); })()")
+        self.browser.run("new Promise((done) => setTimeout(done, 150))")
+
+    def colour_at(self, picture, x, y):
+        """In 2D: of the place (x, y) of the domain from (1, 0) to (2, 0.75), which fills the picture but for a rim."""
+        height, width, _ = picture.shape
+        half = 0.54 * max(0.75, 1.0 * height / width)  # of the height that is seen [m]
+        scale = height / (2 * half)
+        return picture[round(height / 2 - (y - 0.375) * scale), round(width / 2 + (x - 1.5) * scale)]
+
+    def test_colours_of_a_field_and_a_body_in_two_dimensions(self):
+        self.open(2)
+        picture = self.player()
+        numpy.testing.assert_allclose(self.colour_at(picture, 1.32, 0.42), BODY, atol=0.02)
+        # Smoke is x + t, in the range of both frames; a tenth of two frames is none, so it is the second's and the first's.
+        viridis = matplotlib.colormaps["viridis"]
+        for time in (0.0, 0.5):
+            self.choose("scrub", int(time > 0))
+            picture = self.player()
+            for column in (0, 4, 7):
+                x = 1.0 + (column + 0.5) * 0.125
+                wanted = viridis((x + time - 1.0625) / (2.4375 - 1.0625))[:3]
+                numpy.testing.assert_allclose(self.colour_at(picture, x, 0.69), wanted, atol=0.04)
+
+    def test_without_field_and_solids_the_picture_is_empty(self):
+        self.open(2)
+        self.choose("field", "")
+        self.assertGreater(numpy.ptp(self.player()[..., 0]), 0.2)
+        self.browser.run("document.querySelectorAll('#toggles input').forEach((box) => { if (box.checked) box.click(); })")
+        self.assertLess(numpy.ptp(self.player()[..., 0]), 0.2)  # the background alone
+
+    def test_three_dimensions_turn(self):
+        self.open(3)
+        before = self.player()
+        near_body = numpy.abs(before - BODY).max(axis=-1) < 0.35
+        self.assertGreater(near_body.sum(), 200)
+        for kind, x, y in (("mousePressed", 500, 500), ("mouseMoved", 560, 520), ("mouseReleased", 560, 520)):
+            self.browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+        after = self.player()
+        self.assertGreater(numpy.mean(numpy.abs(after - before).max(axis=-1) > 0.05), 0.02)
+        self.browser.run("document.getElementById('home').click()")
+        self.assertLess(numpy.abs(self.player() - before).mean(), 1e-3)
+
+    def test_a_slice_moves(self):
+        self.open(3)
+        self.choose("axis", "x")
+        self.choose("layer", 0)
+        before, place = self.player(), self.text("position")
+        self.choose("layer", 7)
+        self.assertEqual((place, self.text("position")), ("x = 1.063 m", "x = 1.938 m"))
+        self.assertGreater(numpy.mean(numpy.abs(self.player() - before).max(axis=-1) > 0.05), 0.02)
+
+    def test_plays_to_the_end(self):
+        self.open(3)
+        self.assertIn("frame 1 of 2", self.text("clock"))
+        before = self.player()
+        self.choose("speed", self.browser.run("document.getElementById('speed').lastChild.value"))
+        self.browser.run("document.getElementById('play').click()")
+        self.browser.wait_for("!state.playing", 30)
+        self.assertEqual(self.text("clock"), "t = 0.5 s, frame 2 of 2")
+        self.assertGreater(numpy.abs(self.player() - before).max(), 0.05)
+
+    def test_curves(self):
+        self.open(2)
+        titles = self.browser.run("[...document.querySelectorAll('.plot')].map((plot) => plot.dataset.title)")
+        self.assertEqual(titles, ["Energy", "Iterations", "Time step", "Bodies"])
+        # The energy is t squared: half way up at 1 / sqrt(2) of the time, as drawn.
+        path = self.browser.run("document.querySelector('.plot .curve').getAttribute('d')")
+        points = [tuple(map(float, pair)) for pair in re.findall(r"[ML]([\d.]+) ([\d.]+)", path)]
+        heights = [points[0][1] - y for _, y in points]
+        times = numpy.arange(1, 6) * 0.1
+        numpy.testing.assert_allclose(numpy.array(heights) / heights[-1], (times ** 2 - 0.01) / 0.24, atol=2e-3)
+        self.choose("scrub", 1)
+        values = self.browser.run("[...document.querySelectorAll('.plot .value')].map((value) => value.textContent)")
+        self.assertEqual(values, ["0.25", "5", "0.1", "1.5", "1.6"])
+        self.browser.run("document.querySelector('[data-title=Bodies] .legend button').click()")
+        self.assertEqual(self.browser.run("document.querySelectorAll('[data-title=Bodies] .curve').length"), 1)
+
+    def test_two_runs(self):
+        self.open(3, 3)
+        for number in (0, 1):
+            self.assertGreater(numpy.ptp(self.player(number)[..., 0]), 0.2)
+        self.assertEqual(self.browser.run("document.querySelectorAll('[data-title=Energy] .curve').length"), 2)
+
+    def test_what_a_scene_says_is_text(self):
+        self.open(2)
+        self.assertEqual(self.browser.run("document.querySelector('h1').textContent"), "a </script> in a title")
+        self.assertIn("the scene of a </script>", self.browser.run("document.querySelector('pre').textContent"))
+
+
+if __name__ == "__main__":
+    unittest.main()

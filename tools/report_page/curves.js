@@ -1,0 +1,91 @@
+"use strict";
+// Which curves of a run are drawn together, and where their numbers come from.
+
+const AXES = ["x", "y", "z"];
+
+/// Plots of history.csv: each has choices by name, each choice a list of columns. `sum`: added up from
+/// the start.
+function historyPlots(dimension) {
+  const byAxis = (columns) => Object.fromEntries(AXES.slice(0, dimension).map((axis) => [axis,
+    columns.map(({ column, ...rest }) => ({ column: `${column}_${axis}`, ...rest }))]));
+  const one = (...columns) => ({ "": columns.map(([column, label]) => ({ column, label })) });
+  return [
+    { title: "Momentum ledger", unit: "kg m/s", chosen: "x",
+      choices: byAxis([{ column: "fluid_momentum", label: "fluid" }, { column: "solid_momentum", label: "solids" },
+        { column: "boundary_impulse", label: "from walls and sides, so far", sum: true },
+        { column: "transport_change", label: "by advection, so far", sum: true }]) },
+    { title: "Momentum audit: error", unit: "1", isLog: true, choices: one(["momentum_error", "linear"], ["angular_momentum_error", "angular"]) },
+    { title: "Energy", unit: "J", choices: one(["fluid_kinetic_energy", "kinetic, fluid"], ["solid_kinetic_energy", "kinetic, solids"], ["elastic_energy", "elastic"]) },
+    { title: "Iterations", unit: "", choices: one(["s1_iterations", "S1"], ["f2_iterations", "F2"], ["s2_iterations", "S2"], ["viscous_iterations", "viscous"], ["solid_iterations", "of the solids' block"]) },
+    { title: "Time step", unit: "s", choices: one(["dt", "dt"]) },
+    { title: "CFL number", unit: "", choices: one(["cfl", "CFL"]) },
+    { title: "Volume of liquid", unit: "", choices: one(["liquid_volume", "volume"], ["liquid_volume_target", "target"]) },
+    { title: "Residuals", unit: "1", isLog: true, choices: one(["s1_residual", "S1"], ["f2_residual", "F2"], ["s2_residual", "S2"]) },
+    { title: "Largest divergence", unit: "1/s", isLog: true, choices: one(["max_divergence", "divergence"]) },
+    { title: "Contacts", unit: "", choices: one(["contacts", "contact points"]) },
+    { title: "Wall time of a step", unit: "s", choices: one(["wall_seconds", "wall time"]) },
+  ];
+}
+
+/// Bodies: a choice for each column, a curve for each body.
+function bodiesPlot(table) {
+  const names = Object.keys(table), { columns } = table[names[0]];
+  const choices = {};
+  for (const { name, unit } of columns.filter((column) => !["step", "time"].includes(column.name)))
+    choices[`${name} [${unit}]`] = names.map((body) => ({ body, column: name, label: body }));
+  return { title: "Bodies", unit: "", chosen: Object.keys(choices)[1], choices };
+}
+
+/// Any other table: a choice for each column.
+function tablePlot(file, table) {
+  const choices = {};
+  for (const { name, unit } of table.columns.filter((column) => !["step", "time"].includes(column.name)))
+    choices[unit ? `${name} [${unit}]` : name] = [{ column: name, label: name }];
+  return { title: file.replace(/\.csv$/, ""), unit: "", choices };
+}
+
+/// All plots of some runs: {file, title, unit, isLog, choices, chosen}.
+function plotsOf(runs) {
+  const plots = historyPlots(Math.max(...runs.map((run) => run.dimension))).map((plot) => ({ file: "history.csv", ...plot }));
+  for (const run of runs) {
+    for (const [file, table] of Object.entries(run.tables)) {
+      if (file === "history.csv" || plots.some((plot) => plot.file === file)) continue;
+      if (file === "bodies.csv" ? !Object.keys(table).length : !table.columns) continue;
+      plots.push({ file, ...(file === "bodies.csv" ? bodiesPlot(table) : tablePlot(file, table)) });
+    }
+  }
+  return plots.map((plot) => ({ ...plot, choices: choicesThatAre(plot, runs) })).filter(({ choices }) => Object.keys(choices).length);
+}
+
+/// The choices of a plot for which at least one run has a column.
+function choicesThatAre({ file, choices }, runs) {
+  const has = ({ column, body }) => runs.some((run) => {
+    const table = body ? run.tables[file]?.[body] : run.tables[file];
+    return table?.columns.some(({ name }) => name === column);
+  });
+  return Object.fromEntries(Object.entries(choices).filter(([, columns]) => columns.some(has)));
+}
+
+/// The curves of one choice: columns by colour, runs by dashes; what is zero throughout is left out.
+async function curvesOf(runs, plot, choice) {
+  const wanted = [];
+  for (const [r, run] of runs.entries()) {
+    const specs = run.tables[plot.file] ? plot.choices[choice] : [];
+    const alone = plot.choices[choice].length === 1;
+    for (const [c, { column, label, sum, body }] of specs.entries()) {
+      const table = body ? run.tables[plot.file][body] : run.tables[plot.file];
+      if (!table || !table.n) continue;
+      const columns = await columnsOf(table);
+      if (!columns[column] || columns[column].every((value) => !(value !== 0))) continue;
+      const colour = CURVE_COLOURS[(alone ? r : c) % CURVE_COLOURS.length];
+      wanted.push({ label: runs.length > 1 ? `${label}, ${run.label}` : label, colour, dash: alone ? "" : DASHES[r % DASHES.length],
+        x: columns.time, y: sum ? sumsOf(columns[column]) : columns[column] });
+    }
+  }
+  return wanted;
+}
+
+function sumsOf(values) {
+  let sum = 0;
+  return Float64Array.from(values, (value) => (sum += Number.isNaN(value) ? 0 : value));
+}

@@ -1,0 +1,168 @@
+"""What a run's folder says of it besides its frames: facts, tables and parameters."""
+import csv
+import json
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import numpy
+
+from lockstep_frames import FramesError
+
+from report_page.blobs import pack_numbers
+
+MOST_ROWS = 20_000  # of a table; of longer ones every nth
+BODIES, HISTORY = "bodies.csv", "history.csv"
+
+
+def pack_run(folder, blobs, frames):
+    """All that the page shows of a run, as plain values; arrays go to the blobs."""
+    folder = Path(folder)
+    if not (folder / "used-parameters.xml").is_file():
+        raise FramesError(f"{folder} is no output folder of a run: it holds no used-parameters.xml.")
+    parameters = read_parameters(folder / "used-parameters.xml")
+    values = {name: value for name, value, _ in parameters}
+    summary = read_summary(folder)
+    tables = {path.name: read_table(path) for path in sorted(folder.glob("*.csv"))}
+    return {
+        "folder": folder.resolve().name,
+        "title": values.get("Title", "").strip(),
+        "dimension": int(values.get("Dimension", 3)),
+        "up": up_axis(values),
+        "domain": [numbers(values[f"Domain/{corner}"]) for corner in ("Lower", "Upper")],
+        "facts": facts(summary, values, tables.get(HISTORY)),
+        "phases": summary.get("phases", []),
+        "parameters": [(name, value) for name, value, is_default in parameters if not is_default],
+        "scene": (folder / "input.xml").read_text(errors="replace") if (folder / "input.xml").is_file() else "",
+        "tables": pack_tables(tables, blobs),
+        **frames.pack(folder),
+    }
+
+
+def numbers(text):
+    return [float(word) for word in text.strip(" {}").split(",")]
+
+
+def up_axis(values):
+    """Against gravity; y if there is none."""
+    gravity = numbers(values.get("Fluid/Gravity", "{0, 0, 0}"))
+    axis = int(numpy.argmax(numpy.abs(gravity)))
+    return axis if gravity[axis] < 0 else 1
+
+
+def read_parameters(path):
+    """(name with its lists, value, is the default) of all parameters."""
+    found = []
+
+    def visit(element, above):
+        for child in element:
+            name = above + child.get("name")
+            if child.tag == "ParameterList":
+                visit(child, name + "/")
+            else:
+                found.append((name, child.get("value"), child.get("isDefault") == "true"))
+    try:
+        visit(ElementTree.parse(path).getroot(), "")
+    except ElementTree.ParseError as error:
+        raise FramesError(f"{path} is not proper XML: {error}.") from error
+    return found
+
+
+def differing_parameters(folders):
+    """(name, value in each run) of the parameters in which runs differ."""
+    runs = [{name: value for name, value, _ in read_parameters(Path(folder) / "used-parameters.xml")}
+            for folder in folders]
+    names = list(dict.fromkeys(name for run in runs for name in run))
+    rows = [(name, [run.get(name, "") for run in runs]) for name in names]
+    return [(name, values) for name, values in rows if len(set(values)) > 1]
+
+
+def read_summary(folder):
+    try:
+        return json.loads((folder / "summary.json").read_text())
+    except OSError:
+        return {}
+    except ValueError as error:
+        raise FramesError(f"{folder / 'summary.json'} is not proper JSON: {error}.") from error
+
+
+def read_table(path):
+    """A table of a run: columns with unit and meaning, and its rows as texts."""
+    columns, lines = {}, []
+    with open(path, newline="") as file:
+        for line in file:
+            if line.startswith("#"):
+                name, _, meaning = line[1:].strip().partition(" [")
+                unit, _, meaning = meaning.partition("]:")
+                columns[name] = {"name": name, "unit": unit, "meaning": meaning.strip()}
+            else:
+                lines.append(line)
+    rows = list(csv.reader(lines))
+    names = rows[0] if rows else []
+    # A row that is being written may lack its end.
+    return {"columns": [columns.get(name, {"name": name, "unit": "", "meaning": ""}) for name in names],
+            "rows": [row for row in rows[1:] if len(row) == len(names)]}
+
+
+def pack_tables(tables, blobs):
+    packed = {}
+    for file, table in tables.items():
+        names = [column["name"] for column in table["columns"]]
+        if file == BODIES:
+            which = names.index("name")
+            of = {}
+            for row in table["rows"]:
+                of.setdefault(row[which], []).append(row[:which] + row[which + 1:])
+            columns = [column for column in table["columns"] if column["name"] != "name"]
+            packed[file] = {name: pack_rows(columns, rows, blobs) for name, rows in of.items()}
+        elif "time" in names:
+            packed[file] = pack_rows(table["columns"], table["rows"], blobs)
+    return packed
+
+
+def pack_rows(columns, rows, blobs):
+    every = max(1, -(-len(rows) // MOST_ROWS))
+    values = numpy.array([[number(word) for word in row] for row in rows[::every]], float)
+    return {"columns": columns, "n": len(rows[::every]), "every": every,
+            "blob": pack_numbers(blobs, values.reshape(-1, len(columns)).T)}
+
+
+def number(word):
+    try:
+        return float(word)
+    except ValueError:
+        return numpy.nan
+
+
+def facts(summary, values, history):
+    """What ran, as lines of a table."""
+    versions = summary.get("versions", {})
+    rows = history["rows"] if history else []
+    last = dict(zip([column["name"] for column in history["columns"]], rows[-1])) if rows else {}
+    n_cells = [int(n) for n in numbers(values.get("Domain/Cells", "{0}"))]
+    found = [
+        ("state", summary.get("status", "not finished: no summary.json")),
+        ("grid", " x ".join(map(str, n_cells)) + f" = {int(numpy.prod(n_cells)):,} cells"),
+        ("simulated time", f"{float(last['time']):.6g} s in {last['step']} steps" if last else "no step yet"),
+        ("wall time", f"{summary['wall_seconds']:.4g} s" if "wall_seconds" in summary else None),
+        ("ranks", summary.get("ranks")),
+        ("machine", machine(summary.get("machine", {}))),
+        ("memory", f"{summary['peak_memory_mb']:.4g} MB of all ranks" if "peak_memory_mb" in summary else None),
+        ("unknowns", f"{summary['pressure_unknowns']:,} pressures, {summary['solid_unknowns']:,} of solids"
+         if "pressure_unknowns" in summary else None),
+        ("iterations", ", ".join(f"{name.upper()} {of['median']:g} (at most {of['max']})"
+                                 for name, of in summary.get("iterations", {}).items()) or None),
+        ("largest momentum error", f"{summary['largest_momentum_error']:.2g}"
+         if summary.get("largest_momentum_error") is not None else None),
+        ("worst residual", f"{summary['worst_residual']:.2g}" if "worst_residual" in summary else None),
+        ("Lockstep", f"{versions['lockstep']} ({versions['git']}), {versions['build']}, {versions['compiler']}"
+         if versions else None),
+        ("libraries", f"Trilinos {versions['trilinos']}, {versions['mpi']}, HDF5 {versions['hdf5']}"
+         if versions else None),
+        ("command", summary.get("command")),
+    ]
+    return [(name, str(value)) for name, value in found if value is not None]
+
+
+def machine(of):
+    parts = [of.get("processor"), f"{of['cores']} cores" if "cores" in of else None, of.get("system")]
+    return ", ".join(part for part in parts if part) or None
