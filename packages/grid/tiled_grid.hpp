@@ -27,6 +27,10 @@ template <int dim>
 struct CellRow {
   int begin = 0, n = 0;
   std::array<int, 2 * dim> neighbors{};
+
+  /// Calls f(cell, neighbours of the cell).
+  template <typename Function>
+  void for_each_cell(const Function& f) const;
 };
 
 /// A sparse Cartesian grid in tiles, distributed over the ranks. A rank stores whole tiles: first
@@ -143,6 +147,10 @@ class TiledGrid {
   /// domain, and with `store_upper_face` of the layer above.
   template <typename Function>
   void for_each_owned_face(int axis, const Function& f) const;
+  /// Calls f(first, n, below) for the rows of such faces along x, ids first .. first + n - 1;
+  /// `below` is neighbor(first, axis, 0).
+  template <typename Function>
+  void for_each_owned_face_row(int axis, const Function& f) const;
   /// Calls f(row) for the rows of owned cells of the domain: the fastest way to apply a stencil.
   template <typename Function>
   void for_each_owned_row(const Function& f) const;

@@ -170,12 +170,27 @@ inline void TiledGrid<dim>::for_each_cell_of_tiles(int begin, int end, const Fun
 template <int dim>
 template <typename Function>
 inline void TiledGrid<dim>::for_each_owned_face(int axis, const Function& f) const {
+  for_each_owned_face_row(axis, [&](int first, int n, int) {
+    for (int face = first; face < first + n; ++face)
+      f(face);
+  });
+}
+
+template <int dim>
+template <typename Function>
+inline void TiledGrid<dim>::for_each_owned_face_row(int axis, const Function& f) const {
   for (int t = 0; t < n_owned_tiles_; ++t) {
     const Tile& tile = tiles_[t];
     Index<dim> extent = tile.domain_extent;
     extent[axis] = tile.extent[axis];
+    const int n = extent[0];
+    if (n == 0)
+      continue;
+    extent[0] = 1;
     const int first = t << log_tile_volume<dim>;
-    for_each_offset(extent, [&](int offset) { f(first + offset); });
+    for_each_offset(extent, [&](int offset) {
+      f(first + offset, n, neighbor_in_lattice(tile, first + offset, axis, 0));
+    });
   }
 }
 
@@ -204,20 +219,24 @@ inline void TiledGrid<dim>::for_each_owned_row(const Function& f) const {
 
 template <int dim>
 template <typename Function>
-inline void TiledGrid<dim>::for_each_owned_cell_with_neighbors(const Function& f) const {
-  for_each_owned_row([&](const CellRow<dim>& row) {
-    std::array<int, 2 * dim> step{};
+inline void CellRow<dim>::for_each_cell(const Function& f) const {
+  std::array<int, 2 * dim> step{};
+  for (int i = 2; i < 2 * dim; ++i)
+    step[i] = neighbors[i] >= 0 ? 1 : 0;
+  for (int x = 0; x < n; ++x) {
+    std::array<int, 2 * dim> of_cell{};
+    of_cell[0] = x > 0 ? begin + x - 1 : neighbors[0];
+    of_cell[1] = x < n - 1 ? begin + x + 1 : neighbors[1];
     for (int i = 2; i < 2 * dim; ++i)
-      step[i] = row.neighbors[i] >= 0 ? 1 : 0;
-    for (int x = 0; x < row.n; ++x) {
-      std::array<int, 2 * dim> neighbors{};
-      neighbors[0] = x > 0 ? row.begin + x - 1 : row.neighbors[0];
-      neighbors[1] = x < row.n - 1 ? row.begin + x + 1 : row.neighbors[1];
-      for (int i = 2; i < 2 * dim; ++i)
-        neighbors[i] = row.neighbors[i] + step[i] * x;
-      f(row.begin + x, neighbors);
-    }
-  });
+      of_cell[i] = neighbors[i] + step[i] * x;
+    f(begin + x, of_cell);
+  }
+}
+
+template <int dim>
+template <typename Function>
+inline void TiledGrid<dim>::for_each_owned_cell_with_neighbors(const Function& f) const {
+  for_each_owned_row([&](const CellRow<dim>& row) { row.for_each_cell(f); });
 }
 
 }  // namespace lockstep

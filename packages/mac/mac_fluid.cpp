@@ -188,21 +188,6 @@ Momentum<dim> MacFluid<dim>::push_sources(double time) {
 }
 
 template <int dim>
-template <typename Velocity>
-AngularVector<dim> MacFluid<dim>::moment_of_shifts(const Velocity& velocity) const {
-  AngularVector<dim> moment = AngularVector<dim>::Zero();
-  for (std::size_t i = 0; i < geometry_.coupled.size(); ++i) {
-    const ControlVolume<dim>& volume = geometry_.coupled_volumes[i];
-    if (volume.open_fraction == 0)
-      continue;
-    const auto [axis, cell] = geometry_.coupled[i];
-    const double momentum = geometry_.mass(axis, cell) * velocity(axis, cell);
-    moment += cross<dim>(volume.open_center - volume.center, Point<dim>::Unit(axis) * momentum);
-  }
-  return moment;
-}
-
-template <int dim>
 ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   time_ = time + dt;
   last_step_ = dt;
@@ -330,53 +315,6 @@ void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
   }
   if (history_)
     history_->set_advected(prediction_);
-}
-
-template <int dim>
-Momentum<dim> MacFluid<dim>::momentum() const {
-  Momentum<dim> mine;
-  for (int axis = 0; axis < dim; ++axis) {
-    FaceMoments<dim> moments(domain_.grid, axis);
-    domain_.grid.for_each_owned_face(axis, [&](int cell) {
-      if (const double mass = geometry_.mass(axis, cell); mass > 0)
-        moments.add(cell, mass * prediction_[axis][cell]);
-    });
-    mine += moments.total();
-  }
-  mine.angular += moment_of_shifts([&](int axis, int cell) { return prediction_[axis][cell]; });
-  return sum_over_ranks(mine, domain_.grid.comm());
-}
-
-template <int dim>
-double MacFluid<dim>::kinetic_energy() const {
-  double mine = 0;
-  for (int axis = 0; axis < dim; ++axis)
-    domain_.grid.for_each_owned_face(axis, [&](int cell) {
-      const double u = prediction_[axis][cell];
-      mine += geometry_.mass(axis, cell) * u * u;
-    });
-  return 0.5 * sum_all(domain_.grid.comm(), mine);
-}
-
-template <int dim>
-double MacFluid<dim>::largest_speed() const {
-  if (largest_speed_)
-    return *largest_speed_;
-  double largest = 0;
-  const auto speed = [&](int axis, int face) {
-    const bool still = face < 0 || geometry_.state.faces[axis][face] == FaceState::inactive;
-    return still ? 0.0 : std::abs(velocity_[axis][face]);
-  };
-  domain_.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
-    if (geometry_.state.cells[cell] != CellState::fluid)
-      return;
-    double sum = 0;
-    for (int axis = 0; axis < dim; ++axis)
-      sum += std::max(speed(axis, cell), speed(axis, neighbors[2 * axis + 1]));
-    largest = std::max(largest, sum);
-  });
-  largest_speed_ = max_all(domain_.grid.comm(), largest);
-  return *largest_speed_;
 }
 
 template <int dim>

@@ -145,8 +145,8 @@ class MacFluid : public FluidDiscretization<dim>,
   void load_tiles(const CheckpointReader& checkpoint);
   /// What partly open faces of this rank add to an angular momentum, because their fluid moves
   /// beside their centres; velocity(axis, cell).
-  template <typename Velocity>
-  AngularVector<dim> moment_of_shifts(const Velocity& velocity) const;
+  using FaceFunction = std::function<double(int axis, int cell)>;
+  AngularVector<dim> moment_of_shifts(const FaceFunction& velocity) const;
   Momentum<dim> push_sources(double time);
   void push_surface(double dt);  ///< by surface tension
   void move_liquid(double time, double dt, const MovingSurface<dim>& surface,

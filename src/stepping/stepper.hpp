@@ -91,7 +91,7 @@ class Stepper {
   void advect(double dt, StepReport<dim>& report);                   // F3
   void finish(const Solved& solved, StepReport<dim>& report);        // F4
   Momentum<dim> fluid_momentum() const;
-  Momentum<dim> total_momentum() const;
+  Momentum<dim> total_momentum(const Momentum<dim>& of_fluid) const;
 
   Components<dim>& components_;
   ComponentSides<dim> sides_;

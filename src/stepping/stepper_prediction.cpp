@@ -180,7 +180,7 @@ void Stepper<dim>::advect(double dt, StepReport<dim>& report) {
   }
   fluid.revalidate(moving);
   reset_unseen_faces();
-  report.ledger.open(total_momentum());
+  report.ledger.open(total_momentum(fluid_momentum()));
   report.transport_change = report.ledger.before() - last_momentum_;
 }
 

@@ -86,9 +86,13 @@ class MacPressureOperator final : public StencilOperator {
   RCP<const CrsMatrix> assembled() const override;
 
  private:
-  /// Calls f(cell, row, neighbours, coefficients of the faces to them).
+  /// Calls f(row, neighbours, coefficients of the faces to them) for a cell.
   template <typename Function>
-  void for_each_row(const Function& f) const;
+  void with_faces(int cell, const std::array<int, 2 * dim>& neighbors, const Function& f) const;
+  /// Whether a whole row of cells are unknowns, with cells on all sides.
+  bool is_whole(const CellRow<dim>& cells) const;
+  /// A x over the unit coefficient for such a row.
+  RowValues<dim> product(const CellRow<dim>& cells) const;
   void apply_to(const Vector& x, Vector& y, double alpha, double beta) const;
 
   const MacDomain<dim>& domain_;
@@ -99,19 +103,55 @@ class MacPressureOperator final : public StencilOperator {
 
 template <int dim>
 template <typename Function>
-void MacPressureOperator<dim>::for_each_row(const Function& f) const {
-  domain_.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
-    const int row = coefficients_.row[cell];
-    if (row < 0)
-      return;
-    std::array<double, 2 * dim> face;
-    for (int axis = 0; axis < dim; ++axis) {
-      const int upper = neighbors[2 * axis + 1];
-      face[2 * axis] = coefficients_.lower[axis][cell];
-      face[2 * axis + 1] = upper < 0 ? 0 : coefficients_.lower[axis][upper];
-    }
-    f(cell, row, neighbors, face);
-  });
+void MacPressureOperator<dim>::with_faces(int cell, const std::array<int, 2 * dim>& neighbors,
+                                          const Function& f) const {
+  const int row = coefficients_.row[cell];
+  if (row < 0)
+    return;
+  std::array<double, 2 * dim> face;
+  for (int axis = 0; axis < dim; ++axis) {
+    const int upper = neighbors[2 * axis + 1];
+    face[2 * axis] = coefficients_.lower[axis][cell];
+    face[2 * axis + 1] = upper < 0 ? 0 : coefficients_.lower[axis][upper];
+  }
+  f(row, face);
+}
+
+template <int dim>
+bool MacPressureOperator<dim>::is_whole(const CellRow<dim>& cells) const {
+  for (const int neighbor : cells.neighbors)
+    if (neighbor < 0)
+      return false;
+  constexpr int last = tile_width<dim> - 1;
+  const int* row = coefficients_.row.data() + cells.begin;
+  return cells.n == tile_width<dim> && row[0] >= 0 && row[last] == row[0] + last;
+}
+
+template <int dim>
+RowValues<dim> MacPressureOperator<dim>::product(const CellRow<dim>& cells) const {
+  constexpr int width = tile_width<dim>;
+  using Faces = Eigen::Map<const Eigen::Array<float, width, 1>>;
+  const double* x = field_.data();
+  const RowValues<dim> own = row_of<dim>(x, cells.begin);
+  RowValues<dim> sum = Faces(coefficients_.dirichlet.data() + cells.begin).template cast<double>();
+  sum *= own;
+  // Over the faces along the row, the two at its ends too.
+  const float* along = coefficients_.lower[0].data() + cells.begin;
+  std::array<double, width + 1> flux;
+  flux[0] = along[0] * (own[0] - x[cells.neighbors[0]]);
+  for (int i = 1; i < width; ++i)
+    flux[i] = along[i] * (x[cells.begin + i] - x[cells.begin + i - 1]);
+  flux[width] =
+      coefficients_.lower[0][cells.neighbors[1]] * (x[cells.neighbors[1]] - own[width - 1]);
+  for (int i = 0; i < width; ++i)
+    sum[i] += flux[i] - flux[i + 1];
+  for (int axis = 1; axis < dim; ++axis) {
+    const float* lower = coefficients_.lower[axis].data();
+    const int below = cells.neighbors[2 * axis], above = cells.neighbors[2 * axis + 1];
+    sum += Faces(lower + cells.begin).template cast<double>() * (own - row_of<dim>(x, below)) +
+           Faces(lower + above).template cast<double>() * (own - row_of<dim>(x, above));
+  }
+  return sum;
 }
 
 template <int dim>
@@ -126,13 +166,24 @@ void MacPressureOperator<dim>::apply_to(const Vector& x, Vector& y, double alpha
   domain_.halo.fill(field_);
   const auto out = y.getDataNonConst();
   const double scale = alpha * coefficients_.unit;
-  for_each_row([&](int cell, int row, const auto& neighbors, const auto& face) {
-    double sum = coefficients_.dirichlet[cell] * field_[cell];
-    for (int side = 0; side < 2 * dim; ++side) {
-      if (face[side] != 0)
-        sum += face[side] * (field_[cell] - field_[neighbors[side]]);
+  const auto multiply_one = [&](int cell, const auto& neighbors) {
+    with_faces(cell, neighbors, [&](int row, const auto& face) {
+      double sum = coefficients_.dirichlet[cell] * field_[cell];
+      for (int side = 0; side < 2 * dim; ++side) {
+        if (face[side] != 0)
+          sum += face[side] * (field_[cell] - field_[neighbors[side]]);
+      }
+      out[row] = scale * sum + (beta == 0 ? 0 : beta * out[row]);
+    });
+  };
+  domain_.grid.for_each_owned_row([&](const CellRow<dim>& cells) {
+    if (!is_whole(cells)) {
+      cells.for_each_cell(multiply_one);
+      return;
     }
-    out[row] = scale * sum + (beta == 0 ? 0 : beta * out[row]);
+    auto result = row_of<dim>(out.getRawPtr(), coefficients_.row[cells.begin]);
+    const RowValues<dim> before = beta == 0 ? RowValues<dim>::Zero() : RowValues<dim>(result);
+    result = scale * product(cells) + beta * before;
   });
   for (const auto& [cell, rest] : coefficients_.dirichlet_rest)
     out[coefficients_.row[cell]] += scale * rest * field_[cell];
@@ -150,7 +201,7 @@ RCP<const CrsMatrix> MacPressureOperator<dim>::assembled() const {
   domain_.halo.fill(unknown);
   RowBuilder rows(coefficients_.map, 2 * dim + 1);
   auto rest = coefficients_.dirichlet_rest.begin();
-  for_each_row([&](int cell, int, const auto& neighbors, const auto& face) {
+  const auto add_row = [&](int cell, const auto& neighbors, const auto& face) {
     double diagonal = coefficients_.dirichlet[cell];
     if (rest != coefficients_.dirichlet_rest.end() && rest->first == cell)
       diagonal += (rest++)->second;
@@ -168,6 +219,9 @@ RCP<const CrsMatrix> MacPressureOperator<dim>::assembled() const {
       add(2 * axis + 1);
     rows.set(middle, coefficients_.unit * diagonal);
     rows.end_row();
+  };
+  domain_.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    with_faces(cell, neighbors, [&](int, const auto& face) { add_row(cell, neighbors, face); });
   });
   matrix_ = rows.finish();
   return matrix_;

@@ -4,13 +4,45 @@
 
 namespace lockstep {
 
+namespace {
+
+/// What flows out of a row of cells whose faces are all regular, per area.
+template <int dim>
+RowValues<dim> outflow_of_row(const FaceField<dim>& velocity, const CellRow<dim>& cells) {
+  constexpr int last = tile_width<dim> - 1;
+  const double* along = velocity[0].data() + cells.begin;
+  RowValues<dim> outflow;
+  for (int i = 0; i < last; ++i)
+    outflow[i] = along[i + 1] - along[i];
+  outflow[last] = velocity[0][cells.neighbors[1]] - along[last];
+  for (int axis = 1; axis < dim; ++axis)
+    outflow += row_of<dim>(velocity[axis].data(), cells.neighbors[2 * axis + 1]) -
+               row_of<dim>(velocity[axis].data(), cells.begin);
+  return outflow;
+}
+
+/// The jumps of a field across a row of faces normal to `axis`; `below` is the cell or row below
+/// the first.
+template <int dim>
+RowValues<dim> jumps_of_row(const double* field, int axis, int first, int below) {
+  if (axis > 0)
+    return row_of<dim>(field, first) - row_of<dim>(field, below);
+  RowValues<dim> jumps;
+  jumps[0] = field[first] - field[below];
+  for (int i = 1; i < tile_width<dim>; ++i)
+    jumps[i] = field[first + i] - field[first + i - 1];
+  return jumps;
+}
+
+}  // namespace
+
 template <int dim>
 void outflow_deficit(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                      const FaceField<dim>& velocity, Vector& rhs) {
   const auto values = rhs.getDataNonConst();
   const double area = geometry.face_table.area();
   int row = 0;
-  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+  const auto add_cell = [&](int cell, const auto& neighbors) {
     if (geometry.state.cells[cell] != CellState::fluid)
       return;
     double outflow = 0;
@@ -22,6 +54,14 @@ void outflow_deficit(const MacDomain<dim>& domain, const MacGeometry<dim>& geome
       outflow -= geometry.flux_fraction(axis, cell) * velocity[axis][cell];
     }
     values[row++] = -area * outflow;
+  };
+  domain.grid.for_each_owned_row([&](const CellRow<dim>& cells) {
+    if (geometry.has_regular_faces(cells)) {
+      row_of<dim>(values.getRawPtr(), row) = -area * outflow_of_row<dim>(velocity, cells);
+      row += tile_width<dim>;
+    } else {
+      cells.for_each_cell(add_cell);
+    }
   });
 }
 
@@ -42,44 +82,67 @@ CellField pressure_field(const MacDomain<dim>& domain, const MacGeometry<dim>& g
 template <int dim>
 void subtract_gradient(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                        const CellField& scaled_pressure, FaceField<dim>& velocity) {
-  for (int axis = 0; axis < dim; ++axis)
-    domain.grid.for_each_owned_face(axis, [&](int cell) {
+  const double regular = geometry.face_table.regular().gradient;
+  for (int axis = 0; axis < dim; ++axis) {
+    const auto subtract_one = [&](int cell) {
       if (geometry.state.faces[axis][cell] != FaceState::free)
         return;
       // Outside of the fluid the field is zero.
       const int lower = domain.grid.neighbor(cell, axis, 0);
       const double jump = scaled_pressure[cell] - (lower < 0 ? 0 : scaled_pressure[lower]);
       velocity[axis][cell] -= geometry.face_table(axis, cell).gradient * jump;
+    };
+    domain.grid.for_each_owned_face_row(axis, [&](int first, int n, int below) {
+      if (n == tile_width<dim> && below >= 0 && geometry.has_regular_faces(axis, first)) {
+        row_of<dim>(velocity[axis].data(), first) -=
+            regular * jumps_of_row<dim>(scaled_pressure.data(), axis, first, below);
+        return;
+      }
+      for (int cell = first; cell < first + n; ++cell)
+        subtract_one(cell);
     });
+  }
+}
+
+/// Impulse of prescribed sides on the fluid of this rank's cells, as if no solid covered them.
+template <int dim>
+Momentum<dim> whole_side_impulse(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                 const double* values, GlobalIndex first_unknown) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const double area = geometry.face_table.area(), half = 0.5 * grid.spacing();
+  Momentum<dim> impulse;
+  // Closed upper sides have no stored face, so this goes by cells.
+  grid.for_each_owned_row([&](const CellRow<dim>& row) {
+    for (int axis = 0; axis < dim; ++axis)
+      for (int end = 0; end < 2; ++end) {
+        const int other = row.neighbors[2 * axis + end];
+        const bool at_side = other < 0 || geometry.state.cells[other] == CellState::outside;
+        if (!at_side || !domain.boundary.side(axis, end).prescribed())
+          continue;
+        const int begin = axis == 0 && end == 1 ? row.begin + row.n - 1 : row.begin;
+        const int n = axis == 0 ? 1 : row.n;
+        for (int cell = begin; cell < begin + n; ++cell) {
+          if (geometry.state.cells[cell] != CellState::fluid)
+            continue;
+          Point<dim> x = grid.center(cell);
+          x[axis] += end == 0 ? -half : half;
+          impulse.add(x, axis,
+                      (end == 0 ? area : -area) * values[geometry.unknown[cell] - first_unknown]);
+        }
+      }
+  });
+  return impulse;
 }
 
 template <int dim>
 Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                     const Vector& scaled_pressure) {
-  const TiledGrid<dim>& grid = domain.grid;
   const auto values = scaled_pressure.getData();
-  const double area = geometry.face_table.area(), half = 0.5 * grid.spacing();
-  Momentum<dim> impulse;
-  int row = 0;
-  // Closed upper sides have no stored face, so this goes by cells.
-  grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
-    if (geometry.state.cells[cell] != CellState::fluid)
-      return;
-    const double pressure = values[row++];
-    for (int axis = 0; axis < dim; ++axis)
-      for (int end = 0; end < 2; ++end) {
-        const int other = neighbors[2 * axis + end];
-        const bool at_side = other < 0 || geometry.state.cells[other] == CellState::outside;
-        if (!at_side || !domain.boundary.side(axis, end).prescribed())
-          continue;
-        Point<dim> x = grid.center(cell);
-        x[axis] += end == 0 ? -half : half;
-        impulse.add(x, axis, (end == 0 ? area : -area) * pressure);
-      }
-  });
-  // What solids cover of a side they push on themselves; only the rest is the side's.
+  const double area = geometry.face_table.area();
   const GlobalIndex first_unknown =
       values.size() > 0 ? geometry.pressure_map->getMinGlobalIndex() : 0;
+  Momentum<dim> impulse = whole_side_impulse(domain, geometry, values.getRawPtr(), first_unknown);
+  // What solids cover of a side they push on themselves; only the rest is the side's.
   for (std::size_t i = geometry.coupled.size(); i < geometry.coupled_volumes.size(); ++i) {
     const ControlVolume<dim>& volume = geometry.coupled_volumes[i];
     const int end = volume.sides[0].unknown == no_index ? 0 : 1;
@@ -88,7 +151,7 @@ Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeome
     impulse.add(volume.center, volume.direction, -push);
     impulse.add(volume.open_center, volume.direction, volume.open_fraction * push);
   }
-  return sum_over_ranks(impulse, grid.comm());
+  return sum_over_ranks(impulse, domain.grid.comm());
 }
 
 template void outflow_deficit<2>(const MacDomain<2>&, const MacGeometry<2>&, const FaceField<2>&,

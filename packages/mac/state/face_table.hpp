@@ -33,6 +33,10 @@ class FaceTable {
     const int block = block_of_tile_[axis][TiledGrid<dim>::tile_of(cell)];
     return block < 0 ? regular_ : special_[axis][place(block, cell)];
   }
+  /// Whether all faces normal to `axis` of the tile of this cell are regular.
+  bool is_regular_tile(int axis, int cell) const {
+    return block_of_tile_[axis][TiledGrid<dim>::tile_of(cell)] < 0;
+  }
   void set_open(int axis, int cell, double open);
   void set_closeness(int axis, int cell, double closeness);
 

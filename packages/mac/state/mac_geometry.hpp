@@ -5,6 +5,7 @@
 #include "interfaces/fluid.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "mac/state/face_table.hpp"
+#include "mac/state/rows.hpp"
 
 namespace lockstep {
 
@@ -41,8 +42,31 @@ struct MacGeometry : FluidGeometry<dim> {
   double mass(int axis, int cell) const {
     return state.faces[axis][cell] == FaceState::free ? face_table(axis, cell).mass : 0;
   }
+  /// Whether the lower faces of a whole row of cells, from that one on, are free and regular ones.
+  bool has_regular_faces(int axis, int first) const {
+    return face_table.is_regular_tile(axis, first) &&
+           is_row_of<dim>(FaceState::free, state.faces[axis].data() + first);
+  }
+  /// The same for all faces of a row of cells, which then are fluid.
+  bool has_regular_faces(const CellRow<dim>& row) const;
   bool near_surface(int cell) const { return !near.empty() && near[cell] != 0; }
 };
+
+template <int dim>
+bool MacGeometry<dim>::has_regular_faces(const CellRow<dim>& row) const {
+  if (row.n != tile_width<dim> || !is_row_of<dim>(CellState::fluid, state.cells.data() + row.begin))
+    return false;
+  const int after = row.neighbors[1];
+  if (after < 0 || !face_table.is_regular_tile(0, after) ||
+      state.faces[0][after] != FaceState::free || !has_regular_faces(0, row.begin))
+    return false;
+  for (int axis = 1; axis < dim; ++axis) {
+    const int upper = row.neighbors[2 * axis + 1];
+    if (upper < 0 || !has_regular_faces(axis, row.begin) || !has_regular_faces(axis, upper))
+      return false;
+  }
+  return true;
+}
 
 /// Judges cells by their centres, asks `rule` about faces near the surface, numbers the pressures.
 /// All of the fluid has this density. `surface` may be null or empty. Without a free surface the

@@ -45,16 +45,6 @@ CellState state_of_center(const MacState<dim>& state, int cell) {
   return state.cells[cell];
 }
 
-/// The values of a row, of which there is storage for the whole.
-template <int dim>
-Eigen::Map<RowValues<dim>> row_of(double* field, int first) {
-  return Eigen::Map<RowValues<dim>>(field + first);
-}
-template <int dim>
-Eigen::Map<const RowValues<dim>> row_of(const double* field, int first) {
-  return Eigen::Map<const RowValues<dim>>(field + first);
-}
-
 }  // namespace
 
 template <int dim>

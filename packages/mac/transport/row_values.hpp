@@ -1,16 +1,12 @@
 #pragma once
-#include <Eigen/Core>
 #include <array>
 #include <type_traits>
 
-#include "grid/tile_lattice.hpp"
+#include "mac/state/rows.hpp"
 
 namespace lockstep {
 
-/// Values for one row of samples of a tile, along x.
-template <int dim>
-using RowValues = Eigen::Array<double, tile_width<dim>, 1>;
-/// Positions of such a row, by axis, relative to a block's first cell.
+/// Positions of a row of samples, by axis, relative to a block's first cell.
 template <int dim>
 using RowPoints = std::array<RowValues<dim>, dim>;
 
