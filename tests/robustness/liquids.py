@@ -1,10 +1,12 @@
 """Seeds from FIRST_SEED on are scenes with a free surface, and often with moving tiles: those of the other seeds,
-with a liquid in place of the fluid. They draw from numbers of their own, so that no other seed changes."""
+with a liquid in place of the fluid. They draw from numbers of their own, so that no other seed changes. From
+FIRST_OF_FRACTIONS on the liquid is carried as volumes."""
 import math
 import random
 
 AXES = "xyz"
 FIRST_SEED = 1000
+FIRST_OF_FRACTIONS = 2000
 OF_GASES = ("Smoke", "Temperature", "Smoke Weight", "Thermal Expansion", "Sources")
 
 
@@ -59,7 +61,9 @@ def fill_with_liquid(world, content, seed):
     fluid["Gravity"] = gravity(rng, world, axes)
     surface = fluid["Free Surface"] = {"Interface": {"Type": rng.choice(["level set", "particle level set"])},
                                        "Liquid": liquid(rng, world, fluid["Gravity"])}
-    if rng.random() < 0.2 and surface["Interface"]["Type"] != "volume of fluid":
+    if seed >= FIRST_OF_FRACTIONS:
+        surface["Interface"]["Type"] = "volume of fluid"
+    if rng.random() < 0.2 and seed < FIRST_OF_FRACTIONS:
         surface["Interface"]["Volume Correction"] = rng.choice(["global", "none"])
     if rng.random() < 0.1:
         surface["Pressure Order"] = 1
