@@ -28,13 +28,17 @@ class Array:
         """The values, or only those of a selection such as (3, slice(None))."""
         if not self.in_file:
             return numpy.array(self.text.split(), dtype=float)[selection]
-        name, dataset = self.text.strip().rsplit(":", 1)
-        path = self.folder / name
+        dataset = self.text.strip().rsplit(":", 1)[1]
         try:
-            with h5py.File(path, "r") as file:
+            with h5py.File(self.path, "r") as file:
                 return file[dataset][selection]
         except (OSError, KeyError) as error:
-            raise FramesError(f"{path}: cannot read '{dataset}' ({error}).") from error
+            raise FramesError(f"{self.path}: cannot read '{dataset}' ({error}).") from error
+
+    @property
+    def path(self):
+        """Of the HDF5 file."""
+        return self.folder / self.text.strip().rsplit(":", 1)[0]
 
 
 @dataclass

@@ -1,8 +1,12 @@
 #include "stepping/run_summary.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <ctime>
 
 #include "output/build_information.hpp"
+#include "output/machine.hpp"
 
 namespace lockstep {
 
@@ -23,6 +27,37 @@ nlohmann::ordered_json iteration_summary(const std::vector<int>& values) {
 
 }  // namespace
 
+nlohmann::ordered_json run_header(const Communicator& comm, const std::string& command_line) {
+  const BuildInformation build = build_information();
+  const Machine machine = this_machine();
+  return {{"versions",
+           {{"lockstep", build.version},
+            {"git", build.git_hash},
+            {"build", build.build_type},
+            {"compiler", build.compiler},
+            {"trilinos", build.trilinos},
+            {"mpi", build.mpi},
+            {"hdf5", build.hdf5}}},
+          {"ranks", comm->getSize()},
+          {"machine",
+           {{"host", machine.host},
+            {"processor", machine.processor},
+            {"cores", machine.cores},
+            {"system", machine.system}}},
+          {"command", command_line},
+          {"process", getpid()},
+          {"started", std::time(nullptr)}};
+}
+
+nlohmann::ordered_json unfinished_summary(const std::string& status, const std::string& message,
+                                          const nlohmann::ordered_json& header) {
+  nlohmann::ordered_json summary = {{"status", status}};
+  if (!message.empty())
+    summary["message"] = message;
+  summary.update(header);
+  return summary;
+}
+
 void RunSummary::count(const SolveReport& s1, const SolveReport& f2, const SolveReport& s2) {
   s1_iterations_.push_back(s1.iterations);
   f2_iterations_.push_back(f2.iterations);
@@ -35,9 +70,9 @@ void RunSummary::count(const SolveReport& s1, const SolveReport& f2, const Solve
   }
 }
 
-nlohmann::ordered_json RunSummary::json(const RunFacts& run, const std::vector<PhaseTime>& phases,
+nlohmann::ordered_json RunSummary::json(const nlohmann::ordered_json& header, const RunFacts& run,
+                                        const std::vector<PhaseTime>& phases,
                                         const Communicator& comm) const {
-  const BuildInformation build = build_information();
   const PeakMemory memory = peak_memory_mb(comm);
   nlohmann::ordered_json phase_times = nlohmann::ordered_json::array();
   for (const PhaseTime& phase : phases) {
@@ -47,35 +82,27 @@ nlohmann::ordered_json RunSummary::json(const RunFacts& run, const std::vector<P
                            {"max_seconds", phase.max_seconds},
                            {"calls", phase.calls}});
   }
-  return {{"status", run.status},
-          {"versions",
-           {{"lockstep", build.version},
-            {"git", build.git_hash},
-            {"build", build.build_type},
-            {"compiler", build.compiler},
-            {"trilinos", build.trilinos},
-            {"mpi", build.mpi},
-            {"hdf5", build.hdf5}}},
-          {"ranks", comm->getSize()},
-          {"steps", run.n_steps},
-          {"step", run.step},
-          {"time", run.time},
-          {"pressure_unknowns", run.n_pressures},
-          {"solid_unknowns", run.n_solid_unknowns},
-          {"iterations",
-           {{"s1", iteration_summary(s1_iterations_)},
-            {"f2", iteration_summary(f2_iterations_)},
-            {"s2", iteration_summary(s2_iterations_)}}},
-          {"largest_momentum_error", largest_momentum_error_},
-          {"largest_angular_momentum_error", largest_angular_error_},
-          {"worst_residual", worst_residual_},
-          {"preconditioner_builds", preconditioner_builds_},
-          {"preconditioner_reuses", preconditioner_reuses_},
-          {"stored_nonzeros", stored_nonzeros_},
-          {"wall_seconds", run.wall_seconds},
-          {"peak_memory_mb", memory.all_ranks_mb},
-          {"peak_memory_largest_rank_mb", memory.largest_rank_mb},
-          {"phases", phase_times}};
+  nlohmann::ordered_json summary = unfinished_summary(run.status, "", header);
+  summary.update(nlohmann::ordered_json{{"steps", run.n_steps},
+                                        {"step", run.step},
+                                        {"time", run.time},
+                                        {"pressure_unknowns", run.n_pressures},
+                                        {"solid_unknowns", run.n_solid_unknowns},
+                                        {"iterations",
+                                         {{"s1", iteration_summary(s1_iterations_)},
+                                          {"f2", iteration_summary(f2_iterations_)},
+                                          {"s2", iteration_summary(s2_iterations_)}}},
+                                        {"largest_momentum_error", largest_momentum_error_},
+                                        {"largest_angular_momentum_error", largest_angular_error_},
+                                        {"worst_residual", worst_residual_},
+                                        {"preconditioner_builds", preconditioner_builds_},
+                                        {"preconditioner_reuses", preconditioner_reuses_},
+                                        {"stored_nonzeros", stored_nonzeros_},
+                                        {"wall_seconds", run.wall_seconds},
+                                        {"peak_memory_mb", memory.all_ranks_mb},
+                                        {"peak_memory_largest_rank_mb", memory.largest_rank_mb},
+                                        {"phases", phase_times}});
+  return summary;
 }
 
 }  // namespace lockstep

@@ -18,6 +18,14 @@ struct RunFacts {
   double wall_seconds = 0;
 };
 
+/// What summary.json says before the first step already: versions, ranks, machine, command, and the
+/// process of rank 0 with the time of its start. Not collective.
+nlohmann::ordered_json run_header(const Communicator& comm, const std::string& command_line);
+
+/// summary.json of a run without an end: "running", or "failed" with the reason.
+nlohmann::ordered_json unfinished_summary(const std::string& status, const std::string& message,
+                                          const nlohmann::ordered_json& header);
+
 /// Adds up the steps of a run for summary.json.
 class RunSummary {
  public:
@@ -28,8 +36,8 @@ class RunSummary {
     largest_angular_error_ = larger(report.angular_momentum_error, largest_angular_error_);
   }
   /// Collective.
-  nlohmann::ordered_json json(const RunFacts& run, const std::vector<PhaseTime>& phases,
-                              const Communicator& comm) const;
+  nlohmann::ordered_json json(const nlohmann::ordered_json& header, const RunFacts& run,
+                              const std::vector<PhaseTime>& phases, const Communicator& comm) const;
 
  private:
   void count(const SolveReport& s1, const SolveReport& f2, const SolveReport& s2);

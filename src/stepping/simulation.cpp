@@ -115,6 +115,8 @@ void Simulation<dim>::begin_outputs() {
     load_checkpoint();
   create_output_directory(comm_, options_.output_directory);
   record_input(comm_, options_.output_directory, options_.scene_file, to_xml(scene_));
+  header_ = run_header(comm_, options_.command_line);
+  write_summary(comm_, options_.output_directory, unfinished_summary("running", "", header_));
   if (options_.restart_file.empty()) {
     discard_checkpoints_after(comm_, options_.output_directory, -1);
     tables_.start();
@@ -217,6 +219,19 @@ int Simulation<dim>::run() {
   const auto start = Clock::now();
   begin_outputs();
   install_signal_handlers();
+  try {
+    const int signal = take_steps(start);
+    write_checkpoint();
+    end_outputs(signal, seconds_since(start));
+    return signal == 0 ? 0 : 128 + signal;
+  } catch (const std::exception& error) {
+    record_failure(error.what());
+    throw;
+  }
+}
+
+template <int dim>
+int Simulation<dim>::take_steps(Clock::time_point start) {
   int signal = 0;
   while (!finished() && signal == 0) {
     const auto step_start = Clock::now();
@@ -253,11 +268,15 @@ int Simulation<dim>::run() {
     }
     signal = signal_received(comm_);
   }
-  write_checkpoint();
-  const double wall_seconds = seconds_since(start);
+  return signal;
+}
+
+template <int dim>
+void Simulation<dim>::end_outputs(int signal, double wall_seconds) {
   write_summary(
       comm_, options_.output_directory,
-      summary_.json({signal == 0 ? "done" : "stopped by a signal", step_ - first_step_, step_,
+      summary_.json(header_,
+                    {signal == 0 ? "done" : "stopped by a signal", step_ - first_step_, step_,
                      stepper_->time(), components_.fluid->pressure_map()->getGlobalNumElements(),
                      components_.solids->n_unknowns(), wall_seconds},
                     timers_.report(comm_), comm_));
@@ -265,9 +284,19 @@ int Simulation<dim>::run() {
   if (signal != 0) {
     log_.normal("Stopped by signal {} after step {}; the checkpoint in {} continues the run.",
                 signal, step_, options_.output_directory);
-    return 128 + signal;
   }
-  return 0;
+}
+
+template <int dim>
+void Simulation<dim>::record_failure(const std::string& message) const noexcept {
+  if (!is_root(comm_))
+    return;
+  try {
+    write_file_atomically(options_.output_directory + "/summary.json",
+                          unfinished_summary("failed", message, header_).dump(2) + "\n");
+  } catch (const std::exception&) {
+    // What failed is said by its own message; a full disk may hold no other.
+  }
 }
 
 template <int dim>

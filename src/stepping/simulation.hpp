@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -41,6 +42,11 @@ class Simulation {
   /// The step's report; null if a signal ended it, whose number `signal` then is. Collective.
   std::optional<StepReport<dim>> take_step(double dt, int& signal);
   void begin_outputs();
+  /// Steps until the end or a signal, whose number is returned; 0 at the end.
+  int take_steps(std::chrono::steady_clock::time_point start);
+  void end_outputs(int signal, double wall_seconds);
+  /// On rank 0, not collective: others may have failed elsewhere.
+  void record_failure(const std::string& message) const noexcept;
   RunView<dim> view(const std::vector<SolidState<dim>>& states) const;
   void check_names() const;
   void write_frame();
@@ -65,6 +71,7 @@ class Simulation {
   bool warned_of_viscous_step_ = false;
   double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
   RunSummary summary_;
+  nlohmann::ordered_json header_;
 };
 
 }  // namespace lockstep

@@ -143,6 +143,33 @@ class PageInBrowser(unittest.TestCase):
             self.assertGreater(numpy.ptp(self.player(number)[..., 0]), 0.2)
         self.assertEqual(self.browser.run("document.querySelectorAll('[data-title=Energy] .curve').length"), 2)
 
+    def test_watched_page_follows_the_run(self):
+        folder = self.folder / "watched"
+        make_run.main(folder, 2)
+        watcher = subprocess.Popen([TOOLS / "watch", folder, "--port", "0", "--every", "0.2"], stdout=subprocess.PIPE, text=True)
+        try:
+            self.browser.open(watcher.stdout.readline().strip())
+            self.browser.wait_for(f"location.protocol === 'http:' && {READY}")
+            self.assertEqual(self.text("clock"), "t = 0.5 s, frame 2 of 2")  # a watched run is shown at its end
+            self.assertGreater(numpy.abs(self.player() - BODY).max(axis=-1).ptp(), 0.3)
+            self.choose("field", "velocity")
+            (folder / "history.csv").write_text(make_run.history() + "6,0.6,0.1,60,0.36\n")
+            (folder / "summary.json").write_text('{"status": "failed", "message": "no way out"}')
+            self.browser.wait_for("document.querySelector('.state').textContent === 'failed: no way out'", 20)
+            self.assertEqual(self.text("clock"), "t = 0.5 s, frame 2 of 2")
+            iterations = "document.querySelector('[data-title=Iterations] .curve').getAttribute('d').match(/[ML]/g).length"
+            self.browser.wait_for(f"{iterations} === 6", 20)
+            self.assertEqual(self.browser.run("document.getElementById('field').value"), "velocity")
+            self.assertEqual(self.browser.complaints, [])
+        finally:
+            watcher.kill()
+            watcher.wait()
+            watcher.stdout.close()
+        self.browser.wait_for("Boolean(document.getElementById('complaint'))", 20)
+        self.browser.open("about:blank")
+        self.browser.wait_for("location.protocol === 'about:'")
+        self.browser.complaints.clear()  # that the connection was refused
+
     def test_what_a_scene_says_is_text(self):
         self.open(2)
         self.assertEqual(self.browser.run("document.querySelector('h1').textContent"), "a </script> in a title")

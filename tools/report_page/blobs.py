@@ -19,6 +19,9 @@ class Blobs:
             self._compressed[name] = zlib.compress(data, 6)
         return name
 
+    def __contains__(self, name):
+        return name in self._compressed
+
     def __getitem__(self, name):
         return self._compressed[name]
 

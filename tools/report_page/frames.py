@@ -11,6 +11,13 @@ MOST_FIELD_BYTES = 48_000_000
 N_LAYERS = 3                  # of each axis, of a field that is too large
 
 
+def written_at(frame):
+    """When the file of a frame was written: one of an earlier run may have had the same time."""
+    arrays = [array for grid in frame.grids for array in (grid.vertices, *(field[0] for field in grid.fields.values()))]
+    path = next((array.path for array in arrays if array is not None and array.in_file), None)
+    return path.stat().st_mtime_ns if path and path.is_file() else 0
+
+
 class FramePacker:
     """Packs frames once: those of a run that goes on are asked for again and again."""
 
@@ -47,7 +54,7 @@ class FramePacker:
         return whole
 
     def _frame(self, frame, whole):
-        key = (frame.time, frozenset(whole))
+        key = (frame.time, written_at(frame), frozenset(whole))
         if key not in self._packed:
             try:
                 self._packed[key] = self._pack(frame, whole)

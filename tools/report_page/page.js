@@ -241,19 +241,34 @@ function fillDetails() {
 
 // A run that goes on.
 
+/// Tables are new whenever they have grown; what they were is asked for no more.
+function forgetTables(old, fresh) {
+  const names = (runs) => new Set(runs.flatMap((run) => Object.values(run.tables).flatMap((table) => (table.blob ? [table] : Object.values(table)).map(({ blob }) => blob))));
+  const kept = names(fresh);
+  for (const name of names(old)) if (!kept.has(name)) bytesByName.delete(name);
+}
+
 async function refresh() {
-  const atEnd = state.time >= (allTimes().pop() ?? 0);
-  try {
-    const fresh = await (await fetch("runs.json")).json();
-    at("complaint")?.remove();
-    state.runs = fresh.runs;
-    pageData.differences = fresh.differences;
-    await fillAll();
-    if (atEnd && !state.playing) await setTime(allTimes().pop() ?? 0);
-  } catch (error) {
-    if (!at("complaint")) at("heads").before(make("div", { id: "complaint" }, "The program that watches the run has ended: what follows is the last that it told."));
-  }
+  const answer = await fetch("runs.json").catch(() => null);
+  complain(answer === null ? "The program that watches the run has ended: what follows is the last that it told."
+    : answer.ok ? "" : await answer.text());
+  if (answer?.ok) await takeOver(await answer.json());
   setTimeout(refresh, 1000 * pageData.refresh);
+}
+
+function complain(text) {
+  at("complaint")?.remove();
+  if (text) at("heads").before(make("div", { id: "complaint" }, text));
+}
+
+/// Who looks at the end goes on looking at the end.
+async function takeOver({ runs, differences }) {
+  const atEnd = state.time >= (allTimes().pop() ?? 0);
+  forgetTables(state.runs, runs);
+  state.runs = runs;
+  pageData.differences = differences;
+  await fillAll();
+  if (atEnd && !state.playing) await setTime(allTimes().pop() ?? 0);
 }
 
 async function fillAll() {

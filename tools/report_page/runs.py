@@ -9,6 +9,7 @@ import numpy
 from lockstep_frames import FramesError
 
 from report_page.blobs import pack_numbers
+from report_page.state import progress_of, state_of
 
 MOST_ROWS = 20_000  # of a table; of longer ones every nth
 BODIES, HISTORY = "bodies.csv", "history.csv"
@@ -136,11 +137,11 @@ def number(word):
 def facts(summary, values, history):
     """What ran, as lines of a table."""
     versions = summary.get("versions", {})
-    rows = history["rows"] if history else []
-    last = dict(zip([column["name"] for column in history["columns"]], rows[-1])) if rows else {}
+    last = last_row(history)
     n_cells = [int(n) for n in numbers(values.get("Domain/Cells", "{0}"))]
     found = [
-        ("state", summary.get("status", "not finished: no summary.json")),
+        ("state", state_of(summary)),
+        ("progress", progress_of(summary, values, history)),
         ("grid", " x ".join(map(str, n_cells)) + f" = {int(numpy.prod(n_cells)):,} cells"),
         ("simulated time", f"{float(last['time']):.6g} s in {last['step']} steps" if last else "no step yet"),
         ("wall time", f"{summary['wall_seconds']:.4g} s" if "wall_seconds" in summary else None),
@@ -161,6 +162,10 @@ def facts(summary, values, history):
         ("command", summary.get("command")),
     ]
     return [(name, str(value)) for name, value in found if value is not None]
+
+
+def last_row(table):
+    return dict(zip([column["name"] for column in table["columns"]], table["rows"][-1])) if table and table["rows"] else {}
 
 
 def machine(of):
