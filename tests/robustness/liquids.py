@@ -14,6 +14,11 @@ def is_periodic(sides, axis):
     return sides[f"{AXES[axis]} lower"]["Type"] == "periodic"
 
 
+def pushed_along_periodic_axis(fluid, sides):
+    """Moving tiles take the fluid far away to be at rest."""
+    return any(force != 0 and is_periodic(sides, axis) for axis, force in enumerate(fluid.get("Body Force", ())))
+
+
 def point(rng, world, least=0.0, most=1.0):
     return [a + rng.uniform(least, most) * (b - a) for a, b in zip(world.lower, world.upper)]
 
@@ -69,7 +74,7 @@ def fill_with_liquid(world, content, seed):
         surface["Pressure Order"] = 1
     if rng.random() < 0.2:
         surface["Surface Tension"] = world.density * world.h ** 3 / world.dt ** 2 * 10 ** rng.uniform(-3, -1)
-    if rng.random() < 0.4:
+    if rng.random() < 0.4 and not pushed_along_periodic_axis(fluid, sides):
         fluid["Moving Tiles"] = {"Tile Margin": 16}
     world.facts.liquid = world.facts.works = True
     world.facts.scalar_range.clear()
