@@ -94,7 +94,10 @@ def table(path):
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
-class Leaks(unittest.TestCase):
+class Storm(unittest.TestCase):
+    """Runs `scenes`, by name."""
+    scenes = {}
+
     def run_scene(self, text, ranks, steps):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "scene.xml"
@@ -106,7 +109,7 @@ class Leaks(unittest.TestCase):
             return table(Path(folder) / "out" / "history.csv")
 
     def storm(self, name, ranks=1, steps=N_STEPS):
-        rows = self.run_scene(SCENES[name], ranks, steps)
+        rows = self.run_scene(self.scenes[name], ranks, steps)
         self.assertEqual(len(rows), steps)
         for row in rows:
             for column in row:
@@ -116,6 +119,9 @@ class Leaks(unittest.TestCase):
 
     def inside(self, rows, watch="Inside"):
         return [float(row[f"watch_{watch}_volume"]) for row in rows]
+
+class Leaks(Storm):
+    scenes = SCENES
 
     def test_a_restart_goes_on_the_same(self):
         with tempfile.TemporaryDirectory() as folder:
