@@ -1,19 +1,15 @@
 #include "base/memory.hpp"
 
 #include <malloc.h>
-
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <fstream>
-#include <limits>
 
 namespace lockstep {
-
-void keep_freed_memory() {
-  mallopt(M_MMAP_THRESHOLD, std::numeric_limits<int>::max());
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-}
 
 namespace {
 
@@ -25,7 +21,36 @@ double memory_of_machine() {
   return limit >> allowed && allowed > 0 ? std::min(installed, allowed) : installed;
 }
 
+/// Whether the system hands out address space only as far as it has memory for all of it.
+bool counts_address_space() {
+  int mode = 0;
+  std::ifstream("/proc/sys/vm/overcommit_memory") >> mode;
+  return mode == 2;
+}
+
+/// Grows the heap by address space, asks for huge pages there and frees it again: what is allocated
+/// later comes from it, and only what is written to takes memory.
+void ask_for_huge_pages() {
+  if (counts_address_space())
+    return;
+  const auto size = static_cast<std::size_t>(memory_of_machine() / 2);
+  void* const block = std::malloc(size);
+  if (block == nullptr)
+    return;
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto begin = reinterpret_cast<std::uintptr_t>(block) / page * page + page;
+  const std::uintptr_t end = (reinterpret_cast<std::uintptr_t>(block) + size) / page * page;
+  madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // a wish: it may fail
+  std::free(block);
+}
+
 }  // namespace
+
+void keep_freed_memory() {
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, -1);
+  ask_for_huge_pages();
+}
 
 double memory_of_machines(const Communicator& comm) {
   const MPI_Comm all = raw_communicator(comm);

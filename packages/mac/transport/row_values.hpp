@@ -1,4 +1,7 @@
 #pragma once
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
 #include <array>
 #include <type_traits>
 
@@ -32,6 +35,20 @@ Values samples_at(const double* c) {
     return *c;
   else
     return Eigen::Map<const Values>(c);
+}
+
+/// Whether some value is not 0.
+template <int n>
+[[gnu::always_inline]] inline bool has_nonzero(const Eigen::Array<double, n, 1>& values) {
+#ifdef __AVX512F__
+  unsigned found = 0;
+  for (int i = 0; i < n; i += 8)
+    found |=
+        _mm512_cmp_pd_mask(_mm512_loadu_pd(values.data() + i), _mm512_setzero_pd(), _CMP_NEQ_UQ);
+  return found != 0;
+#else
+  return values.abs().sum() != 0;
+#endif
 }
 
 /// Where the flag is not 0 the first, else the second.
