@@ -12,6 +12,9 @@
 //
 // Exit codes: 0 done, 2 bad input, 4 output failed; that of the first failed run otherwise, after
 // the table of the others has been written.
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -21,11 +24,13 @@
 #include "base/shortened.hpp"
 #include "output/atomic_file.hpp"
 #include "output/build_information.hpp"
+#include "output/progress.hpp"
 #include "parameters/reference.hpp"
 #include "studies/child_process.hpp"
 #include "studies/curves.hpp"
 #include "studies/expression_check.hpp"
 #include "studies/extrapolation.hpp"
+#include "studies/status_line.hpp"
 #include "studies/study_table.hpp"
 #include "studies/work_precision.hpp"
 
@@ -69,12 +74,32 @@ void plot(const std::string& directory, const std::string& tool, const std::stri
   fs::remove(errors, ignored);
 }
 
-std::string outcome_line(const StudyCase& study_case, const CaseOutcome& outcome) {
-  const std::string how = outcome.reused ? "used again"
-                          : outcome.done ? "done"
-                                         : fmt::format("failed with exit code {}: {}",
-                                                       outcome.exit_code, outcome.message);
-  return fmt::format("{}: {}", study_case.directory, how);
+std::string outcome_text(const CaseOutcome& outcome) {
+  if (outcome.reused)
+    return "used again";
+  const std::string seconds = format_seconds(outcome.seconds);
+  return outcome.done ? fmt::format("done in {}", seconds)
+                      : fmt::format("failed after {} with exit code {}: {}", seconds,
+                                    outcome.exit_code, outcome.message);
+}
+
+/// Columns of the terminal that shows what we say; 0 if none does.
+std::size_t terminal_width() {
+  winsize size = {};
+  if (isatty(STDOUT_FILENO) == 0)
+    return 0;
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::vector<CaseOutcome> run_cases_and_tell(const std::vector<StudyCase>& cases,
+                                            const RunnerOptions& options) {
+  StatusLine status(std::cout, std::cerr, cases.size(), terminal_width());
+  return run_cases(
+      cases, options,
+      [&](std::size_t i, const CaseOutcome& outcome) {
+        status.ended(cases[i].directory, outcome_text(outcome), !outcome.done);
+      },
+      [&](std::size_t i, const std::string& log) { status.started(cases[i].directory, log); });
 }
 
 int run_study(const Study& study, const Arguments& arguments) {
@@ -95,14 +120,7 @@ int run_study(const Study& study, const Arguments& arguments) {
   const std::string& directory = arguments.runner.output_directory;
   fs::create_directories(directory);
   forward_signals_to_children();
-  std::size_t n_finished = 0;
-  const auto outcomes =
-      run_cases(cases, arguments.runner, [&](std::size_t i, const CaseOutcome& outcome) {
-        (outcome.done ? std::cout : std::cerr)
-            << fmt::format("[{}/{}] {}", ++n_finished, cases.size(),
-                           outcome_line(cases[i], outcome))
-            << std::endl;
-      });
+  const std::vector<CaseOutcome> outcomes = run_cases_and_tell(cases, arguments.runner);
 
   // 5. Measure what is there.
   const std::vector<StudyRow> table = study_table(study, cases, outcomes);
@@ -139,7 +157,8 @@ int run(int argc, char** argv) {
                  "output folder; default: the name of the study");
   app.add_option("--rungs", arguments.rungs, "part of the ladder, counted from 1: first:last");
   app.add_option("--series", arguments.series, "only series whose names match this expression");
-  app.add_option("--jobs", arguments.runner.n_jobs, "cases at a time; times suffer")
+  app.add_option("--jobs", arguments.runner.n_jobs,
+                 "cases at a time; their seconds are marked as shared")
       ->check(CLI::PositiveNumber);
   app.add_flag("--fresh", arguments.runner.fresh, "run everything again");
   app.add_flag("--list", arguments.list, "print the cases without running them");

@@ -4,7 +4,9 @@
 #include <atomic>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "base/errors.hpp"
@@ -38,13 +40,42 @@ std::string case_key(const StudyCase& study_case, const std::string& common) {
   return key + common + checksums_of_inputs(study_case);
 }
 
-bool is_finished(const std::string& directory, const std::string& key) {
+constexpr const char* at_a_time = "runs at a time: ";
+
+/// How many runs went at a time when this case was run; none if it was not, or was another.
+std::optional<int> finished_with(const std::string& directory, const std::string& key) {
   for (const char* file : {"case.txt", "summary.json", "used-parameters.xml", "history.csv"}) {
     if (!fs::exists(fs::path(directory) / file))
-      return false;
+      return {};
   }
-  return read_whole_file(directory + "/case.txt") == key;
+  const std::string text = read_whole_file(directory + "/case.txt");
+  if (text.rfind(key, 0) != 0)
+    return {};
+  const std::string rest = text.substr(key.size());
+  if (rest.empty())
+    return 1;  // written before this was
+  const std::size_t length = std::string(at_a_time).size();
+  return rest.compare(0, length, at_a_time) == 0 ? std::optional(std::atoi(rest.c_str() + length))
+                                                 : std::nullopt;
 }
+
+/// The runs that go on, and for each how many there were at most.
+class Concurrency {
+ public:
+  void begin(std::size_t one) {
+    running_[one] = 0;
+    for (auto& [other, most] : running_)
+      most = std::max(most, static_cast<int>(running_.size()));
+  }
+  int end(std::size_t one) {
+    const int most = running_.at(one);
+    running_.erase(one);
+    return most;
+  }
+
+ private:
+  std::map<std::size_t, int> running_;
+};
 
 std::vector<std::string> command_of(const StudyCase& study_case, const std::string& simulate,
                                     const std::string& directory) {
@@ -79,33 +110,51 @@ void check_no_link(const std::string& output_directory, const fs::path& below) {
   }
 }
 
+/// An empty folder for a run, in the place of an earlier one.
+void prepare_folder(const StudyCase& study_case, const RunnerOptions& options,
+                    const std::string& directory) {
+  check_no_link(options.output_directory, fs::path("runs") / study_case.directory);
+  std::error_code error;
+  fs::remove_all(directory, error);
+  check_output(!error, "Cannot remove the folder '{}': {}.", directory, error.message());
+  fs::create_directories(directory, error);
+  check_output(!error, "Cannot create the folder '{}': {}.", directory, error.message());
+}
+
+/// `begin` is called before the run, `end` after it and tells how many went at a time; neither if
+/// the case is there already.
 CaseOutcome run_case(const StudyCase& study_case, const RunnerOptions& options,
-                     const std::string& common_key) {
+                     const std::string& common_key,
+                     const std::function<void(const std::string&)>& begin,
+                     const std::function<int()>& end) {
   CaseOutcome outcome;
   outcome.directory = fmt::format("{}/runs/{}", options.output_directory, study_case.directory);
   const std::string key = case_key(study_case, common_key);
-  if (!options.fresh && is_finished(outcome.directory, key)) {
+  const auto found = options.fresh ? std::nullopt : finished_with(outcome.directory, key);
+  if (found) {
     outcome.done = outcome.reused = true;
+    outcome.n_at_a_time = *found;
     return outcome;
   }
-  check_no_link(options.output_directory, fs::path("runs") / study_case.directory);
-  std::error_code error;
-  fs::remove_all(outcome.directory, error);
-  check_output(!error, "Cannot remove the folder '{}': {}.", outcome.directory, error.message());
-  fs::create_directories(outcome.directory, error);
-  check_output(!error, "Cannot create the folder '{}': {}.", outcome.directory, error.message());
+  prepare_folder(study_case, options, outcome.directory);
+  const std::string log = outcome.directory + "/log.txt";
   const std::string errors = outcome.directory + "/errors.txt";
-  outcome.exit_code = run_child(command_of(study_case, options.simulate, outcome.directory),
-                                outcome.directory + "/log.txt", errors)
-                          .exit_code;
+  begin(log);
+  const ChildResult result =
+      run_child(command_of(study_case, options.simulate, outcome.directory), log, errors);
+  outcome.n_at_a_time = end();
+  outcome.exit_code = result.exit_code;
+  outcome.seconds = result.wall_seconds;
   outcome.done = outcome.exit_code == 0;
   if (outcome.done) {
     // Only the last state matters, and ladders are long.
+    std::error_code error;
     for (const auto& file : fs::directory_iterator(outcome.directory)) {
       if (file.path().filename().string().rfind("checkpoint-", 0) == 0)
         fs::remove(file.path(), error);
     }
-    write_file_atomically(outcome.directory + "/case.txt", key);
+    write_file_atomically(outcome.directory + "/case.txt",
+                          key + fmt::format("{}{}\n", at_a_time, outcome.n_at_a_time));
   } else {
     outcome.message = complaint(errors);
   }
@@ -116,7 +165,8 @@ CaseOutcome run_case(const StudyCase& study_case, const RunnerOptions& options,
 
 std::vector<CaseOutcome> run_cases(
     const std::vector<StudyCase>& cases, const RunnerOptions& options,
-    const std::function<void(std::size_t, const CaseOutcome&)>& report) {
+    const std::function<void(std::size_t, const CaseOutcome&)>& report,
+    const std::function<void(std::size_t, const std::string&)>& started) {
   const std::string key = executable_key(options.simulate);
   fs::create_directories(options.output_directory);
   const FolderLock folder_lock(options.output_directory, options.seconds_to_wait);
@@ -125,10 +175,21 @@ std::vector<CaseOutcome> run_cases(
   std::atomic<bool> stop{false};
   std::mutex mutex;
   std::exception_ptr failure;
+  Concurrency concurrency;
   const auto work = [&] {
     for (std::size_t i = next++; i < cases.size() && !stop; i = next++) {
       try {
-        outcomes[i] = run_case(cases[i], options, key);
+        const auto begin = [&](const std::string& log) {
+          const std::lock_guard<std::mutex> lock(mutex);
+          concurrency.begin(i);
+          if (started)
+            started(i, log);
+        };
+        const auto end = [&] {
+          const std::lock_guard<std::mutex> lock(mutex);
+          return concurrency.end(i);
+        };
+        outcomes[i] = run_case(cases[i], options, key, begin, end);
         const std::lock_guard<std::mutex> lock(mutex);
         report(i, outcomes[i]);
       } catch (...) {

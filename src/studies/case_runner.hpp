@@ -20,6 +20,8 @@ struct CaseOutcome {
   bool done = false;  ///< false also for cases not started after bad input
   bool reused = false;
   int exit_code = 0;
+  int n_at_a_time = 1;    ///< runs of the study, at most, while this one went; seconds know it
+  double seconds = 0;     ///< from its start to its end; 0 if reused
   std::string directory;  ///< of its output
   std::string message;    ///< what the child complained about
 };
@@ -27,10 +29,13 @@ struct CaseOutcome {
 /// Runs every case that has no finished run of the same scene, files that it names, assignments,
 /// ranks and executable. One call at a time in a folder: throws OutputError if another works there.
 /// A failed case does not stop the others, unless its input was bad: then no further one is
-/// started. `report` is called after each case with its number and outcome, by one thread at a
-/// time.
+/// started. What runs when a study is killed is run anew from its start by the next call: seconds
+/// and iterations of a case are those of one run. By one thread at a time, `started` is called
+/// before each run with the number of its case and the file of its log, `report` after each case
+/// with its number and outcome.
 std::vector<CaseOutcome> run_cases(
     const std::vector<StudyCase>& cases, const RunnerOptions& options,
-    const std::function<void(std::size_t, const CaseOutcome&)>& report);
+    const std::function<void(std::size_t, const CaseOutcome&)>& report,
+    const std::function<void(std::size_t, const std::string&)>& started = {});
 
 }  // namespace lockstep

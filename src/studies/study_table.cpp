@@ -18,6 +18,7 @@ struct Rung {
   const StudyCase* first = nullptr;
   std::vector<RunResults> runs;
   std::vector<Variables> variables;
+  int n_at_a_time = 1;
 };
 
 std::vector<Rung> read_rungs(const Study& study, int series, const std::vector<StudyCase>& cases,
@@ -31,6 +32,7 @@ std::vector<Rung> read_rungs(const Study& study, int series, const std::vector<S
       rungs.back().first = &cases[i];
     }
     rungs.back().runs.push_back(read_run(outcomes[i].directory));
+    rungs.back().n_at_a_time = std::max(rungs.back().n_at_a_time, outcomes[i].n_at_a_time);
     rungs.back().variables.push_back(run_variables(study, cases[i], rungs.back().runs.back()));
   }
   return rungs;
@@ -67,6 +69,7 @@ StudyRow make_row(const Study& study, const Quantity& quantity, const Rung& rung
   row.ladder = rung.first->constants.at(study.ladder_name);
   row.abscissa = evaluate(study.abscissa, rung.variables.front(), "\"Ladder/Abscissa\"");
   row.n_samples = static_cast<int>(rung.runs.size());
+  row.n_at_a_time = rung.n_at_a_time;
   std::vector<double> values;
   for (std::size_t k = 0; k < rung.runs.size(); ++k)
     values.push_back(measure(quantity, rung.runs[k], rung.variables[k]));
@@ -151,16 +154,18 @@ std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
       "# cells: of the whole box; h [m], dt [s]: mean of a run; error: relative to the reference "
       "unless that is 0\n"
       "# wall_seconds, core_seconds [s]: of one run; spread: standard deviation over the samples\n"
+      "# at_a_time: runs of the study, at most, while this one went; more than 1 take longer\n"
       "{}series,cells,h,dt,ranks,quantity,value,reference,error,order,wall_seconds,core_seconds,"
-      "iterations_median,iterations_max,peak_memory_mb,spread,samples,abscissa\n",
+      "iterations_median,iterations_max,peak_memory_mb,spread,samples,abscissa,at_a_time\n",
       study.title, study.abscissa, study.ladder_name, target_lines(study));
   for (const StudyRow& row : rows) {
-    csv += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.series), row.cells,
-        number_text(row.spacing), number_text(row.mean_step), row.ranks, csv_field(row.quantity),
-        number_text(row.value), text(row.reference), text(row.error), text(row.order),
-        row.wall_seconds, row.core_seconds, row.iterations_median, row.iterations_max,
-        row.peak_memory_mb, number_text(row.spread), row.n_samples, number_text(row.abscissa));
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                       csv_field(row.series), row.cells, number_text(row.spacing),
+                       number_text(row.mean_step), row.ranks, csv_field(row.quantity),
+                       number_text(row.value), text(row.reference), text(row.error),
+                       text(row.order), row.wall_seconds, row.core_seconds, row.iterations_median,
+                       row.iterations_max, row.peak_memory_mb, number_text(row.spread),
+                       row.n_samples, number_text(row.abscissa), row.n_at_a_time);
   }
   return csv;
 }
@@ -179,14 +184,21 @@ std::string table_markdown(const Study& study, const std::vector<StudyRow>& rows
         continue;
       const std::string spread = row.n_samples > 1 ? fmt::format("{:.2g}", row.spread) : "";
       page += fmt::format(
-          "| {} | {:.6g} | {:.0f} | {:.4g} | {:.4g} | {} | {:.7g} | {} | {} | {} | {} | {:.2g} | "
+          "| {} | {:.6g} | {:.0f} | {:.4g} | {:.4g} | {} | {:.7g} | {} | {} | {} | {} | {:.2g}{} | "
           "{:.3g}, {:.0f} | {:.0f} |\n",
           row.series, row.ladder, row.cells, row.spacing, row.mean_step, row.ranks, row.value,
           spread, short_text(row.reference, 7), short_text(row.error, 3), short_text(row.order, 3),
-          row.core_seconds, row.iterations_median, row.iterations_max, row.peak_memory_mb);
+          row.core_seconds, row.n_at_a_time > 1 ? fmt::format(" ({})", row.n_at_a_time) : "",
+          row.iterations_median, row.iterations_max, row.peak_memory_mb);
     }
     page += "\n";
   }
+  if (std::any_of(rows.begin(), rows.end(),
+                  [](const StudyRow& row) { return row.n_at_a_time > 1; }))
+    page +=
+        "Seconds with a number in brackets are of runs that shared the machine with others of the "
+        "study: "
+        "up to so many at a time, which makes each of them slower.\n\n";
   return page;
 }
 

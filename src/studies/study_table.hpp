@@ -21,6 +21,7 @@ struct StudyRow {
   double peak_memory_mb = 0;     ///< largest, all ranks of a run together
   double spread = 0;             ///< standard deviation over the samples
   int n_samples = 1;
+  int n_at_a_time = 1;  ///< runs of the study while one of these went: more take longer
 };
 
 /// Measures the cases that are done: series by series, quantity by quantity, rung by rung.

@@ -8,7 +8,7 @@ import time
 import unittest
 from pathlib import Path
 
-from program import CONVERGE, SCENE
+from program import CONVERGE, SCENE, SIMULATE
 
 STUDY = """<ParameterList name="Study">
   <Parameter name="Scene" type="string" value="scene.xml"/>
@@ -108,6 +108,44 @@ class Studies(unittest.TestCase):
         self.assertFalse(outlived, "the run of a killed study works on")
         result = self.converge()
         self.assertEqual(result.returncode, 0, result.stderr)
+
+    def hanging_simulate(self):
+        """A simulate whose second case hangs as long as a file "hang" is there; that file."""
+        hang = self.folder / "hang"
+        hang.write_text("")
+        program = self.folder / "simulate"
+        program.write_text(f"#!/bin/sh\ncase $* in *Step=0.02*) while [ -e {hang} ]; do sleep 0.05; done ;; esac\n"
+                           f"exec {SIMULATE} \"$@\"\n")
+        program.chmod(0o755)
+        return hang, ["--simulate", str(program)]
+
+    def test_a_killed_study_goes_on_where_it_was(self):
+        two = STUDY.replace("{0.01}", "{0.01, 0.02}").replace("Time/Steps=1", "Time/Steps=1; Time/Fixed Step=[step]")
+        hang, options = self.hanging_simulate()
+        with subprocess.Popen(self.command(*options, study=two), stdout=subprocess.PIPE, text=True) as study:
+            self.assertRegex(study.stdout.readline(), r"^\[1/2\] all/step=0.01: done in [\d.]+ m?s$")
+            study.send_signal(signal.SIGKILL)
+        hang.unlink()
+        first, second, *_ = self.converge(*options, study=two).stdout.splitlines()
+        self.assertEqual(first, "[1/2] all/step=0.01: used again")
+        self.assertRegex(second, r"^\[2/2\] all/step=0.02: done in [\d.]+ m?s$")
+
+    def test_a_terminal_shows_what_runs(self):
+        two = STUDY.replace("{0.01}", "{0.01, 0.02}").replace("Time/Steps=1", "Time/Steps=1; Time/Fixed Step=[step]")
+        hang, options = self.hanging_simulate()
+        terminal, end = os.openpty()
+        with subprocess.Popen(self.command(*options, study=two), stdout=end, stderr=subprocess.DEVNULL) as study:
+            os.close(end)
+            shown, stop = b"", time.monotonic() + 60
+            while b"1 of 2 after 1s; all/step=0.02 (starting)" not in shown:
+                self.assertLess(time.monotonic(), stop, shown)
+                shown += os.read(terminal, 1000)
+            hang.unlink()
+            while b"rows in" not in shown:
+                shown += os.read(terminal, 1000)
+        os.close(terminal)
+        # The line is wiped away before another is written.
+        self.assertRegex(shown.decode(), r"\r\x1b\[K\[2/2\] all/step=0.02: done in")
 
     def test_input_that_never_ends(self):
         os.mkfifo(self.folder / "pipe.xml")

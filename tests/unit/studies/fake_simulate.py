@@ -2,12 +2,13 @@
 """Stands in for simulate: a 'scene' whose error is h^2 + offset, in the files a run leaves behind. Its frames hold
 a unit square, "Ball 1", that breathes by a tenth with a period of 0.4 s, and a velocity (0, -x (1 - (y - 0.4)^2)).
 
-Understands --output and the settings Domain/Cells, Solids/Ball/Position and Fake/Fail (an exit code).
+Understands --output and the settings Domain/Cells, Solids/Ball/Position, Fake/Fail (an exit code) and Fake/Seconds.
 """
 import json
 import math
 import os
 import sys
+import time
 from pathlib import Path
 
 import h5py
@@ -25,6 +26,7 @@ for flag, value in zip(arguments[::2], arguments[1::2]):
 if settings.get("Fake/Fail", "0") != "0":
     print("S2 did not converge: residual 1.", file=sys.stderr)
     sys.exit(int(settings["Fake/Fail"]))
+time.sleep(float(settings.get("Fake/Seconds", "0")))
 rank = int(os.environ.get("OMPI_COMM_WORLD_RANK", "0"))
 ranks = int(os.environ.get("OMPI_COMM_WORLD_SIZE", "1"))
 if rank != 0:

@@ -211,6 +211,43 @@ TEST_F(Runs, AFailureLeavesTheRest) {
   EXPECT_FALSE(run()[1].reused);
 }
 
+TEST_F(Runs, SecondsOfRunsSideBySideAreMarked) {
+  study_.ladder_values = {4, 8};
+  study_.assignments.push_back("Fake/Seconds=0.5");
+  const auto alone = table();
+  EXPECT_EQ(alone[0].n_at_a_time, 1);
+  EXPECT_THAT(table_markdown(study_, alone), testing::Not(testing::HasSubstr("shared")));
+  options_.fresh = true;
+  options_.n_jobs = 2;
+  EXPECT_EQ(table()[1].n_at_a_time, 2);
+  options_.fresh = false;
+  options_.n_jobs = 1;
+  const auto again = table();  // they are used again, with their mark
+  EXPECT_EQ(again[0].n_at_a_time, 2);
+  EXPECT_THAT(table_markdown(study_, again), testing::HasSubstr("| 2 (2) | 6, 9 |"));
+  EXPECT_THAT(table_markdown(study_, again), testing::HasSubstr("shared the machine"));
+  EXPECT_THAT(table_csv(study_, again), testing::EndsWith(",0.125,2\n"));
+}
+
+TEST_F(Runs, CasesAreToldWhenTheyStartAndEnd) {
+  study_.ladder_values = {4};
+  cases_ = study_cases(study_, {});
+  std::string log;
+  CaseOutcome outcome;
+  const auto tell = [&] {
+    log.clear();
+    run_cases(
+        cases_, options_, [&](std::size_t, const CaseOutcome& one) { outcome = one; },
+        [&](std::size_t i, const std::string& file) { log = fmt::format("{} {}", i, file); });
+  };
+  tell();
+  EXPECT_EQ(log, "0 " + folder_ + "/runs/all/n=4/log.txt");
+  EXPECT_GT(outcome.seconds, 0);
+  tell();
+  EXPECT_EQ(log, "");
+  EXPECT_EQ(outcome.seconds, 0);
+}
+
 TEST_F(Runs, BadInputStopsTheLadder) {
   study_.assignments.push_back("Fake/Fail=[n == 4 ? 2 : 0]");
   const auto outcomes = run();
