@@ -3,7 +3,6 @@
 #include "base/errors.hpp"
 #include "mac/liquid/dry_cells.hpp"
 #include "mac/liquid/wave_damping.hpp"
-#include "mac/transport/sample_lattice.hpp"
 
 namespace lockstep {
 
@@ -49,6 +48,7 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
 
 template <int dim>
 void Liquid<dim>::begin(const Surface& surface) {
+  lattice_.emplace(domain_.grid);
   if (!initial_distance_)
     return;
   if (!dry_points_.empty()) {
@@ -105,9 +105,8 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
 
 template <int dim>
 double Liquid<dim>::distance(const Point<dim>& x) const {
-  const SampleLattice<dim> lattice(domain_.grid);
   const Point<dim> place = (domain_.grid.wrap(x) - domain_.grid.lower()) / domain_.spacing();
-  const auto stencil = lattice.locate(cell_centers, place);
+  const auto stencil = lattice_->locate(cell_centers, place);
   return interpolate<dim>(stencil, interface_->distance().data());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "interfaces/liquid.hpp"
 #include "mac/liquid/free_surface.hpp"
@@ -7,6 +8,7 @@
 #include "mac/liquid/leak_audit.hpp"
 #include "mac/liquid/liquid_parameters.hpp"
 #include "mac/liquid/velocity_extension.hpp"
+#include "mac/transport/sample_lattice.hpp"
 
 namespace lockstep {
 
@@ -20,7 +22,8 @@ class Liquid {
   Liquid(const ParameterList& fluid, const Point<dim>& gravity,
          const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain);
 
-  /// The first call fills the liquid in, outside of the solids. Collective.
+  /// Before all else on the present tiles. The first call fills the liquid in, outside of the
+  /// solids. Collective.
   void begin(const Surface& surface);
   /// At the present time; valid while this is.
   FreeSurface<dim> surface() const;
@@ -35,7 +38,7 @@ class Liquid {
   CellField& lead() { return lead_; }
   InterfaceModel<dim>& interface() { return *interface_; }
   const InterfaceModel<dim>& interface() const { return *interface_; }
-  /// Linear between the centres of cells; near cells that this rank owns. Local.
+  /// Linear between the centres of cells; near cells that this rank owns. After `begin`. Local.
   double distance(const Point<dim>& x) const;
   LiquidReport report() const;
   std::vector<std::string> watch_names() const;
@@ -47,6 +50,7 @@ class Liquid {
   FreeSurfaceParameters parameters_;
   double gravity_ = 0;  ///< [m/s^2]
   CellField lead_;
+  std::optional<SampleLattice<dim>> lattice_;  ///< of the tiles since the last `begin`
   std::vector<SignedDistance<dim>> sinks_;
   std::vector<Point<dim>> dry_points_;
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
