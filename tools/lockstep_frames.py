@@ -1,6 +1,11 @@
 """Reads the frames of a run from its frames.xmf: names, times, geometry and where each array lies.
 
-Only the index is read at once; arrays are opened when asked for. Used by plot-frame, render and report.
+    for frame in read_frames("output/run"):
+        ball, box = frame["Ball"], frame["fluid"]
+        print(frame.time, ball.points().mean(axis=0), box.values("pressure").max())
+
+Only the index is read at once; arrays are opened when asked for. All of tools/ reads frames with this; a program of one's
+own may have a copy of this file, which needs h5py and numpy alone.
 """
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
@@ -55,11 +60,40 @@ class Grid:
     vertices: Array = None                      # of a surface
     simplices: Array = None
 
+    def points(self):
+        """Of a surface or volume: positions (n, 3) [m]; z is 0 in two dimensions."""
+        return self.vertices.read()
+
+    def cells(self):
+        """Of a surface or volume: vertex numbers (n, corners)."""
+        return self.simplices.read().astype(int).reshape(-1, self.n_corners)
+
+    def centres(self):
+        """Of a box: the x, the y and the z of the cells' centres [m]."""
+        return [self.origin[axis] + self.spacing[axis] * (numpy.arange(n) + 0.5) for axis, n in enumerate(self.n_cells)]
+
+    def values(self, name):
+        """A field: of a box [z][y][x] (in 2D [y][x]), of a surface or volume one a cell; vectors have one more index."""
+        if name not in self.fields:
+            raise FramesError(f"'{self.name}' has no field '{name}'; there are: {', '.join(self.fields) or 'none'}.")
+        return self.fields[name][0].read()
+
 
 @dataclass
 class Frame:
     time: float
     grids: list
+
+    def __getitem__(self, name):
+        """The grid of that name: "fluid", a solid, "SOLID elements" or "water"."""
+        for grid in self.grids:
+            if grid.name == name:
+                return grid
+        raise FramesError(f"The frame at {self.time:g} s holds no '{name}', but {', '.join(self.names)}.")
+
+    @property
+    def names(self):
+        return [grid.name for grid in self.grids]
 
     @property
     def boxes(self):
@@ -76,8 +110,7 @@ class Frame:
         return {grid.name[:-len(ELEMENTS)]: grid for grid in self.grids if self._is_elements(grid)}
 
     def _is_elements(self, grid):
-        names = [other.name for other in self.grids]
-        return grid.name.endswith(ELEMENTS) and grid.name[:-len(ELEMENTS)] in names
+        return grid.name.endswith(ELEMENTS) and grid.name[:-len(ELEMENTS)] in self.names
 
 
 def index_path(output_directory):

@@ -67,8 +67,8 @@ class FramePacker:
         for surface in frame.surfaces:
             packed["surfaces"].append({"name": surface.name, "water": surface.name == WATER,
                                        "corners": surface.n_corners,
-                                       "points": pack_points(self.blobs, surface.vertices.read()),
-                                       "simplices": pack_simplices(self.blobs, surface.simplices.read())})
+                                       "points": pack_points(self.blobs, surface.points()),
+                                       "simplices": pack_simplices(self.blobs, surface.cells())})
         for box in frame.boxes[:1]:
             packed["box"] = {"origin": box.origin.tolist(), "spacing": box.spacing.tolist(), "cells": box.n_cells}
             none = self._without_fluid(box)
@@ -81,14 +81,14 @@ class FramePacker:
         """Cells without values: those in solids and, above a liquid's surface, in the void."""
         none = numpy.zeros(box.n_cells[::-1], bool)
         if "phi" in box.fields:
-            none |= box.fields["phi"][0].read().reshape(none.shape) >= 0
+            none |= box.values("phi").reshape(none.shape) >= 0
         if "fluid" in box.fields:
-            none |= box.fields["fluid"][0].read().reshape(none.shape) == 0
+            none |= box.values("fluid").reshape(none.shape) == 0
         return none
 
     def _field(self, box, name, none, is_whole):
-        array, _, is_vector = box.fields[name]
-        values = array.read().astype(float)
+        is_vector = box.fields[name][2]
+        values = box.values(name).astype(float)
         if is_vector:
             values = numpy.linalg.norm(values, axis=-1)
         values = values.reshape(box.n_cells[::-1])
