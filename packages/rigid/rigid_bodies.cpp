@@ -259,6 +259,35 @@ std::vector<SolidState<dim>> RigidBodies<dim>::states() const {
 }
 
 template <int dim>
+RigidFrame<dim> RigidBodies<dim>::rigid_frame(int solid) const {
+  const RigidBody<dim>& body = bodies_[solid];
+  RigidFrame<dim> frame{body.pose.position, body.pose.orientation, body.velocity};
+  if (body.dynamic())
+    frame.mass = mass_matrix(body, body.pose.orientation);
+  return frame;
+}
+
+template <int dim>
+RigidFrame<dim> RigidBodies<dim>::prescribed_frame(int solid, double time) const {
+  const RigidPose<dim>& start = bodies_[solid].initial_pose;
+  const ScriptedMotion<dim> motion = bodies_[solid].script(time);
+  RigidFrame<dim> frame{start.position + motion.displacement,
+                        turned<dim>(motion.turn, start.orientation)};
+  frame.velocity << motion.velocity, motion.angular_velocity;
+  return frame;
+}
+
+/// Both are ties to space of their own.
+template <int dim>
+std::string RigidBodies<dim>::unjointable(int solid) const {
+  const RigidBody<dim>& body = bodies_[solid];
+  const auto& locked = body.locked;
+  if (std::any_of(locked.begin(), locked.end(), [](bool lock) { return lock; }))
+    return "Locked";
+  return body.dynamic() && !body.center_of_mass.isZero(0) ? "Pivot" : "";
+}
+
+template <int dim>
 std::unique_ptr<RigidBodies<dim>> make_rigid_bodies(
     const std::vector<std::pair<std::string, ParameterList>>& bodies, double grid_spacing,
     const Point<dim>& gravity, const Communicator& comm, double start_time) {

@@ -19,7 +19,9 @@ namespace lockstep {
 /// contains the gyroscopic effect. Free spin conserves angular momentum exactly, its energy stays
 /// bounded, and it is second order in time.
 template <int dim>
-class RigidBodies : public SolidModel<dim>, public AuditedSolids<dim> {
+class RigidBodies : public SolidModel<dim>,
+                    public AuditedSolids<dim>,
+                    public JointableSolids<dim> {
  public:
   /// gravity [m/s^2]; prescribed bodies are put where they are at `start_time` [s]. Collective.
   RigidBodies(std::vector<RigidBody<dim>> bodies, const Point<dim>& gravity,
@@ -51,6 +53,11 @@ class RigidBodies : public SolidModel<dim>, public AuditedSolids<dim> {
   void move(const Vector& velocity, double time, double dt) override;
   Point<dim> carried(int solid, const Point<dim>& x) const override;
   std::vector<SolidState<dim>> states() const override;
+
+  RigidFrame<dim> rigid_frame(int solid) const override;
+  RigidFrame<dim> prescribed_frame(int solid, double time) const override;
+  GlobalIndex first_dof(int solid) const override { return first_dof_[solid]; }
+  std::string unjointable(int solid) const override;
 
   std::function<void()> undo() override;
   /// Bit for bit. Throws InputError if the checkpoint holds other bodies.

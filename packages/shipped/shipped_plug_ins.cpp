@@ -1,5 +1,6 @@
 #include "shipped/shipped_plug_ins.hpp"
 
+#include "articulated/register_articulated.hpp"
 #include "contact/register_contact.hpp"
 #include "cutcell/register_flux.hpp"
 #include "deformable/register_deformable.hpp"
@@ -31,6 +32,7 @@ Registries<dim> shipped_plug_ins(std::shared_ptr<const InterfaceRegistry<dim>> i
   register_deformable<dim>(registries.solids);
   register_mixed_face<dim>(registries.couplings);
   register_flux<dim>(registries.couplings);
+  register_articulated<dim>(registries);
   register_contact<dim>(registries.contacts);
   register_strategies(registries.strategies);
   register_observers<dim>(registries.observers);

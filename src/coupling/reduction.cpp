@@ -250,6 +250,10 @@ void Reduction::select(Vector& velocity) const {
   set_zero(combined_, velocity);
 }
 
+void Reduction::drop_given(Vector& momentum) const {
+  set_zero(given_, momentum);
+}
+
 void Reduction::restrict(Vector& momentum) const {
   if (has_combinations()) {
     Vector taken(map_);

@@ -4,16 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "interfaces/constraint.hpp"
 #include "linear/types.hpp"
 
 namespace lockstep {
-
-/// A dof whose velocity is a combination of others': sum_k weight_k V_k. Those may be combinations
-/// themselves, or given.
-struct Combination {
-  GlobalIndex dof = no_index;
-  std::vector<std::pair<GlobalIndex, double>> terms;  ///< dof and weight
-};
 
 /// Which dofs of the solids are unknowns, and what the others' velocities are: V = P y + b (in the
 /// manner of deal.II's AffineConstraints). A dof is an *unknown*, whose row of P is that of the
@@ -66,6 +60,8 @@ class Reduction {
   void follow(Vector& velocity) const;
   /// y of V: zero where there is no unknown. Local.
   void select(Vector& velocity) const;
+  /// q := q without what acts on given dofs. Local.
+  void drop_given(Vector& momentum) const;
   /// q := P^T q. Collective.
   void restrict(Vector& momentum) const;
   /// From what a solution leaves in the rows of all dofs, r = C V + B^T p̂ - q: the impulses of the

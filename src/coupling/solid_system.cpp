@@ -9,8 +9,9 @@ namespace lockstep {
 
 template <int dim>
 SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> models,
-                              const Communicator& comm)
-    : comm_(comm), models_(std::move(models)) {
+                              const Communicator& comm,
+                              std::unique_ptr<ConstraintModel> joints)
+    : comm_(comm), models_(std::move(models)), joints_(std::move(joints)) {
   int n_simplices = 0, n_vertices = 0;
   std::vector<GlobalIndex> ids;
   for (int m = 0; m < n_models(); ++m) {
@@ -50,23 +51,6 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
   find_reduction();
 }
 
-/// Nodes that are attached stay so; where they are, and what is locked, changes.
-template <int dim>
-void SolidSystem<dim>::find_reduction() {
-  std::vector<Combination> combinations;
-  if (std::any_of(carried_.begin(), carried_.end(), [](char any) { return any != 0; })) {
-    std::string none;
-    attached_ = find_attached_nodes(models_, begin_, solids_, none);
-    combinations = combinations_of(attached_, models_, begin_, solids_);
-  }
-  std::vector<GlobalIndex> locked;
-  for (int m = 0; m < n_models(); ++m) {
-    for (const GlobalIndex id : model(m).locked_dofs())
-      locked.push_back(begin_[m].id + id);
-  }
-  reduction_ = Reduction(map_, std::move(combinations), std::move(locked));
-}
-
 template <int dim>
 std::vector<Block> SolidSystem<dim>::blocks() const {
   std::vector<Block> all;
@@ -75,29 +59,6 @@ std::vector<Block> SolidSystem<dim>::blocks() const {
     all.push_back({model(m).name(), begin_[m].local, begin_[m].local + n});
   }
   return all;
-}
-
-template <int dim>
-bool SolidSystem<dim>::begin_step(double time, double dt) {
-  for (const auto& solid_model : models_)
-    solid_model->begin_step(time, dt);
-  const Reduction before = reduction_;
-  find_reduction();
-  return reduction_.differs_in_unknowns(before);
-}
-
-template <int dim>
-Reduction SolidSystem<dim>::constraints(double begin, double end) const {
-  if (!reduction_.has_given())
-    return reduction_;
-  const auto velocity = make_vector(map_);
-  for (int m = 0; m < n_models(); ++m) {
-    const std::vector<GlobalIndex> dofs = model(m).locked_dofs();
-    const std::vector<double> values = model(m).locked_velocities(begin, end);
-    for (std::size_t k = 0; k < dofs.size(); ++k)
-      velocity->replaceGlobalValue(begin_[m].id + dofs[k], values[k]);
-  }
-  return reduction_.with_velocity(velocity);
 }
 
 template <int dim>
@@ -259,16 +220,6 @@ Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
 }
 
 template <int dim>
-void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
-  for (int m = 0; m < n_models(); ++m) {
-    if (!carried_[m])
-      model(m).move(*part(velocity, m), time, dt);
-  }
-  if (reduction_.has_combinations())
-    move_attached(velocity, time, dt);
-}
-
-template <int dim>
 std::function<void()> SolidSystem<dim>::undo() {
   std::vector<std::function<void()>> all;
   for (const auto& solid_model : models_)
@@ -345,23 +296,6 @@ template <int dim>
 void SolidSystem<dim>::limit_motion(double dt, Vector& velocity) {
   for (int m = 0; m < n_models(); ++m)
     model(m).limit_motion(dt, *part(velocity, m));
-}
-
-/// Attached nodes go where their solids have carried them, round the arc of a rotation.
-template <int dim>
-void SolidSystem<dim>::move_attached(const Vector& velocity, double time, double dt) {
-  Vector full(velocity, Teuchos::Copy);
-  for (const AttachedNode<dim>& node : attached_) {
-    const SolidDescription& solid = solids_[node.solid];
-    const Point<dim> target = model(solid.model).carried(solid.index_in_model, node.position);
-    for (int a = 0; a < dim; ++a)
-      full.replaceGlobalValue(node.dofs[a], (target[a] - node.position[a]) / dt);
-  }
-  for (int m = 0; m < n_models(); ++m) {
-    if (carried_[m])
-      model(m).move(*part(std::as_const(full), m), time, dt);
-  }
-  find_reduction();
 }
 
 template <int dim>

@@ -19,8 +19,9 @@ namespace lockstep {
 template <int dim>
 class SolidSystem {
  public:
-  /// Collective.
-  SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> models, const Communicator& comm);
+  /// `joints`: between solids of these models; null: none. Collective.
+  SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> models, const Communicator& comm,
+              std::unique_ptr<ConstraintModel> joints = nullptr);
 
   int n_models() const { return static_cast<int>(models_.size()); }
   SolidModel<dim>& model(int m) { return *models_[m]; }
@@ -71,8 +72,9 @@ class SolidSystem {
   /// P at the present positions, locked dofs at rest.
   const Reduction& reduction() const { return reduction_; }
   /// The same with the mean velocities of locked dofs between two times
-  /// (`SolidModel::locked_velocities`). Collective.
-  Reduction constraints(double begin, double end) const;
+  /// (`SolidModel::locked_velocities`), and with `ClosedMotion::drift`; null: none. Collective.
+  Reduction constraints(double begin, double end, const RCP<const Vector>& drift = {}) const;
+  ConstraintModel* joints() { return joints_.get(); }  ///< null: there are none
 
   /// Stacked vectors. Collective.
   RCP<Vector> velocity() const;  ///< carried nodes move as their solids
@@ -121,6 +123,7 @@ class SolidSystem {
 
   Communicator comm_;
   std::vector<std::unique_ptr<SolidModel<dim>>> models_;
+  std::unique_ptr<ConstraintModel> joints_;
   std::vector<SolidDescription> solids_;
   mutable BoxOrder order_;  ///< of snapshots
   RCP<const Map> map_;

@@ -1,10 +1,12 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "interfaces/constraint.hpp"
 #include "interfaces/contact.hpp"
 #include "interfaces/coupling.hpp"
 #include "interfaces/observer.hpp"
@@ -36,6 +38,22 @@ struct ContactSetting {
   Communicator comm;
 };
 
+/// What joints may know of the scene around them.
+template <int dim>
+struct JointSetting {
+  const std::vector<std::unique_ptr<SolidModel<dim>>>& models;  ///< in the order of their stack
+  double start_time = 0;                                        ///< [s]
+  Communicator comm;
+};
+
+/// The joints of a scene: ties between solids, and a model of their own unknowns, to follow the
+/// others in the stack.
+template <int dim>
+struct JointSystem {
+  std::unique_ptr<ConstraintModel> constraints;
+  std::unique_ptr<SolidModel<dim>> rates;
+};
+
 template <int dim>
 using FluidRegistry = Registry<FluidDiscretization<dim>, const ParameterList&, const Communicator&>;
 /// One model holds all solids of its type; the list given to `create` is empty.
@@ -46,6 +64,11 @@ using CouplingRegistry = Registry<Coupling<dim>>;
 using StrategyRegistry = Registry<SolverStrategy>;
 template <int dim>
 using ContactRegistry = Registry<ContactModel<dim>, const ContactSetting<dim>&>;
+
+/// The lists are those of all joints.
+template <int dim>
+using ArticulationRegistry =
+    Registry<JointSystem<dim>, const NamedLists&, const JointSetting<dim>&>;
 
 template <int dim>
 using ObserverRegistry = Registry<Observer<dim>>;
@@ -60,6 +83,9 @@ struct Registries {
   StrategyRegistry strategies{"solver strategy"};
   ContactRegistry<dim> contacts{"contact model"};
   ObserverRegistry<dim> observers{"observer"};
+  ArticulationRegistry<dim> articulations{"articulation"};
+  /// Schemas of the kinds of joints, by the name of the articulation.
+  std::map<std::string, std::function<std::vector<TypedSchema>()>> joints;
   /// Schema of the "Domain" list, by the name of the fluid whose domain it is.
   std::map<std::string, std::function<ParameterList()>> domains;
 };

@@ -1,6 +1,7 @@
 #pragma once
 #include "interfaces/solid.hpp"
 #include "linear/soft_nodes.hpp"
+#include "motion/rotation.hpp"
 
 namespace lockstep {
 
@@ -49,6 +50,31 @@ class UnlinearSolids {
   /// The potential of these forces at the velocity V of the solve over dt, less the quadratic one
   /// of which `explicit_momentum` and D are made, up to a constant. Global, collective.
   virtual ComputedEnergy unlinear_energy(double dt, const Vector& velocity) const = 0;
+};
+
+/// A rigid solid as joints see it. Generalized: dim translations of the reference point, then the
+/// rotations, in axes of space.
+template <int dim>
+struct RigidFrame {
+  static constexpr int n = dim + n_rotations<dim>;
+  Point<dim> position = Point<dim>::Zero();  ///< of the reference point [m]
+  Orientation<dim> orientation = rotation_of<dim>(AngularVector<dim>::Zero());
+  Eigen::Matrix<double, n, 1> velocity = Eigen::Matrix<double, n, 1>::Zero();
+  Eigen::Matrix<double, n, n> mass = Eigen::Matrix<double, n, n>::Zero();  ///< 0 if prescribed
+};
+
+/// Solids that joints can connect, by their numbers in the model. Local, the same on all ranks.
+template <int dim>
+class JointableSolids {
+ public:
+  virtual ~JointableSolids() = default;
+  virtual RigidFrame<dim> rigid_frame(int solid) const = 0;  ///< at present
+  /// Where a prescribed solid is at a time.
+  virtual RigidFrame<dim> prescribed_frame(int solid, double time) const = 0;
+  /// The first of its dofs, in `dof_map`; no_index if it is prescribed.
+  virtual GlobalIndex first_dof(int solid) const = 0;
+  /// A parameter of this solid that joints do not go with; empty: none.
+  virtual std::string unjointable(int solid) const = 0;
 };
 
 /// What inverses of C can be built on.

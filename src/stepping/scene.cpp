@@ -9,6 +9,7 @@
 #include "base/errors.hpp"
 #include "base/xml_text.hpp"
 #include "output/xdmf.hpp"
+#include "parameters/parameter_rule.hpp"
 
 namespace lockstep {
 namespace {
@@ -76,6 +77,19 @@ void declare_observers(ParameterList& scene, const ObserverRegistry<dim>& observ
                          types);
 }
 
+/// Joints exist where a program offers them.
+template <int dim>
+void declare_joints(ParameterList& scene, const Registries<dim>& registries) {
+  if (registries.joints.empty())
+    return;
+  declare_named_sublists(scene, "Joints",
+                         "Between solids, or solids and space: one sublist each, under a name of "
+                         "its own.",
+                         registries.joints.begin()->second());
+  declare_typed_sublist(scene, "Articulation", "What all joints share.",
+                        registries.articulations.schemas(), registries.joints.begin()->first);
+}
+
 /// Mesh files are given relative to the scene.
 void resolve_files(ParameterList& list, const std::string& scene_file) {
   for (auto entry = list.begin(); entry != list.end(); ++entry) {
@@ -112,6 +126,28 @@ void check_solid_names(const ParameterList& solids) {
 }
 
 template <int dim>
+std::unique_ptr<SolidSystem<dim>> jointed_solids(
+    const Registries<dim>& registries, const ParameterList& scene,
+    std::vector<std::unique_ptr<SolidModel<dim>>> models, const SolidSetting<dim>& setting) {
+  NamedLists joints;
+  for (const auto& [name, entry] : entries(scene.sublist("Joints")))
+    joints.emplace_back(name, scene.sublist("Joints").sublist(name));
+  const ParameterList& shared = scene.sublist("Articulation");
+  const double start = setting.start_time;
+  const auto system =
+      registries.articulations.create(shared.get<std::string>("Type"), shared, joints,
+                                      JointSetting<dim>{models, start, setting.comm});
+  models.push_back(std::move(system->rates));
+  auto solids = std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm,
+                                                   std::move(system->constraints));
+  solids->begin_step(start, 0);
+  // Of velocities that the joints do not let, what they leave: as after an impact.
+  const RCP<const Vector> momentum = solids->explicit_momentum(start, 0);
+  solids->set_velocity(*solids->velocity_of(*momentum, 0, solids->constraints(start, start)));
+  return solids;
+}
+
+template <int dim>
 std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries,
                                                const ParameterList& scene,
                                                const std::string& scene_file,
@@ -133,7 +169,9 @@ std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries
       models.push_back(registries.solids.create(plugin.name, ParameterList(), lists, setting));
     }
   }
-  return std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm);
+  if (!scene.isSublist("Joints") || scene.sublist("Joints").numParams() == 0)
+    return std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm);
+  return jointed_solids(registries, scene, std::move(models), setting);
 }
 
 }  // namespace
@@ -152,6 +190,7 @@ ParameterList scene_parameters(const Registries<dim>& registries, const std::str
                          registries.solids.schemas());
   declare_typed_sublist(scene, "Coupling", "How fluid and solids exchange momentum.",
                         registries.couplings.schemas(), "mixed face");
+  declare_joints(scene, registries);
   auto contacts = registries.contacts.schemas();
   const std::string usual_contact = contacts.empty() ? "none" : contacts.front().type;
   contacts.push_back(

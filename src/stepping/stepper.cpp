@@ -6,7 +6,6 @@
 
 #include "base/errors.hpp"
 #include "base/interruption.hpp"
-#include "coupling/swept_volumes.hpp"
 #include "linear/null_space.hpp"
 
 namespace lockstep {
@@ -77,6 +76,15 @@ RCP<const Vector> Stepper<dim>::unseen_buoyancy(double dt, StepReport<dim>& repo
   return buoyancy;
 }
 
+/// Of the solids, and of what joints gave where the step began.
+template <int dim>
+RCP<Vector> Stepper<dim>::explicit_momentum(const StepContext<dim>& context) const {
+  const RCP<Vector> momentum = components_.solids->explicit_momentum(context.time, context.dt);
+  if (!context.moves_positions() && !start_impulse_.is_null())
+    momentum->update(1, *start_impulse_, 1);
+  return momentum;
+}
+
 /// M_S V_S*: explicit forces, buoyancy the grid does not see, contact, viscous drag.
 template <int dim>
 RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
@@ -84,7 +92,7 @@ RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
                                          StepReport<dim>& report) {
   auto& solids = *components_.solids;
   const double dt = context.dt;
-  const RCP<Vector> momentum = solids.explicit_momentum(context.time, dt);
+  const RCP<Vector> momentum = explicit_momentum(context);
   if (context.moves_positions())
     solids.add_midpoint_correction(dt, resolved_part(dt), *momentum);
   const RCP<const Vector> buoyancy = unseen_buoyancy(dt, report);
@@ -92,6 +100,8 @@ RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
   if (context.ledger) {
     context.ledger->add("solid forces", solids.external_impulse(context.time, dt));
     context.ledger->add("unseen buoyancy", solids.momentum(*buoyancy));
+    if (!start_impulse_.is_null())
+      context.ledger->add("joints", solids.momentum(*start_impulse_));
   }
   if (context.phase == Phase::S2 && components_.contact) {
     ScopedPhase phase(timers_, "contact");
@@ -197,46 +207,6 @@ SolveRequest Stepper<dim>::request(const std::string& name, double dt) const {
   const double area = std::pow(fluid.smallest_length(), dim - 1);
   const auto n_cells = static_cast<double>(fluid.pressure_map()->getGlobalNumElements());
   return {name, options_.tolerance, 1e-15 * speed * area * std::sqrt(n_cells)};
-}
-
-/// Soft solids keep the volumes of closed regions, contact acts on V^{n+1/2}, then all solids go to
-/// their positions at t^{n+1}.
-template <int dim>
-void Stepper<dim>::move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
-                               StepReport<dim>& report) {
-  auto& solids = *components_.solids;
-  const double dt = context.step_dt;
-  RCP<Vector> half_velocity = make_vector(solids.map());
-  SweptRates swept;
-  RCP<Vector> momentum;
-  if (coupled()) {
-    ScopedPhase phase(timers_, "S1");
-    momentum = solid_momentum(context, prediction, report);
-    half_velocity = solve_newton(context, momentum, report.s1, report.incompatibility_s1).velocity;
-    swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
-  }
-  ScopedPhase phase(timers_, "solid motion");
-  solids.limit_motion(dt, *half_velocity);
-  // Shells push the fluid of closed regions, bodies only take back what straight steps add.
-  const auto sweep_shells = [&](Vector& velocity) {
-    sweep_volumes(rates_of_kind(swept, solids, false), solids, dt, velocity);
-  };
-  sweep_shells(*half_velocity);
-  const Vector as_solved(*half_velocity, Teuchos::Copy);
-  sweep_volumes(rates_of_kind(swept, solids, true), solids, dt, *half_velocity);
-  if (coupled() && solids.has_implicit_forces())
-    bound_sweep<dim>(solids, context.dt, as_solved, *half_velocity);
-  if (coupled() && solids.has_implicit_forces()) {
-    const SettledMotion<dim> settled =
-        settle_motion<dim>(solids, components_.contact.get(), context, sweep_shells, as_solved,
-                           *half_velocity, *momentum);
-    half_velocity = settled.velocity;
-    report.contact_position = settled.contact;
-  } else if (components_.contact && coupled()) {
-    report.contact_position =
-        components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);
-  }
-  solids.move(*half_velocity, context.time, dt);
 }
 
 /// Of u*.

@@ -72,6 +72,7 @@ class Stepper {
   // S1 and S2.
   RCP<const Vector> unseen_buoyancy(double dt, StepReport<dim>& report) const;
   double resolved_part(double dt) const;
+  RCP<Vector> explicit_momentum(const StepContext<dim>& context) const;
   RCP<Vector> solid_momentum(const StepContext<dim>& context, const Prediction<dim>& prediction,
                              StepReport<dim>& report);
   CoupledSolution solve(const StepContext<dim>& context, const RCP<Vector>& momentum,
@@ -82,6 +83,10 @@ class Stepper {
                                 StepReport<dim>& report);
   ContactReport<dim> contact_momentum(const StepContext<dim>& context, Vector& momentum);
   ContactReport<dim> settled_momentum(const StepContext<dim>& context, Vector& momentum);
+  RCP<Vector> find_motion(const StepContext<dim>& context, const Prediction<dim>& prediction,
+                          StepReport<dim>& report);
+  void close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
+                    RCP<Vector>& velocity, StepReport<dim>& report);
   void move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
                    StepReport<dim>& report);
   SolveRequest request(const std::string& name, double dt) const;
@@ -103,6 +108,9 @@ class Stepper {
   long long n_steps_ = 0;        ///< taken
   bool fluid_moved_ = false;     ///< to other cells, before this step
   Momentum<dim> last_momentum_;  ///< at the end of the last step
+  /// Of joints, from S1 to S2: the half of their impulses that acts where the step begins; null:
+  /// all of them acts at its end.
+  RCP<Vector> start_impulse_;
 };
 
 }  // namespace lockstep

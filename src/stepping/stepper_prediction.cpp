@@ -89,7 +89,7 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
     const BlockSystem& blocks = system_.blocks(dt);
     block = blocks.solids.op;
     soft_nodes = blocks.soft_nodes;
-    const RCP<Vector> momentum = components_.solids->explicit_momentum(context.time, dt);
+    const RCP<Vector> momentum = explicit_momentum(context);
     if (!pressure.is_null() && sides_.unseen_buoyancy)
       sides_.unseen_buoyancy->add_unseen_buoyancy(fluid.gravity(), dt, *momentum);
     row = system_.lumped_momentum(*momentum);

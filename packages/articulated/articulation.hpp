@@ -1,0 +1,80 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "articulated/closing.hpp"
+#include "articulated/mechanism.hpp"
+#include "interfaces/constraint.hpp"
+
+namespace lockstep {
+
+struct ArticulationOptions {
+  /// Half of the joints' impulse acts where a step begins, half where it ends; false: all of it
+  /// where it ends.
+  bool two_halves = true;
+  double largest_turn = 0.2;  ///< of a jointed body in a step [rad]
+};
+
+/// The joints of a scene, what they connect, and where they are. Everything is replicated.
+template <int dim>
+class Articulation {
+ public:
+  /// `first_dof`: where the dofs of the joints begin in the stack of all solids, rates first, then
+  /// the twists of prescribed bodies.
+  Articulation(std::vector<JointedBody<dim>> bodies, std::vector<Joint<dim>> joints,
+               const ArticulationOptions& options, GlobalIndex first_dof);
+
+  const std::vector<JointedBody<dim>>& bodies() const { return bodies_; }
+  const std::vector<Joint<dim>>& joints() const { return joints_; }
+  std::vector<Joint<dim>>& joints() { return joints_; }
+  const std::vector<Mechanism>& mechanisms() const { return mechanisms_; }
+  const ArticulationOptions& options() const { return options_; }
+  const RateDofs& dofs() const { return dofs_; }
+  int n_rates() const { return n_rates_; }
+  int n_dofs() const { return n_dofs_; }  ///< with those of prescribed bodies
+
+  /// Present poses, by body.
+  std::vector<BodyPose<dim>> poses() const;
+  /// Where prescribed bodies are at a time; those of others are not meant to be read.
+  std::vector<BodyPose<dim>> prescribed_poses(double time) const;
+  /// Mean twist of a prescribed body between two times; at equal times that of the instant.
+  TwistVector<dim> prescribed_twist(int body, double begin, double end) const;
+  std::vector<MotionBasis<dim>> motion_bases() const;
+  /// The fastest turning jointed body [rad/s].
+  double fastest_turn() const;
+  /// q after a move in which the rates times dt were `change`.
+  void update_coordinates(const Eigen::VectorXd& change);
+
+ private:
+  std::vector<JointedBody<dim>> bodies_;
+  std::vector<Joint<dim>> joints_;
+  ArticulationOptions options_;
+  std::vector<Mechanism> mechanisms_;
+  RateDofs dofs_;
+  int n_rates_ = 0, n_dofs_ = 0;
+};
+
+/// The ties between the bodies of an articulation.
+template <int dim>
+class JointConstraints : public ConstraintModel {
+ public:
+  /// `map`: of the stack of all solids is known when the first vector is.
+  JointConstraints(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm);
+
+  std::string name() const override { return "joints"; }
+  std::vector<Combination> combinations() const override;
+  ClosedMotion close(double time, double dt, Vector& velocity) override;
+
+ private:
+  std::vector<TwistVector<dim>> gather_twists(const Vector& velocity) const;
+  Eigen::VectorXd gather_rates(const Vector& velocity) const;
+  void set_twists(const std::vector<TwistVector<dim>>& twists, Vector& velocity) const;
+  bool close_mechanism(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
+                       std::vector<TwistVector<dim>>& twists) const;
+  RCP<Vector> drift(const std::vector<TwistVector<dim>>& change, const RCP<const Map>& map) const;
+
+  std::shared_ptr<Articulation<dim>> articulation_;
+  Communicator comm_;
+};
+
+}  // namespace lockstep

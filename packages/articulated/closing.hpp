@@ -1,0 +1,50 @@
+#pragma once
+#include <vector>
+
+#include "articulated/mechanism.hpp"
+
+namespace lockstep {
+
+/// Coordinates of a joint that are given at the end of a step.
+struct JointGoal {
+  std::vector<char> given;  ///< for each of them; empty: none
+  Eigen::VectorXd q;
+};
+
+/// Bodies of a mechanism that are about to move by constant twists.
+template <int dim>
+struct ClosingProblem {
+  const Mechanism& mechanism;
+  const std::vector<Joint<dim>>& joints;
+  const std::vector<BodyPose<dim>>& poses;  ///< of all bodies, at present
+  const std::vector<BodyPose<dim>>& ends;   ///< of prescribed ones, after the step
+  /// Inverse masses of the dynamic ones.
+  const std::vector<Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>>& inverse_masses;
+  const std::vector<JointGoal>& goals;  ///< of all joints
+  double dt = 0;
+};
+
+/// Adds M^-1 J^T lambda, with the joints' rows J at the present poses, so that all joints fit after
+/// the move: Newton's method, the smallest correction where joints are redundant. False, and
+/// nothing changed, if there is no solution in reach. `twists`: by body. Local.
+template <int dim>
+bool close_joints(const ClosingProblem<dim>& problem, std::vector<TwistVector<dim>>& twists);
+
+/// The twists that take the bodies to where the root's twist and the rates of the tree's joints
+/// take them. `change`: rates times dt, of all joints. Local.
+template <int dim>
+void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
+                  std::vector<TwistVector<dim>>& twists);
+
+/// Where a body is after dt.
+template <int dim>
+BodyPose<dim> moved(const BodyPose<dim>& pose, const TwistVector<dim>& twist, double dt);
+/// The twist that takes a body there in dt.
+template <int dim>
+TwistVector<dim> twist_to(const BodyPose<dim>& from, const BodyPose<dim>& to, double dt);
+
+/// The largest gap of a mechanism's joints [m, rad].
+template <int dim>
+double largest_gap(const Joint<dim>& joint, const std::vector<BodyPose<dim>>& poses);
+
+}  // namespace lockstep

@@ -1,0 +1,158 @@
+#include <Eigen/Cholesky>
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "articulated/articulation.hpp"
+
+namespace lockstep {
+
+template <int dim>
+JointConstraints<dim>::JointConstraints(std::shared_ptr<Articulation<dim>> articulation,
+                                        const Communicator& comm)
+    : articulation_(std::move(articulation)), comm_(comm) {}
+
+template <int dim>
+std::vector<Combination> JointConstraints<dim>::combinations() const {
+  std::vector<Combination> all;
+  const auto add = [&all](GlobalIndex dof, const std::vector<GlobalIndex>& columns,
+                          const auto& row) {
+    Combination combination{dof, {}};
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const double weight = row[static_cast<Eigen::Index>(c)];
+      if (weight != 0)
+        combination.terms.emplace_back(columns[c], weight);
+    }
+    all.push_back(std::move(combination));
+  };
+  const std::vector<MotionBasis<dim>> bases = articulation_->motion_bases();
+  for (std::size_t m = 0; m < bases.size(); ++m) {
+    const Mechanism& mechanism = articulation_->mechanisms()[m];
+    const MotionBasis<dim>& basis = bases[m];
+    for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+      const GlobalIndex first = articulation_->bodies()[mechanism.bodies[b]].first_dof;
+      for (int k = 0; k < n_twist<dim> && mechanism.carriers[b] >= 0; ++k)
+        add(first + k, basis.columns, basis.twists[b].row(k));
+    }
+    for (const auto& [column, row] : basis.dependent)
+      add(basis.columns[column], basis.columns, row);
+  }
+  return all;
+}
+
+template <int dim>
+std::vector<TwistVector<dim>> JointConstraints<dim>::gather_twists(const Vector& velocity) const {
+  const auto& bodies = articulation_->bodies();
+  std::vector<TwistVector<dim>> twists(bodies.size(), TwistVector<dim>::Zero());
+  const auto values = velocity.getData();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (int k = 0; k < n_twist<dim> && !bodies[b].prescribed(); ++k) {
+      const int row = velocity.getMap()->getLocalElement(bodies[b].first_dof + k);
+      if (row >= 0)
+        twists[b][k] = values[row];
+    }
+  }
+  sum_all(comm_, twists.data()->data(), static_cast<int>(twists.size()) * n_twist<dim>);
+  return twists;
+}
+
+template <int dim>
+Eigen::VectorXd JointConstraints<dim>::gather_rates(const Vector& velocity) const {
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(articulation_->n_rates());
+  const auto values = velocity.getData();
+  for (int k = 0; k < rates.size(); ++k) {
+    const int row = velocity.getMap()->getLocalElement(articulation_->dofs().first_rate + k);
+    if (row >= 0)
+      rates[k] = values[row];
+  }
+  sum_all(comm_, rates.data(), static_cast<int>(rates.size()));
+  return rates;
+}
+
+template <int dim>
+void JointConstraints<dim>::set_twists(const std::vector<TwistVector<dim>>& twists,
+                                       Vector& velocity) const {
+  const auto values = velocity.getDataNonConst();
+  const auto& bodies = articulation_->bodies();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (int k = 0; k < n_twist<dim> && !bodies[b].prescribed(); ++k) {
+      const int row = velocity.getMap()->getLocalElement(bodies[b].first_dof + k);
+      if (row >= 0)
+        values[row] = twists[b][k];
+    }
+  }
+}
+
+/// True if the joints were closed about the motion as it was found. If that turns a body so far
+/// that closing along straight twists may fail, bodies follow the rates of their joints.
+template <int dim>
+bool JointConstraints<dim>::close_mechanism(const ClosingProblem<dim>& problem,
+                                            const Eigen::VectorXd& change,
+                                            std::vector<TwistVector<dim>>& twists) const {
+  constexpr double farthest_turn = 0.5;  // rad
+  double turn = 0;
+  for (const int body : problem.mechanism.bodies)
+    turn = std::max(turn, problem.dt * twists[body].template tail<n_rotations<dim>>().norm());
+  if (articulation_->options().two_halves && turn <= farthest_turn &&
+      close_joints(problem, twists))
+    return true;
+  follow_rates(problem, change, twists);
+  if (!problem.mechanism.loops.empty())
+    close_joints(problem, twists);
+  return false;
+}
+
+/// Those of the bodies that are combinations, less what the root's part of them carries along.
+template <int dim>
+RCP<Vector> JointConstraints<dim>::drift(const std::vector<TwistVector<dim>>& change,
+                                         const RCP<const Map>& map) const {
+  const RCP<Vector> result = make_vector(map);
+  std::vector<TwistVector<dim>> own = change;
+  const std::vector<MotionBasis<dim>> bases = articulation_->motion_bases();
+  for (std::size_t m = 0; m < bases.size(); ++m) {
+    const Mechanism& mechanism = articulation_->mechanisms()[m];
+    if (mechanism.root == space)
+      continue;
+    for (std::size_t b = 0; b < mechanism.bodies.size(); ++b)
+      own[mechanism.bodies[b]] -=
+          bases[m].twists[b].leftCols(n_twist<dim>) * change[mechanism.root];
+  }
+  set_twists(own, *result);
+  return result;
+}
+
+template <int dim>
+ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& velocity) {
+  const auto& bodies = articulation_->bodies();
+  const std::vector<TwistVector<dim>> before = gather_twists(velocity);
+  std::vector<TwistVector<dim>> twists = before;
+  const Eigen::VectorXd change = dt * gather_rates(velocity);
+  const std::vector<BodyPose<dim>> poses = articulation_->poses();
+  const std::vector<BodyPose<dim>> ends = articulation_->prescribed_poses(time + dt);
+  std::vector<Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>> inverse_masses(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].prescribed())
+      inverse_masses[b] = bodies[b].model->rigid_frame(bodies[b].solid).mass.llt().solve(
+          Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>::Identity());
+  }
+  const std::vector<JointGoal> goals(articulation_->joints().size());
+  bool closed = true;
+  for (const Mechanism& mechanism : articulation_->mechanisms()) {
+    const ClosingProblem<dim> problem{mechanism, articulation_->joints(), poses, ends,
+                                      inverse_masses, goals, dt};
+    closed = close_mechanism(problem, change, twists) && closed;
+  }
+  set_twists(twists, velocity);
+  ClosedMotion motion;
+  motion.changed = true;
+  if (closed) {
+    for (std::size_t b = 0; b < twists.size(); ++b)
+      twists[b] -= before[b];
+    motion.drift = drift(twists, velocity.getMap());
+  }
+  return motion;
+}
+
+template class JointConstraints<2>;
+template class JointConstraints<3>;
+
+}  // namespace lockstep

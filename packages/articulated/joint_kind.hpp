@@ -1,0 +1,79 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace lockstep {
+
+template <int dim>
+using Axes = Eigen::Matrix<double, dim, dim>;
+
+/// Where the second side of a joint is, in the axes of the first: the joint's own axis comes first.
+template <int dim>
+struct RelativePose {
+  Point<dim> offset = Point<dim>::Zero();  ///< [m]
+  Axes<dim> rotation = Axes<dim>::Identity();
+};
+
+/// A motion of the second side against the first, or a force and a torque between them: along the
+/// axes of the first side, at the point of the second.
+template <int dim>
+struct Screw {
+  Point<dim> linear = Point<dim>::Zero();
+  AngularVector<dim> angular = AngularVector<dim>::Zero();
+};
+
+/// About which of its axes a joint turns: two_axes are the first of the first side and the second
+/// of the second side.
+enum class JointTurn { none, axis, two_axes, any };
+
+/// What a joint lets go. Its coordinates q are displacements along the axes it slides on, then
+/// angles: about the axis, about the two axes one after the other, or a rotation vector.
+struct JointKind {
+  std::string name;
+  std::vector<int> slides;  ///< axes
+  JointTurn turn = JointTurn::none;
+};
+
+/// All kinds, with one line on each.
+struct DescribedKind {
+  JointKind kind;
+  std::string documentation;
+};
+template <int dim>
+std::vector<DescribedKind> joint_kinds();
+
+template <int dim>
+int n_rates(const JointKind& kind);
+
+/// The motions that its rates stand for, one a rate.
+template <int dim>
+std::vector<Screw<dim>> free_screws(const JointKind& kind, const RelativePose<dim>& pose);
+/// Rows that read the rates off a motion that the joint lets go; a unit force or torque along each.
+template <int dim>
+std::vector<Screw<dim>> rate_rows(const JointKind& kind, const RelativePose<dim>& pose);
+/// Rows that every motion it lets go makes zero.
+template <int dim>
+std::vector<Screw<dim>> held_rows(const JointKind& kind, const RelativePose<dim>& pose);
+
+/// How far the sides are from a place that the joint allows [m, rad]: one for each of `held_rows`,
+/// whose values are their rates of change where they are zero.
+template <int dim>
+Eigen::VectorXd gap(const JointKind& kind, const RelativePose<dim>& pose);
+/// q of a pose without gap. Angles are those nearest to `near`, whole turns included.
+template <int dim>
+Eigen::VectorXd coordinates(const JointKind& kind, const RelativePose<dim>& pose,
+                            const Eigen::VectorXd& near);
+template <int dim>
+RelativePose<dim> pose_of(const JointKind& kind, const Eigen::VectorXd& q);
+/// q after a motion by `change`, rates times dt.
+template <int dim>
+Eigen::VectorXd advanced(const JointKind& kind, const Eigen::VectorXd& q,
+                         const Eigen::VectorXd& change);
+/// What is left to go from a pose to q: the coordinates of `change` that does, to first order.
+template <int dim>
+Eigen::VectorXd distance_to(const JointKind& kind, const RelativePose<dim>& pose,
+                            const Eigen::VectorXd& q);
+
+}  // namespace lockstep

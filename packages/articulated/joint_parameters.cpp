@@ -1,0 +1,216 @@
+#include "articulated/joint_parameters.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "base/errors.hpp"
+#include "motion/list_values.hpp"
+#include "parameters/suggestion.hpp"
+
+namespace lockstep {
+
+namespace {
+
+const std::string name_of_space = "space";
+
+/// Solids that joints name, found among all.
+template <int dim>
+class BodyFinder {
+ public:
+  explicit BodyFinder(const JointSetting<dim>& setting) : setting_(setting) {
+    for (const auto& model : setting.models) {
+      for (const SolidDescription& solid : model->solids())
+        names_.push_back(solid.name);
+    }
+  }
+
+  int find(const std::string& joint, const std::string& name) {
+    if (name == name_of_space)
+      return space;
+    const auto known = place_.find(name);
+    if (known != place_.end())
+      return known->second;
+    bodies_.push_back(body_of(joint, name));
+    return place_[name] = static_cast<int>(bodies_.size()) - 1;
+  }
+  const std::vector<JointedBody<dim>>& bodies() const { return bodies_; }
+
+ private:
+  JointedBody<dim> body_of(const std::string& joint, const std::string& name) const {
+    GlobalIndex first = 0;
+    for (const auto& model : setting_.models) {
+      const auto& solids = model->solids();
+      for (std::size_t s = 0; s < solids.size(); ++s) {
+        if (solids[s].name != name)
+          continue;
+        const auto* jointable = side_of<JointableSolids<dim>>(*model);
+        check_input(jointable, "The joint \"{}\" names the solid \"{}\", which is not rigid; joints "
+                               "connect rigid bodies, attach its nodes to one.",
+                    joint, name);
+        const int number = static_cast<int>(s);
+        const std::string other = jointable->unjointable(number);
+        check_input(other.empty(),
+                    "\"{}\" is jointed, so it has no \"{}\"; use a joint to \"{}\".", name, other,
+                    name_of_space);
+        const GlobalIndex own = jointable->first_dof(number);
+        return {name, jointable, number, own == no_index ? no_index : first + own};
+      }
+      first += static_cast<GlobalIndex>(model->dof_map()->getGlobalNumElements());
+    }
+    const std::string nearest = nearest_name(name, names_);
+    throw InputError(fmt::format("The joint \"{}\" names the solid \"{}\", but there is none; {}",
+                                 joint, name,
+                                 nearest.empty() ? "name one of \"Solids\", or \"space\"."
+                                                 : "did you mean \"" + nearest + "\"?"));
+  }
+
+  const JointSetting<dim>& setting_;
+  std::vector<std::string> names_;
+  std::vector<JointedBody<dim>> bodies_;
+  std::map<std::string, int> place_;
+};
+
+template <int dim>
+JointKind kind_of(const std::string& name) {
+  for (const DescribedKind& one : joint_kinds<dim>()) {
+    if (one.kind.name == name)
+      return one.kind;
+  }
+  return {};
+}
+
+/// Which of its axes a kind of joint names. In 2D hinges turn about the one across.
+template <int dim>
+bool has_axis(const JointKind& kind) {
+  return !kind.slides.empty() ||
+         (dim == 3 && (kind.turn == JointTurn::axis || kind.turn == JointTurn::two_axes));
+}
+
+template <int dim>
+Point<dim> direction(const ParameterList& list, const std::string& parameter,
+                     const std::string& name) {
+  const Point<dim> axis = vector_value<dim>(list, parameter);
+  check_input(axis.norm() > 0, "The \"{}\" of the joint \"{}\" must not be zero.", parameter,
+              name);
+  return axis.normalized();
+}
+
+/// The joint's axes in space: those that are named first.
+Axes<2> axes_of(const Point<2>& axis, const ParameterList&, const std::string&, const JointKind&) {
+  Axes<2> axes;
+  axes << axis, Point<2>(-axis.y(), axis.x());
+  return axes;
+}
+Axes<3> axes_of(const Point<3>& axis, const ParameterList& list, const std::string& name,
+                const JointKind& kind) {
+  Axes<3> axes;
+  axes.col(0) = axis;
+  axes.col(1) = axis.unitOrthogonal();
+  if (kind.turn == JointTurn::two_axes) {
+    axes.col(1) = direction<3>(list, "Second Axis", name);
+    check_input(std::abs(axis.dot(axes.col(1))) <= 1e-9,
+                "The \"Second Axis\" of the joint \"{}\" must be at right angles to its \"Axis\".",
+                name);
+  }
+  axes.col(2) = Point<3>(axes.col(0)).cross(Point<3>(axes.col(1)));
+  return axes;
+}
+
+template <int dim>
+ParameterList parameters_of(const JointKind& kind) {
+  ParameterList list(kind.name);
+  declare_required_vector<std::string>(
+      list, "Solids", 2,
+      "The two that it connects: rigid bodies, dynamic or prescribed, or \"space\". The joint's "
+      "axes go with the first.");
+  declare_required_vector<double>(list, "Point", dim, "Where it is at the start, in space [m].");
+  if (has_axis<dim>(kind))
+    declare_required_vector<double>(list, "Axis", dim,
+                                    "Of the joint at the start, in space, of any length [1].");
+  if (kind.turn == JointTurn::two_axes)
+    declare_required_vector<double>(
+        list, "Second Axis", dim,
+        "The other one at the start, at right angles to \"Axis\", of any length [1].");
+  return list;
+}
+
+template <int dim>
+Joint<dim> read_joint(const std::string& name, const ParameterList& list,
+                      BodyFinder<dim>& finder) {
+  Joint<dim> joint;
+  joint.name = name;
+  joint.kind = kind_of<dim>(list.get<std::string>("Type"));
+  const auto& solids = list.get<ParameterArray<std::string>>("Solids");
+  check_input(solids[0] != solids[1], "The joint \"{}\" connects \"{}\" with itself; name two.", name,
+              solids[0]);
+  const Point<dim> point = vector_value<dim>(list, "Point");
+  const Point<dim> axis = has_axis<dim>(joint.kind) ? direction<dim>(list, "Axis", name)
+                                                    : Point<dim>(Point<dim>::Unit(0));
+  const Axes<dim> axes = has_axis<dim>(joint.kind) ? axes_of(axis, list, name, joint.kind)
+                                                   : Axes<dim>(Axes<dim>::Identity());
+  bool movable = false;
+  for (int side = 0; side < 2; ++side) {
+    const int body = finder.find(name, solids[side]);
+    BodyPose<dim> pose;
+    if (body != space) {
+      const JointedBody<dim>& one = finder.bodies()[body];
+      const RigidFrame<dim> frame = one.model->rigid_frame(one.solid);
+      pose = {frame.position, frame.orientation.toRotationMatrix()};
+      movable = movable || !one.prescribed();
+    }
+    joint.sides[side] = {body, pose.rotation.transpose() * (point - pose.position),
+                         pose.rotation.transpose() * axes};
+  }
+  check_input(movable, "The joint \"{}\" connects two prescribed solids; nothing can move it.", name);
+  return joint;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<TypedSchema> joint_schemas() {
+  std::vector<TypedSchema> schemas;
+  for (const DescribedKind& one : joint_kinds<dim>())
+    schemas.push_back({one.kind.name, one.documentation, parameters_of<dim>(one.kind)});
+  return schemas;
+}
+
+ParameterList articulation_parameters() {
+  const ArticulationOptions usual;
+  ParameterList list("joints");
+  declare_choice(list, "Impulses", "two halves", {"two halves", "end of step"},
+                 "When the impulses of joints act. two halves: half of them where a step begins, "
+                 "half where it ends; second order, and hardly any energy is lost, for one more "
+                 "coupled solve a step. end of step: all of them there; loses energy at large "
+                 "steps.");
+  declare_positive(list, "Largest Turn", usual.largest_turn,
+                   "Bound of the step: how far a jointed body may turn in it [rad]. Where steps turn "
+                   "bodies by more than 0.5 all the same, impulses act at the end of the step.");
+  return list;
+}
+
+template <int dim>
+std::shared_ptr<Articulation<dim>> read_joints(const ParameterList& shared,
+                                               const NamedLists& joints,
+                                               const JointSetting<dim>& setting) {
+  ArticulationOptions options;
+  options.two_halves = shared.get<std::string>("Impulses") == "two halves";
+  options.largest_turn = shared.get<double>("Largest Turn");
+  BodyFinder<dim> finder(setting);
+  std::vector<Joint<dim>> all;
+  for (const auto& [name, list] : joints)
+    all.push_back(read_joint<dim>(name, list, finder));
+  GlobalIndex n_dofs = 0;
+  for (const auto& model : setting.models)
+    n_dofs += static_cast<GlobalIndex>(model->dof_map()->getGlobalNumElements());
+  return std::make_shared<Articulation<dim>>(finder.bodies(), std::move(all), options, n_dofs);
+}
+
+template std::vector<TypedSchema> joint_schemas<2>();
+template std::vector<TypedSchema> joint_schemas<3>();
+template std::shared_ptr<Articulation<2>> read_joints(const ParameterList&, const NamedLists&,
+                                                      const JointSetting<2>&);
+template std::shared_ptr<Articulation<3>> read_joints(const ParameterList&, const NamedLists&,
+                                                      const JointSetting<3>&);
+
+}  // namespace lockstep

@@ -1,0 +1,156 @@
+#include "articulated/joint_rates.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "base/errors.hpp"
+#include "output/checkpoint.hpp"
+
+namespace lockstep {
+
+namespace {
+
+constexpr const char* group = "joints";
+const std::string names_path = std::string(group) + "/names";
+const std::string values_path = std::string(group) + "/values";
+
+/// Zero, with a diagonal in its pattern.
+RCP<const LinearOperator> no_mass(const RCP<const Map>& map) {
+  const RCP<CrsMatrix> matrix = rcp(new CrsMatrix(map, map, 1));
+  const double zero = 0;
+  for (int row = 0; row < static_cast<int>(map->getNodeNumElements()); ++row)
+    matrix->insertLocalValues(row, Teuchos::arrayView(&row, 1), Teuchos::arrayView(&zero, 1));
+  matrix->fillComplete(map, map);
+  return as_operator(matrix);
+}
+
+template <int dim>
+std::string joined_names(const Articulation<dim>& articulation) {
+  std::string names;
+  for (const Joint<dim>& joint : articulation.joints())
+    names += joint.name + " " + joint.kind.name + "\n";
+  return names;
+}
+
+}  // namespace
+
+template <int dim>
+JointRates<dim>::JointRates(std::shared_ptr<Articulation<dim>> articulation,
+                            const Communicator& comm, double start_time)
+    : articulation_(std::move(articulation)),
+      comm_(comm),
+      map_(make_map(is_root(comm) ? articulation_->n_dofs() : 0, comm)),
+      mass_(no_mass(map_)),
+      time_(start_time),
+      rates_(Eigen::VectorXd::Zero(articulation_->n_rates())) {}
+
+template <int dim>
+std::vector<GlobalIndex> JointRates<dim>::locked_dofs() const {
+  std::vector<GlobalIndex> dofs;
+  for (int k = articulation_->n_rates(); k < articulation_->n_dofs() && is_root(comm_); ++k)
+    dofs.push_back(k);
+  return dofs;
+}
+
+template <int dim>
+std::vector<double> JointRates<dim>::locked_velocities(double begin, double end) const {
+  std::vector<double> values;
+  const auto& bodies = articulation_->bodies();
+  for (int b = 0; b < static_cast<int>(bodies.size()) && is_root(comm_); ++b) {
+    if (!bodies[b].prescribed())
+      continue;
+    const TwistVector<dim> twist = articulation_->prescribed_twist(b, begin, end);
+    values.insert(values.end(), twist.data(), twist.data() + twist.size());
+  }
+  return values;
+}
+
+template <int dim>
+Eigen::VectorXd JointRates<dim>::gather(const Vector& velocity) const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(articulation_->n_rates());
+  const auto values = velocity.getData();
+  if (is_root(comm_))
+    std::copy_n(values.begin(), all.size(), all.data());
+  sum_all(comm_, all.data(), static_cast<int>(all.size()));
+  return all;
+}
+
+template <int dim>
+RCP<const Vector> JointRates<dim>::velocity() const {
+  const RCP<Vector> result = make_vector(map_);
+  const std::vector<double> given = locked_velocities(time_, time_);
+  const auto values = result->getDataNonConst();
+  if (is_root(comm_)) {
+    std::copy_n(rates_.data(), rates_.size(), values.begin());
+    std::copy(given.begin(), given.end(), values.begin() + rates_.size());
+  }
+  return result;
+}
+
+template <int dim>
+void JointRates<dim>::set_velocity(const Vector& velocity) {
+  rates_ = gather(velocity);
+}
+
+template <int dim>
+void JointRates<dim>::move(const Vector& velocity, double time, double dt) {
+  articulation_->update_coordinates(dt * gather(velocity));
+  time_ = time + dt;
+}
+
+template <int dim>
+double JointRates<dim>::largest_stable_step() const {
+  const double fastest = articulation_->fastest_turn();
+  return fastest > 0 ? articulation_->options().largest_turn / fastest : 1e300;
+}
+
+template <int dim>
+std::vector<double> JointRates<dim>::state() const {
+  std::vector<double> values{time_};
+  values.insert(values.end(), rates_.data(), rates_.data() + rates_.size());
+  for (const Joint<dim>& joint : articulation_->joints())
+    values.insert(values.end(), joint.q.data(), joint.q.data() + joint.q.size());
+  return values;
+}
+
+template <int dim>
+void JointRates<dim>::set_state(const std::vector<double>& values) {
+  auto next = values.begin();
+  time_ = *next++;
+  for (double& rate : rates_)
+    rate = *next++;
+  for (Joint<dim>& joint : articulation_->joints()) {
+    for (double& coordinate : joint.q)
+      coordinate = *next++;
+  }
+}
+
+template <int dim>
+std::function<void()> JointRates<dim>::undo() {
+  return [this, before = state()] { set_state(before); };
+}
+
+template <int dim>
+void JointRates<dim>::save(CheckpointWriter& writer) const {
+  writer.file().create_group(group);
+  writer.file().write_text(names_path, joined_names(*articulation_));
+  writer.file().write_replicated(values_path, state());
+}
+
+template <int dim>
+void JointRates<dim>::load(const CheckpointReader& reader) {
+  const Hdf5File& file = reader.file();
+  check_input(file.exists(names_path) && file.read_text(names_path) == joined_names(*articulation_),
+              "{}: the checkpoint does not hold the joints of this scene; restart with the scene "
+              "that wrote it.",
+              file.path());
+  const std::vector<double> values = file.read_all<double>(values_path);
+  check_input(values.size() == state().size(),
+              "{}: the checkpoint's joints are incomplete; restart from another one.", file.path());
+  set_state(values);
+}
+
+template class JointRates<2>;
+template class JointRates<3>;
+
+}  // namespace lockstep

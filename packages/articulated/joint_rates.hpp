@@ -1,0 +1,60 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "articulated/articulation.hpp"
+
+namespace lockstep {
+
+/// The rates of all joints as unknowns: a solid model without surface and without mass, which the
+/// bodies lend them (P^T M P). Behind them stand the twists of prescribed bodies that joints tie
+/// others to, as given dofs. All live on rank 0; values are replicated.
+template <int dim>
+class JointRates : public SolidModel<dim>, public AuditedSolids<dim> {
+ public:
+  JointRates(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm,
+             double start_time);
+
+  std::string name() const override { return "joints"; }
+  const std::vector<SolidDescription>& solids() const override { return none_; }
+  const SurfaceMesh<dim>& surface() const override { return surface_; }
+  void velocity_row(const SurfacePoint<dim>&, const Point<dim>&,
+                    VelocityRow<dim>& row) const override {
+    row.clear();
+  }
+  Point<dim> effective_velocity(const SurfacePoint<dim>&, const Point<dim>&) const override {
+    return Point<dim>::Zero();
+  }
+  RCP<const Map> dof_map() const override { return map_; }
+  RCP<const LinearOperator> mass() const override { return mass_; }
+  void explicit_momentum(double, double, Vector& momentum) const override { momentum.putScalar(0); }
+  Momentum<dim> external_impulse(double, double) const override { return {}; }
+  std::vector<Momentum<dim>> momentum_of_each(const Vector&) const override { return {}; }
+  std::vector<GlobalIndex> locked_dofs() const override;
+  std::vector<double> locked_velocities(double begin, double end) const override;
+  RCP<const Vector> velocity() const override;
+  void set_velocity(const Vector& velocity) override;
+  void move(const Vector& velocity, double time, double dt) override;
+  std::vector<SolidState<dim>> states() const override { return {}; }
+  double largest_stable_step() const override;
+
+  std::function<void()> undo() override;
+  void save(CheckpointWriter& writer) const override;
+  void load(const CheckpointReader& reader) override;
+
+ private:
+  Eigen::VectorXd gather(const Vector& velocity) const;
+  std::vector<double> state() const;
+  void set_state(const std::vector<double>& values);
+
+  std::shared_ptr<Articulation<dim>> articulation_;
+  Communicator comm_;
+  std::vector<SolidDescription> none_;
+  SurfaceMesh<dim> surface_;
+  RCP<const Map> map_;
+  RCP<const LinearOperator> mass_;
+  double time_;            ///< of the present positions [s]
+  Eigen::VectorXd rates_;  ///< of all joints
+};
+
+}  // namespace lockstep

@@ -1,0 +1,410 @@
+#include "articulated/mechanism.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <numeric>
+
+namespace lockstep {
+
+namespace {
+
+/// Bodies joined so far; the ground is one more, the last.
+class Groups {
+ public:
+  explicit Groups(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[i] != i)
+      i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// False if they are one already.
+  bool join(int i, int j) {
+    i = find(i);
+    j = find(j);
+    parent_[i] = j;
+    return i != j;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+template <int dim>
+bool is_ground(const std::vector<JointedBody<dim>>& bodies, int body) {
+  return body == space || bodies[body].prescribed();
+}
+
+/// Which joints are in the trees.
+template <int dim>
+std::vector<char> tree_joints(const std::vector<JointedBody<dim>>& bodies,
+                              const std::vector<Joint<dim>>& joints) {
+  const int ground = static_cast<int>(bodies.size());
+  Groups groups(ground + 1);
+  std::vector<char> in_tree(joints.size(), 0);
+  for (const bool wanted : {true, false}) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (joints[j].wants_rates != wanted)
+        continue;
+      std::array<int, 2> ends;
+      for (int side = 0; side < 2; ++side) {
+        const int body = joints[j].sides[side].body;
+        ends[side] = is_ground(bodies, body) ? ground : body;
+      }
+      in_tree[j] = groups.join(ends[0], ends[1]) ? 1 : 0;
+    }
+  }
+  return in_tree;
+}
+
+/// Follows the tree's joints outward from the bodies that the mechanism has.
+template <int dim>
+void grow(Mechanism& mechanism, const std::vector<JointedBody<dim>>& bodies,
+          const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
+          std::vector<char>& reached) {
+  for (std::size_t next = 0; next < mechanism.bodies.size(); ++next) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (!in_tree[j])
+        continue;
+      for (int side = 0; side < 2; ++side) {
+        const int child = joints[j].sides[side].body;
+        if (joints[j].sides[1 - side].body != mechanism.bodies[next] || is_ground(bodies, child) ||
+            reached[child])
+          continue;
+        reached[child] = 1;
+        mechanism.bodies.push_back(child);
+        mechanism.carriers.push_back(static_cast<int>(j));
+      }
+    }
+  }
+}
+
+/// Trees that hang on the ground by one joint; other joints to the ground close loops.
+template <int dim>
+Mechanism grown_from(int joint, const std::vector<JointedBody<dim>>& bodies,
+                     const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
+                     std::vector<char>& reached) {
+  Mechanism mechanism;
+  const auto& sides = joints[joint].sides;
+  const bool first_is_ground = is_ground(bodies, sides[0].body);
+  const bool on_ground = first_is_ground || is_ground(bodies, sides[1].body);
+  const int start = sides[first_is_ground ? 1 : 0].body;
+  mechanism.root = on_ground ? space : start;
+  mechanism.bodies.push_back(start);
+  mechanism.carriers.push_back(on_ground ? joint : -1);
+  reached[start] = 1;
+  grow(mechanism, bodies, joints, in_tree, reached);
+  return mechanism;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodies,
+                                       std::vector<Joint<dim>>& joints) {
+  const std::vector<char> in_tree = tree_joints(bodies, joints);
+  std::vector<char> reached(bodies.size(), 0);
+  std::vector<Mechanism> mechanisms;
+  // Those on the ground first: what hangs on it is not free.
+  for (const bool on_ground : {true, false}) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const int first = joints[j].sides[0].body, second = joints[j].sides[1].body;
+      const bool touches = is_ground(bodies, first) || is_ground(bodies, second);
+      const int start = is_ground(bodies, first) ? second : first;
+      if (in_tree[j] && touches == on_ground && !reached[start])
+        mechanisms.push_back(
+            grown_from(static_cast<int>(j), bodies, joints, in_tree, reached));
+    }
+  }
+  int n_all = 0;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!in_tree[j])
+      continue;
+    joints[j].first_rate = n_all;
+    n_all += n_rates<dim>(joints[j].kind);
+  }
+  // Loops may tie two trees of the ground together: they are one mechanism then.
+  const int n = static_cast<int>(mechanisms.size());
+  std::vector<int> home(bodies.size(), -1);
+  for (int m = 0; m < n; ++m) {
+    for (const int body : mechanisms[m].bodies)
+      home[body] = m;
+  }
+  Groups together(n);
+  const auto home_of = [&](int body) { return is_ground(bodies, body) ? -1 : home[body]; };
+  for (const Joint<dim>& joint : joints) {
+    const int a = home_of(joint.sides[0].body), b = home_of(joint.sides[1].body);
+    if (a >= 0 && b >= 0)
+      together.join(a, b);
+  }
+  std::vector<Mechanism> joined(n);
+  for (int m = 0; m < n; ++m) {
+    Mechanism& whole = joined[together.find(m)];
+    if (whole.bodies.empty())
+      whole.root = mechanisms[m].root;
+    whole.bodies.insert(whole.bodies.end(), mechanisms[m].bodies.begin(),
+                        mechanisms[m].bodies.end());
+    whole.carriers.insert(whole.carriers.end(), mechanisms[m].carriers.begin(),
+                          mechanisms[m].carriers.end());
+  }
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    int m = -1;
+    for (const JointSide<dim>& side : joints[j].sides)
+      m = std::max(m, home_of(side.body));
+    Mechanism& mechanism = joined[together.find(m)];
+    mechanism.joints.push_back(static_cast<int>(j));
+    if (!in_tree[j])
+      mechanism.loops.push_back(static_cast<int>(j));
+    for (const JointSide<dim>& side : joints[j].sides) {
+      auto& grounds = mechanism.grounds;
+      if (side.body != space && is_ground(bodies, side.body) &&
+          std::find(grounds.begin(), grounds.end(), side.body) == grounds.end())
+        grounds.push_back(side.body);
+    }
+  }
+  joined.erase(std::remove_if(joined.begin(), joined.end(),
+                              [](const Mechanism& one) { return one.bodies.empty(); }),
+               joined.end());
+  return joined;
+}
+
+template <int dim>
+JointPlace<dim> place_of(const Joint<dim>& joint, const std::vector<BodyPose<dim>>& poses) {
+  const auto& [first, second] = joint.sides;
+  const BodyPose<dim> carrier = pose_of(poses, first.body), carried = pose_of(poses, second.body);
+  JointPlace<dim> place;
+  place.point = carried.position + carried.rotation * second.point;
+  place.axes = carrier.rotation * first.axes;
+  const Point<dim> anchor = carrier.position + carrier.rotation * first.point;
+  place.pose.offset = place.axes.transpose() * (place.point - anchor);
+  place.pose.rotation = place.axes.transpose() * carried.rotation * second.axes;
+  return place;
+}
+
+namespace {
+
+AngularVector<2> turned_axes(const Axes<2>&, const AngularVector<2>& vector) {
+  return vector;
+}
+AngularVector<3> turned_axes(const Axes<3>& axes, const AngularVector<3>& vector) {
+  return axes * vector;
+}
+
+}  // namespace
+
+template <int dim>
+TwistVector<dim> row_on_side(const Screw<dim>& row, const JointPlace<dim>& place, int side,
+                             const Point<dim>& reference) {
+  const Point<dim> linear = place.axes * row.linear;
+  TwistVector<dim> result;
+  result << linear,
+      cross<dim>(place.point - reference, linear) + turned_axes(place.axes, row.angular);
+  return side == 1 ? result : TwistVector<dim>(-result);
+}
+
+namespace {
+
+template <int dim>
+using Twists = Eigen::Matrix<double, n_twist<dim>, Eigen::Dynamic>;
+
+/// The twist of the same rigid motion with another reference point, `arm` away.
+template <int dim>
+Twists<dim> carried_to(const Twists<dim>& twists, const Point<dim>& arm) {
+  Twists<dim> result = twists;
+  for (Eigen::Index c = 0; c < twists.cols(); ++c) {
+    const AngularVector<dim> turn = twists.col(c).template tail<n_rotations<dim>>();
+    result.col(c).template head<dim>() += rotate<dim>(turn, arm);
+  }
+  return result;
+}
+
+/// Fills the twists of all bodies of the tree, with `columns`.
+template <int dim>
+class TreeMotion {
+ public:
+  TreeMotion(const Mechanism& mechanism, const std::vector<JointedBody<dim>>& bodies,
+             const std::vector<Joint<dim>>& joints, const std::vector<BodyPose<dim>>& poses,
+             const RateDofs& dofs)
+      : bodies_(bodies), joints_(joints), poses_(poses), place_of_body_(bodies.size(), -1) {
+    const auto add_columns = [this](GlobalIndex first, int n) {
+      const int column = static_cast<int>(basis_.columns.size());
+      for (int k = 0; k < n; ++k)
+        basis_.columns.push_back(first + k);
+      return column;
+    };
+    if (mechanism.root != space)
+      add_columns(bodies[mechanism.root].first_dof, n_twist<dim>);
+    for (const int ground : mechanism.grounds)
+      ground_columns_.emplace_back(ground,
+                                   add_columns(dofs.first_of_body[ground], n_twist<dim>));
+    rate_columns_.assign(joints.size(), -1);
+    for (const int j : mechanism.joints) {
+      if (joints[j].first_rate >= 0)
+        rate_columns_[j] =
+            add_columns(dofs.first_rate + joints[j].first_rate, n_rates<dim>(joints[j].kind));
+    }
+    for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+      basis_.twists.push_back(twists_of_next(mechanism.bodies[b], mechanism.carriers[b]));
+      place_of_body_[mechanism.bodies[b]] = static_cast<int>(b);
+    }
+  }
+
+  /// Of a body of the tree, a prescribed one, or space.
+  Twists<dim> twists(int body) const {
+    if (body != space && place_of_body_[body] >= 0)
+      return basis_.twists[place_of_body_[body]];
+    Twists<dim> result = none();
+    for (const auto& [ground, column] : ground_columns_) {
+      if (ground == body)
+        result.middleCols(column, n_twist<dim>).setIdentity();
+    }
+    return result;
+  }
+  MotionBasis<dim>& basis() { return basis_; }
+
+ private:
+  Twists<dim> none() const {
+    return Twists<dim>::Zero(n_twist<dim>, static_cast<Eigen::Index>(basis_.columns.size()));
+  }
+
+  Twists<dim> twists_of_next(int body, int carrier) const {
+    if (carrier < 0) {
+      Twists<dim> root = none();
+      root.leftCols(n_twist<dim>).setIdentity();
+      return root;
+    }
+    const Joint<dim>& joint = joints_[carrier];
+    const int side = joint.sides[1].body == body ? 1 : 0;
+    const int parent = joint.sides[1 - side].body;
+    const JointPlace<dim> place = place_of(joint, poses_);
+    Twists<dim> twists =
+        carried_to<dim>(this->twists(parent), place.point - pose_of(poses_, parent).position);
+    const std::vector<Screw<dim>> free = free_screws(joint.kind, place.pose);
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      TwistVector<dim> motion;
+      motion << place.axes * free[k].linear, turned_axes(place.axes, free[k].angular);
+      twists.col(rate_columns_[carrier] + static_cast<Eigen::Index>(k)) +=
+          (side == 1 ? 1 : -1) * motion;
+    }
+    return carried_to<dim>(twists, pose_of(poses_, body).position - place.point);
+  }
+
+  const std::vector<JointedBody<dim>>& bodies_;
+  const std::vector<Joint<dim>>& joints_;
+  const std::vector<BodyPose<dim>>& poses_;
+  std::vector<int> place_of_body_;
+  std::vector<std::pair<int, int>> ground_columns_;
+  std::vector<int> rate_columns_;
+  MotionBasis<dim> basis_;
+};
+
+/// What loops hold, over the columns of the tree. Lengths count in `unit`.
+template <int dim>
+Eigen::MatrixXd loop_rows(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints,
+                          const std::vector<BodyPose<dim>>& poses, const TreeMotion<dim>& tree,
+                          double unit) {
+  std::vector<Eigen::RowVectorXd> rows;
+  for (const int j : mechanism.loops) {
+    const JointPlace<dim> place = place_of(joints[j], poses);
+    for (const Screw<dim>& held : held_rows(joints[j].kind, place.pose)) {
+      Eigen::RowVectorXd row;
+      for (int side = 0; side < 2; ++side) {
+        const int body = joints[j].sides[side].body;
+        const TwistVector<dim> reads =
+            row_on_side(held, place, side, pose_of(poses, body).position);
+        const Eigen::RowVectorXd part = reads.transpose() * tree.twists(body);
+        row = side == 0 ? part : Eigen::RowVectorXd(row + part);
+      }
+      rows.push_back(held.linear.isZero(0) ? row : Eigen::RowVectorXd(row / unit));
+    }
+  }
+  Eigen::MatrixXd all(rows.size(), rows.empty() ? 0 : rows.front().size());
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    all.row(static_cast<Eigen::Index>(r)) = rows[r];
+  return all;
+}
+
+template <int dim>
+double extent(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints,
+              const std::vector<BodyPose<dim>>& poses) {
+  Box<dim> box;
+  for (const int j : mechanism.joints)
+    box.extend(place_of(joints[j], poses).point);
+  for (const int body : mechanism.bodies)
+    box.extend(poses[body].position);
+  return box.diagonal().norm() > 0 ? box.diagonal().norm() : 1;
+}
+
+}  // namespace
+
+template <int dim>
+MotionBasis<dim> motion_basis(const Mechanism& mechanism,
+                              const std::vector<JointedBody<dim>>& bodies,
+                              const std::vector<Joint<dim>>& joints,
+                              const std::vector<BodyPose<dim>>& poses, const RateDofs& dofs,
+                              const std::vector<char>& given) {
+  constexpr double dependent = 1e-9;  // of the largest pivot
+  TreeMotion<dim> tree(mechanism, bodies, joints, poses, dofs);
+  MotionBasis<dim>& basis = tree.basis();
+  if (mechanism.loops.empty())
+    return basis;
+  const Eigen::MatrixXd all =
+      loop_rows(mechanism, joints, poses, tree, extent(mechanism, joints, poses));
+  // A free root moves all sides of all loops alike: its columns are round-off.
+  std::vector<int> free, held;
+  const GlobalIndex n_all = static_cast<GlobalIndex>(given.size());
+  for (int c = 0; c < static_cast<int>(basis.columns.size()); ++c) {
+    const GlobalIndex rate = basis.columns[c] - dofs.first_rate;
+    const bool is_rate = rate >= 0 && rate < n_all;
+    if (is_rate && !given[rate])
+      free.push_back(c);
+    else if (is_rate || mechanism.root == space)
+      held.push_back(c);
+  }
+  if (free.empty())
+    return basis;
+  Eigen::MatrixXd of_free(all.rows(), free.size());
+  for (std::size_t k = 0; k < free.size(); ++k)
+    of_free.col(static_cast<Eigen::Index>(k)) = all.col(free[k]);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(of_free);
+  qr.setThreshold(dependent);
+  const Eigen::Index rank = qr.rank();
+  const Eigen::MatrixXd rotated = qr.householderQ().transpose() * all;
+  const auto order = qr.colsPermutation().indices();
+  const auto upper = qr.matrixQR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>();
+  std::vector<int> others = held;
+  for (auto k = rank; k < static_cast<Eigen::Index>(free.size()); ++k)
+    others.push_back(free[order[k]]);
+  Eigen::MatrixXd weights(rank, basis.columns.size());
+  weights.setZero();
+  for (const int c : others)
+    weights.col(c) = -upper.solve(Eigen::VectorXd(rotated.col(c).head(rank)));
+  for (Eigen::Index k = 0; k < rank; ++k)
+    basis.dependent.emplace_back(free[order[k]], weights.row(k));
+  for (Twists<dim>& twists : basis.twists) {
+    for (const auto& [column, row] : basis.dependent) {
+      const TwistVector<dim> motion = twists.col(column);
+      twists.col(column).setZero();
+      twists += motion * row;
+    }
+  }
+  return basis;
+}
+
+template std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<2>>&,
+                                                std::vector<Joint<2>>&);
+template std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<3>>&,
+                                                std::vector<Joint<3>>&);
+template JointPlace<2> place_of(const Joint<2>&, const std::vector<BodyPose<2>>&);
+template JointPlace<3> place_of(const Joint<3>&, const std::vector<BodyPose<3>>&);
+template TwistVector<2> row_on_side(const Screw<2>&, const JointPlace<2>&, int, const Point<2>&);
+template TwistVector<3> row_on_side(const Screw<3>&, const JointPlace<3>&, int, const Point<3>&);
+template MotionBasis<2> motion_basis(const Mechanism&, const std::vector<JointedBody<2>>&,
+                                     const std::vector<Joint<2>>&,
+                                     const std::vector<BodyPose<2>>&, const RateDofs&,
+                                     const std::vector<char>&);
+template MotionBasis<3> motion_basis(const Mechanism&, const std::vector<JointedBody<3>>&,
+                                     const std::vector<Joint<3>>&,
+                                     const std::vector<BodyPose<3>>&, const RateDofs&,
+                                     const std::vector<char>&);
+
+}  // namespace lockstep

@@ -1,0 +1,99 @@
+// S1: where the solids go.
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "coupling/swept_volumes.hpp"
+#include "stepping/stepper.hpp"
+
+namespace lockstep {
+
+/// V^{n+1/2}: soft solids keep the volumes of closed regions, contact acts. With joints also the
+/// impulses that these give.
+template <int dim>
+RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
+                                      const Prediction<dim>& prediction, StepReport<dim>& report) {
+  auto& solids = *components_.solids;
+  const double dt = context.step_dt;
+  RCP<Vector> half_velocity = make_vector(solids.map());
+  SweptRates swept;
+  RCP<Vector> momentum;
+  if (coupled()) {
+    ScopedPhase phase(timers_, "S1");
+    momentum = solid_momentum(context, prediction, report);
+    const CoupledSolution solution =
+        solve_newton(context, momentum, report.s1, report.incompatibility_s1);
+    half_velocity = solution.velocity;
+    if (solids.joints())
+      start_impulse_ = system_.reactions(context.dt, context.constraints, *momentum,
+                                         {solution.unknowns.pressure, solution.velocity});
+    swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
+  }
+  ScopedPhase phase(timers_, "solid motion");
+  solids.limit_motion(dt, *half_velocity);
+  // Shells push the fluid of closed regions, bodies only take back what straight steps add.
+  const auto sweep_shells = [&](Vector& velocity) {
+    sweep_volumes(rates_of_kind(swept, solids, false), solids, dt, velocity);
+  };
+  sweep_shells(*half_velocity);
+  const Vector as_solved(*half_velocity, Teuchos::Copy);
+  sweep_volumes(rates_of_kind(swept, solids, true), solids, dt, *half_velocity);
+  if (coupled() && solids.has_implicit_forces())
+    bound_sweep<dim>(solids, context.dt, as_solved, *half_velocity);
+  if (coupled() && solids.has_implicit_forces()) {
+    const SettledMotion<dim> settled =
+        settle_motion<dim>(solids, components_.contact.get(), context, sweep_shells, as_solved,
+                           *half_velocity, *momentum);
+    half_velocity = settled.velocity;
+    report.contact_position = settled.contact;
+  } else if (components_.contact && coupled()) {
+    report.contact_position =
+        components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);
+  }
+  return half_velocity;
+}
+
+/// Velocities that joints let take bodies off them by O(dt^2) all the same. Closing finds what
+/// brings them back, by the bodies' own masses; the solve about that knows the mass of the fluid,
+/// and what is still left to close is of higher order.
+template <int dim>
+void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
+                                RCP<Vector>& velocity, StepReport<dim>& report) {
+  auto& solids = *components_.solids;
+  const double end = context.time + context.step_dt;
+  const auto close = [&] {
+    return solids.joints()->close(context.time, context.step_dt, *velocity).drift;
+  };
+  // Solutions may share it.
+  velocity = rcp(new Vector(*velocity, Teuchos::Copy));
+  RCP<const Vector> drift = close();
+  if (!drift.is_null()) {
+    const int iterations = report.s1.iterations;
+    context.constraints = solids.constraints(context.time, end, drift);
+    velocity = find_motion(context, prediction, report);
+    velocity = rcp(new Vector(*velocity, Teuchos::Copy));
+    report.s1.iterations += iterations;
+    drift = close();
+  }
+  if (drift.is_null())
+    start_impulse_ = Teuchos::null;
+  else
+    solids.reduction().drop_given(*start_impulse_);
+}
+
+/// All solids go to their positions at t^{n+1}.
+template <int dim>
+void Stepper<dim>::move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
+                               StepReport<dim>& report) {
+  auto& solids = *components_.solids;
+  start_impulse_ = Teuchos::null;
+  RCP<Vector> velocity = find_motion(context, prediction, report);
+  if (coupled() && solids.joints())
+    close_joints(context, prediction, velocity, report);
+  ScopedPhase phase(timers_, "solid motion");
+  solids.move(*velocity, context.time, context.step_dt);
+}
+
+template void Stepper<2>::move_solids(const StepContext<2>&, const Prediction<2>&, StepReport<2>&);
+template void Stepper<3>::move_solids(const StepContext<3>&, const Prediction<3>&, StepReport<3>&);
+
+}  // namespace lockstep
