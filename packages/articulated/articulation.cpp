@@ -6,8 +6,8 @@ namespace lockstep {
 
 template <int dim>
 Articulation<dim>::Articulation(std::vector<JointedBody<dim>> bodies,
-                                std::vector<Joint<dim>> joints,
-                                const ArticulationOptions& options, GlobalIndex first_dof)
+                                std::vector<Joint<dim>> joints, const ArticulationOptions& options,
+                                GlobalIndex first_dof)
     : bodies_(std::move(bodies)), joints_(std::move(joints)), options_(options) {
   mechanisms_ = find_mechanisms(bodies_, joints_);
   dofs_.first_rate = first_dof;

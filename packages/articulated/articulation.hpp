@@ -58,7 +58,6 @@ class Articulation {
 template <int dim>
 class JointConstraints : public ConstraintModel {
  public:
-  /// `map`: of the stack of all solids is known when the first vector is.
   JointConstraints(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm);
 
   std::string name() const override { return "joints"; }

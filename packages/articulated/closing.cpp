@@ -52,7 +52,8 @@ class Rows {
     for (const int j : problem.mechanism.joints) {
       const auto& given = problem.goals[j].given;
       n_rows_ += static_cast<int>(
-          held_rows(problem.joints[j].kind, place_of(problem.joints[j], problem.poses).pose).size());
+          held_rows(problem.joints[j].kind, place_of(problem.joints[j], problem.poses).pose)
+              .size());
       for (const char is_given : given)
         n_rows_ += is_given ? 1 : 0;
     }
@@ -134,13 +135,15 @@ bool close_joints(const ClosingProblem<dim>& problem, std::vector<TwistVector<di
   Eigen::MatrixXd response(all.n_columns(), rows.rows());  // M^-1 J^T
   for (const int body : problem.mechanism.bodies)
     response.middleRows(all.column(body), n_twist<dim>) =
-        problem.inverse_masses[body] *
-        rows.middleCols(all.column(body), n_twist<dim>).transpose();
-  // Of units that do not matter: masses may be anything.
-  const double largest = response.cwiseAbs().maxCoeff();
-  if (rows.rows() == 0 || !(largest > 0))
+        problem.inverse_masses[body] * rows.middleCols(all.column(body), n_twist<dim>).transpose();
+  if (rows.rows() == 0)
     return true;
-  response /= largest;
+  // Each row scaled by how easily it is closed: bodies may be light and heavy.
+  const Eigen::VectorXd ease = (rows * response).diagonal();
+  const Eigen::VectorXd scale =
+      (ease.array() > 0)
+          .select(ease.array().max(1e-300).rsqrt(), Eigen::ArrayXd::Zero(ease.size()));
+  response *= scale.asDiagonal();
   std::vector<TwistVector<dim>> trial = twists;
   double before = 1e300;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -155,14 +158,14 @@ bool close_joints(const ClosingProblem<dim>& problem, std::vector<TwistVector<di
     }
     before = size;
     for (const int body : problem.mechanism.bodies) {
-      auto turns =
-          rows.middleCols(all.column(body) + dim, n_rotations<dim>);
+      auto turns = rows.middleCols(all.column(body) + dim, n_rotations<dim>);
       const AngularVector<dim> turn = problem.dt * trial[body].template tail<n_rotations<dim>>();
       turns = (turns * change_of_rotation(turn)).eval();
     }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(rows * response);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(scale.asDiagonal() * rows *
+                                                                   response);
     solver.setThreshold(dependent);
-    const Eigen::VectorXd change = response * solver.solve(gaps);
+    const Eigen::VectorXd change = response * solver.solve(scale.cwiseProduct(gaps));
     for (const int body : problem.mechanism.bodies)
       trial[body] -= change.template segment<n_twist<dim>>(all.column(body)) / problem.dt;
   }
@@ -190,8 +193,8 @@ void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& cha
     const BodyPose<dim> parent = pose_of(poses, carrier.body);
     // The joint's axes at both sides, from the carrier's.
     const Axes<dim> known = parent.rotation * carrier.axes;
-    const Axes<dim> axes = side == 1 ? Axes<dim>(known * goal.rotation)
-                                     : Axes<dim>(known * goal.rotation.transpose());
+    const Axes<dim> axes =
+        side == 1 ? Axes<dim>(known * goal.rotation) : Axes<dim>(known * goal.rotation.transpose());
     const Point<dim> anchor = parent.position + parent.rotation * carrier.point;
     const Point<dim> offset =
         side == 1 ? Point<dim>(known * goal.offset) : Point<dim>(-(axes * goal.offset));

@@ -92,8 +92,7 @@ bool JointConstraints<dim>::close_mechanism(const ClosingProblem<dim>& problem,
   double turn = 0;
   for (const int body : problem.mechanism.bodies)
     turn = std::max(turn, problem.dt * twists[body].template tail<n_rotations<dim>>().norm());
-  if (articulation_->options().two_halves && turn <= farthest_turn &&
-      close_joints(problem, twists))
+  if (articulation_->options().two_halves && turn <= farthest_turn && close_joints(problem, twists))
     return true;
   follow_rates(problem, change, twists);
   if (!problem.mechanism.loops.empty())
@@ -131,14 +130,16 @@ ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& veloci
   std::vector<Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>> inverse_masses(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].prescribed())
-      inverse_masses[b] = bodies[b].model->rigid_frame(bodies[b].solid).mass.llt().solve(
-          Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>::Identity());
+      inverse_masses[b] = bodies[b]
+                              .model->rigid_frame(bodies[b].solid)
+                              .mass.llt()
+                              .solve(Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>::Identity());
   }
   const std::vector<JointGoal> goals(articulation_->joints().size());
   bool closed = true;
   for (const Mechanism& mechanism : articulation_->mechanisms()) {
-    const ClosingProblem<dim> problem{mechanism, articulation_->joints(), poses, ends,
-                                      inverse_masses, goals, dt};
+    const ClosingProblem<dim> problem{
+        mechanism, articulation_->joints(), poses, ends, inverse_masses, goals, dt};
     closed = close_mechanism(problem, change, twists) && closed;
   }
   set_twists(twists, velocity);

@@ -35,7 +35,8 @@ double nearest_angle(double angle, double near) {
 
 /// Of the rotation vectors that turn alike.
 template <int dim>
-AngularVector<dim> nearest_vector(const AngularVector<dim>& vector, const AngularVector<dim>& near) {
+AngularVector<dim> nearest_vector(const AngularVector<dim>& vector,
+                                  const AngularVector<dim>& near) {
   const double angle = vector.norm();
   if (angle == 0)
     return vector;
@@ -103,7 +104,8 @@ Axes<dim> rotation_at(const JointKind& kind, const Eigen::VectorXd& angles) {
     case JointTurn::axis:
       return rotation_about<dim>(0, angles[0]);
     case JointTurn::two_axes:
-      return rotation_about<dim>(0, angles[0]) * rotation_about<dim>(n_rotations<dim> / 2, angles[1]);
+      return rotation_about<dim>(0, angles[0]) *
+             rotation_about<dim>(n_rotations<dim> / 2, angles[1]);
     case JointTurn::any:
       return rotation_of<dim>(AngularVector<dim>(angles)).toRotationMatrix();
   }
@@ -138,10 +140,12 @@ std::vector<DescribedKind> joint_kinds() {
       {{"weld", {}, JointTurn::none}, "Holds fast."}};
   if (dim == 3) {
     kinds.insert(kinds.begin(), {{"ball", {}, JointTurn::any}, "Turns about any axis."});
-    kinds.push_back({{"universal", {}, JointTurn::two_axes},
-                     "Turns about \"Axis\", fixed to the first solid, and \"Second Axis\", fixed to "
-                     "the second."});
-    kinds.push_back({{"cylinder", {0}, JointTurn::axis}, "Slides along an axis and turns about it."});
+    kinds.push_back(
+        {{"universal", {}, JointTurn::two_axes},
+         "Turns about \"Axis\", fixed to the first solid, and \"Second Axis\", fixed to "
+         "the second."});
+    kinds.push_back(
+        {{"cylinder", {0}, JointTurn::axis}, "Slides along an axis and turns about it."});
     kinds.push_back({{"planar", {1, 2}, JointTurn::axis},
                      "Slides across an axis in both directions and turns about it."});
   }
@@ -189,8 +193,7 @@ std::vector<Screw<dim>> held_rows(const JointKind& kind, const RelativePose<dim>
       rows.push_back(sliding<dim>(axis));
   }
   if (kind.turn == JointTurn::two_axes)
-    rows.push_back(
-        turning<dim>(across(AngularVector<dim>::Unit(0), second_axis(pose.rotation))));
+    rows.push_back(turning<dim>(across(AngularVector<dim>::Unit(0), second_axis(pose.rotation))));
   const bool holds_axis = kind.turn == JointTurn::none || kind.turn == JointTurn::axis;
   for (int k = n_turns<dim>(kind.turn); holds_axis && k < n_rotations<dim>; ++k)
     rows.push_back(turning<dim>(AngularVector<dim>::Unit(k)));
@@ -222,8 +225,7 @@ Eigen::VectorXd coordinates(const JointKind& kind, const RelativePose<dim>& pose
   Eigen::VectorXd q(n_rates<dim>(kind));
   for (Eigen::Index k = 0; k < n_slides; ++k)
     q[k] = pose.offset[kind.slides[k]];
-  q.tail(q.size() - n_slides) =
-      angles_of<dim>(kind, pose.rotation, near.tail(q.size() - n_slides));
+  q.tail(q.size() - n_slides) = angles_of<dim>(kind, pose.rotation, near.tail(q.size() - n_slides));
   return q;
 }
 

@@ -44,14 +44,14 @@ class BodyFinder {
         if (solids[s].name != name)
           continue;
         const auto* jointable = side_of<JointableSolids<dim>>(*model);
-        check_input(jointable, "The joint \"{}\" names the solid \"{}\", which is not rigid; joints "
-                               "connect rigid bodies, attach its nodes to one.",
+        check_input(jointable,
+                    "The joint \"{}\" names the solid \"{}\", which is not rigid; joints "
+                    "connect rigid bodies, attach its nodes to one.",
                     joint, name);
         const int number = static_cast<int>(s);
         const std::string other = jointable->unjointable(number);
-        check_input(other.empty(),
-                    "\"{}\" is jointed, so it has no \"{}\"; use a joint to \"{}\".", name, other,
-                    name_of_space);
+        check_input(other.empty(), "\"{}\" is jointed, so it has no \"{}\"; use a joint to \"{}\".",
+                    name, other, name_of_space);
         const GlobalIndex own = jointable->first_dof(number);
         return {name, jointable, number, own == no_index ? no_index : first + own};
       }
@@ -90,8 +90,7 @@ template <int dim>
 Point<dim> direction(const ParameterList& list, const std::string& parameter,
                      const std::string& name) {
   const Point<dim> axis = vector_value<dim>(list, parameter);
-  check_input(axis.norm() > 0, "The \"{}\" of the joint \"{}\" must not be zero.", parameter,
-              name);
+  check_input(axis.norm() > 0, "The \"{}\" of the joint \"{}\" must not be zero.", parameter, name);
   return axis.normalized();
 }
 
@@ -135,14 +134,13 @@ ParameterList parameters_of(const JointKind& kind) {
 }
 
 template <int dim>
-Joint<dim> read_joint(const std::string& name, const ParameterList& list,
-                      BodyFinder<dim>& finder) {
+Joint<dim> read_joint(const std::string& name, const ParameterList& list, BodyFinder<dim>& finder) {
   Joint<dim> joint;
   joint.name = name;
   joint.kind = kind_of<dim>(list.get<std::string>("Type"));
   const auto& solids = list.get<ParameterArray<std::string>>("Solids");
-  check_input(solids[0] != solids[1], "The joint \"{}\" connects \"{}\" with itself; name two.", name,
-              solids[0]);
+  check_input(solids[0] != solids[1], "The joint \"{}\" connects \"{}\" with itself; name two.",
+              name, solids[0]);
   const Point<dim> point = vector_value<dim>(list, "Point");
   const Point<dim> axis = has_axis<dim>(joint.kind) ? direction<dim>(list, "Axis", name)
                                                     : Point<dim>(Point<dim>::Unit(0));
@@ -161,7 +159,8 @@ Joint<dim> read_joint(const std::string& name, const ParameterList& list,
     joint.sides[side] = {body, pose.rotation.transpose() * (point - pose.position),
                          pose.rotation.transpose() * axes};
   }
-  check_input(movable, "The joint \"{}\" connects two prescribed solids; nothing can move it.", name);
+  check_input(movable, "The joint \"{}\" connects two prescribed solids; nothing can move it.",
+              name);
   return joint;
 }
 
@@ -183,9 +182,10 @@ ParameterList articulation_parameters() {
                  "half where it ends; second order, and hardly any energy is lost, for one more "
                  "coupled solve a step. end of step: all of them there; loses energy at large "
                  "steps.");
-  declare_positive(list, "Largest Turn", usual.largest_turn,
-                   "Bound of the step: how far a jointed body may turn in it [rad]. Where steps turn "
-                   "bodies by more than 0.5 all the same, impulses act at the end of the step.");
+  declare_positive(
+      list, "Largest Turn", usual.largest_turn,
+      "Bound of the step: how far a jointed body may turn in it [rad]. Where steps turn "
+      "bodies by more than 0.5 all the same, impulses act at the end of the step.");
   return list;
 }
 

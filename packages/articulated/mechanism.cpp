@@ -111,8 +111,7 @@ std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodi
       const bool touches = is_ground(bodies, first) || is_ground(bodies, second);
       const int start = is_ground(bodies, first) ? second : first;
       if (in_tree[j] && touches == on_ground && !reached[start])
-        mechanisms.push_back(
-            grown_from(static_cast<int>(j), bodies, joints, in_tree, reached));
+        mechanisms.push_back(grown_from(static_cast<int>(j), bodies, joints, in_tree, reached));
     }
   }
   int n_all = 0;
@@ -234,8 +233,7 @@ class TreeMotion {
     if (mechanism.root != space)
       add_columns(bodies[mechanism.root].first_dof, n_twist<dim>);
     for (const int ground : mechanism.grounds)
-      ground_columns_.emplace_back(ground,
-                                   add_columns(dofs.first_of_body[ground], n_twist<dim>));
+      ground_columns_.emplace_back(ground, add_columns(dofs.first_of_body[ground], n_twist<dim>));
     rate_columns_.assign(joints.size(), -1);
     for (const int j : mechanism.joints) {
       if (joints[j].first_rate >= 0)
@@ -370,7 +368,8 @@ MotionBasis<dim> motion_basis(const Mechanism& mechanism,
   const Eigen::Index rank = qr.rank();
   const Eigen::MatrixXd rotated = qr.householderQ().transpose() * all;
   const auto order = qr.colsPermutation().indices();
-  const auto upper = qr.matrixQR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>();
+  const auto upper =
+      qr.matrixQR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>();
   std::vector<int> others = held;
   for (auto k = rank; k < static_cast<Eigen::Index>(free.size()); ++k)
     others.push_back(free[order[k]]);
@@ -399,12 +398,10 @@ template JointPlace<3> place_of(const Joint<3>&, const std::vector<BodyPose<3>>&
 template TwistVector<2> row_on_side(const Screw<2>&, const JointPlace<2>&, int, const Point<2>&);
 template TwistVector<3> row_on_side(const Screw<3>&, const JointPlace<3>&, int, const Point<3>&);
 template MotionBasis<2> motion_basis(const Mechanism&, const std::vector<JointedBody<2>>&,
-                                     const std::vector<Joint<2>>&,
-                                     const std::vector<BodyPose<2>>&, const RateDofs&,
-                                     const std::vector<char>&);
+                                     const std::vector<Joint<2>>&, const std::vector<BodyPose<2>>&,
+                                     const RateDofs&, const std::vector<char>&);
 template MotionBasis<3> motion_basis(const Mechanism&, const std::vector<JointedBody<3>>&,
-                                     const std::vector<Joint<3>>&,
-                                     const std::vector<BodyPose<3>>&, const RateDofs&,
-                                     const std::vector<char>&);
+                                     const std::vector<Joint<3>>&, const std::vector<BodyPose<3>>&,
+                                     const RateDofs&, const std::vector<char>&);
 
 }  // namespace lockstep

@@ -53,9 +53,9 @@ struct Joint {
 /// Where a joint and its two sides are in space.
 template <int dim>
 struct JointPlace {
-  Point<dim> point;          ///< of the second side
-  Axes<dim> axes;            ///< of the first side
-  RelativePose<dim> pose;    ///< of the second side against the first
+  Point<dim> point;        ///< of the second side
+  Axes<dim> axes;          ///< of the first side
+  RelativePose<dim> pose;  ///< of the second side against the first
 };
 
 /// Bodies that joints connect, as a tree and joints that close loops in it.

@@ -14,8 +14,7 @@ void register_articulated(Registries<dim>& registries) {
       [](const ParameterList& list, const NamedLists& joints, const JointSetting<dim>& setting) {
         const auto articulation = read_joints<dim>(list, joints, setting);
         auto system = std::make_unique<JointSystem<dim>>();
-        system->constraints =
-            std::make_unique<JointConstraints<dim>>(articulation, setting.comm);
+        system->constraints = std::make_unique<JointConstraints<dim>>(articulation, setting.comm);
         system->rates =
             std::make_unique<JointRates<dim>>(articulation, setting.comm, setting.start_time);
         return system;

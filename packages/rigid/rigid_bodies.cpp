@@ -8,6 +8,14 @@
 
 namespace lockstep {
 
+namespace {
+template <int dim>
+const SurfaceMesh<dim>& shown_surface(const RigidBody<dim>& body) {
+  static const SurfaceMesh<dim> none;
+  return body.seen_by_fluid ? body.surface : none;
+}
+}  // namespace
+
 template <int dim>
 RigidBodies<dim>::RigidBodies(std::vector<RigidBody<dim>> bodies, const Point<dim>& gravity,
                               const Communicator& comm, double start_time)
@@ -33,7 +41,7 @@ void RigidBodies<dim>::describe() {
     const RigidBody<dim>& body = bodies_[b];
     SolidDescription solid;
     solid.name = body.name;
-    solid.closed = body.closed;
+    solid.closed = body.closed && body.seen_by_fluid;
     solid.prescribed = !body.dynamic();
     solid.rigid = true;
     solid.density = body.density;
@@ -42,14 +50,14 @@ void RigidBodies<dim>::describe() {
     solid.index_in_model = b;
     solid.simplex_begin = static_cast<int>(surface_.simplices.size());
     solid.vertex_begin = static_cast<int>(surface_.vertices.size());
-    for (auto simplex : body.surface.simplices) {
+    for (auto simplex : shown_surface(body).simplices) {
       for (int& vertex : simplex)
         vertex += solid.vertex_begin;
       surface_.simplices.push_back(simplex);
       body_of_simplex_.push_back(b);
     }
-    surface_.vertices.insert(surface_.vertices.end(), body.surface.vertices.begin(),
-                             body.surface.vertices.end());
+    const auto& vertices = shown_surface(body).vertices;
+    surface_.vertices.insert(surface_.vertices.end(), vertices.begin(), vertices.end());
     solid.simplex_end = static_cast<int>(surface_.simplices.size());
     solid.vertex_end = static_cast<int>(surface_.vertices.size());
     solids_.push_back(solid);
@@ -66,7 +74,7 @@ void RigidBodies<dim>::update_surface() {
   auto vertex = surface_.vertices.begin();
   for (const RigidBody<dim>& body : bodies_) {
     const Eigen::Matrix<double, dim, dim> rotation = body.pose.orientation.toRotationMatrix();
-    for (const Point<dim>& x : body.surface.vertices)
+    for (const Point<dim>& x : shown_surface(body).vertices)
       *vertex++ = body.pose.position + rotation * x;
   }
 }

@@ -19,9 +19,7 @@ namespace lockstep {
 /// contains the gyroscopic effect. Free spin conserves angular momentum exactly, its energy stays
 /// bounded, and it is second order in time.
 template <int dim>
-class RigidBodies : public SolidModel<dim>,
-                    public AuditedSolids<dim>,
-                    public JointableSolids<dim> {
+class RigidBodies : public SolidModel<dim>, public AuditedSolids<dim>, public JointableSolids<dim> {
  public:
   /// gravity [m/s^2]; prescribed bodies are put where they are at `start_time` [s]. Collective.
   RigidBodies(std::vector<RigidBody<dim>> bodies, const Point<dim>& gravity,

@@ -34,9 +34,10 @@ struct RigidBodyConstants {
   std::string name;
   SurfaceMesh<dim> surface;
   bool closed = true;
-  double density = 0;                              ///< [kg/m^dim], of a shell [kg/m^(dim-1)]
-  double mass = 0;                                 ///< [kg]
-  double volume = 0;                               ///< [m^dim]; 0 for shells
+  bool seen_by_fluid = true;  ///< false: neither by contact; its surface is in nothing
+  double density = 0;         ///< [kg/m^dim], of a shell [kg/m^(dim-1)]
+  double mass = 0;            ///< [kg]
+  double volume = 0;          ///< [m^dim]; 0 for shells
   Point<dim> center_of_mass = Point<dim>::Zero();  ///< in body coordinates [m]
   Inertia<dim> inertia = Inertia<dim>::Zero();     ///< about it, in body axes [kg m^2]
   std::array<bool, n_rigid_dofs<dim>> locked{};    ///< dofs held at zero, in world axes

@@ -154,6 +154,10 @@ ParameterList rigid_body_parameters() {
   declare_vector(list, "Force", ParameterArray<double>(dim, 0.0), dim,
                  "Constant load at the centre of mass, besides gravity [N] (2D: [N/m]).");
   declare_rotation<dim>(list, "Torque", "Constant load, in axes of space [N m] (2D: [N]).");
+  declare(
+      list, "Seen by Fluid", true,
+      "Whether fluid and contact meet the body's surface. Without, it is a mass that joints and "
+      "attached nodes connect, as a bone inside flesh.");
   declare_between(list, "Restitution", 0.0, 0.0, 1.0,
                   "Speed after over speed before a collision [1].");
   declare_at_least(list, "Friction", 0.0, 0.0, "Coulomb's coefficient of contacts [1].");
@@ -177,6 +181,7 @@ RigidBody<dim> read_rigid_body(const std::string& name, const ParameterList& lis
       "The solid \"{}\" follows a script, so a \"Force\" or \"Torque\" cannot move it; leave "
       "them out, or make its motion \"dynamic\".",
       name);
+  body.seen_by_fluid = list.get<bool>("Seen by Fluid");
   body.restitution = list.get<double>("Restitution");
   body.friction = list.get<double>("Friction");
   const Point<dim> reference = set_mass(body, list);

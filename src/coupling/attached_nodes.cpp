@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "interfaces/solid_sides.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -16,6 +18,21 @@ std::map<std::string, int> carriers_by_name(const std::vector<SolidDescription>&
       carriers.emplace(solids[s].name, static_cast<int>(s));
   }
   return carriers;
+}
+
+/// What moves a point of a rigid solid without surface.
+template <int dim>
+void unseen_row(const JointableSolids<dim>& model, int solid, const Point<dim>& x,
+                VelocityRow<dim>& row) {
+  row.clear();
+  const GlobalIndex first = model.first_dof(solid);
+  for (int k = 0; k < RigidFrame<dim>::n; ++k)
+    row.dofs.push_back(first + k);
+  for (int a = 0; a < dim; ++a)
+    row.coefficients.push_back(Point<dim>::Unit(a));
+  const Point<dim> arm = x - model.rigid_frame(solid).position;
+  for (int r = 0; r < n_rotations<dim>; ++r)
+    row.coefficients.push_back(rotate<dim>(AngularVector<dim>::Unit(r), arm));
 }
 
 }  // namespace
@@ -59,9 +76,15 @@ std::vector<Combination> combinations_of(
   VelocityRow<dim> row;
   for (const AttachedNode<dim>& node : nodes) {
     const SolidDescription& carrier = solids[node.solid];
-    SurfacePoint<dim> point;
-    point.simplex = carrier.simplex_begin - begin[carrier.model].simplex;
-    models[carrier.model]->velocity_row(point, node.position, row);
+    const SolidModel<dim>& model = *models[carrier.model];
+    const auto* jointable = side_of<JointableSolids<dim>>(model);
+    if (jointable && carrier.simplex_begin == carrier.simplex_end) {
+      unseen_row(*jointable, carrier.index_in_model, node.position, row);
+    } else {
+      SurfacePoint<dim> point;
+      point.simplex = carrier.simplex_begin - begin[carrier.model].simplex;
+      model.velocity_row(point, node.position, row);
+    }
     for (int a = 0; a < dim; ++a) {
       Combination combination{node.dofs[a], {}};
       for (std::size_t k = 0; k < row.dofs.size(); ++k) {

@@ -16,8 +16,10 @@ void SolidSystem<dim>::find_reduction() {
     combinations = combinations_of(attached_, models_, begin_, solids_);
   }
   if (joints_) {
-    for (Combination& combination : joints_->combinations())
-      combinations.push_back(std::move(combination));
+    for (Combination& combination : joints_->combinations()) {
+      if (map_->isNodeGlobalElement(combination.dof))
+        combinations.push_back(std::move(combination));
+    }
   }
   std::vector<GlobalIndex> locked;
   for (int m = 0; m < n_models(); ++m) {
@@ -41,7 +43,8 @@ Reduction SolidSystem<dim>::constraints(double begin, double end,
                                         const RCP<const Vector>& drift) const {
   if (!reduction_.has_given() && drift.is_null())
     return reduction_;
-  const auto velocity = drift.is_null() ? make_vector(map_) : rcp(new Vector(*drift, Teuchos::Copy));
+  const auto velocity =
+      drift.is_null() ? make_vector(map_) : rcp(new Vector(*drift, Teuchos::Copy));
   for (int m = 0; m < n_models(); ++m) {
     const std::vector<GlobalIndex> dofs = model(m).locked_dofs();
     const std::vector<double> values = model(m).locked_velocities(begin, end);

@@ -9,8 +9,7 @@ namespace lockstep {
 
 template <int dim>
 SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> models,
-                              const Communicator& comm,
-                              std::unique_ptr<ConstraintModel> joints)
+                              const Communicator& comm, std::unique_ptr<ConstraintModel> joints)
     : comm_(comm), models_(std::move(models)), joints_(std::move(joints)) {
   int n_simplices = 0, n_vertices = 0;
   std::vector<GlobalIndex> ids;

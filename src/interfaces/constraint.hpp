@@ -29,7 +29,7 @@ struct ClosedMotion {
 /// O(dt^2): `close` mends that. Dofs are those of the stack of all solids.
 class ConstraintModel : public PlugIn {
  public:
-  /// Of this rank's dofs, at the present positions. Local.
+  /// At the present positions. Local, the same on all ranks.
   virtual std::vector<Combination> combinations() const = 0;
   /// S1: changes V (stacked, of all dofs), which is about to move all solids from `time` by dt.
   /// Collective.

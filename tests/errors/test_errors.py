@@ -126,12 +126,47 @@ def filled(name, text=None):
             **water(liquid=value("Type", "string", "mesh") + value("File", "string", name))}
 
 
+def joint(kind, solids, more="", second=""):
+    """A scene with a joint, and a second solid if it is given."""
+    text = f"""<ParameterList name="Joints">
+    <ParameterList name="Neck">
+      <Parameter name="Type" type="string" value="{kind}"/>
+      <Parameter name="Solids" type="Array(string)" value="{{{solids}}}"/>
+      <Parameter name="Point" type="Array(double)" value="{{0.5, 0.5}}"/>
+      {more}
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Solids">{second}"""
+    return {"change": ('<ParameterList name="Solids">', text)}
+
+
+BONE = """<ParameterList name="Bone">
+      <Parameter name="Type" type="string" value="rigid body"/>
+      <ParameterList name="Geometry">
+        <Parameter name="Shape" type="string" value="ball"/>
+        <Parameter name="Radius" type="double" value="0.1"/>
+      </ParameterList>
+      <Parameter name="Density" type="double" value="500"/>
+      <Parameter name="Position" type="Array(double)" value="{0.5, 1.5}"/>
+      MORE
+    </ParameterList>"""
+STATIC = '<ParameterList name="Motion"><Parameter name="Type" type="string" value="static"/></ParameterList>'
+LOCKED = '<Parameter name="Locked" type="Array(string)" value="{x}"/>'
+
 CASES = [
     # The command line.
     Case("no such option", "--ouput", arguments=["--ouput", "here"]),
     Case("number of steps", "--steps", arguments=["--steps", "many"]),
     *[Case(f"{n} steps", ["--steps", "whole number from 1"], arguments=[f"--steps={n}"])
       for n in ("-3", "0", "99999999999999999999", "1.5")],
+    Case("a joint to nothing", ["\"Neck\"", "\"Bal\"", "did you mean \"Ball\""], **joint("hinge", "space, Bal")),
+    Case("a joint of 3D", ["\"ball\"", "hinge", "slider", "weld"], **joint("ball", "space, Ball")),
+    Case("a joint that nothing moves", ["\"Neck\"", "two prescribed solids"],
+         **joint("hinge", "space, Bone", second=BONE.replace("MORE", STATIC))),
+    Case("a joint to a locked body", ["\"Bone\" is jointed", "\"Locked\"", "space"],
+         **joint("hinge", "Ball, Bone", second=BONE.replace("MORE", LOCKED))),
+    Case("a joint of one body", ["\"Neck\"", "with itself"], **joint("weld", "Ball, Ball")),
+    Case("a slider without axis", "\"Axis\"", **joint("slider", "space, Ball")),
     Case("another dimension", ["--set", "2 dimensions"], sets=["Dimension=3"]),
     Case("--set without value", "--set \"Time/End\"", sets=["Time/End"]),
     Case("--set of a list that is not there", ["--set", "\"Tim\"", "Did you mean \"Time\""], sets=["Tim/End=1"]),

@@ -10,7 +10,7 @@ def xml(name, content):
             continue
         kind = {str: "string", int: "int", float: "double", bool: "bool"}.get(type(value))
         if isinstance(value, tuple):
-            kind = f"Array({'int' if isinstance(value[0], int) else 'double'})"
+            kind = f"Array({ {int: 'int', str: 'string'}.get(type(value[0]), 'double') })"
             value = "{" + ", ".join(map(str, value)) + "}"
         text = str(value).lower() if kind == "bool" else value
         lines.append(f'<Parameter name="{key}" type="{kind}" value="{text}"/>')

@@ -1,0 +1,66 @@
+"""Scenes of jointed bodies, and what comes of them."""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+
+SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
+SECONDS = 200  # of a run; one is usual
+LARGE = 100.  # a largest turn that bounds no step
+
+
+def unseen_box(position, angular_velocity, mass=1.):
+    """A box that no fluid sees: it moves as in vacuum."""
+    size = (1., .2, .3)[:len(position)]
+    return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": size}, "Mass": mass, "Seen by Fluid": False,
+            "Position": position, "Angular Velocity": angular_velocity}
+
+
+def joint(kind, solids, point, **more):
+    return {"Type": kind, "Solids": solids, "Point": point, **more}
+
+
+def vacuum(solids, joints, step, end, impulses="two halves", turn=LARGE):
+    dimension = len(next(iter(solids.values()))["Position"])
+    return {"Dimension": dimension, "Domain": {"Cells": (4,) * dimension}, "Fluid": {"Density": 1.},
+            "Contact": {"Type": "none"}, "Solids": solids, "Joints": joints,
+            "Articulation": {"Impulses": impulses, "Largest Turn": turn},
+            "Time": {"End": end, "Fixed Step": step}, "Output": {"Frames": False}}
+
+
+def tank(solids, joints, coupling, viscosity=0., step=.01, end=.1, **articulation):
+    scene = {"Dimension": 2, "Domain": {"Cells": (24, 24)},
+             "Fluid": {"Density": 1000., "Viscosity": viscosity, "Gravity": (0., -9.8)},
+             "Contact": {"Type": "none"}, "Coupling": {"Type": coupling}, "Solids": solids,
+             "Time": {"End": end, "Fixed Step": step}, "Output": {"Frames": False}, "Solver": {"Tolerance": 1e-11}}
+    if joints:
+        scene["Joints"] = joints
+        scene["Articulation"] = {"Largest Turn": LARGE, **articulation}
+    return scene
+
+
+def table(path):
+    """The rows of a table as numbers, but for names."""
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    return [{key: value if key == "name" else float(value) for key, value in row.items()}
+            for row in csv.DictReader(lines)]
+
+
+def run(scene, ranks=1, arguments=(), folder=None):
+    """history.csv and, by name of the body, bodies.csv."""
+    with tempfile.TemporaryDirectory() as own:
+        file, output = Path(own) / "scene.xml", Path(folder or own) / "output"
+        file.write_text(xml("Scene", scene))
+        command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
+        command += [SIMULATE, str(file), "--output", str(output), "--quiet", *arguments]
+        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS)
+        assert result.returncode == 0, result.stdout[-2000:]
+        bodies = {}
+        for row in table(output / "bodies.csv"):
+            bodies.setdefault(row["name"], []).append(row)
+        return table(output / "history.csv"), bodies

@@ -1,0 +1,224 @@
+// Trees of joints: what moves bodies, what loops make of it, and how joints are closed.
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+
+#include "articulated/closing.hpp"
+#include "articulated/mechanism.hpp"
+#include "motion/rotation.hpp"
+
+namespace lockstep::test {
+namespace {
+
+/// Bodies of which nobody asks more than their places; -1 of `dynamic`: prescribed.
+template <int dim>
+struct Linkage {
+  std::vector<JointedBody<dim>> bodies;
+  std::vector<BodyPose<dim>> poses;
+  std::vector<Joint<dim>> joints;
+
+  int add_body(const Point<dim>& position, const AngularVector<dim>& turn, bool dynamic = true) {
+    JointedBody<dim> body;
+    body.first_dof = dynamic ? n_twist<dim> * static_cast<GlobalIndex>(bodies.size()) : no_index;
+    bodies.push_back(body);
+    poses.push_back({position, rotation_of<dim>(turn).toRotationMatrix()});
+    return static_cast<int>(bodies.size()) - 1;
+  }
+  void add_joint(const JointKind& kind, int first, int second, const Point<dim>& point) {
+    Joint<dim> joint;
+    joint.kind = kind;
+    joint.q = Eigen::VectorXd::Zero(n_rates<dim>(kind));
+    int side = 0;
+    for (const int body : {first, second}) {
+      const BodyPose<dim> pose = pose_of(poses, body);
+      joint.sides[side++] = {body, pose.rotation.transpose() * (point - pose.position),
+                             pose.rotation.transpose()};
+    }
+    joints.push_back(joint);
+  }
+  /// Rates' dofs follow those of all bodies, then those of prescribed ones.
+  RateDofs dofs() const {
+    RateDofs dofs;
+    dofs.first_rate = 1000;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      dofs.first_of_body.push_back(2000 + n_twist<dim> * static_cast<GlobalIndex>(b));
+    return dofs;
+  }
+  int n_all_rates() const {
+    int n = 0;
+    for (const Joint<dim>& joint : joints)
+      n += joint.first_rate >= 0 ? n_rates<dim>(joint.kind) : 0;
+    return n;
+  }
+};
+
+/// What all joints hold, read off the twists of the basis: zero, or they let go what they must not.
+template <int dim>
+double largest_violation(const Linkage<dim>& linkage, const Mechanism& mechanism,
+                         const MotionBasis<dim>& basis) {
+  const auto twists = [&](int body) {
+    Eigen::Matrix<double, n_twist<dim>, Eigen::Dynamic> none =
+        Eigen::MatrixXd::Zero(n_twist<dim>, basis.columns.size());
+    for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+      if (mechanism.bodies[b] == body)
+        return basis.twists[b];
+    }
+    for (std::size_t c = 0; body != space && c < basis.columns.size(); ++c) {
+      const GlobalIndex k = basis.columns[c] - linkage.dofs().first_of_body[body];
+      if (k >= 0 && k < n_twist<dim>)
+        none(k, static_cast<Eigen::Index>(c)) = 1;
+    }
+    return none;
+  };
+  double largest = 0;
+  for (const Joint<dim>& joint : linkage.joints) {
+    const JointPlace<dim> place = place_of(joint, linkage.poses);
+    for (const Screw<dim>& held : held_rows(joint.kind, place.pose)) {
+      Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(basis.columns.size());
+      for (int side = 0; side < 2; ++side) {
+        const int body = joint.sides[side].body;
+        sum += row_on_side(held, place, side, pose_of(linkage.poses, body).position).transpose() *
+               twists(body);
+      }
+      largest = std::max(largest, sum.cwiseAbs().maxCoeff());
+    }
+  }
+  return largest;
+}
+
+template <int dim>
+MotionBasis<dim> basis_of(const Linkage<dim>& linkage, const Mechanism& mechanism) {
+  return motion_basis(mechanism, linkage.bodies, linkage.joints, linkage.poses, linkage.dofs(),
+                      std::vector<char>(linkage.n_all_rates(), 0));
+}
+
+JointKind kind(const std::string& name) {
+  for (const DescribedKind& one : joint_kinds<3>()) {
+    if (one.kind.name == name)
+      return one.kind;
+  }
+  return {};
+}
+
+/// Four links about a parallelogram.
+Linkage<2> four_bars() {
+  Linkage<2> linkage;
+  const Point<2> corners[] = {{0, 0}, {2, 0}, {2.5, 1}, {0.5, 1}};
+  for (int k = 0; k < 4; ++k)
+    linkage.add_body(0.5 * (corners[k] + corners[(k + 1) % 4]), AngularVector<2>(0.3 * k));
+  for (int k = 0; k < 4; ++k)
+    linkage.add_joint(kind("hinge"), k, (k + 1) % 4, corners[(k + 1) % 4]);
+  return linkage;
+}
+
+}  // namespace
+
+TEST(Mechanism, TreesMoveAsAllTheirJointsLet) {
+  Linkage<3> linkage;
+  linkage.add_body({0, 0, 0}, {0.1, 0.2, 0.3});
+  linkage.add_body({1, 0.2, 0}, {-0.4, 0.2, 0});
+  linkage.add_body({2, -0.3, 0.5}, {0, 0, 1});
+  linkage.add_body({1, 1, 1}, {0.5, 0.5, 0});
+  linkage.add_joint(kind("ball"), 1, 0, {0.5, 0, 0});
+  linkage.add_joint(kind("universal"), 1, 2, {1.5, 0, 0.2});
+  linkage.add_joint(kind("cylinder"), 3, 1, {1, 0.5, 0.5});
+  const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
+  ASSERT_EQ(mechanisms.size(), 1u);
+  EXPECT_EQ(mechanisms[0].root, 1);
+  EXPECT_TRUE(mechanisms[0].loops.empty());
+  const MotionBasis<3> basis = basis_of(linkage, mechanisms[0]);
+  EXPECT_EQ(basis.columns.size(), 6u + 3 + 2 + 2);
+  EXPECT_LT(largest_violation(linkage, mechanisms[0], basis), 1e-14);
+}
+
+TEST(Mechanism, LoopsMakeRatesCombinations) {
+  Linkage<2> linkage = four_bars();
+  const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
+  ASSERT_EQ(mechanisms.size(), 1u);
+  ASSERT_EQ(mechanisms[0].loops.size(), 1u);
+  const MotionBasis<2> basis = basis_of(linkage, mechanisms[0]);
+  EXPECT_EQ(basis.columns.size(), 3u + 3);
+  EXPECT_EQ(basis.dependent.size(), 2u);  // a four-bar linkage has one freedom of its own
+  EXPECT_LT(largest_violation(linkage, mechanisms[0], basis), 1e-13);
+}
+
+TEST(Mechanism, GroundsAreRootsAndTheirMotionIsHandedOn) {
+  Linkage<2> linkage;
+  const int cart = linkage.add_body({0, 0}, AngularVector<2>(0), false);
+  const int bob = linkage.add_body({0, -1}, AngularVector<2>(0.3));
+  const int tail = linkage.add_body({0, -2}, AngularVector<2>(0.1));
+  linkage.add_joint(kind("hinge"), bob, cart, {0, -0.2});
+  linkage.add_joint(kind("slider"), bob, tail, {0, -1.5});
+  linkage.add_joint(kind("hinge"), space, tail, {0.5, -2.5});
+  const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
+  ASSERT_EQ(mechanisms.size(), 1u);
+  EXPECT_EQ(mechanisms[0].root, space);
+  EXPECT_EQ(mechanisms[0].loops.size(), 1u);
+  const MotionBasis<2> basis = basis_of(linkage, mechanisms[0]);
+  EXPECT_EQ(basis.dependent.size(), 2u);
+  EXPECT_LT(largest_violation(linkage, mechanisms[0], basis), 1e-13);
+}
+
+/// Bodies that move as anything but the joints let end where they fit, with impulses of joints
+/// only: these change neither the momentum nor the moment of momentum.
+TEST(Closing, FitsAllJointsAndKeepsMomentum) {
+  Linkage<2> linkage = four_bars();
+  const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
+  std::vector<Eigen::Matrix3d> inverse(4);
+  std::vector<TwistVector<2>> twists(4), before;
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
+  const auto total = [&] {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int b = 0; b < 4; ++b) {
+      const Eigen::Vector3d p = inverse[b].inverse() * twists[b];
+      sum += p;
+      sum[2] += cross<2>(linkage.poses[b].position, Point<2>(p.head<2>()))[0];
+    }
+    return sum;
+  };
+  for (int b = 0; b < 4; ++b) {
+    inverse[b] = Eigen::Vector3d(1. / (b + 1), 1. / (b + 1), 10.).asDiagonal();
+    twists[b] << 0.3 * b, 1 - 0.2 * b, 1.5 - b;
+  }
+  momentum = total();
+  const std::vector<JointGoal> goals(4);
+  const ClosingProblem<2> problem{
+      mechanisms[0], linkage.joints, linkage.poses, linkage.poses, inverse, goals, 0.1};
+  ASSERT_TRUE(close_joints(problem, twists));
+  std::vector<BodyPose<2>> after = linkage.poses;
+  for (int b = 0; b < 4; ++b)
+    after[b] = moved(linkage.poses[b], twists[b], 0.1);
+  for (const Joint<2>& joint : linkage.joints)
+    EXPECT_LT(largest_gap(joint, after), 1e-12);
+  EXPECT_LT((total() - momentum).norm(), 1e-12);
+}
+
+TEST(Closing, RatesTakeTreesToTheirCoordinates) {
+  Linkage<3> linkage;
+  linkage.add_body({0, 0, 0}, {0.1, 0.2, 0.3});
+  linkage.add_body({1, 0.2, 0}, {-0.4, 0.2, 0});
+  linkage.add_body({2, -0.3, 0.5}, {0, 0, 1});
+  linkage.add_joint(kind("ball"), 1, 0, {0.5, 0, 0});
+  linkage.add_joint(kind("cylinder"), 1, 2, {1.5, 0, 0.2});
+  const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
+  const std::vector<Eigen::Matrix<double, 6, 6>> inverse(3);
+  const std::vector<JointGoal> goals(2);
+  const ClosingProblem<3> problem{
+      mechanisms[0], linkage.joints, linkage.poses, linkage.poses, inverse, goals, 0.5};
+  std::vector<TwistVector<3>> twists(3, TwistVector<3>::Constant(0.7));
+  Eigen::VectorXd change(5);
+  change << 0.5, -1, 2, 0.3, -2;
+  follow_rates(problem, change, twists);
+  std::vector<BodyPose<3>> after = linkage.poses;
+  for (int b = 0; b < 3; ++b)
+    after[b] = moved(linkage.poses[b], twists[b], 0.5);
+  int first = 0;
+  for (const Joint<3>& joint : linkage.joints) {
+    EXPECT_LT(largest_gap(joint, after), 1e-13);
+    const Eigen::VectorXd q = change.segment(first, joint.q.size());
+    EXPECT_LT(distance_to(joint.kind, place_of(joint, after).pose, q).norm(), 1e-13);
+    first += static_cast<int>(joint.q.size());
+  }
+}
+
+}  // namespace lockstep::test
