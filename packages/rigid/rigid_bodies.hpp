@@ -19,7 +19,10 @@ namespace lockstep {
 /// contains the gyroscopic effect. Free spin conserves angular momentum exactly, its energy stays
 /// bounded, and it is second order in time.
 template <int dim>
-class RigidBodies : public SolidModel<dim>, public AuditedSolids<dim>, public JointableSolids<dim> {
+class RigidBodies : public SolidModel<dim>,
+                    public AuditedSolids<dim>,
+                    public JointableSolids<dim>,
+                    public SolidOutput<dim> {
  public:
   /// gravity [m/s^2]; prescribed bodies are put where they are at `start_time` [s]. Collective.
   RigidBodies(std::vector<RigidBody<dim>> bodies, const Point<dim>& gravity,
@@ -56,6 +59,7 @@ class RigidBodies : public SolidModel<dim>, public AuditedSolids<dim>, public Jo
   RigidFrame<dim> prescribed_frame(int solid, double time) const override;
   GlobalIndex first_dof(int solid) const override { return first_dof_[solid]; }
   std::string unjointable(int solid) const override;
+  void add_frames(std::vector<SurfaceFrame>& frames) const override;  ///< of what no fluid sees
 
   std::function<void()> undo() override;
   /// Bit for bit. Throws InputError if the checkpoint holds other bodies.

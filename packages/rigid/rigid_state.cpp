@@ -1,6 +1,7 @@
-// Checkpoints of the rigid bodies.
+// Checkpoints and frames of the rigid bodies.
 #include "base/errors.hpp"
 #include "output/checkpoint.hpp"
+#include "output/frames.hpp"
 #include "rigid/rigid_bodies.hpp"
 
 namespace lockstep {
@@ -85,6 +86,36 @@ void RigidBodies<dim>::load(const CheckpointReader& reader) {
   set_state(values);
 }
 
+template <int dim>
+void RigidBodies<dim>::add_frames(std::vector<SurfaceFrame>& frames) const {
+  for (const RigidBody<dim>& body : bodies_) {
+    if (body.seen_by_fluid)
+      continue;
+    SurfaceFrame frame;
+    frame.name = body.name;
+    frame.dimension = dim;
+    frame.simplex_size = dim;
+    for (const Point<dim>& x : body.surface.vertices) {
+      const Point<dim> place = body.pose.position + body.pose.orientation * x;
+      frame.vertices.insert(frame.vertices.end(), place.data(), place.data() + dim);
+    }
+    SurfaceField velocity{"velocity", "m/s", dim, SurfaceField::Place::simplices, {}};
+    for (const auto& simplex : body.surface.simplices) {
+      frame.simplices.insert(frame.simplices.end(), simplex.begin(), simplex.end());
+      Point<dim> middle = Point<dim>::Zero();
+      for (const int vertex : simplex)
+        middle += body.surface.vertices[vertex] / dim;
+      const Point<dim> place = body.pose.position + body.pose.orientation * middle;
+      const Point<dim> v = body.last_move.velocity(place);
+      velocity.values.insert(velocity.values.end(), v.data(), v.data() + dim);
+    }
+    frame.fields.push_back(std::move(velocity));
+    frames.push_back(std::move(frame));
+  }
+}
+
+template void RigidBodies<2>::add_frames(std::vector<SurfaceFrame>&) const;
+template void RigidBodies<3>::add_frames(std::vector<SurfaceFrame>&) const;
 template std::function<void()> RigidBodies<2>::undo();
 template std::function<void()> RigidBodies<3>::undo();
 template void RigidBodies<2>::save(CheckpointWriter&) const;

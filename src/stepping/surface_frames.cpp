@@ -7,6 +7,8 @@ std::vector<SurfaceFrame> surface_frames(const SolidSystem<dim>& solids,
                                          const SurfaceSnapshot<dim>& surface) {
   std::vector<SurfaceFrame> frames;
   for (const SolidDescription& solid : surface.solids()) {
+    if (solid.simplex_begin == solid.simplex_end)
+      continue;  // the fluid does not see it; its model may show it
     SurfaceFrame frame;
     frame.name = solid.name;
     frame.dimension = dim;
