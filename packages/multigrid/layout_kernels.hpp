@@ -64,10 +64,11 @@ class LayoutKernels final : public ConjugateGradientKernels {
         inverse_->for_each_row(slab, turn);
     };
     double sum = 0;
-    stencil_->for_each_product(d, turn_slab,
-                               [&](int colour, std::ptrdiff_t at, int n, const double* product) {
-                                 sum += sum_of_products(d + colour * n_slots + at, product, n);
-                               });
+    stencil_->for_each_product(
+        d, turn_slab,
+        [&](int colour, std::ptrdiff_t at, int n, const double* product, const float*) {
+          sum += sum_of_products(d + colour * n_slots + at, product, n);
+        });
     restore_empty_rows(d);
     return sum_all(comm_, sum);
   }
@@ -86,10 +87,15 @@ class LayoutKernels final : public ConjugateGradientKernels {
     }
     stencil_->for_each_product(
         d, [](int) {},
-        [&](int colour, std::ptrdiff_t at, int n, const double* product) {
+        [&](int colour, std::ptrdiff_t at, int n, const double* product, const float* diagonal) {
           const std::ptrdiff_t first = colour * n_slots + at;
-          sum += advance_row(step, stencil_->diagonal(colour) + at, d + first, product, n,
-                             x_values.getRawPtr() + first, r_values.getRawPtr() + first);
+          const auto advance_where = [&](const auto& has_row) {
+            return advance_row(step, has_row, d + first, product, n, x_values.getRawPtr() + first,
+                               r_values.getRawPtr() + first);
+          };
+          sum += diagonal == nullptr
+                     ? advance_where([](int) { return 1.0; })
+                     : advance_where([diagonal](int m) { return diagonal[m] > 0 ? 1.0 : 0.0; });
         });
     restore_empty_rows(d);
     return sum_all(comm_, sum);
@@ -97,16 +103,16 @@ class LayoutKernels final : public ConjugateGradientKernels {
 
  private:
   /// Of cells with faces, which have a diagonal; returns r.r. Ghosts in between are d's alone.
-  static double advance_row(double step, const float* diagonal, const double* d,
+  template <typename HasRow>
+  static double advance_row(double step, const HasRow& has_row, const double* d,
                             const double* product, int n, double* x, double* r) {
     constexpr int n_lanes = 16;  // as in sum_of_products
     std::array<double, n_lanes> sums{};
     const auto at = [&](int m, double& sum) {
-      const double has_row = diagonal[m] > 0 ? 1 : 0;
-      x[m] += has_row * step * d[m];
+      x[m] += has_row(m) * step * d[m];
       const double value = r[m] - step * product[m];
       r[m] = value;
-      sum += has_row * value * value;
+      sum += has_row(m) * value * value;
     };
     int m = 0;
     for (; m + n_lanes <= n; m += n_lanes) {

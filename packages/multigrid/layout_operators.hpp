@@ -74,9 +74,10 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
     row_.resize(level.grid().row_stride + 16);
   }
 
-  /// Calls use(colour, slot of the first, number of slots, their part of A x) for all rows, and
-  /// before(slab) before x is read there. x must hold its ghosts, and zero in the empty rows: their
-  /// neighbours do not know that no face lies between.
+  /// Calls use(colour, slot of the first, number of slots, their part of A x, their diagonal) for
+  /// all rows, and before(slab) before x is read there; the diagonal is null where all are
+  /// unknowns, else it is 0 where there is none. x must hold its ghosts, and zero in the empty
+  /// rows: their neighbours do not know that no face lies between.
   template <typename Before, typename Use>
   void for_each_product(const double* x, const Before& before, const Use& use) const {
     const int n_slabs = level_.grid().n_slabs();
@@ -101,10 +102,16 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
     }
     for_each_product(
         ready(x_values.getRawPtr()), [](int) {},
-        [&](int colour, std::ptrdiff_t at, int n, const double* product) {
+        [&](int colour, std::ptrdiff_t at, int n, const double* product, const float* diagonal) {
           const std::ptrdiff_t first = colour * n_slots + at;
-          subtract_row(b.getRawPtr() + first, product, diagonal(colour) + at, n,
-                       r_values.getRawPtr() + first, squares);
+          const auto subtract = [&](const auto& has_row) {
+            subtract_row(b.getRawPtr() + first, product, has_row, n, r_values.getRawPtr() + first,
+                         squares);
+          };
+          if (diagonal == nullptr)
+            subtract([](int) { return true; });
+          else
+            subtract([diagonal](int m) { return diagonal[m] > 0; });
         });
     sum_all(r.getMap()->getComm(), squares.data(), 3);
     return {std::sqrt(squares[0]), std::sqrt(squares[1]), std::sqrt(squares[2])};
@@ -116,7 +123,7 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
       y[entry] = 0;
     for_each_product(
         ready(x), [](int) {},
-        [&](int colour, std::ptrdiff_t at, int n, const double* product) {
+        [&](int colour, std::ptrdiff_t at, int n, const double* product, const float*) {
           std::copy_n(product, n, y + colour * level_.grid().n_slots + at);
         });
   }
@@ -135,14 +142,15 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
   }
 
   /// r = b - product; adds the squares of b, product and r, but those of rows that are empty.
-  static void subtract_row(const double* b, const double* product, const float* diagonal, int n,
+  template <typename HasRow>
+  static void subtract_row(const double* b, const double* product, const HasRow& has_row, int n,
                            double* r, std::array<double, 3>& squares) {
     constexpr int n_lanes = 8;
     std::array<std::array<double, n_lanes>, 3> sums{};
     const auto at = [&](int m, int lane) {
-      const double known = diagonal[m] > 0 ? b[m] : 0, value = b[m] - product[m];
+      const double known = has_row(m) ? b[m] : 0, value = b[m] - product[m];
       r[m] = value;
-      const double left = diagonal[m] > 0 ? value : 0;
+      const double left = has_row(m) ? value : 0;
       sums[0][lane] += known * known;
       sums[1][lane] += product[m] * product[m];
       sums[2][lane] += left * left;
@@ -169,8 +177,9 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
         level_.multiply(colour, j, rows.k, unit_, x + colour * grid.n_slots,
                         x + (1 - colour) * grid.n_slots, row_.data());
         add_rests(colour, j, rows.k, x + colour * grid.n_slots);
-        use(colour, grid.slot(range.first, j, rows.k), range.last - range.first,
-            row_.data() + range.first);
+        const std::ptrdiff_t at = grid.slot(range.first, j, rows.k);
+        use(colour, at, range.last - range.first, row_.data() + range.first,
+            level_.is_full(colour, j, rows.k) ? nullptr : diagonal(colour) + at);
       }
     }
   }
@@ -237,19 +246,20 @@ class LayoutInverse final : public LayoutOperator<TpetraOperator> {
     const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
     // Single precision has a small range: r is taken in units of a power of 2 near its norm.
     const double scale = r_norm > 0 ? std::exp2(-std::round(std::log2(r_norm))) : 1;
-    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+    const auto take_over = [&](int colour, std::ptrdiff_t at, int n) {
       const double* from = r + colour * n_slots + at;
       float* to = multigrid_.rhs(colour) + at;
       for (int m = 0; m < n; ++m)
         to[m] = static_cast<float>(scale * from[m]);
-    });
-    multigrid_.cycle();
-    back_ = 1 / (scale * unit_);
+    };
     // r as the cycle has seen it: what rounding takes from the step length does no harm.
     double sum = 0;
-    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+    const auto add_products = [&](int colour, std::ptrdiff_t at, int n) {
       sum += sum_of_products(multigrid_.rhs(colour) + at, multigrid_.solution(colour) + at, n);
-    });
+    };
+    multigrid_.cycle([&](int slab) { for_each_row(slab, take_over); },
+                     [&](int slab) { for_each_row(slab, add_products); });
+    back_ = 1 / (scale * unit_);
     sum *= back_ / scale;
     for (EmptyRow& row : empty_rows_) {
       row.z = row.inverse * r[row.entry];

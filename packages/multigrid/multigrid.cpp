@@ -10,12 +10,6 @@ namespace lockstep {
 namespace {
 
 constexpr int red = 0, black = 1;
-/// Relative shift of the coarsest diagonal: makes the inverse of a closed region finite. Large
-/// enough that single precision carries the constant, and that where a light solid closes the
-/// region, whose system is regular, the constant is not overweighted (1e-5: 60 iterations in a
-/// stirred tank; 1e-3: 27; 1e-2: 20); small beside the other eigenvalues of the coarsest level.
-constexpr double coarsest_shift = 1e-2;
-
 /// A fixed-pressure point stays where it is while cells grow: delta_{l+1} = delta_l + h_l / 2, in
 /// units of the finest h, is its distance from the centre of the first cell on level l + 1.
 float dirichlet_factor(int level) {
@@ -118,68 +112,6 @@ void Multigrid<dim>::set(const FaceCoefficients& coefficients) {
 }
 
 template <int dim>
-void Multigrid<dim>::invert_coarsest(const NaturalStencil& stencil) {
-  const LevelGrid& grid = stencils_.back().grid();
-  std::vector<int> number(grid.n_natural, -1);
-  coarsest_slots_.clear();
-  std::vector<std::ptrdiff_t> at;
-  for (int k = 0; k < grid.n[2]; ++k) {
-    for (int j = 0; j < grid.n[1]; ++j) {
-      for (int i = 0; i < grid.n[0]; ++i) {
-        const std::ptrdiff_t cell = grid.natural(i, j, k);
-        if (!stencil.active[cell])
-          continue;
-        number[cell] = static_cast<int>(at.size());
-        at.push_back(cell);
-        coarsest_slots_.push_back(LevelGrid::colour(i, j, k) * grid.n_slots +
-                                  grid.slot_of_cell(i, j, k));
-      }
-    }
-  }
-  const auto n = static_cast<Eigen::Index>(at.size());
-  // Through periodic sides the lower neighbour is a ghost: the cell at the other end.
-  std::vector<float> ids(grid.n_natural, -1);
-  for (Eigen::Index r = 0; r < n; ++r)
-    ids[at[r]] = static_cast<float>(r);
-  layout_->levels().back().halo.fill_natural(ids.data());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index r = 0; r < n; ++r) {
-    matrix(r, r) += stencil.diagonal[at[r]] * (1 + coarsest_shift);
-    for (int axis = 0; axis < dim; ++axis) {
-      const float face = stencil.lower[axis][at[r]];
-      const auto other = static_cast<Eigen::Index>(ids[at[r] - grid.natural_stride[axis]]);
-      if (face == 0 || other < 0)
-        continue;
-      matrix(r, other) -= face;
-      matrix(other, r) -= face;
-    }
-  }
-  if (n == 0)
-    return;
-  coarsest_inverse_ = matrix.llt().solve(Eigen::MatrixXd::Identity(n, n));
-  coarsest_inverse_ = 0.5 * (coarsest_inverse_ + coarsest_inverse_.transpose()).eval();
-  coarsest_rhs_.resize(n);
-  coarsest_solution_.resize(n);
-}
-
-template <int dim>
-void Multigrid<dim>::solve_coarsest() {
-  Work& work = work_.back();
-  const std::ptrdiff_t n_slots = stencils_.back().grid().n_slots;
-  const auto n = static_cast<Eigen::Index>(coarsest_slots_.size());
-  if (n == 0)
-    return;
-  for (Eigen::Index r = 0; r < n; ++r)
-    coarsest_rhs_[r] = work.b[coarsest_slots_[r] / n_slots][coarsest_slots_[r] % n_slots];
-  coarsest_solution_.noalias() = coarsest_inverse_ * coarsest_rhs_;
-  for (Eigen::Index r = 0; r < n; ++r)
-    work.x[coarsest_slots_[r] / n_slots][coarsest_slots_[r] % n_slots] =
-        static_cast<float>(coarsest_solution_[r]);
-  for (int colour = 0; colour < 2; ++colour)
-    layout_->levels().back().halo.fill(colour, work.x[colour].data());
-}
-
-template <int dim>
 template <typename Stage>
 void Multigrid<dim>::in_one_pass(int level, int n_stages, const Stage& stage) const {
   const int n_slabs = stencils_[level].grid().n_slabs();
@@ -203,7 +135,7 @@ void Multigrid<dim>::relax_everywhere(int level, int colour) {
 }
 
 template <int dim>
-void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero) {
+void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero, const SlabFunction& before) {
   Work& work = work_[level];
   const StencilLevel<dim>& stencil = stencils_[level];
   const LevelGrid& coarse = stencils_[level + 1].grid();
@@ -215,6 +147,8 @@ void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero) {
   const int n_half_sweeps = 2 * options_.n_sweeps;
   const auto smooth = [&](int s, int slab) {
     const int colour = s % 2;
+    if (s == 0 && before)
+      before(slab);
     if (s == 0 && from_zero)
       stencil.relax_from_zero(red, slab, work.b[red].data(), work.x[red].data());
     else
@@ -332,10 +266,7 @@ void Multigrid<dim>::prolong_slab(int level, int slab) {
       for (int m = 0; m < n; ++m)
         row_[2 * m + first] = source[m];
     }
-    float* to = x + fine.slot(0, j, rows.k);
-    const float* diagonal = stencil.diagonal(red).data() + fine.slot(0, j, rows.k);
-    for (int m = range.first; m < range.last; ++m)
-      to[m] += diagonal[m] > 0 ? row_[m] : 0;
+    stencil.add(red, j, rows.k, row_.data(), x + fine.slot(0, j, rows.k));
   }
   for (std::size_t i = transfer.in_slab[slab]; i < transfer.in_slab[slab + 1]; ++i) {
     const MovedCell& cell = transfer.moved[i];
@@ -347,7 +278,7 @@ void Multigrid<dim>::prolong_slab(int level, int slab) {
 }
 
 template <int dim>
-void Multigrid<dim>::prolong_and_smooth(int level) {
+void Multigrid<dim>::prolong_and_smooth(int level, const SlabFunction& after) {
   Work& work = work_[level];
   const StencilLevel<dim>& stencil = stencils_[level];
   const int n_half_sweeps = 2 * options_.n_sweeps;
@@ -362,6 +293,8 @@ void Multigrid<dim>::prolong_and_smooth(int level) {
         prolong_slab(level, slab);
       else
         relax(s - 1, slab);
+      if (s == n_half_sweeps && after)
+        after(slab);
     });
     return;
   }
@@ -370,6 +303,8 @@ void Multigrid<dim>::prolong_and_smooth(int level) {
   layout_->levels()[level].halo.fill(red, work.x[red].data());
   for (int s = 0; s < n_half_sweeps; ++s)
     relax_everywhere(level, s % 2 == 0 ? black : red);
+  for (int slab = 0; after && slab < stencil.grid().n_slabs(); ++slab)
+    after(slab);
 }
 
 template <int dim>
@@ -379,15 +314,31 @@ void Multigrid<dim>::cycle(int level, bool from_zero) {
     return;
   }
   smooth_and_restrict(level, from_zero);
-  cycle(level + 1, true);
-  if (options_.is_w_cycle && level + 2 < n_levels())
-    cycle(level + 1, false);
+  cycle_below(level);
   prolong_and_smooth(level);
 }
 
 template <int dim>
-void Multigrid<dim>::cycle() {
-  cycle(0, true);
+void Multigrid<dim>::cycle_below(int level) {
+  cycle(level + 1, true);
+  if (options_.is_w_cycle && level + 2 < n_levels())
+    cycle(level + 1, false);
+}
+
+template <int dim>
+void Multigrid<dim>::cycle(const SlabFunction& set_rhs, const SlabFunction& take) {
+  if (n_levels() > 1) {
+    smooth_and_restrict(0, true, set_rhs);
+    cycle_below(0);
+    prolong_and_smooth(0, take);
+    return;
+  }
+  const int n_slabs = finest().grid().n_slabs();
+  for (int slab = 0; slab < n_slabs; ++slab)
+    set_rhs(slab);
+  solve_coarsest();
+  for (int slab = 0; slab < n_slabs; ++slab)
+    take(slab);
 }
 
 template class Multigrid<2>;

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Dense>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -32,9 +33,12 @@ class Multigrid {
   /// Takes the coefficients of a geometry, whose blocks must be the layout's. Collective.
   void set(const FaceCoefficients& coefficients);
 
+  /// Called with a slab of the finest level.
+  using SlabFunction = std::function<void(int slab)>;
   /// solution := M rhs on the finest level, in single precision; `rhs` must be zero where there is
-  /// no unknown. Collective.
-  void cycle();
+  /// no unknown. `set_rhs` is asked for it slab by slab, and `take` is given the finished slabs, in
+  /// the same passes over memory. Collective.
+  void cycle(const SlabFunction& set_rhs, const SlabFunction& take);
   float* rhs(int colour) { return work_.front().b[colour].data(); }
   float* solution(int colour) { return work_.front().x[colour].data(); }
 
@@ -52,8 +56,10 @@ class Multigrid {
   void invert_coarsest(const NaturalStencil& stencil);
   void solve_coarsest();
   void cycle(int level, bool from_zero);
-  void smooth_and_restrict(int level, bool from_zero);
-  void prolong_and_smooth(int level);
+  void cycle_below(int level);
+  /// `before` a slab is looked at, and `after` it has its final values; for empty ones nothing.
+  void smooth_and_restrict(int level, bool from_zero, const SlabFunction& before = {});
+  void prolong_and_smooth(int level, const SlabFunction& after = {});
   void relax_everywhere(int level, int colour);
   void restrict_slab(int level, int slab);
   void flush_coarse_rows(int level, int fine_slab);

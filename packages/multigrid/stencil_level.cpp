@@ -29,6 +29,20 @@ inline Value weighted_sum(const Neighbors<float>& face, const Neighbors<Value>& 
   return sum;
 }
 
+/// Of a row of cells.
+struct DiagonalOfRow {
+  const float *values, *inverses;
+  float operator()(int m) const { return values[m]; }
+  float inverse(int m) const { return inverses[m]; }
+};
+/// Where all have the same.
+struct EvenDiagonal {
+  explicit EvenDiagonal(float of_all) : value(of_all), inverse_value(of_all > 0 ? 1 / of_all : 0) {}
+  float value, inverse_value;
+  float operator()(int) const { return value; }
+  float inverse(int) const { return inverse_value; }
+};
+
 }  // namespace
 
 void NaturalStencil::resize(const LevelGrid& grid, bool has_reaction) {
@@ -95,7 +109,29 @@ void StencilLevel<dim>::set(const NaturalStencil& stencil, float unit) {
   unit_ = unit;
   set_diagonal(stencil);
   find_irregular_rows(stencil);
+  find_even_rows();
   copy_faces(stencil);
+}
+
+template <int dim>
+void StencilLevel<dim>::find_even_rows() {
+  even_rows_.assign(2 * ranges_.size(), {});
+  for (int k = 0; k < grid_.n[2]; ++k) {
+    for (int j = 0; j < grid_.n[1]; ++j) {
+      const Range& row = range(j, k);
+      if (irregular_[row_index(j, k)] || row.last - row.first < 3)
+        continue;
+      for (int colour = 0; colour < 2; ++colour) {
+        const float* d = diagonal_[colour].data() + grid_.slot(0, j, k);
+        const float inner = d[row.first + 1];
+        bool even = inner > 0;
+        for (int m = row.first + 2; m < row.last - 1; ++m)
+          even &= d[m] == inner;
+        if (even)
+          even_rows_[2 * row_index(j, k) + colour] = {inner, d[row.first], d[row.last - 1]};
+      }
+    }
+  }
 }
 
 template <int dim>
@@ -202,6 +238,8 @@ inline void StencilLevel<dim>::with_sums(int colour, int j, int k, const Value* 
   const Neighbors<Value> x{o - 1 + shift,          o + shift,
                            o - grid_.row_stride,   o + grid_.row_stride,
                            o - grid_.plane_stride, o + grid_.plane_stride};
+  const DiagonalOfRow diagonal{diagonal_[colour].data() + grid_.slot(0, j, k),
+                               inverse_[colour].data() + grid_.slot(0, j, k)};
   if (irregular_[row]) {
     const auto faces = [&](int axis, int of, int at_row) {
       return faces_[axis][of].data() + faces_at_[at_row] + grid_.margin;
@@ -212,19 +250,39 @@ inline void StencilLevel<dim>::with_sums(int colour, int j, int k, const Value* 
                              faces(1, 1 - colour, row_index(j + 1, k)),
                              dim == 3 ? faces(dim - 1, colour, row) : nullptr,
                              dim == 3 ? faces(dim - 1, 1 - colour, row_index(j, k + 1)) : nullptr};
-    kernel(range.first, range.last, [f, x](int m) { return weighted_sum<dim>(f, x, m); });
+    kernel(
+        range.first, range.last, [f, x](int m) { return weighted_sum<dim>(f, x, m); }, diagonal);
     return;
   }
   const float unit = unit_;
-  kernel(range.first, range.last,
-         [x, unit](int m) { return unit * (x.left[m] + x.right[m] + sum_across<dim>(x, m)); });
-  if (!rows_touch_)
-    return;
-  if (shift == 0 && range.first == 0)
-    kernel(0, 1, [x, unit](int m) { return unit * (x.right[m] + sum_across<dim>(x, m)); });
-  if (shift == 1 && 2 * range.last == grid_.n[0])
-    kernel(range.last - 1, range.last,
-           [x, unit](int m) { return unit * (x.left[m] + sum_across<dim>(x, m)); });
+  const auto sum = [x, unit](int m) {
+    return unit * (x.left[m] + x.right[m] + sum_across<dim>(x, m));
+  };
+  const auto without_left = [x, unit](int m) {
+    return unit * (x.right[m] + sum_across<dim>(x, m));
+  };
+  const auto without_right = [x, unit](int m) {
+    return unit * (x.left[m] + sum_across<dim>(x, m));
+  };
+  const bool at_lower_end = rows_touch_ && shift == 0 && range.first == 0;
+  const bool at_upper_end = rows_touch_ && shift == 1 && 2 * range.last == grid_.n[0];
+  const auto visit = [&](const auto& inner, const auto& begin, const auto& end, bool ends_differ) {
+    kernel(range.first, range.last, sum, inner);
+    if (at_lower_end)
+      kernel(0, 1, without_left, begin);
+    else if (ends_differ)
+      kernel(range.first, range.first + 1, sum, begin);
+    if (at_upper_end)
+      kernel(range.last - 1, range.last, without_right, end);
+    else if (ends_differ)
+      kernel(range.last - 1, range.last, sum, end);
+  };
+  const EvenRow& even = even_rows_[2 * row + colour];
+  if (even.inner > 0)
+    visit(EvenDiagonal(even.inner), EvenDiagonal(even.begin), EvenDiagonal(even.end),
+          even.ends_differ());
+  else
+    visit(diagonal, diagonal, diagonal, false);
 }
 
 template <int dim>
@@ -234,13 +292,13 @@ void StencilLevel<dim>::relax(int colour, int slab, const float* b, const float*
   for (int j = rows.j_begin; j < rows.j_end; ++j) {
     const std::ptrdiff_t at = grid_.slot(0, j, rows.k);
     const float* b_row = b + at;
-    const float* inverse = inverse_[colour].data() + at;
     float* x_row = x + at;
-    with_sums(colour, j, rows.k, other, [=](int first, int last, const auto& sum) {
+    const auto relax_row = [=](int first, int last, const auto& sum, const auto& diagonal) {
 #pragma GCC ivdep
       for (int m = first; m < last; ++m)
-        x_row[m] = inverse[m] * (b_row[m] + sum(m));
-    });
+        x_row[m] = diagonal.inverse(m) * (b_row[m] + sum(m));
+    };
+    with_sums(colour, j, rows.k, other, relax_row);
   }
 }
 
@@ -253,10 +311,34 @@ void StencilLevel<dim>::relax_from_zero(int colour, int slab, const float* b, fl
     const float* inverse = inverse_[colour].data() + at;
     float* x_row = x + at;
     const Range r = range(j, rows.k);
+    const EvenRow& even = even_rows_[2 * row_index(j, rows.k) + colour];
+    if (even.inner > 0) {
+      const float inverse_of_all = EvenDiagonal(even.inner).inverse_value;
+      for (int m = r.first; m < r.last; ++m)
+        x_row[m] = inverse_of_all * b_row[m];
+      x_row[r.first] = EvenDiagonal(even.begin).inverse_value * b_row[r.first];
+      x_row[r.last - 1] = EvenDiagonal(even.end).inverse_value * b_row[r.last - 1];
+      continue;
+    }
 #pragma GCC ivdep
     for (int m = r.first; m < r.last; ++m)
       x_row[m] = inverse[m] * b_row[m];
   }
+}
+
+template <int dim>
+void StencilLevel<dim>::add(int colour, int j, int k, const float* correction, float* x) const {
+  const Range r = range(j, k);
+  if (is_full(colour, j, k)) {
+#pragma GCC ivdep
+    for (int m = r.first; m < r.last; ++m)
+      x[m] += correction[m];
+    return;
+  }
+  const float* diagonal = diagonal_[colour].data() + grid_.slot(0, j, k);
+#pragma GCC ivdep
+  for (int m = r.first; m < r.last; ++m)
+    x[m] += diagonal[m] > 0 ? correction[m] : 0;
 }
 
 template <int dim>
@@ -265,14 +347,14 @@ void StencilLevel<dim>::residual(int colour, int j, int k, const float* b, const
   const std::ptrdiff_t at = grid_.slot(0, j, k);
   const float* b_row = b + at;
   const float* x_row = x + at;
-  const float* diagonal = diagonal_[colour].data() + at;
-  with_sums(colour, j, k, other, [=](int first, int last, const auto& sum) {
+  const auto subtract = [=](int first, int last, const auto& sum, const auto& diagonal) {
 #pragma GCC ivdep
     for (int m = first; m < last; ++m) {
-      const float value = b_row[m] + sum(m) - diagonal[m] * x_row[m];
-      residual[m] = diagonal[m] > 0 ? value : 0;
+      const float value = b_row[m] + sum(m) - diagonal(m) * x_row[m];
+      residual[m] = diagonal(m) > 0 ? value : 0;
     }
-  });
+  };
+  with_sums(colour, j, k, other, subtract);
 }
 
 template <int dim>
@@ -280,9 +362,9 @@ float StencilLevel<dim>::residual_at(int colour, int m, int j, int k, const floa
                                      const float* x, const float* other) const {
   const std::ptrdiff_t at = grid_.slot(m, j, k);
   float result = 0;
-  with_sums(colour, j, k, other, [&](int first, int last, const auto& sum) {
+  with_sums(colour, j, k, other, [&](int first, int last, const auto& sum, const auto& diagonal) {
     if (first <= m && m < last)
-      result = b[at] + sum(m) - diagonal_[colour][at] * x[at];
+      result = b[at] + sum(m) - diagonal(m) * x[at];
   });
   return result;
 }
@@ -292,14 +374,14 @@ void StencilLevel<dim>::multiply(int colour, int j, int k, double unit, const do
                                  const double* other, double* result) const {
   const std::ptrdiff_t at = grid_.slot(0, j, k);
   const double* p_row = p + at;
-  const float* diagonal = diagonal_[colour].data() + at;
-  with_sums(colour, j, k, other, [=](int first, int last, const auto& sum) {
+  const auto multiply_row = [=](int first, int last, const auto& sum, const auto& diagonal) {
 #pragma GCC ivdep
     for (int m = first; m < last; ++m) {
-      const double value = unit * (diagonal[m] * p_row[m] - sum(m));
-      result[m] = diagonal[m] > 0 ? value : 0;
+      const double value = unit * (diagonal(m) * p_row[m] - sum(m));
+      result[m] = diagonal(m) > 0 ? value : 0;
     }
-  });
+  };
+  with_sums(colour, j, k, other, multiply_row);
 }
 
 template class StencilLevel<2>;

@@ -24,7 +24,8 @@ struct NaturalStencil {
 /// One level of the stencil as the sweeps want it: the diagonal and its inverse by colour, and face
 /// coefficients for those rows only in which some coupling between unknowns is not the level's
 /// regular one (`unit`): elsewhere the sweeps need no coefficients at all, for values that are no
-/// unknowns are zero.
+/// unknowns are zero. Nor do they read the diagonal where it is the same along a row but for its
+/// ends.
 template <int dim>
 class StencilLevel {
  public:
@@ -40,12 +41,19 @@ class StencilLevel {
     int first = 0, last = 0;
   };
   const Range& range(int j, int k) const { return ranges_[row_index(j, k)]; }
+  /// Whether all slots of a row's range are known to be unknowns of that colour.
+  bool is_full(int colour, int j, int k) const {
+    const EvenRow& row = even_rows_[2 * row_index(j, k) + colour];
+    return row.inner > 0 && row.begin > 0 && row.end > 0;
+  }
   std::size_t bytes() const;
 
   /// x := D^-1 (b + N x_other) on one colour of a slab: a Gauss-Seidel half sweep.
   void relax(int colour, int slab, const float* b, const float* other, float* x) const;
   /// x := D^-1 b on one colour of a slab.
   void relax_from_zero(int colour, int slab, const float* b, float* x) const;
+  /// x += correction where there is an unknown, in one row; both begin with slot 0.
+  void add(int colour, int j, int k, const float* correction, float* x) const;
   /// residual := b - (A x) of one row, 0 where there is no unknown, in slots [first, last).
   void residual(int colour, int j, int k, const float* b, const float* x, const float* other,
                 float* residual) const;
@@ -70,8 +78,10 @@ class StencilLevel {
   void find_irregular_rows(const NaturalStencil& stencil);
   bool is_irregular(const NaturalStencil& stencil, int j, int k) const;
   void copy_faces(const NaturalStencil& stencil);
-  /// Calls kernel(first, last, sum) so that sum(m) is the sum over the cell's neighbours, each
-  /// times its coefficient; some slots may be visited twice (then with the right sum last).
+  void find_even_rows();
+  /// Calls kernel(first, last, sum, diagonal) so that sum(m) is the sum over the cell's neighbours,
+  /// each times its coefficient, and diagonal(m) its diagonal; some slots may be visited twice
+  /// (then with the right ones last).
   template <typename Value, typename Kernel>
   void with_sums(int colour, int j, int k, const Value* other, const Kernel& kernel) const;
 
@@ -82,6 +92,13 @@ class StencilLevel {
   std::vector<Range> ranges_;
   std::vector<std::ptrdiff_t> faces_at_;  ///< by row: where its faces begin, or -1
   std::vector<char> irregular_;           ///< by row
+  /// The diagonal of a row of one colour, if it is the same but for the first and last slot.
+  struct EvenRow {
+    float inner = 0;  ///< 0: it is not
+    float begin = 0, end = 0;
+    bool ends_differ() const { return begin != inner || end != inner; }
+  };
+  std::vector<EvenRow> even_rows_;                            ///< by row and colour
   std::array<std::array<std::vector<float>, 2>, dim> faces_;  ///< [axis][colour]
 };
 
