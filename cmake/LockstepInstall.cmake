@@ -15,3 +15,13 @@ install(FILES "${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfig.cmake"
 install(EXPORT LockstepTargets NAMESPACE Lockstep:: DESTINATION "${lockstep_cmake_directory}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/xml-params" "${PROJECT_SOURCE_DIR}/template"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep")
+# What shows runs and studies; the rest of tools/ is for work on the tree itself.
+set(tools_folder "${PROJECT_SOURCE_DIR}/tools")
+install(PROGRAMS "${tools_folder}/report" "${tools_folder}/watch" "${tools_folder}/render"
+                 "${tools_folder}/plot-frame" "${tools_folder}/plot-study" "${tools_folder}/plot-curves"
+                 "${tools_folder}/export-meshes"
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep/tools")
+install(FILES "${tools_folder}/lockstep_frames.py" "${tools_folder}/render_with_paraview.py"
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep/tools")
+install(DIRECTORY "${tools_folder}/report_page" DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep/tools"
+        PATTERN "__pycache__" EXCLUDE)

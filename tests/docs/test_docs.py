@@ -17,7 +17,7 @@ PATH = re.compile(r"`((?:src|packages|drivers|tests|docs|tools|template|cmake|xm
 
 
 def pages():
-    return [ROOT / "README.md", ROOT / "template" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    return [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "template" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def headings(page):
