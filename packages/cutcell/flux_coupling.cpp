@@ -37,6 +37,8 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
     const ControlVolume<dim>& volume = volumes_[f];
     shares_.push_back(face_shares<dim>(volume, surface, options_.weights));
     masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
+    if (volume.only_gas())
+      masses_[f] = 0;
     if (liquid && masses_[f] > 0)
       masses_[f] = volume.density * shares_[f].thin_part *
                    std::max(0.0, wet_volume<dim>(volume, surface, true, *liquid));

@@ -19,6 +19,7 @@ void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
   coupling_transposed_ = Teuchos::null;
   added_mass_ = Teuchos::null;
   closed_area_.clear();
+  gas_pressure_.clear();
   std::vector<GlobalIndex> unknowns;
   for (const ControlVolume<dim>& volume : volumes_) {
     closed_area_.push_back(closed_area(volume));
@@ -80,6 +81,52 @@ std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure) con
         result[f] += push(f, side) * pressure[beside.getMap()->getLocalElement(unknown)];
     }
   }
+  add_pushes_of_gas(gas_pressure_, result);
+  return result;
+}
+
+template <int dim>
+void FaceCoupling<dim>::add_pushes_of_gas(const std::vector<double>& scaled_pressure,
+                                          std::vector<double>& result) const {
+  if (scaled_pressure.empty())
+    return;
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    for (int side = 0; side < 2; ++side)
+      if (const int pocket = volumes_[f].sides[side].pocket; pocket >= 0)
+        result[f] += push(f, side) * scaled_pressure[pocket];
+}
+
+template <int dim>
+void FaceCoupling<dim>::add_gas_push(const std::vector<double>& scaled_pressure,
+                                     Vector& momentum) const {
+  if (coupling_transposed_.is_null())
+    return;
+  std::vector<double> given(volumes_.size(), 0);
+  add_pushes_of_gas(scaled_pressure, given);
+  for (double& value : given)
+    value = -value;
+  add_transposed(weights_, *solid_import_, given, momentum);
+}
+
+template <int dim>
+std::vector<double> FaceCoupling<dim>::gas_rates(const std::vector<double>& coupled_velocity,
+                                                 int n_pockets) const {
+  std::vector<double> rates(n_pockets, 0);
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    for (int side = 0; side < 2; ++side)
+      if (const int pocket = volumes_[f].sides[side].pocket; pocket >= 0)
+        rates[pocket] -= push(f, side) * coupled_velocity[f];
+  sum_all(pressure_import_->getSourceMap()->getComm(), rates.data(), n_pockets);
+  return rates;
+}
+
+template <int dim>
+std::vector<double> FaceCoupling<dim>::closed_velocity(const Vector& solid_velocity,
+                                                       bool with_prescribed) const {
+  std::vector<double> result =
+      with_prescribed ? prescribed_velocity_ : std::vector<double>(volumes_.size(), 0);
+  if (!coupling_transposed_.is_null())
+    add_product(weights_, *solid_import_, solid_velocity, result);
   return result;
 }
 
@@ -92,6 +139,8 @@ Momentum<dim> FaceCoupling<dim>::taken_by_solids(const SolidSystem<dim>& solids,
   coupling_transposed_->apply(*solution.pressure, taken, Teuchos::NO_TRANS, -1, 1);
   if (!added_mass_.is_null())
     added_mass_->apply(*solution.solid, taken, Teuchos::NO_TRANS, -1, 1);
+  if (!gas_pressure_.empty())
+    add_gas_push(gas_pressure_, taken);
   return solids.momentum(taken);
 }
 

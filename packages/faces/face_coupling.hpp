@@ -4,6 +4,7 @@
 #include "faces/surface_shares.hpp"
 #include "interfaces/coupling.hpp"
 #include "interfaces/coupling_sides.hpp"
+#include "interfaces/gas.hpp"
 #include "interfaces/prescribed_flux.hpp"
 #include "interfaces/viscosity.hpp"
 
@@ -16,6 +17,7 @@ template <int dim>
 class FaceCoupling : public Coupling<dim>,
                      public AuditedCoupling<dim>,
                      public UnseenBuoyancy<dim>,
+                     public GasCoupling<dim>,
                      public ViscousCoupling<dim>,
                      public SolidFluxes<dim> {
  public:
@@ -24,6 +26,14 @@ class FaceCoupling : public Coupling<dim>,
   const std::vector<double>& fluid_mass() const override { return masses_; }
   void add_divergence(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
   void add_prescribed_divergence(Vector& rhs) const override;
+  void set_gas_pressure(const std::vector<double>& scaled_pressure) override {
+    gas_pressure_ = scaled_pressure;
+  }
+  void add_gas_push(const std::vector<double>& scaled_pressure, Vector& momentum) const override;
+  std::vector<double> gas_rates(const std::vector<double>& coupled_velocity,
+                                int n_pockets) const override;
+  std::vector<double> closed_velocity(const Vector& solid_velocity,
+                                      bool with_prescribed) const override;
 
  protected:
   /// Starts anew with the fluid's coupled volumes: no solids, masses and velocities zero.
@@ -38,7 +48,8 @@ class FaceCoupling : public Coupling<dim>,
   }
   /// B^T from `weights_`. Collective.
   void assemble_coupling(const SolidSystem<dim>& solids);
-  /// What p̂ pushes on the closed part of each face, along its axis [kg m/s]. Collective.
+  /// What p̂ pushes on the closed part of each face, along its axis [kg m/s], and that of the gas.
+  /// Collective.
   std::vector<double> pushes(const Vector& scaled_pressure) const;
   /// Momentum that the dynamic solids took in a solve: of the fluid lumped on them before, less
   /// what they hold of it after, and of pressures. Collective.
@@ -60,7 +71,12 @@ class FaceCoupling : public Coupling<dim>,
   RCP<Import> pressure_import_;  ///< pressure map -> unknowns beside this rank's coupled volumes
 
  private:
+  /// result[f] += what pockets of gas of these p̂ push, with the sign of `pushes`.
+  void add_pushes_of_gas(const std::vector<double>& scaled_pressure,
+                         std::vector<double>& result) const;
+
   std::vector<double> closed_area_;
+  std::vector<double> gas_pressure_;  ///< p̂ by pocket
 };
 
 /// rhs += weights^T momentum, one value a row; `import` brings the dofs of the weights. Collective.

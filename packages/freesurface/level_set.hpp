@@ -3,9 +3,9 @@
 
 #include "freesurface/particles/particles.hpp"
 #include "freesurface/redistance.hpp"
-#include "freesurface/solid_cells.hpp"
 #include "freesurface/volume_ledger.hpp"
 #include "mac/liquid/interface_model.hpp"
+#include "mac/liquid/solid_cells.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "freesurface/solid_cells.hpp"
+#include "mac/liquid/solid_cells.hpp"
 #include "mac/transport/visible_interpolation.hpp"
 
 namespace lockstep {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "freesurface/cell_groups.hpp"
+#include "mac/liquid/cell_groups.hpp"
 
 namespace lockstep {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "freesurface/solid_cells.hpp"
+#include "mac/liquid/solid_cells.hpp"
 
 namespace lockstep {
 

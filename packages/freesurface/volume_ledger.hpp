@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "freesurface/liquid_volume.hpp"
 #include "mac/liquid/interface_model.hpp"
+#include "mac/liquid/liquid_volume.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {

@@ -37,6 +37,9 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
         std::make_unique<Liquid<dim>>(fluid, parameters_.forces.gravity, *interfaces, domain_);
   if (liquid_)
     fields_.push_back({"surface_lead", {&liquid_->lead()}});
+  if (holds_gas())
+    for (StoredField& field : liquid_->gas()->fields())
+      fields_.push_back(std::move(field));
   if (fluid.isSublist("Moving Tiles")) {
     moving_tiles_.emplace(fluid,
                           DomainDescription<dim>{domain_.grid.description(), domain_.boundary});
@@ -65,6 +68,8 @@ const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
   }
   geometry_ =
       make_geometry(domain_, parameters_.density, surface, rule, liquid_ ? &free_surface : nullptr);
+  if (holds_gas())
+    settle_gas();
   geometry_.pressure_block = as_operator(pressure_operator(domain_, geometry_, lattice_blocks_));
   geometry_.regions = find_regions(domain_, geometry_);
   geometry_.volume =
@@ -86,6 +91,8 @@ void MacFluid<dim>::divergence(Vector& rhs) const {
 template <int dim>
 void MacFluid<dim>::project(const Vector& scaled_pressure) {
   scaled_pressure_ = pressure_field(domain_, geometry_, scaled_pressure);
+  if (holds_gas())
+    liquid_->gas()->fill(scaled_pressure_);
   subtract_gradient<dim>(domain_, geometry_, scaled_pressure_, prediction_);
   domain_.halo.fill(prediction_);
 }
@@ -160,6 +167,8 @@ void MacFluid<dim>::accept() {
   accepted_pressure_ = scaled_pressure_;
   accepted_cells_ = geometry_.state.cells;
   accepted_step_ = last_step_;
+  if (holds_gas())
+    liquid_->gas()->accept(last_step_);
 }
 
 template <int dim>

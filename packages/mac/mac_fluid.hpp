@@ -4,8 +4,10 @@
 
 #include "interfaces/field_sampler.hpp"
 #include "interfaces/fluid_sides.hpp"
+#include "interfaces/gas.hpp"
 #include "interfaces/liquid.hpp"
 #include "interfaces/prescribed_flux.hpp"
+#include "mac/liquid/gas_faces.hpp"
 #include "mac/liquid/liquid.hpp"
 #include "mac/pressure/forces.hpp"
 #include "mac/pressure/pressure_operator.hpp"
@@ -50,6 +52,7 @@ class MacFluid : public FluidDiscretization<dim>,
                  public BoundedFluid<dim>,
                  public FieldSampler<dim>,
                  public FluidOutput<dim>,
+                 public GasFluid<dim>,
                  public LiquidFluid<dim>,
                  public PressureMemory<dim>,
                  public SideFluxes,
@@ -91,6 +94,7 @@ class MacFluid : public FluidDiscretization<dim>,
   double surface_distance(const Point<dim>& x) const override { return liquid_->distance(x); }
   std::vector<WetBody<dim>> wet_bodies() const override;
   LiquidReport liquid() const override { return liquid_->report(); }
+  bool traps_gas() const override { return holds_gas(); }
   Momentum<dim> surface_impulse() const override { return surface_impulse_; }
   std::vector<std::string> watch_names() const override { return liquid_->watch_names(); }
   Box<dim> bounds() const override;
@@ -99,6 +103,16 @@ class MacFluid : public FluidDiscretization<dim>,
   double density(const Point<dim>&) const override { return parameters_.density; }
   RCP<Vector> last_scaled_pressure() const override;
   Point<dim> gravity() const override { return parameters_.forces.gravity; }
+  bool holds_gas() const override { return liquid_ && liquid_->gas(); }
+  const std::vector<GasPocket>& gas_pockets() const override { return liquid_->gas()->all(); }
+  void add_gas_push(const std::vector<double>& scaled_pressure, Vector& rhs) const override;
+  std::vector<double> gas_conductance() const override;
+  std::vector<double> gas_rates() const override;
+  std::vector<double> gas_answer(const Vector& scaled_pressure) const override;
+  void set_gas_pressure(const std::vector<double>& scaled_pressure) override {
+    liquid_->gas()->set_pressure(scaled_pressure);
+  }
+  Momentum<dim> gas_side_impulse() const override;
   Momentum<dim> momentum() const override;
   double kinetic_energy() const override;
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
@@ -149,6 +163,10 @@ class MacFluid : public FluidDiscretization<dim>,
   AngularVector<dim> moment_of_shifts(const FaceFunction& velocity) const;
   Momentum<dim> push_sources(double time);
   void push_surface(double dt);  ///< by surface tension
+  void settle_gas();             ///< for the frozen geometry
+  /// Over the faces of the pockets of gas, the sum of value(face) for each pocket. Collective.
+  template <typename Value>
+  std::vector<double> sum_of_pockets(const Value& value) const;
   void move_liquid(double time, double dt, const MovingSurface<dim>& surface,
                    FaceField<dim>& advection);
 
@@ -164,6 +182,7 @@ class MacFluid : public FluidDiscretization<dim>,
   std::unique_ptr<Liquid<dim>> liquid_;  ///< null: no free surface
 
   MacGeometry<dim> geometry_;
+  std::vector<GasFace> gas_faces_;
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
   FaceField<dim> velocity_, prediction_;         ///< u^n, u*

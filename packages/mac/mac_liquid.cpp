@@ -1,4 +1,5 @@
 // What a fluid with a free surface does besides.
+#include <Tpetra_Vector.hpp>
 #include <cmath>
 
 #include "mac/liquid/surface_tension.hpp"
@@ -44,6 +45,57 @@ std::vector<WetBody<dim>> MacFluid<dim>::wet_bodies() const {
                               parameters_.forces.gravity);
 }
 
+template <int dim>
+void MacFluid<dim>::settle_gas() {
+  GasPockets<dim>& gas = *liquid_->gas();
+  const int n = static_cast<int>(gas.all().size());
+  std::vector<double> unseen = volumes_beside_shells<dim>(geometry_, n);
+  sum_all(domain_.grid.comm(), unseen.data(), n);
+  gas.settle(unseen, liquid_->interface().distance());
+  gas_faces_ = find_gas_faces(domain_, geometry_);
+}
+
+template <int dim>
+template <typename Value>
+std::vector<double> MacFluid<dim>::sum_of_pockets(const Value& value) const {
+  std::vector<double> sums(gas_pockets().size(), 0);
+  for (const GasFace& face : gas_faces_)
+    sums[face.pocket] += value(face);
+  sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
+  return sums;
+}
+
+template <int dim>
+void MacFluid<dim>::add_gas_push(const std::vector<double>& scaled_pressure, Vector& rhs) const {
+  const auto values = rhs.getDataNonConst();
+  for (const GasFace& face : gas_faces_)
+    values[face.row] += face.coefficient * scaled_pressure[face.pocket];
+}
+
+template <int dim>
+std::vector<double> MacFluid<dim>::gas_conductance() const {
+  return sum_of_pockets([](const GasFace& face) { return face.coefficient; });
+}
+
+template <int dim>
+std::vector<double> MacFluid<dim>::gas_rates() const {
+  return sum_of_pockets([&](const GasFace& face) {
+    return -face.outward * face.area * prediction_[face.face.axis][face.face.cell];
+  });
+}
+
+template <int dim>
+std::vector<double> MacFluid<dim>::gas_answer(const Vector& scaled_pressure) const {
+  const auto pressure = scaled_pressure.getData();
+  return sum_of_pockets([&](const GasFace& face) { return face.coefficient * pressure[face.row]; });
+}
+
+template <int dim>
+Momentum<dim> MacFluid<dim>::gas_side_impulse() const {
+  return sum_over_ranks(push_of_sides<dim>(domain_, geometry_, liquid_->gas()->scaled_pressure()),
+                        domain_.grid.comm());
+}
+
 template std::vector<WetBody<2>> MacFluid<2>::wet_bodies() const;
 template std::vector<WetBody<3>> MacFluid<3>::wet_bodies() const;
 template void MacFluid<2>::move_liquid(double, double, const MovingSurface<2>&, FaceField<2>&);
@@ -52,5 +104,17 @@ template void MacFluid<2>::push_surface(double);
 template void MacFluid<3>::push_surface(double);
 template double MacFluid<2>::largest_stable_step() const;
 template double MacFluid<3>::largest_stable_step() const;
+template void MacFluid<2>::settle_gas();
+template void MacFluid<3>::settle_gas();
+template void MacFluid<2>::add_gas_push(const std::vector<double>&, Vector&) const;
+template std::vector<double> MacFluid<2>::gas_conductance() const;
+template std::vector<double> MacFluid<2>::gas_rates() const;
+template std::vector<double> MacFluid<2>::gas_answer(const Vector&) const;
+template Momentum<2> MacFluid<2>::gas_side_impulse() const;
+template void MacFluid<3>::add_gas_push(const std::vector<double>&, Vector&) const;
+template std::vector<double> MacFluid<3>::gas_conductance() const;
+template std::vector<double> MacFluid<3>::gas_rates() const;
+template std::vector<double> MacFluid<3>::gas_answer(const Vector&) const;
+template Momentum<3> MacFluid<3>::gas_side_impulse() const;
 
 }  // namespace lockstep

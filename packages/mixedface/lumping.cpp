@@ -13,9 +13,11 @@ template <int dim>
 std::vector<double> fluid_masses(const std::vector<ControlVolume<dim>>& volumes,
                                  const SurfaceSnapshot<dim>& surface, bool whole_cell,
                                  const LiquidFluid<dim>* liquid) {
-  std::vector<double> masses(volumes.size());
+  std::vector<double> masses(volumes.size(), 0);
   for (std::size_t f = 0; f < volumes.size(); ++f) {
     double fluid = 0;
+    if (volumes[f].only_gas())
+      continue;
     if (liquid)
       fluid = wet_volume<dim>(volumes[f], surface, whole_cell, *liquid);
     else

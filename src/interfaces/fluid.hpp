@@ -26,7 +26,8 @@ struct PressureSide {
   SideKind kind = SideKind::open;
   GlobalIndex unknown = no_index;          ///< id in `pressure_map` if the kind is `unknown`
   Point<dim> center = Point<dim>::Zero();  ///< where the pressure lives [m]
-  int solid = -1;  ///< which one (index in the snapshot) if the kind is `solid`, or -1
+  int solid = -1;   ///< which one (index in the snapshot) if the kind is `solid`, or -1
+  int pocket = -1;  ///< of gas, if the kind is `empty` and it is one (interfaces/gas.hpp), or -1
 };
 
 /// The control volume of one staggered velocity (a dual cell). Its momentum balance is
@@ -50,6 +51,9 @@ struct ControlVolume {
   /// On a wall or an inflow: the velocity of its open part is prescribed, no fluid moves in it.
   bool at_prescribed_side = false;
   GlobalIndex id = no_index;  ///< the fluid's own number; the same on any number of ranks
+
+  /// No pressure unknown is beside it: of what it moves nothing is fluid.
+  bool only_gas() const { return sides[0].unknown == no_index && sides[1].unknown == no_index; }
 };
 
 /// Decides how far a control volume is open to the fluid: 1 free, 0 closed (mixed, after the
@@ -92,7 +96,8 @@ struct PressureRegions {
 /// What `set_geometry` freezes.
 template <int dim>
 struct FluidGeometry {
-  /// Control volumes with open_fraction < 1 and at least one pressure unknown, owned here.
+  /// Control volumes with open_fraction < 1 and at least one pressure unknown or pocket of gas,
+  /// owned here.
   std::vector<ControlVolume<dim>> coupled_volumes;
   RCP<const Map> pressure_map;
   /// A = V G_f^T rho^-1 G_f over free faces [m^dim s / kg * 1/m^2]; symmetric positive

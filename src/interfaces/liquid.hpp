@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,13 @@ struct WatchedLiquid {
   double leak = 0;    ///< of it what came through solids; with a leak a step fails [m^dim]
 };
 
+/// The gas that is trapped. Global.
+struct GasReport {
+  long long n_pockets = 0;
+  double volume = 0;    ///< of all of them [m^dim]
+  double pressure = 0;  ///< in the largest, above that of the void, in the last step [Pa]
+};
+
 /// How much liquid there is, and what became of it. Global.
 struct LiquidReport {
   double volume = 0;  ///< [m^dim]
@@ -26,6 +34,7 @@ struct LiquidReport {
   double lost = 0;    ///< that vanished with drops too small to see [m^dim]
   long long n_bodies = 0;              ///< connected bodies of liquid
   std::vector<WatchedLiquid> watches;  ///< in the order of their names
+  std::optional<GasReport> gas;        ///< if any may be trapped
 };
 
 /// What of a closed solid lies in a liquid, and what the grid takes that for: below the plane that
@@ -57,6 +66,7 @@ class LiquidFluid {
   /// By solid of the frozen surface; those that are not closed have nothing. Collective.
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
   virtual LiquidReport liquid() const = 0;
+  virtual bool traps_gas() const { return false; }  ///< reports have `gas`. Local.
   /// What surface tension gave in the last `add_forces`, as part of its impulse. Global. Local.
   virtual Momentum<dim> surface_impulse() const { return {}; }
   /// Of the watched places, as columns have them. Local.

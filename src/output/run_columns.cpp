@@ -29,7 +29,7 @@ void add_rotation(std::vector<HistoryColumn>& columns, const std::string& name,
 
 template <int dim>
 std::vector<HistoryColumn> history_columns(bool with_liquid,
-                                           const std::vector<std::string>& watches) {
+                                           const std::vector<std::string>& watches, bool with_gas) {
   std::vector<HistoryColumn> columns = {
       {"step", "1", "number of the step"},
       {"time", "s", "at the end of the step"},
@@ -86,6 +86,12 @@ std::vector<HistoryColumn> history_columns(bool with_liquid,
       columns.push_back(
           {watch + "_leak", unit, "of it what came through solids: 0, or the run ends"});
     }
+    if (with_gas)
+      for (HistoryColumn column : std::vector<HistoryColumn>{
+               {"gas_pockets", "1", "of void that the atmosphere does not reach"},
+               {"gas_volume", unit, "of them all"},
+               {"gas_pressure", "Pa", "in the largest, above the atmosphere's"}})
+        columns.push_back(column);
   }
   return columns;
 }
@@ -103,8 +109,8 @@ std::vector<HistoryColumn> body_columns() {
   return columns;
 }
 
-template std::vector<HistoryColumn> history_columns<2>(bool, const std::vector<std::string>&);
-template std::vector<HistoryColumn> history_columns<3>(bool, const std::vector<std::string>&);
+template std::vector<HistoryColumn> history_columns<2>(bool, const std::vector<std::string>&, bool);
+template std::vector<HistoryColumn> history_columns<3>(bool, const std::vector<std::string>&, bool);
 template std::vector<HistoryColumn> body_columns<2>();
 template std::vector<HistoryColumn> body_columns<3>();
 

@@ -7,10 +7,12 @@
 namespace lockstep {
 
 /// Columns of history.csv and bodies.csv; what is written, and what the formulas of a study may
-/// name. Those of a liquid with a free surface stand at the end, and of its watched places.
+/// name. Those of a liquid with a free surface stand at the end, of its watched places, and of
+/// trapped gas.
 template <int dim>
 std::vector<HistoryColumn> history_columns(bool with_liquid,
-                                           const std::vector<std::string>& watches = {});
+                                           const std::vector<std::string>& watches = {},
+                                           bool with_gas = false);
 template <int dim>
 std::vector<HistoryColumn> body_columns();
 

@@ -5,6 +5,7 @@
 #include "interfaces/contact.hpp"
 #include "interfaces/coupling_sides.hpp"
 #include "interfaces/fluid_sides.hpp"
+#include "interfaces/gas.hpp"
 #include "interfaces/strategy.hpp"
 #include "interfaces/viscosity.hpp"
 
@@ -56,6 +57,8 @@ struct ComponentSides {
         viscous_coupling(side_of<ViscousCoupling<dim>>(*components.coupling)),
         audited_coupling(side_of<AuditedCoupling<dim>>(*components.coupling)),
         unseen_buoyancy(side_of<UnseenBuoyancy<dim>>(*components.coupling)),
+        gas_fluid(side_of<GasFluid<dim>>(*components.fluid)),
+        gas_coupling(side_of<GasCoupling<dim>>(*components.coupling)),
         audited(audited_fluid && audited_coupling && components.solids->is_audited()) {}
 
   ViscousFluid<dim>* viscous_fluid;
@@ -64,6 +67,8 @@ struct ComponentSides {
   const ViscousCoupling<dim>* viscous_coupling;
   const AuditedCoupling<dim>* audited_coupling;
   const UnseenBuoyancy<dim>* unseen_buoyancy;
+  GasFluid<dim>* gas_fluid;
+  GasCoupling<dim>* gas_coupling;
   bool audited;  ///< all that the momentum ledger asks
 };
 

@@ -26,7 +26,8 @@ RunTables<dim>::RunTables(const Communicator& comm, const std::string& directory
                           const LiquidFluid<dim>* liquid)
     : history_(comm, directory + "/history.csv",
                history_columns<dim>(liquid != nullptr,
-                                    liquid ? liquid->watch_names() : std::vector<std::string>())),
+                                    liquid ? liquid->watch_names() : std::vector<std::string>(),
+                                    liquid && liquid->traps_gas())),
       bodies_(comm, directory + "/bodies.csv", body_columns<dim>()) {}
 
 template <int dim>
@@ -71,6 +72,8 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
     append_each(row, liquid->target, liquid->shift, liquid->lost, liquid->n_bodies);
     for (const WatchedLiquid& watched : liquid->watches)
       append_each(row, watched.volume, watched.target, watched.leak);
+    if (liquid->gas)
+      append_each(row, liquid->gas->n_pockets, liquid->gas->volume, liquid->gas->pressure);
   }
   history_.append_row(row);
 

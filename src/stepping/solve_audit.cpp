@@ -27,6 +27,8 @@ void audit_solve(const Components<dim>& components, const ComponentSides<dim>& s
                                   ? sides.audited_fluid->boundary_pressure_impulse(*whole.pressure)
                                   : Momentum<dim>();
   report.ledger.add("walls", walls);
+  if (!solution.gas_momentum.is_null())  // gas pushes on what is around it; sides push back
+    report.ledger.add("walls through gas", sides.gas_fluid->gas_side_impulse());
   report.boundary_impulse = walls + report.ledger.impulse_of("viscous boundaries");
   const std::vector<double> coupled_after = components.coupling->velocity(*whole.solid);
   std::vector<Momentum<dim>> prescribed;
@@ -40,8 +42,11 @@ void audit_solve(const Components<dim>& components, const ComponentSides<dim>& s
     report.hydrodynamic_impulse[s] -= viscous.prescribed_impulses[s];
   if (!solids.has_unknowns())
     return;
+  Vector given(*solution.momentum, Teuchos::Copy);
+  if (!solution.gas_momentum.is_null())
+    given.update(1, *solution.gas_momentum, 1);
   const RCP<const Vector> reactions =
-      system.reactions(context.dt, context.constraints, *solution.momentum, whole);
+      system.reactions(context.dt, context.constraints, given, whole);
   report.ledger.add("locks", solids.momentum(*reactions));
   if (sides.audited_coupling)
     report.lever_impulse = sides.audited_coupling->lever_impulse(solids, solution.coupled_before,

@@ -24,6 +24,10 @@ Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options
       "The coupling \"{}\" carries no viscous forces, but the fluid is viscous; take another "
       "one, or make the fluid inviscid.",
       components.coupling->name());
+  check_input(!sides_.gas_fluid || !sides_.gas_fluid->holds_gas() || sides_.gas_coupling,
+              "The coupling \"{}\" knows no gas that pushes on solids; take another one, or leave "
+              "\"Trapped Air\" at \"void\".",
+              components.coupling->name());
   freeze();
   // Motions that begin at rest do so but for round-off.
   const double negligible = 1e-12 * components_.fluid->fluid_volume();  // a second
@@ -165,8 +169,7 @@ CoupledSolution Stepper<dim>::solve(const StepContext<dim>& context, const RCP<V
     components_.strategy->prepare(blocks);
   }
   ScopedPhase phase(timers_, "iterations");
-  report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns,
-                                       request(name, context.dt));
+  solve_coupled(context, blocks, request(name, context.dt), solution, report);
   solution.velocity = coupled() ? solution.unknowns.solid : make_vector(components_.solids->map());
   if (!constraints.is_identity()) {
     solution.velocity = rcp(new Vector(*solution.velocity, Teuchos::Copy));

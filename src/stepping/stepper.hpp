@@ -89,6 +89,14 @@ class Stepper {
                     RCP<Vector>& velocity, StepReport<dim>& report);
   void move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
                    StepReport<dim>& report);
+  // Pockets of gas.
+  bool has_gas() const;
+  std::vector<double> expected_gas_pressure(double dt) const;
+  void push_solids(const std::vector<double>& gas_pressure, double factor, Vector& momentum) const;
+  void solve_coupled(const StepContext<dim>& context, const BlockSystem& blocks,
+                     const SolveRequest& request, CoupledSolution& solution, SolveReport& report);
+  void solve_advection(double dt, const std::vector<double>& effective, const BlockSystem& blocks,
+                       BlockVector& rhs, BlockVector& solution, SolveReport& report);
   SolveRequest request(const std::string& name, double dt) const;
   void check_possible(const StepContext<dim>& context, double incompatibility) const;
 

@@ -97,6 +97,13 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
       components_.coupling->coupling_transposed()->apply(*pressure, *row, Teuchos::NO_TRANS, -1, 1);
     system_.subtract_given(dt, context.constraints, *row);
   }
+  const bool feels_gas = has_gas() && !pressure.is_null();
+  const std::vector<double> gas = feels_gas ? expected_gas_pressure(dt) : std::vector<double>();
+  if (feels_gas) {
+    sides_.gas_fluid->set_gas_pressure(gas);
+    if (!row.is_null())
+      push_solids(gas, 1, *row);
+  }
   if (!pressure.is_null())
     fluid.project(*pressure);
   const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
@@ -115,6 +122,12 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
   if (!pressure.is_null()) {
     Vector back(*pressure, Teuchos::Copy);
     back.scale(-1);
+    if (feels_gas) {
+      std::vector<double> gas_back = gas;
+      for (double& value : gas_back)
+        value = -value;
+      sides_.gas_fluid->set_gas_pressure(gas_back);
+    }
     fluid.project(back);
   }
   return prediction;
@@ -157,7 +170,7 @@ void Stepper<dim>::make_advection_velocity(double dt, StepReport<dim>& report) {
   report.incompatibility_f2 = relative_part_removed(blocks.null_space, *rhs.pressure);
   solution.pressure = make_vector(fluid.pressure_map());
   components_.strategy->prepare(blocks);
-  report.f2 = components_.strategy->solve(blocks, rhs, solution, request(name_of(Phase::F2), dt));
+  solve_advection(dt, effective, blocks, rhs, solution, report.f2);
   fluid.project(*solution.pressure);
 }
 

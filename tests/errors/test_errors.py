@@ -318,6 +318,14 @@ CASES = [
     Case("a mesh that is no mesh", "OFF", **mesh("solid", "body.off")),
 
     # Water.
+    Case("gas at less than no pressure", ["Gas Pressure", "above minus"],
+         **water(value("Trapped Air", "string", "ideal gas") + value("Gas Pressure", "double", "-2e5"))),
+    Case("an atmosphere that is nowhere", ["Atmosphere", "outside of the domain"],
+         **water(value("Trapped Air", "string", "constant volume") + value("Atmosphere", "Array(double)", "{9, 9}"))),
+    Case("half an atmosphere", ["Atmosphere", "has 1 numbers"],
+         **water(value("Trapped Air", "string", "ideal gas") + value("Atmosphere", "Array(double)", "{0.5}"))),
+    Case("trapped air between tiles that move", ["Trapped Air", "leave them out"],
+         sets=["Fluid/Moving Tiles/Tile Margin=9"], **water(value("Trapped Air", "string", "ideal gas"))),
     Case("a solid with the water's name", ["\"water\"", "fluid's surface in frames"], **water(solid="water")),
     Case("a watch in a solid", ["watch \"Hold\"", "inside a solid"], **watch(("Hold", "{0.5, 0.5}", ""))),
     Case("a watch outside", ["watch \"Hold\"", "outside of the domain"], **watch(("Hold", "{0.5, 7}", ""))),

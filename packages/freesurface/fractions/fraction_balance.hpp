@@ -1,6 +1,6 @@
 #pragma once
-#include "freesurface/cell_groups.hpp"
 #include "freesurface/fractions/fraction_transport.hpp"
+#include "mac/liquid/cell_groups.hpp"
 
 namespace lockstep {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "freesurface/fractions/cell_plane.hpp"
-#include "freesurface/solid_cells.hpp"
+#include "mac/liquid/solid_cells.hpp"
 
 namespace lockstep {
 

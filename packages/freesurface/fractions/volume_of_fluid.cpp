@@ -7,7 +7,7 @@
 #include "freesurface/continuation.hpp"
 #include "freesurface/fractions/fraction_balance.hpp"
 #include "freesurface/fractions/fraction_solids.hpp"
-#include "freesurface/wet_fraction.hpp"
+#include "mac/liquid/wet_fraction.hpp"
 #include "mac/state/stored_fields.hpp"
 #include "mac/transport/revalidation.hpp"
 #include "output/checkpoint.hpp"

@@ -2,6 +2,12 @@
 
 namespace lockstep {
 
+namespace {
+/// Of a pressure from a pocket of gas [cells]: how gas answers is found from differences of what it
+/// drives through its faces, which must not be lost in their round-off.
+constexpr double least_distance_from_gas = 1e-3;
+}  // namespace
+
 template <int dim>
 void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_surface,
                      std::vector<CellState>& cells) {
@@ -19,7 +25,9 @@ void set_closeness_to_void(const MacDomain<dim>& domain, const FreeSurface<dim>&
   const auto set = [&](int axis, int face, int wet, int dry) {
     if (cells[wet] == CellState::fluid && cells[dry] == CellState::empty &&
         geometry.state.faces[axis][face] == FaceState::free)
-      geometry.face_table.set_closeness(axis, face, free_surface.closeness(wet, dry));
+      geometry.face_table.set_closeness(
+          axis, face,
+          free_surface.closeness(wet, dry, geometry.in_pocket(dry) ? least_distance_from_gas : 0));
   };
   grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
     for (int axis = 0; axis < dim; ++axis) {

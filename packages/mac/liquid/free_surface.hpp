@@ -6,6 +6,9 @@
 
 namespace lockstep {
 
+template <int dim>
+class GasPockets;
+
 /// What pressures and faces know of the free surface at one instant. Above it is void: p = 0.
 template <int dim>
 struct FreeSurface {
@@ -17,11 +20,12 @@ struct FreeSurface {
   double smallest_distance = 1e-5;  ///< of a pressure from the surface [cells]
   /// True: p = 0 where the surface is. False: at the centre of the dry cell, first order.
   bool at_true_place = true;
+  GasPockets<dim>* gas = nullptr;  ///< null: no void is closed
 
   bool wet(int cell) const { return (*distance)[cell] < 0; }
   /// w of the face between them, h over the distance of the pressure from the surface.
-  double closeness(int wet, int dry) const {
-    return at_true_place ? 1 / std::max(crossing(wet, dry), smallest_distance) : 1;
+  double closeness(int wet, int dry, double least = 0) const {
+    return at_true_place ? 1 / std::max({crossing(wet, dry), smallest_distance, least}) : 1;
   }
 };
 

@@ -42,6 +42,8 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
   auto watches = read_watches<dim>(list);
   if (!watches.empty())
     audit_ = std::make_unique<LeakAudit<dim>>(domain, std::move(watches));
+  if (const auto gas = read_gas<dim>(fluid); gas.kind != TrappedAir::none)
+    gas_ = std::make_unique<GasPockets<dim>>(domain, gas, gravity);
   const ParameterList& interface = list.sublist("Interface");
   interface_ = interfaces.create(interface.get<std::string>("Type"), interface, domain);
 }
@@ -68,7 +70,7 @@ void Liquid<dim>::begin(const Surface& surface) {
 }
 
 template <int dim>
-FreeSurface<dim> Liquid<dim>::surface() const {
+FreeSurface<dim> Liquid<dim>::surface() {
   FreeSurface<dim> surface;
   surface.distance = &interface_->distance();
   surface.crossing = [this, &phi = interface_->distance()](int wet, int dry) {
@@ -78,6 +80,7 @@ FreeSurface<dim> Liquid<dim>::surface() const {
   };
   surface.smallest_distance = parameters_.smallest_distance;
   surface.at_true_place = parameters_.pressure_order == 2;
+  surface.gas = gas_.get();
   return surface;
 }
 
@@ -98,6 +101,8 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
                                      gravity_, step.dt);
   if (audit_)
     audit_->open(step, *interface_);
+  if (gas_)
+    gas_->pass_over(step.surface);
   interface_->advance(step);
   if (audit_)
     audit_->close(step, *interface_, displacement);
@@ -113,9 +118,17 @@ double Liquid<dim>::distance(const Point<dim>& x) const {
 template <int dim>
 LiquidReport Liquid<dim>::report() const {
   const LiquidLedger ledger = interface_->ledger();
-  return {ledger.volume,       ledger.target,
-          ledger.shift,        ledger.lost,
-          ledger.n_components, audit_ ? audit_->report() : std::vector<WatchedLiquid>()};
+  LiquidReport report;
+  report.volume = ledger.volume;
+  report.target = ledger.target;
+  report.shift = ledger.shift;
+  report.lost = ledger.lost;
+  report.n_bodies = ledger.n_components;
+  if (audit_)
+    report.watches = audit_->report();
+  if (gas_)
+    report.gas = gas_->report();
+  return report;
 }
 
 template <int dim>
@@ -129,8 +142,10 @@ std::vector<std::string> Liquid<dim>::watch_names() const {
 
 template <int dim>
 std::function<void()> Liquid<dim>::undo() {
-  return [this, undo_interface = interface_->undo(), lead = lead_] {
+  const auto undo_gas = gas_ ? gas_->undo() : [] {};
+  return [this, undo_interface = interface_->undo(), undo_gas, lead = lead_] {
     undo_interface();
+    undo_gas();
     lead_ = lead;
   };
 }

@@ -4,6 +4,7 @@
 
 #include "interfaces/liquid.hpp"
 #include "mac/liquid/free_surface.hpp"
+#include "mac/liquid/gas_pockets.hpp"
 #include "mac/liquid/interface_model.hpp"
 #include "mac/liquid/leak_audit.hpp"
 #include "mac/liquid/liquid_parameters.hpp"
@@ -26,7 +27,7 @@ class Liquid {
   /// solids. Collective.
   void begin(const Surface& surface);
   /// At the present time; valid while this is.
-  FreeSurface<dim> surface() const;
+  FreeSurface<dim> surface();
   /// Carries u_ADV and u^n on into the void, marks those faces in `geometry`, and moves the
   /// interface. Halos must be valid, and are so afterwards. Collective.
   void advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
@@ -36,6 +37,8 @@ class Liquid {
   const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
   /// By how much the pressure's phi is ahead of the interface's [m], from the last step.
   CellField& lead() { return lead_; }
+  GasPockets<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
+  const GasPockets<dim>* gas() const { return gas_.get(); }
   InterfaceModel<dim>& interface() { return *interface_; }
   const InterfaceModel<dim>& interface() const { return *interface_; }
   /// Linear between the centres of cells; near cells that this rank owns. After `begin`. Local.
@@ -56,6 +59,7 @@ class Liquid {
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
   std::unique_ptr<InterfaceModel<dim>> interface_;
   std::unique_ptr<LeakAudit<dim>> audit_;  ///< null: nothing is watched
+  std::unique_ptr<GasPockets<dim>> gas_;
 };
 
 }  // namespace lockstep

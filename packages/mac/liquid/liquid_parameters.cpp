@@ -102,6 +102,28 @@ std::vector<TypedSchema> liquid_schemas() {
           {"ball", "A ball (2D: a disc).", ball},
           {"mesh", "The inside of a closed mesh of a file.", mesh}};
 }
+
+void declare_trapped_air(ParameterList& list) {
+  declare_choice(list, "Trapped Air", "void", {"void", "ideal gas", "constant volume"},
+                 "What is in closed pockets above the liquid: \"void\", p = 0, as in the "
+                 "atmosphere; \"ideal gas\", whose pressure follows from its volume; \"constant "
+                 "volume\", a gas that cannot be compressed. Of more than 8 pockets the largest "
+                 "have gas. Pockets of at most \"Smallest Void\" cells are filled all the same.");
+  declare_optional<ParameterArray<double>>(
+      list, "Atmosphere",
+      "Points, a component an axis, one after the other [m]: void that can be reached from them or "
+      "from an open side is no pocket. Absent: nor is what touches the side of the domain that "
+      "gravity points away from.");
+  declare_positive(list, "Atmospheric Pressure", 101325.0,
+                   "Of an ideal gas that nothing pushes [Pa].");
+  declare_positive(list, "Gas Exponent", 1.4,
+                   "gamma of an ideal gas, p V^gamma = const.: 1.4 for air without, 1 with time to "
+                   "take the liquid's temperature [1].");
+  declare(
+      list, "Gas Pressure", 0.0,
+      "In pockets at the start, above that of the atmosphere [Pa]; for a gas of constant volume "
+      "a guess.");
+}
 }  // namespace
 
 template <int dim>
@@ -137,6 +159,7 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
       "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature. Explicit, so that "
       "steps are at most 0.28 sqrt(density h^3 / sigma); the surface meets solids and sides at 90 "
       "degrees. 0: none.");
+  declare_trapped_air(list);
   declare_between(list, "Pressure Order", 2, 1, 2,
                   "2: p = 0 where the surface is. 1: at the centre of the first cell above it, to "
                   "show what that costs: waves lower than half a cell do not exist then.");
@@ -170,19 +193,50 @@ SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gra
   };
 }
 
+namespace {
+/// Of an optional array, a component an axis, one after the other.
 template <int dim>
-std::vector<Point<dim>> read_dry_points(const ParameterList& list) {
-  if (!list.isParameter("Dry Points"))
+std::vector<Point<dim>> read_points(const ParameterList& list, const char* name) {
+  if (!list.isParameter(name))
     return {};
-  const auto& numbers = list.get<ParameterArray<double>>("Dry Points");
+  const auto& numbers = list.get<ParameterArray<double>>(name);
   check_input(numbers.size() % dim == 0,
-              "In \"Free Surface\", \"Dry Points\" has {} numbers; it takes {} a point.",
+              "In \"Free Surface\", \"{}\" has {} numbers; it takes {} a point.", name,
               numbers.size(), dim);
   std::vector<Point<dim>> points(numbers.size() / dim);
   for (std::size_t p = 0; p < points.size(); ++p)
     for (int a = 0; a < dim; ++a)
       points[p][a] = numbers[p * dim + a];
   return points;
+}
+}  // namespace
+
+template <int dim>
+std::vector<Point<dim>> read_dry_points(const ParameterList& list) {
+  return read_points<dim>(list, "Dry Points");
+}
+
+template <int dim>
+GasParameters<dim> read_gas(const ParameterList& fluid) {
+  const ParameterList& list = fluid.sublist("Free Surface");
+  const auto kind = list.get<std::string>("Trapped Air");
+  GasParameters<dim> gas;
+  if (kind == "void")
+    return gas;
+  check_input(!fluid.isSublist("Moving Tiles"),
+              "\"Trapped Air\" is \"{}\", but with \"Moving Tiles\" not all of the void is there "
+              "to be looked through; leave them out.",
+              kind);
+  gas.kind = kind == "ideal gas" ? TrappedAir::ideal_gas : TrappedAir::constant_volume;
+  gas.atmospheric_pressure = list.get<double>("Atmospheric Pressure");
+  gas.exponent = list.get<double>("Gas Exponent");
+  gas.pressure_at_start = list.get<double>("Gas Pressure");
+  check_input(gas.pressure_at_start > -gas.atmospheric_pressure,
+              "In \"Free Surface\", \"Gas Pressure\" is measured from the atmosphere's and must be "
+              "above minus \"Atmospheric Pressure\", {:g} Pa.",
+              -gas.atmospheric_pressure);
+  gas.atmosphere = read_points<dim>(list, "Atmosphere");
+  return gas;
 }
 
 template <int dim>
@@ -220,6 +274,8 @@ void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
 
 template void declare_free_surface<2>(const InterfaceRegistry<2>&, ParameterList&);
 template void declare_free_surface<3>(const InterfaceRegistry<3>&, ParameterList&);
+template GasParameters<2> read_gas<2>(const ParameterList&);
+template GasParameters<3> read_gas<3>(const ParameterList&);
 template std::vector<Point<2>> read_dry_points<2>(const ParameterList&);
 template std::vector<Point<3>> read_dry_points<3>(const ParameterList&);
 template std::vector<SignedDistance<2>> read_sinks<2>(const ParameterList&);

@@ -1,4 +1,5 @@
 #pragma once
+#include "mac/liquid/gas_pockets.hpp"
 #include "mac/liquid/interface_model.hpp"
 #include "parameters/parameter_list.hpp"
 
@@ -20,6 +21,10 @@ FreeSurfaceParameters read_free_surface(const ParameterList& list);
 /// or a level without gravity.
 template <int dim>
 SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gravity);
+/// What trapped air does, of a validated list "Fluid". Throws InputError if numbers are missing, or
+/// tiles move.
+template <int dim>
+GasParameters<dim> read_gas(const ParameterList& fluid);
 /// Throws InputError if numbers are missing.
 template <int dim>
 std::vector<Point<dim>> read_dry_points(const ParameterList& list);

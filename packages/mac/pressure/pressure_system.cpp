@@ -145,6 +145,8 @@ Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeome
   // What solids cover of a side they push on themselves; only the rest is the side's.
   for (std::size_t i = geometry.coupled.size(); i < geometry.coupled_volumes.size(); ++i) {
     const ControlVolume<dim>& volume = geometry.coupled_volumes[i];
+    if (!volume.at_prescribed_side)
+      continue;
     const int end = volume.sides[0].unknown == no_index ? 0 : 1;
     const double push =
         (end == 0 ? area : -area) * values[volume.sides[1 - end].unknown - first_unknown];

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "mac/liquid/free_surface.hpp"
+#include "mac/liquid/gas_faces.hpp"
 #include "mac/state/covered_sides.hpp"
+#include "mac/state/ghost_faces.hpp"
 #include "mac/state/moving_tiles.hpp"
 #include "mac/state/surface_marks.hpp"
 
@@ -41,6 +43,7 @@ PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
     side.solid = geometry.state.surface->inside(center);
   } else if (geometry.state.cells[cell] == CellState::empty) {
     side.kind = SideKind::empty;
+    side.pocket = geometry.pocket.empty() ? -1 : geometry.pocket[cell];
   }
   return side;
 }
@@ -223,68 +226,6 @@ double ask_rule(const OpenFractionRule<dim>& rule, const ControlVolume<dim>& vol
   // An open face between fluid and solid would be a silent leak, whatever the rule says.
   return leads_into_solid ? 0 : fraction;
 }
-
-/// Revalidation looks from its own faces at the neighbours, which may be other ranks'.
-template <int dim>
-void share_open_centers(const MacDomain<dim>& domain, int axis, MacState<dim>& state) {
-  const TiledGrid<dim>& grid = domain.grid;
-  auto& places = state.open_centers[axis];
-  std::array<CellField, dim> shift;
-  for (int a = 0; a < dim; ++a) {
-    shift[a].assign(grid.n_stored_cells(), 0.0);
-    for (const auto& [face, place] : places)
-      shift[a][face] = place[a] - grid.face_center(axis, face)[a];
-    domain.halo.fill(shift[a]);
-  }
-  for (int face = grid.n_owned_cells(); face < grid.n_stored_cells(); ++face) {
-    Point<dim> beside;
-    for (int a = 0; a < dim; ++a)
-      beside[a] = shift[a][face];
-    if (beside != Point<dim>::Zero())
-      places[face] = grid.face_center(axis, face) + beside;
-  }
-}
-
-/// The upper faces of owned cells may be ghosts; those at open sides can be told from the state.
-template <int dim>
-void complete_ghost_faces(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
-  const TiledGrid<dim>& grid = domain.grid;
-  const MacState<dim>& state = geometry.state;
-  for (int axis = 0; axis < dim; ++axis) {
-    if (domain.boundary.side(axis, 1).type != SideType::open)
-      continue;
-    for (int cell = grid.n_owned_cells(); cell < grid.n_stored_cells(); ++cell)
-      if (state.cells[cell] == CellState::outside && state.faces[axis][cell] == FaceState::free)
-        geometry.face_table.set_closeness(axis, cell, 2);
-  }
-}
-
-/// The open fractions of ghost faces, if any rank has partly open ones along an axis.
-template <int dim>
-void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
-  const TiledGrid<dim>& grid = domain.grid;
-  if (!geometry.state.surface || grid.comm()->getSize() == 1)
-    return;
-  std::array<double, dim> n_partial{};
-  for (const ControlVolume<dim>& volume : geometry.coupled_volumes)
-    n_partial[volume.direction] += volume.open_fraction > 0;
-  for (const auto& [axis, cell] : geometry.prescribed)
-    n_partial[axis] += geometry.face_table(axis, cell).open < 1;
-  sum_all(grid.comm(), n_partial.data(), dim);
-  for (int axis = 0; axis < dim; ++axis) {
-    if (n_partial[axis] == 0)
-      continue;
-    CellField open(grid.n_stored_cells());
-    for (int cell = 0; cell < grid.n_owned_cells(); ++cell)
-      open[cell] = geometry.face_table(axis, cell).open;
-    std::fill(open.begin() + grid.n_owned_cells(), open.end(), 1.0);
-    domain.halo.fill(open);
-    for (int cell = grid.n_owned_cells(); cell < grid.n_stored_cells(); ++cell)
-      if (open[cell] < 1)
-        geometry.face_table.set_open(axis, cell, open[cell]);
-    share_open_centers(domain, axis, geometry.state);
-  }
-}
 }  // namespace
 
 template <int dim>
@@ -338,8 +279,11 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   }
   if (free_surface)
     empty_dry_cells(grid, *free_surface, state.cells);
+  if (free_surface && free_surface->gas)
+    find_pockets<dim>(*free_surface, marks, fractions, geometry);
   number_pressures(domain, geometry);
   const std::vector<char> plain = find_plain_tiles(grid, geometry);
+  std::vector<ControlVolume<dim>> gas_volumes;
   for (int axis = 0; axis < dim; ++axis) {
     state.faces[axis].assign(grid.n_stored_cells(), FaceState::inactive);
     const int place_in_tile = (tile_width<dim> - 1) << (axis * log_tile_width<dim>);
@@ -353,12 +297,16 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       result = state_far_from_surfaces(domain, state.cells, axis, face);
       // A closed face behind a cut cell need not be near the surface.
       const bool asked = geometry.near_surface(cell) || (cut && fractions[axis][cell] == 0);
-      if (result == FaceState::free && asked) {
+      const bool only_gas = asked && only_gas_beside(state.cells, geometry.pocket, face);
+      if (asked && (result == FaceState::free || only_gas)) {
         ControlVolume<dim> volume = control_volume(domain, geometry, axis, cell);
         volume.open_fraction =
             cut ? fractions[axis][cell]
                 : ask_rule(rule, volume, geometry, face, (marks.blocked[cell] >> axis & 1) != 0);
-        take_fraction(rule, axis, cell, volume, geometry);
+        if (!only_gas)
+          take_fraction(rule, axis, cell, volume, geometry);
+        else if (volume.open_fraction < 1)
+          gas_volumes.push_back(volume);
       }
       if (result == FaceState::prescribed)
         geometry.prescribed.push_back({axis, cell});
@@ -372,6 +320,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   }
   if (cut)
     add_covered_sides(domain, rule, geometry);
+  geometry.coupled_volumes.insert(geometry.coupled_volumes.end(), gas_volumes.begin(),
+                                  gas_volumes.end());
   complete_ghost_faces(domain, geometry);
   if (free_surface)
     set_closeness_to_void(domain, *free_surface, geometry);

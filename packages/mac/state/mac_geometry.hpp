@@ -13,7 +13,8 @@ template <int dim>
 struct FreeSurface;
 
 /// The frozen geometry of one instant with the numbering of the pressures. The coupled volumes are
-/// those of `coupled`, behind them volumes at prescribed sides (add_covered_sides).
+/// those of `coupled`, behind them volumes at prescribed sides (add_covered_sides) and those that
+/// only gas pushes on.
 template <int dim>
 struct MacGeometry : FluidGeometry<dim> {
   MacState<dim> state;
@@ -27,6 +28,7 @@ struct MacGeometry : FluidGeometry<dim> {
   std::vector<FaceId> coupled;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows beside fluid
   std::vector<FaceId> rim;         ///< owned free faces to fluid at rest beyond the stored tiles
+  std::vector<int> pocket;         ///< of gas, of stored cells, or -1; empty: gas is not trapped
 
   /// The part of a face through which free fluid flows.
   double open_fraction(int axis, int cell) const {
@@ -49,6 +51,7 @@ struct MacGeometry : FluidGeometry<dim> {
   }
   /// The same for all faces of a row of cells, which then are fluid.
   bool has_regular_faces(const CellRow<dim>& row) const;
+  bool in_pocket(int cell) const { return !pocket.empty() && pocket[cell] >= 0; }
   bool near_surface(int cell) const { return !near.empty() && near[cell] != 0; }
 };
 

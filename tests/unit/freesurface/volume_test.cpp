@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 
-#include "freesurface/liquid_volume.hpp"
+#include "mac/liquid/liquid_volume.hpp"
 
 #include <random>
 
 #include "bath.hpp"
 #include "freesurface/voids.hpp"
-#include "freesurface/wet_fraction.hpp"
 #include "geometry/generators.hpp"
+#include "mac/liquid/wet_fraction.hpp"
 
 namespace lockstep::test {
 namespace {

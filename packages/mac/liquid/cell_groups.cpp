@@ -1,4 +1,4 @@
-#include "freesurface/cell_groups.hpp"
+#include "mac/liquid/cell_groups.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "freesurface/wet_fraction.hpp"
+#include "mac/liquid/wet_fraction.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "freesurface/cell_groups.hpp"
-#include "freesurface/solid_cells.hpp"
+#include "mac/liquid/cell_groups.hpp"
+#include "mac/liquid/solid_cells.hpp"
 
 namespace lockstep {
 

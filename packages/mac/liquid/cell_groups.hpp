@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "freesurface/solid_cells.hpp"
+#include "mac/liquid/solid_cells.hpp"
 
 namespace lockstep {
 

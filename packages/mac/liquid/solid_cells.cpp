@@ -1,4 +1,4 @@
-#include "freesurface/solid_cells.hpp"
+#include "mac/liquid/solid_cells.hpp"
 
 #include "mac/state/surface_marks.hpp"
 

@@ -1,10 +1,10 @@
-#include "freesurface/liquid_volume.hpp"
+#include "mac/liquid/liquid_volume.hpp"
 
 #include <algorithm>
 #include <numeric>
 
-#include "freesurface/wet_fraction.hpp"
 #include "geometry/solid_volume.hpp"
+#include "mac/liquid/wet_fraction.hpp"
 
 namespace lockstep {
 

@@ -1,0 +1,132 @@
+#include "mac/liquid/gas_faces.hpp"
+
+#include "geometry/clipping.hpp"
+#include "mac/liquid/gas_pockets.hpp"
+
+namespace lockstep {
+
+template <int dim>
+std::vector<GasFace> find_gas_faces(const MacDomain<dim>& domain,
+                                    const MacGeometry<dim>& geometry) {
+  std::vector<GasFace> result;
+  const auto& cells = geometry.state.cells;
+  const double unit = geometry.face_table.unit_coefficient(), area = geometry.face_table.area();
+  int row = -1;
+  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    if (cells[cell] != CellState::fluid)
+      return;
+    ++row;
+    for (int axis = 0; axis < dim; ++axis)
+      for (int end = 0; end < 2; ++end) {
+        const int other = neighbors[2 * axis + end];
+        if (other < 0 || geometry.pocket[other] < 0 || cells[other] != CellState::empty)
+          continue;
+        const int face = end == 0 ? cell : other;
+        const double open = geometry.open_fraction(axis, face);
+        if (open > 0)
+          result.push_back({geometry.pocket[other],
+                            row,
+                            {axis, face},
+                            end == 1 ? 1. : -1.,
+                            unit * geometry.face_table(axis, face).coefficient,
+                            open * area});
+      }
+  });
+  return result;
+}
+
+bool only_gas_beside(const std::vector<CellState>& cells, const std::vector<int>& pocket,
+                     const FaceCells& face) {
+  if (pocket.empty() || face.at_side())
+    return false;
+  const auto gas = [&](int cell) { return cells[cell] == CellState::empty ? pocket[cell] : -1; };
+  return cells[face.lower] != CellState::fluid && cells[face.upper] != CellState::fluid &&
+         gas(face.lower) != gas(face.upper);
+}
+
+template <int dim>
+void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>& marks,
+                  const std::array<CellField, dim>& fractions, MacGeometry<dim>& geometry) {
+  SolidCells<dim> voids;
+  voids.state.surface = geometry.state.surface;
+  voids.state.cells = geometry.state.cells;
+  for (CellState& cell : voids.state.cells)
+    if (cell == CellState::empty)
+      cell = CellState::fluid;
+  voids.blocked = marks.blocked;
+  voids.near = geometry.near;
+  for (int axis = 0; axis < dim; ++axis)
+    for (std::size_t face = 0; face < fractions[axis].size(); ++face)
+      if (fractions[axis][face] == 0)
+        voids.blocked[face] = static_cast<char>(voids.blocked[face] | 1 << axis);
+  free_surface.gas->find(voids, *free_surface.distance);
+  geometry.pocket = free_surface.gas->of_cell();
+}
+
+template <int dim>
+std::vector<double> volumes_beside_shells(const MacGeometry<dim>& geometry, int n_pockets) {
+  std::vector<double> volumes(n_pockets, 0);
+  std::vector<int> touching;
+  for (const ControlVolume<dim>& volume : geometry.coupled_volumes) {
+    const auto& sides = volume.sides;
+    if (sides[0].pocket == sides[1].pocket || sides[0].kind == SideKind::solid ||
+        sides[1].kind == SideKind::solid)
+      continue;
+    const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
+    const int axis = volume.direction;
+    surface.touching(volume.box, touching);
+    double below = 0;
+    for (const int simplex : touching) {
+      if (surface.solids()[surface.solid_of(simplex)].closed)
+        continue;
+      const auto corners = surface.corners(simplex);
+      const ClippedSimplex<dim> part = clip_to_box<dim>(corners, volume.box);
+      if (part.measure <= 0)
+        continue;
+      const double slant = std::abs(area_vector<dim>(corners).normalized()[axis]);
+      below += slant * slant * slant * part.measure * (part.centroid[axis] - volume.center[axis]);
+    }
+    for (int side = 0; side < 2; ++side)
+      if (sides[side].pocket >= 0)
+        volumes[sides[side].pocket] += side == 0 ? below : -below;
+  }
+  return volumes;
+}
+
+template <int dim>
+Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                            const std::vector<double>& scaled_pressure) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const auto& cells = geometry.state.cells;
+  const double area = geometry.face_table.area(), half = 0.5 * grid.spacing();
+  Momentum<dim> impulse;
+  grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    if (geometry.pocket[cell] < 0 || cells[cell] != CellState::empty)
+      return;
+    for (int axis = 0; axis < dim; ++axis)
+      for (int end = 0; end < 2; ++end) {
+        const int other = neighbors[2 * axis + end];
+        if (other >= 0 && cells[other] != CellState::outside)
+          continue;
+        Point<dim> x = grid.center(cell);
+        x[axis] += end == 0 ? -half : half;
+        impulse.add(x, axis, (end == 0 ? area : -area) * scaled_pressure[geometry.pocket[cell]]);
+      }
+  });
+  return impulse;
+}
+
+template std::vector<GasFace> find_gas_faces<2>(const MacDomain<2>&, const MacGeometry<2>&);
+template std::vector<GasFace> find_gas_faces<3>(const MacDomain<3>&, const MacGeometry<3>&);
+template void find_pockets<2>(const FreeSurface<2>&, const SurfaceMarks<2>&,
+                              const std::array<CellField, 2>&, MacGeometry<2>&);
+template void find_pockets<3>(const FreeSurface<3>&, const SurfaceMarks<3>&,
+                              const std::array<CellField, 3>&, MacGeometry<3>&);
+template std::vector<double> volumes_beside_shells<2>(const MacGeometry<2>&, int);
+template std::vector<double> volumes_beside_shells<3>(const MacGeometry<3>&, int);
+template Momentum<2> push_of_sides<2>(const MacDomain<2>&, const MacGeometry<2>&,
+                                      const std::vector<double>&);
+template Momentum<3> push_of_sides<3>(const MacDomain<3>&, const MacGeometry<3>&,
+                                      const std::vector<double>&);
+
+}  // namespace lockstep

@@ -1,0 +1,112 @@
+#include "coupling/gas_solve.hpp"
+
+#include <Eigen/Dense>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+#include "linear/null_space.hpp"
+
+namespace lockstep {
+
+namespace {
+/// Below this part of the conductance a pocket cannot open: what is around it is all closed in.
+constexpr double closed_in = 1e-9;
+
+/// What p̂ = 1 in one pocket does.
+struct Answer {
+  int pocket = 0;
+  BlockVector unknowns;
+  std::vector<double> rates;  ///< of all pockets [m^dim/s]
+};
+
+Answer answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
+                 const BlockSystem& blocks, const SolveRequest& request, const BlockVector& like,
+                 SolveReport& report) {
+  const auto zero = [](const RCP<Vector>& v) {
+    return v.is_null() ? RCP<Vector>() : make_vector(v->getMap());
+  };
+  BlockVector rhs{zero(like.pressure), zero(like.solid)};
+  Answer answer{pocket, {zero(like.pressure), zero(like.solid)}, {}};
+  std::vector<double> unit(gas.pockets.size(), 0);
+  unit[pocket] = 1;
+  gas.push(unit, rhs);
+  relative_part_removed(blocks.null_space, *rhs.pressure);
+  // What opens the pocket is a small difference of what goes through its faces.
+  const SolveRequest exact{request.name + ", gas", std::min(request.tolerance, 1e-10), 0};
+  report.iterations += strategy.solve(blocks, rhs, answer.unknowns, exact).iterations;
+  answer.rates = gas.rates(answer.unknowns, true);
+  answer.rates[pocket] += gas.conductance[pocket];
+  return answer;
+}
+
+/// The part of a spring's answer that is taken at the end of the step: none up to omega dt = 1, so
+/// that what it gives it takes back, then what keeps it stable.
+double implicit_part(double stiffness_times_answer) {
+  return stiffness_times_answer > 1 ? 1 - 1 / stiffness_times_answer : 0;
+}
+}  // namespace
+
+std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strategy,
+                                   const BlockSystem& blocks, const SolveRequest& request,
+                                   BlockVector& rhs, BlockVector& unknowns, SolveReport& report) {
+  const int n = static_cast<int>(gas.pockets.size());
+  std::vector<double> pressure(n, 0);
+  for (int k = 0; k < n; ++k)
+    if (gas.with_springs || gas.pockets[k].keeps_volume)
+      pressure[k] = gas.dt * gas.pockets[k].pressure;
+  gas.push(pressure, rhs);
+  report = strategy.solve(blocks, rhs, unknowns, request);
+
+  const double dt = gas.dt;
+  std::vector<Answer> answers;
+  std::vector<double> compliance;
+  for (int k = 0; k < n; ++k) {
+    const GasPocket& pocket = gas.pockets[k];
+    const double stiff = dt * dt * pocket.stiffness;
+    if (gas.conductance[k] == 0 && unknowns.solid.is_null())
+      continue;  // nothing that moves is beside it
+    const bool may_be_stiff =
+        !unknowns.solid.is_null() || stiff * gas.conductance[k] > 1;  // solids answer, too
+    if (!pocket.keeps_volume && !(gas.with_springs && may_be_stiff))
+      continue;
+    Answer answer = answer_to(k, gas, strategy, blocks, request, unknowns, report);
+    if (answer.rates[k] <= closed_in * gas.conductance[k])
+      continue;
+    const double part = pocket.keeps_volume ? 1 : implicit_part(stiff * answer.rates[k]);
+    if (part == 0)
+      continue;
+    answers.push_back(std::move(answer));
+    compliance.push_back(pocket.keeps_volume ? 0 : 1 / (part * stiff));
+  }
+  if (answers.empty())
+    return pressure;
+
+  const int m = static_cast<int>(answers.size());
+  std::vector<double> rates = gas.rates(unknowns, false);
+  Eigen::MatrixXd matrix(m, m);
+  Eigen::VectorXd wanted(m);
+  for (int i = 0; i < m; ++i) {
+    const int k = answers[i].pocket;
+    const GasPocket& pocket = gas.pockets[k];
+    wanted[i] = (pocket.keeps_volume ? pocket.missing / dt : 0) - rates[k] -
+                gas.conductance[k] * pressure[k];
+    for (int j = 0; j < m; ++j)
+      matrix(i, j) = answers[j].rates[k] + (i == j ? compliance[i] : 0);
+  }
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(m, m);
+  factors.setThreshold(1e-7);  // of pockets that can only change together, none is preferred
+  factors.compute(matrix);
+  const Eigen::VectorXd change = factors.solve(wanted);
+  std::vector<double> changes(n, 0);
+  for (int i = 0; i < m; ++i) {
+    changes[answers[i].pocket] = change[i];
+    pressure[answers[i].pocket] += change[i];
+    unknowns.pressure->update(change[i], *answers[i].unknowns.pressure, 1);
+    if (!unknowns.solid.is_null())
+      unknowns.solid->update(change[i], *answers[i].unknowns.solid, 1);
+  }
+  gas.push(changes, rhs);
+  return pressure;
+}
+
+}  // namespace lockstep

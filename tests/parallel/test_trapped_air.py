@@ -1,0 +1,114 @@
+"""Gas that is trapped under water: a square bubble and the air in an upturned cup that floats, both of them free, for
+both couplings; on two ranks, and continued from a checkpoint."""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+
+SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
+N_STEPS = 40
+SECONDS = 300  # of a run; a few are usual
+
+
+def box(lower, upper):
+    return {"Type": "box", "Lower": lower, "Upper": upper}
+
+
+def scene(air, coupling):
+    """The bubble is what four boxes of water leave free; the cup's rim is under water."""
+    water = {"Bottom": box((-2., -1.), (2., .3)), "Left": box((-2., -1.), (-.4, 1.)),
+             "Right": box((-.15, -1.), (2., 1.)), "Top": box((-2., .55), (2., 1.))}
+    return xml("Scene", {
+        "Dimension": 2, "Domain": {"Lower": (-.75, 0.), "Upper": (.75, 1.5), "Cells": (48, 48)},
+        "Fluid": {"Density": 1000., "Gravity": (0., -9.8), "Free Surface": {
+            "Liquid": water, "Trapped Air": air, "Atmospheric Pressure": 2e4}},
+        "Solids": {"Cup": {"Type": "rigid body", "Geometry": {"Shape": "open box", "Size": (.5, .4)}, "Mass": 60.,
+                           "Position": (.3, 1.), "Orientation": 3.14159265358979}},
+        "Coupling": {"Type": coupling}, "Solver": {"Tolerance": 1e-11},
+        "Time": {"End": 10., "Fixed Step": .005},
+        "Output": {"Frames": False, "Checkpoint Interval": .1, "Keep Checkpoints": 9}})
+
+
+def table(path):
+    lines = path.read_text().splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+class TrappedAir(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.folder.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def run_scene(self, air, coupling="mixed face", ranks=1, restart=None):
+        """Rows of the history, and where the cup was; run once."""
+        name = f"{air}-{coupling}-{ranks}{'-again' if restart else ''}".replace(" ", "_")
+        output = self.root / name
+        if not output.exists():
+            file = self.root / f"{name}.xml"
+            file.write_text(scene(air, coupling))
+            command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
+            command += [SIMULATE, str(file), "--output", str(output), "--steps", str(N_STEPS), "--quiet"]
+            command += ["--restart", str(restart)] if restart else []
+            result = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        return table(output / "history.csv"), [float(row["y"]) for row in table(output / "bodies.csv")]
+
+    def column(self, rows, name):
+        return [float(row[name]) for row in rows]
+
+    def test_the_momentum_of_all_is_kept(self):
+        for air in ("ideal gas", "constant volume"):
+            for coupling in ("mixed face", "flux"):
+                with self.subTest(air=air, coupling=coupling):
+                    rows, _ = self.run_scene(air, coupling)
+                    self.assertLess(max(self.column(rows, "momentum_error")), 1e-12)
+                    self.assertLess(max(self.column(rows, "angular_momentum_error")), 1e-12)
+
+    def test_a_gas_that_cannot_be_compressed_keeps_its_volume(self):
+        for coupling in ("mixed face", "flux"):
+            rows, _ = self.run_scene("constant volume", coupling)
+            volumes = self.column(rows, "gas_volume")
+            # Void without gas loses half of it in that time.
+            self.assertLess(max(abs(v / volumes[0] - 1) for v in volumes), 0.02)
+
+    def test_air_carries_the_cup(self):
+        """It weighs 60 kg; the walls alone, which have no volume, would carry nothing."""
+        _, with_air = self.run_scene("ideal gas")
+        _, without = self.run_scene("void")
+        self.assertGreater(with_air[-1] - without[-1], 0.05)
+
+    def test_two_ranks(self):
+        for air in ("ideal gas", "constant volume"):
+            rows, heights = self.run_scene(air)
+            shared, shared_heights = self.run_scene(air, ranks=2)
+            for name in ("gas_volume", "gas_pressure"):
+                scale = max(abs(v) for v in self.column(rows, name))
+                for one, two in zip(self.column(rows, name), self.column(shared, name)):
+                    self.assertAlmostEqual(one / scale, two / scale, delta=1e-5)
+            for one, two in zip(heights, shared_heights):
+                self.assertAlmostEqual(one, two, delta=1e-7)
+
+    def test_restart(self):
+        for air in ("ideal gas", "constant volume"):
+            rows, heights = self.run_scene(air)
+            checkpoint = min(self.root.glob(f"{air}-mixed_face-1/checkpoint*.h5".replace(" ", "_")))
+            again, heights_again = self.run_scene(air, restart=checkpoint)
+            self.assertEqual(heights_again, heights[-len(heights_again):])
+            self.assertLess(len(again), len(rows))
+            for row, same in zip(again, rows[-len(again):]):
+                self.assertEqual({**row, "wall_seconds": 0}, {**same, "wall_seconds": 0})
+
+
+if __name__ == "__main__":
+    unittest.main()
