@@ -3,9 +3,9 @@ what an axis is called; what is read along x in one run is read along y in the o
 import copy
 import math
 
-DIRECTIONS = {"Velocity", "Gravity", "Body Force", "Force", "Amplitude", "Offset", "Axis"}
+DIRECTIONS = {"Velocity", "Gravity", "Body Force", "Force", "Amplitude", "Offset", "Axis", "Second Axis"}
 AXIAL = {"Angular Velocity", "Torque", "Angular Amplitude"}  # turn as directions do, numbers in 2D
-IN_SPACE = {"Center", "Position"}
+IN_SPACE = {"Center", "Position", "Point"}
 BOXES_OF_BODIES = {"Pin", "Pull", "Spring", "Root"}  # in the body's own coordinates
 NOT_TURNED = ("taylor green", '"linear"', "particle level set", "volume of fluid", "Vortices", "Wavelength")
 QUARTER = math.pi / 2

@@ -8,6 +8,7 @@ import dataclasses
 import math
 import random
 
+import joints
 import liquids
 from liquids import AXES
 from parameter_list import to_xml
@@ -387,10 +388,12 @@ def random_scene(seed):
     content = {"Dimension": world.dimension, "Title": f"Random scene {seed}",
                "Domain": {"Lower": world.lower, "Upper": world.upper, "Cells": world.cells, "Sides": side_lists},
                "Fluid": fluid(world, side_lists), "Solids": solids(world)}
-    if seed >= liquids.FIRST_SEED:
+    if liquids.FIRST_SEED <= seed < joints.FIRST_SEED:
         liquids.fill_with_liquid(world, content, seed)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])
+    if seed >= joints.FIRST_SEED:
+        joints.add_joints(world, content, seed)
     content["Solver"] = solver(world, content["Coupling"], content["Solids"])
     content["Time"] = time(world)
     content["Observers"] = observers(world)
