@@ -26,6 +26,7 @@ FEATURES = {
     "order 2 in time": lambda c: c["Fluid"]["Order in Time"] == 2,
     "smoke or temperature": lambda c: "Smoke" in c["Fluid"] or "Temperature" in c["Fluid"],
     "free surface": lambda c: "Free Surface" in c["Fluid"],
+    "joints": lambda c: "Joints" in c,
     "moving tiles": lambda c: "Moving Tiles" in c["Fluid"],
     "observers": lambda c: bool(c["Observers"]),
     "inflows": lambda c: side_is(c, "inflow"),
