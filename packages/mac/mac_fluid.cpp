@@ -114,8 +114,12 @@ RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
   if (accepted_step_ == 0)
     return result;  // no step yet; ranks without cells have no pressures ever
   const Point<dim> at_rest = parameters_.density * accepted_step_ * parameters_.forces.gravity;
-  const CellField pressure = extended_pressure<dim>(domain_, geometry_.state.cells, accepted_cells_,
-                                                    accepted_pressure_, at_rest);
+  CellField pressure = extended_pressure<dim>(domain_, geometry_.state.cells, accepted_cells_,
+                                              accepted_pressure_, at_rest);
+  // Viscosity would hand on what light faces get for a moment, and they give it back a
+  // thousandfold.
+  if (liquid_ && is_viscous())
+    bound_pressure(pressure);
   const auto values = result->getDataNonConst();
   int row = 0;
   domain_.grid.for_each_owned_cell([&](int cell) {

@@ -162,8 +162,9 @@ class MacFluid : public FluidDiscretization<dim>,
   using FaceFunction = std::function<double(int axis, int cell)>;
   AngularVector<dim> moment_of_shifts(const FaceFunction& velocity) const;
   Momentum<dim> push_sources(double time);
-  void push_surface(double dt);  ///< by surface tension
-  void settle_gas();             ///< for the frozen geometry
+  void push_surface(double dt);                    ///< by surface tension
+  void settle_gas();                               ///< for the frozen geometry
+  void bound_pressure(CellField& pressure) const;  ///< of the last step, beside the void
   /// Over the faces of the pockets of gas, the sum of value(face) for each pocket. Collective.
   template <typename Value>
   std::vector<double> sum_of_pockets(const Value& value) const;

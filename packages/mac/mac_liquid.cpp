@@ -5,6 +5,7 @@
 #include "mac/liquid/surface_tension.hpp"
 #include "mac/liquid/wet_bodies.hpp"
 #include "mac/mac_fluid.hpp"
+#include "mac/pressure/extended_pressure.hpp"
 
 namespace lockstep {
 
@@ -43,6 +44,22 @@ template <int dim>
 std::vector<WetBody<dim>> MacFluid<dim>::wet_bodies() const {
   return find_wet_bodies<dim>(domain_, geometry_, liquid_->interface().distance(),
                               parameters_.forces.gravity);
+}
+
+template <int dim>
+void MacFluid<dim>::bound_pressure(CellField& pressure) const {
+  const CellField& phi = liquid_->interface().distance();
+  const double tension = accepted_step_ * liquid_->tension();
+  const auto at_surface = [&](int wet, int dry, int axis, int end) {
+    double value = geometry_.in_pocket(dry) ? pressure[dry] : 0;
+    if (tension > 0) {
+      const int face = end == 0 ? wet : dry;
+      const double place = 1 / geometry_.face_table(axis, face).closeness;
+      value += tension * curvature(domain_, phi, wet, axis, end, place);
+    }
+    return value;
+  };
+  bound_beside_void<dim>(domain_, geometry_, at_surface, pressure);
 }
 
 template <int dim>
@@ -104,6 +121,8 @@ template void MacFluid<2>::push_surface(double);
 template void MacFluid<3>::push_surface(double);
 template double MacFluid<2>::largest_stable_step() const;
 template double MacFluid<3>::largest_stable_step() const;
+template void MacFluid<2>::bound_pressure(CellField&) const;
+template void MacFluid<3>::bound_pressure(CellField&) const;
 template void MacFluid<2>::settle_gas();
 template void MacFluid<3>::settle_gas();
 template void MacFluid<2>::add_gas_push(const std::vector<double>&, Vector&) const;

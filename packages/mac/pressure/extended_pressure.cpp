@@ -57,9 +57,49 @@ CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<Cell
   return pressure;
 }
 
+template <int dim>
+void bound_beside_void(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                       const std::function<double(int wet, int dry, int axis, int end)>& at_surface,
+                       CellField& pressure) {
+  constexpr double near = 10;
+  const auto& cells = geometry.state.cells;
+  std::vector<std::pair<int, double>> bounded;
+  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+    if (cells[cell] != CellState::fluid)
+      return;
+    double nearest = near;
+    double value = 0;
+    for (int side = 0; side < 2 * dim; ++side) {
+      const int other = neighbors[side];
+      if (other < 0 || cells[other] != CellState::empty)
+        continue;
+      const int axis = side / 2, face = side % 2 == 0 ? cell : other;
+      if (geometry.state.faces[axis][face] != FaceState::free)
+        continue;
+      const double closeness = geometry.face_table(axis, face).closeness;
+      if (closeness <= nearest)
+        continue;
+      nearest = closeness;
+      const int opposite = neighbors[side ^ 1];
+      const bool is_wet = opposite >= 0 && cells[opposite] == CellState::fluid;
+      const double beyond = at_surface(cell, other, axis, side % 2);
+      value = beyond + (is_wet ? (pressure[opposite] - beyond) / (1 + closeness) : 0);
+    }
+    if (nearest > near)
+      bounded.emplace_back(cell, value);
+  });
+  for (const auto& [cell, value] : bounded)
+    pressure[cell] = value;
+  domain.halo.fill(pressure);
+}
+
 template CellField extended_pressure<2>(const MacDomain<2>&, const std::vector<CellState>&,
                                         const std::vector<CellState>&, CellField, const Point<2>&);
 template CellField extended_pressure<3>(const MacDomain<3>&, const std::vector<CellState>&,
                                         const std::vector<CellState>&, CellField, const Point<3>&);
+template void bound_beside_void<2>(const MacDomain<2>&, const MacGeometry<2>&,
+                                   const std::function<double(int, int, int, int)>&, CellField&);
+template void bound_beside_void<3>(const MacDomain<3>&, const MacGeometry<3>&,
+                                   const std::function<double(int, int, int, int)>&, CellField&);
 
 }  // namespace lockstep

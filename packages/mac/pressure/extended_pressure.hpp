@@ -1,5 +1,7 @@
 #pragma once
-#include "mac/domain/mac_domain.hpp"
+#include <functional>
+
+#include "mac/state/mac_geometry.hpp"
 
 namespace lockstep {
 
@@ -11,5 +13,15 @@ template <int dim>
 CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<CellState>& now,
                             const std::vector<CellState>& before, CellField pressure,
                             const Point<dim>& gradient);
+
+/// A pressure of the last step where the surface has come so near to it (by `closeness`, w > 10)
+/// that what it drives through the face would be out of all measure: takes it from the line between
+/// the cell opposite and the surface, which is exact for a fluid at rest. `at_surface`: the
+/// pressure there, of a wet cell and its dry neighbour at the end of an axis. Ghost values must be
+/// valid, and are set. Collective.
+template <int dim>
+void bound_beside_void(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                       const std::function<double(int wet, int dry, int axis, int end)>& at_surface,
+                       CellField& pressure);
 
 }  // namespace lockstep
