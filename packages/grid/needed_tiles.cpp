@@ -22,6 +22,19 @@ void NeededTiles<dim>::add(Index<dim> begin, Index<dim> end) {
     begin[a] = std::clamp(begin[a], 0, last);
     end[a] = std::clamp(end[a], begin[a] + 1, last + 1);
   }
+  // Most things, as the simplices of a surface, are where the last one was.
+  std::array<Index<dim>, 4> place;
+  for (int a = 0; a < dim; ++a) {
+    const bool wraps = lattice_.description().periodic[a];  // anywhere in a tile
+    const auto tile = [&](int cell) { return wraps ? cell : cell >> log_tile_width<dim>; };
+    place[0][a] = tile(begin[a] - reach_);
+    place[1][a] = tile(end[a] - 1 + reach_);
+    place[2][a] = tile(begin[a] - margin_);
+    place[3][a] = tile(end[a] - 1 + margin_);
+  }
+  if (!in_reach_.empty() && place == last_place_)
+    return;
+  last_place_ = place;
   add_tiles(begin, end, reach_, in_reach_);
   add_tiles(begin, end, margin_, wanted_);
 }
