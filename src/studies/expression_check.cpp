@@ -33,6 +33,7 @@ std::vector<std::string> names_in(const std::string& formula) {
 struct Bodies {
   std::set<std::string> names;
   std::vector<std::string> watches;  ///< of the liquid
+  bool has_water = false;            ///< a liquid with a surface, which frames have like a solid's
   bool complete = false;
 };
 
@@ -46,6 +47,7 @@ Bodies bodies_of(const std::string& scene_file) {
     bodies.complete = !scene.isParameter("Include") && !scene.isParameter("Copies");
     for (const auto& [name, entry] : entries(scene.sublist("Solids")))
       bodies.names.insert(variable_name(name));
+    bodies.has_water = scene.sublist("Fluid").isSublist("Free Surface");
     for (const auto& [name, entry] :
          entries(scene.sublist("Fluid").sublist("Free Surface").sublist("Watch")))
       bodies.watches.push_back(variable_name(name));
@@ -109,8 +111,10 @@ void check_quantity(const Quantity& quantity, const Bodies& bodies, const Variab
   if (quantity.from == Quantity::From::tables) {
     add_columns(quantity.expression, bodies, variables);
   } else if (quantity.from == Quantity::From::surface) {
-    check_input(!bodies.complete || bodies.names.count(variable_name(quantity.solid)) != 0,
-                "{}: the scene has no solid \"{}\".", where, quantity.solid);
+    const bool is_water = bodies.has_water && quantity.solid == "water";
+    check_input(
+        !bodies.complete || is_water || bodies.names.count(variable_name(quantity.solid)) != 0,
+        "{}: the scene has no solid \"{}\".", where, quantity.solid);
     for (const char* name : {"x", "y", "z", "volume", "area", "x_extent", "y_extent", "z_extent"})
       variables[name] = variables[std::string(name) + "0"] = 1;
     variables["time"] = 1;

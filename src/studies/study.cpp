@@ -80,7 +80,8 @@ std::vector<TypedSchema> quantity_types() {
       "Formula of the columns of history.csv, of bodies.csv as BODY.column, of summary.json as "
       "summary.name, of constants, parameters and h, dt, cells, ranks.");
   declare_reduction(table);
-  declare_required<std::string>(surface, "Solid", "Name of the solid.");
+  declare_required<std::string>(surface, "Solid",
+                                "Name of the solid, or \"water\" for the surface of a liquid.");
   declare_required<ParameterArray<double>>(
       surface, "Point", "Picks the vertex of the surface that is nearest at the start [m].");
   declare_required<std::string>(

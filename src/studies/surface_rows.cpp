@@ -79,12 +79,14 @@ std::vector<Variables> read_surface_rows(const std::string& run_directory, const
                                          const std::array<double, 3>& point) {
   const Vector origin(point[0], point[1], point[2]);
   std::vector<Variables> rows;
-  std::size_t vertex = 0;
+  std::size_t vertex = 0, n_vertices = 0;
   for (const std::string& path : frame_files(run_directory)) {
     const FrameFile file(path);
     const Surface surface = read_surface(file, solid);
-    if (rows.empty())
+    if (rows.empty() || surface.vertices.size() != n_vertices)
       vertex = nearest_vertex(surface, origin);
+    n_vertices = surface.vertices.size();
+    check_output(n_vertices > 0, "The surface of \"{}\" is empty in {}.", solid, path);
     Variables row;
     for (int a = 0; a < 3; ++a)
       row[std::string(1, "xyz"[a])] = surface.vertices.at(vertex)[a];
