@@ -19,6 +19,18 @@ class DisjointSets {
     j = root(j);
     parent_[std::max(i, j)] = std::min(i, j);
   }
+  /// Joins n numbers, from that one on.
+  void join_run(int begin, int n) {
+    int first = root(begin);
+    for (int i = begin + 1; i < begin + n; ++i) {
+      if (parent_[i] == i) {
+        parent_[i] = first;
+      } else {
+        join(begin, i);
+        first = root(begin);
+      }
+    }
+  }
   /// Makes every member point at its root.
   void flatten() {
     for (int& parent : parent_)  // parents come first

@@ -213,12 +213,22 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
     if (force.vanishes(axis))
       continue;
     FaceMoments<dim> moments(domain_.grid, axis);
-    domain_.grid.for_each_owned_face(axis, [&](int cell) {
+    const auto push_one = [&](int cell) {
       if (!moves(axis, cell))
         return;
       const double change = dt * force(axis, cell);
       prediction_[axis][cell] += change;
       moments.add(cell, geometry_.mass(axis, cell) * change);
+    };
+    domain_.grid.for_each_owned_face_row(axis, [&](int first, int n, int) {
+      if (n == tile_width<dim> && force.is_uniform() && geometry_.has_regular_faces(axis, first)) {
+        const auto change = RowValues<dim>::Constant(dt * force(axis, first));
+        row_of<dim>(prediction_[axis].data(), first) += change;
+        moments.add_row(first, geometry_.face_table.regular().mass * change);
+        return;
+      }
+      for (int cell = first; cell < first + n; ++cell)
+        push_one(cell);
     });
     mine += moments.total();
   }

@@ -24,6 +24,8 @@ class ForceField {
   double operator()(int axis, int cell) const;
   /// Where all scalars are ambient.
   Point<dim> of_surroundings() const;
+  /// The same at all faces of an axis.
+  bool is_uniform() const { return temperature_ == nullptr && smoke_ == nullptr; }
   /// True if the fluid feels nothing along `axis`, anywhere.
   bool vanishes(int axis) const {
     return parameters_.gravity[axis] == 0 && parameters_.body[axis] == 0;

@@ -20,6 +20,20 @@ double rounded_for_sums(double value) {
   return std::round(value / unit) * unit;
 }
 
+/// Whether all faces of a row of cells are regular and lead to fluid.
+template <int dim>
+bool is_among_fluid(const MacGeometry<dim>& geometry, const CellRow<dim>& row) {
+  const auto& cells = geometry.state.cells;
+  if (!geometry.has_regular_faces(row) || row.neighbors[0] < 0 ||
+      cells[row.neighbors[0]] != CellState::fluid || cells[row.neighbors[1]] != CellState::fluid)
+    return false;
+  for (int side = 2; side < 2 * dim; ++side)
+    if (row.neighbors[side] < 0 ||
+        !is_row_of<dim>(CellState::fluid, cells.data() + row.neighbors[side]))
+      return false;
+  return true;
+}
+
 /// Coefficients of all faces of owned cells: the upper ones of the last cells belong to stored
 /// ghost cells, whose geometry is known here too.
 template <int dim>
@@ -36,7 +50,7 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
   for (int axis = 0; axis < dim; ++axis)
     result.lower[axis].assign(n, 0);
   int row = 0;
-  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+  const auto add_cell = [&](int cell, const auto& neighbors) {
     if (cells[cell] != CellState::fluid)
       return;
     result.row[cell] = row++;
@@ -58,6 +72,20 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
     result.dirichlet[cell] = static_cast<float>(rounded);
     if (rounded != dirichlet)
       result.dirichlet_rest.emplace_back(cell, dirichlet - rounded);
+  };
+  const auto regular = static_cast<float>(geometry.face_table.regular().coefficient);
+  domain.grid.for_each_owned_row([&](const CellRow<dim>& fluid) {
+    if (!is_among_fluid(geometry, fluid)) {
+      fluid.for_each_cell(add_cell);
+      return;
+    }
+    for (int x = 0; x < fluid.n; ++x)
+      result.row[fluid.begin + x] = row++;
+    for (int axis = 0; axis < dim; ++axis)
+      std::fill_n(result.lower[axis].begin() + fluid.begin, fluid.n, regular);
+    result.lower[0][fluid.neighbors[1]] = regular;
+    for (int axis = 1; axis < dim; ++axis)
+      std::fill_n(result.lower[axis].begin() + fluid.neighbors[2 * axis + 1], fluid.n, regular);
   });
   return result;
 }

@@ -50,16 +50,18 @@ class ComponentFinder {
   }
   void join_row(const CellRow<dim>& row) {
     const bool one = is_one(row.begin, row.n);
-    for (int x = 0; x < row.n; ++x) {
-      const int cell = row.begin + x;
-      if (cells_[cell] != CellState::fluid)
-        continue;
-      if (one && x > 0)
-        sets.join(row.begin, cell);
-      else
+    if (one) {
+      sets.join_run(row.begin, row.n);
+      look(row.begin, row.neighbors[0], 0, 0);
+      look(row.begin + row.n - 1, row.neighbors[1], 0, 1);
+    } else {
+      for (int x = 0; x < row.n; ++x) {
+        const int cell = row.begin + x;
+        if (cells_[cell] != CellState::fluid)
+          continue;
         look(cell, x > 0 ? cell - 1 : row.neighbors[0], 0, 0);
-      if (!one || x == row.n - 1)
         look(cell, x < row.n - 1 ? cell + 1 : row.neighbors[1], 0, 1);
+      }
     }
     for (int axis = 1; axis < dim; ++axis)
       for (int end = 0; end < 2; ++end)
