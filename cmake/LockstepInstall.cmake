@@ -21,7 +21,8 @@ install(PROGRAMS "${tools_folder}/report" "${tools_folder}/watch" "${tools_folde
                  "${tools_folder}/plot-frame" "${tools_folder}/plot-study" "${tools_folder}/plot-curves"
                  "${tools_folder}/export-meshes"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep/tools")
-install(FILES "${tools_folder}/lockstep_frames.py" "${tools_folder}/render_with_paraview.py"
+install(FILES "${tools_folder}/lockstep_frames.py" "${tools_folder}/run_parameters.py"
+              "${tools_folder}/render_with_paraview.py"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep/tools")
 install(DIRECTORY "${tools_folder}/report_page" DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep/tools"
         PATTERN "__pycache__" EXCLUDE)

@@ -78,7 +78,11 @@ def show_solids(job, view):
     for number, name in enumerate(name for name in job["surfaces"] if name != WATER):
         solid = open_grids(job, [name])
         solid.UpdatePipeline(job["times"][0])
-        display = simple.Show(solid, view)
+        shown = solid
+        if job["dim"] == 3:  # round bodies look round, edges stay edges
+            shown = simple.ExtractSurface(Input=simple.MergeBlocks(Input=solid))
+            shown = simple.GenerateSurfaceNormals(Input=shown, FeatureAngle=50)
+        display = simple.Show(shown, view)
         display.SetRepresentationType("Surface")
         display.ColorArrayName = ["POINTS", ""]  # ColorBy(display, None) fails on multiblock data
         display.AmbientColor = display.DiffuseColor = SOLID_COLOURS[number % len(SOLID_COLOURS)]
@@ -114,13 +118,16 @@ def place_camera(job, view, bounds):
     if job["dim"] == 2:
         view.CameraParallelProjection = 1
         direction, up = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
-    elif job["up"] == 2:
-        direction, up = (0.45, -1.0, 0.3), (0.0, 0.0, 1.0)
     else:
-        direction, up = (0.45, 0.3, 1.0), (0.0, 1.0, 0.0)
+        direction, up = job["direction"], [float(axis == job["up"]) for axis in range(3)]
     view.CameraPosition = [c + d for c, d in zip(centre, direction)]
     view.CameraViewUp = up
     view.ResetCamera(*bounds)
+    if job["dim"] == 3:
+        # The view's properties do not know yet where ResetCamera went; the camera does.
+        focus, eye = job["centre"] or centre, view.GetActiveCamera().GetPosition()
+        view.CameraPosition = [f + (e - c) / job["zoom"] for f, e, c in zip(focus, eye, centre)]
+        view.CameraFocalPoint = focus
 
 
 def main():

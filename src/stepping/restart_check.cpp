@@ -17,12 +17,12 @@ namespace {
 
 const char* const help =
     "Restart with the scene and the --set of the run that wrote it; only \"Title\", \"Time\", "
-    "\"Solver\", \"Output\" and \"Observers\" may differ.";
+    "\"Solver\", \"Output\", \"Observers\" and \"View\" may differ.";
 
 /// A run may go on to another end, with other steps, solvers and outputs.
 bool may_differ(const std::string& path) {
   return path == "Title" || path == "Time" || path == "Solver" || path == "Output" ||
-         path == "Observers";
+         path == "Observers" || path == "View";
 }
 
 /// How two entries differ, as the end of a sentence; "" if they do not.

@@ -10,6 +10,7 @@
 #include "base/xml_text.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/parameter_rule.hpp"
+#include "stepping/view.hpp"
 
 namespace lockstep {
 namespace {
@@ -200,6 +201,7 @@ ParameterList scene_parameters(const Registries<dim>& registries, const std::str
   declare_observers(scene, registries.observers);
   declare_time(scene);
   declare_output(scene);
+  declare_view(scene, dim);
   return scene;
 }
 
@@ -235,6 +237,7 @@ void check_time_resolution(const TimeOptions& time) {
 }
 
 SceneOptions scene_options(const ParameterList& scene) {
+  check_view(scene);
   SceneOptions options;
   const ParameterList& time = scene.sublist("Time");
   options.time.start = time.get<double>("Start");

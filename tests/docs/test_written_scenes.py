@@ -41,10 +41,10 @@ class WrittenScenes(unittest.TestCase):
         return result.stdout
 
     def test_scene(self):
-        box, body, constants, many, like_another = blocks("write-a-scene.md")
+        box, body, constants, many, like_another, view = blocks("write-a-scene.md")
         numbers = constants[: constants.index("  ...")]
         self.assertIn("valid", self.run_program(SIMULATE, self.write("box.xml", box), "--validate"))
-        self.run_program(SIMULATE, self.write("body.xml", with_lists(box, body)), "--validate")
+        self.run_program(SIMULATE, self.write("body.xml", with_lists(box, body, view)), "--validate")
         self.run_program(SIMULATE, self.write("many.xml", with_lists(box, numbers, many)), "--steps", "1", "--output", "many")
         bodies = (Path(self.folder.name) / "many" / "bodies.csv").read_text()
         self.assertIn("Ball 20", bodies)

@@ -156,6 +156,8 @@ LOCKED = '<Parameter name="Locked" type="Array(string)" value="{x}"/>'
 CASES = [
     # The command line.
     Case("no such option", "--ouput", arguments=["--ouput", "here"]),
+    Case("a view from nowhere", ["\"View\"", "\"Direction\" is zero"], sets=["View/Direction={0, 0, 0}"], scene=SCENE_3D),
+    Case("a view of two numbers", ["\"Direction\"", "needs 3"], sets=["View/Direction={0, 1}"], scene=SCENE_3D),
     Case("number of steps", "--steps", arguments=["--steps", "many"]),
     *[Case(f"{n} steps", ["--steps", "whole number from 1"], arguments=[f"--steps={n}"])
       for n in ("-3", "0", "99999999999999999999", "1.5")],

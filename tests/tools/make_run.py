@@ -8,7 +8,7 @@ import make_frames
 N_STEPS = 5  # of 0.1 s
 
 
-def parameters(title, cells):
+def parameters(title, cells, view=""):
     dim = len(cells)
     lower = [str(x) for x in make_frames.ORIGIN[:2] + make_frames.ORIGIN[2:] * (dim == 3)]
     upper = [str(make_frames.ORIGIN[axis] + n * make_frames.H) for axis, n in enumerate(cells)]
@@ -25,7 +25,7 @@ def parameters(title, cells):
     <Parameter name="Density" type="double" value="1" isDefault="true"/>
     <Parameter name="Gravity" type="Array(double)" value="{array(', '.join(['0', '-9.8', '0'][:dim]))}"/>
   </ParameterList>
-</ParameterList>
+{view}</ParameterList>
 """
 
 
@@ -46,10 +46,10 @@ def bodies(dim):
     return "\n".join(lines) + "\n"
 
 
-def main(folder, dim, title="a </script> in a title"):
+def main(folder, dim, title="a </script> in a title", view=""):
     make_frames.main(folder, dim)
     folder, text = Path(folder), title.replace("<", "&lt;")
-    (folder / "used-parameters.xml").write_text(parameters(text, (8, 6, 4)[:dim]))
+    (folder / "used-parameters.xml").write_text(parameters(text, (8, 6, 4)[:dim], view))
     (folder / "input.xml").write_text(f"<!-- the scene of {title} -->\n")
     (folder / "history.csv").write_text(history())
     (folder / "bodies.csv").write_text(bodies(dim))

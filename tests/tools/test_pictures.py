@@ -12,6 +12,7 @@ import numpy
 from matplotlib.image import imread
 
 import make_frames
+import make_run
 
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
@@ -120,6 +121,22 @@ class PlotFrame(Pictures):
 
 
 class Render(Pictures):
+    def test_as_the_scene_wants_it(self):
+        """From the front, and from 3 times as near: as many times as high, and a bit more for what is before the middle."""
+        heights = []
+        for zoom in (1, 3):
+            make_run.main(self.folder.name, 3, view=f"""<ParameterList name="View">
+                <Parameter name="Direction" value="{{0, 0, 1}}"/><Parameter name="Zoom" value="{zoom}"/>
+                <Parameter name="Field" value="velocity"/></ParameterList>""")
+            result = self.run_tool("render", "--size", "320x240")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            picture = imread(Path(self.folder.name) / "render.png")[..., :3]
+            # Where neither axes nor the bar of colours are.
+            red, green, blue = numpy.moveaxis(picture[:, 150:170], -1, 0)
+            heights.append(numpy.ptp(numpy.nonzero((red > 0.2) & (green < 0.65 * red) & (blue < 0.65 * red))[0]))
+        self.assertGreater(heights[0], 20)
+        self.assertAlmostEqual(heights[1] / heights[0], 3.1, delta=0.35)
+
     def test_pictures(self):
         for dim, arguments in ((2, []), (3, []), (3, ["--volume", "--field", "smoke"]), (3, ["--field", "velocity"])):
             with self.subTest(dim=dim, arguments=arguments):

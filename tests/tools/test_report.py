@@ -16,6 +16,7 @@ import make_run
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
 from lockstep_frames import read_frames  # noqa: E402 (the path comes first)
+from run_parameters import view_of  # noqa: E402
 
 PROGRAM = {}
 
@@ -121,6 +122,16 @@ class Data(Pages):
         data = data_of(self.page(self.folder / "a", self.folder / "b"))
         self.assertEqual(data["differences"], [["Fluid/Gravity", ["{0, -9.8, 0}", "{0, -1.6, 0}"]]])
         self.assertEqual([run["folder"] for run in data["runs"]], ["a", "b"])
+
+    def test_how_a_scene_wants_to_be_shown(self):
+        make_run.main(self.folder / "run", 3)
+        (run,) = data_of(self.page(self.folder / "run"))["runs"]
+        self.assertEqual(run["view"], {"up": 1, "direction": [0.45, 0.35, 1], "centre": None, "zoom": 1, "field": None,
+                                       "volume": False, "time": None})
+        values = {"Fluid/Gravity": "{0, 0, -9.8}", "View/Zoom": "2", "View/Centre": "{1, 2, 3}", "View/Style": "volume",
+                  "View/Time": "0.5", "View/Field": "smoke"}
+        self.assertEqual(view_of(values), {"up": 2, "direction": [0.45, -1, 0.35], "centre": [1, 2, 3], "zoom": 2,
+                                           "field": "smoke", "volume": True, "time": 0.5})
 
     def test_fewer_frames_and_fields(self):
         make_run.main(self.folder / "run", 3)

@@ -30,10 +30,10 @@ class PageInBrowser(unittest.TestCase):
     def setUp(self):
         self.browser.complaints.clear()
 
-    def open(self, *dims):
+    def open(self, *dims, view=""):
         folders = [self.folder / f"run-{dim}d" for dim in dims]
         for dim, folder in zip(dims, folders):
-            make_run.main(folder, dim)
+            make_run.main(folder, dim, view=view)
         page = self.folder / f"{len(dims)}-{dims[0]}.html"
         subprocess.run([TOOLS / "report", *folders, "--output", page], check=True, stdout=subprocess.DEVNULL)
         self.browser.open(page.as_uri())
@@ -101,6 +101,21 @@ class PageInBrowser(unittest.TestCase):
         self.assertGreater(numpy.mean(numpy.abs(after - before).max(axis=-1) > 0.05), 0.02)
         self.browser.run("document.getElementById('home').click()")
         self.assertLess(numpy.abs(self.player() - before).mean(), 1e-3)
+
+    def test_the_view_of_the_scene(self):
+        """From the front and twice as near, with a field of its own."""
+        seen = {}
+        for zoom in (1, 2):
+            self.open(3, view=f"""<ParameterList name="View"><Parameter name="Direction" value="{{0, 0, 1}}"/>
+                <Parameter name="Zoom" value="{zoom}"/><Parameter name="Field" value="velocity"/></ParameterList>""")
+            self.assertEqual(self.browser.run("document.getElementById('field').value"), "velocity")
+            picture = self.player()
+            is_body = numpy.abs(picture - BODY).max(axis=-1) < 0.35
+            rows, columns = numpy.nonzero(is_body)
+            seen[zoom] = len(rows)
+            # The body's x are symmetric about the domain's middle.
+            self.assertAlmostEqual(columns.mean() / picture.shape[1], 0.5, delta=0.02)
+        self.assertGreater(seen[2] / seen[1], 3.5)
 
     def test_a_slice_moves(self):
         self.open(3)

@@ -88,7 +88,8 @@ function fillFields() {
     ...names.map((name) => make("option", { value: name }, isMagnitude(name) ? `|${name}|` : name)));
   const hasWater = state.runs.some((run) => run.frames.some((frame) => frame.surfaces.some(({ water }) => water)));
   // Water is shown by its surface, and hides a slice.
-  const first = hasWater && state.runs[0].dimension === 3 ? "" : names[0] ?? "";
+  const usual = hasWater && state.runs[0].dimension === 3 ? "" : names[0] ?? "";
+  const first = state.runs.map((run) => run.view.field).find((name) => names.includes(name)) ?? usual;
   at("field").value = state.fieldsFilled ? kept : first;
   state.fieldsFilled = true;
 }
@@ -99,7 +100,7 @@ function isMagnitude(name) {
 
 function firstAxis() {
   // Across the direction that the first view looks along.
-  return state.runs[0].up === 2 ? 1 : 2;
+  return state.runs[0].view.up === 2 ? 1 : 2;
 }
 
 /// The layer as a part of the axis: runs may differ in their cells.

@@ -102,7 +102,7 @@ class Player {
   addCamera() {
     const isFlat = this.run.dimension === 2;
     this.camera = isFlat ? new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 10) : new THREE.PerspectiveCamera(32, 1, 0.01, 1000);
-    this.camera.up.set(0, isFlat || this.run.up !== 2 ? 1 : 0, !isFlat && this.run.up === 2 ? 1 : 0);
+    this.camera.up.set(0, 0, 0).setComponent(isFlat ? 1 : this.run.view.up, 1);
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.enableRotate = !isFlat;
     this.controls.screenSpacePanning = true;
@@ -114,7 +114,7 @@ class Player {
 
   /// The camera as at first: all of the domain in the picture.
   home() {
-    const centre = new THREE.Vector3(...this.centre());
+    const centre = new THREE.Vector3(...(this.run.view.centre ?? this.centre()));
     this.controls.target.copy(centre);
     const aspect = this.element.clientWidth / Math.max(this.element.clientHeight, 1);
     if (this.run.dimension === 2) {
@@ -134,8 +134,7 @@ class Player {
 
   /// From the centre to the eye, so far that every corner of the domain is in the picture.
   firstView(aspect) {
-    const back = this.run.up === 2 ? new THREE.Vector3(0.45, -1, 0.35) : new THREE.Vector3(0.45, 0.35, 1);
-    back.normalize();
+    const back = new THREE.Vector3(...this.run.view.direction).normalize();
     const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
     const above = new THREE.Vector3().crossVectors(back, right);
     const slope = Math.tan((this.camera.fov * Math.PI) / 360);
@@ -144,7 +143,7 @@ class Player {
       const p = new THREE.Vector3(...this.size.map((length, axis) => ((corner >> axis) & 1 ? 0.5 : -0.5) * length));
       distance = Math.max(distance, p.dot(back) + Math.abs(p.dot(above)) / slope, p.dot(back) + Math.abs(p.dot(right)) / (slope * aspect));
     }
-    return back.multiplyScalar(1.04 * distance);
+    return back.multiplyScalar((1.04 * distance) / this.run.view.zoom);
   }
 
   resize() {

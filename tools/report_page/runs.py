@@ -1,12 +1,12 @@
 """What a run's folder says of it besides its frames: facts, tables and parameters."""
 import csv
 import json
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import numpy
 
 from lockstep_frames import FramesError
+from run_parameters import FILE, numbers, read_parameters, view_of
 
 from report_page.blobs import pack_numbers
 from report_page.state import progress_of, state_of
@@ -18,9 +18,9 @@ BODIES, HISTORY = "bodies.csv", "history.csv"
 def pack_run(folder, blobs, frames):
     """All that the page shows of a run, as plain values; arrays go to the blobs."""
     folder = Path(folder)
-    if not (folder / "used-parameters.xml").is_file():
-        raise FramesError(f"{folder} is no output folder of a run: it holds no used-parameters.xml.")
-    parameters = read_parameters(folder / "used-parameters.xml")
+    if not (folder / FILE).is_file():
+        raise FramesError(f"{folder} is no output folder of a run: it holds no {FILE}.")
+    parameters = read_parameters(folder)
     values = {name: value for name, value, _ in parameters}
     summary = read_summary(folder)
     tables = {path.name: read_table(path) for path in sorted(folder.glob("*.csv"))}
@@ -28,7 +28,7 @@ def pack_run(folder, blobs, frames):
         "folder": folder.resolve().name,
         "title": values.get("Title", "").strip(),
         "dimension": int(values.get("Dimension", 3)),
-        "up": up_axis(values),
+        "view": view_of(values),
         "domain": [numbers(values[f"Domain/{corner}"]) for corner in ("Lower", "Upper")],
         "facts": facts(summary, values, tables.get(HISTORY)),
         "phases": summary.get("phases", []),
@@ -39,38 +39,9 @@ def pack_run(folder, blobs, frames):
     }
 
 
-def numbers(text):
-    return [float(word) for word in text.strip(" {}").split(",")]
-
-
-def up_axis(values):
-    """Against gravity; y if there is none."""
-    gravity = numbers(values.get("Fluid/Gravity", "{0, 0, 0}"))
-    axis = int(numpy.argmax(numpy.abs(gravity)))
-    return axis if gravity[axis] < 0 else 1
-
-
-def read_parameters(path):
-    """(name with its lists, value, is the default) of all parameters."""
-    found = []
-
-    def visit(element, above):
-        for child in element:
-            name = above + child.get("name")
-            if child.tag == "ParameterList":
-                visit(child, name + "/")
-            else:
-                found.append((name, child.get("value"), child.get("isDefault") == "true"))
-    try:
-        visit(ElementTree.parse(path).getroot(), "")
-    except ElementTree.ParseError as error:
-        raise FramesError(f"{path} is not proper XML: {error}.") from error
-    return found
-
-
 def differing_parameters(folders):
     """(name, value in each run) of the parameters in which runs differ."""
-    runs = [{name: value for name, value, _ in read_parameters(Path(folder) / "used-parameters.xml")}
+    runs = [{name: value for name, value, _ in read_parameters(folder)}
             for folder in folders]
     names = list(dict.fromkeys(name for run in runs for name in run))
     rows = [(name, [run.get(name, "") for run in runs]) for name in names]

@@ -1,0 +1,57 @@
+"""What a run's used-parameters.xml says: all parameters, and how its scene wants to be shown."""
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+from lockstep_frames import FramesError
+
+FILE = "used-parameters.xml"
+
+
+def read_parameters(folder):
+    """(name with its lists, value, is the default) of all parameters."""
+    path = Path(folder) / FILE
+    found = []
+
+    def visit(element, above):
+        for child in element:
+            name = above + child.get("name")
+            if child.tag == "ParameterList":
+                visit(child, name + "/")
+            else:
+                found.append((name, child.get("value"), child.get("isDefault") == "true"))
+    try:
+        visit(ElementTree.parse(path).getroot(), "")
+    except ElementTree.ParseError as error:
+        raise FramesError(f"{path} is not proper XML: {error}.") from error
+    return found
+
+
+def numbers(text):
+    return [float(word) for word in text.strip(" {}").split(",")]
+
+
+def up_axis(values):
+    """Against gravity; y if there is none. `values`: of the parameters, by name."""
+    gravity = numbers(values.get("Fluid/Gravity", "{0, 0, 0}"))
+    axis = max(range(len(gravity)), key=lambda i: abs(gravity[i]))
+    return axis if gravity[axis] < 0 else 1
+
+
+def view_of(values):
+    """The list "View" of a scene, with what it leaves open filled in: to the front, the right and above."""
+    up = up_axis(values)
+    return {
+        "up": up,
+        "direction": numbers(values.get("View/Direction", "{0.45, -1, 0.35}" if up == 2 else "{0.45, 0.35, 1}")),
+        "centre": numbers(values["View/Centre"]) if "View/Centre" in values else None,
+        "zoom": float(values.get("View/Zoom", 1)),
+        "field": values.get("View/Field"),
+        "volume": values.get("View/Style") == "volume",
+        "time": float(values["View/Time"]) if "View/Time" in values else None,
+    }
+
+
+def read_view(folder):
+    """That of a run; of a folder without parameters, that of a scene which says nothing."""
+    known = (Path(folder) / FILE).is_file()
+    return view_of({name: value for name, value, _ in read_parameters(folder)} if known else {})
