@@ -1,6 +1,9 @@
 #include "articulated/articulation.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "base/errors.hpp"
 
 namespace lockstep {
 
@@ -18,12 +21,86 @@ Articulation<dim>::Articulation(std::vector<JointedBody<dim>> bodies,
     if (joint.first_rate >= 0)
       n_rates_ += n;
   }
+  rates_ = Eigen::VectorXd::Zero(n_rates_);
+  given_.assign(n_rates_, 0);
+  for (Joint<dim>& joint : joints_) {
+    check_input(
+        joint.first_rate >= 0 || joint.control.type == ControlType::free,
+        "The joint \"{}\" closes a loop whose other joints are all under control; leave one "
+        "of them free.",
+        joint.name);
+    joint.at_begin = {joint.q, Eigen::VectorXd::Zero(joint.q.size())};
+    joint.goal.given = joint.control.given();
+    joint.goal.at_end = joint.at_begin;
+    for (int k = 0; k < joint.q.size() && joint.goal.given; ++k)
+      given_[joint.first_rate + k] = 1;
+  }
   n_dofs_ = n_rates_;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (!bodies_[b].prescribed())
       continue;
     dofs_.first_of_body[b] = first_dof + n_dofs_;
     n_dofs_ += n_twist<dim>;
+  }
+  set_gains();
+}
+
+/// Of the joint alone, with all others held: what resists its coordinates is the inertia of the
+/// tree, less what a free root yields.
+template <int dim>
+void Articulation<dim>::set_gains() {
+  const std::vector<BodyPose<dim>> poses = this->poses();
+  const std::vector<char> all(n_rates_, 1);  // loops make no combinations
+  for (const Mechanism& mechanism : mechanisms_) {
+    const MotionBasis<dim> basis = motion_basis(mechanism, bodies_, joints_, poses, dofs_, all);
+    Eigen::MatrixXd inertia = Eigen::MatrixXd::Zero(basis.columns.size(), basis.columns.size());
+    for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+      const JointedBody<dim>& body = bodies_[mechanism.bodies[b]];
+      const auto mass = body.model->rigid_frame(body.solid).mass;
+      inertia += basis.twists[b].transpose() * mass * basis.twists[b];
+    }
+    const int n_root = mechanism.root == space ? 0 : n_twist<dim>;
+    const Eigen::LDLT<Eigen::MatrixXd> root(inertia.topLeftCorner(n_root, n_root));
+    for (const int j : mechanism.joints) {
+      Joint<dim>& joint = joints_[j];
+      JointControl& control = joint.control;
+      if (!control.natural_frequency || joint.first_rate < 0)
+        continue;
+      const auto first = std::find(basis.columns.begin(), basis.columns.end(),
+                                   dofs_.first_rate + joint.first_rate);
+      for (int k = 0; k < joint.q.size(); ++k) {
+        const Eigen::Index c = first - basis.columns.begin() + k;
+        double own = inertia(c, c);
+        if (n_root > 0)
+          own -= inertia.col(c).head(n_root).dot(
+              root.solve(Eigen::VectorXd(inertia.col(c).head(n_root))));
+        const double frequency = *control.natural_frequency;
+        control.stiffness[k] = frequency * frequency * own;
+        control.damping[k] = 2 * control.damping_ratio * frequency * own;
+      }
+    }
+  }
+}
+
+template <int dim>
+Eigen::VectorXd Articulation<dim>::rates_of(const Joint<dim>& joint) const {
+  if (joint.first_rate < 0)
+    return Eigen::VectorXd::Zero(joint.q.size());
+  return rates_.segment(joint.first_rate, joint.q.size());
+}
+
+template <int dim>
+bool Articulation<dim>::any_acts() const {
+  return std::any_of(joints_.begin(), joints_.end(),
+                     [](const Joint<dim>& joint) { return joint.control.acts(); });
+}
+
+template <int dim>
+void Articulation<dim>::begin_step(double time, double dt) {
+  for (Joint<dim>& joint : joints_) {
+    joint.at_begin = {joint.q, rates_of(joint)};
+    if (joint.goal.given)
+      joint.goal.at_end = given_motion<dim>(joint.kind, joint.control, joint.at_begin, time, dt);
   }
 }
 
@@ -64,10 +141,9 @@ TwistVector<dim> Articulation<dim>::prescribed_twist(int body, double begin, dou
 template <int dim>
 std::vector<MotionBasis<dim>> Articulation<dim>::motion_bases() const {
   const std::vector<BodyPose<dim>> poses = this->poses();
-  const std::vector<char> given(n_rates_, 0);
   std::vector<MotionBasis<dim>> bases;
   for (const Mechanism& mechanism : mechanisms_)
-    bases.push_back(motion_basis(mechanism, bodies_, joints_, poses, dofs_, given));
+    bases.push_back(motion_basis(mechanism, bodies_, joints_, poses, dofs_, given_));
   return bases;
 }
 

@@ -42,16 +42,28 @@ class Articulation {
   std::vector<MotionBasis<dim>> motion_bases() const;
   /// The fastest turning jointed body [rad/s].
   double fastest_turn() const;
+  /// A step begins: keeps where joints are, and finds where given ones go.
+  void begin_step(double time, double dt);
   /// q after a move in which the rates times dt were `change`.
   void update_coordinates(const Eigen::VectorXd& change);
+  /// Rates of all joints; those of one; whether they are given.
+  Eigen::VectorXd& rates() { return rates_; }
+  const Eigen::VectorXd& rates() const { return rates_; }
+  Eigen::VectorXd rates_of(const Joint<dim>& joint) const;
+  const std::vector<char>& given() const { return given_; }
+  bool any_acts() const;  ///< springs and dampers
 
  private:
+  void set_gains();
+
   std::vector<JointedBody<dim>> bodies_;
   std::vector<Joint<dim>> joints_;
   ArticulationOptions options_;
   std::vector<Mechanism> mechanisms_;
   RateDofs dofs_;
   int n_rates_ = 0, n_dofs_ = 0;
+  Eigen::VectorXd rates_;
+  std::vector<char> given_;  ///< by rate
 };
 
 /// The ties between the bodies of an articulation.
@@ -63,6 +75,9 @@ class JointConstraints : public ConstraintModel {
   std::string name() const override { return "joints"; }
   std::vector<Combination> combinations() const override;
   ClosedMotion close(double time, double dt, Vector& velocity) override;
+  void take_note(const RCP<const Vector>& at_start, const Vector& at_end, double dt) override;
+  std::vector<JointState> states() const override;
+  std::string note() const override;
 
  private:
   std::vector<TwistVector<dim>> gather_twists(const Vector& velocity) const;
@@ -74,6 +89,9 @@ class JointConstraints : public ConstraintModel {
 
   std::shared_ptr<Articulation<dim>> articulation_;
   Communicator comm_;
+  Eigen::VectorXd torque_;   ///< by rate, of the last step
+  double dt_ = 0, end_ = 0;  ///< of the last step [s]
+  bool two_halves_ = false;
 };
 
 }  // namespace lockstep

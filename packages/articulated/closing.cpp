@@ -50,12 +50,10 @@ class Rows {
       n_columns_ += n_twist<dim>;
     }
     for (const int j : problem.mechanism.joints) {
-      const auto& given = problem.goals[j].given;
       n_rows_ += static_cast<int>(
           held_rows(problem.joints[j].kind, place_of(problem.joints[j], problem.poses).pose)
               .size());
-      for (const char is_given : given)
-        n_rows_ += is_given ? 1 : 0;
+      n_rows_ += problem.joints[j].goal.given ? n_rates<dim>(problem.joints[j].kind) : 0;
     }
     unit_ = 0;
     for (const int j : problem.mechanism.joints) {
@@ -81,15 +79,12 @@ class Rows {
       const Eigen::VectorXd open = gap(joint.kind, place.pose);
       for (std::size_t k = 0; k < held.size(); ++k)
         set(row++, held[k], open[k], joint, place, poses, rows, gaps);
-      const JointGoal& goal = problem_.goals[j];
-      if (goal.given.empty())
+      if (!joint.goal.given)
         continue;
       const std::vector<Screw<dim>> rates = rate_rows(joint.kind, place.pose);
-      const Eigen::VectorXd left = distance_to(joint.kind, place.pose, goal.q);
-      for (std::size_t k = 0; k < rates.size(); ++k) {
-        if (goal.given[k])
-          set(row++, rates[k], -left[k], joint, place, poses, rows, gaps);
-      }
+      const Eigen::VectorXd left = distance_to(joint.kind, place.pose, joint.goal.at_end.q);
+      for (std::size_t k = 0; k < rates.size(); ++k)
+        set(row++, rates[k], -left[k], joint, place, poses, rows, gaps);
     }
   }
 

@@ -5,12 +5,6 @@
 
 namespace lockstep {
 
-/// Coordinates of a joint that are given at the end of a step.
-struct JointGoal {
-  std::vector<char> given;  ///< for each of them; empty: none
-  Eigen::VectorXd q;
-};
-
 /// Bodies of a mechanism that are about to move by constant twists.
 template <int dim>
 struct ClosingProblem {
@@ -20,7 +14,6 @@ struct ClosingProblem {
   const std::vector<BodyPose<dim>>& ends;   ///< of prescribed ones, after the step
   /// Inverse masses of the dynamic ones.
   const std::vector<Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>>& inverse_masses;
-  const std::vector<JointGoal>& goals;  ///< of all joints
   double dt = 0;
 };
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <Tpetra_Vector.hpp>
 #include <cmath>
@@ -135,22 +137,76 @@ ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& veloci
                               .mass.llt()
                               .solve(Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>::Identity());
   }
-  const std::vector<JointGoal> goals(articulation_->joints().size());
+  end_ = time + dt;
   bool closed = true;
   for (const Mechanism& mechanism : articulation_->mechanisms()) {
-    const ClosingProblem<dim> problem{
-        mechanism, articulation_->joints(), poses, ends, inverse_masses, goals, dt};
+    const ClosingProblem<dim> problem{mechanism, articulation_->joints(), poses,
+                                      ends,      inverse_masses,          dt};
     closed = close_mechanism(problem, change, twists) && closed;
   }
   set_twists(twists, velocity);
   ClosedMotion motion;
-  motion.changed = true;
   if (closed) {
     for (std::size_t b = 0; b < twists.size(); ++b)
       twists[b] -= before[b];
     motion.drift = drift(twists, velocity.getMap());
   }
   return motion;
+}
+
+template <int dim>
+void JointConstraints<dim>::take_note(const RCP<const Vector>& at_start, const Vector& at_end,
+                                      double dt) {
+  two_halves_ = !at_start.is_null();
+  torque_ = gather_rates(at_end) / dt;
+  if (two_halves_)
+    torque_ += gather_rates(*at_start) / dt;
+  dt_ = dt;
+}
+
+template <int dim>
+std::vector<JointState> JointConstraints<dim>::states() const {
+  const std::vector<BodyPose<dim>> poses = articulation_->poses();
+  std::vector<JointState> states;
+  for (const Joint<dim>& joint : articulation_->joints()) {
+    JointState state;
+    state.name = joint.name;
+    state.gap = largest_gap(joint, poses);
+    state.two_halves = two_halves_;
+    const Eigen::VectorXd rates = articulation_->rates_of(joint);
+    const auto n = static_cast<int>(joint.q.size());
+    Eigen::VectorXd target = joint.q;
+    if (joint.control.target)
+      target = joint.control.target(end_).q;
+    for (int k = 0; k < n; ++k) {
+      if (n > 1)
+        state.name = joint.name + " " + std::to_string(k + 1);
+      state.q = joint.q[k];
+      state.rate = rates[k];
+      state.target = target[k];
+      if (joint.first_rate >= 0 && joint.control.type != ControlType::free && dt_ > 0) {
+        state.torque = torque_[joint.first_rate + k];
+        state.power = state.torque * (joint.q[k] - joint.at_begin.q[k]) / dt_;
+      }
+      states.push_back(state);
+    }
+    if (n == 0)
+      states.push_back(state);
+  }
+  return states;
+}
+
+template <int dim>
+std::string JointConstraints<dim>::note() const {
+  std::size_t n_loops = 0;
+  for (const Mechanism& mechanism : articulation_->mechanisms())
+    n_loops += mechanism.loops.size();
+  return fmt::format("{} ({} close loops) in {} mechanisms, {} rates; {}",
+                     articulation_->joints().size(), n_loops, articulation_->mechanisms().size(),
+                     articulation_->n_rates(),
+                     articulation_->options().two_halves
+                         ? "half of their impulse where a step begins: S1 is solved twice"
+                         : "their impulse where a step ends");
 }
 
 template class JointConstraints<2>;

@@ -130,6 +130,8 @@ ParameterList parameters_of(const JointKind& kind) {
     declare_required_vector<double>(
         list, "Second Axis", dim,
         "The other one at the start, at right angles to \"Axis\", of any length [1].");
+  if (n_rates<dim>(kind) > 0)
+    declare_control(list, n_rates<dim>(kind));
   return list;
 }
 
@@ -159,6 +161,18 @@ Joint<dim> read_joint(const std::string& name, const ParameterList& list, BodyFi
     joint.sides[side] = {body, pose.rotation.transpose() * (point - pose.position),
                          pose.rotation.transpose() * axes};
   }
+  const auto place = [&](const ParameterArray<double>& way) {
+    check_input(way.size() == dim,
+                "The \"Direction\" of the wave of the joint \"{}\" has {} numbers; "
+                "give {}.",
+                name, way.size(), dim);
+    const Point<dim> along = Eigen::Map<const Point<dim>>(way.getRawPtr());
+    check_input(along.norm() > 0,
+                "The \"Direction\" of the wave of the joint \"{}\" must not be zero.", name);
+    return point.dot(along.normalized());
+  };
+  if (n_rates<dim>(joint.kind) > 0)
+    joint.control = read_control(list, name, n_rates<dim>(joint.kind), place);
   check_input(movable, "The joint \"{}\" connects two prescribed solids; nothing can move it.",
               name);
   return joint;

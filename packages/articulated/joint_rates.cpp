@@ -14,12 +14,13 @@ constexpr const char* group = "joints";
 const std::string names_path = std::string(group) + "/names";
 const std::string values_path = std::string(group) + "/values";
 
-/// Zero, with a diagonal in its pattern.
-RCP<const LinearOperator> no_mass(const RCP<const Map>& map) {
+/// Zero where there is no entry. Rank 0 has all rows.
+RCP<const LinearOperator> diagonal(const RCP<const Map>& map, const Eigen::VectorXd& entries) {
   const RCP<CrsMatrix> matrix = rcp(new CrsMatrix(map, map, 1));
-  const double zero = 0;
-  for (int row = 0; row < static_cast<int>(map->getNodeNumElements()); ++row)
-    matrix->insertLocalValues(row, Teuchos::arrayView(&row, 1), Teuchos::arrayView(&zero, 1));
+  for (int row = 0; row < static_cast<int>(map->getNodeNumElements()); ++row) {
+    const double entry = row < entries.size() ? entries[row] : 0;
+    matrix->insertLocalValues(row, Teuchos::arrayView(&row, 1), Teuchos::arrayView(&entry, 1));
+  }
   matrix->fillComplete(map, map);
   return as_operator(matrix);
 }
@@ -40,21 +41,71 @@ JointRates<dim>::JointRates(std::shared_ptr<Articulation<dim>> articulation,
     : articulation_(std::move(articulation)),
       comm_(comm),
       map_(make_map(is_root(comm) ? articulation_->n_dofs() : 0, comm)),
-      mass_(no_mass(map_)),
-      time_(start_time),
-      rates_(Eigen::VectorXd::Zero(articulation_->n_rates())) {}
+      mass_(diagonal(map_, {})),
+      time_(start_time) {}
+
+template <int dim>
+ControlLaw JointRates<dim>::control() const {
+  ControlLaw all{Eigen::VectorXd::Zero(articulation_->n_rates()),
+                 Eigen::VectorXd::Zero(articulation_->n_rates())};
+  for (const Joint<dim>& joint : articulation_->joints()) {
+    if (!joint.control.acts())
+      continue;
+    const ControlLaw law =
+        control_law<dim>(joint.kind, joint.control, joint.at_begin, begin_, step_dt_, !moved_);
+    all.constant.segment(joint.first_rate, law.constant.size()) = law.constant;
+    all.slope.segment(joint.first_rate, law.slope.size()) = law.slope;
+  }
+  return all;
+}
+
+template <int dim>
+RCP<const LinearOperator> JointRates<dim>::implicit_force(double) const {
+  if (!articulation_->any_acts())
+    return Teuchos::null;
+  return diagonal(map_, -control().slope);
+}
+
+template <int dim>
+void JointRates<dim>::explicit_momentum(double, double dt, Vector& momentum) const {
+  momentum.putScalar(0);
+  if (!articulation_->any_acts() || !is_root(comm_))
+    return;
+  const Eigen::VectorXd impulse = dt * control().constant;
+  std::copy_n(impulse.data(), impulse.size(), momentum.getDataNonConst().begin());
+}
+
+template <int dim>
+void JointRates<dim>::begin_step(double time, double dt) {
+  begin_ = time;
+  step_dt_ = dt;
+  moved_ = false;
+  articulation_->begin_step(time, dt);
+}
 
 template <int dim>
 std::vector<GlobalIndex> JointRates<dim>::locked_dofs() const {
   std::vector<GlobalIndex> dofs;
-  for (int k = articulation_->n_rates(); k < articulation_->n_dofs() && is_root(comm_); ++k)
-    dofs.push_back(k);
+  const std::vector<char>& given = articulation_->given();
+  for (int k = 0; k < articulation_->n_dofs() && is_root(comm_); ++k) {
+    if (k >= articulation_->n_rates() || given[k])
+      dofs.push_back(k);
+  }
   return dofs;
 }
 
 template <int dim>
 std::vector<double> JointRates<dim>::locked_velocities(double begin, double end) const {
   std::vector<double> values;
+  for (const Joint<dim>& joint : articulation_->joints()) {
+    if (!joint.goal.given || !is_root(comm_))
+      continue;
+    Eigen::VectorXd rates = joint.goal.at_end.rate;
+    if (end > begin)
+      rates = distance_to(joint.kind, pose_of<dim>(joint.kind, joint.q), joint.goal.at_end.q) /
+              (end - begin);
+    values.insert(values.end(), rates.data(), rates.data() + rates.size());
+  }
   const auto& bodies = articulation_->bodies();
   for (int b = 0; b < static_cast<int>(bodies.size()) && is_root(comm_); ++b) {
     if (!bodies[b].prescribed())
@@ -78,24 +129,31 @@ Eigen::VectorXd JointRates<dim>::gather(const Vector& velocity) const {
 template <int dim>
 RCP<const Vector> JointRates<dim>::velocity() const {
   const RCP<Vector> result = make_vector(map_);
-  const std::vector<double> given = locked_velocities(time_, time_);
+  const Eigen::VectorXd& rates = articulation_->rates();
   const auto values = result->getDataNonConst();
+  auto next = values.begin();
   if (is_root(comm_)) {
-    std::copy_n(rates_.data(), rates_.size(), values.begin());
-    std::copy(given.begin(), given.end(), values.begin() + rates_.size());
+    next = std::copy_n(rates.data(), rates.size(), next);
+    for (int b = 0; b < static_cast<int>(articulation_->bodies().size()); ++b) {
+      if (!articulation_->bodies()[b].prescribed())
+        continue;
+      const TwistVector<dim> twist = articulation_->prescribed_twist(b, time_, time_);
+      next = std::copy_n(twist.data(), twist.size(), next);
+    }
   }
   return result;
 }
 
 template <int dim>
 void JointRates<dim>::set_velocity(const Vector& velocity) {
-  rates_ = gather(velocity);
+  articulation_->rates() = gather(velocity);
 }
 
 template <int dim>
 void JointRates<dim>::move(const Vector& velocity, double time, double dt) {
   articulation_->update_coordinates(dt * gather(velocity));
   time_ = time + dt;
+  moved_ = true;
 }
 
 template <int dim>
@@ -107,7 +165,8 @@ double JointRates<dim>::largest_stable_step() const {
 template <int dim>
 std::vector<double> JointRates<dim>::state() const {
   std::vector<double> values{time_};
-  values.insert(values.end(), rates_.data(), rates_.data() + rates_.size());
+  const Eigen::VectorXd& rates = articulation_->rates();
+  values.insert(values.end(), rates.data(), rates.data() + rates.size());
   for (const Joint<dim>& joint : articulation_->joints())
     values.insert(values.end(), joint.q.data(), joint.q.data() + joint.q.size());
   return values;
@@ -117,7 +176,7 @@ template <int dim>
 void JointRates<dim>::set_state(const std::vector<double>& values) {
   auto next = values.begin();
   time_ = *next++;
-  for (double& rate : rates_)
+  for (double& rate : articulation_->rates())
     rate = *next++;
   for (Joint<dim>& joint : articulation_->joints()) {
     for (double& coordinate : joint.q)

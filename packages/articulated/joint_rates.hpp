@@ -27,7 +27,9 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim> {
   }
   RCP<const Map> dof_map() const override { return map_; }
   RCP<const LinearOperator> mass() const override { return mass_; }
-  void explicit_momentum(double, double, Vector& momentum) const override { momentum.putScalar(0); }
+  RCP<const LinearOperator> implicit_force(double dt) const override;
+  void explicit_momentum(double time, double dt, Vector& momentum) const override;
+  void begin_step(double time, double dt) override;
   Momentum<dim> external_impulse(double, double) const override { return {}; }
   std::vector<Momentum<dim>> momentum_of_each(const Vector&) const override { return {}; }
   std::vector<GlobalIndex> locked_dofs() const override;
@@ -44,6 +46,8 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim> {
 
  private:
   Eigen::VectorXd gather(const Vector& velocity) const;
+  /// Springs and dampers, by rate: torque = constant - slope rate.
+  ControlLaw control() const;
   std::vector<double> state() const;
   void set_state(const std::vector<double>& values);
 
@@ -53,8 +57,9 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim> {
   SurfaceMesh<dim> surface_;
   RCP<const Map> map_;
   RCP<const LinearOperator> mass_;
-  double time_;            ///< of the present positions [s]
-  Eigen::VectorXd rates_;  ///< of all joints
+  double time_;                     ///< of the present positions [s]
+  double begin_ = 0, step_dt_ = 0;  ///< of the present step [s]
+  bool moved_ = false;              ///< in the present step
 };
 
 }  // namespace lockstep

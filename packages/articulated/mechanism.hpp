@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "articulated/joint_control.hpp"
 #include "articulated/joint_kind.hpp"
 #include "interfaces/solid_sides.hpp"
 
@@ -40,14 +41,22 @@ struct JointSide {
   Axes<dim> axes = Axes<dim>::Identity();
 };
 
+/// Coordinates of a joint that are given at the end of a step, and their rates there.
+struct JointGoal {
+  bool given = false;
+  TargetValue at_end;
+};
+
 template <int dim>
 struct Joint {
   std::string name;
   JointKind kind;
   std::array<JointSide<dim>, 2> sides;
-  bool wants_rates = false;  ///< something acts on its coordinates; loops are cut elsewhere
-  int first_rate = -1;       ///< among those of all joints; -1: it closes a loop and has none
-  Eigen::VectorXd q;         ///< present coordinates
+  JointControl control;
+  int first_rate = -1;   ///< among those of all joints; -1: it closes a loop and has none
+  Eigen::VectorXd q;     ///< present coordinates
+  TargetValue at_begin;  ///< of the step: coordinates and rates
+  JointGoal goal;        ///< of the step
 };
 
 /// Where a joint and its two sides are in space.

@@ -43,6 +43,16 @@ ContactProblem<dim>::ContactProblem(const SolidSystem<dim>& system,
       dt_(dt) {
   for (const SolidDescription& solid : shapes.solids())
     half_thickness_.push_back(half_thickness_of(solid, options, spacing));
+  const auto number_of = [&shapes](const std::string& name) {
+    const auto& solids = shapes.solids();
+    const auto found = std::find_if(solids.begin(), solids.end(),
+                                    [&](const auto& solid) { return solid.name == name; });
+    return static_cast<int>(found - solids.begin());
+  };
+  for (const auto& [one, other] : options.apart) {
+    apart_.emplace(number_of(one), number_of(other));
+    apart_.emplace(number_of(other), number_of(one));
+  }
 }
 
 template <int dim>
@@ -124,6 +134,8 @@ void ContactProblem<dim>::add_candidates(const SolidMotion<dim>& motion,
     }
   }
   for (Contact<dim>& contact : find_contacts(shapes_, motion, walls_, reach(speed))) {
+    if (apart_.count({contact.solid, contact.other}) > 0)
+      continue;
     std::vector<int>& pair = pairs_[{contact.solid, contact.other}];
     const bool known = std::any_of(pair.begin(), pair.end(), [&](int k) {
       const Contact<dim>& one = candidates_[k].contact;

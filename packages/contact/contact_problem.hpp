@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -64,6 +65,7 @@ class ContactProblem {
   double spacing_;
   ContactPhase phase_;
   double dt_;
+  std::set<Pair> apart_;                ///< pairs that do not touch, in both orders
   std::vector<double> half_thickness_;  ///< of the skin of each solid [m]
   std::vector<double> before_;
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed

@@ -20,9 +20,10 @@ struct GaussSeidelOptions {
   double deepest = 0.5;          ///< overlap that is recognised [h]
   double push_rate = 0.2;        ///< part of an overlap that one step removes [1]
   double bounce_speed = 1e-3;    ///< no restitution below this speed of approach [m/s]
-  std::map<std::string, double> thickness_of;             ///< instead, by name of the solid [m]
-  bool self_contact = true;                               ///< of solids that are not rigid
-  std::optional<double> wall_friction, wall_restitution;  ///< default: those of the solid
+  std::map<std::string, double> thickness_of;              ///< instead, by name of the solid [m]
+  std::vector<std::pair<std::string, std::string>> apart;  ///< pairs that do not touch, by name
+  bool self_contact = true;                                ///< of solids that are not rigid
+  std::optional<double> wall_friction, wall_restitution;   ///< default: those of the solid
 };
 
 /// Speculative contacts solved by projected Gauss-Seidel through M_S. A contact with gap g must

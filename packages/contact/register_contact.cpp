@@ -35,6 +35,8 @@ ParameterList contact_parameters() {
   declare(list, "Self-Contact", usual.self_contact,
           "Whether deformable bodies and cloth touch themselves. Neighbours across one edge of a "
           "mesh are kept from crossing, not apart.");
+  declare(list, "Between Jointed Solids", false,
+          "Whether solids that a joint connects touch each other. They may overlap there.");
   declare_optional<double>(list, "Wall Friction",
                            "Coulomb's coefficient of the domain's walls [1]; without it that of "
                            "the solid counts. Two solids, or a solid and a wall, have the "
@@ -78,15 +80,17 @@ GaussSeidelOptions options_from(const ParameterList& list) {
 
 template <int dim>
 void register_contact(ContactRegistry<dim>& contacts) {
-  contacts.add("gauss seidel",
-               "Collisions, resting contact and Coulomb friction between solids and with walls, by "
-               "projected Gauss-Seidel on velocities.",
-               contact_parameters,
-               [](const ParameterList& list, const ContactSetting<dim>& setting) {
-                 return std::make_unique<GaussSeidelContact<dim>>(
-                     options_from(list), walls_of<dim>(setting.domain, setting.closed_sides),
-                     setting.smallest_length);
-               });
+  contacts.add(
+      "gauss seidel",
+      "Collisions, resting contact and Coulomb friction between solids and with walls, by "
+      "projected Gauss-Seidel on velocities.",
+      contact_parameters, [](const ParameterList& list, const ContactSetting<dim>& setting) {
+        GaussSeidelOptions options = options_from(list);
+        if (!list.get<bool>("Between Jointed Solids"))
+          options.apart = setting.jointed;
+        return std::make_unique<GaussSeidelContact<dim>>(
+            options, walls_of<dim>(setting.domain, setting.closed_sides), setting.smallest_length);
+      });
 }
 
 template void register_contact<2>(ContactRegistry<2>&);

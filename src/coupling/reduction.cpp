@@ -250,6 +250,13 @@ void Reduction::select(Vector& velocity) const {
   set_zero(combined_, velocity);
 }
 
+RCP<Vector> Reduction::felt(const Vector& impulses) const {
+  const RCP<Vector> result = make_vector(impulses.getMap());
+  if (has_combinations())
+    combinations_->apply(impulses, *result, Teuchos::TRANS);
+  return result;
+}
+
 void Reduction::drop_given(Vector& momentum) const {
   set_zero(given_, momentum);
 }

@@ -60,6 +60,8 @@ class Reduction {
   void follow(Vector& velocity) const;
   /// y of V: zero where there is no unknown. Local.
   void select(Vector& velocity) const;
+  /// What dofs that others follow feel of the impulses on these. Collective.
+  RCP<Vector> felt(const Vector& impulses) const;
   /// q := q without what acts on given dofs. Local.
   void drop_given(Vector& momentum) const;
   /// q := P^T q. Collective.

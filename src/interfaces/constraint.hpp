@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,12 +17,22 @@ struct Combination {
 
 /// Velocities that joints were asked to go with.
 struct ClosedMotion {
-  bool changed = false;  ///< were the velocities?
   /// What combinations have beside their terms when bodies move so that all joints fit, on the
   /// stacked map. Null: some joints could not be closed, or are not to be; then V is that of bodies
   /// which follow the rates of their joints, and all of the joints' impulse belongs to the end of
   /// the step.
   RCP<Vector> drift;
+};
+
+/// A coordinate of a joint after a step, for joints.csv: of an angle in rad, of a displacement in
+/// m.
+struct JointState {
+  std::string name;
+  double q = 0, rate = 0, target = 0;
+  double torque = 0;        ///< mean over the step, of control on the second solid [N m, N]
+  double power = 0;         ///< of control, mean over the step [W]
+  double gap = 0;           ///< of the joint [m, rad]
+  bool two_halves = false;  ///< half of its impulse acted where the step began
 };
 
 /// Ties between solids of one or more models, as combinations of dofs (coupling/reduction.hpp), so
@@ -34,6 +45,13 @@ class ConstraintModel : public PlugIn {
   /// S1: changes V (stacked, of all dofs), which is about to move all solids from `time` by dt.
   /// Collective.
   virtual ClosedMotion close(double time, double dt, Vector& velocity) = 0;
+  /// What their own dofs feel of the impulses that joints gave where the step of dt began (null:
+  /// nothing), and where it ended (`Reduction::felt`). Collective.
+  virtual void take_note(const RCP<const Vector>& at_start, const Vector& at_end, double dt) = 0;
+  /// Local, the same on all ranks.
+  virtual std::vector<JointState> states() const = 0;
+  /// What there is, for `--explain`. Local.
+  virtual std::string note() const = 0;
 };
 
 }  // namespace lockstep

@@ -109,6 +109,19 @@ std::vector<HistoryColumn> body_columns() {
   return columns;
 }
 
+std::vector<HistoryColumn> joint_columns() {
+  return {{"step", "1", "number of the step"},
+          {"time", "s", "at the end of the step"},
+          {"name", "1", "of the joint; with the number of the coordinate if it has several"},
+          {"q", "rad, m", "the coordinate, 0 at the start"},
+          {"rate", "rad/s, m/s", "its rate"},
+          {"target", "rad, m", "where control wants it; without control as q"},
+          {"torque", "N m, N", "of control on the second solid, mean over the step"},
+          {"power", "W", "of control, mean over the step"},
+          {"gap", "m, rad", "how far the joint is open"},
+          {"two_halves", "1", "1: half of its impulse acted where the step began; 0: none did"}};
+}
+
 template std::vector<HistoryColumn> history_columns<2>(bool, const std::vector<std::string>&, bool);
 template std::vector<HistoryColumn> history_columns<3>(bool, const std::vector<std::string>&, bool);
 template std::vector<HistoryColumn> body_columns<2>();

@@ -6,14 +6,15 @@
 
 namespace lockstep {
 
-/// Columns of history.csv and bodies.csv; what is written, and what the formulas of a study may
-/// name. Those of a liquid with a free surface stand at the end, of its watched places, and of
-/// trapped gas.
+/// Columns of history.csv, bodies.csv and joints.csv; what is written, and what the formulas of a
+/// study may name. Those of a liquid with a free surface stand at the end, of its watched places,
+/// and of trapped gas.
 template <int dim>
 std::vector<HistoryColumn> history_columns(bool with_liquid,
                                            const std::vector<std::string>& watches = {},
                                            bool with_gas = false);
 template <int dim>
 std::vector<HistoryColumn> body_columns();
+std::vector<HistoryColumn> joint_columns();
 
 }  // namespace lockstep

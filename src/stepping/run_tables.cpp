@@ -23,23 +23,30 @@ void append_each(std::vector<HistoryValue>& row, const Values&... values) {
 
 template <int dim>
 RunTables<dim>::RunTables(const Communicator& comm, const std::string& directory,
-                          const LiquidFluid<dim>* liquid)
+                          const LiquidFluid<dim>* liquid, bool with_joints)
     : history_(comm, directory + "/history.csv",
                history_columns<dim>(liquid != nullptr,
                                     liquid ? liquid->watch_names() : std::vector<std::string>(),
                                     liquid && liquid->traps_gas())),
-      bodies_(comm, directory + "/bodies.csv", body_columns<dim>()) {}
+      bodies_(comm, directory + "/bodies.csv", body_columns<dim>()) {
+  if (with_joints)
+    joints_.emplace(comm, directory + "/joints.csv", joint_columns());
+}
 
 template <int dim>
 void RunTables<dim>::start() {
   history_.start();
   bodies_.start();
+  if (joints_)
+    joints_->start();
 }
 
 template <int dim>
 void RunTables<dim>::resume(long long step) {
   history_.resume(step);
   bodies_.resume(step);
+  if (joints_)
+    joints_->resume(step);
 }
 
 template <int dim>
@@ -93,6 +100,19 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
     rows.push_back(std::move(body));
   }
   bodies_.append_rows(rows);
+}
+
+template <int dim>
+void RunTables<dim>::append_joints(long long step, double time,
+                                   const std::vector<JointState>& joints) {
+  std::vector<std::vector<HistoryValue>> rows;
+  for (const JointState& joint : joints) {
+    std::vector<HistoryValue> row;
+    append_each(row, step, time, joint.name, joint.q, joint.rate, joint.target, joint.torque,
+                joint.power, joint.gap, static_cast<long long>(joint.two_halves ? 1 : 0));
+    rows.push_back(std::move(row));
+  }
+  joints_->append_rows(rows);
 }
 
 template <int dim>

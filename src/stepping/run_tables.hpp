@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,20 +9,25 @@
 
 namespace lockstep {
 
-/// history.csv (a row a step) and bodies.csv (a row a step and solid), design section 8.
+/// history.csv (a row a step), bodies.csv (a row a step and solid), and joints.csv (a row a step
+/// and coordinate) if there are joints.
 template <int dim>
 class RunTables {
  public:
   /// `liquid`: not null if all steps report a liquid with a free surface.
-  RunTables(const Communicator& comm, const std::string& directory, const LiquidFluid<dim>* liquid);
+  RunTables(const Communicator& comm, const std::string& directory, const LiquidFluid<dim>* liquid,
+            bool with_joints);
   void start();
   void resume(long long step);
   /// Collective. `names` and states as the SolidSystem gives them.
   void append(long long step, const StepReport<dim>& report,
               const std::vector<SolidState<dim>>& states, double wall_seconds);
+  /// Likewise. Only with joints.
+  void append_joints(long long step, double time, const std::vector<JointState>& joints);
 
  private:
   HistoryTable history_, bodies_;
+  std::optional<HistoryTable> joints_;
 };
 
 /// The numbers of the progress line.

@@ -126,6 +126,18 @@ void check_solid_names(const ParameterList& solids) {
   }
 }
 
+std::vector<std::pair<std::string, std::string>> jointed_pairs(const ParameterList& scene) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  if (!scene.isSublist("Joints"))
+    return pairs;
+  for (const auto& [name, entry] : entries(scene.sublist("Joints"))) {
+    const auto& solids =
+        scene.sublist("Joints").sublist(name).get<ParameterArray<std::string>>("Solids");
+    pairs.emplace_back(solids[0], solids[1]);
+  }
+  return pairs;
+}
+
 template <int dim>
 std::unique_ptr<SolidSystem<dim>> jointed_solids(
     const Registries<dim>& registries, const ParameterList& scene,
@@ -290,6 +302,7 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
     setting.domain = bounds;
     setting.smallest_length = fluid.smallest_length();
     setting.comm = comm;
+    setting.jointed = jointed_pairs(scene);
     if (const auto* bounded = side_of<BoundedFluid<dim>>(fluid))
       setting.closed_sides = bounded->closed_sides();
     components.contact =

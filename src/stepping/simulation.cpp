@@ -35,7 +35,8 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
       comm_(comm),
       log_(log),
       components_(build_components<dim>(registries, scene, options.scene_file, comm)),
-      tables_(comm, options.output_directory, liquid_of<dim>(*components_.fluid)),
+      tables_(comm, options.output_directory, liquid_of<dim>(*components_.fluid),
+              components_.solids->joints() != nullptr),
       observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory),
       frames_(comm, options.output_directory,
               {scene_options_.output.precision == "double" ? Precision::double_precision
@@ -249,6 +250,8 @@ int Simulation<dim>::take_steps(Clock::time_point start) {
     const double step_seconds = seconds_since(step_start);
     const std::vector<SolidState<dim>> states = components_.solids->states();
     tables_.append(step_, report, states, step_seconds);
+    if (const ConstraintModel* joints = components_.solids->joints())
+      tables_.append_joints(step_, report.time, joints->states());
     if (!observers_.empty()) {
       ScopedPhase phase(timers_, "observers");
       observers_.observe(step_, view(states));
@@ -335,6 +338,8 @@ std::string Simulation<dim>::explain() {
                      : "no dynamic solids: one Poisson CG per step, no S1");
   line("F2", solids.empty() ? "not needed: no solids"
                             : "Poisson solve with the solids' effective velocity");
+  if (const ConstraintModel* joints = components_.solids->joints())
+    line("joints", joints->note());
   line("contact", components_.contact ? components_.contact->name() : "none");
   line("pressure regions", fmt::format("{}, null space of dimension {}", fluid.regions().n_regions,
                                        stepper_->system().null_space().size()));

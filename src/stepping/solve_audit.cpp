@@ -48,6 +48,7 @@ void audit_solve(const Components<dim>& components, const ComponentSides<dim>& s
   const RCP<const Vector> reactions =
       system.reactions(context.dt, context.constraints, given, whole);
   report.ledger.add("locks", solids.momentum(*reactions));
+  report.reactions = reactions;
   if (sides.audited_coupling)
     report.lever_impulse = sides.audited_coupling->lever_impulse(solids, solution.coupled_before,
                                                                  coupled_after, whole);

@@ -36,6 +36,7 @@ struct StepReport {
   GlobalIndex n_clamped_elements = 0;               ///< see SolidModel
   std::vector<Momentum<dim>> hydrodynamic_impulse;  ///< per solid over dt, angular about the origin
   ContactReport<dim> contact_position, contact_velocity;
+  RCP<const Vector> reactions;  ///< of constraints in S2, generalized; null: nothing moves freely
 };
 
 }  // namespace lockstep

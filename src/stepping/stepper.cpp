@@ -125,7 +125,9 @@ ContactReport<dim> Stepper<dim>::contact_momentum(const StepContext<dim>& contex
   auto& solids = *components_.solids;
   if (solids.has_implicit_forces())
     return settled_momentum(context, momentum);
-  const RCP<Vector> velocity = solids.velocity_of(momentum, 0, context.constraints);
+  // Springs of joints are stiff: what they do in the step is known with their implicit part only.
+  const double implicit_dt = solids.joints() ? context.dt : 0;
+  const RCP<Vector> velocity = solids.velocity_of(momentum, implicit_dt, context.constraints);
   Vector change(*velocity, Teuchos::Copy);
   const ContactReport<dim> report =
       components_.contact->resolve(solids, ContactPhase::velocity, context.dt, *velocity);
@@ -249,6 +251,9 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
   report.max_divergence =
       largest_divergence(system_.blocks(context.dt), solution, fluid.smallest_length(), dim);
   audit_solve<dim>(components_, sides_, system_, context, solution, prediction.viscous, report);
+  if (solids.joints() && !report.reactions.is_null())
+    solids.joints()->take_note(felt_at_start_, *solids.reduction().felt(*report.reactions),
+                               context.dt);
   fluid.project(*solution.unknowns.pressure);
   if (!prediction.pressure.is_null() && sides_.pressure_memory)
     sides_.pressure_memory->correct_pressure(*prediction.pressure);

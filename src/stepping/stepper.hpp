@@ -119,6 +119,7 @@ class Stepper {
   /// Of joints, from S1 to S2: the half of their impulses that acts where the step begins; null:
   /// all of them acts at its end.
   RCP<Vector> start_impulse_;
+  RCP<const Vector> felt_at_start_;  ///< of it, by the dofs of joints
 };
 
 }  // namespace lockstep

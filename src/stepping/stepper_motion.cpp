@@ -74,10 +74,13 @@ void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>&
     report.s1.iterations += iterations;
     drift = close();
   }
-  if (drift.is_null())
+  felt_at_start_ = Teuchos::null;
+  if (drift.is_null()) {
     start_impulse_ = Teuchos::null;
-  else
-    solids.reduction().drop_given(*start_impulse_);
+    return;
+  }
+  felt_at_start_ = solids.reduction().felt(*start_impulse_);
+  solids.reduction().drop_given(*start_impulse_);
 }
 
 /// All solids go to their positions at t^{n+1}.

@@ -168,6 +168,11 @@ CASES = [
     Case("a joint to a locked body", ["\"Bone\" is jointed", "\"Locked\"", "space"],
          **joint("hinge", "Ball, Bone", second=BONE.replace("MORE", LOCKED))),
     Case("a joint of one body", ["\"Neck\"", "with itself"], **joint("weld", "Ball, Ball")),
+    Case("a spring with two gains", ["\"Neck\" has both \"Natural Frequency\" and \"Stiffness\"", "leave out one"],
+         **joint("hinge", "space, Ball", value("Control", "string", "proportional derivative") +
+                 value("Natural Frequency", "double", 3) + value("Stiffness", "double", 3))),
+    Case("a spring without gain", ["\"Neck\"", "has no \"Natural Frequency\"", "\"Stiffness\""],
+         **joint("hinge", "space, Ball", value("Control", "string", "proportional derivative"))),
     Case("a slider without axis", "\"Axis\"", **joint("slider", "space, Ball")),
     Case("another dimension", ["--set", "2 dimensions"], sets=["Dimension=3"]),
     Case("--set without value", "--set \"Time/End\"", sets=["Time/End"]),

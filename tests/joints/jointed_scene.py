@@ -64,3 +64,13 @@ def run(scene, ranks=1, arguments=(), folder=None):
         for row in table(output / "bodies.csv"):
             bodies.setdefault(row["name"], []).append(row)
         return table(output / "history.csv"), bodies
+
+
+def joints_of(scene, arguments=()):
+    """joints.csv, by name."""
+    with tempfile.TemporaryDirectory() as folder:
+        run(scene, arguments=arguments, folder=folder)
+        rows = {}
+        for row in table(Path(folder) / "output" / "joints.csv"):
+            rows.setdefault(row["name"], []).append(row)
+        return rows

@@ -181,9 +181,8 @@ TEST(Closing, FitsAllJointsAndKeepsMomentum) {
     twists[b] << 0.3 * b, 1 - 0.2 * b, 1.5 - b;
   }
   momentum = total();
-  const std::vector<JointGoal> goals(4);
-  const ClosingProblem<2> problem{
-      mechanisms[0], linkage.joints, linkage.poses, linkage.poses, inverse, goals, 0.1};
+  const ClosingProblem<2> problem{mechanisms[0], linkage.joints, linkage.poses,
+                                  linkage.poses, inverse,        0.1};
   ASSERT_TRUE(close_joints(problem, twists));
   std::vector<BodyPose<2>> after = linkage.poses;
   for (int b = 0; b < 4; ++b)
@@ -202,9 +201,8 @@ TEST(Closing, RatesTakeTreesToTheirCoordinates) {
   linkage.add_joint(kind("cylinder"), 1, 2, {1.5, 0, 0.2});
   const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
   const std::vector<Eigen::Matrix<double, 6, 6>> inverse(3);
-  const std::vector<JointGoal> goals(2);
-  const ClosingProblem<3> problem{
-      mechanisms[0], linkage.joints, linkage.poses, linkage.poses, inverse, goals, 0.5};
+  const ClosingProblem<3> problem{mechanisms[0], linkage.joints, linkage.poses,
+                                  linkage.poses, inverse,        0.5};
   std::vector<TwistVector<3>> twists(3, TwistVector<3>::Constant(0.7));
   Eigen::VectorXd change(5);
   change << 0.5, -1, 2, 0.3, -2;

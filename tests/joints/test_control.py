@@ -1,0 +1,126 @@
+"""Control of joints, in vacuum: oscillators against their exact motion, prescribed ones against loads, work against
+energy; in honey, where what goes to and fro gets nowhere."""
+import math
+import unittest
+
+import numpy as np
+from jointed_scene import joint, joints_of, run, tank, unseen_box, vacuum
+
+ARM = {"A": unseen_box((0., 0.), 0.)}
+INERTIA = (1 + .2 ** 2) / 12 + .5 ** 2  # about the hinge
+
+
+def arm(step, end, load=0., **control):
+    solids = {"A": {**ARM["A"], "Torque": load}}
+    return vacuum(solids, {"H": joint("hinge", ("space", "A"), (-.5, 0.), **control)}, step, end)
+
+
+def spring(step, ratio=1., **more):
+    return arm(step, 2., Control="proportional derivative", Target={"Type": "constant", "Value": 1.},
+               **{"Natural Frequency": 1., "Damping Ratio": ratio, **more})
+
+
+class Control(unittest.TestCase):
+    def test_a_spring_takes_the_joint_to_its_target(self):
+        """Critically damped: (1 + t) e^-t of the way is left."""
+        for step, bound in ((.5, .0052), (.25, .00135), (.125, .00034)):
+            last = joints_of(spring(step))["H"][-1]
+            self.assertLess(abs(last["q"] - (1 - 3 * math.exp(-2))), bound)
+
+    def test_stiffness_and_damping_are_gains(self):
+        by_frequency = joints_of(spring(.1, .3))["H"][-1]
+        by_gains = joints_of(arm(.1, 2., Control="proportional derivative", Stiffness=INERTIA, Damping=.6 * INERTIA,
+                                 Target={"Type": "constant", "Value": 1.}))["H"][-1]
+        self.assertAlmostEqual(by_frequency["q"], by_gains["q"], delta=1e-12)
+
+    def test_stiff_springs_are_stable(self):
+        rows = joints_of(arm(.1, 5., Control="proportional derivative", Target={"Type": "constant", "Value": .3},
+                             **{"Natural Frequency": 1000., "Damping Ratio": 1.}))["H"]
+        self.assertLess(max(abs(row["q"] - .3) for row in rows[-3:]), .02)
+        self.assertLess(max(abs(row["q"] - .3) for row in rows), .3)
+
+    def test_a_spring_yields_to_loads(self):
+        stiffness, load = 4., 1.
+        last = joints_of(arm(.1, 20., load, Control="proportional derivative", Stiffness=stiffness, Damping=2.))["H"][-1]
+        self.assertAlmostEqual(last["q"], load / stiffness, delta=1e-3)
+        self.assertAlmostEqual(last["torque"], -load, delta=4e-3)
+
+    def test_torques_have_a_bound(self):
+        """Short of the target the largest torque turns the arm evenly."""
+        rows = joints_of(arm(.05, 1., Control="proportional derivative", Stiffness=1e4, Damping=0.,
+                             **{"Largest Torque": .1, "Target": {"Type": "constant", "Value": 3.}}))["H"]
+        self.assertAlmostEqual(rows[-1]["torque"], .1, delta=1e-10)
+        self.assertAlmostEqual(rows[-1]["q"], .5 * .1 / INERTIA, delta=1e-3)
+
+    def test_a_prescribed_rate_knows_no_load(self):
+        for load in (0., 30.):
+            rows = joints_of(arm(.1, 2., load, Control="prescribed rate", Target={"Type": "constant", "Value": 1.},
+                                 **{"Natural Frequency": 1., "Damping Ratio": 1.}))["H"]
+            for row in rows:
+                exact = 1 - (1 + row["time"]) * math.exp(-row["time"])
+                self.assertAlmostEqual(row["q"], exact, delta=1e-10)
+
+    def test_prescribed_joints_are_where_they_are_told(self):
+        """And what their torque does is the energy that there is."""
+        swing = {"Type": "sinusoid", "Amplitude": .5, "Frequency": .25, "Phase": 0., "Ramp Time": 1.}
+        defects = []
+        for step in (.05, .025):
+            rows = joints_of(arm(step, 3., Control="prescribed", Target=swing))["H"]
+            for row in rows:
+                part = min(row["time"], 1.)
+                ramp = part ** 2 * (3 - 2 * part)
+                self.assertAlmostEqual(row["q"], ramp * .5 * math.sin(math.pi / 2 * row["time"]), delta=1e-11)
+            work = np.cumsum([row["power"] * step for row in rows])
+            energy = np.array([.5 * INERTIA * row["rate"] ** 2 for row in rows])
+            defects.append(np.abs(work - energy).max() / energy.max())
+        self.assertLess(defects[1], .02)
+        self.assertGreater(math.log2(defects[0] / defects[1]), 1.5)
+
+    def test_a_free_pair_keeps_its_momentum_whatever_its_joint_does(self):
+        solids = {"A": unseen_box((0., 0.), 0.), "B": unseen_box((1., 0.), 0.)}
+        swing = {"Type": "sinusoid", "Amplitude": .5, "Frequency": .5}
+        for control in ({"Control": "prescribed"}, {"Control": "proportional derivative", "Natural Frequency": 20.}):
+            bend = joint("hinge", ("A", "B"), (.5, 0.), Target=swing, **control)
+            _, bodies = run(vacuum(solids, {"H": bend}, .05, 2.))
+            for axis in "xy":
+                middle = [(a[axis] + b[axis]) / 2 for a, b in zip(bodies["A"], bodies["B"])]
+                self.assertLess(np.abs(np.array(middle) - (.5 if axis == "x" else 0.)).max(), 1e-11)
+            last = [rows[-1] for rows in bodies.values()]
+            moment = sum((row["x"] * row["vy"] - row["y"] * row["vx"]) + 1.04 / 12 * row["wz"] for row in last)
+            self.assertAlmostEqual(moment, 0, delta=1e-11)
+
+    def test_to_and_fro_leads_nowhere_in_honey(self):
+        """Two links with one hinge between them: no rhythm of one coordinate swims without inertia (Purcell's scallop).
+        In water the same stroke does."""
+        def link(length, x):
+            return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (length, .06)}, "Density": 1000.,
+                    "Position": (x, .5)}
+        stroke = {"Type": "sinusoid", "Amplitude": .8, "Frequency": 1.}
+        hinge = {"H": joint("hinge", ("Long", "Short"), (.5, .5), Control="prescribed", Target=stroke)}
+        way = {}
+        for viscosity in (1000., 1.):
+            scene = tank({"Long": link(.25, .36), "Short": link(.15, .59)}, hinge, "flux", viscosity, .01, 3.)
+            scene["Fluid"]["Gravity"] = (0., 0.)
+            scene["Domain"]["Cells"] = (32, 32)
+            scene["Solver"] = {"Tolerance": 1e-9}
+            history, bodies = run(scene)
+            places = np.array([(row["x"], row["y"]) for row in bodies["Long"]])
+            way[viscosity] = np.linalg.norm(places[299] - places[199])
+            self.assertLess(max(row["momentum_error"] for row in history), 1e-12)
+            self.assertGreater(np.ptp(places[200:, 1]), 5e-3)  # it does move to and fro
+        self.assertLess(way[1000.], 1e-3 * .4)
+        self.assertGreater(way[1.], 1e-2 * .4)
+
+    def test_control_in_space(self):
+        """A ball on a spring comes to its target from anywhere."""
+        solids = {"A": {**unseen_box((0., 0., 0.), (1., 2., -1.)), "Geometry": {"Shape": "box", "Size": (.5, .5, .5)}}}
+        target = {"Type": "constant", "Value": (.3, -.5, .8)}
+        rows = joints_of(vacuum(solids, {"S": joint("ball", ("space", "A"), (0., 0., 0.), Target=target,
+                                                    **{"Control": "proportional derivative", "Natural Frequency": 3.})},
+                                .05, 5.))
+        for k, value in enumerate(target["Value"]):
+            self.assertAlmostEqual(rows[f"S {k + 1}"][-1]["q"], value, delta=1e-4)
+
+
+if __name__ == "__main__":
+    unittest.main()
