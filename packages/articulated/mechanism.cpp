@@ -2,32 +2,12 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <numeric>
+
+#include "base/disjoint_sets.hpp"
 
 namespace lockstep {
 
 namespace {
-
-/// Bodies joined so far; the ground is one more, the last.
-class Groups {
- public:
-  explicit Groups(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i)
-      i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// False if they are one already.
-  bool join(int i, int j) {
-    i = find(i);
-    j = find(j);
-    parent_[i] = j;
-    return i != j;
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 template <int dim>
 bool is_ground(const std::vector<JointedBody<dim>>& bodies, int body) {
@@ -39,7 +19,7 @@ template <int dim>
 std::vector<char> tree_joints(const std::vector<JointedBody<dim>>& bodies,
                               const std::vector<Joint<dim>>& joints) {
   const int ground = static_cast<int>(bodies.size());
-  Groups groups(ground + 1);
+  DisjointSets groups(ground + 1);  // bodies joined so far; the ground is the last
   std::vector<char> in_tree(joints.size(), 0);
   for (const bool wanted : {true, false}) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -128,7 +108,7 @@ std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodi
     for (const int body : mechanisms[m].bodies)
       home[body] = m;
   }
-  Groups together(n);
+  DisjointSets together(n);
   const auto home_of = [&](int body) { return is_ground(bodies, body) ? -1 : home[body]; };
   for (const Joint<dim>& joint : joints) {
     const int a = home_of(joint.sides[0].body), b = home_of(joint.sides[1].body);
@@ -137,7 +117,7 @@ std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodi
   }
   std::vector<Mechanism> joined(n);
   for (int m = 0; m < n; ++m) {
-    Mechanism& whole = joined[together.find(m)];
+    Mechanism& whole = joined[together.root(m)];
     if (whole.bodies.empty())
       whole.root = mechanisms[m].root;
     whole.bodies.insert(whole.bodies.end(), mechanisms[m].bodies.begin(),
@@ -149,7 +129,7 @@ std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodi
     int m = -1;
     for (const JointSide<dim>& side : joints[j].sides)
       m = std::max(m, home_of(side.body));
-    Mechanism& mechanism = joined[together.find(m)];
+    Mechanism& mechanism = joined[together.root(m)];
     mechanism.joints.push_back(static_cast<int>(j));
     if (!in_tree[j])
       mechanism.loops.push_back(static_cast<int>(j));

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 
+#include "base/disjoint_sets.hpp"
 #include "base/interruption.hpp"
 
 namespace lockstep {
@@ -15,21 +15,6 @@ namespace lockstep {
 namespace {
 
 constexpr int most_rounds = 100;
-
-/// Sets of vertices that move together.
-class Sets {
- public:
-  explicit Sets(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i)
-      i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int i, int j) { parent_[find(i)] = find(j); }
-
- private:
-  std::vector<int> parent_;
-};
 
 template <int dim>
 Eigen::Matrix<double, dim, dim> rotation_by(const AngularVector<dim>& turn) {
@@ -101,7 +86,7 @@ class ImpactZones {
     }
     std::map<int, Zone<dim>> zones;
     for (const int v : members_)
-      add_to(zones[sets_.find(v)], v);
+      add_to(zones[sets_.root(v)], v);
     const SolidMotion<dim> motion(system_, shapes_, velocity_);
     for (const auto& [root, zone] : zones)
       move(zone, motion);
@@ -229,7 +214,7 @@ class ImpactZones {
   const InverseMass& inverse_mass_;
   double dt_;
   std::vector<double>& velocity_;
-  Sets sets_;
+  DisjointSets sets_;  ///< of vertices that move together
   std::vector<int> solid_of_;
   std::map<GlobalIndex, int> rigid_of_dof_;
   std::set<int> members_;

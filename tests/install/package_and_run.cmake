@@ -1,18 +1,5 @@
 # Packs this build, unpacks the package and uses what is in it: programs, scenes, tools, find_package.
-function(run_step what)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT result EQUAL 0)
-    message("${output}")
-    message(FATAL_ERROR "${what} failed (${result}), see above.")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
-
-function(expect pattern)
-  if(NOT output MATCHES "${pattern}")
-    message(FATAL_ERROR "There is no '${pattern}' in: ${output}")
-  endif()
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/steps.cmake")
 
 file(REMOVE_RECURSE "${WORK_DIR}")
 run_step("Packing" cpack --config "${BINARY_DIR}/CPackConfig.cmake" -B "${WORK_DIR}")

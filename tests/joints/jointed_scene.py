@@ -1,16 +1,12 @@
 """Scenes of jointed bodies, and what comes of them."""
-import csv
-import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import simulation  # noqa: E402
 from scene_xml import xml  # noqa: E402
 
-SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
-SECONDS = 200  # of a run; one is usual
 LARGE = 100.  # a largest turn that bounds no step
 
 
@@ -46,9 +42,8 @@ def tank(solids, joints, coupling, viscosity=0., step=.01, end=.1, **articulatio
 
 def table(path):
     """The rows of a table as numbers, but for names."""
-    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     return [{key: value if key == "name" else float(value) for key, value in row.items()}
-            for row in csv.DictReader(lines)]
+            for row in simulation.table(path)]
 
 
 def run(scene, ranks=1, arguments=(), folder=None):
@@ -56,10 +51,7 @@ def run(scene, ranks=1, arguments=(), folder=None):
     with tempfile.TemporaryDirectory() as own:
         file, output = Path(own) / "scene.xml", Path(folder or own) / "output"
         file.write_text(xml("Scene", scene))
-        command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
-        command += [SIMULATE, str(file), "--output", str(output), "--quiet", *arguments]
-        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS)
-        assert result.returncode == 0, result.stdout[-2000:]
+        simulation.simulate(file, output, *arguments, ranks=ranks)
         bodies = {}
         for row in table(output / "bodies.csv"):
             bodies.setdefault(row["name"], []).append(row)

@@ -1,8 +1,5 @@
 """Ranks that own no tile of the grid, or no node of a soft solid, take part in every collective call: scenes of one
 tile, and bodies of few nodes, end on any number of ranks, with the answer of one."""
-import csv
-import os
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -10,10 +7,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
+from simulation import STATE, column, simulate, table  # noqa: E402
 
-SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
 N_STEPS = 3
-SECONDS = 120  # of a run; a second is usual
 
 
 def box(dimension, size, **more):
@@ -50,13 +46,8 @@ def run(text, ranks):
     with tempfile.TemporaryDirectory() as folder:
         file, output = Path(folder) / "scene.xml", Path(folder) / "output"
         file.write_text(text)
-        command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
-        command += [SIMULATE, str(file), "--output", str(output), "--steps", str(N_STEPS), "--quiet"]
-        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS)
-        assert result.returncode == 0, result.stdout
-        lines = (output / "bodies.csv").read_text().splitlines()
-    return [row for row in csv.DictReader(line for line in lines if not line.startswith("#"))
-            if row["step"] == str(N_STEPS)]
+        simulate(file, output, "--steps", N_STEPS, ranks=ranks, seconds=120)
+        return [row for row in table(output / "bodies.csv") if row["step"] == str(N_STEPS)]
 
 
 SOFT_2D = box(2, .3, **{"Time Integration": "fully-implicit"}, **pinned(2, -.14))
@@ -83,9 +74,9 @@ class FewTiles(unittest.TestCase):
 
     def compare(self, found, expected):
         self.assertEqual(len(found), len(expected))
-        for one, other in zip(found, expected):
-            for column in ("x", "y", "vx", "vy"):
-                self.assertAlmostEqual(float(one[column]), float(other[column]), delta=1e-6, msg=column)
+        for name in STATE:
+            for one, other in zip(column(found, name), column(expected, name)):
+                self.assertAlmostEqual(one, other, delta=1e-6, msg=name)
 
 
 if __name__ == "__main__":

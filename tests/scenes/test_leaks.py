@@ -2,9 +2,7 @@
 
 LOCKSTEP_LONG_STORM=1: 1000 steps each, else 60.
 """
-import csv
 import os
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -12,8 +10,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
+from simulation import column, simulate, table, without_times  # noqa: E402
 
-SIMULATE, MPIEXEC = os.environ["LOCKSTEP_SIMULATE"], os.environ["LOCKSTEP_MPIEXEC"]
 N_STEPS = 1000 if os.environ.get("LOCKSTEP_LONG_STORM") else 60
 H = 1.5 / 36  # of the cells [m]
 # Beside the shell, whole cells come and go: those of half its length may be off.
@@ -89,11 +87,6 @@ SCENES = {
 }
 
 
-def table(path):
-    lines = path.read_text().splitlines()
-    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
-
-
 class Storm(unittest.TestCase):
     """Runs `scenes`, by name."""
     scenes = {}
@@ -102,23 +95,20 @@ class Storm(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "scene.xml"
             file.write_text(text)
-            command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
-            command += [SIMULATE, str(file), "--output", folder + "/out", "--steps", str(steps), "--quiet"]
-            done = subprocess.run(command, capture_output=True, text=True, timeout=1500)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            simulate(file, folder + "/out", "--steps", steps, ranks=ranks, seconds=1500)
             return table(Path(folder) / "out" / "history.csv")
 
     def storm(self, name, ranks=1, steps=N_STEPS):
         rows = self.run_scene(self.scenes[name], ranks, steps)
         self.assertEqual(len(rows), steps)
         for row in rows:
-            for column in row:
-                if column.endswith("_leak"):
-                    self.assertEqual(float(row[column]), 0, f"{column} in step {row['step']}")
+            for name in row:
+                if name.endswith("_leak"):
+                    self.assertEqual(float(row[name]), 0, f"{name} in step {row['step']}")
         return rows
 
     def inside(self, rows, watch="Inside"):
-        return [float(row[f"watch_{watch}_volume"]) for row in rows]
+        return column(rows, f"watch_{watch}_volume")
 
 class Leaks(Storm):
     scenes = SCENES
@@ -127,13 +117,10 @@ class Leaks(Storm):
         with tempfile.TemporaryDirectory() as folder:
             file, whole, parts = (Path(folder) / name for name in ("scene.xml", "whole", "parts"))
             file.write_text(SCENES["hull"])
-            for output, steps, more in ((whole, 30, []), (parts, 15, []),
-                                        (parts, 30, ["--restart", str(parts / "checkpoint-000015.h5")])):
-                subprocess.run([SIMULATE, str(file), "--output", str(output), "--steps", str(steps), "--quiet", *more],
-                               check=True, timeout=300)
-            one, other = (table(output / "history.csv") for output in (whole, parts))
-            for row in (*one, *other):
-                del row["wall_seconds"]
+            for output, steps, more in ((whole, 30, ()), (parts, 15, ()),
+                                        (parts, 30, ("--restart", parts / "checkpoint-000015.h5"))):
+                simulate(file, output, "--steps", steps, *more)
+            one, other = (without_times(table(output / "history.csv")) for output in (whole, parts))
             self.assertEqual(one, other)
 
     def test_hull(self):

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "grid/disjoint_sets.hpp"
+#include "base/disjoint_sets.hpp"
 
 namespace lockstep {
 

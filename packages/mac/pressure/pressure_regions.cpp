@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "grid/disjoint_sets.hpp"
+#include "base/disjoint_sets.hpp"
 #include "mac/pressure/pressure_system.hpp"
 
 namespace lockstep {

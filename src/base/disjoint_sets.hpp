@@ -14,10 +14,12 @@ class DisjointSets {
       i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  void join(int i, int j) {
+  /// False if they are of one set already.
+  bool join(int i, int j) {
     i = root(i);
     j = root(j);
     parent_[std::max(i, j)] = std::min(i, j);
+    return i != j;
   }
   /// Joins n numbers, from that one on.
   void join_run(int begin, int n) {

@@ -1,0 +1,15 @@
+# Steps of a user, and what each of them must say; a step that fails stops with its output.
+function(run_step what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message("${output}")
+    message(FATAL_ERROR "${what} failed (${result}), see above.")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+function(expect pattern)
+  if(NOT output MATCHES "${pattern}")
+    message(FATAL_ERROR "There is no '${pattern}' in: ${output}")
+  endif()
+endfunction()

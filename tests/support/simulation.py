@@ -1,0 +1,41 @@
+"""Runs scenes with `simulate` and reads the tables that it writes."""
+import csv
+import os
+import subprocess
+
+SIMULATE = os.environ.get("LOCKSTEP_SIMULATE", "build/release/drivers/simulate")
+MPIEXEC = os.environ.get("LOCKSTEP_MPIEXEC", "mpirun")
+STATE = ("x", "y", "vx", "vy")
+FLUID = ("liquid_volume", "fluid_momentum_y", "fluid_kinetic_energy")
+
+
+def simulate(file, output, *options, ranks=1, seconds=300):
+    """Fails with what the program said unless it ends well; a run of these tests usually takes a few seconds."""
+    command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
+    command += [SIMULATE, str(file), "--output", str(output), "--quiet", *map(str, options)]
+    result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=seconds)
+    assert result.returncode == 0, result.stdout[-4000:]
+
+
+def table(path):
+    """Rows by name of column, as text."""
+    lines = path.read_text().splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def column(rows, name):
+    return [float(row[name]) for row in rows]
+
+
+def without_times(rows):
+    """The rows without what a clock wrote."""
+    return [{name: value for name, value in row.items() if name != "wall_seconds"} for row in rows]
+
+
+def assert_close(one, other, names, tolerance):
+    """Columns of as many rows are apart by no more than a part of their largest entry."""
+    assert len(one) == len(other), f"{len(one)} rows and {len(other)}"
+    for name in names:
+        largest = max(map(abs, column(one, name)))
+        apart = max(abs(a - b) for a, b in zip(column(one, name), column(other, name)))
+        assert apart <= tolerance * largest, f"{name}: {apart:.3g} apart, of {largest:.3g} at most {tolerance:g}"
