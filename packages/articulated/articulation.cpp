@@ -25,9 +25,9 @@ Articulation<dim>::Articulation(std::vector<JointedBody<dim>> bodies,
   given_.assign(n_rates_, 0);
   for (Joint<dim>& joint : joints_) {
     check_input(
-        joint.first_rate >= 0 || joint.control.type == ControlType::free,
-        "The joint \"{}\" closes a loop whose other joints are all under control; leave one "
-        "of them free.",
+        joint.first_rate >= 0 || !joint.wants_rates(),
+        "The joint \"{}\" closes a loop whose other joints are all under control or limited; "
+        "leave one of them free.",
         joint.name);
     joint.at_begin = {joint.q, Eigen::VectorXd::Zero(joint.q.size())};
     joint.goal.given = joint.control.given();

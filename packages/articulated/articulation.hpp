@@ -75,6 +75,10 @@ class JointConstraints : public ConstraintModel {
   std::string name() const override { return "joints"; }
   std::vector<Combination> combinations() const override;
   ClosedMotion close(double time, double dt, Vector& velocity) override;
+  std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const override;
+  std::string limited() const override;
+  bool has_implicit_forces() const override { return articulation_->any_acts(); }
+  int largest_block() const override;
   void take_note(const RCP<const Vector>& at_start, const Vector& at_end, double dt) override;
   std::vector<JointState> states() const override;
   std::string note() const override;

@@ -155,6 +155,55 @@ ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& veloci
 }
 
 template <int dim>
+std::vector<JointLimit> JointConstraints<dim>::limits(double dt,
+                                                      const std::vector<double>& velocity) const {
+  std::vector<JointLimit> all;
+  for (const Joint<dim>& joint : articulation_->joints()) {
+    if (joint.first_rate < 0 || !joint.limits.any())
+      continue;
+    double arm = 0;
+    for (const JointSide<dim>& side : joint.sides)
+      arm = std::max(arm, side.body == space ? 0 : side.point.norm());
+    const GlobalIndex first = articulation_->dofs().first_rate + joint.first_rate;
+    const Eigen::Map<const Eigen::VectorXd> rates(velocity.data() + first, joint.q.size());
+    for (const RateLimit& one : rate_limits<dim>(joint.kind, joint.limits, joint.q, rates, dt)) {
+      const double scale = one.turns && arm > 0 ? arm : 1;
+      JointLimit limit;
+      limit.room = scale * one.room;
+      for (Eigen::Index k = 0; k < one.weights.size(); ++k) {
+        if (one.weights[k] != 0)
+          limit.terms.emplace_back(first + k, scale * one.weights[k]);
+      }
+      all.push_back(std::move(limit));
+    }
+  }
+  return all;
+}
+
+template <int dim>
+std::string JointConstraints<dim>::limited() const {
+  for (const Joint<dim>& joint : articulation_->joints()) {
+    if (joint.limits.any())
+      return joint.name;
+  }
+  return "";
+}
+
+template <int dim>
+int JointConstraints<dim>::largest_block() const {
+  int largest = 0;
+  for (const Mechanism& mechanism : articulation_->mechanisms()) {
+    int n = mechanism.root == space ? 0 : n_twist<dim>;
+    for (const int j : mechanism.joints)
+      n += articulation_->joints()[j].first_rate < 0
+               ? 0
+               : static_cast<int>(articulation_->joints()[j].q.size());
+    largest = std::max(largest, n);
+  }
+  return largest;
+}
+
+template <int dim>
 void JointConstraints<dim>::take_note(const RCP<const Vector>& at_start, const Vector& at_end,
                                       double dt) {
   two_halves_ = !at_start.is_null();
@@ -184,6 +233,7 @@ std::vector<JointState> JointConstraints<dim>::states() const {
       state.q = joint.q[k];
       state.rate = rates[k];
       state.target = target[k];
+      state.at_limit = at_limit(joint.limits, joint.q, k);
       if (joint.first_rate >= 0 && joint.control.type != ControlType::free && dt_ > 0) {
         state.torque = torque_[joint.first_rate + k];
         state.power = state.torque * (joint.q[k] - joint.at_begin.q[k]) / dt_;

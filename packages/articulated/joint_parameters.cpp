@@ -130,8 +130,10 @@ ParameterList parameters_of(const JointKind& kind) {
     declare_required_vector<double>(
         list, "Second Axis", dim,
         "The other one at the start, at right angles to \"Axis\", of any length [1].");
-  if (n_rates<dim>(kind) > 0)
+  if (n_rates<dim>(kind) > 0) {
     declare_control(list, n_rates<dim>(kind));
+    declare_limits<dim>(list, kind);
+  }
   return list;
 }
 
@@ -173,6 +175,12 @@ Joint<dim> read_joint(const std::string& name, const ParameterList& list, BodyFi
   };
   if (n_rates<dim>(joint.kind) > 0)
     joint.control = read_control(list, name, n_rates<dim>(joint.kind), place);
+  joint.limits = read_limits<dim>(list, name, joint.kind);
+  if (joint.limits.any())
+    check_input(!joint.control.given(),
+                "The joint \"{}\" is under \"{}\" control, which no limit stops; leave out its "
+                "limits.",
+                name, list.get<std::string>("Control"));
   check_input(movable, "The joint \"{}\" connects two prescribed solids; nothing can move it.",
               name);
   return joint;

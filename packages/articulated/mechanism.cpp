@@ -23,7 +23,7 @@ std::vector<char> tree_joints(const std::vector<JointedBody<dim>>& bodies,
   std::vector<char> in_tree(joints.size(), 0);
   for (const bool wanted : {true, false}) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      if ((joints[j].control.type != ControlType::free) != wanted)
+      if (joints[j].wants_rates() != wanted)
         continue;
       std::array<int, 2> ends;
       for (int side = 0; side < 2; ++side) {

@@ -5,6 +5,7 @@
 
 #include "articulated/joint_control.hpp"
 #include "articulated/joint_kind.hpp"
+#include "articulated/joint_limits.hpp"
 #include "interfaces/solid_sides.hpp"
 
 namespace lockstep {
@@ -53,10 +54,13 @@ struct Joint {
   JointKind kind;
   std::array<JointSide<dim>, 2> sides;
   JointControl control;
+  JointLimits limits;
   int first_rate = -1;   ///< among those of all joints; -1: it closes a loop and has none
   Eigen::VectorXd q;     ///< present coordinates
   TargetValue at_begin;  ///< of the step: coordinates and rates
   JointGoal goal;        ///< of the step
+
+  bool wants_rates() const { return control.type != ControlType::free || limits.any(); }
 };
 
 /// Where a joint and its two sides are in space.

@@ -18,6 +18,13 @@ constexpr double clearance = 0.25;
 template <int dim>
 constexpr int most_at_once = dim == 2 ? 2 : 4;
 
+double value(const JointLimit& limit, const std::vector<double>& velocity) {
+  double sum = 0;
+  for (const auto& [dof, weight] : limit.terms)
+    sum += weight * velocity[dof];
+  return sum;
+}
+
 /// Shells and what deforms have a skin.
 double half_thickness_of(const SolidDescription& solid, const GaussSeidelOptions& options,
                          double spacing) {
@@ -165,6 +172,15 @@ bool ContactProblem<dim>::prepare(const std::vector<double>& before,
   for (const Candidate& candidate : candidates_) {
     scale_ = std::max(scale_, candidate.target - normal_velocity(motion, candidate.contact));
   }
+  if (const ConstraintModel* joints = system_.joints()) {
+    for (JointLimit& limit : joints->limits(dt_, velocity)) {
+      limit.terms = shapes_.resolved(limit.terms);
+      // What is beyond comes back as positions, not with a speed of its own.
+      const double room = phase_ == ContactPhase::position ? limit.room : std::max(limit.room, 0.);
+      scale_ = std::max(scale_, -room / dt_ - value(limit, velocity));
+      limits_.push_back({std::move(limit), -room / dt_});
+    }
+  }
   if (scale_ == 0) {
     for (const Contact<dim>& contact : impacts_of(velocity))
       scale_ = std::max(scale_, -contact.gap / dt_ - normal_velocity(motion, contact));
@@ -221,6 +237,20 @@ int ContactProblem<dim>::activate_violated(const SolidMotion<dim>& motion, int m
 }
 
 template <int dim>
+int ContactProblem<dim>::activate_limits(const std::vector<double>& velocity, double tolerance,
+                                         ImpulseSolver<dim>& solver) {
+  int n_activated = 0;
+  for (Limit& one : limits_) {
+    if (one.active || one.target - value(one.limit, velocity) <= tolerance)
+      continue;
+    one.active = true;
+    solver.add(one.limit.terms, one.target);
+    ++n_activated;
+  }
+  return n_activated;
+}
+
+template <int dim>
 void ContactProblem<dim>::extend_search(const std::vector<double>& velocity) {
   const SolidMotion<dim> motion(system_, shapes_, velocity);
   const double allowed = 0.5 * options_.margin * spacing_ / dt_;
@@ -245,7 +275,8 @@ int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
     const SolidMotion<dim> motion(system_, shapes_, solver.velocity());
     const double tolerance = (round == 0 ? 0 : 10) * options_.tolerance * scale_;
     const int most = round == 0 ? most_at_once<dim> : 2;
-    if (activate_violated(motion, most, tolerance, solver) == 0)
+    const int n_limits = activate_limits(solver.velocity(), tolerance, solver);
+    if (activate_violated(motion, most, tolerance, solver) + n_limits == 0)
       break;
     sweeps += solver.iterate(std::max(1, options_.sweeps / 8), options_.tolerance * scale_);
     if (phase_ == ContactPhase::position && searches < most_searches) {

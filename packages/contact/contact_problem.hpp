@@ -33,6 +33,12 @@ class ContactProblem {
     double target = 0;  ///< least normal velocity [m/s]
     bool active = false;
   };
+  /// Of a coordinate of a joint.
+  struct Limit {
+    JointLimit limit;
+    double target = 0;  ///< least value of its combination [m/s]
+    bool active = false;
+  };
   using Pair = std::pair<int, int>;
 
   ContactReach reach(double speed) const;
@@ -50,6 +56,9 @@ class ContactProblem {
   /// from the others; returns how many.
   int activate_violated(const SolidMotion<dim>& motion, int most, double tolerance,
                         ImpulseSolver<dim>& solver);
+  /// Activates those limits of joints that are violated; returns how many.
+  int activate_limits(const std::vector<double>& velocity, double tolerance,
+                      ImpulseSolver<dim>& solver);
   /// Looks again if the solution moves solids farther than the search had looked.
   void extend_search(const std::vector<double>& velocity);
   bool follows_impacts() const;
@@ -70,6 +79,7 @@ class ContactProblem {
   std::vector<double> before_;
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed
   std::vector<Candidate> candidates_;
+  std::vector<Limit> limits_;
   std::map<Pair, std::vector<int>> pairs_;  ///< candidates of each pair
   double scale_ = 0;                        ///< largest violation at the start [m/s]
 };

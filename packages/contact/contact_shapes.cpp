@@ -158,6 +158,43 @@ void ContactShapes<dim>::velocity_row(const SurfacePoint<dim>& point, const Poin
 }
 
 template <int dim>
+std::vector<std::pair<GlobalIndex, double>> ContactShapes<dim>::resolved(
+    const std::vector<std::pair<GlobalIndex, double>>& terms) const {
+  std::vector<std::pair<GlobalIndex, double>> all;
+  for (const auto& [dof, weight] : terms) {
+    const auto combination = combinations_.find(dof);
+    if (combination == combinations_.end())
+      all.emplace_back(dof, weight);
+    else
+      for (const auto& [inner, part] : combination->second)
+        all.emplace_back(inner, weight * part);
+  }
+  return all;
+}
+
+template <int dim>
+std::vector<GlobalIndex> ContactShapes<dim>::leading_dofs() const {
+  std::vector<GlobalIndex> dofs;
+  for (const auto& [dof, terms] : combinations_) {
+    for (const auto& [other, weight] : terms)
+      dofs.push_back(other);
+  }
+  return dofs;
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::drift(const SurfacePoint<dim>& point, const Point<dim>& x) const {
+  Point<dim> sum = Point<dim>::Zero();
+  if (drift_.empty())
+    return sum;
+  VelocityRow<dim> row;
+  system_.velocity_row(point, x, row);
+  for (std::size_t k = 0; k < row.dofs.size(); ++k)
+    sum += drift_[row.dofs[k]] * row.coefficients[k];
+  return sum;
+}
+
+template <int dim>
 void ContactShapes<dim>::find_held() {
   held_.assign(mesh_.vertices.size(), false);
   std::vector<double> free;

@@ -60,6 +60,15 @@ class ContactShapes {
   /// replaced by the ones that they are made of.
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                     VelocityRow<dim>& row) const;
+  /// The same for a combination of dofs.
+  std::vector<std::pair<GlobalIndex, double>> resolved(
+      const std::vector<std::pair<GlobalIndex, double>>& terms) const;
+  /// Those that others are combinations of.
+  std::vector<GlobalIndex> leading_dofs() const;
+  /// What dofs that are combinations have beside their terms (`ClosedMotion::drift`), by id.
+  void set_drift(std::vector<double> drift) { drift_ = std::move(drift); }
+  /// The velocity that a point has of it.
+  Point<dim> drift(const SurfacePoint<dim>& point, const Point<dim>& x) const;
   Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const {
     return system_.prescribed_velocity(point, x);
   }
@@ -84,6 +93,7 @@ class ContactShapes {
   SurfaceMesh<dim> mesh_;
   std::vector<Box<dim>> bounds_, solid_bounds_;
   std::unordered_map<GlobalIndex, std::vector<std::pair<GlobalIndex, double>>> combinations_;
+  std::vector<double> drift_;  ///< empty: none
   std::vector<bool> held_;
 };
 

@@ -31,11 +31,13 @@ void check_names(const std::map<std::string, double>& by_name,
   }
 }
 
+/// What dofs that are combinations have beside their terms. Collective.
 template <int dim>
-RCP<Vector> free_part(const SolidSystem<dim>& solids, const Vector& impulse) {
-  const auto part = rcp(new Vector(impulse, Teuchos::Copy));
-  solids.reduction().select(*part);
-  return part;
+RCP<Vector> drift_of(const SolidSystem<dim>& solids, const Vector& velocity) {
+  const auto drift = rcp(new Vector(velocity, Teuchos::Copy));
+  solids.reduction().follow(*drift);
+  drift->update(1, velocity, -1);
+  return drift;
 }
 
 }  // namespace
@@ -53,7 +55,9 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   if (!solids.has_unknowns())
     return report;
   check_names(options_.thickness_of, solids.solids());
-  const ContactShapes<dim> shapes(solids, topology_);
+  ContactShapes<dim> shapes(solids, topology_);
+  if (solids.joints())
+    shapes.set_drift(replicated(solids, *drift_of(solids, velocity)));
   ContactProblem<dim> problem(solids, shapes, walls_, options_, spacing_, phase, dt);
   const std::vector<double> given = replicated(solids, velocity);
   const bool acts = problem.prepare(replicated(solids, *solids.velocity()), given);
@@ -69,8 +73,11 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   report.external_impulse = solver.external_impulse();
 
   const RCP<const Vector> impulse = distributed(solids, solver.generalized_impulse());
-  if (response)
-    report.impulse = free_part(solids, *impulse);
+  if (response) {
+    const auto free = rcp(new Vector(*impulse, Teuchos::Copy));
+    solids.reduction().drop_given(*free);
+    report.impulse = free;
+  }
   std::vector<double> resolved = solver.velocity();
   if (phase == ContactPhase::position) {
     report.n_crossings =
@@ -80,14 +87,16 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   if (response) {
     // The solver knows surfaces only.
     change->update(-1, *distributed(solids, solver.velocity()), 1);
-    apply(*mobility.response(), *report.impulse, *change, 1, 1);
+    Vector reduced(*report.impulse, Teuchos::Copy);
+    solids.reduction().restrict(reduced);
+    apply(*mobility.response(), reduced, *change, 1, 1);
   } else {
     change->update(-1, *distributed(solids, given), 1);
     if (!inverse_mass.exact && phase == ContactPhase::velocity)
       change = solids.velocity_of(*impulse);
   }
   solids.reduction().follow(*change);
-  if (solids.reduction().has_given()) {
+  if (solids.reduction().has_given() || solids.joints()) {
     if (response)  // what acts on locked dofs goes to what holds them
       report.external_impulse += solids.momentum(*report.impulse) - solids.momentum(*impulse);
     else

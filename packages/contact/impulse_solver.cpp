@@ -39,6 +39,7 @@ void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& 
     return;
   }
   if (description.rigid) {
+    row.prescribed += sign * shapes_.drift(point, x);
     add_entries(point, x, sign * Factor::Identity());
     return;
   }
@@ -47,8 +48,10 @@ void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& 
     SurfacePoint<dim> corner;
     corner.simplex = point.simplex;
     corner.barycentric[k] = 1;
-    if (!factors[k].isZero(0))
-      add_entries(corner, x, sign * factors[k]);
+    if (factors[k].isZero(0))
+      continue;
+    row.prescribed += sign * factors[k] * shapes_.drift(corner, x);
+    add_entries(corner, x, sign * factors[k]);
   }
 }
 
@@ -110,6 +113,23 @@ void ImpulseSolver<dim>::add(const Contact<dim>& contact, double target, double 
 }
 
 template <int dim>
+void ImpulseSolver<dim>::add(const std::vector<std::pair<GlobalIndex, double>>& terms,
+                             double least) {
+  LimitImpulses::Row row;
+  row.least = least;
+  std::map<int, double> weights, response;
+  for (const auto& [dof, weight] : shapes_.resolved(terms))
+    weights[static_cast<int>(dof)] += weight;
+  for (const auto& [dof, weight] : weights) {
+    for (const auto& [other, value] : mobility_.row(dof))
+      response[other] += weight * value;
+  }
+  row.weights.assign(weights.begin(), weights.end());
+  row.response.assign(response.begin(), response.end());
+  limits_.add(std::move(row));
+}
+
+template <int dim>
 Point<dim> ImpulseSolver<dim>::relative_velocity(const Row& row) const {
   Point<dim> velocity = row.prescribed;
   for (int k = row.begin; k < row.end; ++k)
@@ -160,7 +180,7 @@ double ImpulseSolver<dim>::relax_friction(Row& row) {
 template <int dim>
 int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance) {
   for (int sweep = 1; sweep <= maximum_sweeps; ++sweep) {
-    double change = 0;
+    double change = limits_.relax(velocity_);
     for (Row& row : rows_) {
       if (!(row.normal_response > 0))
         continue;
@@ -179,13 +199,42 @@ Point<dim> ImpulseSolver<dim>::impulse(const Row& row) const {
 }
 
 template <int dim>
+void ImpulseSolver<dim>::add_side_impulse(int solid, const SurfacePoint<dim>& point,
+                                          const Point<dim>& x, const Point<dim>& impulse,
+                                          std::vector<double>& total) const {
+  const SolidDescription& description = system_.solids()[solid];
+  if (description.prescribed)
+    return;
+  VelocityRow<dim> row;
+  const auto add = [&](const SurfacePoint<dim>& at, const Point<dim>& pushed) {
+    system_.velocity_row(at, x, row);
+    for (std::size_t k = 0; k < row.dofs.size(); ++k)
+      total[row.dofs[k]] += row.coefficients[k].dot(pushed);
+  };
+  if (description.rigid) {
+    add(point, impulse);
+    return;
+  }
+  const auto factors = carried_point<dim>(shapes_.corners(point.simplex), point, x);
+  for (int k = 0; k < dim; ++k) {
+    SurfacePoint<dim> corner;
+    corner.simplex = point.simplex;
+    corner.barycentric[k] = 1;
+    add(corner, factors[k].transpose() * impulse);
+  }
+}
+
+template <int dim>
 std::vector<double> ImpulseSolver<dim>::generalized_impulse() const {
   std::vector<double> total(velocity_.size());
   for (const Row& row : rows_) {
     const Point<dim> pushed = impulse(row);
-    for (int k = row.begin; k < row.end; ++k)
-      total[jacobian_[k].dof] += jacobian_[k].coefficient.dot(pushed);
+    add_side_impulse(row.contact.solid, row.contact.point, row.contact.place(), pushed, total);
+    if (row.contact.other >= 0)
+      add_side_impulse(row.contact.other, row.contact.other_point, row.contact.other_place(),
+                       -pushed, total);
   }
+  limits_.add_to(total);
   return total;
 }
 

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "contact/contact_search.hpp"
+#include "contact/limit_impulses.hpp"
 #include "contact/mobility.hpp"
 
 namespace lockstep {
@@ -18,13 +19,16 @@ class ImpulseSolver {
   /// Target: least normal velocity of `contact.solid` relative to the other [m/s]. Collective if
   /// the mobility is.
   void add(const Contact<dim>& contact, double target, double friction);
+  /// Of joints: `least` value of the combination [m/s].
+  void add(const std::vector<std::pair<GlobalIndex, double>>& terms, double least);
   /// Sweeps until no velocity at a contact changes by more than `tolerance` [m/s]; returns the
   /// number of sweeps.
   int iterate(int maximum_sweeps, double tolerance);
 
-  int n_contacts() const { return static_cast<int>(rows_.size()); }
+  /// With limits of joints.
+  int n_contacts() const { return static_cast<int>(rows_.size()) + limits_.size(); }
   const std::vector<double>& velocity() const { return velocity_; }
-  /// J^T impulses, by id.
+  /// J^T impulses, by id: on the dofs of the surfaces themselves, combinations or not.
   std::vector<double> generalized_impulse() const;
   /// What walls and prescribed solids gave to the others.
   Momentum<dim> external_impulse() const;
@@ -56,6 +60,8 @@ class ImpulseSolver {
   void add_response(Row& row);
   Point<dim> relative_velocity(const Row& row) const;
   void push(const Row& row, const Point<dim>& impulse);
+  void add_side_impulse(int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
+                        const Point<dim>& impulse, std::vector<double>& total) const;
   double relax_normal(Row& row);
   double relax_friction(Row& row);
   Point<dim> impulse(const Row& row) const;
@@ -67,6 +73,7 @@ class ImpulseSolver {
   VelocityRow<dim> velocity_row_;  ///< for use by add_entries alone
   std::vector<Row> rows_;
   std::vector<Entry> jacobian_, response_;
+  LimitImpulses limits_;
 };
 
 }  // namespace lockstep

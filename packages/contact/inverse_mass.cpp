@@ -106,7 +106,9 @@ InverseMass replicated_inverse_mass(const SolidSystem<dim>& system) {
     result.exact = false;
     triplets = lumped_triplets(*mass, system.map());
   } else {
-    const auto blocks = block_diagonal_inverse(matrix, largest_dense_block, "mass of the solids");
+    const int largest = system.joints() ? system.joints()->largest_block() : 0;
+    const auto blocks = block_diagonal_inverse(matrix, std::max(largest, largest_dense_block),
+                                               "mass of the solids");
     result.exact = blocks.exact;
     triplets = triplets_of(*blocks.inverse);
     if (!result.exact)

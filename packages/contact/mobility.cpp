@@ -30,6 +30,10 @@ Mobility<dim>::Mobility(const InverseMass& inverse_mass, const SolidSystem<dim>&
       dofs.insert(row.dofs.begin(), row.dofs.end());
     }
   }
+  if (system.joints()) {
+    for (const GlobalIndex dof : shapes.leading_dofs())
+      dofs.insert(static_cast<int>(dof));
+  }
   surface_dofs_.assign(dofs.begin(), dofs.end());
 }
 

@@ -75,6 +75,7 @@ class SolidSystem {
   /// (`SolidModel::locked_velocities`), and with `ClosedMotion::drift`; null: none. Collective.
   Reduction constraints(double begin, double end, const RCP<const Vector>& drift = {}) const;
   ConstraintModel* joints() { return joints_.get(); }  ///< null: there are none
+  const ConstraintModel* joints() const { return joints_.get(); }
 
   /// Stacked vectors. Collective.
   RCP<Vector> velocity() const;  ///< carried nodes move as their solids

@@ -33,6 +33,14 @@ struct JointState {
   double power = 0;         ///< of control, mean over the step [W]
   double gap = 0;           ///< of the joint [m, rad]
   bool two_halves = false;  ///< half of its impulse acted where the step began
+  bool at_limit = false;    ///< or beyond
+};
+
+/// A limit that joints set to their coordinates. Per step of dt, sum_k weight_k V_k may not be
+/// below -room / dt. Weights make it a speed, of what is as far away as the solids reach [m/s].
+struct JointLimit {
+  std::vector<std::pair<GlobalIndex, double>> terms;  ///< dof and weight
+  double room = 0;  ///< how far the coordinate may still go [m]; negative: it is beyond
 };
 
 /// Ties between solids of one or more models, as combinations of dofs (coupling/reduction.hpp), so
@@ -45,6 +53,15 @@ class ConstraintModel : public PlugIn {
   /// S1: changes V (stacked, of all dofs), which is about to move all solids from `time` by dt.
   /// Collective.
   virtual ClosedMotion close(double time, double dt, Vector& velocity) = 0;
+  /// At the present positions, for motions with about the velocity V (by dof, of all solids).
+  /// Local, the same on all ranks.
+  virtual std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const = 0;
+  /// The name of a joint that has limits; empty: none.
+  virtual std::string limited() const = 0;
+  /// Whether forces on their own dofs are implicit: springs, dampers.
+  virtual bool has_implicit_forces() const = 0;
+  /// At most as many unknowns move the solids that are tied to one another.
+  virtual int largest_block() const = 0;
   /// What their own dofs feel of the impulses that joints gave where the step of dt began (null:
   /// nothing), and where it ended (`Reduction::felt`). Collective.
   virtual void take_note(const RCP<const Vector>& at_start, const Vector& at_end, double dt) = 0;

@@ -13,7 +13,7 @@ class SolidSystem;
 /// What one contact resolution did.
 template <int dim>
 struct ContactReport {
-  int n_contacts = 0;
+  int n_contacts = 0;  ///< and limits of joints
   int iterations = 0;
   int n_crossings = 0;             ///< of surfaces that are not rigid, which could not be prevented
   double deepest_overlap = 0;      ///< before resolution [m]

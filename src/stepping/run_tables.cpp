@@ -109,7 +109,8 @@ void RunTables<dim>::append_joints(long long step, double time,
   for (const JointState& joint : joints) {
     std::vector<HistoryValue> row;
     append_each(row, step, time, joint.name, joint.q, joint.rate, joint.target, joint.torque,
-                joint.power, joint.gap, static_cast<long long>(joint.two_halves ? 1 : 0));
+                joint.power, joint.gap, static_cast<long long>(joint.two_halves ? 1 : 0),
+                static_cast<long long>(joint.at_limit ? 1 : 0));
     rows.push_back(std::move(row));
   }
   joints_->append_rows(rows);

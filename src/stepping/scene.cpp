@@ -297,6 +297,11 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
   components.coupling = registries.couplings.create(type_of("Coupling"), scene.sublist("Coupling"));
   const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");
   components.strategy = registries.strategies.create(strategy.get<std::string>("Type"), strategy);
+  const auto* joints = std::as_const(*components.solids).joints();
+  check_input(!joints || joints->limited().empty() || type_of("Contact") != "none",
+              "The joint \"{}\" has limits, which contact keeps; \"Contact/Type\" must not be "
+              "\"none\".",
+              joints ? joints->limited() : "");
   if (type_of("Contact") != "none") {
     ContactSetting<dim> setting;
     setting.domain = bounds;

@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "base/interruption.hpp"
 #include "linear/null_space.hpp"
+#include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
 
@@ -118,6 +119,20 @@ RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
   return momentum;
 }
 
+/// Springs of joints are stiff: they answer what contact and limits do within the step. Without
+/// them solids answer with their masses.
+template <int dim>
+ContactResponse Stepper<dim>::contact_response(double dt) const {
+  const auto& solids = *components_.solids;
+  if (!solids.joints() || !solids.joints()->has_implicit_forces())
+    return {};
+  return [&solids, dt, inverse = RCP<const LinearOperator>()]() mutable {
+    if (inverse.is_null())
+      inverse = exact_inverse(solids.solid_block(Teuchos::null, dt), "implicit forces of joints");
+    return inverse;
+  };
+}
+
 /// Contact acts on V_S* = M_S^-1 momentum; its impulses go into the momentum.
 template <int dim>
 ContactReport<dim> Stepper<dim>::contact_momentum(const StepContext<dim>& context,
@@ -125,13 +140,16 @@ ContactReport<dim> Stepper<dim>::contact_momentum(const StepContext<dim>& contex
   auto& solids = *components_.solids;
   if (solids.has_implicit_forces())
     return settled_momentum(context, momentum);
-  // Springs of joints are stiff: what they do in the step is known with their implicit part only.
-  const double implicit_dt = solids.joints() ? context.dt : 0;
-  const RCP<Vector> velocity = solids.velocity_of(momentum, implicit_dt, context.constraints);
+  const ContactResponse response = contact_response(context.dt);
+  const RCP<Vector> velocity =
+      response ? solids.velocity_of(momentum, context.dt, context.constraints, *response())
+               : solids.velocity_of(momentum, 0, context.constraints);
   Vector change(*velocity, Teuchos::Copy);
   const ContactReport<dim> report =
-      components_.contact->resolve(solids, ContactPhase::velocity, context.dt, *velocity);
-  if (report.n_contacts > 0) {
+      components_.contact->resolve(solids, ContactPhase::velocity, context.dt, *velocity, response);
+  if (!report.impulse.is_null()) {
+    momentum.update(1, *report.impulse, 1);
+  } else if (report.n_contacts > 0) {
     change.update(1, *velocity, -1);
     apply(*solids.mass(), change, momentum, 1, 1);
   }
@@ -251,9 +269,12 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
   report.max_divergence =
       largest_divergence(system_.blocks(context.dt), solution, fluid.smallest_length(), dim);
   audit_solve<dim>(components_, sides_, system_, context, solution, prediction.viscous, report);
-  if (solids.joints() && !report.reactions.is_null())
-    solids.joints()->take_note(felt_at_start_, *solids.reduction().felt(*report.reactions),
-                               context.dt);
+  if (solids.joints() && !report.reactions.is_null()) {
+    const RCP<Vector> felt = solids.reduction().felt(*report.reactions);
+    if (!report.contact_velocity.impulse.is_null())  // limits act on the same dofs as control
+      felt->update(-1, *report.contact_velocity.impulse, 1);
+    solids.joints()->take_note(felt_at_start_, *felt, context.dt);
+  }
   fluid.project(*solution.unknowns.pressure);
   if (!prediction.pressure.is_null() && sides_.pressure_memory)
     sides_.pressure_memory->correct_pressure(*prediction.pressure);

@@ -81,6 +81,7 @@ class Stepper {
                                SolveReport& report, double& incompatibility);
   CoupledSolution solve_settled(const StepContext<dim>& context, const RCP<Vector>& momentum,
                                 StepReport<dim>& report);
+  ContactResponse contact_response(double dt) const;
   ContactReport<dim> contact_momentum(const StepContext<dim>& context, Vector& momentum);
   ContactReport<dim> settled_momentum(const StepContext<dim>& context, Vector& momentum);
   RCP<Vector> find_motion(const StepContext<dim>& context, const Prediction<dim>& prediction,

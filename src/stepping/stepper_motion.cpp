@@ -46,8 +46,8 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
     half_velocity = settled.velocity;
     report.contact_position = settled.contact;
   } else if (components_.contact && coupled()) {
-    report.contact_position =
-        components_.contact->resolve(solids, ContactPhase::position, dt, *half_velocity);
+    report.contact_position = components_.contact->resolve(
+        solids, ContactPhase::position, dt, *half_velocity, contact_response(context.dt));
   }
   return half_velocity;
 }

@@ -1,0 +1,131 @@
+#include "articulated/joint_limits.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "base/errors.hpp"
+#include "motion/list_values.hpp"
+
+namespace lockstep {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::infinity();
+
+template <int dim>
+bool turns_about_any(const JointKind& kind) {
+  return kind.turn == JointTurn::any && n_rotations<dim> > 1;
+}
+
+/// Of all coordinates; `absent` where there is none.
+Eigen::VectorXd bounds(const ParameterList& joint, const std::string& name, const std::string& side,
+                       int n, double absent) {
+  Eigen::VectorXd values = Eigen::VectorXd::Constant(n, absent);
+  if (!joint.isParameter(side))
+    return values;
+  if (n == 1) {
+    values[0] = joint.get<double>(side);
+    return values;
+  }
+  const auto& all = joint.get<ParameterArray<double>>(side);
+  check_input(all.size() == n, "The \"{}\" of the joint \"{}\" has {} numbers; give {}.", side,
+              name, all.size(), n);
+  return Eigen::Map<const Eigen::VectorXd>(all.getRawPtr(), n);
+}
+
+}  // namespace
+
+template <int dim>
+void declare_limits(ParameterList& joint, const JointKind& kind) {
+  const int n = n_rates<dim>(kind);
+  if (turns_about_any<dim>(kind)) {
+    declare_optional<double>(joint, "Largest Turn",
+                             "How far it may turn from where it is at the start, about whatever "
+                             "axis [rad]. Absent: as far as it likes.");
+    set_between(joint, "Largest Turn", 0, 3.14159);
+    return;
+  }
+  for (const auto& [side, least] :
+       {std::pair{"Lower Limit", "least"}, {"Upper Limit", "largest"}}) {
+    const std::string doc =
+        fmt::format("The {} that {} may be [rad, m]; 0 at the start. Absent: none.", least,
+                    n == 1 ? "the coordinate" : "each of the coordinates");
+    if (n == 1)
+      declare_optional<double>(joint, side, doc);
+    else
+      declare_optional<ParameterArray<double>>(joint, side, doc);
+  }
+}
+
+template <int dim>
+JointLimits read_limits(const ParameterList& joint, const std::string& name,
+                        const JointKind& kind) {
+  JointLimits limits;
+  if (turns_about_any<dim>(kind)) {
+    if (joint.isParameter("Largest Turn"))
+      limits.largest_turn = joint.get<double>("Largest Turn");
+    return limits;
+  }
+  if (!joint.isParameter("Lower Limit") && !joint.isParameter("Upper Limit"))
+    return limits;
+  const int n = n_rates<dim>(kind);
+  limits.lower = bounds(joint, name, "Lower Limit", n, -none);
+  limits.upper = bounds(joint, name, "Upper Limit", n, none);
+  for (int k = 0; k < n; ++k) {
+    const double lower = limits.lower[k], upper = limits.upper[k];
+    check_input(lower <= upper, "The joint \"{}\" has its lower limit {} above its upper limit {}.",
+                name, lower, upper);
+    check_input(lower <= 0 && upper >= 0,
+                "The joint \"{}\" starts at 0, which is {} its {} limit {}; limits count from "
+                "where the bodies are at the start.",
+                name, lower > 0 ? "below" : "above", lower > 0 ? "lower" : "upper",
+                lower > 0 ? lower : upper);
+  }
+  return limits;
+}
+
+template <int dim>
+std::vector<RateLimit> rate_limits(const JointKind& kind, const JointLimits& limits,
+                                   const Eigen::VectorXd& q, const Eigen::VectorXd& rates,
+                                   double dt) {
+  std::vector<RateLimit> all;
+  if (limits.largest_turn > 0) {
+    // The tangent of the bound where the motion leads: |q| changes as its part along q does.
+    const Eigen::VectorXd there = q + dt * rates;
+    if (there.norm() == 0)
+      return all;
+    const Eigen::VectorXd way = there / there.norm();
+    all.push_back({-way, limits.largest_turn - way.dot(q), true});
+    return all;
+  }
+  const auto n_slides = static_cast<Eigen::Index>(kind.slides.size());
+  for (Eigen::Index k = 0; k < limits.lower.size(); ++k) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(q.size(), k);
+    if (std::isfinite(limits.lower[k]))
+      all.push_back({unit, q[k] - limits.lower[k], k >= n_slides});
+    if (std::isfinite(limits.upper[k]))
+      all.push_back({-unit, limits.upper[k] - q[k], k >= n_slides});
+  }
+  return all;
+}
+
+bool at_limit(const JointLimits& limits, const Eigen::VectorXd& q, int k) {
+  constexpr double close = 1e-6;
+  if (limits.largest_turn > 0)
+    return q.norm() >= limits.largest_turn - close;
+  return limits.lower.size() > 0 &&
+         (q[k] <= limits.lower[k] + close || q[k] >= limits.upper[k] - close);
+}
+
+template void declare_limits<2>(ParameterList&, const JointKind&);
+template void declare_limits<3>(ParameterList&, const JointKind&);
+template JointLimits read_limits<2>(const ParameterList&, const std::string&, const JointKind&);
+template JointLimits read_limits<3>(const ParameterList&, const std::string&, const JointKind&);
+template std::vector<RateLimit> rate_limits<2>(const JointKind&, const JointLimits&,
+                                               const Eigen::VectorXd&, const Eigen::VectorXd&,
+                                               double);
+template std::vector<RateLimit> rate_limits<3>(const JointKind&, const JointLimits&,
+                                               const Eigen::VectorXd&, const Eigen::VectorXd&,
+                                               double);
+
+}  // namespace lockstep

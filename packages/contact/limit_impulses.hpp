@@ -1,0 +1,39 @@
+#pragma once
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+namespace lockstep {
+
+/// Impulses that keep rates from going below their bounds: of all limits at once and exactly, since
+/// those of a chain answer one another too strongly for sweeps. Local.
+class LimitImpulses {
+ public:
+  /// Row k: sum of weights times velocities, by id; `response`: velocities that a unit impulse
+  /// along it makes, by id; `least`: its bound.
+  struct Row {
+    std::vector<std::pair<int, double>> weights, response;
+    double least = 0;
+  };
+  void add(Row row);
+  int size() const { return static_cast<int>(rows_.size()); }
+
+  /// Changes the velocities, and the impulses given so far, to those that meet all bounds: impulses
+  /// only push, and only at bounds that are reached. Returns the largest change of a row's value.
+  double relax(std::vector<double>& velocity);
+  /// Adds J^T impulses, by id.
+  void add_to(std::vector<double>& total) const;
+
+ private:
+  double value(const Row& row, const std::vector<double>& velocity) const;
+
+  std::vector<Row> rows_;
+  Eigen::MatrixXd matrix_;  ///< values of rows for unit impulses along rows
+  Eigen::VectorXd impulses_;
+};
+
+/// x >= 0 with A x + b >= 0 and one of both zero in every row, for a symmetric positive definite A:
+/// by exchange of blocks, and of single rows where that does not end.
+Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+}  // namespace lockstep

@@ -1,0 +1,80 @@
+// Impulses of limits: the complementarity problem against a search through all cases, and two
+// limits of one velocity.
+#include "contact/limit_impulses.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+namespace lockstep {
+namespace {
+
+/// Tries which rows push.
+Eigen::VectorXd by_search(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  const auto n = static_cast<int>(b.size());
+  for (int choice = 0; choice < (1 << n); ++choice) {
+    Eigen::MatrixXd rows = a;
+    Eigen::VectorXd rhs = -b;
+    for (int k = 0; k < n; ++k) {
+      if ((choice >> k & 1) != 0)
+        continue;
+      rows.row(k) = Eigen::VectorXd::Unit(n, k).transpose();
+      rhs[k] = 0;
+    }
+    const Eigen::VectorXd x = rows.fullPivLu().solve(rhs);
+    if (x.minCoeff() >= -1e-12 && (a * x + b).minCoeff() >= -1e-12)
+      return x;
+  }
+  return {};
+}
+
+TEST(LimitImpulses, Complementarity) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 200; ++trial) {
+    const int n = 1 + trial % 8;
+    const Eigen::MatrixXd half = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return normal(random); });
+    const Eigen::MatrixXd a = half * half.transpose() + 1e-3 * Eigen::MatrixXd::Identity(n, n);
+    const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
+    const Eigen::VectorXd expected = by_search(a, b);
+    ASSERT_EQ(expected.size(), n);
+    EXPECT_LT((solve_complementarity(a, b) - expected).norm(), 1e-8 * (1 + expected.norm()));
+  }
+}
+
+TEST(LimitImpulses, LargeSystems) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  for (const int n : {30, 60}) {
+    const Eigen::MatrixXd half = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return normal(random); });
+    const Eigen::MatrixXd a = half * half.transpose();
+    const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
+    const Eigen::VectorXd x = solve_complementarity(a, b), rest = a * x + b;
+    EXPECT_GE(x.minCoeff(), 0);
+    EXPECT_GT(rest.minCoeff(), -1e-8);
+    EXPECT_NEAR(x.dot(rest), 0, 1e-8 * x.norm());
+  }
+}
+
+/// Two bodies of masses 1 and 2 whose difference of velocities has a lower and an upper bound.
+TEST(LimitImpulses, BothLimitsOfOneVelocity) {
+  LimitImpulses limits;
+  limits.add({{{0, -1}, {1, 1}}, {{0, -1}, {1, 0.5}}, -0.1});
+  limits.add({{{0, 1}, {1, -1}}, {{0, 1}, {1, -0.5}}, -0.2});
+  for (const double difference : {-3., 0.1, 5.}) {
+    LimitImpulses own = limits;
+    std::vector<double> velocity{1, 1 + difference};
+    own.relax(velocity);
+    const double expected = difference < -0.1 ? -0.1 : difference > 0.2 ? 0.2 : difference;
+    EXPECT_NEAR(velocity[1] - velocity[0], expected, 1e-10);
+    EXPECT_NEAR(velocity[0] + 2 * velocity[1], 3 + 2 * difference, 1e-12);
+    std::vector<double> impulse(2, 0);
+    own.add_to(impulse);
+    EXPECT_NEAR(impulse[0], velocity[0] - 1, 1e-12);
+    EXPECT_LT(own.relax(velocity), 1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace lockstep
