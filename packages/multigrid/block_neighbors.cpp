@@ -3,10 +3,13 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace lockstep {
 
 namespace {
+
+constexpr int message_tag = 4712;
 
 using Cell = std::array<int, 3>;
 
@@ -21,21 +24,6 @@ GlobalIndex block_number(const LatticeBlocks& blocks, const Cell& begin) {
     number = number * blocks_along(blocks, axis) + begin[axis] / blocks.width;
   return number;
 }
-
-/// Where the block beside `begin` begins, or false beyond a side that is not periodic.
-bool find_beside(const LatticeBlocks& blocks, const Cell& begin, int axis, int side, Cell& beside,
-                 bool& wraps) {
-  beside = begin;
-  beside[axis] += side == 0 ? -blocks.width : blocks.width;
-  wraps = beside[axis] < 0 || beside[axis] >= blocks.n_cells[axis];
-  if (!wraps)
-    return true;
-  if (!blocks.periodic[axis])
-    return false;
-  beside[axis] = side == 0 ? blocks.n_cells[axis] - blocks.width : 0;
-  return true;
-}
-
 /// Ranks of blocks by number, -1 for blocks that nobody has.
 std::map<GlobalIndex, int> owners_of(const LatticeBlocks& blocks, std::vector<GlobalIndex> wanted) {
   // Tpetra answers a repeated question once only.
@@ -58,35 +46,141 @@ std::map<GlobalIndex, int> owners_of(const LatticeBlocks& blocks, std::vector<Gl
   return result;
 }
 
-bool comes_before(const BlockFace& a, const BlockFace& b) {
-  return std::tie(a.begin, a.axis, a.side, a.beside) < std::tie(b.begin, b.axis, b.side, b.beside);
-}
-
-/// Calls f(i, j, k) for the level's cells of one side of a block that begins at `begin`, in level
-/// coordinates; `depth` cells outward from the first layer.
-template <typename Function>
-void for_each_cell_of_face(const LatticeBlocks& blocks, const Cell& begin, int axis, int side,
-                           int depth, int level, const Function& f) {
-  Cell low{}, high{1, 1, 1};
-  for (int a = 0; a < blocks.dimension; ++a) {
-    const int n = (blocks.n_cells[a] + (1 << level) - 1) >> level;
-    low[a] = begin[a] >> level;
-    high[a] = std::min(low[a] + (blocks.width >> level), n);
-  }
-  const int layer = side == 0 ? low[axis] - depth : high[axis] - 1 + depth;
-  low[axis] = layer;
-  high[axis] = layer + 1;
-  for (int k = low[2]; k < high[2]; ++k)
-    for (int j = low[1]; j < high[1]; ++j)
-      for (int i = low[0]; i < high[0]; ++i)
-        f(i, j, k);
-}
-
 LevelHalo::Cell local_cell(const LevelGrid& grid, int i, int j, int k) {
   i -= grid.begin[0];
   j -= grid.begin[1];
   k -= grid.begin[2];
   return {grid.natural(i, j, k), grid.slot_of_cell(i, j, k), LevelGrid::colour(i, j, k)};
+}
+
+struct CellBox {
+  Cell begin{}, end{1, 1, 1};
+};
+
+template <typename Function>
+void for_each_cell_of(const CellBox& box, const Function& f) {
+  for (int k = box.begin[2]; k < box.end[2]; ++k)
+    for (int j = box.begin[1]; j < box.end[1]; ++j)
+      for (int i = box.begin[0]; i < box.end[0]; ++i)
+        f(i, j, k);
+}
+
+/// The block moved by whole periods into the lattice; false beyond another side.
+bool wrap(const LatticeBlocks& blocks, Cell& begin) {
+  for (int axis = 0; axis < blocks.dimension; ++axis) {
+    const int n = blocks.n_cells[axis];
+    if (blocks.periodic[axis])
+      begin[axis] = (begin[axis] % n + n) % n;
+    else if (begin[axis] < 0 || begin[axis] >= n)
+      return false;
+  }
+  return true;
+}
+
+int n_cells_along(const LatticeBlocks& blocks, int axis, int level) {
+  return axis < blocks.dimension ? (blocks.n_cells[axis] + (1 << level) - 1) >> level : 1;
+}
+
+/// The cells of a block on a level, in coordinates of the lattice.
+CellBox box_of(const LatticeBlocks& blocks, const Cell& begin, int level) {
+  CellBox box;
+  for (int axis = 0; axis < blocks.dimension; ++axis) {
+    box.begin[axis] = begin[axis] >> level;
+    box.end[axis] = box.begin[axis] + (blocks.width >> level);
+    if (!blocks.periodic[axis])
+      box.end[axis] = std::min(box.end[axis], n_cells_along(blocks, axis, level));
+  }
+  return box;
+}
+
+void mark(const LevelGrid& grid, const CellBox& box, std::vector<char>& marks) {
+  for (int k = box.begin[2]; k < box.end[2]; ++k)
+    for (int j = box.begin[1]; j < box.end[1]; ++j)
+      std::fill(marks.data() + grid.natural(box.begin[0], j, k),
+                marks.data() + grid.natural(box.end[0], j, k), 1);
+}
+
+/// Natural array of 1 for cells within reach of this rank's.
+std::vector<char> mark_reach(const LatticeBlocks& blocks, int level, const GhostReach& reach,
+                             const LevelGrid& grid) {
+  std::vector<char> marks(grid.n_natural, 0);
+  for (const Cell& begin : blocks.begins) {
+    if (!holds_cells(blocks, begin))
+      continue;
+    CellBox own = box_of(blocks, begin, level);
+    for (int axis = 0; axis < blocks.dimension; ++axis) {
+      own.begin[axis] -= grid.begin[axis];
+      own.end[axis] = std::min(own.end[axis] - grid.begin[axis], grid.n[axis]);
+    }
+    CellBox box = own;
+    for (int axis = 0; axis < blocks.dimension; ++axis) {
+      if (!reach.around_corners)
+        box = own;
+      box.begin[axis] = std::max(own.begin[axis] - reach.depth, 0);
+      box.end[axis] = std::min(own.end[axis] + reach.depth, grid.n[axis]);
+      if (!reach.around_corners)
+        mark(grid, box, marks);
+    }
+    mark(grid, box, marks);
+  }
+  return marks;
+}
+
+/// Ghosts by their owner, and the lexicographic numbers in the level's lattice of what they copy.
+struct Wanted {
+  std::map<int, LevelHalo::Peer> peers;
+  std::map<int, std::vector<GlobalIndex>> numbers;
+};
+
+Wanted find_ghosts(const LatticeBlocks& blocks, const std::vector<NearBlock>& near_blocks,
+                   int level, const GhostReach& reach, const LevelGrid& grid) {
+  const std::vector<char> marks = mark_reach(blocks, level, reach, grid);
+  Wanted wanted;
+  for (const NearBlock& block : near_blocks) {
+    Cell original = block.begin;
+    wrap(blocks, original);
+    CellBox box = box_of(blocks, block.begin, level);
+    Cell shift{};
+    for (int axis = 0; axis < blocks.dimension; ++axis) {
+      shift[axis] = (original[axis] - block.begin[axis]) >> level;
+      box.begin[axis] = std::max(box.begin[axis], grid.begin[axis]);
+      box.end[axis] = std::min(box.end[axis], grid.begin[axis] + grid.n[axis]);
+    }
+    LevelHalo::Peer& peer = wanted.peers[block.rank];
+    std::vector<GlobalIndex>& numbers = wanted.numbers[block.rank];
+    peer.rank = block.rank;
+    for_each_cell_of(box, [&](int i, int j, int k) {
+      const LevelHalo::Cell cell = local_cell(grid, i, j, k);
+      if (!marks[cell.natural])
+        return;
+      peer.ghosts.push_back(cell);
+      const GlobalIndex plane = k + shift[2];
+      const GlobalIndex row = plane * n_cells_along(blocks, 1, level) + j + shift[1];
+      numbers.push_back(row * n_cells_along(blocks, 0, level) + i + shift[0]);
+    });
+  }
+  return wanted;
+}
+
+/// Who holds ghosts of whom is mutual, so that each rank can ask its peers for their cells.
+std::map<int, std::vector<GlobalIndex>> ask(const Communicator& comm,
+                                            std::map<int, std::vector<GlobalIndex>>& wanted) {
+  const MPI_Comm mpi = raw_communicator(comm);
+  std::map<int, std::vector<GlobalIndex>> asked;
+  std::vector<MPI_Request> requests;
+  for (auto& [rank, numbers] : wanted)
+    MPI_Isend(numbers.data(), static_cast<int>(numbers.size()), MPI_LONG_LONG, rank, message_tag,
+              mpi, &requests.emplace_back());
+  for (const auto& [rank, numbers] : wanted) {
+    MPI_Status status;
+    int n = 0;
+    MPI_Probe(rank, message_tag, mpi, &status);
+    MPI_Get_count(&status, MPI_LONG_LONG, &n);
+    asked[rank].resize(n);
+    MPI_Recv(asked[rank].data(), n, MPI_LONG_LONG, rank, message_tag, mpi, MPI_STATUS_IGNORE);
+  }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  return asked;
 }
 
 }  // namespace
@@ -99,64 +193,52 @@ bool holds_cells(const LatticeBlocks& blocks, const Cell& begin) {
   return true;
 }
 
-std::vector<BlockNeighbors> find_block_neighbors(const LatticeBlocks& blocks) {
-  std::vector<BlockFace> candidates;
-  std::vector<GlobalIndex> numbers;
-  std::vector<bool> wrapped;
+std::vector<NearBlock> find_near_blocks(const LatticeBlocks& blocks, int reach) {
+  std::set<Cell> mine;
   for (const Cell& begin : blocks.begins) {
-    if (!holds_cells(blocks, begin))
-      continue;
-    for (int axis = 0; axis < blocks.dimension; ++axis) {
-      for (int side = 0; side < 2; ++side) {
-        Cell beside{};
-        bool wraps = false;
-        if (!find_beside(blocks, begin, axis, side, beside, wraps))
-          continue;
-        candidates.push_back({begin, beside, axis, side});
-        numbers.push_back(block_number(blocks, beside));
-        wrapped.push_back(wraps);
-      }
-    }
+    if (holds_cells(blocks, begin))
+      mine.insert(begin);
+  }
+  const int depth = blocks.dimension == 3 ? reach : 0;
+  const CellBox offsets{{-reach, -reach, -depth}, {reach + 1, reach + 1, depth + 1}};
+  std::set<Cell> found;
+  for (const Cell& begin : mine) {
+    for_each_cell_of(offsets, [&](int i, int j, int k) {
+      const Cell other{begin[0] + i * blocks.width, begin[1] + j * blocks.width,
+                       begin[2] + k * blocks.width};
+      Cell original = other;
+      if (mine.count(other) == 0 && wrap(blocks, original))
+        found.insert(other);
+    });
+  }
+  std::vector<GlobalIndex> numbers;
+  for (Cell begin : found) {
+    wrap(blocks, begin);
+    numbers.push_back(block_number(blocks, begin));
   }
   const auto owners = owners_of(blocks, numbers);
-  const int me = blocks.comm->getRank();
-  std::map<int, BlockNeighbors> by_rank;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const int rank = owners.at(numbers[i]);
-    if (rank < 0 || (rank == me && !wrapped[i]))
-      continue;
-    const BlockFace& mine = candidates[i];
-    BlockNeighbors& neighbors = by_rank[rank];
-    neighbors.rank = rank;
-    neighbors.owned.push_back(mine);
-    neighbors.ghosts.push_back({mine.beside, mine.begin, mine.axis, 1 - mine.side});
-  }
-  std::vector<BlockNeighbors> result;
-  for (auto& [rank, neighbors] : by_rank) {
-    std::sort(neighbors.owned.begin(), neighbors.owned.end(), comes_before);
-    std::sort(neighbors.ghosts.begin(), neighbors.ghosts.end(), comes_before);
-    result.push_back(std::move(neighbors));
+  std::vector<NearBlock> result;
+  std::size_t next = 0;
+  for (const Cell& begin : found) {
+    const int rank = owners.at(numbers[next++]);
+    if (rank >= 0)
+      result.push_back({begin, rank});
   }
   return result;
 }
 
 std::vector<LevelHalo::Peer> distributed_peers(const LatticeBlocks& blocks,
-                                               const std::vector<BlockNeighbors>& neighbors,
-                                               int level, const LevelGrid& grid) {
+                                               const std::vector<NearBlock>& near_blocks, int level,
+                                               const GhostReach& reach, const LevelGrid& grid) {
+  Wanted wanted = find_ghosts(blocks, near_blocks, level, reach, grid);
+  const auto asked = ask(blocks.comm, wanted.numbers);
+  const int n_x = n_cells_along(blocks, 0, level), n_y = n_cells_along(blocks, 1, level);
   std::vector<LevelHalo::Peer> peers;
-  for (const BlockNeighbors& neighbor : neighbors) {
-    LevelHalo::Peer peer;
-    peer.rank = neighbor.rank;
-    for (const BlockFace& face : neighbor.owned) {
-      for_each_cell_of_face(
-          blocks, face.begin, face.axis, face.side, 0, level,
-          [&](int i, int j, int k) { peer.owned.push_back(local_cell(grid, i, j, k)); });
-    }
-    for (const BlockFace& face : neighbor.ghosts) {
-      for_each_cell_of_face(
-          blocks, face.beside, face.axis, 1 - face.side, 1, level,
-          [&](int i, int j, int k) { peer.ghosts.push_back(local_cell(grid, i, j, k)); });
-    }
+  for (auto& [rank, peer] : wanted.peers) {
+    for (const GlobalIndex number : asked.at(rank))
+      peer.owned.push_back(local_cell(grid, static_cast<int>(number % n_x),
+                                      static_cast<int>(number / n_x % n_y),
+                                      static_cast<int>(number / n_x / n_y)));
     peers.push_back(std::move(peer));
   }
   return peers;

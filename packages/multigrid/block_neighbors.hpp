@@ -7,32 +7,29 @@
 
 namespace lockstep {
 
-/// The face of a block that touches another rank's block, or this rank's own through a periodic
-/// side.
-struct BlockFace {
-  std::array<int, 3> begin{};   ///< of the block that owns the cells
-  std::array<int, 3> beside{};  ///< of the block on the other side, which holds ghosts of them
-  int axis = 0;
-  int side = 0;  ///< of the owning block
+/// A block of another rank near this rank's, or a copy of a block through periodic sides.
+struct NearBlock {
+  std::array<int, 3> begin{};  ///< lattice coordinates, beyond the lattice through periodic sides
+  int rank = 0;                ///< its owner, maybe this one
 };
 
-/// What a rank sends to and receives from one rank (maybe itself), in the order of that rank's
-/// lists.
-struct BlockNeighbors {
-  int rank = 0;
-  std::vector<BlockFace> owned, ghosts;
+/// How far a rank sees cells of others.
+struct GhostReach {
+  int depth = 1;
+  /// Maximum norm, else beyond faces only.
+  bool around_corners = false;
 };
 
 /// False for blocks wholly beyond the domain.
 bool holds_cells(const LatticeBlocks& blocks, const std::array<int, 3>& begin);
 
-/// Collective.
-std::vector<BlockNeighbors> find_block_neighbors(const LatticeBlocks& blocks);
+/// Those within `reach` blocks along every axis of a block of this rank. Collective.
+std::vector<NearBlock> find_near_blocks(const LatticeBlocks& blocks, int reach);
 
-/// The cells to exchange on a distributed level.
+/// The cells to exchange on a distributed level, each ghost once. Collective.
 std::vector<LevelHalo::Peer> distributed_peers(const LatticeBlocks& blocks,
-                                               const std::vector<BlockNeighbors>& neighbors,
-                                               int level, const LevelGrid& grid);
+                                               const std::vector<NearBlock>& near_blocks, int level,
+                                               const GhostReach& reach, const LevelGrid& grid);
 
 /// The copies through periodic sides on a level that every rank holds whole.
 std::vector<LevelHalo::Peer> periodic_peers(const LatticeBlocks& blocks, const LevelGrid& grid);

@@ -34,28 +34,19 @@ class FacePart {
 /// Couplings below this part of the regular one are what differences of sums leave.
 constexpr float round_off = 1e-5F;
 
-/// Adds the parts of pairs of a fine row to a coarse one; only of `owned` cells, if given.
+/// Adds the parts of pairs of a fine row to a coarse one.
 template <typename Part>
-void add_pairs(const float* fine, const char* owned, int n, const Part& part, float* coarse) {
+void add_pairs(const float* fine, int n, const Part& part, float* coarse) {
   const int n_pairs = n / 2;
-  if (owned == nullptr) {
-    for (int i = 0; i < n_pairs; ++i)
-      coarse[i] += part(fine[2 * i]) + part(fine[2 * i + 1]);
-    if (n % 2 != 0)
-      coarse[n_pairs] += part(fine[n - 1]);
-    return;
-  }
-  for (int i = 0; i < n; ++i) {
-    if (owned[i])
-      coarse[i / 2] += part(fine[i]);
-  }
+  for (int i = 0; i < n_pairs; ++i)
+    coarse[i] += part(fine[2 * i]) + part(fine[2 * i + 1]);
+  if (n % 2 != 0)
+    coarse[n_pairs] += part(fine[n - 1]);
 }
 
-void add_even(const float* fine, const char* owned, int n, const FacePart& part, float* coarse) {
-  for (int i = 0; i < n; i += 2) {
-    if (owned == nullptr || owned[i])
-      coarse[i / 2] += part(fine[i]);
-  }
+void add_even(const float* fine, int n, const FacePart& part, float* coarse) {
+  for (int i = 0; i < n; i += 2)
+    coarse[i / 2] += part(fine[i]);
 }
 
 /// One coarsening step, with the names that all its parts share.
@@ -77,6 +68,7 @@ class Coarsening {
   }
 
   void sum_rows();
+  void sum_part(const Cell& begin, int n);
   void move(const std::vector<char>& destinations);
   Transfer take_transfer() { return std::move(transfer_); }
 
@@ -140,25 +132,29 @@ class Coarsening {
 void Coarsening::sum_rows() {
   for (int k = 0; k < f_.n[2]; ++k) {
     for (int j = 0; j < f_.n[1]; ++j) {
-      const std::ptrdiff_t row = f_.natural(0, j, k);
-      const std::ptrdiff_t to = natural(parent({0, j, k}));
-      const char* owned = fine_level_.owned.empty() ? nullptr : fine_level_.owned.data() + row;
-      const int n = f_.n[0];
-      const float factor = dirichlet_factor_;
-      add_pairs(
-          fine_.dirichlet.data() + row, owned, n, [factor](float value) { return factor * value; },
-          coarse_.dirichlet.data() + to);
-      if (!fine_.reaction.empty())
-        add_pairs(
-            fine_.reaction.data() + row, owned, n, [](float value) { return value; },
-            coarse_.reaction.data() + to);
-      add_even(fine_.lower[0].data() + row, owned, n, face_part_, coarse_.lower[0].data() + to);
-      if ((j & 1) == 0)
-        add_pairs(fine_.lower[1].data() + row, owned, n, face_part_, coarse_.lower[1].data() + to);
-      if (f_.dimension == 3 && (k & 1) == 0)
-        add_pairs(fine_.lower[2].data() + row, owned, n, face_part_, coarse_.lower[2].data() + to);
+      for (const LayoutLevel::Part& part : fine_level_.parts(j, k))
+        sum_part({part.begin, j, k}, part.end - part.begin);
     }
   }
+}
+
+/// `n` cells of a row from `begin` on, the first of a pair.
+void Coarsening::sum_part(const Cell& begin, int n) {
+  const std::ptrdiff_t row = f_.natural(begin[0], begin[1], begin[2]);
+  const std::ptrdiff_t to = natural(parent(begin));
+  const float factor = dirichlet_factor_;
+  add_pairs(
+      fine_.dirichlet.data() + row, n, [factor](float value) { return factor * value; },
+      coarse_.dirichlet.data() + to);
+  if (!fine_.reaction.empty())
+    add_pairs(
+        fine_.reaction.data() + row, n, [](float value) { return value; },
+        coarse_.reaction.data() + to);
+  add_even(fine_.lower[0].data() + row, n, face_part_, coarse_.lower[0].data() + to);
+  if ((begin[1] & 1) == 0)
+    add_pairs(fine_.lower[1].data() + row, n, face_part_, coarse_.lower[1].data() + to);
+  if (f_.dimension == 3 && (begin[2] & 1) == 0)
+    add_pairs(fine_.lower[2].data() + row, n, face_part_, coarse_.lower[2].data() + to);
 }
 
 /// Adds to the face between two coarse cells; cells that are not neighbours have none, and their
@@ -260,6 +256,20 @@ void sort_by_slab(const LevelGrid& fine, Transfer& transfer) {
     transfer.in_slab[s] = std::min(transfer.in_slab[s], transfer.in_slab[s + 1]);
 }
 
+/// In one message.
+void sum_over_ranks(const std::vector<std::vector<float>*>& arrays, const Communicator& comm) {
+  std::vector<float> all;
+  for (const std::vector<float>* values : arrays)
+    all.insert(all.end(), values->begin(), values->end());
+  MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_FLOAT, MPI_SUM,
+                raw_communicator(comm));
+  const float* next = all.data();
+  for (std::vector<float>* values : arrays) {
+    std::copy_n(next, values->size(), values->data());
+    next += values->size();
+  }
+}
+
 /// What ranks have added to each other's cells comes home; sums are cleaned of round-off.
 void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_all_ranks, bool moved,
              NaturalStencil& coarse) {
@@ -268,13 +278,16 @@ void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_al
     arrays.push_back(&coarse.reaction);
   for (int axis = 0; axis < level.grid.dimension; ++axis)
     arrays.push_back(&coarse.lower[axis]);
+  if (from_all_ranks)
+    sum_over_ranks(arrays, blocks.comm);
+  std::vector<float*> data;
+  for (std::vector<float>* values : arrays)
+    data.push_back(values->data());
+  if (moved)
+    level.halo.sum_natural_to_owner(data);
   for (std::vector<float>* values : arrays) {
-    if (from_all_ranks)
-      MPI_Allreduce(MPI_IN_PLACE, values->data(), static_cast<int>(values->size()), MPI_FLOAT,
-                    MPI_SUM, raw_communicator(blocks.comm));
     if (!moved)
-      continue;
-    level.halo.sum_natural_to_owner(values->data());
+      break;
     float largest = 0;
     for (const float value : *values)
       largest = std::max(largest, value);

@@ -37,7 +37,7 @@ void Multigrid<dim>::invert_coarsest(const NaturalStencil& stencil) {
   std::vector<float> ids(grid.n_natural, -1);
   for (Eigen::Index r = 0; r < n; ++r)
     ids[at[r]] = static_cast<float>(r);
-  layout_->levels().back().halo.fill_natural(ids.data());
+  layout_->levels().back().halo.fill_natural<float>({ids.data()});
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index r = 0; r < n; ++r) {
     matrix(r, r) += stencil.diagonal[at[r]] * (1 + coarsest_shift);
@@ -71,8 +71,7 @@ void Multigrid<dim>::solve_coarsest() {
   for (Eigen::Index r = 0; r < n; ++r)
     work.x[coarsest_slots_[r] / n_slots][coarsest_slots_[r] % n_slots] =
         static_cast<float>(coarsest_solution_[r]);
-  for (int colour = 0; colour < 2; ++colour)
-    layout_->levels().back().halo.fill(colour, work.x[colour].data());
+  layout_->levels().back().halo.fill(work.x[0].data(), work.x[1].data());
 }
 
 template void Multigrid<2>::invert_coarsest(const NaturalStencil&);

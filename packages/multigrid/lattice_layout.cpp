@@ -69,7 +69,27 @@ std::string LatticeLayout::why_not(const LatticeBlocks& blocks) {
   return "";
 }
 
-LevelGrid LatticeLayout::make_grid(int level, bool is_distributed) const {
+void LayoutLevel::find_parts() {
+  parts_.clear();
+  parts_at_.assign(1, 0);
+  for (int k = 0; k < grid.n[2]; ++k) {
+    for (int j = 0; j < grid.n[1]; ++j) {
+      if (owned.empty() && grid.n[0] > 0)
+        parts_.push_back({0, grid.n[0]});
+      const char* mine = owned.empty() ? nullptr : owned.data() + grid.natural(0, j, k);
+      for (int i = 0; mine != nullptr && i < grid.n[0];) {
+        const int begin = i;
+        while (i < grid.n[0] && mine[i] == mine[begin])
+          ++i;
+        if (mine[begin])
+          parts_.push_back({begin, i});
+      }
+      parts_at_.push_back(parts_.size());
+    }
+  }
+}
+
+LevelGrid LatticeLayout::make_grid(int level, bool is_distributed, int depth) const {
   const LatticeBlocks& blocks = *blocks_;
   const auto whole = n_cells(blocks, level);
   LevelGrid grid;
@@ -85,34 +105,48 @@ LevelGrid LatticeLayout::make_grid(int level, bool is_distributed) const {
         lowest = std::min(lowest, begin[axis]);
         highest = std::max(highest, begin[axis] + blocks.width);
       }
-      if (highest == 0)
-        lowest = 0;
-      grid.begin[axis] = lowest >> level;
-      grid.n[axis] = std::min(highest >> level, whole[axis]) - grid.begin[axis];
+      if (highest == 0) {
+        grid.n[axis] = 0;
+        continue;
+      }
+      const int margin = (depth + 1) & ~1;  // boxes begin at even cells
+      int begin = (lowest >> level) - margin, end = (highest >> level) + margin;
+      if (!blocks.periodic[axis]) {
+        begin = std::max(begin, 0);
+        end = std::min(end, whole[axis]);
+      }
+      grid.begin[axis] = begin;
+      grid.n[axis] = end - begin;
     }
   }
   grid.set_strides(is_distributed || blocks.periodic[0]);
   return grid;
 }
 
-LatticeLayout::LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks)
+LatticeLayout::LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks, int depth)
     : blocks_(std::move(blocks)) {
   const std::string reason = why_not(*blocks_);
   check_solve(reason.empty(), "{}", reason);
   const bool several_ranks = blocks_->comm->getSize() > 1;
   const int n_distributed = several_ranks ? log2_of(blocks_->width) : 0;
-  const auto neighbors =
-      several_ranks ? find_block_neighbors(*blocks_) : std::vector<BlockNeighbors>();
+  const auto near_blocks =
+      several_ranks ? find_near_blocks(*blocks_, (depth + 1) / 2) : std::vector<NearBlock>();
   levels_.resize(n_levels(*blocks_));
   for (int level = 0; level < static_cast<int>(levels_.size()); ++level) {
     LayoutLevel& result = levels_[level];
-    result.grid = make_grid(level, level < n_distributed);
-    result.halo =
-        LevelHalo(blocks_->comm, level < n_distributed
-                                     ? distributed_peers(*blocks_, neighbors, level, result.grid)
-                                     : periodic_peers(*blocks_, result.grid));
-    if (level < n_distributed)
+    result.grid = make_grid(level, level < n_distributed, depth);
+    if (level < n_distributed) {
+      const auto halo = [&](const GhostReach& reach) {
+        return LevelHalo(blocks_->comm,
+                         distributed_peers(*blocks_, near_blocks, level, reach, result.grid));
+      };
+      result.halo = halo({1, false});
+      result.deep_halo = halo({depth, true});
       mark_owned(level);
+    } else {
+      result.halo = LevelHalo(blocks_->comm, periodic_peers(*blocks_, result.grid));
+    }
+    result.find_parts();
   }
 }
 

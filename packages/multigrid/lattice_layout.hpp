@@ -28,9 +28,35 @@ void for_each_cell(const LatticeBlocks& blocks, const Visit& visit) {
 
 /// One level's storage and exchange.
 struct LayoutLevel {
+  /// Cells [begin, end) of a row, local coordinates.
+  struct Part {
+    int begin = 0, end = 0;
+  };
+
   LevelGrid grid;
-  LevelHalo halo;
+  LevelHalo halo;  ///< to the next cells beyond this rank's
+  /// On a distributed level: as far as half sweeps reach in one pass through memory.
+  LevelHalo deep_halo;
   std::vector<char> owned;  ///< natural array of the box: this rank's cells; empty: all of them
+
+  /// The parts of row (j, k) that are this rank's cells. Those of a distributed level begin at even
+  /// cells, and rows 2 j and 2 j + 1 have the same, if both exist; likewise planes.
+  struct Parts {
+    const Part *first, *last;
+    const Part* begin() const { return first; }
+    const Part* end() const { return last; }
+    bool empty() const { return first == last; }
+  };
+  Parts parts(int j, int k) const {
+    const std::size_t row = j + grid.n[1] * static_cast<std::size_t>(k);
+    return {parts_.data() + parts_at_[row], parts_.data() + parts_at_[row + 1]};
+  }
+  /// To be called when `grid` and `owned` are set.
+  void find_parts();
+
+ private:
+  std::vector<Part> parts_;
+  std::vector<std::size_t> parts_at_;  ///< by row, and one more
 };
 
 /// The levels of a multigrid on a lattice: each halves the cells along every axis. Levels whose
@@ -39,8 +65,9 @@ struct LayoutLevel {
 /// Depends on the blocks only, not on what fills them. The same on any number of ranks.
 class LatticeLayout {
  public:
-  /// Throws SolveError if `why_not` has a reason. Collective.
-  explicit LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks);
+  /// On distributed levels a rank holds the cells of others that are `depth` cells or less from its
+  /// own (maximum norm). Throws SolveError if `why_not` has a reason. Collective.
+  LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks, int depth);
 
   /// Why no multigrid can be built on this lattice, as a sentence; empty if one can.
   static std::string why_not(const LatticeBlocks& blocks);
@@ -53,7 +80,7 @@ class LatticeLayout {
 
  private:
   void mark_owned(int level);
-  LevelGrid make_grid(int level, bool is_distributed) const;
+  LevelGrid make_grid(int level, bool is_distributed, int depth) const;
 
   std::shared_ptr<const LatticeBlocks> blocks_;
   std::vector<LayoutLevel> levels_;

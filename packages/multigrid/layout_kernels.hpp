@@ -10,8 +10,8 @@
 namespace lockstep {
 
 /// A and one cycle, in two passes over memory an iteration beside the cycle's: A d is worked out in
-/// both, which takes less time than to store it. Ghosts of d are exchanged once: those of z will
-/// not do, which the cycle does not leave in every cell as their owner has it.
+/// both, which takes less time than to store it. Ghosts of z are exchanged, as single precision has
+/// them, and those of d follow as d does.
 template <int dim>
 class LayoutKernels final : public ConjugateGradientKernels {
  public:
@@ -54,15 +54,10 @@ class LayoutKernels final : public ConjugateGradientKernels {
           to[m] = back * z[m] + beta * to[m];
       }
     };
-    if (!halo_.empty()) {
-      inverse_->for_each_row(turn);
-      for (int colour = 0; colour < 2; ++colour)
-        halo_.fill(colour, d + colour * n_slots);
-    }
-    const auto turn_slab = [&](int slab) {
-      if (halo_.empty())
-        inverse_->for_each_row(slab, turn);
-    };
+    inverse_->fill_ghosts(halo_);
+    for (int colour = 0; colour < 2; ++colour)
+      halo_.for_each_ghost(colour, [&](std::ptrdiff_t slot) { turn(colour, slot, 1); });
+    const auto turn_slab = [&](int slab) { inverse_->for_each_row(slab, turn); };
     double sum = 0;
     stencil_->for_each_product(
         d, turn_slab,

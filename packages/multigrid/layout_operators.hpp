@@ -136,8 +136,7 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
     copy_.assign(x, x + 2 * n_slots);
     for (const int entry : empty_)
       copy_[entry] = 0;
-    for (int colour = 0; colour < 2; ++colour)
-      halo_.fill(colour, copy_.data() + colour * n_slots);
+    halo_.fill(copy_.data(), copy_.data() + n_slots);
     return copy_.data();
   }
 
@@ -172,14 +171,17 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
     const LevelGrid& grid = level_.grid();
     const auto rows = level_.rows_of(slab);
     for (int j = rows.j_begin; j < rows.j_end; ++j) {
-      const auto range = level_.range(j, rows.k);
+      if (level_.is_foreign(j, rows.k))
+        continue;
       for (int colour = 0; colour < 2; ++colour) {
         level_.multiply(colour, j, rows.k, unit_, x + colour * grid.n_slots,
                         x + (1 - colour) * grid.n_slots, row_.data());
         add_rests(colour, j, rows.k, x + colour * grid.n_slots);
-        const std::ptrdiff_t at = grid.slot(range.first, j, rows.k);
-        use(colour, at, range.last - range.first, row_.data() + range.first,
-            level_.is_full(colour, j, rows.k) ? nullptr : diagonal(colour) + at);
+        level_.for_each_own_range(j, rows.k, [&](int first, int last) {
+          const std::ptrdiff_t at = grid.slot(first, j, rows.k);
+          use(colour, at, last - first, row_.data() + first,
+              level_.is_full(colour, j, rows.k) ? nullptr : diagonal(colour) + at);
+        });
       }
     }
   }
@@ -223,15 +225,16 @@ class LayoutInverse final : public LayoutOperator<TpetraOperator> {
         unit_(unit),
         empty_rows_(std::move(empty_rows)) {}
 
-  /// Calls f(colour, slot of the first cell, number of slots) for the rows of a slab.
+  /// Calls f(colour, slot of the first cell, number of slots) for this rank's rows of a slab.
   template <typename Function>
   void for_each_row(int slab, const Function& f) const {
     const StencilLevel<dim>& level = multigrid_.finest();
     const auto rows = level.rows_of(slab);
     for (int j = rows.j_begin; j < rows.j_end; ++j) {
-      const auto range = level.range(j, rows.k);
-      for (int colour = 0; colour < 2; ++colour)
-        f(colour, level.grid().slot(range.first, j, rows.k), range.last - range.first);
+      level.for_each_own_range(j, rows.k, [&](int first, int last) {
+        for (int colour = 0; colour < 2; ++colour)
+          f(colour, level.grid().slot(first, j, rows.k), last - first);
+      });
     }
   }
   template <typename Function>
@@ -270,6 +273,10 @@ class LayoutInverse final : public LayoutOperator<TpetraOperator> {
   double back() const { return back_; }
   std::ptrdiff_t n_slots() const { return multigrid_.finest().grid().n_slots; }
   const float* solution(int colour) const { return multigrid_.solution(colour); }
+  /// Sets the solution in the next cells beyond this rank's. Collective.
+  void fill_ghosts(const LevelHalo& halo) const {
+    halo.fill(multigrid_.solution(0), multigrid_.solution(1));
+  }
   const std::vector<EmptyRow>& empty_rows() const { return empty_rows_; }
 
  private:

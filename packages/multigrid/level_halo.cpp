@@ -31,80 +31,83 @@ LevelHalo::LevelHalo(const Communicator& comm, const std::vector<Peer>& peers) :
 }
 
 /// Moves the values of one list of each part to the other list's place on the peer: owned to
-/// ghosts, or back (then they are added).
+/// ghosts, or back (then they are added). All fields go in one message to each peer.
 template <typename Value>
-void LevelHalo::transfer(const Parts& parts, bool to_owner, Value* values) const {
+void LevelHalo::transfer(const Fields<Value>& fields, bool to_owner) const {
+  if (empty_)
+    return;
   const int me = comm_->getRank();
+  const MPI_Comm mpi = raw_communicator(comm_);
+  const auto source = [&](const Part& part) -> const auto& {
+    return to_owner ? part.ghosts : part.owned;
+  };
+  const auto target = [&](const Part& part) -> const auto& {
+    return to_owner ? part.owned : part.ghosts;
+  };
   std::size_t n_out = 0, n_in = 0;
-  for (const Part& part : parts) {
-    n_out += (to_owner ? part.ghosts : part.owned).size();
-    n_in += (to_owner ? part.owned : part.ghosts).size();
+  for (const Field<Value>& field : fields) {
+    for (const Part& part : *field.parts) {
+      n_out += source(part).size();
+      n_in += target(part).size();
+    }
   }
   outgoing_.resize(std::max(outgoing_.size(), n_out * sizeof(Value)));
   incoming_.resize(std::max(incoming_.size(), n_in * sizeof(Value)));
-  auto* out = reinterpret_cast<Value*>(outgoing_.data());
-  auto* in = reinterpret_cast<Value*>(incoming_.data());
-  const MPI_Comm mpi = raw_communicator(comm_);
+  auto* const out = reinterpret_cast<Value*>(outgoing_.data());
+  auto* const in = reinterpret_cast<Value*>(incoming_.data());
   requests_.clear();
   Value* next = in;
-  for (const Part& part : parts) {
-    const std::size_t n = (to_owner ? part.owned : part.ghosts).size();
-    if (part.rank != me && n > 0) {
-      requests_.emplace_back();
-      MPI_Irecv(next, static_cast<int>(n * sizeof(Value)), MPI_BYTE, part.rank, tag, mpi,
-                &requests_.back());
-    }
+  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
+    std::size_t n = 0;
+    for (const Field<Value>& field : fields)
+      n += target((*field.parts)[peer]).size();
+    if (natural_[peer].rank != me && n > 0)
+      MPI_Irecv(next, static_cast<int>(n * sizeof(Value)), MPI_BYTE, natural_[peer].rank, tag, mpi,
+                &requests_.emplace_back());
     next += n;
   }
   next = out;
-  for (const Part& part : parts) {
-    const auto& source = to_owner ? part.ghosts : part.owned;
-    for (std::size_t i = 0; i < source.size(); ++i)
-      next[i] = values[source[i]];
-    if (part.rank != me && !source.empty()) {
-      requests_.emplace_back();
-      MPI_Isend(next, static_cast<int>(source.size() * sizeof(Value)), MPI_BYTE, part.rank, tag,
-                mpi, &requests_.back());
-      ++sent_.messages;
-      sent_.bytes += static_cast<long long>(source.size() * sizeof(Value));
+  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
+    Value* const begin = next;
+    for (const Field<Value>& field : fields) {
+      for (const std::ptrdiff_t i : source((*field.parts)[peer]))
+        *next++ = field.values[i];
     }
-    next += source.size();
+    const auto n_bytes = static_cast<long long>((next - begin) * sizeof(Value));
+    if (natural_[peer].rank != me && n_bytes > 0) {
+      MPI_Isend(begin, static_cast<int>(n_bytes), MPI_BYTE, natural_[peer].rank, tag, mpi,
+                &requests_.emplace_back());
+      ++sent_.messages;
+      sent_.bytes += n_bytes;
+    }
   }
   if (to_owner) {
-    for (const Part& part : parts)
-      for (const std::ptrdiff_t ghost : part.ghosts)
-        values[ghost] = 0;
+    for (const Field<Value>& field : fields)
+      for (const Part& part : *field.parts)
+        for (const std::ptrdiff_t ghost : part.ghosts)
+          field.values[ghost] = 0;
   }
   MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
   const Value* mine = out;
-  next = in;
-  for (const Part& part : parts) {
-    const auto& target = to_owner ? part.owned : part.ghosts;
-    const Value* source = part.rank == me ? mine : next;
-    for (std::size_t i = 0; i < target.size(); ++i) {
-      if (to_owner)
-        values[target[i]] += source[i];
-      else
-        values[target[i]] = source[i];
+  const Value* theirs = in;
+  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
+    for (const Field<Value>& field : fields) {
+      const Part& part = (*field.parts)[peer];
+      const Value* from = part.rank == me ? mine : theirs;
+      for (const std::ptrdiff_t i : target(part)) {
+        if (to_owner)
+          field.values[i] += *from++;
+        else
+          field.values[i] = *from++;
+      }
+      mine += source(part).size();
+      theirs += target(part).size();
     }
-    mine += (to_owner ? part.ghosts : part.owned).size();
-    next += target.size();
   }
 }
 
-template <typename Value>
-void LevelHalo::exchange(const Parts& parts, Value* values) const {
-  if (!empty_)
-    transfer(parts, false, values);
-}
-
-void LevelHalo::exchange_back(const Parts& parts, float* values) const {
-  if (!empty_)
-    transfer(parts, true, values);
-}
-
-template void LevelHalo::exchange<float>(const Parts&, float*) const;
-template void LevelHalo::exchange<double>(const Parts&, double*) const;
-template void LevelHalo::exchange<char>(const Parts&, char*) const;
+template void LevelHalo::transfer<float>(const Fields<float>&, bool) const;
+template void LevelHalo::transfer<double>(const Fields<double>&, bool) const;
+template void LevelHalo::transfer<char>(const Fields<char>&, bool) const;
 
 }  // namespace lockstep

@@ -34,16 +34,32 @@ class LevelHalo {
   /// Sets the ghosts of one colour, of values in slots.
   template <typename Value>
   void fill(int colour, Value* values) const {
-    exchange(by_colour_[colour], values);
+    transfer<Value>({{&by_colour_[colour], values}}, false);
   }
-  /// Adds the ghosts' values to their owners' and zeroes them.
-  void sum_to_owner(int colour, float* values) const { exchange_back(by_colour_[colour], values); }
-  /// The same two for natural arrays.
+  /// Those of both colours, in one message to each neighbour.
   template <typename Value>
-  void fill_natural(Value* values) const {
-    exchange(natural_, values);
+  void fill(Value* even, Value* odd) const {
+    transfer<Value>({{by_colour_.data(), even}, {by_colour_.data() + 1, odd}}, false);
   }
-  void sum_natural_to_owner(float* values) const { exchange_back(natural_, values); }
+  /// Adds the ghosts' values of both colours to their owners' and zeroes them.
+  void sum_to_owner(float* even, float* odd) const {
+    transfer<float>({{by_colour_.data(), even}, {by_colour_.data() + 1, odd}}, true);
+  }
+  /// The same for natural arrays, several in one message.
+  template <typename Value>
+  void fill_natural(const std::vector<Value*>& arrays) const {
+    transfer(of_natural(arrays), false);
+  }
+  void sum_natural_to_owner(const std::vector<float*>& arrays) const {
+    transfer(of_natural(arrays), true);
+  }
+  /// Calls f(slot) for the ghosts of a colour.
+  template <typename Function>
+  void for_each_ghost(int colour, const Function& f) const {
+    for (const Part& part : by_colour_[colour])
+      for (const std::ptrdiff_t slot : part.ghosts)
+        f(slot);
+  }
 
   const MessageCount& sent() const { return sent_; }
 
@@ -54,11 +70,24 @@ class LevelHalo {
   };
   using Parts = std::vector<Part>;
 
+  /// Values and which of them go to and come from each peer.
   template <typename Value>
-  void exchange(const Parts& parts, Value* values) const;
-  void exchange_back(const Parts& parts, float* values) const;
+  struct Field {
+    const Parts* parts;
+    Value* values;
+  };
   template <typename Value>
-  void transfer(const Parts& parts, bool to_owner, Value* values) const;
+  using Fields = std::vector<Field<Value>>;
+
+  template <typename Value>
+  Fields<Value> of_natural(const std::vector<Value*>& arrays) const {
+    Fields<Value> fields;
+    for (Value* values : arrays)
+      fields.push_back({&natural_, values});
+    return fields;
+  }
+  template <typename Value>
+  void transfer(const Fields<Value>& fields, bool to_owner) const;
 
   Communicator comm_;
   bool empty_ = true;

@@ -124,14 +124,23 @@ void Multigrid<dim>::in_one_pass(int level, int n_stages, const Stage& stage) co
   }
 }
 
+/// Sums the right-hand sides of a level that every rank holds whole.
 template <int dim>
-void Multigrid<dim>::relax_everywhere(int level, int colour) {
+void Multigrid<dim>::add_over_ranks(int level) {
   Work& work = work_[level];
-  const StencilLevel<dim>& stencil = stencils_[level];
-  for (int slab = 0; slab < stencil.grid().n_slabs(); ++slab)
-    stencil.relax(colour, slab, work.b[colour].data(), work.x[1 - colour].data(),
-                  work.x[colour].data());
-  layout_->levels()[level].halo.fill(colour, work.x[colour].data());
+  const LevelGrid& grid = stencils_[level].grid();
+  gathered_.resize(static_cast<std::size_t>(grid.n[0]) * grid.n_rows());
+  const auto for_each_cell = [&](const auto& f) {
+    float* next = gathered_.data();
+    for (int k = 0; k < grid.n[2]; ++k)
+      for (int j = 0; j < grid.n[1]; ++j)
+        for (int i = 0; i < grid.n[0]; ++i)
+          f(*next++, work.b[LevelGrid::colour(i, j, k)][grid.slot_of_cell(i, j, k)]);
+  };
+  for_each_cell([](float& copy, float value) { copy = value; });
+  MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(gathered_.size()), MPI_FLOAT,
+                MPI_SUM, raw_communicator(layout_->blocks().comm));
+  for_each_cell([](float copy, float& value) { value = copy; });
 }
 
 template <int dim>
@@ -147,7 +156,7 @@ void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero, const SlabFu
   const int n_half_sweeps = 2 * options_.n_sweeps;
   const auto smooth = [&](int s, int slab) {
     const int colour = s % 2;
-    if (s == 0 && before)
+    if (s == 0 && before && !is_deep(level))
       before(slab);
     if (s == 0 && from_zero)
       stencil.relax_from_zero(red, slab, work.b[red].data(), work.x[red].data());
@@ -155,6 +164,16 @@ void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero, const SlabFu
       stencil.relax(colour, slab, work.b[colour].data(), work.x[1 - colour].data(),
                     work.x[colour].data());
   };
+  if (is_deep(level)) {
+    const int n_slabs = stencil.grid().n_slabs();
+    for (int slab = 0; before && slab < n_slabs; ++slab)
+      before(slab);
+    const LevelHalo& halo = layout_->levels()[level].deep_halo;
+    if (from_zero)
+      halo.fill(work.b[red].data(), work.b[black].data());
+    else
+      halo.fill(black, work.x[black].data());
+  }
   if (!exchanges(level)) {
     in_one_pass(level, n_half_sweeps + 1, [&](int s, int slab) {
       if (s < n_half_sweeps)
@@ -172,19 +191,15 @@ void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero, const SlabFu
       restrict_slab(level, slab);
   }
   restrict_moved(level);
-  if (gathers) {
-    for (AlignedArray<float>& b : work_[level + 1].b)
-      MPI_Allreduce(MPI_IN_PLACE, b.data(), static_cast<int>(b.size()), MPI_FLOAT, MPI_SUM,
-                    raw_communicator(layout_->blocks().comm));
-  }
-  if (transfers_[level].leaves_rank) {
-    for (int colour = 0; colour < 2; ++colour)
-      layout_->levels()[level + 1].halo.sum_to_owner(colour, work_[level + 1].b[colour].data());
-  }
+  if (gathers)
+    add_over_ranks(level + 1);
+  if (transfers_[level].leaves_rank)
+    layout_->levels()[level + 1].halo.sum_to_owner(work_[level + 1].b[red].data(),
+                                                   work_[level + 1].b[black].data());
 }
 
 /// Adds the red residual of a fine slab to the sums of the coarse slab; black ones are zero after
-/// the last half sweep. The last fine slab of a coarse one stores the sums.
+/// the last half sweep. The last fine slab of a coarse one stores the sums of this rank's cells.
 template <int dim>
 void Multigrid<dim>::restrict_slab(int level, int slab) {
   Work& work = work_[level];
@@ -195,6 +210,8 @@ void Multigrid<dim>::restrict_slab(int level, int slab) {
     std::fill(coarse_rows_.begin(), coarse_rows_.end(), 0.0F);
   const auto rows = stencil.rows_of(slab);
   for (int j = rows.j_begin; j < rows.j_end; ++j) {
+    if (stencil.is_foreign(j, rows.k))
+      continue;
     stencil.residual(red, j, rows.k, work.b[red].data(), work.x[red].data(), work.x[black].data(),
                      row_.data());
     const auto range = stencil.range(j, rows.k);
@@ -217,13 +234,18 @@ void Multigrid<dim>::flush_coarse_rows(int level, int fine_slab) {
     const int j = offset[1] + (dim == 3 ? r : fine_slab >> 1);
     const int k = dim == 3 ? offset[2] + (fine_slab >> 1) : 0;
     const float* sums = coarse_rows_.data() + r * n_coarse;
-    for (int first = 0; first < 2; ++first) {
-      const int i = offset[0] + first;
-      float* b =
-          work_[level + 1].b[LevelGrid::colour(i, j, k)].data() + coarse.slot_of_cell(i, j, k);
-      const int n = (n_coarse - first + 1) / 2;
-      for (int m = 0; m < n; ++m)
-        b[m] = sums[2 * m + first];
+    const auto parts =
+        layout_->levels()[level].parts(dim == 3 ? 2 * r : fine_slab, dim == 3 ? fine_slab : 0);
+    for (const LayoutLevel::Part& part : parts) {
+      const int begin = part.begin / 2, end = (part.end + 1) / 2;
+      for (int first = begin; first < std::min(begin + 2, end); ++first) {
+        const int i = offset[0] + first;
+        float* b =
+            work_[level + 1].b[LevelGrid::colour(i, j, k)].data() + coarse.slot_of_cell(i, j, k);
+        const int n = (end - first + 1) / 2;
+        for (int m = 0; m < n; ++m)
+          b[m] = sums[2 * m + first];
+      }
     }
   }
 }
@@ -241,7 +263,8 @@ void Multigrid<dim>::restrict_moved(int level) {
   }
 }
 
-/// Adds the coarse correction to the red cells of a slab; black ones are about to be overwritten.
+/// Adds the coarse correction to this rank's red cells of a slab; black ones are about to be
+/// overwritten.
 template <int dim>
 void Multigrid<dim>::prolong_slab(int level, int slab) {
   const StencilLevel<dim>& stencil = stencils_[level];
@@ -253,20 +276,19 @@ void Multigrid<dim>::prolong_slab(int level, int slab) {
   float* x = work_[level].x[red].data();
   const auto rows = stencil.rows_of(slab);
   for (int j = rows.j_begin; j < rows.j_end; ++j) {
-    const auto range = stencil.range(j, rows.k);
-    if (range.last == 0)
-      continue;
     const int coarse_j = (j >> 1) + offset[1];
     const int coarse_k = dim == 3 ? (rows.k >> 1) + offset[2] : 0;
-    for (int first = 0; first < 2; ++first) {
-      const int i = offset[0] + first;
-      const float* source = from.x[LevelGrid::colour(i, coarse_j, coarse_k)].data() +
-                            coarse.slot_of_cell(i, coarse_j, coarse_k);
-      const int n = ((fine.n[0] + 1) / 2 - first + 1) / 2;
-      for (int m = 0; m < n; ++m)
-        row_[2 * m + first] = source[m];
-    }
-    stencil.add(red, j, rows.k, row_.data(), x + fine.slot(0, j, rows.k));
+    stencil.for_each_own_range(j, rows.k, [&](int begin, int end) {
+      for (int first = begin; first < std::min(begin + 2, end); ++first) {
+        const int i = offset[0] + first;
+        const float* source = from.x[LevelGrid::colour(i, coarse_j, coarse_k)].data() +
+                              coarse.slot_of_cell(i, coarse_j, coarse_k);
+        const int n = (end - first + 1) / 2;
+        for (int m = 0; m < n; ++m)
+          row_[2 * m + first] = source[m];
+      }
+      stencil.add(red, j, rows.k, {begin, end}, row_.data(), x + fine.slot(0, j, rows.k));
+    });
   }
   for (std::size_t i = transfer.in_slab[slab]; i < transfer.in_slab[slab + 1]; ++i) {
     const MovedCell& cell = transfer.moved[i];
@@ -287,24 +309,38 @@ void Multigrid<dim>::prolong_and_smooth(int level, const SlabFunction& after) {
     stencil.relax(colour, slab, work.b[colour].data(), work.x[1 - colour].data(),
                   work.x[colour].data());
   };
-  if (!exchanges(level)) {
+  const auto relax_and_show = [&](int s, int slab) {
+    relax(s, slab);
+    if (s + 1 == n_half_sweeps && after)
+      after(slab);
+  };
+  const LayoutLevel& layout = layout_->levels()[level];
+  const int n_slabs = stencil.grid().n_slabs();
+  if (!exchanges(level) && !is_deep(level)) {
     in_one_pass(level, n_half_sweeps + 1, [&](int s, int slab) {
       if (s == 0)
         prolong_slab(level, slab);
       else
-        relax(s - 1, slab);
-      if (s == n_half_sweeps && after)
-        after(slab);
+        relax_and_show(s - 1, slab);
     });
     return;
   }
-  for (int slab = 0; slab < stencil.grid().n_slabs(); ++slab)
+  for (int slab = 0; slab < n_slabs; ++slab)
     prolong_slab(level, slab);
-  layout_->levels()[level].halo.fill(red, work.x[red].data());
-  for (int s = 0; s < n_half_sweeps; ++s)
-    relax_everywhere(level, s % 2 == 0 ? black : red);
-  for (int slab = 0; after && slab < stencil.grid().n_slabs(); ++slab)
-    after(slab);
+  if (is_deep(level)) {
+    layout.deep_halo.fill(red, work.x[red].data());
+    in_one_pass(level, n_half_sweeps, relax_and_show);
+    if (level > 0 && transfers_[level - 1].leaves_rank)
+      layout.halo.fill(work.x[red].data(), work.x[black].data());
+    return;
+  }
+  layout.halo.fill(red, work.x[red].data());
+  for (int s = 0; s < n_half_sweeps; ++s) {
+    for (int slab = 0; slab < n_slabs; ++slab)
+      relax_and_show(s, slab);
+    const int colour = s % 2 == 0 ? black : red;
+    layout.halo.fill(colour, work.x[colour].data());
+  }
 }
 
 template <int dim>

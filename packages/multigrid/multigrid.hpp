@@ -15,6 +15,10 @@ struct MultigridOptions {
   /// Visit each coarse level twice: an iteration or two less at the same cost, but not definite
   /// where the V-cycle overshoots by more than 2, as behind the narrow mouth of a thin bag.
   bool is_w_cycle = false;
+
+  /// How deep the ghosts of distributed levels must be: the farthest cell that half sweeps between
+  /// two exchanges, from zero or not, carry into a rank's own.
+  int ghost_depth() const { return 2 * n_sweeps + (is_w_cycle ? 1 : 0); }
 };
 
 /// One multigrid cycle for a stencil (coefficients over its unit) as an approximate inverse:
@@ -22,9 +26,11 @@ struct MultigridOptions {
 ///
 /// Red-black Gauss-Seidel, red first before the coarse correction and last after it; piecewise
 /// constant transfer; coarse faces half the sum of their fine ones; a dense inverse on the coarsest
-/// level, slightly shifted, so that closed regions need no care. With one rank the half sweeps of a
-/// level follow each other through the slabs in one pass over memory; with several, ghosts are
-/// exchanged after each.
+/// level, slightly shifted, so that closed regions need no care. The half sweeps of a level follow
+/// each other through the slabs in one pass over memory. With several ranks each does those of its
+/// neighbours' cells as well that its own will see, so that ghosts are exchanged once before a
+/// pass; only through periodic sides of levels that a rank holds whole they are after each half
+/// sweep.
 template <int dim>
 class Multigrid {
  public:
@@ -60,7 +66,7 @@ class Multigrid {
   /// `before` a slab is looked at, and `after` it has its final values; for empty ones nothing.
   void smooth_and_restrict(int level, bool from_zero, const SlabFunction& before = {});
   void prolong_and_smooth(int level, const SlabFunction& after = {});
-  void relax_everywhere(int level, int colour);
+  void add_over_ranks(int level);
   void restrict_slab(int level, int slab);
   void flush_coarse_rows(int level, int fine_slab);
   void restrict_moved(int level);
@@ -68,7 +74,11 @@ class Multigrid {
   /// Calls stage(s, slab) for s < n_stages, each stage one slab behind the one before it.
   template <typename Stage>
   void in_one_pass(int level, int n_stages, const Stage& stage) const;
-  bool exchanges(int level) const { return !layout_->levels()[level].halo.empty(); }
+  bool is_deep(int level) const { return !layout_->levels()[level].deep_halo.empty(); }
+  /// Ghosts are exchanged after each half sweep.
+  bool exchanges(int level) const {
+    return !is_deep(level) && !layout_->levels()[level].halo.empty();
+  }
 
   std::shared_ptr<const LatticeLayout> layout_;
   MultigridOptions options_;
@@ -79,6 +89,7 @@ class Multigrid {
   Eigen::MatrixXd coarsest_inverse_;
   Eigen::VectorXd coarsest_rhs_, coarsest_solution_;
   std::vector<float> row_, coarse_rows_;  ///< residual of a row; sums of a coarse slab, naturally
+  std::vector<float> gathered_;           ///< the cells of a level that every rank holds whole
 };
 
 extern template class Multigrid<2>;

@@ -82,8 +82,8 @@ class PressureLayoutOf final : public PressureLayout {
   MessageCount sent() const override {
     MessageCount total;
     for (const LayoutLevel& level : layout_->levels()) {
-      total.messages += level.halo.sent().messages;
-      total.bytes += level.halo.sent().bytes;
+      total.messages += level.halo.sent().messages + level.deep_halo.sent().messages;
+      total.bytes += level.halo.sent().bytes + level.deep_halo.sent().bytes;
     }
     return total;
   }
@@ -189,7 +189,7 @@ std::shared_ptr<PressureLayout> make_layout(const BlockSystem& system,
   auto result = std::dynamic_pointer_cast<PressureLayoutOf<dim>>(previous);
   if (!result || &result->layout()->blocks() != coefficients.blocks.get())
     result = std::make_shared<PressureLayoutOf<dim>>(
-        std::make_shared<const LatticeLayout>(coefficients.blocks), options);
+        std::make_shared<const LatticeLayout>(coefficients.blocks, options.ghost_depth()), options);
   result->set(system);
   return result;
 }

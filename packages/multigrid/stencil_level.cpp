@@ -56,39 +56,43 @@ void NaturalStencil::resize(const LevelGrid& grid, bool has_reaction) {
 
 void NaturalStencil::complete(const LayoutLevel& level) {
   const LevelGrid& grid = level.grid;
+  const LevelHalo& halo = grid.is_distributed ? level.deep_halo : level.halo;
+  std::vector<float*> faces;
   for (int axis = 0; axis < grid.dimension; ++axis)
-    level.halo.fill_natural(lower[axis].data());
+    faces.push_back(lower[axis].data());
+  halo.fill_natural(faces);
   for (int k = 0; k < grid.n[2]; ++k) {
     for (int j = 0; j < grid.n[1]; ++j) {
-      const std::ptrdiff_t row = grid.natural(0, j, k);
-      float* d = diagonal.data() + row;
-      const float* e = dirichlet.data() + row;
-      for (int i = 0; i < grid.n[0]; ++i)
-        d[i] = e[i];
-      if (!reaction.empty()) {
-        for (int i = 0; i < grid.n[0]; ++i)
-          d[i] += reaction[row + i];
+      for (const LayoutLevel::Part& part : level.parts(j, k)) {
+        const std::ptrdiff_t row = grid.natural(part.begin, j, k);
+        const int n = part.end - part.begin;
+        float* d = diagonal.data() + row;
+        const float* e = dirichlet.data() + row;
+        for (int i = 0; i < n; ++i)
+          d[i] = e[i];
+        if (!reaction.empty()) {
+          for (int i = 0; i < n; ++i)
+            d[i] += reaction[row + i];
+        }
+        for (int axis = 0; axis < grid.dimension; ++axis) {
+          const float* f = lower[axis].data() + row;
+          const std::ptrdiff_t next = grid.natural_stride[axis];
+          for (int i = 0; i < n; ++i)
+            d[i] += f[i] + f[i + next];
+        }
       }
-      for (int axis = 0; axis < grid.dimension; ++axis) {
-        const float* f = lower[axis].data() + row;
-        const std::ptrdiff_t next = grid.natural_stride[axis];
-        for (int i = 0; i < grid.n[0]; ++i)
-          d[i] += f[i] + f[i + next];
-      }
-      if (!level.owned.empty()) {
-        for (int i = 0; i < grid.n[0]; ++i)
-          d[i] = level.owned[row + i] ? d[i] : 0;
-      }
-      for (int i = 0; i < grid.n[0]; ++i)
-        active[row + i] = d[i] != 0;
     }
   }
-  level.halo.fill_natural(active.data());
+  halo.fill_natural<float>({diagonal.data()});
+  for (std::size_t i = 0; i < active.size(); ++i)
+    active[i] = diagonal[i] != 0;
 }
 
 template <int dim>
 StencilLevel<dim>::StencilLevel(const LayoutLevel& level)
-    : grid_(level.grid), rows_touch_(grid_.margin == 0 && grid_.row_stride * 2 <= grid_.n[0] + 1) {
+    : level_(level),
+      grid_(level.grid),
+      rows_touch_(grid_.margin == 0 && grid_.row_stride * 2 <= grid_.n[0] + 1) {
   for (int colour = 0; colour < 2; ++colour) {
     diagonal_[colour] = AlignedArray<float>(grid_.n_slots);
     inverse_[colour] = AlignedArray<float>(grid_.n_slots);
@@ -327,8 +331,9 @@ void StencilLevel<dim>::relax_from_zero(int colour, int slab, const float* b, fl
 }
 
 template <int dim>
-void StencilLevel<dim>::add(int colour, int j, int k, const float* correction, float* x) const {
-  const Range r = range(j, k);
+void StencilLevel<dim>::add(int colour, int j, int k, const Range& slots, const float* correction,
+                            float* x) const {
+  const Range r = slots;
   if (is_full(colour, j, k)) {
 #pragma GCC ivdep
     for (int m = r.first; m < r.last; ++m)

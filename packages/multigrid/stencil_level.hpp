@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -13,11 +14,12 @@ struct NaturalStencil {
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;
   std::vector<float> reaction;  ///< empty: none, on any rank
-  std::vector<float> diagonal;  ///< sum of an owned cell's faces and those two, else 0
+  std::vector<float> diagonal;  ///< sum of the cell's faces and those two, as its owner has it
   std::vector<char> active;     ///< the cell is an unknown, here or, of ghosts, on its own rank
 
   void resize(const LevelGrid& grid, bool has_reaction);
-  /// Fills `diagonal`, `active` and the ghosts of `lower` from the owned values. Collective.
+  /// Fills `diagonal`, `active` and the ghosts of `lower` from the owned values, as deep as the
+  /// level's ghosts go. Collective.
   void complete(const LayoutLevel& level);
 };
 
@@ -36,11 +38,24 @@ class StencilLevel {
 
   const LevelGrid& grid() const { return grid_; }
   const AlignedArray<float>& diagonal(int colour) const { return diagonal_[colour]; }
-  /// Slots [first, last) of row (j, k) hold all its unknowns; empty rows are (0, 0).
+  /// Slots [first, last) of row (j, k) hold all its unknowns, ghosts too; empty rows are (0, 0).
   struct Range {
     int first = 0, last = 0;
   };
   const Range& range(int j, int k) const { return ranges_[row_index(j, k)]; }
+  /// Whether none of a row's unknowns is this rank's.
+  bool is_foreign(int j, int k) const { return level_.parts(j, k).empty(); }
+  /// Calls f(first, last) for the slots in `range` of cells that are this rank's.
+  template <typename Function>
+  void for_each_own_range(int j, int k, const Function& f) const {
+    const Range& row = range(j, k);
+    for (const LayoutLevel::Part& part : level_.parts(j, k)) {
+      const int first = std::max(part.begin / 2, row.first);
+      const int last = std::min((part.end + 1) / 2, row.last);
+      if (first < last)
+        f(first, last);
+    }
+  }
   /// Whether all slots of a row's range are known to be unknowns of that colour.
   bool is_full(int colour, int j, int k) const {
     const EvenRow& row = even_rows_[2 * row_index(j, k) + colour];
@@ -52,8 +67,9 @@ class StencilLevel {
   void relax(int colour, int slab, const float* b, const float* other, float* x) const;
   /// x := D^-1 b on one colour of a slab.
   void relax_from_zero(int colour, int slab, const float* b, float* x) const;
-  /// x += correction where there is an unknown, in one row; both begin with slot 0.
-  void add(int colour, int j, int k, const float* correction, float* x) const;
+  /// x += correction where there is an unknown in slots [first, last) of a row, which must be in
+  /// its range; both begin with slot 0.
+  void add(int colour, int j, int k, const Range& slots, const float* correction, float* x) const;
   /// residual := b - (A x) of one row, 0 where there is no unknown, in slots [first, last).
   void residual(int colour, int j, int k, const float* b, const float* x, const float* other,
                 float* residual) const;
@@ -85,6 +101,7 @@ class StencilLevel {
   template <typename Value, typename Kernel>
   void with_sums(int colour, int j, int k, const Value* other, const Kernel& kernel) const;
 
+  const LayoutLevel& level_;
   const LevelGrid& grid_;
   bool rows_touch_;  ///< the last slot of a row is a cell, and the first of the next follows it
   float unit_ = 1;

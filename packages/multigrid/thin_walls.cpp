@@ -189,7 +189,7 @@ std::vector<char> destinations_behind_thin_walls(const LayoutLevel& level,
         is_orphan[walls.natural(walls.child(family, c))] = 1;
     }
   }
-  level.halo.fill_natural(is_orphan.data());
+  level.halo.fill_natural<char>({is_orphan.data()});
   for (const Family& family : families) {
     for (int part = 0; part < walls.n_children(); ++part) {
       if (part == family.main || family.part[part] != part)
@@ -201,7 +201,7 @@ std::vector<char> destinations_behind_thin_walls(const LayoutLevel& level,
       }
     }
   }
-  level.halo.fill_natural(result.data());
+  level.halo.fill_natural<char>({result.data()});
   return result;
 }
 
