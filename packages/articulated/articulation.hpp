@@ -5,6 +5,7 @@
 #include "articulated/closing.hpp"
 #include "articulated/mechanism.hpp"
 #include "interfaces/constraint.hpp"
+#include "interfaces/steering.hpp"
 
 namespace lockstep {
 
@@ -68,7 +69,7 @@ class Articulation {
 
 /// The ties between the bodies of an articulation.
 template <int dim>
-class JointConstraints : public ConstraintModel {
+class JointConstraints : public ConstraintModel, public SteeredJoints {
  public:
   JointConstraints(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm);
 
@@ -82,6 +83,8 @@ class JointConstraints : public ConstraintModel {
   void take_note(const RCP<const Vector>& at_start, const Vector& at_end, double dt) override;
   std::vector<JointState> states() const override;
   std::string note() const override;
+  void set_target(const std::string& joint, double time, const std::vector<double>& q,
+                  const std::vector<double>& rate) override;
 
  private:
   std::vector<TwistVector<dim>> gather_twists(const Vector& velocity) const;

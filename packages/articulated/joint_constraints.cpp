@@ -2,9 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "articulated/articulation.hpp"
+#include "base/errors.hpp"
 
 namespace lockstep {
 
@@ -244,6 +246,27 @@ std::vector<JointState> JointConstraints<dim>::states() const {
       states.push_back(state);
   }
   return states;
+}
+
+template <int dim>
+void JointConstraints<dim>::set_target(const std::string& name, double time,
+                                       const std::vector<double>& q,
+                                       const std::vector<double>& rate) {
+  auto& joints = articulation_->joints();
+  const auto joint = std::find_if(joints.begin(), joints.end(),
+                                  [&name](const Joint<dim>& one) { return one.name == name; });
+  check_input(joint != joints.end(), "There is no joint \"{}\".", name);
+  check_input(joint->control.type != ControlType::free,
+              "The joint \"{}\" is free; give it a \"Control\" before a target.", name);
+  const auto n = static_cast<std::size_t>(joint->q.size());
+  check_input(q.size() == n && rate.size() == n,
+              "The target of the joint \"{}\" has {} values and {} rates; it has {} coordinates.",
+              name, q.size(), rate.size(), n);
+  const Eigen::VectorXd place = Eigen::Map<const Eigen::VectorXd>(q.data(), joint->q.size());
+  const Eigen::VectorXd speed = Eigen::Map<const Eigen::VectorXd>(rate.data(), joint->q.size());
+  joint->control.target = [time, place, speed](double t) {
+    return TargetValue{place + (t - time) * speed, speed};
+  };
 }
 
 template <int dim>

@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "rigid/rigid_parameters.hpp"
 
 namespace lockstep {
@@ -151,6 +152,15 @@ RigidVector<dim> RigidBodies<dim>::load_impulse(const RigidBody<dim>& body, doub
   RigidVector<dim> generalized;
   generalized << impulse, cross<dim>(body.arm(), impulse) + dt * body.torque;
   return generalized;
+}
+
+template <int dim>
+void RigidBodies<dim>::set_load(int solid, const Point<dim>& force,
+                                const AngularVector<dim>& torque) {
+  check_input(bodies_[solid].dynamic(), "\"{}\" is prescribed; no force moves it.",
+              solids_[solid].name);
+  bodies_[solid].force = force;
+  bodies_[solid].torque = torque;
 }
 
 template <int dim>

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "interfaces/solid_sides.hpp"
+#include "interfaces/steering.hpp"
 #include "parameters/parameter_list.hpp"
 #include "rigid/rigid_body.hpp"
 
@@ -22,6 +23,7 @@ template <int dim>
 class RigidBodies : public SolidModel<dim>,
                     public AuditedSolids<dim>,
                     public JointableSolids<dim>,
+                    public LoadableSolids<dim>,
                     public SolidOutput<dim> {
  public:
   /// gravity [m/s^2]; prescribed bodies are put where they are at `start_time` [s]. Collective.
@@ -59,6 +61,7 @@ class RigidBodies : public SolidModel<dim>,
   RigidFrame<dim> prescribed_frame(int solid, double time) const override;
   GlobalIndex first_dof(int solid) const override { return first_dof_[solid]; }
   std::string unjointable(int solid) const override;
+  void set_load(int solid, const Point<dim>& force, const AngularVector<dim>& torque) override;
   void add_frames(std::vector<SurfaceFrame>& frames) const override;  ///< of what no fluid sees
 
   std::function<void()> undo() override;

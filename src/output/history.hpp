@@ -36,6 +36,8 @@ class HistoryTable {
   /// file is begun. Throws InputError if the file has other columns.
   void resume(long long step);
 
+  const std::vector<HistoryColumn>& columns() const { return columns_; }
+
   void append_row(const std::vector<HistoryValue>& values);
   /// Several rows at the price of one (a row a solid, for example); ranks other than 0 may pass
   /// none.

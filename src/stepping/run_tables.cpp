@@ -50,8 +50,8 @@ void RunTables<dim>::resume(long long step) {
 }
 
 template <int dim>
-void RunTables<dim>::append(long long step, const StepReport<dim>& report,
-                            const std::vector<SolidState<dim>>& states, double wall_seconds) {
+std::vector<HistoryValue> history_row(long long step, const StepReport<dim>& report,
+                                      double wall_seconds) {
   std::vector<HistoryValue> row;
   append_each(
       row, step, report.time, report.dt, report.cfl, static_cast<long long>(report.s1.iterations),
@@ -82,8 +82,13 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
     if (liquid->gas)
       append_each(row, liquid->gas->n_pockets, liquid->gas->volume, liquid->gas->pressure);
   }
-  history_.append_row(row);
+  return row;
+}
 
+template <int dim>
+void RunTables<dim>::append(long long step, const StepReport<dim>& report,
+                            const std::vector<SolidState<dim>>& states, double wall_seconds) {
+  history_.append_row(history_row(step, report, wall_seconds));
   std::vector<std::vector<HistoryValue>> rows;
   for (std::size_t s = 0; s < states.size(); ++s) {
     const SolidState<dim>& state = states[s];
@@ -133,6 +138,8 @@ StepProgress progress_of(long long step, const StepReport<dim>& report, double w
 
 template class RunTables<2>;
 template class RunTables<3>;
+template std::vector<HistoryValue> history_row<2>(long long, const StepReport<2>&, double);
+template std::vector<HistoryValue> history_row<3>(long long, const StepReport<3>&, double);
 template StepProgress progress_of<2>(long long, const StepReport<2>&, double);
 template StepProgress progress_of<3>(long long, const StepReport<3>&, double);
 

@@ -24,11 +24,19 @@ class RunTables {
               const std::vector<SolidState<dim>>& states, double wall_seconds);
   /// Likewise. Only with joints.
   void append_joints(long long step, double time, const std::vector<JointState>& joints);
+  const std::vector<HistoryColumn>& columns() const {
+    return history_.columns();
+  }  ///< of history.csv
 
  private:
   HistoryTable history_, bodies_;
   std::optional<HistoryTable> joints_;
 };
+
+/// The row of a step in history.csv.
+template <int dim>
+std::vector<HistoryValue> history_row(long long step, const StepReport<dim>& report,
+                                      double wall_seconds);
 
 /// The numbers of the progress line.
 template <int dim>

@@ -143,20 +143,26 @@ RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) c
 }
 
 template <int dim>
-void Simulation<dim>::write_frame() {
-  ScopedPhase phase(timers_, "frames");
-  std::vector<BoxFrame> boxes;
-  if (const auto* output = side_of<FluidOutput<dim>>(*components_.fluid))
-    output->add_frame(boxes);
-  std::vector<SurfaceFrame> meshes =
-      surface_frames<dim>(*components_.solids, *stepper_->system().surface());
+Frame Simulation<dim>::frame() const {
+  Frame frame;
+  const auto* fluid = side_of<FluidOutput<dim>>(*components_.fluid);
+  if (fluid)
+    fluid->add_frame(frame.boxes);
+  frame.meshes = surface_frames<dim>(*components_.solids, *stepper_->system().surface());
   for (int m = 0; m < components_.solids->n_models(); ++m) {
     if (const auto* output = side_of<SolidOutput<dim>>(components_.solids->model(m)))
-      output->add_frames(meshes);
+      output->add_frames(frame.meshes);
   }
-  if (const auto* output = side_of<FluidOutput<dim>>(*components_.fluid))
-    output->add_surfaces(meshes);
-  frames_.write(step_, stepper_->time(), boxes, meshes);
+  if (fluid)
+    fluid->add_surfaces(frame.meshes);
+  return frame;
+}
+
+template <int dim>
+void Simulation<dim>::write_frame() {
+  ScopedPhase phase(timers_, "frames");
+  const Frame now = frame();
+  frames_.write(step_, stepper_->time(), now.boxes, now.meshes);
   last_frame_ = stepper_->time();
 }
 
@@ -184,18 +190,20 @@ void Simulation<dim>::load_checkpoint() {
 }
 
 template <int dim>
-std::optional<StepReport<dim>> Simulation<dim>::take_step(double dt, int& signal) {
+bool Simulation<dim>::take_step(double dt) {
   ScopedPhase phase(timers_, "step");
   try {
-    return stepper_->advance(dt);
+    report_ = stepper_->advance(dt);
+    return true;
   } catch (const Interrupted& interrupted) {
-    signal = interrupted.signal;
-    return {};
+    signal_ = interrupted.signal;
+    return false;
   }
 }
 
 template <int dim>
-void Simulation<dim>::warn(const StepReport<dim>& report) {
+void Simulation<dim>::warn() {
+  const StepReport<dim>& report = *report_;
   if (report.contact_position.n_crossings > 0) {
     log_.warning(
         "Step {}: prescribed solids or pinned nodes press surfaces through each other at {} "
@@ -216,15 +224,10 @@ void Simulation<dim>::warn(const StepReport<dim>& report) {
 }
 
 template <int dim>
-int Simulation<dim>::run() {
-  const auto start = Clock::now();
-  begin_outputs();
-  install_signal_handlers();
+template <typename Function>
+void Simulation<dim>::recorded(const Function& f) const {
   try {
-    const int signal = take_steps(start);
-    write_checkpoint();
-    end_outputs(signal, seconds_since(start));
-    return signal == 0 ? 0 : 128 + signal;
+    f();
   } catch (const std::exception& error) {
     record_failure(error.what());
     throw;
@@ -232,61 +235,109 @@ int Simulation<dim>::run() {
 }
 
 template <int dim>
-int Simulation<dim>::take_steps(Clock::time_point start) {
-  int signal = 0;
-  while (!finished() && signal == 0) {
-    const auto step_start = Clock::now();
-    const double dt = next_step();
-    const std::optional<StepReport<dim>> taken = take_step(dt, signal);
-    if (!taken) {
-      log_.normal("Step {} is abandoned.", step_ + 1);
-      break;
-    }
-    const StepReport<dim>& report = *taken;
-    ++step_;
-    last_dt_ = dt;
-    summary_.count(report);
-    warn(report);
-    const double step_seconds = seconds_since(step_start);
-    const std::vector<SolidState<dim>> states = components_.solids->states();
-    tables_.append(step_, report, states, step_seconds);
-    if (const ConstraintModel* joints = components_.solids->joints())
-      tables_.append_joints(step_, report.time, joints->states());
-    if (!observers_.empty()) {
-      ScopedPhase phase(timers_, "observers");
-      observers_.observe(step_, view(states));
-    }
-    StepProgress progress = progress_of<dim>(step_, report, step_seconds);
-    progress.remaining_seconds = remaining_seconds(seconds_since(start), fraction_done());
-    log_.normal("{}", progress_line(progress));
-    const OutputOptions& output = scene_options_.output;
-    const double slack = 1e-9 * std::max(dt, output.frame_interval);
-    if (output.frames &&
-        (finished() || stepper_->time() >= last_frame_ + output.frame_interval - slack)) {
-      write_frame();
-    }
-    if (output.checkpoint_interval > 0 &&
-        stepper_->time() >= last_checkpoint_ + output.checkpoint_interval - slack) {
-      write_checkpoint();
-    }
-    signal = signal_received(comm_);
+int Simulation<dim>::run() {
+  begin();
+  install_signal_handlers();
+  while (step()) {
   }
-  return signal;
+  end();
+  return signal_ == 0 ? 0 : 128 + signal_;
 }
 
 template <int dim>
-void Simulation<dim>::end_outputs(int signal, double wall_seconds) {
+void Simulation<dim>::begin() {
+  start_ = Clock::now();
+  begin_outputs();
+}
+
+template <int dim>
+bool Simulation<dim>::step() {
+  if (finished() || signal_ != 0)
+    return false;
+  bool taken = false;
+  recorded([&] {
+    const auto step_start = Clock::now();
+    const double dt = next_step();
+    taken = take_step(dt);
+    if (!taken) {
+      log_.normal("Step {} is abandoned.", step_ + 1);
+      return;
+    }
+    ++step_;
+    last_dt_ = dt;
+    summary_.count(*report_);
+    warn();
+    step_seconds_ = seconds_since(step_start);
+    write_rows();
+    write_what_is_due();
+    signal_ = signal_received(comm_);
+  });
+  return taken;
+}
+
+template <int dim>
+void Simulation<dim>::write_rows() {
+  const std::vector<SolidState<dim>> states = components_.solids->states();
+  tables_.append(step_, *report_, states, step_seconds_);
+  if (const ConstraintModel* joints = components_.solids->joints())
+    tables_.append_joints(step_, report_->time, joints->states());
+  if (!observers_.empty()) {
+    ScopedPhase phase(timers_, "observers");
+    observers_.observe(step_, view(states));
+  }
+  StepProgress progress = progress_of<dim>(step_, *report_, step_seconds_);
+  progress.remaining_seconds = remaining_seconds(seconds_since(start_), fraction_done());
+  log_.normal("{}", progress_line(progress));
+}
+
+template <int dim>
+void Simulation<dim>::write_what_is_due() {
+  const OutputOptions& output = scene_options_.output;
+  const double slack = 1e-9 * std::max(last_dt_, output.frame_interval);
+  if (output.frames &&
+      (finished() || stepper_->time() >= last_frame_ + output.frame_interval - slack)) {
+    write_frame();
+  }
+  if (output.checkpoint_interval > 0 &&
+      stepper_->time() >= last_checkpoint_ + output.checkpoint_interval - slack) {
+    write_checkpoint();
+  }
+}
+
+template <int dim>
+std::vector<std::pair<std::string, HistoryValue>> Simulation<dim>::history_row() const {
+  std::vector<std::pair<std::string, HistoryValue>> row;
+  if (!report_)
+    return row;
+  const std::vector<HistoryValue> values =
+      lockstep::history_row<dim>(step_, *report_, step_seconds_);
+  const std::vector<HistoryColumn>& columns = tables_.columns();
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    row.emplace_back(columns[c].name, values[c]);
+  return row;
+}
+
+template <int dim>
+void Simulation<dim>::end() {
+  recorded([&] {
+    write_checkpoint();
+    end_outputs(seconds_since(start_));
+  });
+}
+
+template <int dim>
+void Simulation<dim>::end_outputs(double wall_seconds) {
   write_summary(
       comm_, options_.output_directory,
       summary_.json(header_,
-                    {signal == 0 ? "done" : "stopped by a signal", step_ - first_step_, step_,
+                    {signal_ == 0 ? "done" : "stopped by a signal", step_ - first_step_, step_,
                      stepper_->time(), components_.fluid->pressure_map()->getGlobalNumElements(),
                      components_.solids->n_unknowns(), wall_seconds},
                     timers_.report(comm_), comm_));
   log_.normal("{}", timing_table(timers_.report(comm_)));
-  if (signal != 0) {
+  if (signal_ != 0) {
     log_.normal("Stopped by signal {} after step {}; the checkpoint in {} continues the run.",
-                signal, step_, options_.output_directory);
+                signal_, step_, options_.output_directory);
   }
 }
 

@@ -23,6 +23,12 @@ struct RunOptions {
   std::optional<DumpRequest> dump_system;  ///< write one system of the run to a file
 };
 
+/// The fields on boxes and on surfaces that a frame holds.
+struct Frame {
+  std::vector<BoxFrame> boxes;
+  std::vector<SurfaceFrame> meshes;
+};
+
 /// A run of one scene: builds it, steps it, writes tables, frames, checkpoints and the summary.
 template <int dim>
 class Simulation {
@@ -36,15 +42,37 @@ class Simulation {
   /// Runs to the end or to a signal; returns the exit code (0, or 128 + signal). Collective.
   int run();
 
+  // The same in parts, for programs that look at a run, or push it, between its steps. Collective.
+  /// Writes the start, or loads the checkpoint; once, before all steps.
+  void begin();
+  /// Takes a step and writes what is due. False, and no step, at the end of the scene and after a
+  /// signal that was asked for (output/signals.hpp).
+  bool step();
+  /// The last checkpoint and the summary; once, after all steps.
+  void end();
+
+  double time() const { return stepper_->time(); }  ///< [s]
+  long long n_steps() const { return step_; }       ///< with those before a restart
+  /// Of the last step; null before the first that this object takes.
+  const StepReport<dim>* report() const { return report_ ? &*report_ : nullptr; }
+  /// The row of history.csv of the last step, by column. Local.
+  std::vector<std::pair<std::string, HistoryValue>> history_row() const;
+  Components<dim>& components() { return components_; }
+  /// What a frame shows at present. Collective.
+  Frame frame() const;
+
  private:
   double next_step() const;
   bool finished() const;
-  /// The step's report; null if a signal ended it, whose number `signal` then is. Collective.
-  std::optional<StepReport<dim>> take_step(double dt, int& signal);
+  /// False if a signal ended it. Collective.
+  bool take_step(double dt);
+  void write_rows();
+  void write_what_is_due();
+  /// Calls f; what it throws is told to summary.json too.
+  template <typename Function>
+  void recorded(const Function& f) const;
   void begin_outputs();
-  /// Steps until the end or a signal, whose number is returned; 0 at the end.
-  int take_steps(std::chrono::steady_clock::time_point start);
-  void end_outputs(int signal, double wall_seconds);
+  void end_outputs(double wall_seconds);
   /// On rank 0, not collective: others may have failed elsewhere.
   void record_failure(const std::string& message) const noexcept;
   RunView<dim> view(const std::vector<SolidState<dim>>& states) const;
@@ -53,7 +81,7 @@ class Simulation {
   void write_checkpoint();
   void load_checkpoint();
   double fraction_done() const;
-  void warn(const StepReport<dim>& report);
+  void warn();
 
   ParameterList scene_;
   RunOptions options_;
@@ -70,6 +98,10 @@ class Simulation {
   long long step_ = 0, first_step_ = 0;
   bool warned_of_viscous_step_ = false;
   double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
+  std::optional<StepReport<dim>> report_;  ///< of the last step
+  double step_seconds_ = 0;                ///< it took so long
+  int signal_ = 0;                         ///< that ended the run
+  std::chrono::steady_clock::time_point start_;
   RunSummary summary_;
   nlohmann::ordered_json header_;
 };

@@ -21,6 +21,12 @@ run_step("The packed converge" "${usr}/bin/converge" "${usr}/share/lockstep/xml-
          --rungs 1:1 --series "inviscid, cubic" --output "${WORK_DIR}/study" --list)
 expect("Domain/Cells")
 
+if(HAS_MODULE)
+  run_step("The packed Python module" ${CMAKE_COMMAND} -E env "PYTHONPATH=${usr}/lib/python3/dist-packages"
+           "${PYTHON}" -c "import lockstep; run = lockstep.Run('${scene}', '${WORK_DIR}/stepped'); run.step(); print(run.n_steps, 'step')")
+  expect("1 step")
+endif()
+
 run_step("Configuring the template" ${CMAKE_COMMAND} -S "${usr}/share/lockstep/template"
          -B "${WORK_DIR}/template" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${usr}")
 file(STRINGS "${WORK_DIR}/template/CMakeCache.txt" found REGEX "^Lockstep_DIR:")

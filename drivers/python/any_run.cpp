@@ -1,0 +1,179 @@
+#include "any_run.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "base/errors.hpp"
+#include "interfaces/field_sampler.hpp"
+#include "interfaces/steering.hpp"
+#include "output/progress.hpp"
+#include "parameters/strict_xml.hpp"
+#include "scenes/expand_scene.hpp"
+#include "shipped/shipped_plug_ins.hpp"
+#include "stepping/scene_file.hpp"
+#include "stepping/simulation.hpp"
+
+namespace lockstep {
+namespace {
+
+template <typename Vector>
+Vector vector_of(const std::vector<double>& values, const char* what, const std::string& name) {
+  check_input(static_cast<Eigen::Index>(values.size()) == Vector::SizeAtCompileTime,
+              "The {} on \"{}\" has {} components; it takes {}.", what, name, values.size(),
+              int(Vector::SizeAtCompileTime));
+  return Eigen::Map<const Vector>(values.data());
+}
+
+/// The cells of all ranks, x fastest.
+WholeField whole(const BoxFrame& box, const BoxField& field, const Communicator& comm) {
+  WholeField result;
+  result.unit = field.unit;
+  for (int a = box.dimension - 1; a >= 0; --a)
+    result.shape.push_back(box.n_cells[a]);
+  if (field.n_components > 1)
+    result.shape.push_back(field.n_components);
+  const std::size_t n = field.n_components;
+  const auto row_begin = [&](int y, int z) {
+    return n * box.n_cells[0] * (y + std::size_t(box.n_cells[1]) * z);
+  };
+  result.values.assign(row_begin(0, box.n_cells[2]), 0.0);
+  std::vector<double> values;
+  for (std::size_t b = 0; b < box.blocks.size(); ++b) {
+    const CellBlock& block = box.blocks[b];
+    const std::size_t row = n * block.size[0];
+    values.resize(row * block.size[1] * block.size[2]);
+    field.fill(b, values.data());
+    auto from = values.begin();
+    for (int z = 0; z < block.size[2]; ++z) {
+      for (int y = 0; y < block.size[1]; ++y, from += row) {
+        std::copy_n(from, row,
+                    result.values.begin() + n * block.lower[0] +
+                        row_begin(block.lower[1] + y, block.lower[2] + z));
+      }
+    }
+  }
+  sum_all(comm, result.values.data(), static_cast<int>(result.values.size()));
+  return result;
+}
+
+template <int dim>
+class SteppedRun : public AnyRun {
+ public:
+  SteppedRun(Document document, const OpenRequest& request, const Communicator& comm)
+      : comm_(comm), log_(comm, std::cout, request.quiet ? LogLevel::quiet : LogLevel::normal) {
+    const Registries<dim> registries = shipped_plug_ins<dim>();
+    const ParameterList valid =
+        scene_parameters<dim>(registries, scene_fluid(document, request.settings));
+    complete_scene(document, request.settings, valid, comm);
+    RunOptions options;
+    options.scene_file = request.scene;
+    options.output_directory = request.output;
+    options.restart_file = request.restart;
+    options.command_line = "Python";
+    simulation_ = std::make_unique<Simulation<dim>>(registries, document.list, options, comm, log_);
+    simulation_->begin();
+  }
+
+  bool step() override { return simulation_->step(); }
+  void end() override { simulation_->end(); }
+  int dimension() const override { return dim; }
+  double time() const override { return simulation_->time(); }
+  long long n_steps() const override { return simulation_->n_steps(); }
+  std::vector<std::pair<std::string, HistoryValue>> history() const override {
+    return simulation_->history_row();
+  }
+
+  std::vector<BodyNumbers> bodies() const override {
+    std::vector<BodyNumbers> all;
+    for (const SolidState<dim>& state : solids().states())
+      all.push_back({state.name, state.center_of_mass, state.velocity, state.angular_velocity,
+                     state.mass, state.volume, state.kinetic_energy, state.elastic_energy});
+    return all;
+  }
+
+  std::vector<JointNumbers> joints() const override {
+    std::vector<JointNumbers> all;
+    if (const ConstraintModel* joints = solids().joints())
+      for (const JointState& joint : joints->states())
+        all.push_back(
+            {joint.name, joint.q, joint.rate, joint.target, joint.torque, joint.power, joint.gap});
+    return all;
+  }
+
+  void set_force(const std::string& body, const std::vector<double>& force,
+                 const std::vector<double>& torque) override {
+    const auto total = vector_of<Point<dim>>(force, "force", body);
+    const auto turning = vector_of<AngularVector<dim>>(torque, "torque", body);
+    for (int m = 0; m < solids().n_models(); ++m) {
+      const auto& described = solids().model(m).solids();
+      for (std::size_t s = 0; s < described.size(); ++s) {
+        if (described[s].name != body)
+          continue;
+        auto* loads = side_of<LoadableSolids<dim>>(solids().model(m));
+        check_input(loads != nullptr, "\"{}\" is no rigid body; only those take forces here.",
+                    body);
+        return loads->set_load(static_cast<int>(s), total, turning);
+      }
+    }
+    check_input(false, "There is no solid \"{}\".", body);
+  }
+
+  void set_target(const std::string& joint, const std::vector<double>& q,
+                  const std::vector<double>& rate) override {
+    auto* steered = solids().joints() ? side_of<SteeredJoints>(*solids().joints()) : nullptr;
+    check_input(steered != nullptr, "The scene has no joints, so none that is called \"{}\".",
+                joint);
+    steered->set_target(joint, time(), q, rate);
+  }
+
+  Samples sample(const Eigen::MatrixXd& points) const override {
+    check_input(points.cols() == dim, "Points have {} coordinates; the scene has {} dimensions.",
+                points.cols(), dim);
+    const auto* sampler = side_of<FieldSampler<dim>>(*simulation_->components().fluid);
+    check_input(sampler != nullptr, "This fluid cannot be asked at points.");
+    std::vector<Point<dim>> places(points.rows());
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      places[i] = points.row(i);
+    const std::vector<FluidSample<dim>> found = sampler->sample(places);
+    Samples samples;
+    samples.in_fluid.resize(points.rows());
+    samples.pressure.resize(points.rows());
+    samples.velocity.resize(points.rows(), dim);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      samples.in_fluid[i] = found[i].in_fluid;
+      samples.pressure[i] = found[i].pressure;
+      samples.velocity.row(i) = found[i].velocity;
+    }
+    return samples;
+  }
+
+  std::map<std::string, WholeField> fields() const override {
+    std::map<std::string, WholeField> all;
+    for (const BoxFrame& box : simulation_->frame().boxes)
+      for (const BoxField& field : box.fields)
+        all[field.name] = whole(box, field, comm_);
+    return all;
+  }
+  std::vector<SurfaceFrame> surfaces() const override { return simulation_->frame().meshes; }
+
+ private:
+  SolidSystem<dim>& solids() const { return *simulation_->components().solids; }
+
+  Communicator comm_;
+  Log log_;
+  std::unique_ptr<Simulation<dim>> simulation_;
+};
+
+}  // namespace
+
+std::unique_ptr<AnyRun> open_run(OpenRequest request) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  Document document = read_xml(request.scene, comm, FormulaPolicy::kept);
+  expand_scene(document, request.settings, comm);
+  if (scene_dimension(document) == 2)
+    return std::make_unique<SteppedRun<2>>(std::move(document), request, comm);
+  return std::make_unique<SteppedRun<3>>(std::move(document), request, comm);
+}
+
+}  // namespace lockstep

@@ -1,0 +1,192 @@
+"""The Python module: what it runs, reads and pushes, against the program and against Newton."""
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import lockstep
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "support"), str(ROOT / "drivers" / "python")]
+import turning_fish  # noqa: E402
+from scene_xml import xml  # noqa: E402
+from simulation import MPIEXEC, simulate, table, without_times  # noqa: E402
+
+DENSITY, GRAVITY = 1000., 9.8
+HALF_TURN = """
+import sys, lockstep
+with lockstep.Run(sys.argv[1], sys.argv[2]) as run:
+    while run.step():
+        run.set_force("Ball", (300., 0.))
+    pressure = run.fields()["pressure"]
+    print(repr(list(run.bodies()["Ball"]["velocity"])), repr(list(pressure[::5, ::5].ravel())))
+"""
+
+
+def tank(dimension=2, solids=None, **more):
+    """Of one metre, with a lid."""
+    down = (0., -GRAVITY, 0.)[:dimension]
+    return {"Dimension": dimension, "Domain": {"Cells": (16,) * dimension},
+            "Fluid": {"Density": DENSITY, "Gravity": down}, "Solids": solids or {}, "Solver": {"Tolerance": 1e-12},
+            "Time": {"End": .05, "Fixed Step": .01}, "Output": {"Frames": False}, **more}
+
+
+def ball(dimension=2, density=500., **more):
+    return {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .2}, "Density": density,
+            "Position": (.5, .45, .5)[:dimension], **more}
+
+
+def unseen_box(dimension=2):
+    """Of 2 kg, which no fluid sees: it moves as in vacuum. Its moment of inertia is 2 (1 + .04) / 12 about z."""
+    return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (1., .2, .2)[:dimension]}, "Mass": 2.,
+            "Seen by Fluid": False, "Position": (.5, .5, .5)[:dimension]}
+
+
+class Module(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = Path(self.folder.name)
+        self.addCleanup(self.folder.cleanup)
+
+    def scene(self, content):
+        file = self.root / "scene.xml"
+        file.write_text(xml("Scene", content))
+        return str(file)
+
+    def open(self, content, **more):
+        return lockstep.Run(self.scene(content), str(self.root / "run"), **more)
+
+    def test_runs_as_simulate_does(self):
+        scene = ROOT / "xml-params" / "scenes" / "constraints-2d.xml"
+        with lockstep.Run(str(scene), str(self.root / "run"), {"Domain/Cells": (24, 24), "Time/Steps": 3}) as run:
+            while run.step():
+                pass
+            self.assertEqual(run.n_steps, 3)
+            row = run.history
+        simulate(scene, self.root / "same", "--set", "Domain/Cells={24, 24}", "--steps", 3)
+        histories, bodies = ([table(self.root / name / file) for name in ("run", "same")]
+                             for file in ("history.csv", "bodies.csv"))
+        self.assertEqual(bodies[0], bodies[1])
+        self.assertEqual(*map(without_times, histories))
+        for name, text in histories[0][-1].items():
+            self.assertEqual(float(text), row[name], name)
+        self.assertIn('"done"', (self.root / "run" / "summary.json").read_text())
+
+    def test_force_and_torque_move_a_body_in_vacuum(self):
+        inertia = 2 * 1.04 / 12
+        for dimension, torque in ((2, .5), (3, (0., 0., .5))):
+            force = np.array((3., -1., 2.)[:dimension])
+            scene = tank(dimension, {"Box": unseen_box(dimension)}, Fluid={"Density": 1.}, Contact={"Type": "none"})
+            with self.subTest(dimension=dimension), self.open(scene) as run:
+                run.set_force("Box", force, torque)
+                for _ in range(3):
+                    run.step()
+                run.set_force("Box", 0 * force)
+                while run.step():
+                    pass
+                box = run.bodies()["Box"]
+                np.testing.assert_allclose(box["velocity"], force / 2 * .03, rtol=1e-12)
+                self.assertAlmostEqual(box["angular_velocity"][-1], .5 / inertia * .03, delta=1e-12)
+
+    def test_the_ledger_knows_the_force(self):
+        for coupling in ("mixed face", "flux"):
+            with self.open(tank(solids={"Ball": ball()}, Coupling={"Type": coupling})) as run:
+                run.set_force("Ball", (500., 0.), 20.)
+                while run.step():
+                    self.assertLess(run.history["momentum_error"], 1e-10)
+                    self.assertLess(run.history["angular_momentum_error"], 1e-10)
+                self.assertGreater(run.bodies()["Ball"]["velocity"][0], .01)
+
+    def test_a_joint_goes_where_it_is_told(self):
+        joint = {"Type": "hinge", "Solids": ("Box", "space"), "Point": (0., .5), "Control": "prescribed",
+                 "Target": {"Type": "constant"}}
+        scene = tank(solids={"Box": unseen_box()}, Joints={"Hinge": joint}, Contact={"Type": "none"})
+        with self.open(scene) as run:
+            run.set_target("Hinge", .1, 2.)
+            while run.step():
+                state, = run.joints()["Hinge"]
+                self.assertAlmostEqual(state["q"], .1 + 2. * run.time, delta=1e-12)
+
+    def test_reads_water_at_rest(self):
+        for dimension in (2, 3):
+            with self.subTest(dimension=dimension), self.open(tank(dimension)) as run:
+                run.step()
+                fields = run.fields()
+                heights = (np.arange(16) + .5) / 16
+                pressure = np.moveaxis(fields["pressure"], -2, -1)  # y last
+                self.assertEqual(fields["velocity"].shape, (16,) * dimension + (dimension,))
+                differences = DENSITY * GRAVITY * (heights[0] - heights)
+                np.testing.assert_allclose(pressure - pressure[..., :1],
+                                           np.broadcast_to(differences, pressure.shape), atol=1e-6)
+                points = np.full((16, dimension), 7.5 / 16)
+                points[:, 1] = heights
+                there, sampled, velocity = run.sample(points)
+                self.assertTrue(there.all())
+                np.testing.assert_allclose(sampled - sampled[0], differences, atol=1e-6)
+                np.testing.assert_allclose(velocity, 0, atol=1e-10)
+
+    def test_surfaces(self):
+        with self.open(tank(3, {"Ball": ball(3)})) as run:
+            vertices, triangles = run.surfaces()["Ball"]
+            radii = np.linalg.norm(vertices - run.bodies()["Ball"]["position"], axis=1)
+            np.testing.assert_allclose(radii, .2, atol=.01)
+            self.assertEqual(triangles.shape[1], 3)
+            self.assertEqual(len(vertices) - len(triangles) // 2, 2)  # Euler
+
+    def test_goes_on_from_a_checkpoint(self):
+        scene = tank(solids={"Ball": ball()}, Output={"Checkpoint Interval": .02, "Keep Checkpoints": 9})
+        found = []
+        for restart in ("", str(self.root / "run" / "checkpoint-000002.h5")):
+            with self.open(scene, restart=restart) as run:
+                while run.step():
+                    pass
+                found.append(run.bodies()["Ball"]["position"])
+        np.testing.assert_array_equal(*found)
+
+    def test_two_ranks(self):
+        scene = self.scene(tank(solids={"Ball": ball()}))
+        script = self.root / "script.py"
+        script.write_text(HALF_TURN)
+        found = []
+        for ranks in (1, 2):
+            command = [sys.executable, str(script), scene, str(self.root / f"run-{ranks}")]
+            start = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
+            # Not with what MPI has put into the environment of this process.
+            done = subprocess.run(start + command, capture_output=True, text=True, timeout=120, env=dict(os.environ))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            numbers = done.stdout.strip().split("\n")[-1].replace("[", " ").replace("]", " ").replace(",", " ")
+            found.append(np.array(numbers.split(), dtype=float))
+        self.assertGreater(abs(found[0][0]), .01)
+        np.testing.assert_allclose(found[0], found[1], rtol=1e-7, atol=1e-5)
+
+    def test_errors_have_a_sentence(self):
+        given = ball(Motion={"Type": "sinusoid", "Amplitude": (.01, 0.), "Frequency": 1.})
+        domain = {"Cells": (16, 16), "Sides": {"y upper": {"Type": "open"}}}
+        with self.open(tank(solids={"Ball": ball(Position=(.75, .3)), "Given": {**given, "Position": (.3, .7)}},
+                            Domain=domain)) as run:
+            for call, sentence in ((lambda: run.set_force("Boll", (0., 0.)), 'no solid "Boll"'),
+                                   (lambda: run.set_force("Ball", (0., 0., 0.)), "3 components; it takes 2"),
+                                   (lambda: run.set_force("Given", (0., 0.)), "prescribed"),
+                                   (lambda: run.set_target("Knee", 0.), "no joints"),
+                                   (lambda: run.sample(np.zeros((1, 3))), "3 coordinates")):
+                with self.assertRaisesRegex(lockstep.InputError, sentence):
+                    call()
+        with self.assertRaisesRegex(ValueError, "closed"):
+            run.step()
+        with self.assertRaisesRegex(lockstep.InputError, "nothing.xml"):
+            lockstep.Run("nothing.xml")
+
+    def test_a_controller_makes_the_fish_turn(self):
+        scene = str(ROOT / "xml-params" / "scenes" / "fish-2d.xml")
+        left, right = (np.mean(turning_fish.swim(scene, str(self.root / f"fish {bend}"), bend, 5.)[-50:])
+                       for bend in (.3, -.3))
+        self.assertGreater(math.degrees(left - right), 3)  # 5 degrees by then; none by waves alike
+
+
+if __name__ == "__main__":
+    os.chdir(tempfile.gettempdir())
+    unittest.main()
