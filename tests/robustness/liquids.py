@@ -66,7 +66,7 @@ def fill_with_liquid(world, content, seed):
     fluid["Gravity"] = gravity(rng, world, axes)
     surface = fluid["Free Surface"] = {"Interface": {"Type": rng.choice(["level set", "particle level set"])},
                                        "Liquid": liquid(rng, world, fluid["Gravity"])}
-    if seed >= FIRST_OF_FRACTIONS:
+    if FIRST_OF_FRACTIONS <= seed < FIRST_SEED + 2000:
         surface["Interface"]["Type"] = "volume of fluid"
     if rng.random() < 0.2 and seed < FIRST_OF_FRACTIONS:
         surface["Interface"]["Volume Correction"] = rng.choice(["global", "none"])

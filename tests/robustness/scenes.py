@@ -8,6 +8,7 @@ import dataclasses
 import math
 import random
 
+import gases
 import joints
 import liquids
 from liquids import AXES
@@ -388,11 +389,13 @@ def random_scene(seed):
     content = {"Dimension": world.dimension, "Title": f"Random scene {seed}",
                "Domain": {"Lower": world.lower, "Upper": world.upper, "Cells": world.cells, "Sides": side_lists},
                "Fluid": fluid(world, side_lists), "Solids": solids(world)}
-    if liquids.FIRST_SEED <= seed < joints.FIRST_SEED:
+    if liquids.FIRST_SEED <= seed < joints.FIRST_SEED or seed >= gases.FIRST_SEED:
         liquids.fill_with_liquid(world, content, seed)
+    if seed >= gases.FIRST_SEED:
+        gases.trap_air(world, content, seed)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])
-    if seed >= joints.FIRST_SEED:
+    if joints.FIRST_SEED <= seed < gases.FIRST_SEED:
         joints.add_joints(world, content, seed)
     content["Solver"] = solver(world, content["Coupling"], content["Solids"])
     content["Time"] = time(world)

@@ -55,10 +55,12 @@ void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>&
       cell = CellState::fluid;
   voids.blocked = marks.blocked;
   voids.near = geometry.near;
+  // Of cut cells every open part is a way, also past a body that hides one centre from the other.
   for (int axis = 0; axis < dim; ++axis)
-    for (std::size_t face = 0; face < fractions[axis].size(); ++face)
-      if (fractions[axis][face] == 0)
-        voids.blocked[face] = static_cast<char>(voids.blocked[face] | 1 << axis);
+    for (std::size_t face = 0; face < fractions[axis].size(); ++face) {
+      const int bit = 1 << axis, others = voids.blocked[face] & ~bit;
+      voids.blocked[face] = static_cast<char>(fractions[axis][face] == 0 ? others | bit : others);
+    }
   free_surface.gas->find(voids, *free_surface.distance);
   geometry.pocket = free_surface.gas->of_cell();
 }
