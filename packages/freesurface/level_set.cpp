@@ -9,6 +9,7 @@
 #include "freesurface/particles/particle_motion.hpp"
 #include "freesurface/particles/particle_seeding.hpp"
 #include "freesurface/particles/particle_storage.hpp"
+#include "freesurface/redistance.hpp"
 #include "freesurface/voids.hpp"
 #include "mac/state/stored_fields.hpp"
 #include "mac/transport/revalidation.hpp"
@@ -60,7 +61,6 @@ LevelSet<dim>::LevelSet(const MacDomain<dim>& domain, const LevelSetParameters& 
       parameters_(parameters),
       phi_(domain.grid.n_stored_cells(), parameters.band * domain.spacing()),
       solids_(find_solid_cells<dim>(domain, nullptr)),
-      redistancer_(domain),
       volume_(domain, parameters.volume),
       particles_(domain.grid.n_owned_tiles()),
       in_band_(domain.grid.n_owned_cells(), 0) {}
@@ -90,7 +90,7 @@ void LevelSet<dim>::initialise(const SignedDistance<dim>& distance, const Surfac
       [&](int cell) { phi_[cell] = std::clamp(distance(grid.center(cell)), -most, most); });
   domain_.full_halo.fill(phi_);
   const std::vector<char> all(grid.n_owned_tiles(), 1);
-  redistancer_.apply(solids_, all, cut_off(), phi_);
+  redistance(domain_, solids_, all, cut_off(), phi_);
   moved_ = 0;
   finish();
   volume_.begin(solids_, phi_);
@@ -145,7 +145,7 @@ void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<ch
       correct_by_particles(domain_, solids_, step.kept, particles_, phi_);
   };
   correct();
-  redistancer_.apply(solids_, tiles, cut_off(), phi_);
+  redistance(domain_, solids_, tiles, cut_off(), phi_);
   correct();
   fill_voids();
   moved_ = 0;
@@ -159,7 +159,7 @@ void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<ch
 template <int dim>
 void LevelSet<dim>::fill_voids() {
   const std::vector<int> filled = close_voids(domain_, solids_, parameters_.smallest_void, phi_);
-  if (!parameters_.particles)
+  if (!parameters_.particles || filled.empty())
     return;
   std::vector<char> cells(domain_.grid.n_stored_cells(), 0);
   for (const int cell : filled) {

@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "freesurface/particles/particles.hpp"
-#include "freesurface/redistance.hpp"
 #include "freesurface/volume_ledger.hpp"
 #include "mac/liquid/interface_model.hpp"
 #include "mac/liquid/solid_cells.hpp"
@@ -75,8 +74,7 @@ class LevelSet : public InterfaceModel<dim> {
   LevelSetParameters parameters_;
   CellField phi_;
   SolidCells<dim> solids_;  ///< at the present time
-  Redistancer<dim> redistancer_;
-  double moved_ = 0;  ///< since phi was made a distance, at most [cells]
+  double moved_ = 0;        ///< since phi was made a distance, at most [cells]
   VolumeLedger<dim> volume_;
   ParticleTiles<dim> particles_;
   std::vector<char> in_band_;  ///< owned cells that have been given particles

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mac/liquid/solid_cells.hpp"
+#include "mac/transport/row_values.hpp"
 #include "mac/transport/visible_interpolation.hpp"
 
 namespace lockstep {
@@ -27,18 +28,31 @@ class PhiLookup {
       return visible_->scalar(place(x), phi_.data());
     return plain_value(x);
   }
+  /// The same with what `values` has found there.
+  std::optional<double> value(const Point<dim>& x, double plain) const {
+    if (may_be_hidden(x) || !is_complete_)
+      return visible_->scalar(place(x), phi_.data());
+    return plain;
+  }
   /// As if there were no surface [phi / cells].
   Point<dim> gradient(const Point<dim>& x) const;
+  /// Of several points at once, as if there were no surface; of use where all samples exist.
+  RowValues<dim> values(const RowPoints<dim>& x) const;
+  /// 0 where a sample does not exist.
+  RowPoints<dim> gradients(const RowPoints<dim>& x) const;
   /// True if a surface comes between two points.
   bool hidden(const Point<dim>& a, const Point<dim>& b) const;
   /// True if a surface comes within two cells.
-  bool may_be_hidden(const Point<dim>& x) const;
+  bool may_be_hidden(const Point<dim>& x) const {
+    return is_near_surface_ && is_within_two_cells(x);
+  }
   /// In lattice units.
   Point<dim> place(const Point<dim>& x) const { return x + begin_; }
 
  private:
   int stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? width_ : width_ * width_; }
   double plain_value(const Point<dim>& x) const;
+  bool is_within_two_cells(const Point<dim>& x) const;
 
   const TiledGrid<dim>& grid_;
   const SampleLattice<dim>& lattice_;
@@ -51,6 +65,7 @@ class PhiLookup {
   mutable std::unique_ptr<VisibleInterpolation<dim>> visible_;
   std::vector<double> block_;
   bool is_complete_ = false;
+  bool is_near_surface_ = false;  ///< one may come within two cells of some point
   Point<dim> begin_ = Point<dim>::Zero();
 };
 

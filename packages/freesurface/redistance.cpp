@@ -3,50 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid/tile_field.hpp"
+
 namespace lockstep {
 
 namespace {
 constexpr int classes_per_cell = 8;
 
-template <int dim, typename Function>
-void for_each_fluid_cell(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
-                         const std::vector<char>& tiles, const Function& f) {
-  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile)
-    for (int i = 0, cell = tile * tile_volume<dim>; tiles[tile] && i < tile_volume<dim>;
-         ++i, ++cell)
-      if (solids.is_fluid(cell))
-        f(cell);
-}
-
 bool differ(double a, double b) {
   return (a < 0) != (b < 0);
 }
-}  // namespace
 
+/// What keeps its share of the distance: |phi| / |grad phi| at a cell beside the interface.
 template <int dim>
-Redistancer<dim>::Redistancer(const MacDomain<dim>& domain) : domain_(domain) {}
-
-template <int dim>
-bool Redistancer<dim>::is_near(const SolidCells<dim>& solids, const CellField& phi,
-                               int cell) const {
-  for (int axis = 0; axis < dim; ++axis)
-    for (int side = 0; side < 2; ++side) {
-      const int other = solids.seen_neighbor(domain_.grid, cell, axis, side);
-      if (other >= 0 && differ(phi[cell], phi[other]))
-        return true;
-    }
-  return false;
-}
-
-template <int dim>
-double Redistancer<dim>::scaled(const SolidCells<dim>& solids, const CellField& phi,
-                                int cell) const {
+double scaled(const TiledGrid<dim>& grid, const SolidCells<dim>& solids, const CellField& phi,
+              int cell) {
   double squares = 0;
   for (int axis = 0; axis < dim; ++axis) {
     std::array<double, 2> step{};
     std::array<bool, 2> seen{}, across{};
     for (int side = 0; side < 2; ++side) {
-      const int other = solids.seen_neighbor(domain_.grid, cell, axis, side);
+      const int other = solids.seen_neighbor(grid, cell, axis, side);
       seen[side] = other >= 0;
       if (!seen[side])
         continue;
@@ -60,129 +37,182 @@ double Redistancer<dim>::scaled(const SolidCells<dim>& solids, const CellField& 
           slope = step[side];
     squares += slope * slope;
   }
-  const double h = domain_.spacing();
+  const double h = grid.spacing();
   // A cell with a neighbour beyond the interface is no farther from it than from that one.
   return squares > 0 ? std::min(std::abs(phi[cell]) * h / std::sqrt(squares), h) : h;
 }
 
+/// The owned tiles and, on several ranks, the ghosts beside them.
 template <int dim>
-double Redistancer<dim>::arrival(const SolidCells<dim>& solids, const CellField& phi,
-                                 int cell) const {
-  const double h = domain_.spacing();
-  std::array<double, dim> least;
-  for (int axis = 0; axis < dim; ++axis) {
-    least[axis] = cut_off_;
-    for (int side = 0; side < 2; ++side) {
-      const int other = solids.seen_neighbor(domain_.grid, cell, axis, side);
-      if (other >= 0 && !differ(phi[cell], phi[other]))
-        least[axis] = std::min(least[axis], distance_[other]);
+std::vector<char> with_ghosts(const TiledGrid<dim>& grid, std::vector<char> tiles) {
+  tiles.resize(grid.n_tiles(), 1);
+  return tiles;
+}
+
+/// The distances of the cells of some tiles, found outward from those beside the interface. Cells
+/// go by their places in a TileField.
+template <int dim>
+class March {
+ public:
+  March(const MacDomain<dim>& domain, const SolidCells<dim>& solids, const std::vector<char>& tiles,
+        double cut_off, const CellField& phi)
+      : domain_(domain),
+        solids_(solids),
+        tiles_(with_ghosts(domain.grid, tiles)),
+        cut_off_(cut_off),
+        phi_(phi),
+        distance_(tiles_, cut_off),
+        ways_(distance_.end()),
+        stays_(distance_.end(), 1),
+        waiting_(static_cast<std::size_t>(cut_off * classes_per_cell / domain.spacing()) + 1),
+        first_waiting_(waiting_.size()) {}
+
+  void set_near_cells(NearCells near_cells) {
+    for (int tile = 0; tile < domain_.grid.n_tiles(); ++tile)
+      for (int i = 0, cell = tile * tile_volume<dim>; tiles_[tile] && i < tile_volume<dim>;
+           ++i, ++cell)
+        if (solids_.is_fluid(cell))
+          set_ways(cell, near_cells);
+  }
+  /// From all that waits, until nothing changes here.
+  void go() {
+    const double per_class = classes_per_cell / domain_.spacing();
+    for (std::size_t k = first_waiting_; k < waiting_.size(); ++k) {
+      // The list may grow while it is worked through.
+      for (std::size_t i = 0; i < waiting_[k].size(); ++i) {
+        const int place = waiting_[k][i];
+        if (static_cast<std::size_t>(distance_.at_place(place) * per_class) == k)
+          update_around(place);
+      }
+      waiting_[k].clear();
     }
+    first_waiting_ = waiting_.size();
   }
-  std::sort(least.begin(), least.end());
-  // |grad| = 1 with the differences towards the n nearest, as long as these come first.
-  double found = least[0] + h, sum = least[0], squares = least[0] * least[0];
-  for (int n = 2; n <= dim && found > least[n - 1]; ++n) {
-    sum += least[n - 1];
-    squares += least[n - 1] * least[n - 1];
-    const double discriminant = sum * sum - n * (squares - h * h);
-    if (discriminant < 0)
-      break;
-    found = (sum + std::sqrt(discriminant)) / n;
+  /// Takes over what other ranks have found; true if any rank has something to do.
+  bool take_from_others() {
+    const TiledGrid<dim>& grid = domain_.grid;
+    if (grid.comm()->getSize() == 1)
+      return false;
+    const TileField<dim> before = distance_;
+    domain_.halo.fill(distance_);
+    GlobalIndex n_changed = 0;
+    for (int cell = grid.n_owned_cells(); cell < grid.n_stored_cells(); ++cell) {
+      if (distance_[cell] >= before[cell] || !solids_.is_fluid(cell))
+        continue;
+      ++n_changed;
+      update_around(distance_.place(cell));
+    }
+    return sum_all(grid.comm(), n_changed) > 0;
   }
-  return found;
-}
+  double distance(int cell) const { return distance_[cell]; }
 
-template <int dim>
-void Redistancer<dim>::wait(int cell) {
-  const std::size_t place =
-      static_cast<std::size_t>(distance_[cell] * (classes_per_cell / domain_.spacing()));
-  if (place < waiting_.size())
-    waiting_[place].push_back(cell);
-  first_waiting_ = std::min(first_waiting_, place);
-}
+ private:
+  /// To the neighbours on the same side of the interface that are seen; 0 where there is none.
+  using Ways = std::array<int, 2 * dim>;
 
-template <int dim>
-void Redistancer<dim>::set_near_cells(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                                      const CellField& phi, NearCells near_cells) {
-  for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) {
-    if (std::abs(phi[cell]) >= cut_off_ || !is_near(solids, phi, cell))
+  void set_ways(int cell, NearCells near_cells) {
+    const TiledGrid<dim>& grid = domain_.grid;
+    const int place = distance_.place(cell);
+    bool is_near = false;
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int other = solids_.seen_neighbor(grid, cell, i / 2, i % 2);
+      const bool is_other_side = other >= 0 && differ(phi_[cell], phi_[other]);
+      is_near = is_near || is_other_side;
+      ways_[place][i] =
+          other >= 0 && !is_other_side && distance_.has(other) ? distance_.place(other) : 0;
+    }
+    stays_[place] = !grid.owned(cell);
+    if (!is_near || !grid.owned(cell) || std::abs(phi_[cell]) >= cut_off_)
       return;
-    distance_[cell] =
-        near_cells == NearCells::scale ? scaled(solids, phi, cell) : std::abs(phi[cell]);
-    is_set_[cell] = 1;
-    wait(cell);
-  });
-}
+    distance_.at_place(place) =
+        near_cells == NearCells::scale ? scaled(grid, solids_, phi_, cell) : std::abs(phi_[cell]);
+    stays_[place] = 1;
+    wait(place);
+  }
 
-template <int dim>
-void Redistancer<dim>::update_around(const SolidCells<dim>& solids, const CellField& phi,
-                                     int cell) {
-  for (int axis = 0; axis < dim; ++axis)
-    for (int side = 0; side < 2; ++side) {
-      const int other = solids.seen_neighbor(domain_.grid, cell, axis, side);
-      if (other < 0 || !domain_.grid.owned(other) || is_set_[other] ||
-          distance_[other] <= distance_[cell] || differ(phi[cell], phi[other]))
+  /// The smallest distance that the neighbours allow.
+  double arrival(int place) const {
+    const double h = domain_.spacing();
+    std::array<double, dim> least;
+    for (int axis = 0; axis < dim; ++axis)
+      least[axis] = std::min(distance_.at_place(ways_[place][2 * axis]),
+                             distance_.at_place(ways_[place][2 * axis + 1]));
+    const auto order = [&](int a, int b) {
+      if (least[b] < least[a])
+        std::swap(least[a], least[b]);
+    };
+    order(0, 1);
+    if constexpr (dim == 3) {
+      order(1, 2);
+      order(0, 1);
+    }
+    // |grad| = 1 with the differences towards the n nearest, as long as these come first.
+    double found = least[0] + h, sum = least[0], squares = least[0] * least[0];
+    for (int n = 2; n <= dim && found > least[n - 1]; ++n) {
+      sum += least[n - 1];
+      squares += least[n - 1] * least[n - 1];
+      const double discriminant = sum * sum - n * (squares - h * h);
+      if (discriminant < 0)
+        break;
+      found = (sum + std::sqrt(discriminant)) / n;
+    }
+    return found;
+  }
+
+  void wait(int place) {
+    const std::size_t k = static_cast<std::size_t>(distance_.at_place(place) *
+                                                   (classes_per_cell / domain_.spacing()));
+    if (k < waiting_.size())
+      waiting_[k].push_back(place);
+    first_waiting_ = std::min(first_waiting_, k);
+  }
+
+  void update_around(int place) {
+    for (const int other : ways_[place]) {
+      if (stays_[other] || distance_.at_place(other) <= distance_.at_place(place))
         continue;
-      const double found = arrival(solids, phi, other);
-      if (found >= distance_[other])
+      const double found = arrival(other);
+      if (found >= distance_.at_place(other))
         continue;
-      distance_[other] = found;
+      distance_.at_place(other) = found;
       wait(other);
     }
-}
-
-template <int dim>
-void Redistancer<dim>::march(const SolidCells<dim>& solids, const CellField& phi) {
-  const double per_class = classes_per_cell / domain_.spacing();
-  for (std::size_t place = first_waiting_; place < waiting_.size(); ++place) {
-    // The list may grow while it is worked through.
-    for (std::size_t i = 0; i < waiting_[place].size(); ++i) {
-      const int cell = waiting_[place][i];
-      if (static_cast<std::size_t>(distance_[cell] * per_class) == place)
-        update_around(solids, phi, cell);
-    }
-    waiting_[place].clear();
   }
-  first_waiting_ = waiting_.size();
-}
+
+  const MacDomain<dim>& domain_;
+  const SolidCells<dim>& solids_;
+  std::vector<char> tiles_;
+  double cut_off_;
+  const CellField& phi_;
+  TileField<dim> distance_;  ///< |phi| as known so far
+  std::vector<Ways> ways_;
+  std::vector<char> stays_;  ///< near the interface, of another rank, or no cell that is marched to
+  /// Places waiting by their distance; each class is an eighth of a cell wide.
+  std::vector<std::vector<int>> waiting_;
+  std::size_t first_waiting_;
+};
+}  // namespace
 
 template <int dim>
-bool Redistancer<dim>::take_from_others(const SolidCells<dim>& solids, const CellField& phi) {
-  const TiledGrid<dim>& grid = domain_.grid;
-  if (grid.comm()->getSize() == 1)
-    return false;
-  const std::vector<double> before(distance_.begin() + grid.n_owned_cells(), distance_.end());
-  domain_.halo.fill(distance_);
-  GlobalIndex n_changed = 0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const int cell = grid.n_owned_cells() + static_cast<int>(i);
-    if (distance_[cell] >= before[i] || !solids.is_fluid(cell))
-      continue;
-    ++n_changed;
-    update_around(solids, phi, cell);
-  }
-  return sum_all(grid.comm(), n_changed) > 0;
-}
-
-template <int dim>
-void Redistancer<dim>::apply(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                             double cut_off, CellField& phi, NearCells near_cells) {
-  cut_off_ = cut_off;
-  distance_.assign(phi.size(), cut_off);
-  is_set_.assign(phi.size(), 0);
-  waiting_.resize(static_cast<std::size_t>(cut_off * classes_per_cell / domain_.spacing()) + 1);
-  first_waiting_ = waiting_.size();
-  set_near_cells(solids, tiles, phi, near_cells);
+void redistance(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                const std::vector<char>& tiles, double cut_off, CellField& phi,
+                NearCells near_cells) {
+  March<dim> march(domain, solids, tiles, cut_off, phi);
+  march.set_near_cells(near_cells);
   do
-    march(solids, phi);
-  while (take_from_others(solids, phi));
-  for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) {
-    phi[cell] = phi[cell] < 0 ? -distance_[cell] : distance_[cell];
-  });
-  domain_.halo.fill(phi);
+    march.go();
+  while (march.take_from_others());
+  for (int tile = 0; tile < domain.grid.n_owned_tiles(); ++tile)
+    for (int i = 0, cell = tile * tile_volume<dim>; tiles[tile] && i < tile_volume<dim>;
+         ++i, ++cell)
+      if (solids.is_fluid(cell))
+        phi[cell] = phi[cell] < 0 ? -march.distance(cell) : march.distance(cell);
+  domain.halo.fill(phi);
 }
 
-template class Redistancer<2>;
-template class Redistancer<3>;
+template void redistance<2>(const MacDomain<2>&, const SolidCells<2>&, const std::vector<char>&,
+                            double, CellField&, NearCells);
+template void redistance<3>(const MacDomain<3>&, const SolidCells<3>&, const std::vector<char>&,
+                            double, CellField&, NearCells);
 
 }  // namespace lockstep

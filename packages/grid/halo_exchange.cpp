@@ -190,6 +190,26 @@ void HaloExchange<dim>::fill(const std::vector<std::vector<Value>*>& fields) con
 
 template <int dim>
 template <typename Value>
+void HaloExchange<dim>::fill(TileField<dim, Value>& field) const {
+  if (neighbors_.empty())
+    return;
+  outgoing_.resize(source_cells_.size() * sizeof(Value));
+  incoming_.resize(ghost_cells_.size() * sizeof(Value));
+  char* end = outgoing_.data();
+  for (const int cell : source_cells_) {
+    const Value value = field[cell];
+    std::memcpy(end, &value, sizeof(Value));
+    end += sizeof(Value);
+  }
+  transfer(outgoing_, incoming_, false, sizeof(Value));
+  const char* next = incoming_.data();
+  for (const int cell : ghost_cells_)
+    if (const Value value = unpack_one<Value>(next); field.has(cell))
+      field.set(cell, value);
+}
+
+template <int dim>
+template <typename Value>
 void HaloExchange<dim>::sum_to_owner(const std::vector<std::vector<Value>*>& fields) const {
   if (fields.empty() || neighbors_.empty())
     return;
@@ -242,6 +262,8 @@ template void HaloExchange<3>::fill(const std::vector<std::vector<double>*>&) co
 template void HaloExchange<3>::fill(const std::vector<std::vector<int>*>&) const;
 template void HaloExchange<3>::fill(const std::vector<std::vector<char>*>&) const;
 template void HaloExchange<3>::fill(const std::vector<std::vector<GlobalIndex>*>&) const;
+template void HaloExchange<2>::fill(TileField<2>&) const;
+template void HaloExchange<3>::fill(TileField<3>&) const;
 template void HaloExchange<2>::sum_to_owner(const std::vector<std::vector<double>*>&) const;
 template void HaloExchange<2>::sum_to_owner(const std::vector<std::vector<int>*>&) const;
 template void HaloExchange<2>::sum_to_owner(const std::vector<std::vector<char>*>&) const;

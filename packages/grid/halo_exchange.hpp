@@ -3,6 +3,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "grid/tile_field.hpp"
 #include "grid/tiled_grid.hpp"
 
 namespace lockstep {
@@ -39,6 +40,10 @@ class HaloExchange {
   void fill(std::initializer_list<std::vector<Value>*> fields) const {
     fill(std::vector<std::vector<Value>*>(fields));
   }
+
+  /// Where the field has values.
+  template <typename Value>
+  void fill(TileField<dim, Value>& field) const;
 
   /// Collective, the adjoint of `fill`: adds the halo cells' values to their owners' and sets them
   /// to zero, so that nothing is added twice.

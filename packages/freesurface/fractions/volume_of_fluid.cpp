@@ -52,8 +52,7 @@ VolumeOfFluid<dim>::VolumeOfFluid(const MacDomain<dim>& domain,
       phi_(domain.grid.n_stored_cells(), parameters.band * domain.spacing()),
       solids_(find_solid_cells<dim>(domain, nullptr)),
       transport_(domain),
-      planes_(domain),
-      redistancer_(domain) {
+      planes_(domain) {
   fractions_.liquid.assign(phi_.size(), 0);
   fractions_.owed.assign(phi_.size(), 0);
 }
@@ -217,7 +216,7 @@ void VolumeOfFluid<dim>::make_distance(const std::vector<char>& tiles) {
   const double h = domain_.spacing();
   planes_.find(solids_, tiles, fractions_.liquid);
   planes_.set_distance(solids_, tiles, fractions_.liquid, cut_off(), phi_);
-  redistancer_.apply(solids_, tiles, cut_off(), phi_, NearCells::keep);
+  redistance(domain_, solids_, tiles, cut_off(), phi_, NearCells::keep);
   domain_.full_halo.fill(phi_);
   if (!solids_.state.surface)
     return;

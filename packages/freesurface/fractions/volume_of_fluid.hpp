@@ -68,7 +68,6 @@ class VolumeOfFluid : public InterfaceModel<dim> {
   SolidCells<dim> solids_;  ///< at the present time
   FractionTransport<dim> transport_;
   FractionPlanes<dim> planes_;
-  Redistancer<dim> redistancer_;
   double courant_ = 0;      ///< of the last step
   long long n_sweeps_ = 0;  ///< so far: which axis comes first
   int n_bodies_ = 0;

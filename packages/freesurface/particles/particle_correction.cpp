@@ -31,17 +31,22 @@ class Wishes {
   void look_at(int tile, const std::vector<Particle<dim>>& particles) {
     const double h = grid_.spacing();
     bool has_entered = false;
-    for (const Particle<dim>& particle : particles) {
+    const auto is_near = [&](const Particle<dim>& particle) {
       const int cell = tile * tile_volume<dim> + particle.cell_in_tile();
-      if (particle.side() * phi_[cell] > farthest_in_cell * h)
-        continue;
+      return particle.side() * phi_[cell] <= farthest_in_cell * h;
+    };
+    for_each_batch(particles, is_near, [&](const ParticleBatch<dim>& batch) {
       if (!has_entered)
         lookup_.enter(tile);
       has_entered = true;
-      const auto phi = lookup_.value(particle.position());
-      if (phi && particle.side() * *phi < -particle.size() * h)
-        wish(particle);
-    }
+      const RowValues<dim> plain = lookup_.values(batch.x);
+      for (int i = 0; i < batch.n; ++i) {
+        const Particle<dim>& particle = particles[batch.places[i]];
+        const auto phi = lookup_.value(particle.position(), plain[i]);
+        if (phi && particle.side() * *phi < -particle.size() * h)
+          wish(particle);
+      }
+    });
   }
   /// Those for cells of this rank.
   const std::vector<Wish>& collect() {

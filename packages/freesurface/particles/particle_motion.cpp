@@ -16,6 +16,38 @@ constexpr double shifted_band = 2;
 /// correction that is the same all over a body, but not for ever.
 constexpr double followed = 0.2;
 
+/// Puts a particle that stays in the tile that begins there to its new place in lattice units;
+/// false if it leaves.
+template <int dim>
+bool keep(const TiledGrid<dim>& grid, const Index<dim>& begin, const Point<dim>& end,
+          const Particle<dim>& particle, Particle<dim>& result) {
+  Particle<dim> moved = particle;
+  for (int a = 0; a < dim; ++a) {
+    const double x = end[a] - begin[a];
+    moved.x[a] = static_cast<float>(x);
+    // The place as float decides, as it does after the next step.
+    if (!(x >= 0 && moved.x[a] < tile_width<dim>) || end[a] >= grid.n_cells()[a])
+      return false;
+  }
+  result = moved;
+  return true;
+}
+
+/// Removes those at ascending places.
+template <typename Item>
+void remove_places(const std::vector<int>& places, std::vector<Item>& items) {
+  if (places.empty())
+    return;
+  auto next = places.begin();
+  std::size_t n_kept = 0;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (next != places.end() && *next == static_cast<int>(i))
+      ++next;
+    else
+      items[n_kept++] = items[i];
+  items.resize(n_kept);
+}
+
 /// Moves the particles of one tile after the other.
 template <int dim>
 class Mover {
@@ -44,7 +76,7 @@ class Mover {
           end = follow_single(particle);
         if (!end || !stays_in_domain(*end))
           continue;
-        if (keep(*end, particle, particles[n_kept]))
+        if (keep<dim>(domain_.grid, begin_, *end, particle, particles[n_kept]))
           ++n_kept;
         else
           post_.put(*end, particle.radius);
@@ -94,20 +126,6 @@ class Mover {
     }
     return true;
   }
-  /// Puts a particle that stays in the tile to its new place there.
-  bool keep(const Point<dim>& end, const Particle<dim>& particle, Particle<dim>& result) const {
-    Particle<dim> moved = particle;
-    for (int a = 0; a < dim; ++a) {
-      const double x = end[a] - begin_[a];
-      moved.x[a] = static_cast<float>(x);
-      // The place as float decides, as it does after the next step.
-      if (!(x >= 0 && moved.x[a] < tile_width<dim>) || end[a] >= domain_.grid.n_cells()[a])
-        return false;
-    }
-    result = moved;
-    return true;
-  }
-
   const MacDomain<dim>& domain_;
   TransportFrame<dim>& frame_;
   ParticlePost<dim>& post_;
@@ -146,29 +164,42 @@ void shift_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids
         return false;
     return true;
   };
+  std::vector<int> gone;
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
-    bool has_entered = false;
-    std::size_t n_kept = 0;
-    for (const Particle<dim> particle : tiles[tile]) {
-      tiles[tile][n_kept++] = particle;
+    std::vector<Particle<dim>>& particles = tiles[tile];
+    const Index<dim>& begin = domain.grid.tile_begin(static_cast<int>(tile));
+    const auto shift_at = [&](const Particle<dim>& particle) {
       const std::size_t cell = tile * tile_volume<dim> + particle.cell_in_tile();
       const int body = shift.body_of_cell[cell];
-      if (body < 0 || shift.of_body[body] == 0 || std::abs(phi[cell]) > shifted_band * h)
-        continue;
+      return body < 0 || std::abs(phi[cell]) > shifted_band * h ? 0 : shift.of_body[body];
+    };
+    const auto is_shifted = [&](const Particle<dim>& particle) { return shift_at(particle) != 0; };
+    bool has_entered = false;
+    gone.clear();
+    for_each_batch(particles, is_shifted, [&](const ParticleBatch<dim>& batch) {
       if (!has_entered)
         lookup.enter(static_cast<int>(tile));
       has_entered = true;
-      const Point<dim> x = particle.position(), gradient = lookup.gradient(x);
-      const double steepness = gradient.norm();
-      if (steepness < 0.1 * h)
-        continue;
-      const Point<dim> end = x + followed * shift.of_body[body] / h * gradient / steepness;
-      if ((lookup.may_be_hidden(x) && lookup.hidden(x, end)) || !is_inside(lookup.place(end)))
-        continue;
-      --n_kept;
-      post.put(lookup.place(end), particle.radius);
-    }
-    tiles[tile].resize(n_kept);
+      const RowPoints<dim> slopes = lookup.gradients(batch.x);
+      for (int i = 0; i < batch.n; ++i) {
+        Particle<dim>& particle = particles[batch.places[i]];
+        Point<dim> gradient;
+        for (int a = 0; a < dim; ++a)
+          gradient[a] = slopes[a][i];
+        const double steepness = gradient.norm();
+        if (steepness < 0.1 * h)
+          continue;
+        const Point<dim> x = particle.position();
+        const Point<dim> end = x + followed * shift_at(particle) / h * gradient / steepness;
+        const Point<dim> place = lookup.place(end);
+        if ((lookup.may_be_hidden(x) && lookup.hidden(x, end)) || !is_inside(place) ||
+            keep<dim>(domain.grid, begin, place, particle, particle))
+          continue;
+        post.put(place, particle.radius);
+        gone.push_back(batch.places[i]);
+      }
+    });
+    remove_places(gone, particles);
   }
   post.deliver(tiles);
 }

@@ -180,23 +180,29 @@ void set_radii(const MacDomain<dim>& domain, const SolidCells<dim>& solids, Kept
   const SampleLattice<dim> lattice(domain.grid);
   PhiLookup<dim> lookup(domain.grid, lattice, solids, kept, phi);
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+    std::vector<Particle<dim>>& particles = tiles[tile];
+    const auto may_be_small = [&](const Particle<dim>& particle) {
+      const double at_center = phi[tile * tile_volume<dim> + particle.cell_in_tile()];
+      return particle.side() * at_center <= (farthest_in_cell + most_radius) * h;
+    };
+    for (Particle<dim>& particle : particles)
+      if (!may_be_small(particle))
+        particle.radius = static_cast<float>(particle.side() * most_radius);
     bool has_entered = false;
-    for (Particle<dim>& particle : tiles[tile]) {
-      const int side = particle.side();
-      const double at_center = side * phi[tile * tile_volume<dim> + particle.cell_in_tile()];
-      if (at_center > (farthest_in_cell + most_radius) * h) {
-        particle.radius = static_cast<float>(side * most_radius);
-        continue;
-      }
+    for_each_batch(particles, may_be_small, [&](const ParticleBatch<dim>& batch) {
       if (!has_entered)
         lookup.enter(static_cast<int>(tile));
       has_entered = true;
-      const auto found = lookup.value(particle.position());
-      if (!found || side * *found < -particle.size() * h)
-        continue;
-      particle.radius =
-          static_cast<float>(side * std::clamp(side * *found / h, least_radius, most_radius));
-    }
+      const RowValues<dim> plain = lookup.values(batch.x);
+      for (int i = 0; i < batch.n; ++i) {
+        Particle<dim>& particle = particles[batch.places[i]];
+        const int side = particle.side();
+        const auto found = lookup.value(particle.position(), plain[i]);
+        if (found && side * *found >= -particle.size() * h)
+          particle.radius =
+              static_cast<float>(side * std::clamp(side * *found / h, least_radius, most_radius));
+      }
+    });
   }
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "grid/neighbor_messages.hpp"
@@ -44,6 +46,37 @@ struct Particle {
 /// ranks.
 template <int dim>
 using ParticleTiles = std::vector<std::vector<Particle<dim>>>;
+
+/// Some of a tile's particles, as many as are looked at at once.
+template <int dim>
+struct ParticleBatch {
+  std::array<int, tile_width<dim>> places;  ///< in the tile's list, ascending
+  int n = 0;
+  std::array<Eigen::Array<double, tile_width<dim>, 1>, dim> x;  ///< of `n`, and of the last again
+};
+
+/// Calls f(batch) for all particles for which `counts` holds.
+template <int dim, typename Condition, typename Function>
+void for_each_batch(const std::vector<Particle<dim>>& particles, const Condition& counts,
+                    const Function& f) {
+  ParticleBatch<dim> batch;
+  const auto flush = [&] {
+    for (int i = 0; i < tile_width<dim>; ++i)
+      for (int a = 0; a < dim; ++a)
+        batch.x[a][i] = particles[batch.places[std::min(i, batch.n - 1)]].x[a];
+    f(batch);
+    batch.n = 0;
+  };
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (!counts(particles[i]))
+      continue;
+    batch.places[batch.n++] = static_cast<int>(i);
+    if (batch.n == tile_width<dim>)
+      flush();
+  }
+  if (batch.n > 0)
+    flush();
+}
 
 /// Brings particles to the tiles they are in, on whatever rank.
 template <int dim>

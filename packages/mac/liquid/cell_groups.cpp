@@ -2,70 +2,138 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "mac/state/rows.hpp"
 
 namespace lockstep {
 
 namespace {
-/// Joins the members of this rank; lists the pairs of an owned cell and a ghost.
+/// How many cells of a tile are members.
+enum class Membership { none, some, all };
+
 template <int dim>
-void join_members(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
-                  const std::vector<char>& is_member, DisjointSets& sets,
-                  std::vector<std::pair<int, int>>& across) {
-  grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
-    if (!is_member[cell] || !solids.is_fluid(cell))
+Membership membership_of(const SolidCells<dim>& solids, const std::vector<char>& is_member,
+                         int tile) {
+  const int begin = tile * tile_volume<dim>, end = begin + tile_volume<dim>;
+  const auto first = is_member.begin() + begin, last = is_member.begin() + end;
+  const auto is_one = [](char member) { return member != 0; };
+  if (std::none_of(first, last, is_one))
+    return Membership::none;
+  if (!std::all_of(first, last, is_one))
+    return Membership::some;
+  for (int row = begin; row < end; row += tile_width<dim>)
+    if (!is_row_of<dim>(CellState::fluid, solids.state.cells.data() + row) ||
+        (!solids.blocked.empty() && !is_row_of<dim>('\0', solids.blocked.data() + row)))
+      return Membership::some;
+  return Membership::all;
+}
+
+/// Joins the members of this rank, full tiles as a whole.
+template <int dim>
+class Joiner {
+ public:
+  Joiner(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+         const std::vector<char>& is_member)
+      : grid_(grid), solids_(solids), is_member_(is_member), sets_(grid.n_owned_cells()) {
+    for (int tile = 0; tile < grid.n_owned_tiles(); ++tile)
+      members_.push_back(membership_of(solids, is_member, tile));
+    for (int tile = 0; tile < grid.n_owned_tiles(); ++tile)
+      join_tile(tile);
+  }
+
+  bool is_member(int cell) const { return is_member_[cell] && solids_.is_fluid(cell); }
+  int root(int cell) { return sets_.root(cell); }
+  /// Calls f(cell) for the owned members.
+  template <typename Function>
+  void for_each_member(const Function& f) const {
+    for (int tile = 0; tile < grid_.n_owned_tiles(); ++tile)
+      if (members_[tile] != Membership::none)
+        for (int cell = tile * tile_volume<dim>; cell < (tile + 1) * tile_volume<dim>; ++cell)
+          if (is_member(cell))
+            f(cell);
+  }
+  /// Pairs of an owned cell and a ghost.
+  const std::vector<std::pair<int, int>>& across() const { return across_; }
+
+ private:
+  void join_tile(int tile) {
+    const int begin = tile * tile_volume<dim>;
+    if (members_[tile] == Membership::none)
       return;
-    for (int i = 0; i < 2 * dim; ++i) {
-      const int other = neighbors[i];
-      if (other < 0 || !is_member[other] || (i % 2 == 1 && grid.owned(other)) ||
-          !solids.is_fluid(other))
+    if (members_[tile] == Membership::all)
+      sets_.join_run(begin, tile_volume<dim>);
+    for (int i = 0; i < 2 * dim; ++i)
+      if (members_[tile] == Membership::some)
+        join_cells(begin, i, [](int) { return true; });
+      else
+        join_side(tile, i);
+  }
+  /// Of a full tile.
+  void join_side(int tile, int i) {
+    const int shift = log_tile_width<dim> * (i / 2);
+    const int layer = i % 2 == 0 ? 0 : tile_width<dim> - 1;
+    const int begin = tile * tile_volume<dim>;
+    const int other = grid_.neighbor(begin + (layer << shift), i / 2, i % 2);
+    if (other < 0 || (i % 2 == 1 && grid_.owned(other)))
+      return;
+    if (grid_.owned(other) && members_[TiledGrid<dim>::tile_of(other)] == Membership::all)
+      sets_.join(begin, other);
+    else
+      join_cells(begin, i,
+                 [&](int offset) { return (offset >> shift & (tile_width<dim> - 1)) == layer; });
+  }
+  /// With the neighbours there of those cells of the tile for which `counts` holds.
+  template <typename Function>
+  void join_cells(int begin, int i, const Function& counts) {
+    for (int cell = begin; cell < begin + tile_volume<dim>; ++cell) {
+      if (!counts(cell - begin) || !is_member(cell))
+        continue;
+      const int other = grid_.neighbor(cell, i / 2, i % 2);
+      if (other < 0 || (i % 2 == 1 && grid_.owned(other)) || !is_member(other))
         continue;
       const int face = i % 2 == 0 ? cell : other;
-      if (!solids.blocked.empty() && (solids.blocked[face] >> (i / 2) & 1))
+      if (!solids_.blocked.empty() && (solids_.blocked[face] >> (i / 2) & 1))
         continue;
-      if (grid.owned(other))
-        sets.join(cell, other);
+      if (grid_.owned(other))
+        sets_.join(cell, other);
       else
-        across.emplace_back(cell, other);
+        across_.emplace_back(cell, other);
     }
-  });
+  }
+
+  const TiledGrid<dim>& grid_;
+  const SolidCells<dim>& solids_;
+  const std::vector<char>& is_member_;
+  DisjointSets sets_;
+  std::vector<Membership> members_;  ///< of owned tiles
+  std::vector<std::pair<int, int>> across_;
+};
+
+/// Numbers groups of some ranks from 0; those that hang together get one number, in the order of
+/// the smallest lattice number in each. Returns the number of each, and how many there are.
+std::pair<std::vector<int>, int> number_groups(const std::vector<GlobalIndex>& smallest,
+                                               const std::vector<GlobalIndex>& pairs) {
+  const int n = static_cast<int>(smallest.size());
+  std::vector<int> order(n), rank(n), number(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return smallest[a] < smallest[b]; });
+  for (int i = 0; i < n; ++i)
+    rank[order[i]] = i;
+  DisjointSets sets(n);
+  for (std::size_t i = 0; i < pairs.size(); i += 2)
+    sets.join(rank[pairs[i]], rank[pairs[i + 1]]);
+  int n_groups = 0;
+  for (int i = 0; i < n; ++i) {
+    const int root = sets.root(i);
+    number[order[i]] = root == i ? n_groups++ : number[order[root]];
+  }
+  return {number, n_groups};
 }
 
-using Labels = std::vector<GlobalIndex>;
-
-/// Smallest lattice number of the members joined here, of each owned member.
-template <int dim>
-Labels label_members(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
-                     const std::vector<char>& is_member, DisjointSets& sets, Labels& all) {
-  Labels label(grid.n_stored_cells(), no_index);
-  const auto for_each_member = [&](const auto& f) {
-    grid.for_each_owned_cell([&](int cell) {
-      if (is_member[cell] && solids.is_fluid(cell))
-        f(cell, sets.root(cell));
-    });
-  };
-  int last_root = -1, last_cell = -1;
-  for_each_member([&](int cell, int root) {
-    // Numbers grow along a row.
-    const bool goes_on = root == last_root && cell == last_cell + 1 && cell % tile_width<dim> > 0;
-    last_root = root;
-    last_cell = cell;
-    if (goes_on)
-      return;
-    const GlobalIndex id = grid.global_id(cell);
-    label[root] = label[root] == no_index ? id : std::min(label[root], id);
-  });
-  for_each_member([&](int cell, int root) {
-    label[cell] = label[root];
-    if (root == cell)
-      all.push_back(label[cell]);
-  });
-  return label;
-}
-
-void make_unique(std::vector<std::pair<GlobalIndex, GlobalIndex>>& pairs) {
+void make_unique(std::vector<std::pair<int, int>>& pairs) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
@@ -75,50 +143,46 @@ template <int dim>
 CellGroups find_groups(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                        const std::vector<char>& is_member) {
   const TiledGrid<dim>& grid = domain.grid;
-  DisjointSets here(grid.n_owned_cells());
-  std::vector<std::pair<int, int>> across;
-  join_members(grid, solids, is_member, here, across);
-  Labels mine;
-  Labels label = label_members(grid, solids, is_member, here, mine);
-  domain.halo.fill(label);
-
-  // The groups of all ranks are few; what joins them is shared by all.
-  std::vector<std::pair<GlobalIndex, GlobalIndex>> joined;
-  for (const auto& [cell, other] : across)
-    joined.emplace_back(label[cell], label[other]);
-  make_unique(joined);
-  Labels pairs;
-  for (const auto& [a, b] : joined)
-    pairs.insert(pairs.end(), {a, b});
-  Labels labels = gather_all(grid.comm(), mine);
-  pairs = gather_all(grid.comm(), pairs);
-  std::sort(labels.begin(), labels.end());
-  const auto position = [&](GlobalIndex wanted) {
-    return static_cast<int>(std::lower_bound(labels.begin(), labels.end(), wanted) -
-                            labels.begin());
-  };
-  DisjointSets all(static_cast<int>(labels.size()));
-  for (std::size_t i = 0; i < pairs.size(); i += 2)
-    all.join(position(pairs[i]), position(pairs[i + 1]));
-
+  Joiner<dim> joiner(grid, solids, is_member);
   CellGroups groups;
-  std::vector<int> number(labels.size());
-  for (int i = 0; i < static_cast<int>(labels.size()); ++i) {
-    const int root = all.root(i);
-    number[i] = root == i ? groups.n++ : number[root];
-  }
   groups.of_cell.assign(grid.n_stored_cells(), -1);
-  GlobalIndex last_label = no_index;
-  int last_number = -1;
-  for (int cell = 0; cell < grid.n_stored_cells(); ++cell) {
-    if (label[cell] == no_index)
-      continue;
-    if (label[cell] != last_label) {
-      last_label = label[cell];
-      last_number = number[position(last_label)];
+  std::vector<int>& of_cell = groups.of_cell;
+  // First by the groups of this rank; a root comes before the others of its set.
+  std::vector<GlobalIndex> smallest;
+  int n_before = 0;
+  joiner.for_each_member([&](int cell) {
+    const int root = joiner.root(cell);
+    if (root == cell) {
+      of_cell[cell] = static_cast<int>(smallest.size());
+      smallest.push_back(grid.global_id(cell));
+      return;
     }
-    groups.of_cell[cell] = last_number;
+    of_cell[cell] = of_cell[root];
+    // Numbers grow along a row.
+    if (cell % tile_width<dim> == 0 || of_cell[cell - 1] != of_cell[cell])
+      smallest[of_cell[cell]] = std::min(smallest[of_cell[cell]], grid.global_id(cell));
+  });
+  std::vector<GlobalIndex> pairs;
+  if (grid.comm()->getSize() > 1) {
+    // The groups of all ranks are few; what joins them is shared by all.
+    n_before =
+        static_cast<int>(exclusive_sum(grid.comm(), static_cast<GlobalIndex>(smallest.size())));
+    joiner.for_each_member([&](int cell) { of_cell[cell] += n_before; });
+    domain.halo.fill(of_cell);
+    std::vector<std::pair<int, int>> joined;
+    for (const auto& [cell, other] : joiner.across())
+      joined.emplace_back(of_cell[cell], of_cell[other]);
+    make_unique(joined);
+    for (const auto& [a, b] : joined)
+      pairs.insert(pairs.end(), {a, b});
+    smallest = gather_all(grid.comm(), smallest);
+    pairs = gather_all(grid.comm(), pairs);
   }
+  const auto [number, n] = number_groups(smallest, pairs);
+  groups.n = n;
+  for (int& group : of_cell)
+    if (group >= 0)
+      group = number[group];
   return groups;
 }
 

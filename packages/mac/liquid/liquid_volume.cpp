@@ -93,6 +93,14 @@ void LiquidVolume<dim>::list_boxes(const SolidCells<dim>& solids, const CellFiel
 }
 
 template <int dim>
+void LiquidVolume<dim>::list_full(int cell) {
+  const double volume = volume_of_cell(cell);
+  if (full_.empty() || full_.back().begin + full_.back().n != cell || full_.back().volume != volume)
+    full_.push_back({cell, 0, volume});
+  ++full_.back().n;
+}
+
+template <int dim>
 void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& phi) {
   const double deep = far * domain_.spacing();
   cut_.clear();
@@ -102,7 +110,7 @@ void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& 
     if (near || (std::abs(phi[cell]) < deep && solids.is_fluid(cell)))
       list_boxes(solids, phi, cell);
     else if (phi[cell] < 0 && solids.is_fluid(cell))
-      full_.push_back(cell);
+      list_full(cell);
   });
 }
 
@@ -158,10 +166,13 @@ GroupVolumes LiquidVolume<dim>::measure(const CellField& phi, const CellGroups& 
       add_divided(box, phi, groups, sums);
     else
       add_cut(box, phi, groups, sums);
-  for (const int cell : full_) {
-    const int group = groups.of_cell[cell];
-    (group < 0 ? sums.back() : sums[group]) += volume_of_cell(cell);
-  }
+  for (const Run& run : full_)
+    for (int cell = run.begin, end = run.begin + run.n; cell < end;) {
+      const int first = cell, group = groups.of_cell[cell];
+      while (cell < end && groups.of_cell[cell] == group)
+        ++cell;
+      (group < 0 ? sums.back() : sums[group]) += (cell - first) * run.volume;
+    }
   sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
   GroupVolumes result;
   result.volume.assign(sums.begin(), sums.begin() + groups.n);

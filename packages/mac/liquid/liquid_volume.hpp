@@ -40,6 +40,7 @@ class LiquidVolume {
   void list_boxes(const SolidCells<dim>& solids, const CellField& phi, int cell);
   bool is_divided(const SolidCells<dim>& solids, const std::array<int, n_corners>& corners) const;
   double volume_of_cell(int cell) const;
+  void list_full(int cell);
   void add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
                std::vector<double>& sums) const;
   void add_divided(const CutBox& box, const CellField& phi, const CellGroups& groups,
@@ -47,7 +48,12 @@ class LiquidVolume {
 
   const MacDomain<dim>& domain_;
   std::vector<CutBox> cut_;
-  std::vector<int> full_;  ///< owned cells whose boxes are all full
+  /// Owned cells one behind the other whose boxes are all full.
+  struct Run {
+    int begin = 0, n = 0;
+    double volume = 0;  ///< of each
+  };
+  std::vector<Run> full_;
 };
 
 }  // namespace lockstep

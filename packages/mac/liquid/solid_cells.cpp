@@ -1,8 +1,35 @@
 #include "mac/liquid/solid_cells.hpp"
 
+#include <algorithm>
+
 #include "mac/state/surface_marks.hpp"
 
 namespace lockstep {
+
+namespace {
+/// Frees the faces of the fluid cells of a tile.
+template <int dim>
+void free_faces(const TiledGrid<dim>& grid, int tile, MacState<dim>& state) {
+  const auto first = state.cells.begin() + tile * tile_volume<dim>;
+  const bool is_full = std::all_of(first, first + tile_volume<dim>,
+                                   [](CellState cell) { return cell == CellState::fluid; });
+  for (int axis = 0; axis < dim; ++axis) {
+    std::vector<FaceState>& faces = state.faces[axis];
+    if (is_full)
+      std::fill_n(faces.begin() + tile * tile_volume<dim>, tile_volume<dim>, FaceState::free);
+    const int shift = log_tile_width<dim> * axis;
+    for (int i = 0, cell = tile * tile_volume<dim>; i < tile_volume<dim>; ++i, ++cell) {
+      const bool is_last = (i >> shift) % tile_width<dim> + 1 == tile_width<dim>;
+      if (state.cells[cell] != CellState::fluid || (is_full && !is_last))
+        continue;
+      faces[cell] = FaceState::free;
+      const int above = grid.neighbor(cell, axis, 1);
+      if (above >= 0)
+        faces[above] = FaceState::free;
+    }
+  }
+}
+}  // namespace
 
 template <int dim>
 SolidCells<dim> find_solid_cells(const MacDomain<dim>& domain,
@@ -20,16 +47,8 @@ SolidCells<dim> find_solid_cells(const MacDomain<dim>& domain,
   }
   for (int axis = 0; axis < dim; ++axis)
     state.faces[axis].assign(grid.n_stored_cells(), FaceState::inactive);
-  grid.for_each_stored_cell([&](int cell) {
-    if (!result.is_fluid(cell))
-      return;
-    for (int axis = 0; axis < dim; ++axis) {
-      state.faces[axis][cell] = FaceState::free;
-      const int above = grid.neighbor(cell, axis, 1);
-      if (above >= 0)
-        state.faces[axis][above] = FaceState::free;
-    }
-  });
+  for (int tile = 0; tile < grid.n_tiles(); ++tile)
+    free_faces(grid, tile, state);
   return result;
 }
 

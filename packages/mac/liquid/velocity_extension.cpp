@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace lockstep {
 
@@ -19,8 +18,10 @@ VelocityExtension<dim>::VelocityExtension(const MacDomain<dim>& domain, const Ce
                                           const NearbySurface<dim>& surface, MacState<dim>& state)
     : domain_(domain), distance_(distance), near_(near), surface_(surface) {
   find_faces(band, state);
-  for (int axis = 0; axis < dim; ++axis)
+  for (int axis = 0; axis < dim; ++axis) {
+    sort_faces(axis, state);
     find_sources(axis, state);
+  }
 }
 
 template <int dim>
@@ -38,7 +39,7 @@ void VelocityExtension<dim>::find_faces(double band, MacState<dim>& state) {
       const bool is_extended = in_band(cells.lower) || in_band(cells.upper);
       face = is_extended ? FaceState::extended : FaceState::inactive;
       if (is_extended)
-        faces_[axis].push_back({cell, is_shut(axis, cell, cells, state) ? -1 : 0, {}});
+        faces_[axis].all.push_back({cell, 0, is_shut(axis, cell, cells, state) ? -1 : 0});
     });
     if (grid.comm()->getSize() > 1)
       fill_flags(domain_.full_halo, state.faces[axis]);
@@ -60,87 +61,108 @@ bool VelocityExtension<dim>::is_shut(int axis, int cell, const FaceCells& cells,
   return surface_.first_hit(x - half, x + half).has_value();
 }
 
-/// Smallest where fluid is nearest.
 template <int dim>
-double VelocityExtension<dim>::distance_of_face(int axis, int cell,
-                                                const MacState<dim>& state) const {
+double VelocityExtension<dim>::rank_of_face(int axis, int cell, const MacState<dim>& state) const {
   const FaceCells cells = cells_of_face(domain_.grid, state.cells, axis, cell);
   const double lower = cells.lower < 0 ? distance_[cells.upper] : distance_[cells.lower];
   const double upper = cells.upper < 0 ? lower : distance_[cells.upper];
-  return 0.5 * (lower + upper);
+  return std::round(0.5 * (lower + upper) / (same_distance * domain_.grid.spacing()));
+}
+
+template <int dim>
+void VelocityExtension<dim>::sort_faces(int axis, const MacState<dim>& state) {
+  struct Place {
+    double rank;
+    GlobalIndex id;
+    Face face;
+  };
+  std::vector<Face>& faces = faces_[axis].all;
+  std::vector<Place> places;
+  places.reserve(faces.size());
+  for (const Face& face : faces)
+    places.push_back(
+        {rank_of_face(axis, face.cell, state), domain_.grid.global_id(face.cell), face});
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return a.rank != b.rank ? a.rank < b.rank : a.id < b.id;
+  });
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    faces[i] = places[i].face;
 }
 
 template <int dim>
 void VelocityExtension<dim>::find_sources(int axis, const MacState<dim>& state) {
   const TiledGrid<dim>& grid = domain_.grid;
-  const auto& states = state.faces[axis];
-  known_[axis].resize(grid.n_stored_cells());
-  for (int cell = 0; cell < grid.n_stored_cells(); ++cell)
-    known_[axis][cell] = is_wet(states[cell]);
-
-  using Key = std::tuple<double, GlobalIndex>;
-  const auto key = [&](int cell) {
-    const double rank = distance_of_face(axis, cell, state) / (same_distance * grid.spacing());
-    return Key(std::round(rank), grid.global_id(cell));
-  };
-  std::vector<std::pair<Key, Face>> sorted;
-  for (Face face : faces_[axis]) {
-    const Key own = key(face.cell);
-    const Point<dim> x = grid.face_center(axis, face.cell);
-    const bool is_near = !near_.empty() && near_[face.cell];
-    const bool shut = face.n_sources < 0;
-    face.n_sources = 0;
-    for (int side = 0; side < 2 * dim && !shut; ++side) {
-      const int other = grid.neighbor(face.cell, side / 2, side % 2);
-      if (other < 0 || states[other] == FaceState::inactive)
-        continue;
-      if (states[other] == FaceState::extended && !(key(other) < own))
-        continue;
-      const Point<dim> step =
-          Point<dim>::Unit(side / 2) * (side % 2 == 0 ? -grid.spacing() : grid.spacing());
-      if ((is_near || (!near_.empty() && near_[other])) && surface_.first_hit(x, x + step))
-        continue;
-      Source& source = face.sources[face.n_sources++];
-      source = find_source(axis, other, side, state);
-      const double nearer = same_distance * (std::get<0>(own) - std::get<0>(key(other)));
-      source.weight = std::max(nearer, least_weight);
-    }
-    sorted.emplace_back(own, face);
+  if (grid.comm()->getSize() > 1) {
+    known_[axis].resize(grid.n_stored_cells());
+    for (int cell = 0; cell < grid.n_stored_cells(); ++cell)
+      known_[axis][cell] = is_wet(state.faces[axis][cell]);
   }
-  std::sort(sorted.begin(), sorted.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < sorted.size(); ++i)
-    faces_[axis][i] = sorted[i].second;
+  Faces& faces = faces_[axis];
+  CellField rank(grid.n_owned_cells());
+  for (const Face& face : faces.all)
+    rank[face.cell] = rank_of_face(axis, face.cell, state);
+  faces.sources.reserve(2 * faces.all.size());
+  for (Face& face : faces.all)
+    find_sources_of(face, axis, rank, state);
+}
+
+template <int dim>
+void VelocityExtension<dim>::find_sources_of(Face& face, int axis, const CellField& rank,
+                                             const MacState<dim>& state) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  std::vector<Source>& sources = faces_[axis].sources;
+  const bool shut = face.n_sources < 0;
+  face.first_source = static_cast<int>(sources.size());
+  face.n_sources = 0;
+  if (shut)
+    return;
+  const double own = rank[face.cell];
+  const bool is_near = !near_.empty() && near_[face.cell];
+  for (int side = 0; side < 2 * dim; ++side) {
+    const int other = grid.neighbor(face.cell, side / 2, side % 2);
+    if (other < 0 || state.faces[axis][other] == FaceState::inactive)
+      continue;
+    const bool is_extended = state.faces[axis][other] == FaceState::extended;
+    const double theirs =
+        is_extended && grid.owned(other) ? rank[other] : rank_of_face(axis, other, state);
+    if (is_extended &&
+        !(theirs < own || (theirs == own && grid.global_id(other) < grid.global_id(face.cell))))
+      continue;
+    if (is_near || (!near_.empty() && near_[other])) {
+      const Point<dim> x = grid.face_center(axis, face.cell);
+      const double h = grid.spacing();
+      if (surface_.first_hit(x, x + Point<dim>::Unit(side / 2) * (side % 2 == 0 ? -h : h)))
+        continue;
+    }
+    sources.push_back({other, goes_on(axis, other, side, state) ? side : -1,
+                       std::max(same_distance * (own - theirs), least_weight)});
+    ++face.n_sources;
+  }
 }
 
 /// `side` is that at which the source is seen.
 template <int dim>
-typename VelocityExtension<dim>::Source VelocityExtension<dim>::find_source(
-    int axis, int face, int side, const MacState<dim>& state) const {
-  const auto is_plain = [&](int other) {
-    return other >= 0 && state.faces[axis][other] == FaceState::free &&
-           (near_.empty() || !near_[other]);
+bool VelocityExtension<dim>::goes_on(int axis, int source, int side,
+                                     const MacState<dim>& state) const {
+  const auto is_plain = [&](int face) {
+    return face >= 0 && state.faces[axis][face] == FaceState::free &&
+           (near_.empty() || !near_[face]);
   };
-  Source source;
-  source.face = face;
-  if (!is_plain(face))
-    return source;
-  const int second = domain_.grid.neighbor(face, side / 2, side % 2);
-  const int third = second < 0 ? -1 : domain_.grid.neighbor(second, side / 2, side % 2);
-  if (is_plain(second) && is_plain(third)) {
-    source.second = second;
-    source.third = third;
-  }
-  return source;
+  if (!is_plain(source))
+    return false;
+  const int second = domain_.grid.neighbor(source, side / 2, side % 2);
+  return is_plain(second) && is_plain(domain_.grid.neighbor(second, side / 2, side % 2));
 }
 
 template <int dim>
-double VelocityExtension<dim>::carried_on(const Source& source, const CellField& velocity) {
+double VelocityExtension<dim>::carried_on(const Source& source, const CellField& velocity) const {
   const double value = velocity[source.face];
-  if (source.second < 0)
+  if (source.side < 0)
     return value;
-  const double change = value - velocity[source.second];
-  const double before = velocity[source.second] - velocity[source.third];
+  const int second = domain_.grid.neighbor(source.face, source.side / 2, source.side % 2);
+  const int third = domain_.grid.neighbor(second, source.side / 2, source.side % 2);
+  const double change = value - velocity[second];
+  const double before = velocity[second] - velocity[third];
   if (change * before <= 0)
     return value;
   return value + (std::abs(change) < std::abs(before) ? change : before);
@@ -167,42 +189,59 @@ template <int dim>
 void VelocityExtension<dim>::extend(
     double time, const std::function<Point<dim>(const SurfacePoint<dim>&)>& on_surface,
     FaceField<dim>& velocity) const {
-  const bool alone = domain_.grid.comm()->getSize() == 1;
   domain_.full_halo.fill(velocity);  // sources look three faces far
+  const bool alone = domain_.grid.comm()->getSize() == 1;
   for (int axis = 0; axis < dim; ++axis) {
-    CellField& u = velocity[axis];
-    std::vector<char> known = known_[axis];
-    std::vector<const Face*> waiting;
-    for (const Face& face : faces_[axis])
-      waiting.push_back(&face);
-    GlobalIndex n_waiting = 1;
-    while (n_waiting > 0) {
-      std::vector<const Face*> behind;  // sources on another rank have no value yet
-      for (const Face* face : waiting) {
-        const auto end = face->sources.begin() + face->n_sources;
-        if (!std::all_of(face->sources.begin(), end,
-                         [&](const Source& source) { return known[source.face]; })) {
-          behind.push_back(face);
-          continue;
-        }
-        double sum = 0, weights = 0, base = 0;  // equal values have themselves as mean
-        for (auto source = face->sources.begin(); source != end; ++source) {
-          const double value = carried_on(*source, u);
-          base = source == face->sources.begin() ? value : base;
-          sum += source->weight * (value - base);
-          weights += source->weight;
-        }
-        u[face->cell] =
-            face->n_sources > 0 ? base + sum / weights : given(axis, face->cell, time, on_surface);
-        known[face->cell] = 1;
+    const auto set = [&](const Face& face) {
+      velocity[axis][face.cell] = face.n_sources > 0 ? mean_of_sources(axis, face, velocity[axis])
+                                                     : given(axis, face.cell, time, on_surface);
+    };
+    if (alone)
+      std::for_each(faces_[axis].all.begin(), faces_[axis].all.end(), set);
+    else
+      extend_across_ranks(axis, set, velocity[axis]);
+  }
+}
+
+template <int dim>
+double VelocityExtension<dim>::mean_of_sources(int axis, const Face& face,
+                                               const CellField& velocity) const {
+  const Source* const first = faces_[axis].sources.data() + face.first_source;
+  const double base = carried_on(*first, velocity);
+  double sum = 0, weights = 0;  // equal values have themselves as mean
+  for (const Source* source = first; source != first + face.n_sources; ++source) {
+    sum += source->weight * (source == first ? 0 : carried_on(*source, velocity) - base);
+    weights += source->weight;
+  }
+  return base + sum / weights;
+}
+
+/// Sources on another rank have a value in a later round.
+template <int dim>
+template <typename Set>
+void VelocityExtension<dim>::extend_across_ranks(int axis, const Set& set, CellField& u) const {
+  std::vector<char> known = known_[axis];
+  std::vector<const Face*> waiting, behind;
+  for (const Face& face : faces_[axis].all)
+    waiting.push_back(&face);
+  GlobalIndex n_waiting = 1;
+  while (n_waiting > 0) {
+    behind.clear();
+    for (const Face* face : waiting) {
+      const Source* const first = faces_[axis].sources.data() + face->first_source;
+      if (!std::all_of(first, first + face->n_sources,
+                       [&](const Source& source) { return known[source.face]; })) {
+        behind.push_back(face);
+        continue;
       }
-      waiting.swap(behind);
-      domain_.halo.fill(u);
-      n_waiting =
-          alone ? 0 : sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(waiting.size()));
-      if (n_waiting > 0)
-        domain_.halo.fill(known);
+      set(*face);
+      known[face->cell] = 1;
     }
+    waiting.swap(behind);
+    domain_.halo.fill(u);
+    n_waiting = sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(waiting.size()));
+    if (n_waiting > 0)
+      domain_.halo.fill(known);
   }
 }
 

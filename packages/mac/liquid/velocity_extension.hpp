@@ -34,22 +34,32 @@ class VelocityExtension {
  private:
   struct Source {
     int face = -1;
+    int side = -1;      ///< of the source, on which the fluid's own next two are, if they are known
     double weight = 0;  ///< by how much it is nearer to the fluid [cells], or next to nothing
-    /// The fluid's own next two in that direction, if both are known and no surface is near.
-    int second = -1, third = -1;
   };
   struct Face {
     int cell = 0;
-    int n_sources = 0;  ///< 0: shut, or alone
-    std::array<Source, 2 * dim> sources{};
+    int first_source = 0, n_sources = 0;  ///< none: shut, or alone
+  };
+  struct Faces {
+    std::vector<Face> all;  ///< owned, each behind its sources on this rank
+    std::vector<Source> sources;
   };
   void find_faces(double band, MacState<dim>& state);
+  void sort_faces(int axis, const MacState<dim>& state);
   void find_sources(int axis, const MacState<dim>& state);
-  Source find_source(int axis, int face, int side, const MacState<dim>& state) const;
-  double distance_of_face(int axis, int cell, const MacState<dim>& state) const;
+  /// `rank`: of owned faces that are extended.
+  void find_sources_of(Face& face, int axis, const CellField& rank, const MacState<dim>& state);
+  /// Whether the fluid goes on steadily beyond a source.
+  bool goes_on(int axis, int source, int side, const MacState<dim>& state) const;
+  /// Smallest where fluid is nearest, a whole number.
+  double rank_of_face(int axis, int cell, const MacState<dim>& state) const;
   bool is_shut(int axis, int cell, const FaceCells& cells, const MacState<dim>& state) const;
+  double mean_of_sources(int axis, const Face& face, const CellField& velocity) const;
+  template <typename Set>
+  void extend_across_ranks(int axis, const Set& set, CellField& velocity) const;
   /// Of a face beyond a source.
-  static double carried_on(const Source& source, const CellField& velocity);
+  double carried_on(const Source& source, const CellField& velocity) const;
   /// Of a face that no fluid reaches.
   double given(int axis, int cell, double time,
                const std::function<Point<dim>(const SurfacePoint<dim>&)>& on_surface) const;
@@ -58,8 +68,8 @@ class VelocityExtension {
   const CellField& distance_;
   const std::vector<char>& near_;
   const NearbySurface<dim>& surface_;
-  std::array<std::vector<Face>, dim> faces_;  ///< owned, each behind its sources on this rank
-  std::array<std::vector<char>, dim> known_;  ///< of stored faces: the fluid's own
+  std::array<Faces, dim> faces_;
+  std::array<std::vector<char>, dim> known_;  ///< of stored faces: the fluid's own; of more ranks
 };
 
 }  // namespace lockstep

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lockstep {
 
@@ -12,39 +13,52 @@ constexpr double reach_of_motion = 4, reach_of_first = 3, reach_of_second = 1.75
 /// [cells]; what moves fast is not to be damped, and must not be shaken.
 constexpr double largest_lead = 0.05;
 
-/// Values of cells near the surface, on stored cells.
+constexpr double unknown = std::numeric_limits<double>::infinity();
+
+/// Of cells near the surface, or unknown.
 template <int dim>
 struct NearSurface {
   const MacDomain<dim>& domain;
-  CellField values;
-  CellField known;  ///< 1 or 0
+  TileField<dim> values;
 
-  explicit NearSurface(const MacDomain<dim>& domain_in)
-      : domain(domain_in),
-        values(domain_in.grid.n_stored_cells(), 0.0),
-        known(domain_in.grid.n_stored_cells(), 0.0) {}
-  void set(int cell, double value) {
-    values[cell] = value;
-    known[cell] = 1;
-  }
-  void share() {
-    domain.full_halo.fill(values);
-    domain.full_halo.fill(known);
-  }
+  NearSurface(const MacDomain<dim>& domain_in, const std::vector<char>& tiles)
+      : domain(domain_in), values(tiles, unknown) {}
   /// That of the cell itself where the neighbour has none, as if mirrored in a wall.
   double beside(int cell, int axis, int end) const {
     const int other = domain.grid.neighbor(cell, axis, end);
-    return values[other >= 0 && known[other] != 0 ? other : cell];
+    const double value = other >= 0 ? values[other] : unknown;
+    return value != unknown ? value : values[cell];
   }
   bool at_corner(int cell, int a, int end_a, int b, int end_b, double& value) const {
     const int beside = domain.grid.neighbor(cell, a, end_a);
     const int corner = beside < 0 ? -1 : domain.grid.neighbor(beside, b, end_b);
-    if (corner < 0 || known[corner] == 0)
-      return false;
-    value = values[corner];
-    return true;
+    value = corner < 0 ? unknown : values[corner];
+    return value != unknown;
   }
 };
+
+/// Stored tiles with a cell that near to the surface.
+template <int dim>
+std::vector<char> tiles_within(const TiledGrid<dim>& grid, const CellField& distance,
+                               double reach) {
+  std::vector<char> tiles(grid.n_tiles());
+  for (int tile = 0; tile < grid.n_tiles(); ++tile) {
+    using Values = Eigen::Map<const Eigen::Array<double, tile_volume<dim>, 1>>;
+    tiles[tile] = (Values(distance.data() + tile * tile_volume<dim>).abs() < reach).any();
+  }
+  return tiles;
+}
+
+/// Calls f(cell) for the owned cells of the domain in those tiles.
+template <int dim, typename Function>
+void for_each_cell_of(const TiledGrid<dim>& grid, const std::vector<char>& tiles,
+                      const Function& f) {
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile)
+    for (int i = 0, cell = tile * tile_volume<dim>; tiles[tile] && i < tile_volume<dim>;
+         ++i, ++cell)
+      if (grid.in_domain(cell))
+        f(cell);
+}
 
 /// Of phi, one-sided where a neighbour is missing.
 template <int dim>
@@ -85,25 +99,26 @@ double roughness(const NearSurface<dim>& field, const Point<dim>& n, int cell) {
 
 /// Speed of the fluid along the normal of phi; unknown where a face has no velocity.
 template <int dim>
-NearSurface<dim> normal_speed(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                              const CellField& distance, const FaceField<dim>& velocity) {
-  NearSurface<dim> result(domain);
+NearSurface<dim> normal_speed(const MacDomain<dim>& domain, const std::vector<char>& tiles,
+                              const MacGeometry<dim>& geometry, const CellField& distance,
+                              const FaceField<dim>& velocity) {
+  NearSurface<dim> result(domain, tiles);
   const double reach = reach_of_motion * domain.spacing();
-  domain.grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
+  for_each_cell_of(domain.grid, tiles, [&](int cell) {
     if (std::abs(distance[cell]) >= reach || geometry.near_surface(cell) ||
         geometry.state.cells[cell] == CellState::solid)
       return;
     Point<dim> u;
     for (int axis = 0; axis < dim; ++axis) {
-      const int upper = neighbors[2 * axis + 1];
+      const int upper = domain.grid.neighbor(cell, axis, 1);
       if (geometry.state.faces[axis][cell] == FaceState::inactive ||
           (upper >= 0 && geometry.state.faces[axis][upper] == FaceState::inactive))
         return;
       u[axis] = 0.5 * (velocity[axis][cell] + (upper < 0 ? 0 : velocity[axis][upper]));
     }
-    result.set(cell, u.dot(normal(domain.grid, distance, cell)));
+    result.values.set(cell, u.dot(normal(domain.grid, distance, cell)));
   });
-  result.share();
+  domain.full_halo.fill(result.values);
   return result;
 }
 }  // namespace
@@ -114,21 +129,24 @@ CellField lead_of_short_waves(const MacDomain<dim>& domain, const MacGeometry<di
                               double gravity, double dt) {
   const TiledGrid<dim>& grid = domain.grid;
   const double h = grid.spacing();
-  const NearSurface<dim> speed = normal_speed<dim>(domain, geometry, distance, velocity);
+  const std::vector<char> tiles = tiles_within<dim>(grid, distance, reach_of_motion * h);
+  const auto speed = normal_speed<dim>(domain, tiles, geometry, distance, velocity);
   const auto difference = [&](const NearSurface<dim>& field, double reach) {
-    NearSurface<dim> result(domain);
-    grid.for_each_owned_cell([&](int cell) {
-      if (field.known[cell] != 0 && std::abs(distance[cell]) < reach * h)
-        result.set(cell, roughness(field, normal(grid, distance, cell), cell));
+    NearSurface<dim> result(domain, tiles);
+    for_each_cell_of(grid, tiles, [&](int cell) {
+      if (field.values[cell] != unknown && std::abs(distance[cell]) < reach * h)
+        result.values.set(cell, roughness(field, normal(grid, distance, cell), cell));
     });
-    result.share();
+    domain.full_halo.fill(result.values);
     return result;
   };
-  CellField lead = difference(difference(speed, reach_of_first), reach_of_second).values;
+  const NearSurface<dim> second = difference(difference(speed, reach_of_first), reach_of_second);
   // Half of what would make the shortest waves overshoot in a step is the most.
   const double period = std::sqrt(h / gravity), ahead = period * std::min(2.0, 0.3 * period / dt);
-  for (double& value : lead)
-    value = std::clamp(-ahead * value, -largest_lead * h, largest_lead * h);
+  CellField lead(distance.size(), 0.0);
+  for (std::size_t cell = 0; cell < lead.size(); ++cell)
+    if (const double value = second.values[static_cast<int>(cell)]; value != unknown)
+      lead[cell] = std::clamp(-ahead * value, -largest_lead * h, largest_lead * h);
   return lead;
 }
 

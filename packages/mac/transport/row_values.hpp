@@ -37,6 +37,23 @@ Values samples_at(const double* c) {
     return Eigen::Map<const Values>(c);
 }
 
+/// Those at given places.
+template <int n>
+[[gnu::always_inline]] inline Eigen::Array<double, n, 1> gathered(
+    const double* c, const Eigen::Array<int, n, 1>& places) {
+  Eigen::Array<double, n, 1> values;
+  for (int i = 0; i < n; i += 8) {
+#ifdef __AVX512F__
+    const __m256i eight = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(places.data() + i));
+    _mm512_storeu_pd(values.data() + i, _mm512_i32gather_pd(eight, c, sizeof(double)));
+#else
+    for (int k = i; k < i + 8; ++k)
+      values[k] = c[places[k]];
+#endif
+  }
+  return values;
+}
+
 /// Whether some value is not 0.
 template <int n>
 [[gnu::always_inline]] inline bool has_nonzero(const Eigen::Array<double, n, 1>& values) {

@@ -34,8 +34,7 @@ std::array<double, 2> errors_of_ellipse(int n) {
       phi[c] = 0.05 * (x[0] * x[0] / (a * a) + x[1] * x[1] / (b * b) - 1) * (1 + 0.3 * x[0]);
   }
   const auto solids = find_solid_cells<2>(bath.domain, nullptr);
-  Redistancer<2> redistancer(bath.domain);
-  redistancer.apply(solids, std::vector<char>(grid.n_owned_tiles(), 1), 6 * h, phi);
+  redistance(bath.domain, solids, std::vector<char>(grid.n_owned_tiles(), 1), 6 * h, phi);
   std::array<double, 2> worst{};
   grid.for_each_owned_cell([&](int c) {
     const double exact = distance_to_ellipse(grid.center(c) - Point<2>(0.501, 0.4987), a, b);

@@ -78,6 +78,23 @@ TEST(HaloExchange, WorksWithSparseTilesAndEmptyRanks) {
   expect_fill(TiledGrid<2>(square(16, true), world()), 16);
 }
 
+TEST(HaloExchange, FillsAFieldOfSomeTilesWhereItHasValues) {
+  const TiledGrid<3> grid(channel_40x32x10(), world());
+  const HaloExchange<3> halo(grid, 2);
+  std::vector<char> tiles(grid.n_tiles());  // the same tiles on all ranks
+  for (int t = 0; t < grid.n_tiles(); ++t)
+    tiles[t] = (grid.tile_begin(t)[0] / tile_width<3>) % 2 == 0;
+  TileField<3> field(tiles, unset);
+  CellField whole = owned_labels(grid);
+  for (int c = 0; c < grid.n_owned_cells(); ++c)
+    if (field.has(c))
+      field.set(c, whole[c]);
+  halo.fill(field);
+  halo.fill(whole);
+  for (int c = 0; c < grid.n_stored_cells(); ++c)
+    EXPECT_EQ(field[c], tiles[TiledGrid<3>::tile_of(c)] ? whole[c] : unset) << "cell " << c;
+}
+
 TEST(HaloExchange, SumToOwnerIsTheAdjointOfFill) {
   const TiledGrid<2> grid(square(64, true), world());
   const HaloExchange<2> halo(grid, 3);
