@@ -62,6 +62,11 @@ RCP<Vector> solve_and_project(MacFluid<dim>& fluid) {
   return pressure;
 }
 
+template <int dim>
+ParameterArray<double> components(const Point<dim>& x) {
+  return ParameterArray<double>(x.data(), x.data() + dim);
+}
+
 /// All below a height, measured against gravity.
 template <int dim>
 void add_level(Case<dim>& scene, double height) {
