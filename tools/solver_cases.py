@@ -43,6 +43,20 @@ def thirty_balls(density):
     return lines
 
 
+def row_of_balls(density):
+    """Five that touch nearly, in a row aslant, of densities about that one, and the joints that tie each to the next."""
+    places = [(0.16 + 0.17 * i, 0.35 + 0.07 * i, 0.5 + 0.03 * (-1) ** i) for i in range(5)]
+    solids, joints = [], ['<ParameterList name="Joints">']
+    for i, (place, factor) in enumerate(zip(places, (1, 3, 0.5, 2, 1))):
+        solids += ball(f"Ball {i + 1}", 0.08, place, density * factor)
+    for i, (place, following) in enumerate(zip(places, places[1:])):
+        joints += [f'<ParameterList name="Joint {i + 1}">', parameter("Type", "string", "ball"),
+                   parameter("Solids", "Array(string)", f"{{Ball {i + 1}, Ball {i + 2}}}"),
+                   parameter("Point", "Array(double)", vector([(a + b) / 2 for a, b in zip(place, following)])),
+                   "</ParameterList>"]
+    return solids, joints + ["</ParameterList>"]
+
+
 PLATE = body("Plate", [parameter("Shape", "string", "plate"), parameter("Size", "Array(double)", "{0.62, 0, 0.58}"),
                        parameter("Normal", "string", "y")], (0.47, 0.43, 0.52), surface_density=20)
 CASES = {
@@ -60,8 +74,9 @@ def scene(case, cells):
     return scene_of(*CASES[case], cells)
 
 
-def scene_of(is_open, solids, cells, step=0.005, fluid=()):
-    """The text of a scene file: a unit cube of water, gravity, n^3 cells; `fluid` adds to the list of that name."""
+def scene_of(is_open, solids, cells, step=0.005, fluid=(), joints=()):
+    """The text of a scene file: a unit cube of water, gravity, n^3 cells; `fluid` adds to the list of that name, `joints`
+    is one."""
     lines = ['<ParameterList name="Scene">', parameter("Dimension", "int", 3), '<ParameterList name="Domain">',
              parameter("Upper", "Array(double)", "{1, 1, 1}"),
              parameter("Cells", "Array(int)", "{" + ", ".join([str(cells)] * 3) + "}")]
@@ -70,7 +85,7 @@ def scene_of(is_open, solids, cells, step=0.005, fluid=()):
                   "</ParameterList></ParameterList>"]
     lines += ["</ParameterList>", '<ParameterList name="Fluid">', parameter("Type", "string", "mac"),
               parameter("Density", "double", "1000.0"), parameter("Gravity", "Array(double)", "{0, -9.8, 0}"),
-              *fluid, "</ParameterList>", '<ParameterList name="Solids">', *solids, "</ParameterList>",
+              *fluid, "</ParameterList>", '<ParameterList name="Solids">', *solids, "</ParameterList>", *joints,
               '<ParameterList name="Time">', parameter("End", "double", "1.0"),
               parameter("Fixed Step", "double", repr(step)), "</ParameterList>", '<ParameterList name="Output">',
               parameter("Frames", "bool", "false"), "</ParameterList>", "</ParameterList>"]

@@ -13,7 +13,8 @@ struct ArticulationOptions {
   /// Half of the joints' impulse acts where a step begins, half where it ends; false: all of it
   /// where it ends.
   bool two_halves = true;
-  double largest_turn = 0.2;  ///< of a jointed body in a step [rad]
+  bool fully_implicit = false;  ///< springs and dampers, not of the middle of the step
+  double largest_turn = 0.2;    ///< of a jointed body in a step [rad]
 };
 
 /// The joints of a scene, what they connect, and where they are. Everything is replicated.
@@ -77,6 +78,7 @@ class JointConstraints : public ConstraintModel, public SteeredJoints {
   std::vector<Combination> combinations() const override;
   ClosedMotion close(double time, double dt, Vector& velocity) override;
   std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const override;
+  std::vector<std::pair<std::string, std::vector<GlobalIndex>>> motors() const override;
   std::string limited() const override;
   bool has_implicit_forces() const override { return articulation_->any_acts(); }
   int largest_block() const override;

@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "articulated/articulation.hpp"
 #include "base/errors.hpp"
@@ -86,6 +87,31 @@ void JointConstraints<dim>::set_twists(const std::vector<TwistVector<dim>>& twis
   }
 }
 
+/// Throws SolveError if motors and prescribed bodies lead a loop where it cannot be closed: of
+/// short steps they alone do.
+template <int dim>
+void check_closed(const ClosingProblem<dim>& problem, const std::vector<TwistVector<dim>>& twists) {
+  constexpr double open = 1e-3;  // m, rad
+  const Mechanism& mechanism = problem.mechanism;
+  const auto is_given = [&](int j) { return problem.joints[j].goal.given; };
+  if (mechanism.grounds.empty() &&
+      std::none_of(mechanism.joints.begin(), mechanism.joints.end(), is_given))
+    return;
+  std::vector<BodyPose<dim>> poses = problem.ends;
+  for (const int body : mechanism.bodies)
+    poses[body] = moved(problem.poses[body], twists[body], problem.dt);
+  for (const int j : mechanism.loops) {
+    const double gap = largest_gap(problem.joints[j], poses);
+    std::vector<std::string> names;
+    for (const int k : loop_of(mechanism, problem.joints, j))
+      names.push_back("\"" + problem.joints[k].name + "\"");
+    check_solve(gap <= open,
+                "The joints {} form a loop that cannot close: a gap of {:.2g} m is left; check "
+                "where their motors and prescribed solids lead.",
+                fmt::join(names, ", "), gap);
+  }
+}
+
 /// True if the joints were closed about the motion as it was found. If that turns a body so far
 /// that closing along straight twists may fail, bodies follow the rates of their joints.
 template <int dim>
@@ -99,8 +125,8 @@ bool JointConstraints<dim>::close_mechanism(const ClosingProblem<dim>& problem,
   if (articulation_->options().two_halves && turn <= farthest_turn && close_joints(problem, twists))
     return true;
   follow_rates(problem, change, twists);
-  if (!problem.mechanism.loops.empty())
-    close_joints(problem, twists);
+  if (!problem.mechanism.loops.empty() && !close_joints(problem, twists) && turn <= farthest_turn)
+    check_closed(problem, twists);
   return false;
 }
 
@@ -178,6 +204,20 @@ std::vector<JointLimit> JointConstraints<dim>::limits(double dt,
       }
       all.push_back(std::move(limit));
     }
+  }
+  return all;
+}
+
+template <int dim>
+std::vector<std::pair<std::string, std::vector<GlobalIndex>>> JointConstraints<dim>::motors()
+    const {
+  std::vector<std::pair<std::string, std::vector<GlobalIndex>>> all;
+  for (const Joint<dim>& joint : articulation_->joints()) {
+    if (!joint.goal.given)
+      continue;
+    std::vector<GlobalIndex> dofs(joint.q.size());
+    std::iota(dofs.begin(), dofs.end(), articulation_->dofs().first_rate + joint.first_rate);
+    all.emplace_back(joint.name, std::move(dofs));
   }
   return all;
 }

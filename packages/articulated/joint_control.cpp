@@ -124,18 +124,18 @@ TargetValue given_motion(const JointKind& kind, const JointControl& control,
 
 template <int dim>
 ControlLaw control_law(const JointKind& kind, const JointControl& control,
-                       const TargetValue& present, double time, double dt, bool moves_positions) {
-  const double middle = time + dt / 2;
+                       const TargetValue& present, const ControlTimes& times) {
+  const double lead = times.middle * times.dt, middle = times.time + lead;
   const Eigen::VectorXd way = way_to<dim>(kind, present.q, control.target(middle).q);
   const Eigen::VectorXd wanted = rates_of<dim>(kind, control.target, middle);
   const auto& stiffness = control.stiffness;
   const auto& damping = control.damping;
   ControlLaw law;
-  const double explicit_part = moves_positions ? 0 : 0.5;
+  const double explicit_part = 1 - times.implicit;
   law.constant =
       stiffness.cwiseProduct(way) + damping.cwiseProduct(wanted - explicit_part * present.rate);
-  law.slope = dt / 2 * stiffness + (1 - explicit_part) * damping;
-  const Eigen::VectorXd expected = stiffness.cwiseProduct(way - dt / 2 * present.rate) +
+  law.slope = lead * stiffness + (1 - explicit_part) * damping;
+  const Eigen::VectorXd expected = stiffness.cwiseProduct(way - lead * present.rate) +
                                    damping.cwiseProduct(wanted - present.rate);
   for (Eigen::Index k = 0; k < expected.size(); ++k) {
     if (std::abs(expected[k]) <= control.largest_torque)
@@ -152,8 +152,8 @@ template TargetValue given_motion<2>(const JointKind&, const JointControl&, cons
 template TargetValue given_motion<3>(const JointKind&, const JointControl&, const TargetValue&,
                                      double, double);
 template ControlLaw control_law<2>(const JointKind&, const JointControl&, const TargetValue&,
-                                   double, double, bool);
+                                   const ControlTimes&);
 template ControlLaw control_law<3>(const JointKind&, const JointControl&, const TargetValue&,
-                                   double, double, bool);
+                                   const ControlTimes&);
 
 }  // namespace lockstep

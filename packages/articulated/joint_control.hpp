@@ -45,9 +45,16 @@ struct ControlLaw {
   Eigen::VectorXd constant, slope;
   bool limited = false;  ///< by the largest torque: then no slope
 };
-/// In S1 the damper is implicit, in S2 half of it; the spring is that of the middle of the step.
+/// Where in a step springs and dampers act.
+struct ControlTimes {
+  double time = 0, dt = 0;  ///< its begin and length [s]
+  double middle = 0.5;      ///< the part of it after which the spring is taken [1]
+  double implicit = 1;      ///< part of the damper [1]
+};
+/// Of the second order: the spring is that of the middle of the step; in S1 the damper is implicit,
+/// in S2 half of it. Fully implicit: both are those of the end.
 template <int dim>
 ControlLaw control_law(const JointKind& kind, const JointControl& control,
-                       const TargetValue& present, double time, double dt, bool moves_positions);
+                       const TargetValue& present, const ControlTimes& times);
 
 }  // namespace lockstep

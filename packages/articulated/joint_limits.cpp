@@ -39,10 +39,10 @@ template <int dim>
 void declare_limits(ParameterList& joint, const JointKind& kind) {
   const int n = n_rates<dim>(kind);
   if (turns_about_any<dim>(kind)) {
-    declare_optional<double>(joint, "Largest Turn",
+    declare_optional<double>(joint, "Upper Limit",
                              "How far it may turn from where it is at the start, about whatever "
                              "axis [rad]. Absent: as far as it likes.");
-    set_between(joint, "Largest Turn", 0, 3.14159);
+    set_between(joint, "Upper Limit", 0, 3.14159);
     return;
   }
   for (const auto& [side, least] :
@@ -62,8 +62,8 @@ JointLimits read_limits(const ParameterList& joint, const std::string& name,
                         const JointKind& kind) {
   JointLimits limits;
   if (turns_about_any<dim>(kind)) {
-    if (joint.isParameter("Largest Turn"))
-      limits.largest_turn = joint.get<double>("Largest Turn");
+    if (joint.isParameter("Upper Limit"))
+      limits.largest_turn = joint.get<double>("Upper Limit");
     return limits;
   }
   if (!joint.isParameter("Lower Limit") && !joint.isParameter("Upper Limit"))

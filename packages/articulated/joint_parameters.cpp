@@ -197,17 +197,16 @@ std::vector<TypedSchema> joint_schemas() {
 }
 
 ParameterList articulation_parameters() {
-  const ArticulationOptions usual;
   ParameterList list("joints");
   declare_choice(list, "Impulses", "two halves", {"two halves", "end of step"},
                  "When the impulses of joints act. two halves: half of them where a step begins, "
                  "half where it ends; second order, and hardly any energy is lost, for one more "
                  "coupled solve a step. end of step: all of them there; loses energy at large "
                  "steps.");
-  declare_positive(
-      list, "Largest Turn", usual.largest_turn,
-      "Bound of the step: how far a jointed body may turn in it [rad]. Where steps turn "
-      "bodies by more than 0.5 all the same, impulses act at the end of the step.");
+  declare_choice(list, "Time Integration", "second-order", {"second-order", "fully-implicit"},
+                 "Of springs and dampers. second-order: the spring is that of the middle of the "
+                 "step, half of the damper explicit; fully-implicit: both at its end, of first "
+                 "order, and damps whatever the step does not resolve.");
   return list;
 }
 
@@ -217,7 +216,8 @@ std::shared_ptr<Articulation<dim>> read_joints(const ParameterList& shared,
                                                const JointSetting<dim>& setting) {
   ArticulationOptions options;
   options.two_halves = shared.get<std::string>("Impulses") == "two halves";
-  options.largest_turn = shared.get<double>("Largest Turn");
+  options.fully_implicit = shared.get<std::string>("Time Integration") == "fully-implicit";
+  options.largest_turn = setting.largest_turn;
   BodyFinder<dim> finder(setting);
   std::vector<Joint<dim>> all;
   for (const auto& [name, list] : joints)

@@ -48,11 +48,15 @@ template <int dim>
 ControlLaw JointRates<dim>::control() const {
   ControlLaw all{Eigen::VectorXd::Zero(articulation_->n_rates()),
                  Eigen::VectorXd::Zero(articulation_->n_rates())};
+  ControlTimes times{begin_, step_dt_};
+  if (articulation_->options().fully_implicit)
+    times.middle = 1;
+  else
+    times.implicit = moved_ ? 0.5 : 1;
   for (const Joint<dim>& joint : articulation_->joints()) {
     if (!joint.control.acts())
       continue;
-    const ControlLaw law =
-        control_law<dim>(joint.kind, joint.control, joint.at_begin, begin_, step_dt_, !moved_);
+    const ControlLaw law = control_law<dim>(joint.kind, joint.control, joint.at_begin, times);
     all.constant.segment(joint.first_rate, law.constant.size()) = law.constant;
     all.slope.segment(joint.first_rate, law.slope.size()) = law.slope;
   }

@@ -88,6 +88,11 @@ template <int dim>
 std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodies,
                                        std::vector<Joint<dim>>& joints);
 
+/// The joints of the loop that one of `loops` closes, itself the first.
+template <int dim>
+std::vector<int> loop_of(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints,
+                         int closing);
+
 /// Pose of a side's body; that of space stands still.
 template <int dim>
 BodyPose<dim> pose_of(const std::vector<BodyPose<dim>>& poses, int body) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
+#include "base/disjoint_sets.hpp"
 #include "base/errors.hpp"
 #include "geometry/line_crossing.hpp"
 
@@ -81,6 +83,53 @@ bool leads_around(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& 
          !surface.first_hit(place, volume.sides[1].center);
 }
 
+struct SolidCrossing {
+  double coordinate = 0;  ///< along the segment between the pressure points [m]
+  int solid = -1;
+};
+
+/// Solids on a segment and how often they are entered and left: those that meet on it without a gap
+/// are one, and where they meet nothing is left.
+std::vector<std::pair<std::vector<int>, int>> joined_crossings(std::vector<SolidCrossing> all,
+                                                               double length) {
+  constexpr double touching = 1e-9;  // of the segment
+  std::sort(all.begin(), all.end(), [](const SolidCrossing& a, const SolidCrossing& b) {
+    return std::tie(a.coordinate, a.solid) < std::tie(b.coordinate, b.solid);
+  });
+  std::vector<int> solids;
+  for (const SolidCrossing& one : all)
+    solids.push_back(one.solid);
+  std::sort(solids.begin(), solids.end());
+  solids.erase(std::unique(solids.begin(), solids.end()), solids.end());
+  const auto place = [&solids](int solid) {
+    return static_cast<int>(std::lower_bound(solids.begin(), solids.end(), solid) - solids.begin());
+  };
+  DisjointSets sets(static_cast<int>(solids.size()));
+  std::vector<int> n(solids.size(), 0);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool meets = k + 1 < all.size() && all[k].solid != all[k + 1].solid &&
+                       all[k + 1].coordinate - all[k].coordinate <= touching * length;
+    if (meets) {
+      sets.join(place(all[k].solid), place(all[k + 1].solid));
+      ++k;
+      continue;
+    }
+    ++n[place(all[k].solid)];
+  }
+  std::map<int, std::pair<std::vector<int>, int>> joined;
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    auto& [members, n_crossings] = joined[sets.root(static_cast<int>(i))];
+    members.push_back(solids[i]);
+    n_crossings += n[i];
+  }
+  std::vector<std::pair<std::vector<int>, int>> result;
+  for (const auto& entry : joined) {
+    if (entry.second.second > 0)
+      result.push_back(entry.second);
+  }
+  return result;
+}
+
 /// The shares of thin parts in a face that they block.
 template <int dim>
 std::vector<SurfaceShare<dim>> thin_shares(const ControlVolume<dim>& volume,
@@ -119,18 +168,24 @@ std::vector<int> thin_between(const ControlVolume<dim>& volume,
   const Point<dim> from = volume.sides[0].center, to = volume.sides[1].center;
   std::vector<int> found;
   surface.touching(Box<dim>(from, to), found);
-  std::map<int, int> n_crossings;  // by solid
+  std::vector<int> thin;
+  std::vector<SolidCrossing> crossings;
   Crossing<dim> crossing;
   for (const int s : found)
     if (cross_line<dim>(surface.corners(s), axis, from, crossing) &&
-        crossing.coordinate > from[axis] && crossing.coordinate <= to[axis])
-      ++n_crossings[surface.solid_of(s)];
-  std::vector<int> thin;
-  for (const auto& [solid, n] : n_crossings) {
-    const bool is_shell = !surface.solids()[solid].closed;
-    if (is_shell || (n % 2 == 0 && !leads_around(volume, surface)))
-      thin.push_back(solid);
+        crossing.coordinate > from[axis] && crossing.coordinate <= to[axis]) {
+      const int solid = surface.solid_of(s);
+      if (surface.solids()[solid].closed)
+        crossings.push_back({crossing.coordinate, solid});
+      else
+        thin.push_back(solid);
+    }
+  for (const auto& [solids, n] : joined_crossings(std::move(crossings), to[axis] - from[axis])) {
+    if (n % 2 == 0 && !leads_around(volume, surface))
+      thin.insert(thin.end(), solids.begin(), solids.end());
   }
+  std::sort(thin.begin(), thin.end());
+  thin.erase(std::unique(thin.begin(), thin.end()), thin.end());
   return thin;
 }
 

@@ -13,14 +13,24 @@ namespace lockstep {
 namespace {
 
 const std::vector<ShapeSizes>& shapes() {
-  static const std::vector<ShapeSizes> all{{"ball", {"Radius"}},
-                                           {"box", {"Size"}},
-                                           {"cylinder", {"Radius", "Length"}},
-                                           {"torus", {"Radius", "Tube Radius"}, {}, 3},
-                                           {"hollow ball", {"Radius", "Thickness"}},
-                                           {"tube", {"Radius", "Thickness", "Length"}, {}, 3},
-                                           {"file", {"File"}, mesh_repair_parameters()}};
+  static const std::vector<ShapeSizes> all{
+      {"ball", {"Radius"}},
+      {"box", {"Size"}},
+      {"cylinder", {"Radius", "Length"}},
+      {"torus", {"Radius", "Tube Radius"}, {}, 3},
+      {"hollow ball", {"Radius", "Thickness"}},
+      {"tube", {"Radius", "Thickness", "Length"}, {}, 3},
+      {"spindle", {"Stations", "Half Heights"}, {"Half Widths"}},
+      {"file", {"File"}, mesh_repair_parameters()}};
   return all;
+}
+
+SpindleShape spindle_of(const ParameterList& list) {
+  const auto numbers = [&](const char* parameter) {
+    return list.isParameter(parameter) ? list.get<ParameterArray<double>>(parameter).toVector()
+                                       : std::vector<double>();
+  };
+  return {numbers("Stations"), numbers("Half Heights"), numbers("Half Widths")};
 }
 
 template <int dim>
@@ -32,6 +42,8 @@ VolumeMesh<dim> generate(const ParameterList& list, const std::string& shape, do
     return box_volume<dim>(vector_value<dim>(list, "Size"), spacing);
   if (shape == "cylinder")
     return cylinder_volume<dim>(number("Radius"), number("Length"), spacing);
+  if (shape == "spindle")
+    return spindle_volume<dim>(spindle_of(list), spacing);
   if (shape == "hollow ball")
     return hollow_ball_volume<dim>(number("Radius"), number("Thickness"), spacing);
   if (shape == "tube") {
@@ -50,7 +62,8 @@ void declare_deformable_geometry(ParameterList& body) {
                    "origin.");
   declare_required_choice(list, "Shape", shape_names(shapes(), dim),
                           "ball, box, cylinder, torus; hollow ball: a ball with a thick wall (2D: "
-                          "a ring); tube: a pipe; file: a mesh of triangles (2D) or "
+                          "a ring); tube: a pipe; spindle: along x, as high and wide as told; "
+                          "file: a mesh of triangles (2D) or "
                           "tetrahedra (3D).");
   declare_optional<double>(list, "Radius",
                            "Of ball and cylinder, of the torus' centre line, outer one of hollow "
@@ -61,6 +74,12 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_optional<double>(list, "Tube Radius", "Of the section of a torus [m].");
   declare_optional<ParameterArray<double>>(list, "Size", "Edges of a box [m].");
   set_length(list, "Size", dim);
+  declare_optional<ParameterArray<double>>(list, "Stations",
+                                           "Places along a spindle, ascending [m].");
+  declare_optional<ParameterArray<double>>(
+      list, "Half Heights", "Of a spindle at its stations, along y, straight between them [m].");
+  declare_optional<ParameterArray<double>>(list, "Half Widths",
+                                           "The same along z; its sections are ellipses (3D) [m].");
   declare_optional<std::string>(list, "File",
                                 "Mesh: .msh of Gmsh (version 2.2 or 4.1) or legacy .vtk, both "
                                 "ASCII; relative to the folder of "
@@ -69,7 +88,8 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest step of the lattice of a generated mesh [m]; default one grid "
                            "cell.");
-  for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "Mesh Spacing"})
+  for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "Half Heights",
+                           "Half Widths", "Mesh Spacing"})
     set_positive(list, size);
   declare_between(
       list, "Worst Quality", 1e-3, 0.0, 1.0,

@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "faces/link_end.hpp"
 #include "faces/solid_fluxes.hpp"
 #include "geometry/clipping.hpp"
@@ -39,6 +40,9 @@ template <int dim>
 void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
                                       const SolidSystem<dim>& solids,
                                       const SurfaceSnapshot<dim>& surface) {
+  check_input(!solids.joints() || options_.lumping != Lumping::paper_diagonal,
+              "Lumping \"paper diagonal\" keeps a centre of mass for each axis and cannot be "
+              "combined with joints; take \"diagonal\".");
   this->take_volumes(fluid, surface);
   shares_ = surface_shares<dim>(volumes_, surface);
   if (options_.carry_rotations)

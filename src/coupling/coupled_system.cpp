@@ -5,7 +5,6 @@
 
 #include "coupling/impossible_flow.hpp"
 #include "coupling/null_space.hpp"
-#include "interfaces/prescribed_flux.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
 
@@ -98,8 +97,9 @@ BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum, double d
 namespace {
 
 /// What given dofs push into the pressure unknowns.
-PrescribedFlux flux_of_given(const CrsMatrix& coupling_transposed, const Vector& velocity) {
-  PrescribedFlux flux{"what pins move of soft solids", {}};
+PrescribedFlux flux_of_given(const std::string& name, const CrsMatrix& coupling_transposed,
+                             const Vector& velocity) {
+  PrescribedFlux flux{name, {}};
   const auto speed = velocity.getData();
   for_each_entry(coupling_transposed, [&](int row, GlobalIndex unknown, double area) {
     if (speed[row] != 0)
@@ -109,6 +109,32 @@ PrescribedFlux flux_of_given(const CrsMatrix& coupling_transposed, const Vector&
 }
 
 }  // namespace
+
+/// Of motors one by one, and of all else that is given.
+template <int dim>
+void CoupledSystem<dim>::add_given_fluxes(const Reduction& constraints,
+                                          std::vector<PrescribedFlux>& fluxes) const {
+  const CrsMatrix& transposed = *coupling_.coupling_transposed();
+  Vector rest(*constraints.offset(), Teuchos::Copy);
+  if (const auto* joints = std::as_const(solids_).joints()) {
+    for (const auto& [name, dofs] : joints->motors()) {
+      const RCP<Vector> own = make_vector(solids_.map());
+      for (const GlobalIndex dof : dofs) {
+        const int row = solids_.map()->getLocalElement(dof);
+        if (row >= 0)
+          own->replaceLocalValue(row, constraints.offset()->getData()[row]);
+      }
+      const RCP<const Vector> moved = constraints.with_velocity(own).offset();
+      if (moved.is_null())
+        continue;
+      fluxes.push_back(flux_of_given("the motor \"" + name + "\"", transposed, *moved));
+      rest.update(-1, *moved, 1);
+    }
+  }
+  constexpr double round_off = 1e-12;
+  if (rest.normInf() > round_off * constraints.offset()->normInf())
+    fluxes.push_back(flux_of_given("what pins move of soft solids", transposed, rest));
+}
 
 template <int dim>
 std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& constraints,
@@ -123,7 +149,7 @@ std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& co
   if (const auto* pushed = side_of<SolidFluxes<dim>>(coupling_))
     fluxes.solids = pushed->solid_fluxes(solids_);
   if (with_solid && !constraints.offset().is_null())
-    fluxes.solids.push_back(flux_of_given(*coupling_.coupling_transposed(), *constraints.offset()));
+    add_given_fluxes(constraints, fluxes.solids);
   constexpr GlobalIndex smallest_region = dim == 2 ? 9 : 27;  // three cells across
   return lockstep::impossible_flow(null_space, fluxes, smallest_region, negligible,
                                    dim == 2 ? "m^2/s" : "m^3/s");

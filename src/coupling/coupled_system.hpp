@@ -4,6 +4,7 @@
 
 #include "coupling/solid_system.hpp"
 #include "interfaces/coupling.hpp"
+#include "interfaces/prescribed_flux.hpp"
 #include "interfaces/strategy.hpp"
 
 namespace lockstep {
@@ -60,6 +61,8 @@ class CoupledSystem {
   const NullSpace& null_space() const { return blocks_.null_space; }
 
  private:
+  void add_given_fluxes(const Reduction& constraints, std::vector<PrescribedFlux>& fluxes) const;
+
   FluidDiscretization<dim>& fluid_;
   SolidSystem<dim>& solids_;
   Coupling<dim>& coupling_;

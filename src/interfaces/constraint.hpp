@@ -56,6 +56,8 @@ class ConstraintModel : public PlugIn {
   /// At the present positions, for motions with about the velocity V (by dof, of all solids).
   /// Local, the same on all ranks.
   virtual std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const = 0;
+  /// Joints whose rates are given: their names, and those dofs.
+  virtual std::vector<std::pair<std::string, std::vector<GlobalIndex>>> motors() const = 0;
   /// The name of a joint that has limits; empty: none.
   virtual std::string limited() const = 0;
   /// Whether forces on their own dofs are implicit: springs, dampers.

@@ -45,6 +45,7 @@ template <int dim>
 struct JointSetting {
   const std::vector<std::unique_ptr<SolidModel<dim>>>& models;  ///< in the order of their stack
   double start_time = 0;                                        ///< [s]
+  double largest_turn = 0;                                      ///< of a body in a step [rad]
   Communicator comm;
 };
 

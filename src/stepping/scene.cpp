@@ -15,7 +15,7 @@
 namespace lockstep {
 namespace {
 
-void declare_time(ParameterList& scene) {
+void declare_time(ParameterList& scene, bool has_joints) {
   ParameterList& time = declare_list(scene, "Time", "When to start, how far to step.");
   declare(time, "Start", 0., "Start time [s].");
   declare(time, "End", 1., "End time [s].");
@@ -28,6 +28,12 @@ void declare_time(ParameterList& scene) {
       "Cells that the fastest fluid crosses in a step (sum over the axes) [1]; any value is "
       "stable.");
   declare_positive(time, "Largest Step", 0.1, "Bound of the CFL-chosen step [s].");
+  if (has_joints)
+    declare_positive(
+        time, "Largest Turn", 0.2,
+        "Bound of the step, of a fixed one also: how far a jointed body may turn in it [rad]. "
+        "Larger "
+        "turns cost energy; above 0.5 joints give all of their impulse at the end of the step.");
   declare_choice(
       time, "Pressure Correction", "rotational", {"rotational", "incremental", "non-incremental"},
       "Whether the viscous solve of a step reads the pressure of the last one. rotational: with "
@@ -147,9 +153,10 @@ std::unique_ptr<SolidSystem<dim>> jointed_solids(
     joints.emplace_back(name, scene.sublist("Joints").sublist(name));
   const ParameterList& shared = scene.sublist("Articulation");
   const double start = setting.start_time;
+  const double turn = scene.sublist("Time").get<double>("Largest Turn");
   const auto system =
       registries.articulations.create(shared.get<std::string>("Type"), shared, joints,
-                                      JointSetting<dim>{models, start, setting.comm});
+                                      JointSetting<dim>{models, start, turn, setting.comm});
   models.push_back(std::move(system->rates));
   auto solids = std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm,
                                                    std::move(system->constraints));
@@ -211,7 +218,7 @@ ParameterList scene_parameters(const Registries<dim>& registries, const std::str
   declare_typed_sublist(scene, "Contact", "Collisions and friction.", contacts, usual_contact);
   declare_solver(scene, registries.strategies);
   declare_observers(scene, registries.observers);
-  declare_time(scene);
+  declare_time(scene, !registries.joints.empty());
   declare_output(scene);
   declare_view(scene, dim);
   return scene;

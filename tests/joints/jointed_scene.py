@@ -25,8 +25,7 @@ def vacuum(solids, joints, step, end, impulses="two halves", turn=LARGE):
     dimension = len(next(iter(solids.values()))["Position"])
     return {"Dimension": dimension, "Domain": {"Cells": (4,) * dimension}, "Fluid": {"Density": 1.},
             "Contact": {"Type": "none"}, "Solids": solids, "Joints": joints,
-            "Articulation": {"Impulses": impulses, "Largest Turn": turn},
-            "Time": {"End": end, "Fixed Step": step}, "Output": {"Frames": False}}
+            "Articulation": {"Impulses": impulses}, "Time": {"End": end, "Fixed Step": step, "Largest Turn": turn}, "Output": {"Frames": False}}
 
 
 def tank(solids, joints, coupling, viscosity=0., step=.01, end=.1, **articulation):
@@ -36,7 +35,8 @@ def tank(solids, joints, coupling, viscosity=0., step=.01, end=.1, **articulatio
              "Time": {"End": end, "Fixed Step": step}, "Output": {"Frames": False}, "Solver": {"Tolerance": 1e-11}}
     if joints:
         scene["Joints"] = joints
-        scene["Articulation"] = {"Largest Turn": LARGE, **articulation}
+        scene["Time"]["Largest Turn"] = LARGE
+        scene["Articulation"] = articulation
     return scene
 
 

@@ -27,6 +27,26 @@ class Control(unittest.TestCase):
             last = joints_of(spring(step))["H"][-1]
             self.assertLess(abs(last["q"] - (1 - 3 * math.exp(-2))), bound)
 
+    def test_fully_implicit_springs_are_of_first_order(self):
+        errors = []
+        for step in (.5, .25, .125):
+            scene = spring(step)
+            scene["Joints"]["H"]["Point"] = (0., 0.)  # the middle of the arm: nothing but the spring acts
+            scene["Articulation"]["Time Integration"] = "fully-implicit"
+            found = joints_of(scene)["H"][-1]["q"]
+            q = v = 0.  # of the oscillator alone: the torque is that of q + dt v' in both phases
+            for _ in range(round(2 / step)):
+                middle = (v + step / 2 * (1 - q)) / (1 + step / 2 * (step + 2))
+                v = (v + step * (1 - q)) / (1 + step * (step + 2))
+                q += step * middle
+            self.assertAlmostEqual(found, q, delta=1e-11)
+            errors.append(abs(found - (1 - 3 * math.exp(-2))))
+        self.assertTrue(.8 < math.log2(errors[1] / errors[2]) < 1.3)
+        stiff = arm(.1, 2., Control="proportional derivative", Target={"Type": "constant", "Value": .3},
+                    **{"Natural Frequency": 1000., "Damping Ratio": 0.})
+        stiff["Articulation"]["Time Integration"] = "fully-implicit"
+        self.assertAlmostEqual(joints_of(stiff)["H"][-1]["q"], .3, delta=1e-4)
+
     def test_stiffness_and_damping_are_gains(self):
         by_frequency = joints_of(spring(.1, .3))["H"][-1]
         by_gains = joints_of(arm(.1, 2., Control="proportional derivative", Stiffness=INERTIA, Damping=.6 * INERTIA,

@@ -141,6 +141,31 @@ class InWater(unittest.TestCase):
         self.assertLess(errors[1], 1e-3)
         self.assertGreater(math.log2(errors[0] / errors[1]), 1.5)
 
+    def test_a_body_cut_in_two_is_the_whole(self):
+        """Both halves seen by the fluid, welded where they meet without a gap. Along the lattice for ten steps, on 1, 2
+        and 4 ranks; aslant for one, since bodies that turn part with the square of the step, and without the correction
+        of buoyancy, which half a body has no whole columns for."""
+        def whole(turn):
+            return {"Whole": {**BOX, "Position": (.5, .5), "Orientation": turn}}
+
+        def halves(turn):
+            along = np.array([math.cos(turn), math.sin(turn)]) * .1
+            half = {**HALF, "Seen by Fluid": True, "Orientation": turn}
+            return {"Left": {**half, "Position": tuple(np.array((.5, .5)) - along)},
+                    "Right": {**half, "Position": tuple(np.array((.5, .5)) + along)}}
+        for turn, viscosity, end, ranks in ((0., 0., .1, (1, 2, 4)), (0., 1., .1, (1,)), (.3, 0., .01, (1, 2)), (.7, 0., .01, (1,))):
+            scenes = [tank(whole(turn), {}, "flux", viscosity, end=end),
+                      tank(halves(turn), {"weld": WELDS["right"]}, "flux", viscosity, end=end)]
+            for scene in scenes:
+                scene["Coupling"]["Correct Buoyancy"] = turn == 0
+            _, bodies = run(scenes[0])
+            for n in ranks:
+                _, cut = run(scenes[1], n)
+                left, right, expected = cut["Left"][-1], cut["Right"][-1], bodies["Whole"][-1]
+                for axis in ("x", "y", "vx", "vy"):
+                    self.assertAlmostEqual((left[axis] + right[axis]) / 2, expected[axis], delta=1e-11)
+                self.assertAlmostEqual(left["wz"], expected["wz"], delta=1e-10)
+
     def test_a_hinge_to_space_is_a_pivot(self):
         """In the first step; then their momenta are carried along differently."""
         arm = np.array([math.sin(.6), -math.cos(.6)]) * .25

@@ -141,7 +141,7 @@ class Limits(unittest.TestCase):
 
     def test_a_ball_turns_so_far_about_any_axis(self):
         solids = {"A": {**unseen_box((0., 0., 0.), (1., 2., -1.)), "Geometry": {"Shape": "box", "Size": (.5, .3, .4)}}}
-        rows = joints_of(limited(solids, {"S": joint("ball", ("space", "A"), (.1, .2, 0.), **{"Largest Turn": .7})}, .02, 2.))
+        rows = joints_of(limited(solids, {"S": joint("ball", ("space", "A"), (.1, .2, 0.), **{"Upper Limit": .7})}, .02, 2.))
         turns = [math.sqrt(sum(rows[f"S {k}"][n]["q"] ** 2 for k in (1, 2, 3))) for n in range(len(rows["S 1"]))]
         self.assertLess(max(turns), .7 + 1e-3)
         self.assertGreater(max(turns), .7 - 1e-9)

@@ -260,6 +260,51 @@ VolumeMesh<dim> torus_volume(double radius, double tube, double spacing) {
   }
 }
 
+namespace {
+double between_stations(const SpindleShape& shape, const std::vector<double>& values, double x) {
+  const auto& at = shape.stations;
+  const auto above = std::upper_bound(at.begin() + 1, at.end() - 1, x) - at.begin();
+  const double part = (x - at[above - 1]) / (at[above] - at[above - 1]);
+  return (1 - part) * values[above - 1] + part * values[above];
+}
+}  // namespace
+
+template <int dim>
+VolumeMesh<dim> spindle_volume(const SpindleShape& shape, double spacing) {
+  const auto ascends = [&](double a, double b) { return a >= b; };
+  const auto& at = shape.stations;
+  const std::size_t n = at.size();
+  check_input(n >= 2 && std::adjacent_find(at.begin(), at.end(), ascends) == at.end(),
+              "Spindle: \"Stations\" must ascend, two or more.");
+  check_input(shape.half_heights.size() == n && (dim == 2 || shape.half_widths.size() == n),
+              "Spindle: there are {} \"Stations\", so \"Half Heights\"{} must have as many "
+              "numbers.",
+              n, dim == 2 ? "" : " and \"Half Widths\"");
+  const double length = at.back() - at.front();
+  double half = *std::max_element(shape.half_heights.begin(), shape.half_heights.end());
+  if constexpr (dim == 2) {
+    VolumeMesh<2> mesh = box_volume<2>({length, 2 * half}, spacing);
+    for (auto& x : mesh.vertices) {
+      x.x() += at.front() + 0.5 * length;
+      x.y() *= between_stations(shape, shape.half_heights, x.x()) / half;
+    }
+    return mesh;
+  } else {
+    half = std::max(half, *std::max_element(shape.half_widths.begin(), shape.half_widths.end()));
+    check_shape("Spindle", std::min(half, length), std::max(half, length), spacing);
+    VolumeMesh<3> mesh = extruded(ball_volume<2>(half, spacing), n_steps(length, spacing), false);
+    for (auto& v : mesh.vertices) {
+      const double x = at.front() + v.z() * length;
+      v = {x, v.x() / half * between_stations(shape, shape.half_heights, x),
+           v.y() / half * between_stations(shape, shape.half_widths, x)};
+    }
+    orient_elements(mesh);
+    return mesh;
+  }
+}
+
+template VolumeMesh<2> spindle_volume<2>(const SpindleShape&, double);
+template VolumeMesh<3> spindle_volume<3>(const SpindleShape&, double);
 template VolumeMesh<2> box_volume<2>(const Point<2>&, double);
 template VolumeMesh<3> box_volume<3>(const Point<3>&, double);
 template VolumeMesh<2> ball_volume<2>(double, double);

@@ -25,4 +25,13 @@ VolumeMesh<dim> cylinder_volume(double radius, double length, double spacing);
 template <int dim>
 VolumeMesh<dim> torus_volume(double radius, double tube, double spacing);
 
+/// How high and wide a body along x is at some places of its length, straight between them.
+struct SpindleShape {
+  std::vector<double> stations;                   ///< ascending, two or more [m]
+  std::vector<double> half_heights, half_widths;  ///< along y and, in 3D, z [m]
+};
+/// A body with elliptic sections, in 2D a strip: a fish, a hull. Sections have the exact area.
+template <int dim>
+VolumeMesh<dim> spindle_volume(const SpindleShape& shape, double spacing);
+
 }  // namespace lockstep

@@ -68,6 +68,26 @@ TEST(VolumeMesh, GeneratorsFillTheirShapes) {
   expect_sound(cylinder, pi / 2, 0.2);
 }
 
+/// Half a wedge and a box; a cone that begins and ends with an ellipse.
+TEST(VolumeMesh, Spindles) {
+  expect_sound(spindle_volume<2>({{-1, 0, 2}, {0.25, 0.75, 0.75}, {}}, 0.25), 4, 0.4);
+  auto cone = spindle_volume<3>({{1, 2}, {0.4, 0.4}, {0.1, 0.2}}, 0.1);
+  check_volume_mesh(cone, "cone");
+  EXPECT_NEAR(mesh_volume(cone), pi * 0.4 * 0.15, 1e-3 * pi * 0.4 * 0.15);
+  EXPECT_GE(worst_quality(cone), 0.05);
+  Box<3> bounds;
+  for (const auto& x : cone.vertices)
+    bounds.extend(x);
+  EXPECT_DOUBLE_EQ(bounds.min().x(), 1);
+  EXPECT_DOUBLE_EQ(bounds.max().x(), 2);
+  EXPECT_GT(bounds.sizes().y(), 3 * bounds.sizes().z() / 2);
+  EXPECT_THAT(error([] {
+                spindle_volume<2>({{0, 0}, {1, 1}, {}}, 0.1);
+              }),
+              HasSubstr("must ascend"));
+  EXPECT_THAT(error([] { spindle_volume<3>({{0, 1}, {1, 1}, {1}}, 0.1); }), HasSubstr("as many"));
+}
+
 TEST(VolumeMesh, BadElementsAreNamed) {
   auto mesh = box_volume<2>({1, 1}, 0.5);
   const auto sound = mesh;

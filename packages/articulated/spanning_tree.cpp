@@ -1,0 +1,183 @@
+// Which joints form trees, and which close loops in them.
+#include "articulated/mechanism.hpp"
+
+#include <algorithm>
+
+#include "base/disjoint_sets.hpp"
+
+namespace lockstep {
+
+namespace {
+
+template <int dim>
+bool is_ground(const std::vector<JointedBody<dim>>& bodies, int body) {
+  return body == space || bodies[body].prescribed();
+}
+
+/// Which joints are in the trees.
+template <int dim>
+std::vector<char> tree_joints(const std::vector<JointedBody<dim>>& bodies,
+                              const std::vector<Joint<dim>>& joints) {
+  const int ground = static_cast<int>(bodies.size());
+  DisjointSets groups(ground + 1);  // bodies joined so far; the ground is the last
+  std::vector<char> in_tree(joints.size(), 0);
+  for (const bool wanted : {true, false}) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (joints[j].wants_rates() != wanted)
+        continue;
+      std::array<int, 2> ends;
+      for (int side = 0; side < 2; ++side) {
+        const int body = joints[j].sides[side].body;
+        ends[side] = is_ground(bodies, body) ? ground : body;
+      }
+      in_tree[j] = groups.join(ends[0], ends[1]) ? 1 : 0;
+    }
+  }
+  return in_tree;
+}
+
+/// Follows the tree's joints outward from the bodies that the mechanism has.
+template <int dim>
+void grow(Mechanism& mechanism, const std::vector<JointedBody<dim>>& bodies,
+          const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
+          std::vector<char>& reached) {
+  for (std::size_t next = 0; next < mechanism.bodies.size(); ++next) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (!in_tree[j])
+        continue;
+      for (int side = 0; side < 2; ++side) {
+        const int child = joints[j].sides[side].body;
+        if (joints[j].sides[1 - side].body != mechanism.bodies[next] || is_ground(bodies, child) ||
+            reached[child])
+          continue;
+        reached[child] = 1;
+        mechanism.bodies.push_back(child);
+        mechanism.carriers.push_back(static_cast<int>(j));
+      }
+    }
+  }
+}
+
+/// Trees that hang on the ground by one joint; other joints to the ground close loops.
+template <int dim>
+Mechanism grown_from(int joint, const std::vector<JointedBody<dim>>& bodies,
+                     const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
+                     std::vector<char>& reached) {
+  Mechanism mechanism;
+  const auto& sides = joints[joint].sides;
+  const bool first_is_ground = is_ground(bodies, sides[0].body);
+  const bool on_ground = first_is_ground || is_ground(bodies, sides[1].body);
+  const int start = sides[first_is_ground ? 1 : 0].body;
+  mechanism.root = on_ground ? space : start;
+  mechanism.bodies.push_back(start);
+  mechanism.carriers.push_back(on_ground ? joint : -1);
+  reached[start] = 1;
+  grow(mechanism, bodies, joints, in_tree, reached);
+  return mechanism;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodies,
+                                       std::vector<Joint<dim>>& joints) {
+  const std::vector<char> in_tree = tree_joints(bodies, joints);
+  std::vector<char> reached(bodies.size(), 0);
+  std::vector<Mechanism> mechanisms;
+  // Those on the ground first: what hangs on it is not free.
+  for (const bool on_ground : {true, false}) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const int first = joints[j].sides[0].body, second = joints[j].sides[1].body;
+      const bool touches = is_ground(bodies, first) || is_ground(bodies, second);
+      const int start = is_ground(bodies, first) ? second : first;
+      if (in_tree[j] && touches == on_ground && !reached[start])
+        mechanisms.push_back(grown_from(static_cast<int>(j), bodies, joints, in_tree, reached));
+    }
+  }
+  int n_all = 0;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!in_tree[j])
+      continue;
+    joints[j].first_rate = n_all;
+    n_all += n_rates<dim>(joints[j].kind);
+  }
+  // Loops may tie two trees of the ground together: they are one mechanism then.
+  const int n = static_cast<int>(mechanisms.size());
+  std::vector<int> home(bodies.size(), -1);
+  for (int m = 0; m < n; ++m) {
+    for (const int body : mechanisms[m].bodies)
+      home[body] = m;
+  }
+  DisjointSets together(n);
+  const auto home_of = [&](int body) { return is_ground(bodies, body) ? -1 : home[body]; };
+  for (const Joint<dim>& joint : joints) {
+    const int a = home_of(joint.sides[0].body), b = home_of(joint.sides[1].body);
+    if (a >= 0 && b >= 0)
+      together.join(a, b);
+  }
+  std::vector<Mechanism> joined(n);
+  for (int m = 0; m < n; ++m) {
+    Mechanism& whole = joined[together.root(m)];
+    if (whole.bodies.empty())
+      whole.root = mechanisms[m].root;
+    whole.bodies.insert(whole.bodies.end(), mechanisms[m].bodies.begin(),
+                        mechanisms[m].bodies.end());
+    whole.carriers.insert(whole.carriers.end(), mechanisms[m].carriers.begin(),
+                          mechanisms[m].carriers.end());
+  }
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    int m = -1;
+    for (const JointSide<dim>& side : joints[j].sides)
+      m = std::max(m, home_of(side.body));
+    Mechanism& mechanism = joined[together.root(m)];
+    mechanism.joints.push_back(static_cast<int>(j));
+    if (!in_tree[j])
+      mechanism.loops.push_back(static_cast<int>(j));
+    for (const JointSide<dim>& side : joints[j].sides) {
+      auto& grounds = mechanism.grounds;
+      if (side.body != space && is_ground(bodies, side.body) &&
+          std::find(grounds.begin(), grounds.end(), side.body) == grounds.end())
+        grounds.push_back(side.body);
+    }
+  }
+  joined.erase(std::remove_if(joined.begin(), joined.end(),
+                              [](const Mechanism& one) { return one.bodies.empty(); }),
+               joined.end());
+  return joined;
+}
+
+template <int dim>
+std::vector<int> loop_of(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints,
+                         int closing) {
+  // The ways of both sides to the root; what they share is not in the loop.
+  std::vector<int> loop;
+  for (const JointSide<dim>& side : joints[closing].sides) {
+    int body = side.body;
+    while (true) {
+      const auto place = std::find(mechanism.bodies.begin(), mechanism.bodies.end(), body);
+      const int carrier = place == mechanism.bodies.end()
+                              ? -1
+                              : mechanism.carriers[place - mechanism.bodies.begin()];
+      if (carrier < 0)
+        break;
+      const auto known = std::find(loop.begin(), loop.end(), carrier);
+      if (known == loop.end())
+        loop.push_back(carrier);
+      else
+        loop.erase(known);
+      const auto& [first, second] = joints[carrier].sides;
+      body = first.body == body ? second.body : first.body;
+    }
+  }
+  loop.insert(loop.begin(), closing);
+  return loop;
+}
+
+template std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<2>>&,
+                                                std::vector<Joint<2>>&);
+template std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<3>>&,
+                                                std::vector<Joint<3>>&);
+template std::vector<int> loop_of(const Mechanism&, const std::vector<Joint<2>>&, int);
+template std::vector<int> loop_of(const Mechanism&, const std::vector<Joint<3>>&, int);
+
+}  // namespace lockstep
