@@ -4,7 +4,6 @@
 #include <string>
 
 #include "base/errors.hpp"
-#include "grid/tile_partition.hpp"
 
 namespace lockstep {
 
@@ -98,7 +97,7 @@ TileOwners share_tiles(const TileLattice<dim>& lattice, const Communicator& comm
   std::string failure;
   if (is_root(comm)) {
     try {
-      owners.ranks = partition_tiles<dim>(lattice, owners.tiles, weights, comm->getSize());
+      owners.ranks = partition_tiles<dim>(lattice, owners.tiles, {weights, {}}, comm->getSize());
     } catch (const Failure& error) {
       failure = error.what();
     }
@@ -129,6 +128,31 @@ TileOwners share_tiles_again(const TileLattice<dim>& lattice, const Communicator
   return largest(loads_of(anew.ranks, weights, n_ranks)) < load ? anew : owners;
 }
 
+template <int dim>
+std::optional<TileOwners> share_better(const TileLattice<dim>& lattice, const Communicator& comm,
+                                       const TileOwners& before, const TileWork& work) {
+  constexpr double worth_moving = 0.93;
+  const int n_ranks = comm->getSize();
+  TileOwners after = before;
+  if (is_root(comm)) {
+    std::vector<int> ranks = partition_tiles(lattice, before.tiles, work, n_ranks);
+    const auto cost = [&](const std::vector<int>& parts) {
+      return partition_cost(lattice, before.tiles, work, parts, n_ranks);
+    };
+    if (cost(ranks) < worth_moving * cost(before.ranks))
+      after.ranks = std::move(ranks);
+  }
+  MPI_Bcast(after.ranks.data(), static_cast<int>(after.ranks.size()), MPI_INT, 0,
+            raw_communicator(comm));
+  if (after.ranks == before.ranks)
+    return {};
+  return after;
+}
+
+template std::optional<TileOwners> share_better(const TileLattice<2>&, const Communicator&,
+                                                const TileOwners&, const TileWork&);
+template std::optional<TileOwners> share_better(const TileLattice<3>&, const Communicator&,
+                                                const TileOwners&, const TileWork&);
 template TileOwners share_tiles(const TileLattice<2>&, const Communicator&,
                                 std::vector<GlobalIndex>, const std::vector<GlobalIndex>&);
 template TileOwners share_tiles(const TileLattice<3>&, const Communicator&,

@@ -1,8 +1,10 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "base/communicator.hpp"
 #include "grid/tile_lattice.hpp"
+#include "grid/tile_partition.hpp"
 
 namespace lockstep {
 
@@ -12,8 +14,8 @@ struct TileOwners {
   std::vector<int> ranks;          ///< of each
 };
 
-/// Collective: divides tiles (ascending, the same on all ranks) among the ranks by METIS. `weights`
-/// is the work of each, on any scale. Throws InputError on all ranks.
+/// Collective: divides tiles (ascending, the same on all ranks) among the ranks (see
+/// `partition_tiles`). `weights` is the work of each in cells. Throws InputError on all ranks.
 template <int dim>
 TileOwners share_tiles(const TileLattice<dim>& lattice, const Communicator& comm,
                        std::vector<GlobalIndex> tiles, const std::vector<GlobalIndex>& weights);
@@ -25,5 +27,11 @@ template <int dim>
 TileOwners share_tiles_again(const TileLattice<dim>& lattice, const Communicator& comm,
                              const TileOwners& before, std::vector<GlobalIndex> tiles,
                              const std::vector<GlobalIndex>& weights);
+
+/// Collective: other owners of the same tiles, if with them the slowest rank has at least 7 % less
+/// to do; nothing if not. `work` is rank 0's.
+template <int dim>
+std::optional<TileOwners> share_better(const TileLattice<dim>& lattice, const Communicator& comm,
+                                       const TileOwners& before, const TileWork& work);
 
 }  // namespace lockstep

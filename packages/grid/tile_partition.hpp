@@ -5,14 +5,27 @@
 
 namespace lockstep {
 
-/// Divides tiles among `n_parts` ranks so that the work is even and the cut small: METIS on the
-/// graph of face neighbours, or a cut of the Morton curve where METIS leaves a small graph uneven.
-/// `tile_numbers` ascending, `weights` the work of each (at least 1 is taken). Returns the part of
-/// each tile; parts may be empty when there are few tiles. Not collective; deterministic. Throws
-/// InputError if there are more tiles than METIS can number.
+/// The work of tiles, in those of a cell. The two are done in parts of a step that wait for each
+/// other, so that each is to be shared evenly.
+struct TileWork {
+  std::vector<GlobalIndex> everywhere;   ///< of each tile, at least 1 is taken
+  std::vector<GlobalIndex> at_surfaces;  ///< what surfaces add in each; empty: nothing
+};
+
+/// Divides tiles among `n_parts` ranks so that the work is even and the cut small: of some ways the
+/// one with the least `partition_cost`. They are METIS on the graph of face neighbours (for either
+/// work, and for the first alone), straight cuts, and a cut of the Morton curve. `tile_numbers`
+/// ascending. Returns the part of each tile; parts may be empty when there are few tiles. Not
+/// collective; deterministic. Throws InputError if there are more tiles than METIS can number.
 template <int dim>
 std::vector<int> partition_tiles(const TileLattice<dim>& lattice,
-                                 const std::vector<GlobalIndex>& tile_numbers,
-                                 const std::vector<GlobalIndex>& weights, int n_parts);
+                                 const std::vector<GlobalIndex>& tile_numbers, const TileWork& work,
+                                 int n_parts);
+
+/// What the slowest rank takes for a step: the most work of either kind, and as much as a cell's
+/// for every face of a cell between two ranks.
+template <int dim>
+double partition_cost(const TileLattice<dim>& lattice, const std::vector<GlobalIndex>& tile_numbers,
+                      const TileWork& work, const std::vector<int>& parts, int n_parts);
 
 }  // namespace lockstep

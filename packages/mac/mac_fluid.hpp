@@ -155,6 +155,7 @@ class MacFluid : public FluidDiscretization<dim>,
   Momentum<dim> push_at_rim(const Point<dim>& force, double dt);
   /// Tiles for the first surface, before any step.
   void make_room_for(const Surface& surface);
+  bool share_work();
   void save_tiles(CheckpointWriter& checkpoint) const;
   void load_tiles(const CheckpointReader& checkpoint);
   /// What partly open faces of this rank add to an angular momentum, because their fluid moves
@@ -173,7 +174,8 @@ class MacFluid : public FluidDiscretization<dim>,
 
   MacDomain<dim> domain_;
   std::optional<MovingTiles<dim>> moving_tiles_;  ///< none: all tiles exist, always
-  TileOwners owners_;                             ///< of the tiles, if they move
+  TileOwners owners_;                             ///< of the tiles; empty: as at the start
+  int steps_to_sharing_ = 0;                      ///< before work is next compared between ranks
   bool has_room_ = false;                         ///< for the first surface
   MacParameters<dim> parameters_;
   Scalars<dim> scalars_;

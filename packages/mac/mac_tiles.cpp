@@ -18,6 +18,38 @@ Point<dim> origin_of_pressure(const MacDomain<dim>& domain, const Box<dim>& boun
   return origin;
 }
 
+/// On rank 0.
+template <int dim>
+TileWork work_of_tiles(const TiledGrid<dim>& grid, const TileOwners& owners,
+                       const SurfaceSnapshot<dim>& surface) {
+  // Measured: advection and geometry near a ball, by the tiles that it touches.
+  constexpr int of_surface_tile = 4 * tile_volume<dim>;
+  constexpr double reach = 2;  // cells
+  const TileLattice<dim>& lattice = grid.tile_lattice();
+  const int rank = grid.comm()->getRank();
+  TileWork work;
+  work.at_surfaces.assign(owners.tiles.size(), 0);
+  for (std::size_t i = 0; i < owners.tiles.size(); ++i) {
+    const Index<dim> tile = lattice.tile_coordinates(owners.tiles[i]);
+    const Index<dim> size = lattice.domain_extent(tile);
+    GlobalIndex n_cells = 1;
+    Box<dim> box;
+    for (int a = 0; a < dim; ++a) {
+      n_cells *= size[a];
+      const double begin = tile[a] * tile_width<dim>;
+      box.min()[a] = grid.lower()[a] + (begin - reach) * grid.spacing();
+      box.max()[a] = grid.lower()[a] + (begin + size[a] + reach) * grid.spacing();
+    }
+    work.everywhere.push_back(n_cells);
+    if (owners.ranks[i] == rank && surface.touches(box))
+      work.at_surfaces[i] = of_surface_tile;
+  }
+  const auto n = static_cast<int>(work.at_surfaces.size());
+  MPI_Reduce(rank == 0 ? MPI_IN_PLACE : work.at_surfaces.data(), work.at_surfaces.data(), n,
+             MPI_LONG_LONG, MPI_SUM, 0, raw_communicator(grid.comm()));
+  return work;
+}
+
 }  // namespace
 
 template <int dim>
@@ -37,11 +69,28 @@ typename MovingTiles<dim>::Present MacFluid<dim>::present(const MacState<dim>& s
 template <int dim>
 bool MacFluid<dim>::begin_step(double time, double dt, const std::function<double()>& solid_speed) {
   if (!moving_tiles_)
-    return false;
+    return share_work();
   auto now = present(geometry_.state, time, dt);
   now.largest_speed = largest_speed();
   now.solid_speed = solid_speed();
   const std::optional<TileOwners> owners = moving_tiles_->change(now);
+  if (owners)
+    regrid(*owners);
+  return owners.has_value();
+}
+
+/// Gives ranks other tiles where surfaces have made their work uneven.
+template <int dim>
+bool MacFluid<dim>::share_work() {
+  const Communicator& comm = domain_.grid.comm();
+  if (comm->getSize() == 1 || !geometry_.state.surface || steps_to_sharing_-- > 0)
+    return false;
+  constexpr int steps_between = 20;
+  steps_to_sharing_ = steps_between - 1;
+  if (owners_.tiles.empty())
+    owners_ = domain_.grid.tile_owners();
+  const TileWork work = work_of_tiles(domain_.grid, owners_, *geometry_.state.surface);
+  const auto owners = share_better(domain_.grid.tile_lattice(), comm, owners_, work);
   if (owners)
     regrid(*owners);
   return owners.has_value();
@@ -142,7 +191,7 @@ Momentum<dim> MacFluid<dim>::push_at_rim(const Point<dim>& force, double dt) {
 /// With their ranks: the sums of a run that goes on are those of one that never stopped.
 template <int dim>
 void MacFluid<dim>::save_tiles(CheckpointWriter& checkpoint) const {
-  if (!moving_tiles_)
+  if (owners_.tiles.empty())
     return;
   const int rank = domain_.grid.comm()->getRank();
   std::vector<GlobalIndex> mine;
@@ -152,22 +201,27 @@ void MacFluid<dim>::save_tiles(CheckpointWriter& checkpoint) const {
   checkpoint.write_distributed("fluid/tiles", mine, std::vector<long long>(mine.size(), rank));
   checkpoint.file().write_attribute<long long>("fluid/tiles", "ranks",
                                                domain_.grid.comm()->getSize());
+  checkpoint.file().write_attribute<long long>("fluid/tiles", "steps_to_sharing",
+                                               steps_to_sharing_);
 }
 
 template <int dim>
 void MacFluid<dim>::load_tiles(const CheckpointReader& checkpoint) {
-  if (!moving_tiles_)
-    return;
   const Hdf5File& file = checkpoint.file();
+  if (!file.exists("fluid/tiles"))
+    return;
   TileOwners owners;
   for (const long long tile : file.read_all<long long>("fluid/tiles/ids"))
     owners.tiles.push_back(tile);
   for (const long long rank : file.read_all<long long>("fluid/tiles/values"))
     owners.ranks.push_back(static_cast<int>(rank));
   const Communicator& comm = domain_.grid.comm();
+  if (file.has_attribute("fluid/tiles", "steps_to_sharing"))
+    steps_to_sharing_ =
+        static_cast<int>(file.read_attribute<long long>("fluid/tiles", "steps_to_sharing"));
   if (file.read_attribute<long long>("fluid/tiles", "ranks") != comm->getSize())
     owners = share_tiles(domain_.grid.tile_lattice(), comm, owners.tiles,
-                         std::vector<GlobalIndex>(owners.tiles.size(), 1));
+                         std::vector<GlobalIndex>(owners.tiles.size(), tile_volume<dim>));
   regrid(owners);
 }
 
@@ -175,6 +229,8 @@ template MovingTiles<2>::Present MacFluid<2>::present(const MacState<2>&, double
 template MovingTiles<3>::Present MacFluid<3>::present(const MacState<3>&, double, double) const;
 template bool MacFluid<2>::begin_step(double, double, const std::function<double()>&);
 template bool MacFluid<3>::begin_step(double, double, const std::function<double()>&);
+template bool MacFluid<2>::share_work();
+template bool MacFluid<3>::share_work();
 template void MacFluid<2>::make_room_for(const Surface&);
 template void MacFluid<3>::make_room_for(const Surface&);
 template void MacFluid<2>::regrid(const TileOwners&);

@@ -147,7 +147,7 @@ TEST(TileOwners, AreSharedAnewWhenTheWorkIsUneven) {
   const TiledGrid<2> grid(square(160, false), world(), slab<2>(0, 0, 16));
   TileOwners before = grid.tile_owners();
   std::fill(before.ranks.begin(), before.ranks.end(), 0);
-  const std::vector<GlobalIndex> weights(before.tiles.size(), 1);
+  const std::vector<GlobalIndex> weights(before.tiles.size(), 256);
   const TileOwners after =
       share_tiles_again<2>(grid.tile_lattice(), world(), before, before.tiles, weights);
   const auto at_most = (10 + world()->getSize() - 1) / world()->getSize();
