@@ -25,6 +25,15 @@ double value(const JointLimit& limit, const std::vector<double>& velocity) {
   return sum;
 }
 
+/// The same for equal places.
+template <int dim>
+std::size_t hash_of(const Point<dim>& place) {
+  std::size_t hash = 0;
+  for (int a = 0; a < dim; ++a)
+    hash = 1000003 * hash ^ std::hash<double>()(place[a]);
+  return hash;
+}
+
 /// Shells and what deforms have a skin.
 double half_thickness_of(const SolidDescription& solid, const GaussSeidelOptions& options,
                          double spacing) {
@@ -63,7 +72,14 @@ ContactProblem<dim>::ContactProblem(const SolidSystem<dim>& system,
 }
 
 template <int dim>
-ContactReach ContactProblem<dim>::reach(double speed) const {
+ContactReach ContactProblem<dim>::reach(const SolidMotion<dim>& motion) const {
+  double speed = 0;
+  for (int i = 0; i < shapes_.n_solids(); ++i) {
+    if (!motion.range(i).isEmpty()) {
+      speed = std::max({speed, motion.range(i).min().cwiseAbs().maxCoeff(),
+                        motion.range(i).max().cwiseAbs().maxCoeff()});
+    }
+  }
   ContactReach reach;
   reach.swept = phase_ == ContactPhase::position;
   reach.near = spacing_ * std::max(options_.slop, options_.margin) +
@@ -131,31 +147,47 @@ double ContactProblem<dim>::target(const Contact<dim>& contact, double normal_ve
 }
 
 template <int dim>
-void ContactProblem<dim>::add_candidates(const SolidMotion<dim>& motion,
-                                         const SolidMotion<dim>& before) {
-  double speed = 0;
-  for (int i = 0; i < shapes_.n_solids(); ++i) {
-    if (!motion.range(i).isEmpty()) {
-      speed = std::max({speed, motion.range(i).min().cwiseAbs().maxCoeff(),
-                        motion.range(i).max().cwiseAbs().maxCoeff()});
-    }
-  }
-  for (Contact<dim>& contact : find_contacts(shapes_, motion, walls_, reach(speed))) {
+bool ContactProblem<dim>::is_known(const Contact<dim>& contact) const {
+  const auto found = by_place_.find(hash_of<dim>(contact.point.position));
+  if (found == by_place_.end())
+    return false;
+  return std::any_of(found->second.begin(), found->second.end(), [&](int k) {
+    const Contact<dim>& one = candidates_[k].contact;
+    return one.solid == contact.solid && one.other == contact.other &&
+           one.point.position == contact.point.position &&
+           one.normal.dot(contact.normal) > 1 - 1e-9;
+  });
+}
+
+template <int dim>
+double ContactProblem<dim>::worst_violation(const SolidMotion<dim>& motion,
+                                            const SolidMotion<dim>& before) {
+  ContactReach look = reach(motion);
+  look.violated_only = true;
+  double worst = 0;
+  for (const Contact<dim>& contact : find_contacts(shapes_, motion, walls_, look)) {
     if (apart_.count({contact.solid, contact.other}) > 0)
       continue;
-    std::vector<int>& pair = pairs_[{contact.solid, contact.other}];
-    const bool known = std::any_of(pair.begin(), pair.end(), [&](int k) {
-      const Contact<dim>& one = candidates_[k].contact;
-      return one.point.position == contact.point.position &&
-             one.normal.dot(contact.normal) > 1 - 1e-9;
-    });
-    if (known)
+    const double now = normal_velocity(motion, contact);
+    worst = std::max(worst, target(contact, now, normal_velocity(before, contact)) - now);
+    deepest_ = std::max(deepest_, -contact.gap);
+  }
+  return worst;
+}
+
+template <int dim>
+void ContactProblem<dim>::add_candidates(const SolidMotion<dim>& motion,
+                                         const SolidMotion<dim>& before) {
+  for (Contact<dim>& contact : find_contacts(shapes_, motion, walls_, reach(motion))) {
+    if (apart_.count({contact.solid, contact.other}) > 0 || is_known(contact))
       continue;
     Candidate candidate;
     candidate.target =
         target(contact, normal_velocity(motion, contact), normal_velocity(before, contact));
     candidate.contact = std::move(contact);
-    pair.push_back(static_cast<int>(candidates_.size()));
+    const int number = static_cast<int>(candidates_.size());
+    pairs_[{candidate.contact.solid, candidate.contact.other}].push_back(number);
+    by_place_[hash_of<dim>(candidate.contact.point.position)].push_back(number);
     candidates_.push_back(std::move(candidate));
   }
   searched_.clear();
@@ -165,10 +197,13 @@ void ContactProblem<dim>::add_candidates(const SolidMotion<dim>& motion,
 
 template <int dim>
 bool ContactProblem<dim>::prepare(const std::vector<double>& before,
-                                  const std::vector<double>& velocity) {
+                                  const std::vector<double>& velocity, bool expected) {
   before_ = before;
   const SolidMotion<dim> motion(system_, shapes_, velocity);
-  add_candidates(motion, SolidMotion<dim>(system_, shapes_, before));
+  const SolidMotion<dim> motion_before(system_, shapes_, before);
+  bool is_searched = expected || worst_violation(motion, motion_before) > 0;
+  if (is_searched)
+    add_candidates(motion, motion_before);
   for (const Candidate& candidate : candidates_) {
     scale_ = std::max(scale_, candidate.target - normal_velocity(motion, candidate.contact));
   }
@@ -185,6 +220,8 @@ bool ContactProblem<dim>::prepare(const std::vector<double>& before,
     for (const Contact<dim>& contact : impacts_of(velocity))
       scale_ = std::max(scale_, -contact.gap / dt_ - normal_velocity(motion, contact));
   }
+  if (scale_ > 0 && !is_searched)
+    add_candidates(motion, motion_before);
   return scale_ > 0;
 }
 
@@ -330,7 +367,7 @@ int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
 
 template <int dim>
 double ContactProblem<dim>::deepest_overlap() const {
-  double deepest = 0;
+  double deepest = deepest_;
   for (const Candidate& candidate : candidates_)
     deepest = std::max(deepest, -candidate.contact.gap);
   return deepest;

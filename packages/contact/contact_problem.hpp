@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -20,8 +21,10 @@ class ContactProblem {
                  const std::vector<HalfSpace>& walls, const GaussSeidelOptions& options,
                  double spacing, ContactPhase phase, double dt);
 
-  /// Finds the candidates; false if there is nothing to act on.
-  bool prepare(const std::vector<double>& before, const std::vector<double>& velocity);
+  /// Finds the candidates; false if there is nothing to act on. Where that is not `expected`, most
+  /// of what a solid that is not rigid has near itself is passed by at first.
+  bool prepare(const std::vector<double>& before, const std::vector<double>& velocity,
+               bool expected);
   /// Solves; returns the number of sweeps.
   int solve(ImpulseSolver<dim>& solver);
 
@@ -41,7 +44,11 @@ class ContactProblem {
   };
   using Pair = std::pair<int, int>;
 
-  ContactReach reach(double speed) const;
+  /// For these velocities.
+  ContactReach reach(const SolidMotion<dim>& motion) const;
+  /// The largest violation, not less than 0 [m/s]. Keeps no candidates.
+  double worst_violation(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
+  bool is_known(const Contact<dim>& contact) const;
   void add_candidates(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
   double target(const Contact<dim>& contact, double normal_velocity, double before) const;
   double normal_velocity(const SolidMotion<dim>& motion, const Contact<dim>& contact) const;
@@ -80,8 +87,10 @@ class ContactProblem {
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed
   std::vector<Candidate> candidates_;
   std::vector<Limit> limits_;
-  std::map<Pair, std::vector<int>> pairs_;  ///< candidates of each pair
-  double scale_ = 0;                        ///< largest violation at the start [m/s]
+  std::map<Pair, std::vector<int>> pairs_;                      ///< candidates of each pair
+  std::unordered_map<std::size_t, std::vector<int>> by_place_;  ///< candidates by hash_of
+  double scale_ = 0;    ///< largest violation at the start [m/s]
+  double deepest_ = 0;  ///< overlap of what is no candidate [m]
 };
 
 }  // namespace lockstep

@@ -96,7 +96,7 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
     vertices.emplace_back(x);
   for (const auto& [i, j] : meeting_pairs(shapes, boxes)) {
     if (!shapes.solids()[i].rigid || !shapes.solids()[j].rigid) {
-      add_surface_contacts(shapes, vertices, reach, i, j, contacts);
+      add_surface_contacts(shapes, motion, vertices, reach, i, j, contacts);
       continue;
     }
     VertexContacts<dim>(shapes, motion, reach, i, j).find(contacts);
@@ -109,7 +109,7 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
     if (solid.prescribed || solid.simplex_begin == solid.simplex_end)
       continue;
     if (reach.self && !solid.rigid)
-      add_surface_contacts(shapes, vertices, reach, i, i, contacts);
+      add_surface_contacts(shapes, motion, vertices, reach, i, i, contacts);
     for (const HalfSpace& wall : walls) {
       const double nearest = wall.sign > 0 ? boxes[i].min()[wall.axis] - wall.coordinate
                                            : wall.coordinate - boxes[i].max()[wall.axis];

@@ -60,7 +60,9 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
     shapes.set_drift(replicated(solids, *drift_of(solids, velocity)));
   ContactProblem<dim> problem(solids, shapes, walls_, options_, spacing_, phase, dt);
   const std::vector<double> given = replicated(solids, velocity);
-  const bool acts = problem.prepare(replicated(solids, *solids.velocity()), given);
+  bool& acted = acted_[phase == ContactPhase::position ? 0 : 1];
+  const bool acts = problem.prepare(replicated(solids, *solids.velocity()), given, acted);
+  acted = acts;
   report.deepest_overlap = problem.deepest_overlap();
   if (!acts)
     return report;

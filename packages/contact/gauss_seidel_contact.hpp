@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -63,6 +64,8 @@ class GaussSeidelContact : public ContactModel<dim> {
   std::vector<HalfSpace> walls_;
   double spacing_;
   ContactTopology<dim> topology_;
+  /// By phase, whether there was something to act on last time; results do not depend on it.
+  std::array<bool, 2> acted_{};
 };
 
 /// Half spaces of the closed sides of a domain: [axis][lower, upper].

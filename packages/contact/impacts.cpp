@@ -34,12 +34,15 @@ std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
       const bool both_rigid = shapes.solids()[i].rigid && shapes.solids()[j].rigid;
       if (both_rigid || (i == j && !self) || !solid_swept[i].intersects(solid_swept[j]))
         continue;
-      for (const PrimitivePair<dim>& pair : find_primitive_pairs(shapes, swept, 0, i, j)) {
-        const auto impact =
-            first_impact<dim>(pair.kind, points_of(pair, path.before), points_of(pair, path.after));
-        if (impact)
-          found.push_back({pair, *impact});
-      }
+      for_each_primitive<dim>(
+          shapes, swept, 0, i, j, [&](const std::vector<PrimitivePair<dim>>& pairs) {
+            for (const PrimitivePair<dim>& pair : pairs) {
+              const auto impact = first_impact<dim>(pair.kind, points_of(pair, path.before),
+                                                    points_of(pair, path.after));
+              if (impact)
+                found.push_back({pair, *impact});
+            }
+          });
     }
   }
   return found;

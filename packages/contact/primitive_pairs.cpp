@@ -19,8 +19,12 @@ template <int dim>
 class PairFinder {
  public:
   PairFinder(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertex_boxes,
-             double margin, int solid, int other)
-      : shapes_(shapes), vertex_boxes_(vertex_boxes), margin_(margin), self_(solid == other) {
+             double margin, int solid, int other, const UsePrimitivePairs<dim>& use)
+      : shapes_(shapes),
+        vertex_boxes_(vertex_boxes),
+        margin_(margin),
+        self_(solid == other),
+        use_(use) {
     region_ = inflated(extent(solid)).intersection(inflated(extent(other)));
   }
 
@@ -31,7 +35,6 @@ class PairFinder {
   void add_edges(int solid, int other) {
     add(PrimitiveKind::edge_edge, solid, edges_of(solid), other, edges_of(other));
   }
-  std::vector<PrimitivePair<dim>>& pairs() { return pairs_; }
 
  private:
   Box<dim> inflated(const Box<dim>& box) const {
@@ -88,10 +91,13 @@ class PairFinder {
     std::vector<int> found;
     for (int i = 0; i < static_cast<int>(first.size()); ++i) {
       tree.touching(inflated(box_of<n>(first[i].vertices)), found);
+      pairs_.clear();
       for (const int j : found) {
         if (kind == PrimitiveKind::vertex_simplex || !self_ || i < j)
           add_pair(kind, solid, first[i], other, second[j]);
       }
+      if (!pairs_.empty())
+        use_(pairs_);
     }
   }
   template <int n, int m>
@@ -120,22 +126,21 @@ class PairFinder {
   double margin_;
   bool self_;
   Box<dim> region_;
-  std::vector<PrimitivePair<dim>> pairs_;
+  const UsePrimitivePairs<dim>& use_;
+  std::vector<PrimitivePair<dim>> pairs_;  ///< of one first primitive
 };
 
 }  // namespace
 
 template <int dim>
-std::vector<PrimitivePair<dim>> find_primitive_pairs(const ContactShapes<dim>& shapes,
-                                                     const std::vector<Box<dim>>& vertex_boxes,
-                                                     double margin, int solid, int other) {
-  PairFinder<dim> finder(shapes, vertex_boxes, margin, solid, other);
+void for_each_primitive(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertex_boxes,
+                        double margin, int solid, int other, const UsePrimitivePairs<dim>& use) {
+  PairFinder<dim> finder(shapes, vertex_boxes, margin, solid, other, use);
   finder.add_vertices(solid, other);
   if (solid != other)
     finder.add_vertices(other, solid);
   if constexpr (dim == 3)
     finder.add_edges(solid, other);
-  return std::move(finder.pairs());
 }
 
 template <int dim>
@@ -157,12 +162,10 @@ std::array<SurfacePoint<dim>, 2> surface_points(const ContactShapes<dim>& shapes
   return points;
 }
 
-template std::vector<PrimitivePair<2>> find_primitive_pairs<2>(const ContactShapes<2>&,
-                                                               const std::vector<Box<2>>&, double,
-                                                               int, int);
-template std::vector<PrimitivePair<3>> find_primitive_pairs<3>(const ContactShapes<3>&,
-                                                               const std::vector<Box<3>>&, double,
-                                                               int, int);
+template void for_each_primitive<2>(const ContactShapes<2>&, const std::vector<Box<2>>&, double,
+                                    int, int, const UsePrimitivePairs<2>&);
+template void for_each_primitive<3>(const ContactShapes<3>&, const std::vector<Box<3>>&, double,
+                                    int, int, const UsePrimitivePairs<3>&);
 template std::array<SurfacePoint<2>, 2> surface_points<2>(const ContactShapes<2>&,
                                                           const PrimitivePair<2>&,
                                                           const PrimitiveWeights<2>&);

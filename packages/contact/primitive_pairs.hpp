@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "contact/contact_shapes.hpp"
@@ -15,13 +16,16 @@ struct PrimitivePair {
   std::array<int, dim + 1> vertices{};   ///< in the order of `PrimitivePoints`
 };
 
-/// All pairs of primitives of two solids (or of one with itself) whose boxes, the union of those of
-/// their vertices, come closer than `margin` in every direction; what contact cannot move is left
-/// out. By a tree of boxes. The order does not depend on the ranks. Local.
+/// Called with all pairs of one first primitive.
 template <int dim>
-std::vector<PrimitivePair<dim>> find_primitive_pairs(const ContactShapes<dim>& shapes,
-                                                     const std::vector<Box<dim>>& vertex_boxes,
-                                                     double margin, int solid, int other);
+using UsePrimitivePairs = std::function<void(const std::vector<PrimitivePair<dim>>&)>;
+
+/// Goes through all pairs of primitives of two solids (or of one with itself) whose boxes, the
+/// union of those of their vertices, come closer than `margin` in every direction; what contact
+/// cannot move is left out. By a tree of boxes. The order does not depend on the ranks. Local.
+template <int dim>
+void for_each_primitive(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertex_boxes,
+                        double margin, int solid, int other, const UsePrimitivePairs<dim>& use);
 
 template <int dim>
 PrimitivePoints<dim> points_of(const PrimitivePair<dim>& pair,

@@ -1,6 +1,9 @@
 #include "contact/surface_contacts.hpp"
 
-#include "contact/primitive_pairs.hpp"
+#include <algorithm>
+#include <optional>
+
+#include "contact/approach.hpp"
 
 namespace lockstep {
 
@@ -18,23 +21,33 @@ struct NearPair {
 template <int dim>
 class SurfaceContacts {
  public:
+  /// With `approach` those only that it does not rule out.
   SurfaceContacts(const ContactShapes<dim>& shapes, const ContactReach& reach,
-                  std::vector<Contact<dim>>& contacts)
-      : shapes_(shapes), reach_(reach), contacts_(contacts) {}
+                  const Approach<dim>* approach, std::vector<Contact<dim>>& contacts)
+      : shapes_(shapes), reach_(reach), approach_(approach), contacts_(contacts) {}
 
+  /// Of one first primitive.
   void add(const std::vector<PrimitivePair<dim>>& pairs) {
-    for (std::size_t k = 0; k < pairs.size();) {
-      if (pairs[k].kind == PrimitiveKind::edge_edge) {
-        if (const auto near = near_pair(pairs[k]); near && on_outer_sides(*near))
-          add_contact(*near);
-        ++k;
-      } else {
-        k = add_vertex(pairs, k);
-      }
+    if (pairs.front().kind == PrimitiveKind::vertex_simplex) {
+      // Which simplex is the nearest, all of them tell.
+      if (std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) { return matters(pair); }))
+        add_vertex(pairs);
+      return;
+    }
+    for (const PrimitivePair<dim>& pair : pairs) {
+      if (!matters(pair))
+        continue;
+      if (const auto near = near_pair(pair); near && on_outer_sides(*near))
+        add_contact(*near);
     }
   }
 
  private:
+  bool matters(const PrimitivePair<dim>& pair) const {
+    return approach_ == nullptr ||
+           approach_->may_close(pair, approach_->distance_of_boxes(pair), thickness(pair));
+  }
+
   double thickness(const PrimitivePair<dim>& pair) const {
     return reach_.half_thickness[pair.solid] + reach_.half_thickness[pair.other];
   }
@@ -88,35 +101,33 @@ class SurfaceContacts {
            outward(near.points[1]).dot(near.arm) < 0;
   }
 
-  /// All simplices near the vertex of pairs[k]; returns the first pair of another one.
-  std::size_t add_vertex(const std::vector<PrimitivePair<dim>>& pairs, std::size_t k) {
+  /// All simplices near one vertex.
+  void add_vertex(const std::vector<PrimitivePair<dim>>& pairs) {
     std::vector<NearPair<dim>> near;
     std::size_t nearest = 0;
-    const int vertex = pairs[k].vertices[0];
-    for (; k < pairs.size() && pairs[k].kind == PrimitiveKind::vertex_simplex &&
-           pairs[k].vertices[0] == vertex;
-         ++k) {
-      if (const auto found = near_pair(pairs[k])) {
+    for (const PrimitivePair<dim>& pair : pairs) {
+      if (const auto found = near_pair(pair)) {
         near.push_back(*found);
         if (near.back().closest.distance < near[nearest].closest.distance)
           nearest = near.size() - 1;
       }
     }
     if (near.empty())
-      return k;
+      return;
     if (overlaps(near[nearest])) {
       add_overlap(near[nearest]);
-      return k;
+      return;
     }
     for (std::size_t i = 0; i < near.size(); ++i) {
       if ((near[i].closest.interior || i == nearest) && on_outer_sides(near[i]))
         add_contact(near[i]);
     }
-    return k;
   }
 
   void add_contact(const NearPair<dim>& near) {
     const double range = reach_.near + thickness(*near.pair), distance = near.closest.distance;
+    if (approach_ != nullptr && !approach_->may_close(*near.pair, distance, thickness(*near.pair)))
+      return;
     if (distance <= range && distance > 1e-9 * range)
       append(near, near.arm / distance, distance);
   }
@@ -147,26 +158,33 @@ class SurfaceContacts {
 
   const ContactShapes<dim>& shapes_;
   const ContactReach& reach_;
+  const Approach<dim>* approach_;
   std::vector<Contact<dim>>& contacts_;
 };
 
 }  // namespace
 
 template <int dim>
-void add_surface_contacts(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertices,
-                          const ContactReach& reach, int solid, int other,
-                          std::vector<Contact<dim>>& contacts) {
+void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
+                          const std::vector<Box<dim>>& vertices, const ContactReach& reach,
+                          int solid, int other, std::vector<Contact<dim>>& contacts) {
   double range = reach.near + reach.half_thickness[solid] + reach.half_thickness[other];
   const bool any_closed = shapes.solids()[solid].closed || shapes.solids()[other].closed;
   if (solid != other && any_closed)
     range = std::max(range, reach.depth);
-  SurfaceContacts<dim>(shapes, reach, contacts)
-      .add(find_primitive_pairs(shapes, vertices, range, solid, other));
+  std::optional<Approach<dim>> approach;
+  if (reach.violated_only && solid == other)
+    approach.emplace(shapes, motion, solid, reach.dt);
+  SurfaceContacts<dim> found(shapes, reach, approach ? &*approach : nullptr, contacts);
+  for_each_primitive<dim>(shapes, vertices, range, solid, other,
+                          [&](const std::vector<PrimitivePair<dim>>& pairs) { found.add(pairs); });
 }
 
-template void add_surface_contacts<2>(const ContactShapes<2>&, const std::vector<Box<2>>&,
-                                      const ContactReach&, int, int, std::vector<Contact<2>>&);
-template void add_surface_contacts<3>(const ContactShapes<3>&, const std::vector<Box<3>>&,
-                                      const ContactReach&, int, int, std::vector<Contact<3>>&);
+template void add_surface_contacts<2>(const ContactShapes<2>&, const SolidMotion<2>&,
+                                      const std::vector<Box<2>>&, const ContactReach&, int, int,
+                                      std::vector<Contact<2>>&);
+template void add_surface_contacts<3>(const ContactShapes<3>&, const SolidMotion<3>&,
+                                      const std::vector<Box<3>>&, const ContactReach&, int, int,
+                                      std::vector<Contact<3>>&);
 
 }  // namespace lockstep

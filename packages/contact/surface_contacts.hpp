@@ -14,8 +14,8 @@ namespace lockstep {
 ///
 /// `vertices`: boxes that hold one vertex each.
 template <int dim>
-void add_surface_contacts(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertices,
-                          const ContactReach& reach, int solid, int other,
-                          std::vector<Contact<dim>>& contacts);
+void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
+                          const std::vector<Box<dim>>& vertices, const ContactReach& reach,
+                          int solid, int other, std::vector<Contact<dim>>& contacts);
 
 }  // namespace lockstep
