@@ -11,6 +11,10 @@
 namespace lockstep {
 
 namespace {
+/// Below this part of what its dofs would answer one by one, the response of a contact is the
+/// round-off of joints that let nothing move along it.
+constexpr double unmovable = 1e-10;
+
 template <int dim>
 Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
   Eigen::Matrix<double, dim, dim - 1> tangents;
@@ -68,10 +72,13 @@ void ImpulseSolver<dim>::add_entries(const SurfacePoint<dim>& point, const Point
 template <int dim>
 void ImpulseSolver<dim>::add_response(Row& row) {
   std::map<int, Point<dim>> response;
+  double of_parts = 0;  // the normal response if no dof took back what another gives
   for (int k = row.begin; k < row.end; ++k) {
     for (const auto& [dof, value] : mobility_.row(jacobian_[k].dof)) {
       const auto place = response.try_emplace(dof, Point<dim>::Zero()).first;
       place->second += value * jacobian_[k].coefficient;
+      if (dof == jacobian_[k].dof)
+        of_parts += value * std::pow(row.contact.normal.dot(jacobian_[k].coefficient), 2);
     }
   }
   row.response_begin = static_cast<int>(response_.size());
@@ -85,6 +92,8 @@ void ImpulseSolver<dim>::add_response(Row& row) {
       compliance += jacobian_[k].coefficient * found->second.transpose();
   }
   row.normal_response = row.contact.normal.dot(compliance * row.contact.normal);
+  if (row.normal_response < unmovable * of_parts)
+    row.normal_response = 0;
   row.tangents = tangents_of<dim>(row.contact.normal);
   auto tangent = (row.tangents.transpose() * compliance * row.tangents).eval();
   // Directions that locks hold get no impulse to speak of.

@@ -128,6 +128,20 @@ class InWater(unittest.TestCase):
                     self.assertLess(max(row["momentum_error"] for row in history), 1e-13)
                     self.assertLessEqual(history[-1]["s2_iterations"], expected[-1]["s2_iterations"] + 1)
 
+    def test_contact_leaves_alone_what_joints_let_not_part(self):
+        """The outer two of three overlap, and no impulse between them moves anything."""
+        boxes = {name: {**BOX, "Position": (.5 + x, .5 + y), "Orientation": .1 * k}
+                 for k, (name, x, y) in enumerate((("A", -.05, 0.), ("B", 0., .03), ("C", .06, -.02)))}
+        welds = {"left": joint("weld", ("A", "B"), (.4, .5)), "right": joint("weld", ("B", "C"), (.5, .5))}
+        scene = tank(boxes, welds, "mixed face")
+        _, free = run(scene)
+        history, bodies = run({**scene, "Contact": {"Type": "gauss seidel"}})
+        self.assertGreater(max(row["contacts"] for row in history), 0)
+        self.assertLess(max(row["momentum_error"] for row in history), 1e-12)
+        for name in boxes:
+            for axis in ("x", "y", "vx", "vy", "wz"):
+                self.assertAlmostEqual(bodies[name][-1][axis], free[name][-1][axis], delta=1e-9)
+
     def test_welded_parts_that_turn_do_so_to_second_order(self):
         whole = {"Whole": {**BOX, "Position": (.42, .5), "Density": 300.000001, "Orientation": .3}}
         shifted = {name: {**body, "Position": tuple(np.array(body["Position"]) - (.08, 0.))}
