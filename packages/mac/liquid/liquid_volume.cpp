@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "geometry/clipping.hpp"
 #include "geometry/solid_volume.hpp"
 #include "mac/liquid/wet_fraction.hpp"
 
@@ -101,8 +102,92 @@ void LiquidVolume<dim>::list_full(int cell) {
 }
 
 template <int dim>
+void LiquidVolume<dim>::list_beyond_shell(const SolidCells<dim>& solids, int cell,
+                                          std::vector<int>& touching) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const SurfaceSnapshot<dim>& surface = *solids.state.surface;
+  const double h = domain_.spacing();
+  const Point<dim> center = grid.center(cell), half = Point<dim>::Constant(0.5 * h);
+  const Box<dim> box(center - half, center + half);
+  surface.touching(box, touching);
+  double area = 0;
+  Point<dim> normal = Point<dim>::Zero(), middle = normal;
+  for (const int simplex : touching) {
+    if (surface.solids()[surface.solid_of(simplex)].closed)
+      continue;
+    const auto corners = surface.corners(simplex);
+    const ClippedSimplex<dim> part = clip_to_box<dim>(corners, box);
+    if (part.measure <= 0)
+      continue;
+    area += part.measure;
+    normal += part.measure * area_vector<dim>(corners).normalized();
+    middle += part.measure * part.centroid;
+  }
+  // Several sheets, or a sharp fold, are no plane.
+  if (area == 0 || normal.norm() < 0.7 * area)
+    return;
+  normal.normalize();
+  middle /= area;
+  int axis = 0;
+  const double steepest = normal.cwiseAbs().maxCoeff(&axis);
+  // Away from the centre: which side that is on, links know better than the plane.
+  const auto is_hidden = [&](int side) {
+    const int beside = grid.neighbor(cell, axis, side);
+    return beside >= 0 && (solids.blocked[side == 0 ? cell : beside] >> axis & 1) != 0;
+  };
+  const bool below = is_hidden(0), above = is_hidden(1);
+  if (below != above ? (normal[axis] > 0) == below : normal.dot(center - middle) > 0)
+    normal = -normal;
+  Index<dim> beyond = grid.coordinates(cell);
+  for (int a = 0; a < dim; ++a)
+    beyond[a] += static_cast<int>(std::lround(normal[a] / steepest));
+  const int other = grid.cell(beyond);
+  if (other < 0 || !grid.in_domain(other) || !solids.is_fluid(other))
+    return;
+  std::array<double, n_corners> depth;
+  for (int k = 0; k < n_corners; ++k) {
+    Point<dim> corner = center - half;
+    for (int a = 0; a < dim; ++a)
+      corner[a] += (k >> a & 1) * h;
+    depth[k] = normal.dot(middle - corner);
+  }
+  if (const double volume = wet_fraction<dim>(depth) * domain_.cell_volume(); volume > 0)
+    beyond_shells_.push_back({cell, other, volume});
+}
+
+template <int dim>
+void LiquidVolume<dim>::list_beyond_shells(const SolidCells<dim>& solids) {
+  beyond_shells_.clear();
+  if (!solids.state.surface)
+    return;
+  const auto& all = solids.state.surface->solids();
+  if (std::all_of(all.begin(), all.end(), [](const SolidDescription& s) { return s.closed; }))
+    return;
+  std::vector<int> touching;
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    if (solids.near[cell] && solids.is_fluid(cell))
+      list_beyond_shell(solids, cell, touching);
+  });
+}
+
+template <int dim>
+void LiquidVolume<dim>::add_beyond_shells(const CellField& phi, const CellGroups& groups,
+                                          std::vector<double>& sums) const {
+  const auto add = [&](int cell, double volume) {
+    const int group = phi[cell] < 0 ? groups.of_cell[cell] : -1;
+    if (group >= 0)
+      sums[group] += volume * std::clamp(0.5 - phi[cell] / domain_.spacing(), 0.0, 1.0);
+  };
+  for (const Beyond& beyond : beyond_shells_) {
+    add(beyond.cell, -beyond.volume);
+    add(beyond.other, beyond.volume);
+  }
+}
+
+template <int dim>
 void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& phi) {
   const double deep = far * domain_.spacing();
+  list_beyond_shells(solids);
   cut_.clear();
   full_.clear();
   domain_.grid.for_each_owned_cell([&](int cell) {
@@ -173,6 +258,7 @@ GroupVolumes LiquidVolume<dim>::measure(const CellField& phi, const CellGroups& 
         ++cell;
       (group < 0 ? sums.back() : sums[group]) += (cell - first) * run.volume;
     }
+  add_beyond_shells(phi, groups, sums);
   sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
   GroupVolumes result;
   result.volume.assign(sums.begin(), sums.begin() + groups.n);

@@ -18,7 +18,7 @@ struct GroupVolumes {
 /// The volume of {phi < 0} outside solids: exact for phi linear on the simplices of the boxes
 /// between cell centres (to the sides of the domain phi is constant); in boxes that closed solids
 /// reach into the solids' volume is taken off in proportion; in those that a surface divides, each
-/// corner has its share.
+/// corner has its share, and what of a cell lies beyond a shell counts with the cell there.
 template <int dim>
 class LiquidVolume {
  public:
@@ -41,6 +41,11 @@ class LiquidVolume {
   bool is_divided(const SolidCells<dim>& solids, const std::array<int, n_corners>& corners) const;
   double volume_of_cell(int cell) const;
   void list_full(int cell);
+  void list_beyond_shells(const SolidCells<dim>& solids);
+  /// Adds what of a cell is beyond the shell in it, taken as a plane.
+  void list_beyond_shell(const SolidCells<dim>& solids, int cell, std::vector<int>& touching);
+  void add_beyond_shells(const CellField& phi, const CellGroups& groups,
+                         std::vector<double>& sums) const;
   void add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
                std::vector<double>& sums) const;
   void add_divided(const CutBox& box, const CellField& phi, const CellGroups& groups,
@@ -54,6 +59,12 @@ class LiquidVolume {
     double volume = 0;  ///< of each
   };
   std::vector<Run> full_;
+  /// What of a cell is beyond a shell, on the side of another one.
+  struct Beyond {
+    int cell = -1, other = -1;
+    double volume = 0;  ///< [m^dim]
+  };
+  std::vector<Beyond> beyond_shells_;
 };
 
 }  // namespace lockstep

@@ -116,6 +116,54 @@ TEST(LiquidVolume, LeavesOutSolids) {
   expect_solid_is_taken_off<3>();
 }
 
+/// What a closed shell holds, air around it, wherever its cells' centres are; beside it what whole
+/// cells would hold, which changes as the shell goes over the grid. Mean squares.
+template <int dim>
+void expect_volume_in_shell(int n, double part) {
+  Bath<dim> bath(open_cube<dim>(n));
+  const double radius = 0.3;
+  const double full = dim == 2 ? pi * radius * radius : 4 * pi / 3 * radius * radius * radius;
+  double squares = 0, squares_of_cells = 0;
+  for (int i = 0; i < 9; ++i) {
+    Point<dim> center = Point<dim>::Constant(0.5);
+    for (int a = 0; a < dim; ++a)
+      center[a] += i * (0.37 - 0.14 * a) / n;
+    const auto shell = snapshot<dim>(ball_surface<dim>(radius, 0.25 / n), center, false);
+    const auto solids = find_solid_cells<dim>(bath.domain, shell);
+    double cells = 0;
+    const SignedDistance<dim> distance = [&](const Point<dim>& x) {
+      return (x - center).norm() < radius ? -1 : 1;
+    };
+    bath.domain.grid.for_each_owned_cell(
+        [&](int c) { cells += distance(bath.domain.grid.center(c)) < 0; });
+    cells = sum_all(world(), cells) * bath.domain.cell_volume();
+    const double found = volumes<dim>(bath, solids, distance).total();
+    squares += (found / full - 1) * (found / full - 1);
+    squares_of_cells += (cells / full - 1) * (cells / full - 1);
+  }
+  EXPECT_LT(squares, part * part * squares_of_cells);
+}
+
+TEST(LiquidVolume, OfAFullShellGoesWithIt) {
+  expect_volume_in_shell<2>(20, 0.01);
+  expect_volume_in_shell<2>(40, 0.01);
+  expect_volume_in_shell<3>(20, 0.1);
+}
+
+/// Plane sides count in full; of the cells at the corners up to a half may be on the wrong side.
+TEST(LiquidVolume, OfAFullChestGoesWithIt) {
+  Bath<2> bath(open_cube<2>(20));
+  for (int i = 0; i < 9; ++i) {
+    const Point<2> center(0.5 + 0.05 * 0.11 * i, 0.5 + 0.05 * 0.07 * i), half(0.237, 0.311);
+    const auto shell = snapshot<2>(box_surface<2>(2 * half, 0.02), center, false);
+    const auto result =
+        volumes<2>(bath, find_solid_cells<2>(bath.domain, shell), [&](const Point<2>& x) {
+          return ((x - center).cwiseAbs().array() < half.array()).all() ? -1 : 1;
+        });
+    EXPECT_NEAR(result.total(), 4 * half[0] * half[1], 4 * 0.5 * 0.05 * 0.05) << i;
+  }
+}
+
 /// Letters that touch by corners only, one of them cut by a plate.
 TEST(CellGroups, HangTogetherByOpenFaces) {
   const std::vector<std::string> rows = {"##...#....", "#..##.....", "#..##..###", "####...#.#",
