@@ -51,6 +51,20 @@ class Manual(unittest.TestCase):
                         self.assertIn(unquote(parts.fragment), self.pages[target].anchors | {"__codelineno"})
         self.assertGreater(n_anchors, 300)
 
+    def test_formulas_are_set(self):
+        """What is between dollar signs goes to the script that sets it, and the fonts are there."""
+        page = (self.site / "docs/derivation.html").read_text()
+        self.assertNotIn("$", re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL))
+        self.assertGreater(page.count('class="arithmatex"'), 20)
+        self.assertIn("auto-render.min.js", page)
+        self.assertTrue(list((self.site / "katex/fonts").glob("*.woff2")))
+        shell = shutil.which("chromium-headless-shell")
+        if shell:
+            shown = subprocess.run([shell, "--no-sandbox", "--headless", "--virtual-time-budget=8000", "--dump-dom",
+                                    (self.site / "docs/derivation.html").as_uri()], capture_output=True, text=True)
+            self.assertGreater(shown.stdout.count('class="katex"'), 20)
+            self.assertNotIn("katex-error", shown.stdout)
+
     def test_every_page_is_there_and_can_be_searched(self):
         written = {page.relative_to(ROOT).with_suffix(".html") for page in (ROOT / "docs").rglob("*.md")}
         there = {path.relative_to(self.site) for path in self.pages}
