@@ -19,7 +19,7 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/xml-params" "${PROJECT_SOURCE_DIR}/temp
 set(tools_folder "${PROJECT_SOURCE_DIR}/tools")
 install(PROGRAMS "${tools_folder}/report" "${tools_folder}/watch" "${tools_folder}/render"
                  "${tools_folder}/plot-frame" "${tools_folder}/plot-study" "${tools_folder}/plot-curves"
-                 "${tools_folder}/export-meshes" "${tools_folder}/urdf-to-scene"
+                 "${tools_folder}/export-meshes" "${tools_folder}/export-volumes" "${tools_folder}/urdf-to-scene"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep/tools")
 install(FILES "${tools_folder}/lockstep_frames.py" "${tools_folder}/run_parameters.py" "${tools_folder}/robot.py"
               "${tools_folder}/render_with_paraview.py"
