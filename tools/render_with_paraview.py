@@ -151,6 +151,8 @@ def main():
         view.ViewTime = time
         simple.Render(view)
         simple.SaveScreenshot(picture, view, ImageResolution=job["size"])
+    if job["state"]:
+        simple.SaveState(job["state"])
 
 
 main()

@@ -1,6 +1,7 @@
 """plot-frame and render on the folder of make_frames.py: smoke = x + t, velocity = (0, t, 0), one body."""
 import importlib.machinery
 import importlib.util
+import os
 import subprocess
 import sys
 import tempfile
@@ -162,6 +163,25 @@ class Render(Pictures):
         self.assertGreater(((red > 0.8) & (green > 0.7) & (blue < 0.6)).mean(), 0.05)
         greenish = (green > red + 0.1) & (green > blue + 0.05)              # the middle of the colours
         self.assertLess(greenish.mean(), 0.001)
+
+    def test_a_state_shows_the_same(self):
+        self.make(3)
+        folder = Path(self.folder.name)
+        self.assertEqual(self.run_tool("render", "--state", "--size", "320x240").returncode, 0)
+        script = folder / "again.py"
+        script.write_text("from paraview import simple\n"
+                          f"simple.LoadState({str(folder / 'render.pvsm')!r})\n"
+                          f"simple.SaveScreenshot({str(folder / 'again.png')!r},\n"
+                          "    simple.GetActiveViewOrCreate('RenderView'), ImageResolution=[320, 240])\n")
+        for _ in range(4):  # X may not be up in time
+            done = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 320x240x24", "pvbatch", script],
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                  env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
+            if done.returncode == 0:
+                break
+        self.assertEqual(done.returncode, 0)
+        pictures = [imread(folder / name)[..., :3] for name in ("render.png", "again.png")]
+        self.assertLess(numpy.abs(pictures[0] - pictures[1]).mean(), .01)
 
     def test_movie(self):
         self.make(3)
