@@ -152,6 +152,9 @@ def main():
         simple.Render(view)
         simple.SaveScreenshot(picture, view, ImageResolution=job["size"])
     if job["state"]:
+        scene = simple.GetAnimationScene()  # a state opens at its time, not at the view's
+        scene.UpdateAnimationUsingDataTimeSteps()
+        scene.AnimationTime = job["times"][-1]
         simple.SaveState(job["state"])
 
 
