@@ -79,8 +79,16 @@ std::vector<char> DeformableSolids<dim>::free_rims() const {
 template <int dim>
 std::vector<char> DeformableSolids<dim>::can_sweep(const Box<dim>& domain) const {
   std::vector<double> attached(bodies_.size(), 0);
-  for (const auto& node : attached_)
-    attached[body_of_node_[node.first]] = 1;
+  std::vector<char> on_surface(space_.n_owned(), 0);
+  for (const GlobalIndex node : surface_node_) {
+    if (space_.dof_map()->isNodeGlobalElement(dim * node))
+      on_surface[space_.dof_map()->getLocalElement(dim * node) / dim] = 1;
+  }
+  for (const auto& [node, carrier] : attached_) {
+    const int b = body_of_node_[node];
+    if (!solids_[b].closed || on_surface[node] != 0)
+      attached[b] = 1;
+  }
   sum_all(comm_, attached.data(), static_cast<int>(attached.size()));
   const bool any_shell =
       std::any_of(solids_.begin(), solids_.end(), [](const auto& solid) { return !solid.closed; });
@@ -133,7 +141,7 @@ std::vector<int> DeformableSolids<dim>::solid_of_row() const {
 
 /// The directions [any] in which owned nodes go to sweep volume: in bodies away from their centre
 /// of mass, so that they are strained evenly; in shells along the normal. Both keep the centre of
-/// mass and turn nothing. Held dofs stay.
+/// mass and turn nothing. Held dofs and attached nodes stay.
 template <int dim>
 std::vector<Point<dim>> DeformableSolids<dim>::swelling() const {
   Nodes direction(space_.n_owned(), Point<dim>::Zero());
@@ -158,6 +166,8 @@ std::vector<Point<dim>> DeformableSolids<dim>::swelling() const {
   }
   for (const int dof : held_.dofs())
     direction[dof / dim][dof % dim] = 0;
+  for (const auto& [node, carrier] : attached_)
+    direction[node] = Point<dim>::Zero();
   return direction;
 }
 

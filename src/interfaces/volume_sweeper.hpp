@@ -14,7 +14,8 @@ class VolumeSweeper {
  public:
   virtual ~VolumeSweeper() = default;
   /// Which of its solids can be told in the present step: closed ones, and shells without a free
-  /// rim, that lie in `domain` and are not attached to solids of other models. Collective.
+  /// rim, that lie in `domain` and whose surfaces are not attached to solids of other models.
+  /// Collective.
   virtual std::vector<char> can_sweep(const Box<dim>& domain) const = 0;
   /// What each solid's surface sweeps along its normals, per velocity of each dof, at the present
   /// positions [m^(dim-1)]: on `dof_map`.

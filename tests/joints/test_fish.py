@@ -1,0 +1,82 @@
+"""A fish of flesh on bones in a closed tank: it keeps its area, the ledger closes on 1, 2 and 4 ranks, it swims, and what
+its joints do is the energy that there is."""
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+from jointed_scene import simulation, table
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+from lockstep_frames import read_frames  # noqa: E402
+
+CLOSED = ("Domain/Sides/y upper/Type=wall", "Domain/Cells={48, 24}", "Solids/Flesh/Geometry/Mesh Spacing=0.04",
+          "Output/Precision=double")
+
+
+def area(mesh):
+    """Of a closed curve."""
+    points, ends = np.array(mesh.points()), np.array(mesh.cells())
+    a, b = points[ends[:, 0]], points[ends[:, 1]]
+    return abs((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) / 2
+
+
+def swim(ranks, end, *settings):
+    """Tables by name, and the areas of the flesh in all frames."""
+    with tempfile.TemporaryDirectory() as folder:
+        output = Path(folder) / "output"
+        options = [part for setting in (*CLOSED, f"Time/End={end}", *settings) for part in ("--set", setting)]
+        simulation.simulate(ROOT / "xml-params/scenes/fish-2d.xml", output, *options, ranks=ranks)
+        tables = {name: table(output / f"{name}.csv") for name in ("history", "bodies", "joints")}
+        return tables, [area(frame["Flesh"]) for frame in read_frames(output)]
+
+
+def power_defect(tables):
+    """What joints did less the energy of the flesh and of the fluid, over the largest of that energy."""
+    history, work, time = tables["history"], 0., 0.
+    defects, energies = [], []
+    of_step = {}
+    for row in tables["joints"]:
+        of_step[row["step"]] = of_step.get(row["step"], 0.) + row["power"]
+    for row in history:
+        work += of_step[row["step"]] * (row["time"] - time)
+        time = row["time"]
+        energies.append(row["fluid_kinetic_energy"] + row["solid_kinetic_energy"] + row["elastic_energy"])
+        defects.append(work - energies[-1])
+    return np.array(defects) / max(energies)
+
+
+class Fish(unittest.TestCase):
+    def test_it_keeps_its_area_and_the_ledger_closes(self):
+        places = []
+        for ranks in (1, 2, 4):
+            tables, areas = swim(ranks, .12)
+            self.assertLess(np.abs(np.array(areas) / areas[0] - 1).max(), 1e-3)
+            self.assertLess(max(row["momentum_error"] for row in tables["history"]), 1e-10)
+            self.assertLess(max(row["angular_momentum_error"] for row in tables["history"]), 1e-10)
+            places.append([row["x"] for row in tables["bodies"] if row["name"] == "Flesh"][-1])
+        self.assertLess(np.ptp(places), 1e-6)
+
+    def test_it_swims(self):
+        """And has no more energy than its joints put in. Its area goes with what the grid sees of its shape."""
+        tables, areas = swim(1, 2.)
+        places = [row["x"] for row in tables["bodies"] if row["name"] == "Flesh"]
+        self.assertGreater(places[-1] - places[0], .01)
+        self.assertLess(abs(areas[-1] / areas[0] - 1), 4e-3)
+        self.assertGreater(power_defect(tables)[-1], .05)  # the water's friction
+
+    def test_its_joints_do_the_work(self):
+        """In thin air, without friction in the flesh: all of it is motion and strain."""
+        defects = []
+        for step in (.01, .005):
+            tables, _ = swim(1, .5, "Fluid/Density=1", "Fluid/Viscosity=0", "Solids/Flesh/Viscosity=0",
+                             f"Time/Fixed Step={step}")
+            defects.append(np.abs(power_defect(tables)).max())
+        self.assertLess(defects[1], .01)
+        self.assertLess(defects[1], defects[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
