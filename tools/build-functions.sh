@@ -17,6 +17,25 @@ fi
 export OMPI_MCA_rmaps_base_oversubscribe=1
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 
+# Says every ten seconds how far ninja is and how long it will take; passes on what is no progress.
+# Steps are unlike each other, so the time that is left is a guess.
+show_progress() {
+  local line done all seconds=0 left said=0
+  while IFS= read -r line; do
+    if [[ $line =~ ^\[([0-9]+)/([0-9]+)\ ([0-9]+)[0-9.]*\]\  ]]; then
+      done=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} seconds=${BASH_REMATCH[3]}
+      if ((seconds >= said + 10 && done < all)); then
+        said=$seconds left=$((seconds * (all - done) / done))
+        printf '  %d of %d steps, %d:%02d min, about %d:%02d to go\n' "$done" "$all" \
+          $((seconds / 60)) $((seconds % 60)) $((left / 60)) $((left % 60))
+      fi
+    elif [[ $line != *'no work to do'* ]]; then
+      printf '%s\n' "$line"
+    fi
+  done
+  if ((seconds >= 10)); then printf '  the build took %d:%02d min\n' $((seconds / 60)) $((seconds % 60)); fi
+}
+
 # build PRESET TARGET...: configures build/PRESET where needed and builds; silent when all is current.
 build() {
   local preset=$1 directory=$root/build/$1 log=$root/build/configure-$1.log processor
@@ -37,7 +56,5 @@ build() {
     fi
     echo "$processor" > "$directory/processor"
   fi
-  # Looking up the commit runs in every build and "no work" is no news: both unsaid.
-  cmake --build "$directory" -j "$n_cores" --target "$@" |
-    { grep --line-buffered -v -e git_hash -e 'no work to do' || true; }
+  NINJA_STATUS='[%f/%t %e] ' cmake --build "$directory" -j "$n_cores" --target "$@" | show_progress
 }
