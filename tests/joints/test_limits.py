@@ -1,6 +1,7 @@
 """Limits of joints, in vacuum: where bodies come to rest, what they lose there, and that they gain nothing; the ledger of
 what joints and limits hold in water, on 1, 2 and 4 ranks."""
 import math
+import tempfile
 import unittest
 
 import numpy as np
@@ -158,6 +159,20 @@ class Limits(unittest.TestCase):
         rows = joints_of(limited(solids, hinges, .02, 2.))
         self.assertAlmostEqual(max(abs(row["q"]) for row in rows["CD"]), .3, delta=1e-6)
         self.assertAlmostEqual(abs(rows["CD"][-1]["q"]), .3, delta=1e-6)
+
+    def test_restart_at_a_limit(self):
+        solids, hinges = links(3)
+        for hinge in hinges.values():
+            hinge.update({"Lower Limit": -.3, "Upper Limit": .3})
+        scene = limited(solids, hinges, .02, .6, GRAVITY)
+        with tempfile.TemporaryDirectory() as folder:
+            _, straight = run(scene, folder=folder)
+        with tempfile.TemporaryDirectory() as folder:
+            history, _ = run(scene, arguments=["--steps", "20"], folder=folder)
+            self.assertGreater(history[-1]["contacts"], 0)
+            _, again = run(scene, arguments=["--restart", f"{folder}/output/checkpoint-000020.h5"], folder=folder)
+        for name in solids:
+            self.assertEqual(straight[name][-1], again[name][-1])
 
     def test_the_ledger_knows_limits_and_walls(self):
         """In water: a bob on two arms in space swings against its limit and, without that, against a wall."""
