@@ -20,13 +20,13 @@ export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 # Says every ten seconds how far ninja is and how long it will take; passes on what is no progress.
 # Steps are unlike each other, so the time that is left is a guess.
 show_progress() {
-  local line done all seconds=0 left said=0
+  local line finished all seconds=0 left said=0
   while IFS= read -r line; do
     if [[ $line =~ ^\[([0-9]+)/([0-9]+)\ ([0-9]+)[0-9.]*\]\  ]]; then
-      done=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} seconds=${BASH_REMATCH[3]}
-      if ((seconds >= said + 10 && done < all)); then
-        said=$seconds left=$((seconds * (all - done) / done))
-        printf '  %d of %d steps, %d:%02d min, about %d:%02d to go\n' "$done" "$all" \
+      finished=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} seconds=${BASH_REMATCH[3]}
+      if ((seconds >= said + 10 && finished < all)); then
+        said=$seconds left=$((seconds * (all - finished) / finished))
+        printf '  %d of %d steps, %d:%02d min, about %d:%02d to go\n' "$finished" "$all" \
           $((seconds / 60)) $((seconds % 60)) $((left / 60)) $((left % 60))
       fi
     elif [[ $line != *'no work to do'* ]]; then
