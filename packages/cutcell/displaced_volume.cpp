@@ -39,6 +39,32 @@ void add_face(const ControlVolume<dim>& volume, const FluxShare<dim>& share,
   }
 }
 
+/// The plane of the water does not fall along the axis, or there is none.
+template <int dim>
+bool is_level(const WetBody<dim>& body, int axis) {
+  return std::abs(body.slope[axis]) < 1e-6;
+}
+
+/// The same of a body that sticks out of the water: the pressure is the depth below the plane of
+/// the free surface, 0 where there is none. Not along level axes.
+template <int dim>
+void add_wet_face(const ControlVolume<dim>& volume, const FluxShare<dim>& share,
+                  const WetBody<dim>& body, Displaced<dim>& sum) {
+  const int a = volume.direction;
+  if (is_level(body, a))
+    return;
+  Point<dim> arm = share.center - body.centroid;
+  arm[a] = 0;
+  const double area = share.weight * (1 - volume.open_fraction) * volume.area;
+  for (int side = 0; side < 2; ++side) {
+    if (volume.sides[side].unknown == no_index)
+      continue;
+    const double lifted = (side == 0 ? 1 : -1) * area * body.depth(volume.sides[side].center);
+    sum.volume += lifted / body.slope[a];
+    sum.moment += lifted / body.slope[a] * arm;
+  }
+}
+
 template <int dim>
 void sum_over_ranks(std::vector<DisplacedOfSolid<dim>>& all, const Communicator& comm) {
   std::vector<double> flat;
@@ -64,25 +90,32 @@ void sum_over_ranks(std::vector<DisplacedOfSolid<dim>>& all, const Communicator&
 }  // namespace
 
 template <int dim>
-std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolume<dim>>& volumes,
-                                                   const std::vector<FaceShares<dim>>& shares,
-                                                   const std::vector<double>& lumped_masses,
-                                                   const SurfaceSnapshot<dim>& surface,
-                                                   double density, const Box<dim>& domain,
-                                                   const Communicator& comm) {
+std::vector<DisplacedExcess<dim>> displaced_excess(
+    const std::vector<ControlVolume<dim>>& volumes, const std::vector<FaceShares<dim>>& shares,
+    const std::vector<double>& lumped_masses, const SurfaceSnapshot<dim>& surface, double density,
+    const Box<dim>& domain, const std::vector<WetBody<dim>>& wet, const Communicator& comm) {
   const int n_solids = static_cast<int>(surface.solids().size());
+  const auto is_partly_wet = [&](int s) { return !wet.empty() && wet[s].partly; };
   std::vector<PartOfSolid<dim>> bodies(n_solids);
-  for (int s = 0; s < n_solids; ++s)
-    if (surface.solids()[s].closed)
-      bodies[s] = part_of_solid<dim>(surface, s, domain);
+  for (int s = 0; s < n_solids; ++s) {
+    if (!surface.solids()[s].closed)
+      continue;
+    bodies[s] = is_partly_wet(s) ? PartOfSolid<dim>{wet[s].volume, wet[s].centroid}
+                                 : part_of_solid<dim>(surface, s, domain);
+  }
 
   std::vector<DisplacedOfSolid<dim>> displaced(n_solids);
   for (std::size_t f = 0; f < volumes.size(); ++f) {
     if (volumes[f].at_prescribed_side)
       continue;  // a column that ends there lifts nothing
     const int a = volumes[f].direction;
-    for (const FluxShare<dim>& share : shares[f].all)
-      add_face<dim>(volumes[f], share, bodies[share.solid].centroid, displaced[share.solid][a]);
+    for (const FluxShare<dim>& share : shares[f].all) {
+      Displaced<dim>& sum = displaced[share.solid][a];
+      if (is_partly_wet(share.solid))
+        add_wet_face<dim>(volumes[f], share, wet[share.solid], sum);
+      else
+        add_face<dim>(volumes[f], share, bodies[share.solid].centroid, sum);
+    }
     for (const SurfaceShare<dim>& share : shares[f].of_thin) {
       const double volume = share.weight * lumped_masses[f] / density;
       Point<dim> arm = volumes[f].center - bodies[share.solid].centroid;
@@ -97,7 +130,8 @@ std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolu
   for (int s = 0; s < n_solids; ++s)
     for (int a = 0; surface.solids()[s].closed && a < dim; ++a) {
       const Displaced<dim>& d = displaced[s][a];
-      if (std::abs(d.open_area) > 1e-6 * d.area)
+      if (is_partly_wet(s) ? wet[s].at_side[a] || wet[s].volume <= 0 || is_level(wet[s], a)
+                           : std::abs(d.open_area) > 1e-6 * d.area)
         continue;
       all.push_back(
           {s, a, bodies[s].centroid, density * (d.volume - bodies[s].volume), density * d.moment});
@@ -105,15 +139,13 @@ std::vector<DisplacedExcess<dim>> displaced_excess(const std::vector<ControlVolu
   return all;
 }
 
-template std::vector<DisplacedExcess<2>> displaced_excess<2>(const std::vector<ControlVolume<2>>&,
-                                                             const std::vector<FaceShares<2>>&,
-                                                             const std::vector<double>&,
-                                                             const SurfaceSnapshot<2>&, double,
-                                                             const Box<2>&, const Communicator&);
-template std::vector<DisplacedExcess<3>> displaced_excess<3>(const std::vector<ControlVolume<3>>&,
-                                                             const std::vector<FaceShares<3>>&,
-                                                             const std::vector<double>&,
-                                                             const SurfaceSnapshot<3>&, double,
-                                                             const Box<3>&, const Communicator&);
+template std::vector<DisplacedExcess<2>> displaced_excess<2>(
+    const std::vector<ControlVolume<2>>&, const std::vector<FaceShares<2>>&,
+    const std::vector<double>&, const SurfaceSnapshot<2>&, double, const Box<2>&,
+    const std::vector<WetBody<2>>&, const Communicator&);
+template std::vector<DisplacedExcess<3>> displaced_excess<3>(
+    const std::vector<ControlVolume<3>>&, const std::vector<FaceShares<3>>&,
+    const std::vector<double>&, const SurfaceSnapshot<3>&, double, const Box<3>&,
+    const std::vector<WetBody<3>>&, const Communicator&);
 
 }  // namespace lockstep

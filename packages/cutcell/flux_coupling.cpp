@@ -57,14 +57,11 @@ void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
   if (!options_.correct_buoyancy || surface_->empty() || fluid.gravity().isZero(0))
     return;
   const double density = this->density_around(fluid, solids.comm());
-  // Columns that end above the free surface do not close; nothing is known to be missing there.
   std::vector<WetBody<dim>> wet;
   if (const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid))
     wet = liquid->wet_bodies();
   for (const auto& excess : displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density,
-                                                  bounds_of(fluid), solids.comm())) {
-    if (!wet.empty() && wet[excess.solid].partly)
-      continue;
+                                                  bounds_of(fluid), wet, solids.comm())) {
     if (surface_->solids()[excess.solid].prescribed)
       held_excess_.push_back(excess);
     else

@@ -152,6 +152,7 @@ void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<ch
   ++n_restored_;
   if (!parameters_.particles)
     return;
+  remove_trapped_air(domain_, solids_, step.kept, phi_, particles_);
   set_radii(domain_, solids_, step.kept, phi_, particles_);
   seed(step.kept, n_restored_ % parameters_.particles->interval == 0);
 }

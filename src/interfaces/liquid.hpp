@@ -52,6 +52,12 @@ struct WetBody {
   std::array<Point<dim>, dim> moment{};
   /// By axis: a wet column of it ends at a side of the domain, where the pressure does not reach.
   std::array<bool, dim> at_side{};
+  /// Of that plane: a point is slope * x less the level above it, along the vertical [m]. Zero
+  /// slope: no free surface is around, as without gravity.
+  Point<dim> slope = Point<dim>::Zero();
+  double level = 0;
+
+  double depth(const Point<dim>& x) const { return std::max(0.0, level - slope.dot(x)); }
 };
 
 /// Side interface of fluids: a liquid with a free surface, above which nothing pushes.

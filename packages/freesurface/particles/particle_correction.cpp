@@ -147,6 +147,37 @@ void add_cells_seen(int side, const MacDomain<dim>& domain, const SolidCells<dim
 }
 
 template <int dim>
+void remove_trapped_air(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                        KeptSurface<dim>& kept, const CellField& phi, ParticleTiles<dim>& tiles) {
+  if (!solids.state.surface)
+    return;
+  const SampleLattice<dim> lattice(domain.grid);
+  PhiLookup<dim> lookup(domain.grid, lattice, solids, kept, phi);
+  const auto is_trapped = [&](const Particle<dim>& particle) {
+    const Point<dim> x = particle.position();
+    if (particle.side() < 0 || !lookup.may_be_hidden(x))
+      return false;
+    const Point<dim> place = lookup.place(x);
+    bool beside_solid = false;
+    for (const StencilCorner<dim>& corner : lattice.corners(cell_centers, place)) {
+      if (corner.id < 0 || !solids.is_fluid(corner.id) ||
+          lookup.hidden(x, x + (corner.position - place)))
+        beside_solid = true;
+      else if (phi[corner.id] >= 0)
+        return false;
+    }
+    return beside_solid;
+  };
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+    auto& particles = tiles[tile];
+    if (!particles.empty())
+      lookup.enter(static_cast<int>(tile));
+    particles.erase(std::remove_if(particles.begin(), particles.end(), is_trapped),
+                    particles.end());
+  }
+}
+
+template <int dim>
 void remove_particles(int side, const std::vector<char>& cells, ParticleTiles<dim>& tiles) {
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
     auto& particles = tiles[tile];
@@ -167,6 +198,10 @@ template void add_cells_seen<2>(int, const MacDomain<2>&, const SolidCells<2>&, 
 template void add_cells_seen<3>(int, const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,
                                 const CellField&, const ParticleTiles<3>&, std::vector<char>&,
                                 std::vector<char>&);
+template void remove_trapped_air<2>(const MacDomain<2>&, const SolidCells<2>&, KeptSurface<2>&,
+                                    const CellField&, ParticleTiles<2>&);
+template void remove_trapped_air<3>(const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,
+                                    const CellField&, ParticleTiles<3>&);
 template void remove_particles<2>(int, const std::vector<char>&, ParticleTiles<2>&);
 template void remove_particles<3>(int, const std::vector<char>&, ParticleTiles<3>&);
 

@@ -84,12 +84,16 @@ void LiquidVolume<dim>::list_boxes(const SolidCells<dim>& solids, const CellFiel
                                         [&](int corner) { return phi[corner] < 0.5 * h; });
     if (stays_dry)
       continue;
-    if (near) {
-      box.is_divided = is_divided(solids, box.corners);
+    if (near)
       box.volume -= solid_volume_in_box<dim>(*solids.state.surface, Box<dim>(low, high));
-    }
-    if (box.volume > 0)
+    if (box.volume <= 0)
+      continue;
+    if (near && is_divided(solids, box.corners)) {
+      for (const int corner : box.corners)
+        shares_[corner] += box.volume / n_corners;
+    } else {
       cut_.push_back(box);
+    }
   }
 }
 
@@ -151,13 +155,13 @@ void LiquidVolume<dim>::list_beyond_shell(const SolidCells<dim>& solids, int cel
       corner[a] += (k >> a & 1) * h;
     depth[k] = normal.dot(middle - corner);
   }
-  if (const double volume = wet_fraction<dim>(depth) * domain_.cell_volume(); volume > 0)
-    beyond_shells_.push_back({cell, other, volume});
+  const double volume = wet_fraction<dim>(depth) * domain_.cell_volume();
+  shares_[cell] -= volume;
+  shares_[other] += volume;
 }
 
 template <int dim>
 void LiquidVolume<dim>::list_beyond_shells(const SolidCells<dim>& solids) {
-  beyond_shells_.clear();
   if (!solids.state.surface)
     return;
   const auto& all = solids.state.surface->solids();
@@ -171,25 +175,29 @@ void LiquidVolume<dim>::list_beyond_shells(const SolidCells<dim>& solids) {
 }
 
 template <int dim>
-void LiquidVolume<dim>::add_beyond_shells(const CellField& phi, const CellGroups& groups,
-                                          std::vector<double>& sums) const {
-  const auto add = [&](int cell, double volume) {
-    const int group = phi[cell] < 0 ? groups.of_cell[cell] : -1;
-    if (group >= 0)
-      sums[group] += volume * std::clamp(0.5 - phi[cell] / domain_.spacing(), 0.0, 1.0);
-  };
-  for (const Beyond& beyond : beyond_shells_) {
-    add(beyond.cell, -beyond.volume);
-    add(beyond.other, beyond.volume);
-  }
+void LiquidVolume<dim>::list_divided_cells(const SolidCells<dim>& solids) {
+  divided_.clear();
+  if (solids.near.empty())
+    return;
+  domain_.halo.sum_to_owner(shares_);
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    if (shares_[cell] == 0)
+      return;
+    DividedCell of{cell, shares_[cell], {}};
+    for (int i = 0; i < 2 * dim; ++i)
+      of.beside[i] = solids.seen_neighbor(domain_.grid, cell, i / 2, i % 2);
+    divided_.push_back(of);
+  });
 }
 
 template <int dim>
 void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& phi) {
   const double deep = far * domain_.spacing();
-  list_beyond_shells(solids);
   cut_.clear();
   full_.clear();
+  if (!solids.near.empty())
+    shares_.assign(phi.size(), 0);
+  list_beyond_shells(solids);
   domain_.grid.for_each_owned_cell([&](int cell) {
     const bool near = !solids.near.empty() && solids.near[cell];
     if (near || (std::abs(phi[cell]) < deep && solids.is_fluid(cell)))
@@ -197,6 +205,7 @@ void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& 
     else if (phi[cell] < 0 && solids.is_fluid(cell))
       list_full(cell);
   });
+  list_divided_cells(solids);
 }
 
 template <int dim>
@@ -227,18 +236,22 @@ void LiquidVolume<dim>::add_cut(const CutBox& box, const CellField& phi, const C
 }
 
 template <int dim>
-void LiquidVolume<dim>::add_divided(const CutBox& box, const CellField& phi,
+void LiquidVolume<dim>::add_divided(const DividedCell& of, const CellField& phi,
                                     const CellGroups& groups, std::vector<double>& sums) const {
-  const double h = domain_.spacing(), share = box.volume / n_corners;
-  for (const int cell : box.corners) {
-    const double fraction = std::clamp(0.5 - phi[cell] / h, 0.0, 1.0);
-    const int group = phi[cell] < 0 ? groups.of_cell[cell] : -1;
-    if (group < 0) {
-      sums.back() += fraction * share;
-    } else {
-      sums[group] += fraction * share;
-      sums[groups.n + group] += fraction < 1 ? share / h : 0;
-    }
+  const double h = domain_.spacing();
+  const double fraction = std::clamp(0.5 - phi[of.cell] / h, 0.0, 1.0);
+  if (fraction == 0)
+    return;
+  int wet = of.cell;
+  for (const int other : of.beside)
+    if (phi[of.cell] >= 0 && other >= 0 && phi[other] < phi[wet])
+      wet = other;
+  const int group = phi[wet] < 0 ? groups.of_cell[wet] : -1;
+  if (group < 0) {
+    sums.back() += fraction * of.volume;
+  } else {
+    sums[group] += fraction * of.volume;
+    sums[groups.n + group] += fraction < 1 ? of.volume / h : 0;
   }
 }
 
@@ -247,10 +260,9 @@ GroupVolumes LiquidVolume<dim>::measure(const CellField& phi, const CellGroups& 
   // Volumes, then areas, then what is loose.
   std::vector<double> sums(2 * groups.n + 1, 0.0);
   for (const CutBox& box : cut_)
-    if (box.is_divided)
-      add_divided(box, phi, groups, sums);
-    else
-      add_cut(box, phi, groups, sums);
+    add_cut(box, phi, groups, sums);
+  for (const DividedCell& of : divided_)
+    add_divided(of, phi, groups, sums);
   for (const Run& run : full_)
     for (int cell = run.begin, end = run.begin + run.n; cell < end;) {
       const int first = cell, group = groups.of_cell[cell];
@@ -258,7 +270,6 @@ GroupVolumes LiquidVolume<dim>::measure(const CellField& phi, const CellGroups& 
         ++cell;
       (group < 0 ? sums.back() : sums[group]) += (cell - first) * run.volume;
     }
-  add_beyond_shells(phi, groups, sums);
   sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
   GroupVolumes result;
   result.volume.assign(sums.begin(), sums.begin() + groups.n);

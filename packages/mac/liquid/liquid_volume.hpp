@@ -18,14 +18,16 @@ struct GroupVolumes {
 /// The volume of {phi < 0} outside solids: exact for phi linear on the simplices of the boxes
 /// between cell centres (to the sides of the domain phi is constant); in boxes that closed solids
 /// reach into the solids' volume is taken off in proportion; in those that a surface divides, each
-/// corner has its share, and what of a cell lies beyond a shell counts with the cell there.
+/// corner has its share, and what of a cell lies beyond a shell counts with the cell there. Of such
+/// a share 1/2 - phi/h is liquid; that of a dry cell belongs to the deepest wet one that it sees
+/// beside it, so that volumes do not leap where cells become wet.
 template <int dim>
 class LiquidVolume {
  public:
   explicit LiquidVolume(const MacDomain<dim>& domain) : domain_(domain) {}
 
   /// Lists the boxes that the liquid's surface or solids may cut. Then phi may change by 0.5 h
-  /// before the list is made anew. `phi` on the halo of width 1. Local.
+  /// before the list is made anew. `phi` on the halo of width 1. Collective.
   void prepare(const SolidCells<dim>& solids, const CellField& phi);
   /// What of the listed liquid is beside no cell of a group is loose. Collective.
   GroupVolumes measure(const CellField& phi, const CellGroups& groups) const;
@@ -34,21 +36,25 @@ class LiquidVolume {
   static constexpr int n_corners = 1 << dim;
   struct CutBox {
     std::array<int, n_corners> corners;
-    double volume = 0;        ///< outside closed solids [m^dim]
-    bool is_divided = false;  ///< a surface comes between some of its corners
+    double volume = 0;  ///< outside closed solids [m^dim]
+  };
+  /// An owned cell that has shares of boxes that a surface divides.
+  struct DividedCell {
+    int cell = -1;
+    double volume = 0;                ///< all of them [m^dim]
+    std::array<int, 2 * dim> beside;  ///< the cells that it sees, or -1
   };
   void list_boxes(const SolidCells<dim>& solids, const CellField& phi, int cell);
   bool is_divided(const SolidCells<dim>& solids, const std::array<int, n_corners>& corners) const;
   double volume_of_cell(int cell) const;
   void list_full(int cell);
   void list_beyond_shells(const SolidCells<dim>& solids);
-  /// Adds what of a cell is beyond the shell in it, taken as a plane.
+  /// Gives what of a cell is beyond the shell in it, taken as a plane, to the cell there.
   void list_beyond_shell(const SolidCells<dim>& solids, int cell, std::vector<int>& touching);
-  void add_beyond_shells(const CellField& phi, const CellGroups& groups,
-                         std::vector<double>& sums) const;
+  void list_divided_cells(const SolidCells<dim>& solids);
   void add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
                std::vector<double>& sums) const;
-  void add_divided(const CutBox& box, const CellField& phi, const CellGroups& groups,
+  void add_divided(const DividedCell& of, const CellField& phi, const CellGroups& groups,
                    std::vector<double>& sums) const;
 
   const MacDomain<dim>& domain_;
@@ -59,12 +65,8 @@ class LiquidVolume {
     double volume = 0;  ///< of each
   };
   std::vector<Run> full_;
-  /// What of a cell is beyond a shell, on the side of another one.
-  struct Beyond {
-    int cell = -1, other = -1;
-    double volume = 0;  ///< [m^dim]
-  };
-  std::vector<Beyond> beyond_shells_;
+  std::vector<DividedCell> divided_;
+  CellField shares_;  ///< of stored cells [m^dim]
 };
 
 }  // namespace lockstep

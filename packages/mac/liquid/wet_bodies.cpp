@@ -198,9 +198,15 @@ class WetBodyFinder {
     sum_all(grid_.comm(), flat.data(), static_cast<int>(flat.size()));
     const double* value = flat.data();
     each([&](double& mine) { mine = *value++; });
-    for (WaterPlane<dim>& plane : planes_)
-      if (plane.known())
-        plane.solve(h);
+    for (std::size_t s = 0; s < bodies_.size(); ++s) {
+      WaterPlane<dim>& plane = planes_[s];
+      if (!plane.known())
+        continue;
+      plane.solve(h);
+      for (int a = 0; a < dim; ++a)
+        bodies_[s].slope[a] = plane(plane.origin + Point<dim>::Unit(a)) - plane(plane.origin);
+      bodies_[s].level = bodies_[s].slope.dot(plane.origin) - plane(plane.origin);
+    }
   }
 
   void add_volumes() {
@@ -228,13 +234,25 @@ class WetBodyFinder {
     }
   }
 
+  /// The closed solid of which a corner comes between two cells, or -1.
+  int corner_between(int axis, int cell, const FaceCells& cells) const {
+    if (cells.at_side() || geometry_.state.faces[axis][cell] != FaceState::coupled)
+      return -1;
+    const auto hit = surface_.first_hit(grid_.center(cells.lower), grid_.center(cells.upper));
+    const int solid = hit ? surface_.solid_of(hit->simplex) : -1;
+    return solid >= 0 && surface_.solids()[solid].closed ? solid : -1;
+  }
+
   /// A dual cell that a solid blocks or fills.
   void add_face(int axis, int cell) {
     const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, axis, cell);
     const bool lower = is_solid(cells.lower), upper = is_solid(cells.upper);
-    if (!lower && !upper)
-      return;
     std::array<int, 2> owners{lower ? owner(cells.lower) : -1, upper ? owner(cells.upper) : -1};
+    if (!lower && !upper) {
+      owners[0] = corner_between(axis, cell, cells);
+      if (owners[0] < 0)
+        return;
+    }
     const int n = lower && upper && owners[0] != owners[1] ? 2 : 1;
     if (n == 1)
       owners[0] = std::max(owners[0], owners[1]);

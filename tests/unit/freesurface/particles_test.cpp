@@ -4,6 +4,7 @@
 
 #include "advection_cases.hpp"
 #include "freesurface/level_set.hpp"
+#include "freesurface/particles/particle_correction.hpp"
 #include "geometry/generators.hpp"
 #include "output/checkpoint.hpp"
 
@@ -231,6 +232,65 @@ TEST(Particles, AClosedShellLetsNothingThrough) {
     expect_shell_in_pool<2>(half_full);
     expect_shell_in_pool<3>(half_full);
   }
+}
+
+/// Void that a solid and liquid enclose in a part of a cell goes; beside a void cell, away from
+/// solids, and of the liquid all stay.
+template <int dim>
+void expect_trapped_air_goes() {
+  constexpr int n = 24;
+  const double h = 1.0 / n, radius = 0.21;
+  Bath<dim> bath(closed_cube<dim>(n), self());
+  const Point<dim> middle = Point<dim>::Constant(0.5);
+  const auto surface = snapshot<dim>(ball_surface<dim>(radius, 0.5 * h), middle, true);
+  const auto solids = find_solid_cells<dim>(bath.domain, surface);
+  // The upper half of space is void.
+  CellField phi(bath.domain.grid.n_stored_cells(), 1);
+  bath.domain.grid.for_each_owned_cell(
+      [&](int c) { phi[c] = bath.domain.grid.center(c)[dim - 1] - 0.5; });
+  bath.domain.halo.fill(phi);
+  ParticleTiles<dim> tiles(bath.domain.grid.n_owned_tiles());
+  const auto add = [&](const Point<dim>& x, int side) {
+    for (int t = 0; t < bath.domain.grid.n_owned_tiles(); ++t) {
+      const Index<dim> begin = bath.domain.grid.tile_begin(t);
+      Particle<dim> particle;
+      bool inside = true;
+      for (int a = 0; a < dim; ++a) {
+        particle.x[a] = static_cast<float>(x[a] / h - begin[a]);
+        inside = inside && particle.x[a] >= 0 && particle.x[a] < tile_width<dim>;
+      }
+      particle.radius = static_cast<float>(0.2 * side);
+      if (inside)
+        tiles[t].push_back(particle);
+    }
+  };
+  const auto below = [&](double distance) {
+    return Point<dim>(middle - distance * Point<dim>::Unit(dim - 1));
+  };
+  const auto count = [&] {
+    std::size_t result = 0;
+    for (const auto& tile : tiles)
+      result += tile.size();
+    return result;
+  };
+  add(below(radius + 0.1 * h), 1);
+  ASSERT_EQ(count(), 1U);
+  add(below(radius + 0.1 * h), -1);
+  add(below(radius + 3 * h), 1);
+  add(middle + (radius + 0.1 * h) * Point<dim>::Unit(0), 1);
+  remove_trapped_air(bath.domain, solids, bath.kept, phi, tiles);
+  EXPECT_EQ(count(), 3U);
+  // Not the one of the liquid: it would have no company but those of the void.
+  int n_of_void = 0;
+  for (const auto& tile : tiles)
+    for (const Particle<dim>& particle : tile)
+      n_of_void += particle.side() > 0;
+  EXPECT_EQ(n_of_void, 2);
+}
+
+TEST(Particles, AirThatASolidAndLiquidEncloseGoes) {
+  expect_trapped_air_goes<2>();
+  expect_trapped_air_goes<3>();
 }
 
 template <int dim>

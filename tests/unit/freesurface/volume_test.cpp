@@ -93,6 +93,47 @@ TEST(LiquidVolume, OfABallIsOfSecondOrder) {
   EXPECT_LT(error_of_ball<3>(48), 0.3 * error_of_ball<3>(24));
 }
 
+/// Between thin walls that stand on faces of cells the volume of the body grows steadily with its
+/// level.
+template <int dim>
+void expect_no_leaps_between_shells() {
+  constexpr int n = 16;
+  const double h = 1.0 / n, width = 4 * h;
+  Bath<dim> bath(open_cube<dim>(n));
+  Point<dim> size = Point<dim>::Constant(1.5);
+  SurfaceMesh<dim> walls;
+  for (const double x : {6 * h, 6 * h + width}) {
+    const SurfaceMesh<dim> wall = plate_surface<dim>(size, 0, h);
+    const int begin = static_cast<int>(walls.vertices.size());
+    for (Point<dim> v : wall.vertices) {
+      v += Point<dim>::Constant(0.5);
+      v[0] = x;
+      walls.vertices.push_back(v);
+    }
+    for (auto simplex : wall.simplices) {
+      for (int& v : simplex)
+        v += begin;
+      walls.simplices.push_back(simplex);
+    }
+  }
+  const auto shell = snapshot<dim>(walls, Point<dim>::Zero(), false);
+  const auto solids = find_solid_cells<dim>(bath.domain, shell);
+  for (int i = 0; i <= 10; ++i) {
+    const double level = 0.5 + (0.1 * i + 0.03) * h;
+    const auto result = volumes<dim>(bath, solids, [&](const Point<dim>& x) {
+      return x[0] > 6 * h && x[0] < 10 * h ? x[dim - 1] - level : 1;
+    });
+    ASSERT_EQ(result.volume.size(), 1U);
+    EXPECT_NEAR(result.volume[0], width * level, 1e-12) << i;
+    EXPECT_NEAR(result.area[0], width, 0.25 * width) << i;
+  }
+}
+
+TEST(LiquidVolume, DoesNotLeapBetweenShells) {
+  expect_no_leaps_between_shells<2>();
+  expect_no_leaps_between_shells<3>();
+}
+
 /// A ball of liquid half full of a solid ball; the volume hardly depends on where the grid is.
 template <int dim>
 void expect_solid_is_taken_off() {
