@@ -12,6 +12,8 @@ namespace {
 
 /// Levels up to this many cells have a dense inverse.
 constexpr int coarsest_cells = 300;
+/// So many cells every rank sweeps sooner than it hears from its neighbours.
+constexpr int replicated_cells = 8000;
 /// The most that a lattice may have left where a periodic axis cannot be halved again.
 constexpr int most_coarsest_cells = 700;
 
@@ -32,6 +34,15 @@ int log2_of(int width) {
   while ((1 << log) < width)
     ++log;
   return log;
+}
+
+/// Of several ranks. Levels with at most one cell a block are whole on every rank.
+int n_distributed_levels(const LatticeBlocks& blocks) {
+  int levels = 1;
+  while (levels < log2_of(blocks.width) &&
+         product(LatticeLayout::n_cells(blocks, levels)) > replicated_cells)
+    ++levels;
+  return levels;
 }
 
 int n_levels(const LatticeBlocks& blocks) {
@@ -128,7 +139,7 @@ LatticeLayout::LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks, int de
   const std::string reason = why_not(*blocks_);
   check_solve(reason.empty(), "{}", reason);
   const bool several_ranks = blocks_->comm->getSize() > 1;
-  const int n_distributed = several_ranks ? log2_of(blocks_->width) : 0;
+  const int n_distributed = several_ranks ? n_distributed_levels(*blocks_) : 0;
   const auto near_blocks =
       several_ranks ? find_near_blocks(*blocks_, (depth + 1) / 2) : std::vector<NearBlock>();
   levels_.resize(n_levels(*blocks_));

@@ -61,7 +61,8 @@ struct LayoutLevel {
 
 /// The levels of a multigrid on a lattice: each halves the cells along every axis. Levels whose
 /// cells are smaller than the blocks are distributed like the blocks; coarser ones, with at most
-/// one cell a block, every rank holds whole. The coarsest is small enough for a dense inverse.
+/// one cell a block, and small ones but the finest every rank holds whole. The coarsest is small
+/// enough for a dense inverse.
 /// Depends on the blocks only, not on what fills them. The same on any number of ranks.
 class LatticeLayout {
  public:
