@@ -9,6 +9,8 @@ namespace lockstep {
 namespace {
 /// Cells that a surface may sweep over at once, one behind the other.
 constexpr int deepest_sweep = 8;
+/// From a surface that takes liquid along [cells].
+constexpr double farthest_taken = 16;
 
 /// Calls f(other) for the fluid cells beside one that a closed solid holds.
 template <int dim, typename Function>
@@ -19,6 +21,34 @@ void for_each_fluid_neighbor(const TiledGrid<dim>& grid, const SolidCells<dim>& 
     if (other >= 0 && solids.is_fluid(other))
       f(other);
   }
+}
+/// The fluid cell with the nearest centre that is seen from x, of that which holds x and those
+/// around; -1 if there is none.
+template <int dim>
+int cell_seen_from(const Point<dim>& x, const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                   const NearbySurface<dim>& surface) {
+  const int middle = grid.cell_containing(x);
+  if (middle < 0)
+    return -1;
+  const Point<dim> period = x - grid.wrap(x);
+  int best = -1;
+  double nearest = 0;
+  for (int k = 0; k < (dim == 2 ? 9 : 27); ++k) {
+    Index<dim> at = grid.coordinates(middle);
+    Point<dim> center = grid.center(middle) + period;
+    for (int a = 0, rest = k; a < dim; ++a, rest /= 3) {
+      at[a] += rest % 3 - 1;
+      center[a] += (rest % 3 - 1) * grid.spacing();
+    }
+    const int cell = grid.cell(at);
+    const double distance = (center - x).norm();
+    if (cell < 0 || !grid.in_domain(cell) || !solids.is_fluid(cell) ||
+        (best >= 0 && distance >= nearest) || (!surface.empty() && surface.first_hit(x, center)))
+      continue;
+    best = cell;
+    nearest = distance;
+  }
+  return best;
 }
 }  // namespace
 
@@ -69,8 +99,8 @@ void bring_out_of_solids(const MacDomain<dim>& domain, const SolidCells<dim>& so
 }
 
 template <int dim>
-double give_up_cells(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                     std::vector<char>& leaves, Fractions& fractions) {
+std::vector<TakenLiquid> give_up_cells(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                                       std::vector<char>& leaves, Fractions& fractions) {
   const TiledGrid<dim>& grid = domain.grid;
   domain.halo.fill(leaves);
   // How many cells the nearest one is away that stays.
@@ -95,20 +125,21 @@ double give_up_cells(const MacDomain<dim>& domain, const SolidCells<dim>& solids
           layer[cell] = depth;
     domain.halo.fill(layer);
   }
-  double stranded = 0;
+  std::vector<TakenLiquid> stranded;
   CellField share(leaves.size(), 0.0);
   for (int depth = deepest_sweep + 1; depth > 0; --depth) {
     for (const int cell : donors) {
       if (!grid.owned(cell) || layer[cell] != depth)
         continue;
-      const double amount =
-          fractions.owed[cell] + fractions.liquid[cell] * fractions.open_part(cell);
+      const double liquid = fractions.liquid[cell] * fractions.open_part(cell);
+      const double owed = fractions.owed[cell], amount = liquid + owed;
       fractions.owed[cell] = fractions.liquid[cell] = 0;
       int n = 0;
       if (depth <= deepest_sweep)
         for_each_nearer(cell, [&](int) { ++n; });
       share[cell] = n > 0 ? amount / n : 0;
-      stranded += n > 0 ? 0 : amount;
+      if (n == 0 && (liquid != 0 || owed != 0))
+        stranded.push_back({cell, liquid, owed});
     }
     domain.halo.fill(share);
     for (const int cell : donors)
@@ -121,13 +152,53 @@ double give_up_cells(const MacDomain<dim>& domain, const SolidCells<dim>& solids
   return stranded;
 }
 
+template <int dim>
+double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                  const MovingSurface<dim>& surface, const NearbySurface<dim>& after, double dt,
+                  const std::vector<TakenLiquid>& taken, Fractions& fractions) {
+  const TiledGrid<dim>& grid = domain.grid;
+  double lost = 0;
+  CellField arrived(fractions.liquid.size(), 0.0), owed = arrived;
+  for (const TakenLiquid& part : taken) {
+    const Point<dim> x = grid.center(part.cell);
+    const auto nearest =
+        surface.before ? surface.before->closest(x, farthest_taken * grid.spacing()) : std::nullopt;
+    const int there =
+        nearest ? cell_seen_from<dim>(x + dt * surface.velocity(*nearest), grid, solids, after)
+                : -1;
+    if (there < 0) {
+      lost += part.liquid + part.owed;
+    } else {
+      arrived[there] += part.liquid;
+      owed[there] += part.owed;
+    }
+  }
+  domain.full_halo.sum_to_owner(arrived);
+  domain.full_halo.sum_to_owner(owed);
+  grid.for_each_owned_cell([&](int cell) {
+    double& liquid = fractions.liquid[cell];
+    const double open = fractions.open_part(cell);
+    const double taken_in = std::min(arrived[cell], (1 - liquid) * open);
+    liquid += taken_in > 0 ? taken_in / open : 0;
+    fractions.owed[cell] += owed[cell] + (arrived[cell] - taken_in);
+  });
+  domain.halo.fill(fractions.liquid);
+  return sum_all(grid.comm(), lost);
+}
+
 template CellField open_parts<2>(const MacDomain<2>&, const SolidCells<2>&);
 template CellField open_parts<3>(const MacDomain<3>&, const SolidCells<3>&);
 template void bring_out_of_solids<2>(const MacDomain<2>&, const SolidCells<2>&, Fractions&);
 template void bring_out_of_solids<3>(const MacDomain<3>&, const SolidCells<3>&, Fractions&);
-template double give_up_cells<2>(const MacDomain<2>&, const SolidCells<2>&, std::vector<char>&,
-                                 Fractions&);
-template double give_up_cells<3>(const MacDomain<3>&, const SolidCells<3>&, std::vector<char>&,
-                                 Fractions&);
+template std::vector<TakenLiquid> give_up_cells<2>(const MacDomain<2>&, const SolidCells<2>&,
+                                                   std::vector<char>&, Fractions&);
+template std::vector<TakenLiquid> give_up_cells<3>(const MacDomain<3>&, const SolidCells<3>&,
+                                                   std::vector<char>&, Fractions&);
+template double take_along<2>(const MacDomain<2>&, const SolidCells<2>&, const MovingSurface<2>&,
+                              const NearbySurface<2>&, double, const std::vector<TakenLiquid>&,
+                              Fractions&);
+template double take_along<3>(const MacDomain<3>&, const SolidCells<3>&, const MovingSurface<3>&,
+                              const NearbySurface<3>&, double, const std::vector<TakenLiquid>&,
+                              Fractions&);
 
 }  // namespace lockstep

@@ -1,5 +1,9 @@
 #pragma once
+#include <vector>
+
 #include "freesurface/fractions/fraction_transport.hpp"
+#include "interfaces/fluid.hpp"
+#include "mac/transport/nearby_surface.hpp"
 
 namespace lockstep {
 
@@ -11,12 +15,25 @@ CellField open_parts(const MacDomain<dim>& domain, const SolidCells<dim>& solids
 template <int dim>
 void bring_out_of_solids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                          Fractions& fractions);
+/// Liquid that a surface takes along, of an owned cell [cells].
+struct TakenLiquid {
+  int cell = 0;
+  double liquid = 0, owed = 0;
+};
 /// The liquid of cells that are about to leave their side of a surface, and what they are owed,
 /// become what their neighbours on that side are owed; they are empty then. `leaves`: of stored
-/// cells, owned ones set; `solids` at the time before. Returns what finds no neighbour, of this
-/// rank [cells]. Collective.
+/// cells, owned ones set; `solids` at the time before. Returns what finds no neighbour, by owned
+/// cell [cells]. Collective.
 template <int dim>
-double give_up_cells(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                     std::vector<char>& leaves, Fractions& fractions);
+std::vector<TakenLiquid> give_up_cells(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                                       std::vector<char>& leaves, Fractions& fractions);
+/// What a surface took along as a whole, as a bag that moved over more than its size, goes to where
+/// the nearest point of the surface has gone with it. `solids` and `fractions` at the time after;
+/// the halo of width 1 of the fractions is set. Returns what finds no place [cells], over all
+/// ranks. Collective.
+template <int dim>
+double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                  const MovingSurface<dim>& surface, const NearbySurface<dim>& after, double dt,
+                  const std::vector<TakenLiquid>& taken, Fractions& fractions);
 
 }  // namespace lockstep

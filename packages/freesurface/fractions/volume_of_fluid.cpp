@@ -111,10 +111,11 @@ void VolumeOfFluid<dim>::initialise(const SignedDistance<dim>& distance, const S
 }
 
 template <int dim>
-std::vector<char> VolumeOfFluid<dim>::tiles_within(int reach) const {
+std::vector<char> VolumeOfFluid<dim>::tiles_within(int reach, bool arrived) const {
   CellField marks = phi_;
   for (std::size_t cell = 0; cell < marks.size(); ++cell)
-    if (is_mixed(fractions_.liquid[cell]))
+    if (is_mixed(fractions_.liquid[cell]) ||
+        (arrived && (fractions_.liquid[cell] > 0.5) != (phi_[cell] < 0)))
       marks[cell] = 0;
   domain_.full_halo.fill(marks);
   return tiles_near_band(domain_.grid, solids_, marks, cut_off(), reach);
@@ -156,11 +157,11 @@ InvalidSamples<dim> VolumeOfFluid<dim>::find_swept(const InterfaceStep<dim>& ste
 }
 
 template <int dim>
-void VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
+bool VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
                                      const std::vector<char>& tiles) {
   const bool had_solids = solids_.state.surface != nullptr;
   if (!had_solids && (!step.surface.after || step.surface.after->empty()))
-    return;
+    return false;
   const InvalidSamples<dim> invalid = find_swept(step, tiles);
   const SolidCells<dim> before = solids_;
   const CellField open_before = fractions_.open;
@@ -171,7 +172,7 @@ void VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
   });
   CellField open = open_before;
   open.swap(fractions_.open);
-  lost_ += sum_all(domain_.grid.comm(), give_up_cells(domain_, before, leaves, fractions_));
+  const auto taken = give_up_cells(domain_, before, leaves, fractions_);
   open.swap(fractions_.open);
   CellField& liquid = fractions_.liquid;
   domain_.grid.for_each_owned_cell([&](int cell) {
@@ -184,7 +185,10 @@ void VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
   domain_.grid.for_each_owned_cell([&](int cell) {
     fractions_.owed[cell] += (kept[cell] - liquid[cell]) * fractions_.open_part(cell);
   });
+  const auto after = step.kept.of(solids_.state.surface, domain_.grid, 2);
+  lost_ += take_along(domain_, solids_, step.surface, *after, step.dt, taken, fractions_);
   bring_out_of_solids(domain_, solids_, fractions_);
+  return sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(taken.size())) > 0;
 }
 
 template <int dim>
@@ -241,7 +245,11 @@ template <int dim>
 void VolumeOfFluid<dim>::advance(const InterfaceStep<dim>& step) {
   find_solids(step.surface.before);
   std::vector<char> tiles = carry(step);
-  move_solids(step, tiles);
+  if (move_solids(step, tiles)) {
+    const std::vector<char> reached = tiles_within(parameters_.band + 1, true);
+    for (std::size_t tile = 0; tile < tiles.size(); ++tile)
+      tiles[tile] = tiles[tile] || reached[tile];
+  }
   if (!step.sources.empty() || !step.sinks.empty()) {
     add_sources(step);
     tiles.assign(tiles.size(), 1);

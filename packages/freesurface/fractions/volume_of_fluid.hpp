@@ -47,11 +47,13 @@ class VolumeOfFluid : public InterfaceModel<dim> {
  private:
   double cut_off() const { return parameters_.band * domain_.spacing(); }
   void find_solids(const Surface& surface);
-  std::vector<char> tiles_within(int reach) const;
+  /// `arrived`: also of cells that are wet or dry since phi was made.
+  std::vector<char> tiles_within(int reach, bool arrived = false) const;
   /// Returns the flags of the tiles in which anything may have changed.
   std::vector<char> carry(const InterfaceStep<dim>& step);
   /// Solids go on to the end of the step; cells that change sides do so without their liquid.
-  void move_solids(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
+  /// True if surfaces have taken liquid along, on any rank.
+  bool move_solids(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
   /// Of owned fluid cells: 1 where no ray could be followed, or no fluid was.
   InvalidSamples<dim> find_swept(const InterfaceStep<dim>& step,
                                  const std::vector<char>& tiles) const;

@@ -150,6 +150,52 @@ void expect_solid_dips() {
   EXPECT_NEAR(model->ledger().volume, start, 1e-4 * start);
 }
 
+/// A full shell goes over more than its size in a step, to and fro: no cell is inside of it before
+/// and after, but its liquid goes with it.
+template <int dim>
+void expect_shell_takes_liquid_along(double distance) {
+  const int n = dim == 2 ? 40 : 20;
+  const double radius = 0.15;
+  Bath<dim> bath(closed_cube<dim>(n));
+  auto model = bath.make(model_name);
+  const auto mesh = ball_surface<dim>(radius, 0.5 / n);
+  const auto center = [&](int i) {
+    Point<dim> place = Point<dim>::Constant(0.503);
+    place[0] += (i % 2 == 0 ? -0.5 : 0.5) * distance;
+    return place;
+  };
+  auto before = snapshot<dim>(mesh, center(0), false);
+  const SignedDistance<dim> by_cells = [&](const Point<dim>& x) {
+    return (x - center(0)).norm() < radius ? -1 : 1;
+  };
+  model->initialise(by_cells, before);
+  const double start = model->ledger().volume;
+  ASSERT_GT(start, 0);
+  for (int i = 0; i < 4; ++i) {
+    auto after = snapshot<dim>(mesh, center(i + 1), false);
+    const double dt = 0.1;
+    bath.move(before, after, dt);
+    bath.set_velocity(
+        [&](const Point<dim>&) { return Point<dim>((center(i + 1) - center(i)) / dt); });
+    bath.step(*model, i * dt, dt);
+    before = after;
+    EXPECT_NEAR(model->ledger().lost, 0, 1e-14) << i;
+    // In a ball of a hundred cells debts wait longer than a step.
+    EXPECT_NEAR(model->ledger().volume, start, (dim == 2 ? 0.1 : 0.5) * start) << i;
+    std::vector<char> inside(bath.domain.grid.n_stored_cells(), 0);
+    bath.domain.grid.for_each_stored_cell(
+        [&](int c) { inside[c] = (bath.domain.grid.center(c) - center(i + 1)).norm() < radius; });
+    EXPECT_NEAR(model->liquid_in(inside).target, start, 1e-13) << i;
+  }
+}
+
+TEST(VolumeOfFluid, AShellTakesItsLiquidAlong) {
+  for (const double distance : {0.02, 0.2, 0.37, 0.55}) {
+    expect_shell_takes_liquid_along<2>(distance);
+    expect_shell_takes_liquid_along<3>(distance);
+  }
+}
+
 TEST(VolumeOfFluid, ASolidThatDipsDisplacesLiquid) {
   expect_solid_dips<2>();
   expect_solid_dips<3>();
