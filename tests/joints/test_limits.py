@@ -147,6 +147,21 @@ class Limits(unittest.TestCase):
         self.assertLess(max(turns), .7 + 1e-3)
         self.assertGreater(max(turns), .7 - 1e-9)
 
+    def test_every_coordinate_has_its_own(self):
+        """A cylinder slides and turns, a universal joint turns about two axes: one is stopped, the other goes on."""
+        solids = {"A": {**unseen_box((0., 0., 0.), (0., 0., 1.)), "Velocity": (0., 0., .5)}}
+        along = joint("cylinder", ("space", "A"), (0., 0., 0.), Axis=(0., 0., 1.),
+                      **{"Lower Limit": (-.1, -.2), "Upper Limit": (.1, 50.)})
+        rows = joints_of(limited(solids, {"C": along}, .02, 1.))
+        self.assertAlmostEqual(rows["C 1"][-1]["q"], .1, delta=1e-9)
+        self.assertAlmostEqual(rows["C 2"][-1]["q"], 1., delta=1e-9)
+        solids = {"A": unseen_box((0., 0., 0.), (.7, 0., .4))}
+        cross = joint("universal", ("space", "A"), (0., 0., 0.), Axis=(1., 0., 0.), **{"Second Axis": (0., 0., 1.)},
+                      **{"Lower Limit": (-.1, -.2), "Upper Limit": (.2, 50.)})
+        rows = joints_of(limited(solids, {"U": cross}, .02, 1.))
+        self.assertAlmostEqual(rows["U 1"][-1]["q"], .2, delta=1e-6)
+        self.assertGreater(rows["U 2"][-1]["q"], .3)
+
     def test_loops_have_limits(self):
         """A square of four links whose rates depend on one another stops where one of them does."""
         places = {"A": (.5, 0.), "B": (1., .5), "C": (.5, 1.), "D": (0., .5)}

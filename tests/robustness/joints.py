@@ -47,6 +47,26 @@ def limb(rng, world, place):
     return body
 
 
+COORDINATES = {"hinge": 1, "slider": 1, "universal": 2, "cylinder": 2, "planar": 3}
+
+
+def add_limits(content, seed):
+    """To every other joint, where there is contact to keep them; a loop keeps a joint that is free."""
+    rng = random.Random(f"lockstep limits {seed}")
+    if content.get("Contact", {}).get("Type") == "none":
+        return
+    for number, one in enumerate(content["Joints"].values()):
+        if number % 2 == 0 or one["Type"] == "weld":
+            continue
+        if one["Type"] == "ball":
+            one["Upper Limit"] = rng.uniform(.01, 1.)
+            continue
+        n = COORDINATES[one["Type"]]
+        for side, sign in (("Lower Limit", -1), ("Upper Limit", 1)):
+            values = [sign * 10 ** rng.uniform(-3, 0) for _ in range(n)]
+            one[side] = values if n > 1 else values[0]
+
+
 def add_joints(world, content, seed):
     rng = random.Random(f"lockstep joints {seed}")
     solids, joints = content["Solids"], {}
@@ -74,6 +94,7 @@ def add_joints(world, content, seed):
     if not joints:
         return
     content["Joints"] = joints
+    add_limits(content, seed)
     if any(PRESCRIBED in solids.get(name, {}) for one in joints.values() for name in one["Solids"]):
         world.facts.works = True
     if content["Coupling"].get("Lumping") == "paper diagonal":
