@@ -164,8 +164,8 @@ int run(int argc, char** argv) {
   app.add_flag("--list", arguments.list, "print the cases without running them");
   app.add_option("--simulate", arguments.runner.simulate, "program to run instead of simulate");
   app.add_flag("--parameters", arguments.parameters, "print what a study file may say");
-  app.add_option("--format", arguments.format, "of --parameters: text or markdown")
-      ->check(CLI::IsMember({"text", "markdown"}));
+  app.add_option("--format", arguments.format, "of --parameters: text or json")
+      ->check(CLI::IsMember({"text", "json"}));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -174,9 +174,8 @@ int run(int argc, char** argv) {
     throw InputError(shortened(error.what(), 200) + " (see converge --help).");
   }
   if (arguments.parameters) {
-    std::cout << (arguments.format == "markdown"
-                      ? reference_markdown("Parameters of a study", study_parameters())
-                      : reference_text(study_parameters()));
+    std::cout << (arguments.format == "json" ? reference_json(study_parameters())
+                                             : reference_text(study_parameters()));
     return 0;
   }
   check_input(!arguments.study_file.empty(),

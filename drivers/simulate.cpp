@@ -80,11 +80,7 @@ void print_reference(const Arguments& arguments) {
   ParameterList valid = arguments.dimension == 2 ? scene_parameters<2>(shipped_plug_ins<2>())
                                                  : scene_parameters<3>(shipped_plug_ins<3>());
   declare_scene_language(valid, arguments.dimension);
-  std::cout << (arguments.format == "markdown"
-                    ? reference_markdown(fmt::format("Parameters of a scene in {} dimensions",
-                                                     arguments.dimension),
-                                         valid)
-                    : reference_text(valid));
+  std::cout << (arguments.format == "json" ? reference_json(valid) : reference_text(valid));
 }
 
 void print_plug_ins() {
@@ -126,8 +122,8 @@ int run(int argc, char** argv, const Communicator& comm) {
   app.add_flag("--validate", arguments.validate, "check the scene and build it, without running");
   app.add_flag("--explain", arguments.explain, "print what is active, why, and its cost");
   app.add_flag("--parameters", arguments.parameters, "print all parameters with documentation");
-  app.add_option("--format", arguments.format, "of --parameters: text or markdown")
-      ->check(CLI::IsMember({"text", "markdown"}));
+  app.add_option("--format", arguments.format, "of --parameters: text or json")
+      ->check(CLI::IsMember({"text", "json"}));
   app.add_option("--dimension", arguments.dimension, "of --parameters: 2 or 3")
       ->check(CLI::IsMember({2, 3}));
   app.add_flag("--list-plugins", arguments.list_plugins, "print all plug-ins");

@@ -1,6 +1,7 @@
 #include "parameters/reference.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/errors.hpp"
 #include "parameters/parameter_rule.hpp"
@@ -92,17 +93,6 @@ std::vector<Section> all_sections(const ParameterList& valid) {
   return sections;
 }
 
-/// A cell of a table must neither end the cell nor the line.
-std::string cell(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '|')
-      result += '\\';
-    result += c == '\n' ? ' ' : c;
-  }
-  return result;
-}
-
 }  // namespace
 
 std::string reference_text(const ParameterList& valid) {
@@ -124,26 +114,23 @@ std::string reference_text(const ParameterList& valid) {
   return text;
 }
 
-std::string reference_markdown(const std::string& title, const ParameterList& valid) {
-  std::string text = fmt::format("# {}\n", title);
+std::string reference_json(const ParameterList& valid) {
+  auto lists = nlohmann::ordered_json::array();
   for (const Section& section : all_sections(valid)) {
-    if (!section.path.empty()) {
-      text +=
-          fmt::format("\n{} {}\n", std::string(std::min(section.depth + 1, 6), '#'), section.path);
-    }
-    for (const std::string& line : {section.documentation, section.note}) {
-      if (!line.empty())
-        text += fmt::format("\n{}\n", line);
-    }
-    if (section.rows.empty())
-      continue;
-    text += "\n| Name | Type | Default | Allowed | Meaning |\n|---|---|---|---|---|\n";
+    auto parameters = nlohmann::ordered_json::array();
     for (const Row& row : section.rows) {
-      text += fmt::format("| {} | {} | {} | {} | {} |\n", cell(row.name), row.type,
-                          cell(row.initial), cell(row.allowed), cell(row.documentation));
+      parameters.push_back({{"name", row.name},
+                            {"type", row.type},
+                            {"default", row.initial},
+                            {"allowed", row.allowed},
+                            {"documentation", row.documentation}});
     }
+    lists.push_back({{"path", section.path},
+                     {"documentation", section.documentation},
+                     {"note", section.note},
+                     {"parameters", std::move(parameters)}});
   }
-  return text;
+  return lists.dump(1) + "\n";
 }
 
 std::vector<std::string> undocumented(const ParameterList& valid) {

@@ -9,9 +9,10 @@ namespace lockstep {
 
 /// Plain text for the terminal.
 std::string reference_text(const ParameterList& valid);
-/// A Markdown page: one section a list with a table of name, type, default, allowed values,
-/// meaning.
-std::string reference_markdown(const std::string& title, const ParameterList& valid);
+/// For programs: an array of objects, one a list ("path", "documentation", "note") in the order of
+/// reference_text, whose "parameters" each have "name", "type", "default", "allowed",
+/// "documentation".
+std::string reference_json(const ParameterList& valid);
 /// Paths of all parameters, lists and types that have an empty docstring.
 std::vector<std::string> undocumented(const ParameterList& valid);
 

@@ -59,19 +59,33 @@ Its content is passed on unchecked.
 )");
 }
 
-TEST(Reference, MarkdownIsOneTableAList) {
+TEST(Reference, JsonHasEveryListAndItsParameters) {
   ParameterList valid;
-  declare_positive(declare_list(valid, "Time", "Time stepping."), "Step", 1e-3, "Step | size [s].");
+  declare_positive(declare_list(valid, "Time", "Time stepping."), "Step", 1e-3,
+                   "A \"step\" \\ size [s].");
 
-  EXPECT_EQ(reference_markdown("Scenes", valid), R"(# Scenes
-
-## Time
-
-Time stepping.
-
-| Name | Type | Default | Allowed | Meaning |
-|---|---|---|---|---|
-| Step | double | 0.001 | greater than 0 | Step \| size [s]. |
+  EXPECT_EQ(reference_json(valid), R"([
+ {
+  "path": "",
+  "documentation": "",
+  "note": "",
+  "parameters": []
+ },
+ {
+  "path": "Time",
+  "documentation": "Time stepping.",
+  "note": "",
+  "parameters": [
+   {
+    "name": "Step",
+    "type": "double",
+    "default": "0.001",
+    "allowed": "greater than 0",
+    "documentation": "A \"step\" \\ size [s]."
+   }
+  ]
+ }
+]
 )");
 }
 
