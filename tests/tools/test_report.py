@@ -152,6 +152,27 @@ class Data(Pages):
         self.assertEqual([[one["layer"] for one in of] for of in layers], [[2, 4, 6], [1, 3, 4], [1, 2, 3]])
         self.assertEqual(len(zlib.decompress(store[layers[1][0]["blob"]])), 8 * 4)
 
+    def test_clouds_of_large_fields_are_coarse(self):
+        from report_page import blobs, frames
+        make_run.main(self.folder / "run", 3)
+        for name, limit in (("MOST_FIELD_BYTES", 0), ("MOST_CLOUD_BYTES", 2 * 3 * 2 * 2)):  # every third cell along each axis
+            self.addCleanup(setattr, frames, name, getattr(frames, name))
+            setattr(frames, name, limit)
+        store = blobs.Blobs()
+        fields = frames.FramePacker(store, 10).pack(self.folder / "run")["frames"][1]["fields"]
+        self.assertNotIn("volume", fields["velocity"])
+        volume, low, high = (fields["smoke"][name] for name in ("volume", "low", "high"))
+        self.assertEqual((volume["cells"], volume["by"]), ([3, 2, 2], 3))
+        values = numpy.frombuffer(zlib.decompress(store[volume["blob"]]), "u1").reshape(2, 2, 3)
+        # Smoke is x + 0.5 at the cells' centres; the last block has two cells of them.
+        wanted = 1.5 + 0.125 * numpy.array((1.5, 4.5, 7.0))
+        numpy.testing.assert_allclose(low + values / 254 * (high - low), numpy.broadcast_to(wanted, (2, 2, 3)), atol=0.005)
+
+    def test_cells_without_values_do_not_count_in_a_coarse_cloud(self):
+        from report_page.frames import coarsened
+        values = numpy.array(((1.0, numpy.nan, 5.0), (3.0, 2.0, numpy.nan), (numpy.nan, numpy.nan, 7.0)))
+        numpy.testing.assert_array_equal(coarsened(values, 2), ((2.0, 5.0), (numpy.nan, 7.0)))
+
     def test_complaints(self):
         (self.folder / "empty").mkdir()
         result = self.report(self.folder / "empty")

@@ -119,12 +119,81 @@ class PageInBrowser(unittest.TestCase):
 
     def test_a_slice_moves(self):
         self.open(3)
+        self.choose("style", "slice")
         self.choose("axis", "x")
         self.choose("layer", 0)
         before, place = self.player(), self.text("position")
         self.choose("layer", 7)
         self.assertEqual((place, self.text("position")), ("x = 1.063 m", "x = 1.938 m"))
         self.assertGreater(numpy.mean(numpy.abs(self.player() - before).max(axis=-1) > 0.05), 0.02)
+
+    def toggle(self, *names):
+        for name in names:
+            self.browser.run(f"[...document.querySelectorAll('#toggles label')].find((label) => label.textContent === ' {name}').firstChild.click()")
+        self.browser.run("new Promise((done) => setTimeout(done, 150))")
+
+    def drawn(self):
+        """What the player draws: colours and opacity [row][column][4], from 0 to 1, and where its camera is."""
+        width, height, numbers, camera = self.browser.run("""(() => {
+            const player = state.players[0], from = player.renderer.domElement, to = document.createElement("canvas");
+            [to.width, to.height] = [from.width, from.height];
+            player.draw();
+            to.getContext("2d").drawImage(from, 0, 0);
+            const { position, fov, aspect } = player.camera;
+            return [to.width, to.height, [...to.getContext("2d").getImageData(0, 0, to.width, to.height).data],
+                    [position.x, position.y, position.z, fov, aspect]];
+        })()""")
+        return numpy.array(numbers).reshape(height, width, 4) / 255, camera
+
+    def test_a_cloud_is_as_dense_as_its_field(self):
+        """Opacity of pixels of a look from the front: 1 - exp(-22 * integral of the density / longest edge), by hand."""
+        self.open(3, view="""<ParameterList name="View"><Parameter name="Direction" value="{0, 0, 1}"/></ParameterList>""")
+        self.assertEqual(self.browser.run("document.getElementById('style').value"), "cloud")
+        self.assertFalse(self.browser.run("document.getElementById('as').hidden"))
+        self.toggle("solids", "paths", "box")
+        picture, (*eye, field_of_view, aspect) = self.drawn()
+        height, width = picture.shape[:2]
+        seen = []
+        for row, column in ((height // 2, width // 2), (height // 2, int(0.45 * width)), (int(0.4 * height), int(0.4 * width)), (5, 5)):
+            up, right = 1 - 2 * (row + 0.5) / height, 2 * (column + 0.5) / width - 1
+            slope = numpy.tan(numpy.radians(field_of_view / 2))
+            ray = numpy.array((right * slope * aspect, up * slope, -1.0))
+            low, high = numpy.array((1, 0, -0.25)), numpy.array((2, 0.75, 0.25))
+            ray = numpy.where(ray == 0, 1e-12, ray)
+            ends = numpy.sort(numpy.array(((low - eye) / ray, (high - eye) / ray)), axis=0)
+            begin, end = ends[0].max(), max(ends[1].min(), ends[0].max())
+            x = eye[0] + (begin + (end - begin) * (numpy.arange(2000) + 0.5) / 2000) * ray[0]
+            density = (numpy.clip(x, 1.0625, 1.9375) - 1.0625) / (2.4375 - 1.0625)
+            wanted = 1 - numpy.exp(-22 * density.mean() * (end - begin) * numpy.linalg.norm(ray))
+            seen.append(wanted)
+            self.assertAlmostEqual(picture[row, column, 3], wanted, delta=0.02, msg=(row, column))
+        self.assertGreater(numpy.ptp(seen[:3]), 0.1)
+        self.assertEqual(seen[3], 0)
+        self.choose("style", "slice")
+        self.assertFalse(self.browser.run("state.players[0].cloud.mesh.visible"))
+        self.assertFalse(self.browser.run("document.querySelector('.of-slice').hidden"))
+
+    def test_a_cloud_ends_at_what_is_opaque(self):
+        """The body's tip, with 0.05 m of density 0.32 before it and 0.4 behind, keeps exp(-0.35) of its colour."""
+        self.open(3, view="""<ParameterList name="View"><Parameter name="Direction" value="{0, 0, 1}"/></ParameterList>""")
+        self.toggle("paths", "box")
+        with_cloud, (*eye, field_of_view, aspect) = self.drawn()
+        self.choose("field", "")
+        alone = self.drawn()[0]
+        height, width = alone.shape[:2]
+        ray = numpy.array((1.5, 0.4, 0.2)) - eye
+        scale = height / 2 / numpy.tan(numpy.radians(field_of_view / 2)) / -ray[2]
+        row, column = int(height / 2 - ray[1] * scale), int(width / 2 + ray[0] * scale)
+        redness = [(picture[..., 0] - picture[..., 2])[row - 2:row + 3, column - 2:column + 3].mean() for picture in (with_cloud, alone)]
+        self.assertGreater(redness[1], 0.3)
+        self.assertAlmostEqual(redness[0] / redness[1], numpy.exp(-0.35), delta=0.12)
+
+    def test_only_clouds_are_offered_as_such(self):
+        self.open(3)
+        self.choose("field", "velocity")
+        self.assertTrue(self.browser.run("document.getElementById('as').hidden"))
+        self.open(2)
+        self.assertTrue(self.browser.run("document.getElementById('as').hidden"))
 
     def test_plays_to_the_end(self):
         self.open(3)

@@ -48,6 +48,12 @@ function layersOf(field, cells, axis) {
     : Array.from({ length: cells[axis] }, (_, k) => k);
 }
 
+/// All cells of a field, or coarser ones of a large field; null if there are layers only.
+function volumeOf(field, box) {
+  if (field?.blob) return { blob: field.blob, cells: box.cells, spacing: box.spacing };
+  return field?.volume ? { ...field.volume, spacing: box.spacing.map((h) => h * field.volume.by) } : null;
+}
+
 /// One layer of cells across an axis: bytes 0 to 254, 255 for none; the lower of the other axes runs
 /// fastest.
 async function layerOf(field, cells, axis, layer) {

@@ -1,4 +1,6 @@
 """The frames of a run for the player of the page: surfaces, water, and fields in all cells or in some layers."""
+import itertools
+
 import numpy
 
 from lockstep_frames import FramesError, read_frames
@@ -8,6 +10,8 @@ from report_page.blobs import pack_points, pack_simplices, pack_values
 WATER = "water"
 NOT_SHOWN = ("fluid", "phi")  # fields that say where fluid is
 MOST_FIELD_BYTES = 48_000_000
+CLOUDY = ("smoke", "temperature")  # fields that are shown as clouds; coarsely if they are too large
+MOST_CLOUD_BYTES = 24_000_000
 N_LAYERS = 3                  # of each axis, of a field that is too large
 
 
@@ -18,12 +22,21 @@ def written_at(frame):
     return path.stat().st_mtime_ns if path and path.is_file() else 0
 
 
+def coarsened(values, by):
+    """Means over blocks of `by` cells along each axis, of those that have a value; nan where none has."""
+    padded = numpy.pad(values, [(0, -n % by) for n in values.shape], constant_values=numpy.nan)
+    blocks = padded.reshape([length for n in padded.shape for length in (n // by, by)])
+    axes = tuple(range(1, blocks.ndim, 2))
+    n_known = numpy.isfinite(blocks).sum(axis=axes)
+    return numpy.where(n_known, numpy.nansum(blocks, axis=axes) / numpy.maximum(n_known, 1), numpy.nan)
+
+
 class FramePacker:
     """Packs frames once: those of a run that goes on are asked for again and again."""
 
     def __init__(self, blobs, most_frames, fields=None):
         self.blobs, self.most_frames, self.fields = blobs, most_frames, fields
-        self._packed, self._range_sample = {}, None
+        self._packed, self._coarsening = {}, 1
 
     def pack(self, folder):
         """All frames of the folder (every nth of very many); an empty list if there are none yet."""
@@ -34,6 +47,7 @@ class FramePacker:
         every = -(-len(frames) // self.most_frames)
         chosen = [frame for i, frame in enumerate(frames) if i % every == 0 or i == len(frames) - 1]
         whole = self._whole_fields(frames[-1], len(chosen))
+        self._coarsening = self._coarsening_for(frames[-1], len(chosen))
         packed = [self._frame(frame, whole) for frame in chosen]
         return {"frames": [frame for frame in packed if frame], "n_written": len(frames), "every": every}
 
@@ -53,8 +67,14 @@ class FramePacker:
                     left -= size
         return whole
 
+    @staticmethod
+    def _coarsening_for(frame, n_frames):
+        """Cells along each axis that a cell of a cloud stands for, so that clouds keep to their bytes."""
+        cells = numpy.array(frame.boxes[0].n_cells if frame.boxes else [1])
+        return next(by for by in itertools.count(1) if numpy.prod(-(-cells // by)) * n_frames <= max(MOST_CLOUD_BYTES, n_frames))
+
     def _frame(self, frame, whole):
-        key = (frame.time, written_at(frame), frozenset(whole))
+        key = (frame.time, written_at(frame), frozenset(whole), self._coarsening)
         if key not in self._packed:
             try:
                 self._packed[key] = self._pack(frame, whole)
@@ -102,6 +122,10 @@ class FramePacker:
             packed["blob"] = pack_values(self.blobs, values, low, high)
         else:
             packed["layers"] = [self._layers(values, axis, low, high) for axis in range(3)]
+            if name in CLOUDY:
+                coarse = coarsened(values, self._coarsening)
+                packed["volume"] = {"blob": pack_values(self.blobs, coarse, low, high), "cells": list(coarse.shape[::-1]),
+                                    "by": self._coarsening}
         return packed
 
     def _layers(self, values, axis, low, high):

@@ -103,6 +103,11 @@ function firstAxis() {
   return state.runs[0].view.up === 2 ? 1 : 2;
 }
 
+function canBeCloud(name) {
+  return state.players.some(({ cloud, run }) => cloud && (CLOUDY.includes(name) || (run.view.volume && run.view.field === name)) &&
+    run.frames.some((frame) => !frame.fields[name]?.magnitude && volumeOf(frame.fields[name], frame.box)));
+}
+
 /// The layer as a part of the axis: runs may differ in their cells.
 function applyField(keepLayer) {
   const name = at("field").value, axis = AXES.indexOf(at("axis").value);
@@ -112,18 +117,20 @@ function applyField(keepLayer) {
   if (!keepLayer) at("layer").value = Math.floor(n / 2);
   const part = (Number(at("layer").value) + 0.5) / n;
   const range = name ? rangeOfField(name) : null;
+  const asCloud = canBeCloud(name) && at("style").value === "cloud";
   state.players.forEach((player, r) => {
     if (!boxes[r]) return;
     const field = player.run.frames.map((frame) => frame.fields[name]).find(Boolean);
     const wanted = Math.floor(part * boxes[r].cells[axis]);
     const layers = field ? layersOf(field, boxes[r].cells, axis) : [wanted];
     const layer = layers.reduce((a, b) => (Math.abs(b - wanted) < Math.abs(a - wanted) ? b : a));
-    Object.assign(player.settings, { field: name, axis, layer, range });
+    Object.assign(player.settings, { field: name, axis, layer, range, asCloud });
     if (r === 0) at("position").textContent = `${AXES[axis]} = ${shortNumber(boxes[r].origin[axis] + (layer + 0.5) * boxes[r].spacing[axis])} m`;
   });
-  const isSlice = Boolean(name) && state.runs[0].dimension === 3;
+  const isSlice = Boolean(name) && !asCloud && state.runs[0].dimension === 3;
+  at("as").hidden = !canBeCloud(name);
   for (const element of document.querySelectorAll(".of-slice")) element.hidden = !isSlice;
-  at("colours").hidden = !name;
+  at("colours").hidden = !name || (asCloud && name === "smoke");
   if (name) { at("low").textContent = shortNumber(range.low); at("high").textContent = shortNumber(range.high); }
   return setTime(state.time);
 }
@@ -293,6 +300,7 @@ function listen() {
   at("play").addEventListener("click", play);
   at("scrub").addEventListener("input", () => setTime(allTimes()[Number(at("scrub").value)]));
   at("field").addEventListener("change", () => applyField(true));
+  at("style").addEventListener("change", () => applyField(true));
   at("axis").addEventListener("change", () => applyField(false));
   at("layer").addEventListener("input", () => applyField(true));
   at("home").addEventListener("click", () => state.players.forEach((player) => player.home()));
@@ -308,6 +316,7 @@ function listen() {
 async function start() {
   nameRuns(state.runs);
   at("axis").value = AXES[firstAxis()];
+  at("style").value = "cloud";
   drawBar();
   addToggles();
   addPlayers();

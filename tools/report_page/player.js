@@ -62,13 +62,15 @@ function flatParts(colour, isWater) {
 class Player {
   constructor(element, run) {
     this.element = element;
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    const canvas = document.createElement("canvas");
+    const context = canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: true });  // for clouds; else what there is
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, ...(context && { context }) });
     this.renderer.setPixelRatio(window.devicePixelRatio);
     element.append(this.renderer.domElement);
     this.scene = new THREE.Scene();
     this.surfaces = new Map();
     this.paths = new Map();
-    this.settings = { field: "", axis: 2, layer: 0, range: null, solids: true, water: true, paths: true, box: true };
+    this.settings = { field: "", axis: 2, layer: 0, range: null, asCloud: false, solids: true, water: true, paths: true, box: true };
     this.latest = 0;  // number of the last call of show
     this.run = run;
     this.number = -1;
@@ -76,6 +78,7 @@ class Player {
     this.addLights();
     this.addBox();
     this.addSlice();
+    this.cloud = run.dimension === 3 && context ? new Cloud(this.scene, Math.max(...this.size)) : null;
     this.addCamera();
     new ResizeObserver(() => this.resize()).observe(element);
   }
@@ -166,7 +169,7 @@ class Player {
     const call = ++this.latest;
     const number = this.numberAt(time), frame = this.run.frames[number];
     if (!frame) return;
-    const changes = await Promise.all([...frame.surfaces.map((surface) => this.surfaceOf(surface).load(surface)), this.loadSlice(frame)]);
+    const changes = await Promise.all([...frame.surfaces.map((surface) => this.surfaceOf(surface).load(surface)), this.loadSlice(frame), this.loadCloud(frame)]);
     if (call !== this.latest) return;
     for (const change of changes) change();
     this.number = number;
@@ -194,8 +197,8 @@ class Player {
   }
 
   async loadSlice(frame) {
-    const { field: name, axis, layer, range } = this.settings, field = frame.fields[name];
-    if (!field) return () => { this.slice.material.visible = false; };
+    const { field: name, axis, layer, range, asCloud } = this.settings, field = frame.fields[name];
+    if (!field || asCloud) return () => { this.slice.material.visible = false; };
     const across = this.run.dimension === 2 ? 2 : axis, number = this.run.dimension === 2 ? 0 : layer;
     const values = await layerOf(field, frame.box.cells, across, number);
     const table = colourTable(field, range), colours = new Uint8Array(4 * values.length);
@@ -210,6 +213,24 @@ class Player {
       this.slice.geometry.dispose();
       this.slice.geometry = layerRectangle(frame.box, across, number);
     };
+  }
+
+  async loadCloud(frame) {
+    if (!this.cloud) return () => {};
+    const { field: name, range, asCloud } = this.settings, field = frame.fields[name], volume = volumeOf(field, frame.box);
+    if (!asCloud || !volume) return () => { this.cloud.mesh.visible = false; };
+    const bytes = new Uint8Array(await bytesOf(volume.blob));
+    return () => {
+      this.cloud.set(name, bytes, volume.cells, frame.box.origin, volume.spacing, field, range);
+      this.cloud.mesh.visible = true;
+    };
+  }
+
+  /// What a cloud is seen through.
+  notOpaque() {
+    const lines = [...this.paths.values()].map(({ line }) => line);
+    const water = [...this.surfaces.values()].filter(({ isWater }) => isWater).flatMap(({ parts }) => parts);
+    return [this.box, this.slice, ...lines, ...water];
   }
 
   /// Where the bodies have been, from bodies.csv.
@@ -231,6 +252,7 @@ class Player {
     const { camera, lamp } = this;
     lamp.position.copy(camera.position).add(new THREE.Vector3(-0.5, 0.8, 0).applyQuaternion(camera.quaternion).multiplyScalar(camera.position.distanceTo(this.controls.target)));
     lamp.target.position.copy(this.controls.target);
+    if (this.cloud?.mesh.visible) this.cloud.prepare(this.renderer, camera, this.notOpaque());
     this.renderer.render(this.scene, camera);
   }
 }
