@@ -17,6 +17,18 @@ fi
 export OMPI_MCA_rmaps_base_oversubscribe=1
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 
+# Core-minutes of a build without a compiler cache, from a sample of the files: of the programs, and of the tests besides.
+core_minutes_of_programs=25
+core_minutes_of_tests=15
+
+# Says how long the first build will take here; nothing after it.
+say_build_time() {
+  [[ ! -f $root/build/release/.ninja_log ]] || return 0
+  printf 'The first build takes about %d min for ./run, %d min for ./check on %d cores like those of 2026; later ones are short.\n' \
+    $((1 + core_minutes_of_programs / n_cores)) \
+    $((1 + (core_minutes_of_programs + core_minutes_of_tests) / n_cores)) "$n_cores"
+}
+
 # Says every ten seconds how far ninja is and how long it will take; passes on what is no progress.
 # Steps are unlike each other, so the time that is left is a guess.
 show_progress() {
