@@ -39,19 +39,25 @@ void add_face(const ControlVolume<dim>& volume, const FluxShare<dim>& share,
   }
 }
 
-/// The plane of the water does not fall along the axis, or there is none.
+/// By axis, of the plane of water at rest: what turns a force of the pressure into a volume that is
+/// weighed by that component of gravity, wherever the plane of moving water lies. 0 along level
+/// axes, and without gravity.
 template <int dim>
-bool is_level(const WetBody<dim>& body, int axis) {
-  return std::abs(body.slope[axis]) < 1e-6;
+Point<dim> slope_at_rest(const Point<dim>& gravity) {
+  Point<dim> slope = gravity.isZero(0) ? gravity : Point<dim>(-gravity.normalized());
+  for (int a = 0; a < dim; ++a)
+    if (std::abs(slope[a]) < 1e-6)
+      slope[a] = 0;
+  return slope;
 }
 
 /// The same of a body that sticks out of the water: the pressure is the depth below the plane of
 /// the free surface, 0 where there is none. Not along level axes.
 template <int dim>
 void add_wet_face(const ControlVolume<dim>& volume, const FluxShare<dim>& share,
-                  const WetBody<dim>& body, Displaced<dim>& sum) {
+                  const WetBody<dim>& body, const Point<dim>& at_rest, Displaced<dim>& sum) {
   const int a = volume.direction;
-  if (is_level(body, a))
+  if (at_rest[a] == 0)
     return;
   Point<dim> arm = share.center - body.centroid;
   arm[a] = 0;
@@ -60,8 +66,8 @@ void add_wet_face(const ControlVolume<dim>& volume, const FluxShare<dim>& share,
     if (volume.sides[side].unknown == no_index)
       continue;
     const double lifted = (side == 0 ? 1 : -1) * area * body.depth(volume.sides[side].center);
-    sum.volume += lifted / body.slope[a];
-    sum.moment += lifted / body.slope[a] * arm;
+    sum.volume += lifted / at_rest[a];
+    sum.moment += lifted / at_rest[a] * arm;
   }
 }
 
@@ -93,7 +99,9 @@ template <int dim>
 std::vector<DisplacedExcess<dim>> displaced_excess(
     const std::vector<ControlVolume<dim>>& volumes, const std::vector<FaceShares<dim>>& shares,
     const std::vector<double>& lumped_masses, const SurfaceSnapshot<dim>& surface, double density,
-    const Box<dim>& domain, const std::vector<WetBody<dim>>& wet, const Communicator& comm) {
+    const Box<dim>& domain, const Point<dim>& gravity, const std::vector<WetBody<dim>>& wet,
+    const Communicator& comm) {
+  const Point<dim> at_rest = slope_at_rest<dim>(gravity);
   const int n_solids = static_cast<int>(surface.solids().size());
   const auto is_partly_wet = [&](int s) { return !wet.empty() && wet[s].partly; };
   std::vector<PartOfSolid<dim>> bodies(n_solids);
@@ -112,7 +120,7 @@ std::vector<DisplacedExcess<dim>> displaced_excess(
     for (const FluxShare<dim>& share : shares[f].all) {
       Displaced<dim>& sum = displaced[share.solid][a];
       if (is_partly_wet(share.solid))
-        add_wet_face<dim>(volumes[f], share, wet[share.solid], sum);
+        add_wet_face<dim>(volumes[f], share, wet[share.solid], at_rest, sum);
       else
         add_face<dim>(volumes[f], share, bodies[share.solid].centroid, sum);
     }
@@ -130,22 +138,25 @@ std::vector<DisplacedExcess<dim>> displaced_excess(
   for (int s = 0; s < n_solids; ++s)
     for (int a = 0; surface.solids()[s].closed && a < dim; ++a) {
       const Displaced<dim>& d = displaced[s][a];
-      if (is_partly_wet(s) ? wet[s].at_side[a] || wet[s].volume <= 0 || is_level(wet[s], a)
-                           : std::abs(d.open_area) > 1e-6 * d.area)
+      if (is_partly_wet(s)
+              ? wet[s].at_side[a] || wet[s].volume <= 0 || at_rest[a] == 0 || wet[s].slope.isZero(0)
+              : std::abs(d.open_area) > 1e-6 * d.area)
         continue;
-      all.push_back(
-          {s, a, bodies[s].centroid, density * (d.volume - bodies[s].volume), density * d.moment});
+      // Of a partly wet body the pressure pushes along the slope of its water.
+      const double wanted = is_partly_wet(s) ? wet[s].slope[a] / at_rest[a] : 1;
+      all.push_back({s, a, bodies[s].centroid, density * (d.volume - wanted * bodies[s].volume),
+                     density * d.moment});
     }
   return all;
 }
 
 template std::vector<DisplacedExcess<2>> displaced_excess<2>(
     const std::vector<ControlVolume<2>>&, const std::vector<FaceShares<2>>&,
-    const std::vector<double>&, const SurfaceSnapshot<2>&, double, const Box<2>&,
+    const std::vector<double>&, const SurfaceSnapshot<2>&, double, const Box<2>&, const Point<2>&,
     const std::vector<WetBody<2>>&, const Communicator&);
 template std::vector<DisplacedExcess<3>> displaced_excess<3>(
     const std::vector<ControlVolume<3>>&, const std::vector<FaceShares<3>>&,
-    const std::vector<double>&, const SurfaceSnapshot<3>&, double, const Box<3>&,
+    const std::vector<double>&, const SurfaceSnapshot<3>&, double, const Box<3>&, const Point<3>&,
     const std::vector<WetBody<3>>&, const Communicator&);
 
 }  // namespace lockstep

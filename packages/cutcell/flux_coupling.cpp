@@ -60,8 +60,9 @@ void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
   std::vector<WetBody<dim>> wet;
   if (const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid))
     wet = liquid->wet_bodies();
-  for (const auto& excess : displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density,
-                                                  bounds_of(fluid), wet, solids.comm())) {
+  for (const auto& excess :
+       displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density, bounds_of(fluid),
+                             fluid.gravity(), wet, solids.comm())) {
     if (surface_->solids()[excess.solid].prescribed)
       held_excess_.push_back(excess);
     else
