@@ -1,6 +1,8 @@
 #include "freesurface/fractions/fraction_solids.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "geometry/solid_volume.hpp"
 
@@ -22,33 +24,96 @@ void for_each_fluid_neighbor(const TiledGrid<dim>& grid, const SolidCells<dim>& 
       f(other);
   }
 }
-/// The fluid cell with the nearest centre that is seen from x, of that which holds x and those
-/// around; -1 if there is none.
+/// Liquid that a surface took along, and where to [m].
 template <int dim>
-int cell_seen_from(const Point<dim>& x, const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
-                   const NearbySurface<dim>& surface) {
-  const int middle = grid.cell_containing(x);
-  if (middle < 0)
-    return -1;
-  const Point<dim> period = x - grid.wrap(x);
-  int best = -1;
-  double nearest = 0;
-  for (int k = 0; k < (dim == 2 ? 9 : 27); ++k) {
-    Index<dim> at = grid.coordinates(middle);
-    Point<dim> center = grid.center(middle) + period;
-    for (int a = 0, rest = k; a < dim; ++a, rest /= 3) {
+struct Arrival {
+  Point<dim> place;
+  double liquid = 0, owed = 0;
+};
+
+/// What all ranks have sent, in their order, on every rank.
+template <int dim>
+std::vector<Arrival<dim>> gather_arrivals(const Communicator& comm,
+                                          const std::vector<Arrival<dim>>& mine) {
+  std::vector<double> flat;
+  for (const Arrival<dim>& arrival : mine) {
+    flat.insert(flat.end(), arrival.place.data(), arrival.place.data() + dim);
+    flat.insert(flat.end(), {arrival.liquid, arrival.owed});
+  }
+  std::vector<Arrival<dim>> all;
+  const std::vector<double> sent = gather_all(comm, flat);
+  for (auto value = sent.begin(); value != sent.end(); value += dim + 2) {
+    all.push_back({Point<dim>::Zero(), value[dim], value[dim + 1]});
+    std::copy(value, value + dim, all.back().place.data());
+  }
+  return all;
+}
+
+struct SeenCell {
+  int cell = -1;
+  double distance = 0;  ///< of its centre [m]
+  int number = 0;       ///< among those around: decides between equals on any number of ranks
+};
+
+/// The owned fluid cell with the nearest centre that is seen from x, of that which holds x and
+/// those around; cell -1 if there is none.
+template <int dim>
+SeenCell cell_seen_from(const Point<dim>& x, const TiledGrid<dim>& grid,
+                        const SolidCells<dim>& solids, const NearbySurface<dim>& surface) {
+  const Point<dim> inside = grid.wrap(x);
+  Index<dim> middle;
+  for (int a = 0; a < dim; ++a)
+    middle[a] = static_cast<int>(std::floor((inside[a] - grid.lower()[a]) / grid.spacing()));
+  SeenCell best;
+  for (int k = 0; grid.in_domain(middle) && k < (dim == 2 ? 9 : 27); ++k) {
+    Index<dim> at = middle;
+    for (int a = 0, rest = k; a < dim; ++a, rest /= 3)
       at[a] += rest % 3 - 1;
-      center[a] += (rest % 3 - 1) * grid.spacing();
-    }
     const int cell = grid.cell(at);
-    const double distance = (center - x).norm();
-    if (cell < 0 || !grid.in_domain(cell) || !solids.is_fluid(cell) ||
-        (best >= 0 && distance >= nearest) || (!surface.empty() && surface.first_hit(x, center)))
+    if (cell < 0 || !grid.owned(cell) || !grid.in_domain(cell) || !solids.is_fluid(cell))
       continue;
-    best = cell;
-    nearest = distance;
+    const Point<dim> center = grid.lattice().center(at) + (x - inside);
+    const double distance = (center - x).norm();
+    if (best.cell < 0 || distance < best.distance)
+      if (surface.empty() || !surface.first_hit(x, center))
+        best = {cell, distance, k};
   }
   return best;
+}
+
+/// For each place, the same on all ranks, the nearest of the cells seen from there on all ranks, if
+/// it is owned; -1 if not. `nobody_sees`: of each place.
+template <int dim>
+std::vector<int> cells_to_arrive_in(const std::vector<Arrival<dim>>& arrivals,
+                                    const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                                    const NearbySurface<dim>& surface,
+                                    std::vector<char>& nobody_sees) {
+  std::vector<int> cells(arrivals.size(), -1);
+  std::vector<double> seen;  // arrival, distance, number, rank
+  const int rank = grid.comm()->getRank();
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    const SeenCell best = cell_seen_from<dim>(arrivals[i].place, grid, solids, surface);
+    cells[i] = best.cell;
+    if (best.cell >= 0)
+      seen.insert(seen.end(), {static_cast<double>(i), best.distance,
+                               static_cast<double>(best.number), static_cast<double>(rank)});
+  }
+  const std::vector<double> all = gather_all(grid.comm(), seen);
+  constexpr double nobody = -1;
+  std::vector<std::array<double, 3>> nearest(arrivals.size(), {0, 0, nobody});
+  for (auto value = all.begin(); value != all.end(); value += 4) {
+    std::array<double, 3>& best = nearest[static_cast<std::size_t>(value[0])];
+    const std::array<double, 3> other{value[1], value[2], value[3]};
+    if (best[2] == nobody || other < best)
+      best = other;
+  }
+  nobody_sees.assign(arrivals.size(), 0);
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    nobody_sees[i] = nearest[i][2] == nobody;
+    if (nearest[i][2] != rank)
+      cells[i] = -1;
+  }
+  return cells;
 }
 }  // namespace
 
@@ -157,33 +222,34 @@ double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                   const MovingSurface<dim>& surface, const NearbySurface<dim>& after, double dt,
                   const std::vector<TakenLiquid>& taken, Fractions& fractions) {
   const TiledGrid<dim>& grid = domain.grid;
+  std::vector<Arrival<dim>> mine;
   double lost = 0;
-  CellField arrived(fractions.liquid.size(), 0.0), owed = arrived;
   for (const TakenLiquid& part : taken) {
     const Point<dim> x = grid.center(part.cell);
     const auto nearest =
         surface.before ? surface.before->closest(x, farthest_taken * grid.spacing()) : std::nullopt;
-    const int there =
-        nearest ? cell_seen_from<dim>(x + dt * surface.velocity(*nearest), grid, solids, after)
-                : -1;
-    if (there < 0) {
+    if (nearest)
+      mine.push_back({x + dt * surface.velocity(*nearest), part.liquid, part.owed});
+    else
       lost += part.liquid + part.owed;
-    } else {
-      arrived[there] += part.liquid;
-      owed[there] += part.owed;
-    }
   }
-  domain.full_halo.sum_to_owner(arrived);
-  domain.full_halo.sum_to_owner(owed);
-  grid.for_each_owned_cell([&](int cell) {
-    double& liquid = fractions.liquid[cell];
-    const double open = fractions.open_part(cell);
-    const double taken_in = std::min(arrived[cell], (1 - liquid) * open);
+  lost = sum_all(grid.comm(), lost);
+  const std::vector<Arrival<dim>> all = gather_arrivals<dim>(grid.comm(), mine);
+  std::vector<char> nobody_sees;
+  const std::vector<int> cells = cells_to_arrive_in<dim>(all, grid, solids, after, nobody_sees);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (nobody_sees[i])
+      lost += all[i].liquid + all[i].owed;
+    if (cells[i] < 0)
+      continue;
+    double& liquid = fractions.liquid[cells[i]];
+    const double open = fractions.open_part(cells[i]);
+    const double taken_in = std::max(0.0, std::min(all[i].liquid, (1 - liquid) * open));
     liquid += taken_in > 0 ? taken_in / open : 0;
-    fractions.owed[cell] += owed[cell] + (arrived[cell] - taken_in);
-  });
+    fractions.owed[cells[i]] += all[i].owed + (all[i].liquid - taken_in);
+  }
   domain.halo.fill(fractions.liquid);
-  return sum_all(grid.comm(), lost);
+  return lost;
 }
 
 template CellField open_parts<2>(const MacDomain<2>&, const SolidCells<2>&);

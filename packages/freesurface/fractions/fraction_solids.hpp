@@ -28,9 +28,10 @@ template <int dim>
 std::vector<TakenLiquid> give_up_cells(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                                        std::vector<char>& leaves, Fractions& fractions);
 /// What a surface took along as a whole, as a bag that moved over more than its size, goes to where
-/// the nearest point of the surface has gone with it. `solids` and `fractions` at the time after;
-/// the halo of width 1 of the fractions is set. Returns what finds no place [cells], over all
-/// ranks. Collective.
+/// the nearest point of the surface has gone with it, on whichever rank that is. `taken` is this
+/// rank's; all of it goes to all ranks. `solids` and `fractions` at the time after; the halo of
+/// width 1 of the fractions is set. Returns what finds no place [cells], over all ranks.
+/// Collective.
 template <int dim>
 double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                   const MovingSurface<dim>& surface, const NearbySurface<dim>& after, double dt,

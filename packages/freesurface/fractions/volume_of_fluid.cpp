@@ -185,10 +185,13 @@ bool VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
   domain_.grid.for_each_owned_cell([&](int cell) {
     fractions_.owed[cell] += (kept[cell] - liquid[cell]) * fractions_.open_part(cell);
   });
-  const auto after = step.kept.of(solids_.state.surface, domain_.grid, 2);
-  lost_ += take_along(domain_, solids_, step.surface, *after, step.dt, taken, fractions_);
+  const bool takes_along = sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(taken.size())) > 0;
+  if (takes_along) {
+    const auto after = step.kept.of(solids_.state.surface, domain_.grid, 2);
+    lost_ += take_along(domain_, solids_, step.surface, *after, step.dt, taken, fractions_);
+  }
   bring_out_of_solids(domain_, solids_, fractions_);
-  return sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(taken.size())) > 0;
+  return takes_along;
 }
 
 template <int dim>
