@@ -111,6 +111,27 @@ class Module(unittest.TestCase):
                 state, = run.joints()["Hinge"]
                 self.assertAlmostEqual(state["q"], .1 + 2. * run.time, delta=1e-12)
 
+    def test_a_joint_of_several_coordinates_is_one(self):
+        joint = {"Type": "ball", "Solids": ("space", "Box"), "Point": (0., .5, .5), "Control": "prescribed",
+                 "Target": {"Type": "constant"}}
+        scene = tank(3, {"Box": unseen_box(3)}, Joints={"Hip": joint}, Contact={"Type": "none"}, Domain={"Cells": (8,) * 3})
+        with self.open(scene) as run:
+            run.set_target("Hip", np.array((0, 0, 0), dtype=np.float32), (0., 1., 0.))
+            while run.step():
+                pass
+            states = run.joints()["Hip"]
+            np.testing.assert_allclose([state["q"] for state in states], (0, run.time, 0), atol=1e-9)
+            self.assertFalse(states[0]["at_limit"])
+
+    def test_a_run_that_failed_goes_no_further(self):
+        with self.assertRaises(lockstep.InputError):
+            with self.open(tank(solids={"Ball": ball(Force=(1e300, 0.))})) as run:
+                with self.assertRaises((lockstep.SolveError, lockstep.OutputError)):
+                    while run.step():
+                        pass
+                run.step()
+        self.assertIn('"failed"', (self.root / "run" / "summary.json").read_text())
+
     def test_reads_water_at_rest(self):
         for dimension in (2, 3):
             with self.subTest(dimension=dimension), self.open(tank(dimension)) as run:
@@ -171,7 +192,8 @@ class Module(unittest.TestCase):
             for call, sentence in ((lambda: run.set_force("Boll", (0., 0.)), 'no solid "Boll"'),
                                    (lambda: run.set_force("Ball", (0., 0., 0.)), "3 components; it takes 2"),
                                    (lambda: run.set_force("Given", (0., 0.)), "prescribed"),
-                                   (lambda: run.set_target("Knee", 0.), "no joints"),
+                                   (lambda: run.set_target("Knee", np.float32(0)), "no joints"),
+                                   (lambda: run.set_force("Ball", "up"), "neither a number"),
                                    (lambda: run.sample(np.zeros((1, 3))), "3 coordinates")):
                 with self.assertRaisesRegex(lockstep.InputError, sentence):
                     call()
@@ -182,9 +204,9 @@ class Module(unittest.TestCase):
 
     def test_a_controller_makes_the_fish_turn(self):
         scene = str(ROOT / "xml-params" / "scenes" / "fish-2d.xml")
-        left, right = (np.mean(turning_fish.swim(scene, str(self.root / f"fish {bend}"), bend, 5.)[-50:])
+        left, right = (np.mean(turning_fish.swim(scene, str(self.root / f"fish {bend}"), bend, 6.)[-50:])
                        for bend in (.3, -.3))
-        self.assertGreater(math.degrees(left - right), 3)  # 5 degrees by then; none by waves alike
+        self.assertGreater(math.degrees(left - right), 4)  # 6 degrees by then; none by waves alike
 
 
 if __name__ == "__main__":
