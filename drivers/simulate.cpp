@@ -170,7 +170,8 @@ int run(int argc, char** argv, const Communicator& comm) {
 int main(int argc, char** argv) {
   keep_freed_memory();
   auto held_signals = std::make_unique<HeldSignals>();
-  Tpetra::ScopeGuard scope(&argc, &argv);
+  int n_for_kokkos = 1;  // the program's name alone: of --help it would print its own
+  Tpetra::ScopeGuard scope(&n_for_kokkos, &argv);
   held_signals.reset();
   const Communicator comm = Tpetra::getDefaultComm();
   return run_and_report(comm, [&] { return run(argc, argv, comm); });

@@ -203,7 +203,8 @@ int run(int argc, char** argv, const Communicator& comm) {
 
 int main(int argc, char** argv) {
   keep_freed_memory();
-  Tpetra::ScopeGuard scope(&argc, &argv);
+  int n_for_kokkos = 1;  // the program's name alone: of --help it would print its own
+  Tpetra::ScopeGuard scope(&n_for_kokkos, &argv);
   const Communicator comm = Tpetra::getDefaultComm();
   return run_and_report(comm, [&] { return run(argc, argv, comm); });
 }

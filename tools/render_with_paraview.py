@@ -8,6 +8,7 @@ simple._DisableFirstRenderCameraReset()
 
 SOLID_COLOURS = [(.80, .36, .25), (.30, .50, .72), (.87, .70, .30), (.45, .65, .42), (.58, .45, .68), (.55, .55, .55)]
 
+SMOKE_COLOUR = (.55, .57, .6)
 WATER, WATER_COLOUR = "water", (.32, .56, .78)
 
 
@@ -38,14 +39,12 @@ def show_fluid(job, view):
     bounds = fluid.GetDataInformation().GetBounds()
     shown, representation = fluid, "Surface"
     if job["volume"]:
-        # Volumes are drawn from one image with values at its points: some in each cell, which have its value and
-        # are not interpolated. Interpolated, smoke would show on both sides of a wall that holds it.
-        per_cell = max(1, min(4, 240 // max(job["n_cells"])))
-        half = [0.5 * spacing / per_cell for spacing in job["spacing"]]
+        # Volumes are drawn from one image with values at its points: the cells' centres. Between them smoke is interpolated,
+        # so that a shell which holds it seems to let it through by up to half a cell.
         shown = simple.ResampleToImage(Input=fluid)
         shown.UseInputBounds = 0
-        shown.SamplingBounds = [bounds[i] + half[i // 2] * (1 - 2 * (i % 2)) for i in range(6)]
-        shown.SamplingDimensions = [per_cell * n for n in job["n_cells"]]
+        shown.SamplingBounds = [bounds[i] + 0.5 * job["spacing"][i // 2] * (1 - 2 * (i % 2)) for i in range(6)]
+        shown.SamplingDimensions = job["n_cells"]
         representation = "Volume"
     elif job["dim"] == 3:
         centre = [0.5 * (bounds[2 * i] + bounds[2 * i + 1]) for i in range(3)]
@@ -56,20 +55,22 @@ def show_fluid(job, view):
         shown.SliceType.Normal = [float(i == job["axis"]) for i in range(3)]
     display = simple.Show(shown, view)
     display.SetRepresentationType(representation)
-    if job["volume"]:
-        display.InterpolationType = "Nearest"
     display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the bar, without shading
     where = "POINTS" if job["volume"] else "CELLS"
     simple.ColorBy(display, (where, job["field"], "Magnitude") if job["is_vector"] else (where, job["field"]))
     table = simple.GetColorTransferFunction(job["field"])
     table.ApplyPreset("Viridis (matplotlib)", True)
     table.RescaleTransferFunction(low, high)
+    is_smoke = job["volume"] and job["field"] == "smoke"
+    if is_smoke:  # lit, and as grey as it is
+        table.RGBPoints = [low, *SMOKE_COLOUR, high, *SMOKE_COLOUR]
+        display.Shade, display.Ambient, display.Diffuse = 1, 0.35, 0.75
     opacity = simple.GetOpacityTransferFunction(job["field"])
     opacity.Points = [low, 0.0, 0.5, 0.0, high, 0.6, 0.5, 0.0]
     bar = simple.GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle = job["field"], "magnitude" if job["is_vector"] else ""
     bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
-    display.SetScalarBarVisibility(view, True)
+    display.SetScalarBarVisibility(view, not is_smoke)
     return bounds
 
 
@@ -86,6 +87,8 @@ def show_solids(job, view):
         display.SetRepresentationType("Surface")
         display.ColorArrayName = ["POINTS", ""]  # ColorBy(display, None) fails on multiblock data
         display.AmbientColor = display.DiffuseColor = SOLID_COLOURS[number % len(SOLID_COLOURS)]
+        if job["dim"] == 3:  # what faces away from the light is not black
+            display.Ambient, display.Diffuse = 0.25, 0.85
         display.LineWidth = 3
         box = solid.GetDataInformation().GetBounds()
         bounds = box if bounds is None else [pick(a, b) for pick, a, b in
@@ -136,7 +139,7 @@ def main():
     view.ViewSize = job["size"]
     view.UseColorPaletteForBackground = 0
     view.Background = [1.0, 1.0, 1.0]
-    view.OrientationAxesVisibility = job["dim"] == 3
+    view.OrientationAxesVisibility = 0
     view.UseFXAA = 1
     bounds = show_fluid(job, view) if job["field"] else None
     if job["boxes"] and job["dim"] == 3:

@@ -41,6 +41,16 @@ void move_files(ParameterList& list, const std::string& included) {
   }
 }
 
+/// Says also which file includes what cannot be read.
+Document read_included(const std::string& file, const std::string& place,
+                       const Communicator& comm) {
+  try {
+    return read_xml(file, comm, FormulaPolicy::kept);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: what it includes: {}", place, error.what()));
+  }
+}
+
 /// `chain`: the files that led here, to see circles.
 void include_into(Document& document, std::vector<std::string> chain, const Communicator& comm) {
   const std::string place = document.source.place("Include");
@@ -51,7 +61,7 @@ void include_into(Document& document, std::vector<std::string> chain, const Comm
     check_input(std::find(chain.begin(), chain.end(), file) == chain.end(),
                 "{}: \"{}\" includes itself ({} -> {}).", place, file, fmt::join(chain, " -> "),
                 file);
-    Document part = read_xml(file, comm, FormulaPolicy::kept);
+    Document part = read_included(file, place, comm);
     include_into(part, chain, comm);
     move_files(part.list, name);
     merge(document, "", part);

@@ -50,6 +50,9 @@ class Pages(unittest.TestCase):
             self.assertGreater(len(names), 150)
             self.assertEqual(names - written - {"Type"}, set())
 
+    def test_help_is_our_own(self):
+        self.assertTrue(printed("--help").startswith("Runs a scene"), "or Kokkos answers before us")
+
     def test_the_right_page(self):
         self.assertIn("| Dry Points | Array(double) | unset | m |", page("fluid-mac"))
         self.assertIn("| Reseed Interval | int |", page("interface-particle-level-set"))

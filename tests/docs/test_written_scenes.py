@@ -49,7 +49,7 @@ class WrittenScenes(unittest.TestCase):
         bodies = (Path(self.folder.name) / "many" / "bodies.csv").read_text()
         self.assertIn("Ball 20", bodies)
         scene = str(ROOT / "xml-params" / "scenes" / "buoyant-spheres.xml")
-        self.run_program(SIMULATE, self.write("finer.xml", like_another.replace("buoyant-spheres.xml", scene)),
+        self.run_program(SIMULATE, self.write("finer.xml", like_another.replace("xml-params/scenes/buoyant-spheres.xml", scene)),
                          "--validate", "--set", "Domain/Cells={32, 12, 8}")
 
     def test_study(self):

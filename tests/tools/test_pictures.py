@@ -69,6 +69,22 @@ class PlotFrame(Pictures):
         self.assertEqual(plot_frame.slice_of(frame.boxes[0], "smoke", 2, 0.0).shape, (6, 8))
         self.assertEqual(plot_frame.outline(frame.surfaces[0], 2, 0.0).shape, (4, 2, 2))
 
+    def test_closed_outlines_are_filled_where_there_is_no_fluid(self):
+        frame = self.make(2)[0]
+        box, square = frame.boxes[0], plot_frame.outline(frame.surfaces[0], 2, 0.0)
+        shuffled = square[[2, 0, 3, 1]]
+        shuffled[1] = shuffled[1][::-1]
+        (polygon,) = plot_frame.loops(shuffled)
+        self.assertEqual({tuple(corner) for corner in polygon}, {(1.25, .25), (1.5, .25), (1.5, .5), (1.25, .5)})
+        self.assertEqual(plot_frame.loops(square[:3]), [])      # open
+        self.assertEqual(len(plot_frame.loops(numpy.concatenate((square, square + 1)))), 2)
+        self.assertFalse(plot_frame.without_fluid(box, polygon, 2, 0.0))   # the run does not say
+        for value in (0.0, 1.0):
+            fluid = numpy.ones((6, 8))
+            fluid[2:4, 2:4] = value                              # the cells within the square
+            box.fields["fluid"] = (FixedArray(fluid), *box.fields["smoke"][1:])
+            self.assertEqual(plot_frame.without_fluid(box, polygon, 2, 0.0), value == 0)
+
     def test_elements_are_no_surfaces(self):
         for dim in (2, 3):
             frame = self.make(dim)[0]

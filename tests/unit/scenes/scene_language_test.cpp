@@ -262,5 +262,16 @@ TEST_F(Includes, CirclesAreRefused) {
   }
 }
 
+TEST_F(Includes, MissingFilesAreNamedWithWhoIncludesThem) {
+  write("a.xml", parameter("Include", "string", "none.xml"));
+  try {
+    read("a.xml");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.xml, line 2"));
+    EXPECT_THAT(error.what(), HasSubstr("none.xml"));
+  }
+}
+
 }  // namespace
 }  // namespace lockstep::test
