@@ -40,8 +40,24 @@ class Joint:
     place: numpy.ndarray  # 4 x 4, in the parent
     axis: numpy.ndarray
     limits: tuple = ()
-    effort: float = 0
     damping: float = 0
+
+
+def required(element, name, where):
+    """An attribute that has to be there."""
+    value = element.get(name) if element is not None else None
+    if not value:
+        raise RobotError(f'{where} lacks "{name}".')
+    return value
+
+
+def by_name(things, kind, file):
+    result = {}
+    for thing in things:
+        if thing.name in result:
+            raise RobotError(f'{file}: two {kind} are called "{thing.name}".')
+        result[thing.name] = thing
+    return result
 
 
 def numbers(text, n, where):
@@ -75,7 +91,10 @@ def mesh_file(name, robot_file, packages):
     """`package://NAME/PATH` is looked for in the folder given for NAME, or above the robot's file."""
     scheme = "package://"
     if not name.startswith(scheme):
-        return robot_file.parent / name.removeprefix("file://")
+        file = robot_file.parent / name.removeprefix("file://")
+        if not file.exists():
+            raise RobotError(f"{robot_file}: there is no file {file}.")
+        return file
     package, _, rest = name.removeprefix(scheme).partition("/")
     if package in packages:
         return Path(packages[package]) / rest
@@ -110,7 +129,7 @@ def read_shape(element, where, robot_file, packages):
 
 
 def read_link(element, which_shapes, robot_file, packages):
-    link = Link(element.get("name"))
+    link = Link(required(element, "name", f"{robot_file}: a link"))
     where = f'{robot_file}: the link "{link.name}"'
     inertial = element.find("inertial")
     if inertial is not None and inertial.find("mass") is not None:
@@ -127,8 +146,8 @@ def read_link(element, which_shapes, robot_file, packages):
 
 
 def read_joint(element, robot_file):
-    name, kind = element.get("name"), element.get("type")
-    where = f'{robot_file}: the joint "{name}"'
+    name = required(element, "name", f"{robot_file}: a joint")
+    where, kind = f'{robot_file}: the joint "{name}"', element.get("type")
     if kind not in JOINT_TYPES:
         raise RobotError(f'{where} has the type "{kind}"; {", ".join(JOINT_TYPES)} are known.')
     for refused in ("mimic", "safety_controller"):
@@ -138,13 +157,14 @@ def read_joint(element, robot_file):
     axis = numpy.array(numbers(axis.get("xyz", "1 0 0"), 3, f"{where}: axis") if axis is not None else (1., 0., 0.))
     if not axis.any():
         raise RobotError(f"{where} has an axis of no length.")
-    joint = Joint(name, kind, element.find("parent").get("link"), element.find("child").get("link"),
-                  pose(element, where), axis / numpy.linalg.norm(axis))
+    parent, child = (required(element.find(side), "link", f"{where}: its <{side}>") for side in ("parent", "child"))
+    joint = Joint(name, kind, parent, child, pose(element, where), axis / numpy.linalg.norm(axis))
     limit, dynamics = element.find("limit"), element.find("dynamics")
     if limit is not None:
-        joint.effort, = numbers(limit.get("effort", "0"), 1, f"{where}: effort")
         if kind in ("revolute", "prismatic"):
             joint.limits = tuple(numbers(limit.get(name, "0"), 1, f"{where}: {name}")[0] for name in ("lower", "upper"))
+            if not joint.limits[0] <= 0 <= joint.limits[1]:
+                raise RobotError(f"{where} has limits {joint.limits} that leave out 0, where a scene begins.")
     elif kind in ("revolute", "prismatic"):
         raise RobotError(f"{where} has no <limit>, which its type needs.")
     if dynamics is not None:
@@ -192,8 +212,8 @@ def read_robot(file, base, which_shapes="collision", packages=()):
     for element in robot:
         if element.tag not in OUTSIDE:
             raise RobotError(f"{file}: <{element.tag}> is no part of URDF; expand xacro first (xacro FILE > ROBOT.urdf).")
-    links = {link.name: link for link in (read_link(element, which_shapes, file, dict(packages))
-                                          for element in robot.findall("link"))}
-    joints = {joint.name: joint for joint in (read_joint(element, file) for element in robot.findall("joint"))}
+    links = by_name((read_link(element, which_shapes, file, dict(packages)) for element in robot.findall("link")),
+                    "links", file)
+    joints = by_name((read_joint(element, file) for element in robot.findall("joint")), "joints", file)
     place_links(links, joints, base)
     return links, joints

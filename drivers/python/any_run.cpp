@@ -92,13 +92,9 @@ class SteppedRun : public AnyRun {
     return all;
   }
 
-  std::vector<JointNumbers> joints() const override {
-    std::vector<JointNumbers> all;
-    if (const ConstraintModel* joints = solids().joints())
-      for (const JointState& joint : joints->states())
-        all.push_back(
-            {joint.name, joint.q, joint.rate, joint.target, joint.torque, joint.power, joint.gap});
-    return all;
+  std::vector<JointState> joints() const override {
+    const ConstraintModel* joints = solids().joints();
+    return joints ? joints->states() : std::vector<JointState>();
   }
 
   void set_force(const std::string& body, const std::vector<double>& force,

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "interfaces/constraint.hpp"
 #include "output/frames.hpp"
 #include "output/history.hpp"
 
@@ -23,12 +24,6 @@ struct BodyNumbers {
   std::string name;
   Eigen::VectorXd position, velocity, angular_velocity;
   double mass = 0, volume = 0, kinetic_energy = 0, elastic_energy = 0;
-};
-
-/// A coordinate of a joint, see JointState.
-struct JointNumbers {
-  std::string name;
-  double q = 0, rate = 0, target = 0, torque = 0, power = 0, gap = 0;
 };
 
 /// The fluid at points, one row each.
@@ -59,7 +54,7 @@ class AnyRun {
   virtual long long n_steps() const = 0;                                          ///< Local.
   virtual std::vector<std::pair<std::string, HistoryValue>> history() const = 0;  ///< Local.
   virtual std::vector<BodyNumbers> bodies() const = 0;
-  virtual std::vector<JointNumbers> joints() const = 0;  ///< Local.
+  virtual std::vector<JointState> joints() const = 0;  ///< Local.
 
   /// See interfaces/steering.hpp. Local, to be called alike on all ranks.
   virtual void set_force(const std::string& body, const std::vector<double>& force,

@@ -64,11 +64,17 @@ std::unique_ptr<Run> open(const std::string& scene, const std::string& output,
   return std::make_unique<Run>(request);
 }
 
-/// One number or several.
+/// One number or several, of Python's kinds or of numpy's.
 std::vector<double> numbers(const py::object& value) {
-  if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value))
-    return {value.cast<double>()};
-  return value.cast<std::vector<double>>();
+  try {
+    if (PyNumber_Check(value.ptr()) != 0 && !py::isinstance<py::sequence>(value) &&
+        !py::isinstance<py::array>(value))
+      return {py::float_(value).cast<double>()};
+    return value.cast<std::vector<double>>();
+  } catch (const std::exception&) {
+    throw InputError(py::str(value).cast<std::string>() +
+                     " is neither a number nor a list of numbers.");
+  }
 }
 
 template <typename Vector>
@@ -94,7 +100,7 @@ py::dict bodies(const Run& run) {
 
 py::dict joints(const Run& run) {
   py::dict all;
-  for (const JointNumbers& joint : run->joints()) {
+  for (const JointState& joint : run->joints()) {
     if (!all.contains(joint.name))
       all[py::str(joint.name)] = py::list();
     py::dict one;
@@ -104,6 +110,7 @@ py::dict joints(const Run& run) {
     one["torque"] = joint.torque;
     one["power"] = joint.power;
     one["gap"] = joint.gap;
+    one["at_limit"] = joint.at_limit;
     all[py::str(joint.name)].cast<py::list>().append(one);
   }
   return all;
@@ -192,7 +199,7 @@ targets set from here are not in it. quiet: no line a step. Raises InputError, a
           "[kg] (0: prescribed), volume [m^d], kinetic_energy and elastic_energy [J].");
   run.def("joints", &joints,
           "By name a list of coordinates: q [rad, m], rate, target, torque [N m, N], power [W], "
-          "gap; see joints.csv.");
+          "gap, at_limit; see joints.csv.");
   run.def(
       "set_force",
       [](const Run& self, const std::string& body, const py::object& force,

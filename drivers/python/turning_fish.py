@@ -26,4 +26,6 @@ def swim(scene, output, bend, end):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 5:
+        sys.exit(__doc__)
     print(swim(sys.argv[1], sys.argv[2], float(sys.argv[3]), float(sys.argv[4]))[-1])

@@ -270,8 +270,7 @@ std::vector<JointState> JointConstraints<dim>::states() const {
     if (joint.control.target)
       target = joint.control.target(end_).q;
     for (int k = 0; k < n; ++k) {
-      if (n > 1)
-        state.name = joint.name + " " + std::to_string(k + 1);
+      state.coordinate = n > 1 ? k + 1 : 0;
       state.q = joint.q[k];
       state.rate = rates[k];
       state.target = target[k];

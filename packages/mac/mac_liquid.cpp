@@ -65,10 +65,7 @@ void MacFluid<dim>::bound_pressure(CellField& pressure) const {
 template <int dim>
 void MacFluid<dim>::settle_gas() {
   GasPockets<dim>& gas = *liquid_->gas();
-  const int n = static_cast<int>(gas.all().size());
-  std::vector<double> unseen = volumes_beside_shells<dim>(geometry_, n);
-  sum_all(domain_.grid.comm(), unseen.data(), n);
-  gas.settle(unseen, liquid_->interface().distance());
+  gas.settle(liquid_->interface().distance());
   gas_faces_ = find_gas_faces(domain_, geometry_);
 }
 

@@ -27,7 +27,8 @@ struct ClosedMotion {
 /// A coordinate of a joint after a step, for joints.csv: of an angle in rad, of a displacement in
 /// m.
 struct JointState {
-  std::string name;
+  std::string name;    ///< of the joint
+  int coordinate = 0;  ///< from 1; 0 if it has one alone, or none
   double q = 0, rate = 0, target = 0;
   double torque = 0;        ///< mean over the step, of control on the second solid [N m, N]
   double power = 0;         ///< of control, mean over the step [W]

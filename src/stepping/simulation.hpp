@@ -46,7 +46,8 @@ class Simulation {
   /// Writes the start, or loads the checkpoint; once, before all steps.
   void begin();
   /// Takes a step and writes what is due. False, and no step, at the end of the scene and after a
-  /// signal that was asked for (output/signals.hpp).
+  /// signal that was asked for (output/signals.hpp). Once it has thrown, solids and fluid may be at
+  /// different times: then it throws InputError, and so does `end`.
   bool step();
   /// The last checkpoint and the summary; once, after all steps.
   void end();
@@ -70,7 +71,7 @@ class Simulation {
   void write_what_is_due();
   /// Calls f; what it throws is told to summary.json too.
   template <typename Function>
-  void recorded(const Function& f) const;
+  void recorded(const Function& f);
   void begin_outputs();
   void end_outputs(double wall_seconds);
   /// On rank 0, not collective: others may have failed elsewhere.
@@ -101,6 +102,7 @@ class Simulation {
   std::optional<StepReport<dim>> report_;  ///< of the last step
   double step_seconds_ = 0;                ///< it took so long
   int signal_ = 0;                         ///< that ended the run
+  bool failed_ = false;                    ///< what is in memory is of no use
   std::chrono::steady_clock::time_point start_;
   RunSummary summary_;
   nlohmann::ordered_json header_;

@@ -67,6 +67,25 @@ class TrappedAir(unittest.TestCase):
             # Void without gas loses half of it in that time.
             self.assertLess(max(abs(v / volumes[0] - 1) for v in volumes), 0.02)
 
+    def test_the_gas_under_a_shell_is_measured_up_to_it(self):
+        """A plate from side to side at nine places between the centres of two rows of cells."""
+        for coupling in ("mixed face", "flux"):
+            for k in range(9):
+                height = (16.5 + .11 * (k + .5)) / 24
+                text = xml("Scene", {
+                    "Dimension": 2, "Domain": {"Cells": (24, 24)},
+                    "Fluid": {"Density": 1000., "Gravity": (0., -9.8), "Free Surface": {
+                        "Liquid": {"Pool": {"Type": "level", "Height": .31}}, "Trapped Air": "ideal gas"}},
+                    "Solids": {"Lid": {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (1.2, 0.), "Normal": "y"},
+                                       "Position": (.5, height), "Motion": {"Type": "static"}}},
+                    "Coupling": {"Type": coupling}, "Time": {"End": 1., "Fixed Step": .001}, "Output": {"Frames": False}})
+                file, output = self.root / "lid.xml", self.root / f"lid-{coupling}-{k}"
+                file.write_text(text)
+                simulate(file, output, "--steps", 1)
+                row, = table(output / "history.csv")
+                self.assertEqual(row["gas_pockets"], "1")
+                self.assertAlmostEqual(float(row["gas_volume"]), height - .31, delta=1e-6)
+
     def test_air_carries_the_cup(self):
         """It weighs 60 kg; the walls alone, which have no volume, would carry nothing."""
         _, with_air = self.run_scene("ideal gas")

@@ -1,4 +1,5 @@
 """The Python module: what it runs, reads and pushes, against the program and against Newton."""
+import json
 import math
 import os
 import subprocess
@@ -18,12 +19,14 @@ from simulation import MPIEXEC, simulate, table, without_times  # noqa: E402
 
 DENSITY, GRAVITY = 1000., 9.8
 HALF_TURN = """
-import sys, lockstep
+import json, os, sys, lockstep
 with lockstep.Run(sys.argv[1], sys.argv[2]) as run:
     while run.step():
         run.set_force("Ball", (300., 0.))
     pressure = run.fields()["pressure"]
-    print(repr(list(run.bodies()["Ball"]["velocity"])), repr(list(pressure[::5, ::5].ravel())))
+    found = [*run.bodies()["Ball"]["velocity"], *pressure[::5, ::5].ravel()]
+with open(f"{sys.argv[2]}/of-process-{os.getpid()}.json", "w") as file:
+    json.dump([float(number) for number in found], file)
 """
 
 
@@ -111,6 +114,27 @@ class Module(unittest.TestCase):
                 state, = run.joints()["Hinge"]
                 self.assertAlmostEqual(state["q"], .1 + 2. * run.time, delta=1e-12)
 
+    def test_a_joint_of_several_coordinates_is_one(self):
+        joint = {"Type": "ball", "Solids": ("space", "Box"), "Point": (0., .5, .5), "Control": "prescribed",
+                 "Target": {"Type": "constant"}}
+        scene = tank(3, {"Box": unseen_box(3)}, Joints={"Hip": joint}, Contact={"Type": "none"}, Domain={"Cells": (8,) * 3})
+        with self.open(scene) as run:
+            run.set_target("Hip", np.array((0, 0, 0), dtype=np.float32), (0., 1., 0.))
+            while run.step():
+                pass
+            states = run.joints()["Hip"]
+            np.testing.assert_allclose([state["q"] for state in states], (0, run.time, 0), atol=1e-9)
+            self.assertFalse(states[0]["at_limit"])
+
+    def test_a_run_that_failed_goes_no_further(self):
+        with self.assertRaises(lockstep.InputError):
+            with self.open(tank(solids={"Ball": ball(Force=(1e300, 0.))})) as run:
+                with self.assertRaises((lockstep.SolveError, lockstep.OutputError)):
+                    while run.step():
+                        pass
+                run.step()
+        self.assertIn('"failed"', (self.root / "run" / "summary.json").read_text())
+
     def test_reads_water_at_rest(self):
         for dimension in (2, 3):
             with self.subTest(dimension=dimension), self.open(tank(dimension)) as run:
@@ -158,10 +182,12 @@ class Module(unittest.TestCase):
             # Not with what MPI has put into the environment of this process.
             done = subprocess.run(start + command, capture_output=True, text=True, timeout=120, env=dict(os.environ))
             self.assertEqual(done.returncode, 0, done.stderr)
-            numbers = done.stdout.strip().split("\n")[-1].replace("[", " ").replace("]", " ").replace(",", " ")
-            found.append(np.array(numbers.split(), dtype=float))
+            told = [json.loads(file.read_text()) for file in (self.root / f"run-{ranks}").glob("of-process-*.json")]
+            self.assertEqual(len(told), ranks)
+            found += told
         self.assertGreater(abs(found[0][0]), .01)
-        np.testing.assert_allclose(found[0], found[1], rtol=1e-7, atol=1e-5)
+        for other in found[1:]:
+            np.testing.assert_allclose(other, found[0], rtol=1e-7, atol=1e-5)
 
     def test_errors_have_a_sentence(self):
         given = ball(Motion={"Type": "sinusoid", "Amplitude": (.01, 0.), "Frequency": 1.})
@@ -171,7 +197,8 @@ class Module(unittest.TestCase):
             for call, sentence in ((lambda: run.set_force("Boll", (0., 0.)), 'no solid "Boll"'),
                                    (lambda: run.set_force("Ball", (0., 0., 0.)), "3 components; it takes 2"),
                                    (lambda: run.set_force("Given", (0., 0.)), "prescribed"),
-                                   (lambda: run.set_target("Knee", 0.), "no joints"),
+                                   (lambda: run.set_target("Knee", np.float32(0)), "no joints"),
+                                   (lambda: run.set_force("Ball", "up"), "neither a number"),
                                    (lambda: run.sample(np.zeros((1, 3))), "3 coordinates")):
                 with self.assertRaisesRegex(lockstep.InputError, sentence):
                     call()
@@ -182,9 +209,9 @@ class Module(unittest.TestCase):
 
     def test_a_controller_makes_the_fish_turn(self):
         scene = str(ROOT / "xml-params" / "scenes" / "fish-2d.xml")
-        left, right = (np.mean(turning_fish.swim(scene, str(self.root / f"fish {bend}"), bend, 5.)[-50:])
+        left, right = (np.mean(turning_fish.swim(scene, str(self.root / f"fish {bend}"), bend, 6.)[-50:])
                        for bend in (.3, -.3))
-        self.assertGreater(math.degrees(left - right), 3)  # 5 degrees by then; none by waves alike
+        self.assertGreater(math.degrees(left - right), 4)  # 6 degrees by then; none by waves alike
 
 
 if __name__ == "__main__":

@@ -121,6 +121,16 @@ class Robots(unittest.TestCase):
         _, notes = self.scene(robot(shifted))
         self.assertIn("0.1 m from that of its shape", notes)
 
+    def test_a_mesh_fits_into_the_tank(self):
+        (self.folder / "cube.obj").write_text("".join(
+            f"v {x} {y} {z}\n" for x in (-.2, .2) for y in (-.2, .2) for z in (-.2, .2)) +
+            "".join(f"f {face}\n" for face in ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")))
+        cube = link("base", '<mesh filename="cube.obj"/>', 6., 0, (.16, .16))
+        root, _ = self.scene(robot(cube))
+        self.assertGreater(min(self.numbers(root, "Domain", "Upper")), .3)
+        done = subprocess.run([sys.argv[1], self.folder / "scene.xml", "--validate"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_refuses_by_name(self):
         two = link("base"), link("arm")
         cases = (
@@ -134,6 +144,10 @@ class Robots(unittest.TestCase):
             (robot(link("base", '<mesh filename="package://boat/hull.stl"/>')), "--package boat="),
             (robot(link("base", '<box size="1 1"/>')), "3 numbers"),
             (robot(link("base"), '<link name="eye"/>', joint("neck", "continuous", "base", "eye")), "no mass.*neck"),
+            (robot(link("base", '<mesh filename="hull.stl"/>')), "no file .*hull.stl"),
+            (robot(*two, joint("elbow", "revolute", "base", "arm", more='<limit lower="0.2" upper="1"/>')), "leave out 0"),
+            (robot(*two, '<joint name="elbow" type="fixed"><child link="arm"/></joint>'), 'elbow.*<parent> lacks "link"'),
+            (robot(link("base"), link("base")), 'two links are called "base"'), (robot("<link/>"), 'a link lacks "name"'),
             (robot("<xacro:macro xmlns:xacro='x'/>"), "xacro"), ("<sdf/>", "no URDF"), ("<robot>", "Cannot read"))
         for text, sentence in cases:
             result = self.convert(text)

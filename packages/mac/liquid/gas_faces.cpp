@@ -1,6 +1,5 @@
 #include "mac/liquid/gas_faces.hpp"
 
-#include "geometry/clipping.hpp"
 #include "mac/liquid/gas_pockets.hpp"
 
 namespace lockstep {
@@ -66,36 +65,6 @@ void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>&
 }
 
 template <int dim>
-std::vector<double> volumes_beside_shells(const MacGeometry<dim>& geometry, int n_pockets) {
-  std::vector<double> volumes(n_pockets, 0);
-  std::vector<int> touching;
-  for (const ControlVolume<dim>& volume : geometry.coupled_volumes) {
-    const auto& sides = volume.sides;
-    if (sides[0].pocket == sides[1].pocket || sides[0].kind == SideKind::solid ||
-        sides[1].kind == SideKind::solid)
-      continue;
-    const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
-    const int axis = volume.direction;
-    surface.touching(volume.box, touching);
-    double below = 0;
-    for (const int simplex : touching) {
-      if (surface.solids()[surface.solid_of(simplex)].closed)
-        continue;
-      const auto corners = surface.corners(simplex);
-      const ClippedSimplex<dim> part = clip_to_box<dim>(corners, volume.box);
-      if (part.measure <= 0)
-        continue;
-      const double slant = std::abs(area_vector<dim>(corners).normalized()[axis]);
-      below += slant * slant * slant * part.measure * (part.centroid[axis] - volume.center[axis]);
-    }
-    for (int side = 0; side < 2; ++side)
-      if (sides[side].pocket >= 0)
-        volumes[sides[side].pocket] += side == 0 ? below : -below;
-  }
-  return volumes;
-}
-
-template <int dim>
 Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                             const std::vector<double>& scaled_pressure) {
   const TiledGrid<dim>& grid = domain.grid;
@@ -124,8 +93,6 @@ template void find_pockets<2>(const FreeSurface<2>&, const SurfaceMarks<2>&,
                               const std::array<CellField, 2>&, MacGeometry<2>&);
 template void find_pockets<3>(const FreeSurface<3>&, const SurfaceMarks<3>&,
                               const std::array<CellField, 3>&, MacGeometry<3>&);
-template std::vector<double> volumes_beside_shells<2>(const MacGeometry<2>&, int);
-template std::vector<double> volumes_beside_shells<3>(const MacGeometry<3>&, int);
 template Momentum<2> push_of_sides<2>(const MacDomain<2>&, const MacGeometry<2>&,
                                       const std::vector<double>&);
 template Momentum<3> push_of_sides<3>(const MacDomain<3>&, const MacGeometry<3>&,

@@ -31,11 +31,6 @@ template <int dim>
 void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>& marks,
                   const std::array<CellField, dim>& fractions, MacGeometry<dim>& geometry);
 
-/// By pocket, what lies between the faces of its cells and the shells beside them [m^dim]: along
-/// each axis as far as a shell is normal to it, so that a plane one counts once. Of this rank.
-template <int dim>
-std::vector<double> volumes_beside_shells(const MacGeometry<dim>& geometry, int n_pockets);
-
 /// Impulse of the sides of the domain on the pockets of these p̂. Of this rank.
 template <int dim>
 Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,

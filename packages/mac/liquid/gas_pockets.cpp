@@ -160,9 +160,9 @@ void GasPockets<dim>::pass_over(const MovingSurface<dim>& surface) {
 }
 
 template <int dim>
-void GasPockets<dim>::settle(const std::vector<double>& unseen, const CellField& phi) {
-  for (std::size_t k = 0; k < pockets_.size(); ++k)
-    pockets_[k].volume = std::max(pockets_[k].volume + unseen[k], 1e-3 * domain_.cell_volume());
+void GasPockets<dim>::settle(const CellField& phi) {
+  for (GasPocket& pocket : pockets_)
+    pocket.volume = std::max(pocket.volume, 1e-3 * domain_.cell_volume());
   inherit(phi);
   scaled_pressure_.assign(pockets_.size(), 0);
 }

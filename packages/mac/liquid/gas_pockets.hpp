@@ -38,9 +38,8 @@ class GasPockets {
   /// The pockets of an instant. `voids`: which cells are not solid, and what comes between them;
   /// `phi` on the halo of width 1. Collective.
   void find(const SolidCells<dim>& voids, const CellField& phi);
-  /// What is in them and how they push, once their volumes have what cells do not see of shells
-  /// beside them, by pocket [m^dim]. Again at the same instant it changes nothing. Collective.
-  void settle(const std::vector<double>& unseen, const CellField& phi);
+  /// What is in them and how they push. Again at the same instant it changes nothing. Collective.
+  void settle(const CellField& phi);
   /// What surfaces pass over as they move says nothing of who follows whom. Before `find`. Local.
   void pass_over(const MovingSurface<dim>& surface);
   const std::vector<int>& of_cell() const { return of_cell_; }  ///< of stored cells; -1: none

@@ -65,13 +65,13 @@ inline Return zalesak(const std::string& model, const ParameterList& list, int n
       628.0 / n_steps, n_steps);
 }
 
-/// A disc drawn out by a vortex and drawn back.
+/// A disc drawn out by a vortex and drawn back; `moved` to a side.
 inline Return vortex(const std::string& model, const ParameterList& list, int n, double period = 8,
-                     double cfl = 0.5) {
+                     double cfl = 0.5, double moved = 0) {
   Bath<2> bath(open_cube<2>(n));
   const int n_steps = static_cast<int>(std::lround(period * n / cfl));
   return carry_and_return<2>(
-      bath, *bath.make(model, list), ball<2>(Point<2>(0.5, 0.75), 0.15),
+      bath, *bath.make(model, list), ball<2>(Point<2>(0.5 + moved, 0.75), 0.15),
       [period](const Point<2>& x, double time) {
         const double c = std::cos(pi * time / period);
         return Point<2>(-c * std::pow(std::sin(pi * x[0]), 2) * std::sin(2 * pi * x[1]),

@@ -1,0 +1,8 @@
+"""One step of a scene by the Python module: one_step.py SCENE OUTPUT"""
+import sys
+
+import lockstep
+
+with lockstep.Run(sys.argv[1], sys.argv[2]) as run:
+    run.step()
+    print(run.n_steps, "step")
