@@ -135,12 +135,15 @@ std::optional<TileOwners> share_better(const TileLattice<dim>& lattice, const Co
   const int n_ranks = comm->getSize();
   TileOwners after = before;
   if (is_root(comm)) {
-    std::vector<int> ranks = partition_tiles(lattice, before.tiles, work, n_ranks);
     const auto cost = [&](const std::vector<int>& parts) {
       return partition_cost(lattice, before.tiles, work, parts, n_ranks);
     };
-    if (cost(ranks) < worth_moving * cost(before.ranks))
-      after.ranks = std::move(ranks);
+    try {  // the others wait for what the root finds: without a proposal all stays
+      std::vector<int> ranks = partition_tiles(lattice, before.tiles, work, n_ranks);
+      if (cost(ranks) < worth_moving * cost(before.ranks))
+        after.ranks = std::move(ranks);
+    } catch (const Failure&) {
+    }
   }
   MPI_Bcast(after.ranks.data(), static_cast<int>(after.ranks.size()), MPI_INT, 0,
             raw_communicator(comm));

@@ -173,6 +173,7 @@ void MacFluid<dim>::accept() {
   accepted_step_ = last_step_;
   if (holds_gas())
     liquid_->gas()->accept(last_step_);
+  steps_to_sharing_ = std::max(steps_to_sharing_ - 1, 0);
 }
 
 template <int dim>

@@ -176,6 +176,7 @@ class MacFluid : public FluidDiscretization<dim>,
   std::optional<MovingTiles<dim>> moving_tiles_;  ///< none: all tiles exist, always
   TileOwners owners_;                             ///< of the tiles; empty: as at the start
   int steps_to_sharing_ = 0;                      ///< before work is next compared between ranks
+  std::vector<GlobalIndex> compared_work_;        ///< at surfaces, of this rank's tiles, then
   bool has_room_ = false;                         ///< for the first surface
   MacParameters<dim> parameters_;
   Scalars<dim> scalars_;

@@ -18,7 +18,7 @@ Point<dim> origin_of_pressure(const MacDomain<dim>& domain, const Box<dim>& boun
   return origin;
 }
 
-/// On rank 0.
+/// At surfaces that of this rank's tiles alone.
 template <int dim>
 TileWork work_of_tiles(const TiledGrid<dim>& grid, const TileOwners& owners,
                        const SurfaceSnapshot<dim>& surface) {
@@ -44,10 +44,13 @@ TileWork work_of_tiles(const TiledGrid<dim>& grid, const TileOwners& owners,
     if (owners.ranks[i] == rank && surface.touches(box))
       work.at_surfaces[i] = of_surface_tile;
   }
-  const auto n = static_cast<int>(work.at_surfaces.size());
-  MPI_Reduce(rank == 0 ? MPI_IN_PLACE : work.at_surfaces.data(), work.at_surfaces.data(), n,
-             MPI_LONG_LONG, MPI_SUM, 0, raw_communicator(grid.comm()));
   return work;
+}
+
+/// On rank 0; the others keep theirs.
+void sum_on_root(const Communicator& comm, std::vector<GlobalIndex>& values) {
+  MPI_Reduce(is_root(comm) ? MPI_IN_PLACE : values.data(), values.data(),
+             static_cast<int>(values.size()), MPI_LONG_LONG, MPI_SUM, 0, raw_communicator(comm));
 }
 
 }  // namespace
@@ -79,17 +82,23 @@ bool MacFluid<dim>::begin_step(double time, double dt, const std::function<doubl
   return owners.has_value();
 }
 
-/// Gives ranks other tiles where surfaces have made their work uneven.
+/// Gives ranks other tiles where surfaces have made their work uneven. The same work as at the last
+/// time would find the same tiles.
 template <int dim>
 bool MacFluid<dim>::share_work() {
   const Communicator& comm = domain_.grid.comm();
-  if (comm->getSize() == 1 || !geometry_.state.surface || steps_to_sharing_-- > 0)
+  if (comm->getSize() == 1 || !geometry_.state.surface || steps_to_sharing_ > 0)
     return false;
   constexpr int steps_between = 20;
-  steps_to_sharing_ = steps_between - 1;
+  steps_to_sharing_ = steps_between;
   if (owners_.tiles.empty())
     owners_ = domain_.grid.tile_owners();
-  const TileWork work = work_of_tiles(domain_.grid, owners_, *geometry_.state.surface);
+  TileWork work = work_of_tiles(domain_.grid, owners_, *geometry_.state.surface);
+  const GlobalIndex differs = work.at_surfaces != compared_work_;
+  if (max_all(comm, differs) == 0)
+    return false;
+  compared_work_ = work.at_surfaces;
+  sum_on_root(comm, work.at_surfaces);
   const auto owners = share_better(domain_.grid.tile_lattice(), comm, owners_, work);
   if (owners)
     regrid(*owners);

@@ -141,6 +141,28 @@ TEST(MovingTiles, MakeRoomForSolids) {
   EXPECT_THROW(fluid->set_geometry(disc_at(4, 10), BlockedFaces<2>()), SolveError);
 }
 
+/// The work at a disc that is elsewhere in every step is shared anew every twenty steps, however
+/// often each was tried.
+TEST(MovingTiles, WorkIsComparedEveryTwentyAcceptedSteps) {
+  const auto fluid = Case<2>({128, 128}, 1. / 128).make();
+  std::vector<int> shared;
+  for (int step = 0; step < 90; ++step) {
+    const Point<2> place(0.5 + 0.25 * std::cos(step), 0.5 + 0.25 * std::sin(step));
+    const auto disc = Solids<2>().add(ball_surface<2>(0.2, 0.02), place, true).snapshot();
+    fluid->set_geometry(disc, BlockedFaces<2>());
+    for (int attempt = 0; attempt < 3; ++attempt)
+      if (fluid->begin_step(0.01 * step, 0.01, no_solids)) {
+        shared.push_back(step);
+        fluid->set_geometry(disc, BlockedFaces<2>());
+      }
+    fluid->begin_prediction();
+    fluid->accept();
+  }
+  for (const int step : shared)
+    EXPECT_EQ(step % 20, 0) << step;
+  EXPECT_EQ(shared.size() > 1, world()->getSize() > 1);
+}
+
 TEST(MovingTiles, RefuseForcesThatWouldMoveTheFluidFarAway) {
   Case<2> scene = middle_of_tall_tank().side("x lower", "periodic").side("x upper", "periodic");
   scene.fluid.set("Body Force", numbers({1.0, 0.0}));
