@@ -3,7 +3,6 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace lockstep {
 
@@ -183,6 +182,20 @@ std::map<int, std::vector<GlobalIndex>> ask(const Communicator& comm,
   return asked;
 }
 
+/// With all that are `reach` or less away along an axis, in steps of `width`. Sorted.
+std::vector<Cell> spread(const std::vector<Cell>& begins, int axis, int reach, int width) {
+  std::vector<Cell> result;
+  result.reserve(begins.size() * (2 * reach / width + 1));
+  for (Cell begin : begins) {
+    begin[axis] -= reach;
+    for (const int end = begin[axis] + 2 * reach; begin[axis] <= end; begin[axis] += width)
+      result.push_back(begin);
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
 }  // namespace
 
 bool holds_cells(const LatticeBlocks& blocks, const Cell& begin) {
@@ -194,22 +207,20 @@ bool holds_cells(const LatticeBlocks& blocks, const Cell& begin) {
 }
 
 std::vector<NearBlock> find_near_blocks(const LatticeBlocks& blocks, int reach) {
-  std::set<Cell> mine;
+  std::vector<Cell> mine;
   for (const Cell& begin : blocks.begins) {
     if (holds_cells(blocks, begin))
-      mine.insert(begin);
+      mine.push_back(begin);
   }
-  const int depth = blocks.dimension == 3 ? reach : 0;
-  const CellBox offsets{{-reach, -reach, -depth}, {reach + 1, reach + 1, depth + 1}};
-  std::set<Cell> found;
-  for (const Cell& begin : mine) {
-    for_each_cell_of(offsets, [&](int i, int j, int k) {
-      const Cell other{begin[0] + i * blocks.width, begin[1] + j * blocks.width,
-                       begin[2] + k * blocks.width};
-      Cell original = other;
-      if (mine.count(other) == 0 && wrap(blocks, original))
-        found.insert(other);
-    });
+  std::sort(mine.begin(), mine.end());
+  std::vector<Cell> around = mine;
+  for (int axis = 0; axis < blocks.dimension; ++axis)
+    around = spread(around, axis, reach * blocks.width, blocks.width);
+  std::vector<Cell> found;
+  for (const Cell& begin : around) {
+    Cell original = begin;
+    if (wrap(blocks, original) && !std::binary_search(mine.begin(), mine.end(), begin))
+      found.push_back(begin);
   }
   std::vector<GlobalIndex> numbers;
   for (Cell begin : found) {

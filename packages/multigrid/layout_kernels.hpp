@@ -97,7 +97,8 @@ class LayoutKernels final : public ConjugateGradientKernels {
   }
 
  private:
-  /// Of cells with faces, which have a diagonal; returns r.r. Ghosts in between are d's alone.
+  /// x += step d and r -= step A d along this rank's part of a row; returns r.r. Rows that A leaves
+  /// empty have no diagonal: what d was there is added apart.
   template <typename HasRow>
   static double advance_row(double step, const HasRow& has_row, const double* d,
                             const double* product, int n, double* x, double* r) {

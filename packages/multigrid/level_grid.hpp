@@ -4,13 +4,16 @@
 
 namespace lockstep {
 
-/// Storage of the cells of one multigrid level on one rank: a box of the level's lattice in two
-/// colours, colour 0 where i + j + k is even (local coordinates; boxes begin at even ones, so the
-/// colours of all ranks agree). Colour c of row (j, k) holds cell i = 2 m + s, s = (j + k + c) & 1,
-/// in slot m: the neighbours of a cell then stand in the *same* slot m of the other colour's rows
-/// (along x in slots m - 1 + s and m + s), and whole rows are updated by contiguous loops.
+/// Storage of the cells of one multigrid level on one rank: a box of the level's lattice around its
+/// own cells, on distributed levels with the cells of others that it copies (see LatticeLayout) or
+/// leaves zero in between, in two colours, colour 0 where i + j + k is even (local coordinates;
+/// boxes begin at even ones, so the colours of all ranks agree). Colour c of row (j, k) holds cell
+/// i = 2 m + s, s = (j + k + c) & 1, in slot m: the neighbours of a cell then stand in the *same*
+/// slot m of the other colour's rows (along x in slots m - 1 + s and m + s), and whole rows are
+/// updated by contiguous loops.
 ///
-/// Around the box lies one layer of slots for ghost cells; what is no cell stays zero. Set-up works
+/// Around the box lies one layer of slots, where copies through periodic sides are on levels that
+/// every rank holds whole; what is no cell stays zero. Set-up works
 /// on *natural* arrays: the box and its ghost layer, x fastest.
 struct LevelGrid {
   int dimension = 3;
@@ -40,7 +43,7 @@ struct LevelGrid {
     return first + m + row_stride * j + plane_stride * k;
   }
   static int colour(int i, int j, int k) { return (i + j + k) & 1; }
-  /// Slot of cell (i, j, k) in its colour; ghosts have coordinates -1 and n.
+  /// Slot of cell (i, j, k) in its colour; those around the box have coordinates -1 and n.
   std::ptrdiff_t slot_of_cell(int i, int j, int k) const { return slot(i >> 1, j, k); }
   std::ptrdiff_t natural(int i, int j, int k) const {
     return natural_first + i + natural_stride[1] * j + natural_stride[2] * k;

@@ -30,57 +30,76 @@ LevelHalo::LevelHalo(const Communicator& comm, const std::vector<Peer>& peers) :
   empty_ = sum_all(comm, n) == 0;
 }
 
-/// Moves the values of one list of each part to the other list's place on the peer: owned to
-/// ghosts, or back (then they are added). All fields go in one message to each peer.
+template <typename Value>
+void LevelHalo::receive(const Fields<Value>& fields, bool to_owner) const {
+  std::size_t n_all = 0;
+  for (const Field<Value>& field : fields)
+    for (const Part& part : *field.parts)
+      n_all += part.target(to_owner).size();
+  incoming_.resize(std::max(incoming_.size(), n_all * sizeof(Value)));
+  char* next = incoming_.data();
+  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
+    std::size_t n = 0;
+    for (const Field<Value>& field : fields)
+      n += (*field.parts)[peer].target(to_owner).size();
+    if (natural_[peer].rank != comm_->getRank() && n > 0)
+      MPI_Irecv(next, static_cast<int>(n * sizeof(Value)), MPI_BYTE, natural_[peer].rank, tag,
+                raw_communicator(comm_), &requests_.emplace_back());
+    next += n * sizeof(Value);
+  }
+}
+
+template <typename Value>
+void LevelHalo::send(const Fields<Value>& fields, bool to_owner) const {
+  std::size_t n_all = 0;
+  for (const Field<Value>& field : fields)
+    for (const Part& part : *field.parts)
+      n_all += part.source(to_owner).size();
+  outgoing_.resize(std::max(outgoing_.size(), n_all * sizeof(Value)));
+  auto* next = reinterpret_cast<Value*>(outgoing_.data());
+  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
+    Value* const begin = next;
+    for (const Field<Value>& field : fields)
+      for (const std::ptrdiff_t i : (*field.parts)[peer].source(to_owner))
+        *next++ = field.values[i];
+    const auto n_bytes = static_cast<long long>((next - begin) * sizeof(Value));
+    if (natural_[peer].rank == comm_->getRank() || n_bytes == 0)
+      continue;
+    MPI_Isend(begin, static_cast<int>(n_bytes), MPI_BYTE, natural_[peer].rank, tag,
+              raw_communicator(comm_), &requests_.emplace_back());
+    ++sent_.messages;
+    sent_.bytes += n_bytes;
+  }
+}
+
+/// What the peers have sent, and what this rank has to itself.
+template <typename Value>
+void LevelHalo::take_in(const Fields<Value>& fields, bool to_owner) const {
+  const auto* mine = reinterpret_cast<const Value*>(outgoing_.data());
+  const auto* theirs = reinterpret_cast<const Value*>(incoming_.data());
+  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
+    for (const Field<Value>& field : fields) {
+      const Part& part = (*field.parts)[peer];
+      const Value* from = part.rank == comm_->getRank() ? mine : theirs;
+      for (const std::ptrdiff_t i : part.target(to_owner)) {
+        if (to_owner)
+          field.values[i] += *from++;
+        else
+          field.values[i] = *from++;
+      }
+      mine += part.source(to_owner).size();
+      theirs += part.target(to_owner).size();
+    }
+  }
+}
+
 template <typename Value>
 void LevelHalo::transfer(const Fields<Value>& fields, bool to_owner) const {
   if (empty_)
     return;
-  const int me = comm_->getRank();
-  const MPI_Comm mpi = raw_communicator(comm_);
-  const auto source = [&](const Part& part) -> const auto& {
-    return to_owner ? part.ghosts : part.owned;
-  };
-  const auto target = [&](const Part& part) -> const auto& {
-    return to_owner ? part.owned : part.ghosts;
-  };
-  std::size_t n_out = 0, n_in = 0;
-  for (const Field<Value>& field : fields) {
-    for (const Part& part : *field.parts) {
-      n_out += source(part).size();
-      n_in += target(part).size();
-    }
-  }
-  outgoing_.resize(std::max(outgoing_.size(), n_out * sizeof(Value)));
-  incoming_.resize(std::max(incoming_.size(), n_in * sizeof(Value)));
-  auto* const out = reinterpret_cast<Value*>(outgoing_.data());
-  auto* const in = reinterpret_cast<Value*>(incoming_.data());
   requests_.clear();
-  Value* next = in;
-  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
-    std::size_t n = 0;
-    for (const Field<Value>& field : fields)
-      n += target((*field.parts)[peer]).size();
-    if (natural_[peer].rank != me && n > 0)
-      MPI_Irecv(next, static_cast<int>(n * sizeof(Value)), MPI_BYTE, natural_[peer].rank, tag, mpi,
-                &requests_.emplace_back());
-    next += n;
-  }
-  next = out;
-  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
-    Value* const begin = next;
-    for (const Field<Value>& field : fields) {
-      for (const std::ptrdiff_t i : source((*field.parts)[peer]))
-        *next++ = field.values[i];
-    }
-    const auto n_bytes = static_cast<long long>((next - begin) * sizeof(Value));
-    if (natural_[peer].rank != me && n_bytes > 0) {
-      MPI_Isend(begin, static_cast<int>(n_bytes), MPI_BYTE, natural_[peer].rank, tag, mpi,
-                &requests_.emplace_back());
-      ++sent_.messages;
-      sent_.bytes += n_bytes;
-    }
-  }
+  receive(fields, to_owner);
+  send(fields, to_owner);
   if (to_owner) {
     for (const Field<Value>& field : fields)
       for (const Part& part : *field.parts)
@@ -88,22 +107,7 @@ void LevelHalo::transfer(const Fields<Value>& fields, bool to_owner) const {
           field.values[ghost] = 0;
   }
   MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
-  const Value* mine = out;
-  const Value* theirs = in;
-  for (std::size_t peer = 0; peer < natural_.size(); ++peer) {
-    for (const Field<Value>& field : fields) {
-      const Part& part = (*field.parts)[peer];
-      const Value* from = part.rank == me ? mine : theirs;
-      for (const std::ptrdiff_t i : target(part)) {
-        if (to_owner)
-          field.values[i] += *from++;
-        else
-          field.values[i] = *from++;
-      }
-      mine += source(part).size();
-      theirs += target(part).size();
-    }
-  }
+  take_in(fields, to_owner);
 }
 
 template void LevelHalo::transfer<float>(const Fields<float>&, bool) const;

@@ -67,6 +67,11 @@ class LevelHalo {
   struct Part {
     int rank = 0;
     std::vector<std::ptrdiff_t> owned, ghosts;
+
+    const std::vector<std::ptrdiff_t>& source(bool to_owner) const {
+      return to_owner ? ghosts : owned;
+    }
+    const std::vector<std::ptrdiff_t>& target(bool to_owner) const { return source(!to_owner); }
   };
   using Parts = std::vector<Part>;
 
@@ -86,8 +91,16 @@ class LevelHalo {
       fields.push_back({&natural_, values});
     return fields;
   }
+  /// Moves the values of one list of each part to the other list's place on the peer: owned to
+  /// ghosts, or back (then they are added). All fields go in one message to each peer.
   template <typename Value>
   void transfer(const Fields<Value>& fields, bool to_owner) const;
+  template <typename Value>
+  void receive(const Fields<Value>& fields, bool to_owner) const;
+  template <typename Value>
+  void send(const Fields<Value>& fields, bool to_owner) const;
+  template <typename Value>
+  void take_in(const Fields<Value>& fields, bool to_owner) const;
 
   Communicator comm_;
   bool empty_ = true;
