@@ -33,22 +33,28 @@ PhiLookup<dim>::PhiLookup(const TiledGrid<dim>& grid, const SampleLattice<dim>& 
 }
 
 template <int dim>
-void PhiLookup<dim>::enter(int tile) {
-  std::array<std::vector<typename SampleLattice<dim>::Run>, dim> runs;
-  std::array<const std::vector<typename SampleLattice<dim>::Run>*, dim> all;
-  std::array<int, dim> strides;
-  for (int a = 0; a < dim; ++a) {
-    const int begin = grid_.tile_begin(tile)[a];
-    begin_[a] = begin;
-    runs[a] = lattice_.find_runs(a, false, begin - margin_, width_);
-    all[a] = &runs[a];
-    strides[a] = stride(a);
-  }
-  is_complete_ = lattice_.copy_block(all, strides, phi_.data(), block_.data());
+bool PhiLookup<dim>::approach(int tile) {
+  for (int a = 0; a < dim; ++a)
+    begin_[a] = grid_.tile_begin(tile)[a];
   Box<dim> reach(begin_, Point<dim>(begin_ + Point<dim>::Constant(tile_width<dim>)));
   reach.min() = grid_.lower() + grid_.spacing() * (reach.min().array() - margin_ - 3).matrix();
   reach.max() = grid_.lower() + grid_.spacing() * (reach.max().array() + margin_ + 3).matrix();
   is_near_surface_ = !nearby_->empty() && nearby_->touches(reach);
+  return is_near_surface_;
+}
+
+template <int dim>
+void PhiLookup<dim>::enter(int tile) {
+  approach(tile);
+  std::array<std::vector<typename SampleLattice<dim>::Run>, dim> runs;
+  std::array<const std::vector<typename SampleLattice<dim>::Run>*, dim> all;
+  std::array<int, dim> strides;
+  for (int a = 0; a < dim; ++a) {
+    runs[a] = lattice_.find_runs(a, false, grid_.tile_begin(tile)[a] - margin_, width_);
+    all[a] = &runs[a];
+    strides[a] = stride(a);
+  }
+  is_complete_ = lattice_.copy_block(all, strides, phi_.data(), block_.data());
 }
 
 template <int dim>

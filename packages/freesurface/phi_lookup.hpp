@@ -22,6 +22,9 @@ class PhiLookup {
 
   /// Copies phi around an owned tile.
   void enter(int tile);
+  /// For what asks for no phi: the places and surfaces around an owned tile. False if no surface
+  /// comes within two cells of its points: none may be hidden.
+  bool approach(int tile);
   /// None if nothing is visible from there.
   std::optional<double> value(const Point<dim>& x) const {
     if (may_be_hidden(x) || !is_complete_)

@@ -122,7 +122,7 @@ void add_cells_seen(int side, const MacDomain<dim>& domain, const SolidCells<dim
   PhiLookup<dim> lookup(grid, lattice, solids, kept, phi);
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
     if (!tiles[tile].empty())
-      lookup.enter(static_cast<int>(tile));
+      lookup.approach(static_cast<int>(tile));
     for (const Particle<dim>& particle : tiles[tile]) {
       if (particle.side() != side)
         continue;
@@ -170,10 +170,9 @@ void remove_trapped_air(const MacDomain<dim>& domain, const SolidCells<dim>& sol
   };
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
     auto& particles = tiles[tile];
-    if (!particles.empty())
-      lookup.enter(static_cast<int>(tile));
-    particles.erase(std::remove_if(particles.begin(), particles.end(), is_trapped),
-                    particles.end());
+    if (!particles.empty() && lookup.approach(static_cast<int>(tile)))
+      particles.erase(std::remove_if(particles.begin(), particles.end(), is_trapped),
+                      particles.end());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "geometry/clipping.hpp"
 #include "geometry/solid_volume.hpp"
@@ -15,6 +16,54 @@ namespace {
 constexpr double far = 2.5;
 /// The shift of phi that shows the area [cells].
 constexpr double probe = 1e-3;
+
+/// What shells are in a cell, taken as a plane.
+template <int dim>
+struct PlaneOfShell {
+  Point<dim> normal, point;
+};
+
+/// Nothing if no shell is in the box, or several sheets or a sharp fold, which are no plane.
+/// `touching` is scratch.
+template <int dim>
+std::optional<PlaneOfShell<dim>> plane_of_shell(const SurfaceSnapshot<dim>& surface,
+                                                const Box<dim>& box, std::vector<int>& touching) {
+  surface.touching(box, touching);
+  double area = 0;
+  Point<dim> normal = Point<dim>::Zero(), middle = normal;
+  for (const int simplex : touching) {
+    if (surface.solids()[surface.solid_of(simplex)].closed)
+      continue;
+    const auto corners = surface.corners(simplex);
+    const ClippedSimplex<dim> part = clip_to_box<dim>(corners, box);
+    if (part.measure <= 0)
+      continue;
+    area += part.measure;
+    normal += part.measure * area_vector<dim>(corners).normalized();
+    middle += part.measure * part.centroid;
+  }
+  if (area == 0 || normal.norm() < 0.7 * area)
+    return {};
+  return PlaneOfShell<dim>{normal.normalized(), middle / area};
+}
+
+/// Turns the plane's normal away from the centre of its cell: which side that is on, links know
+/// better than the plane. Returns the axis that is most nearly along it.
+template <int dim>
+int point_away_from_center(const TiledGrid<dim>& grid, const SolidCells<dim>& solids, int cell,
+                           PlaneOfShell<dim>& plane) {
+  int axis = 0;
+  plane.normal.cwiseAbs().maxCoeff(&axis);
+  const auto is_hidden = [&](int side) {
+    const int beside = grid.neighbor(cell, axis, side);
+    return beside >= 0 && (solids.blocked[side == 0 ? cell : beside] >> axis & 1) != 0;
+  };
+  const bool below = is_hidden(0), above = is_hidden(1);
+  if (below != above ? (plane.normal[axis] > 0) == below
+                     : plane.normal.dot(grid.center(cell) - plane.point) > 0)
+    plane.normal = -plane.normal;
+  return axis;
+}
 }  // namespace
 
 double GroupVolumes::total() const {
@@ -106,45 +155,21 @@ void LiquidVolume<dim>::list_full(int cell) {
 }
 
 template <int dim>
-void LiquidVolume<dim>::list_beyond_shell(const SolidCells<dim>& solids, int cell,
-                                          std::vector<int>& touching) {
+void LiquidVolume<dim>::list_beyond_shell(const SolidCells<dim>& solids, const CellField& phi,
+                                          int cell, std::vector<int>& touching) {
   const TiledGrid<dim>& grid = domain_.grid;
-  const SurfaceSnapshot<dim>& surface = *solids.state.surface;
-  const double h = domain_.spacing();
-  const Point<dim> center = grid.center(cell), half = Point<dim>::Constant(0.5 * h);
-  const Box<dim> box(center - half, center + half);
-  surface.touching(box, touching);
-  double area = 0;
-  Point<dim> normal = Point<dim>::Zero(), middle = normal;
-  for (const int simplex : touching) {
-    if (surface.solids()[surface.solid_of(simplex)].closed)
-      continue;
-    const auto corners = surface.corners(simplex);
-    const ClippedSimplex<dim> part = clip_to_box<dim>(corners, box);
-    if (part.measure <= 0)
-      continue;
-    area += part.measure;
-    normal += part.measure * area_vector<dim>(corners).normalized();
-    middle += part.measure * part.centroid;
-  }
-  // Several sheets, or a sharp fold, are no plane.
-  if (area == 0 || normal.norm() < 0.7 * area)
+  if (stays_dry(phi, cell))
     return;
-  normal.normalize();
-  middle /= area;
-  int axis = 0;
-  const double steepest = normal.cwiseAbs().maxCoeff(&axis);
-  // Away from the centre: which side that is on, links know better than the plane.
-  const auto is_hidden = [&](int side) {
-    const int beside = grid.neighbor(cell, axis, side);
-    return beside >= 0 && (solids.blocked[side == 0 ? cell : beside] >> axis & 1) != 0;
-  };
-  const bool below = is_hidden(0), above = is_hidden(1);
-  if (below != above ? (normal[axis] > 0) == below : normal.dot(center - middle) > 0)
-    normal = -normal;
+  const Point<dim> center = grid.center(cell);
+  const Point<dim> half = Point<dim>::Constant(0.5 * domain_.spacing());
+  std::optional<PlaneOfShell<dim>> plane =
+      plane_of_shell<dim>(*solids.state.surface, Box<dim>(center - half, center + half), touching);
+  if (!plane)
+    return;
+  const int axis = point_away_from_center(grid, solids, cell, *plane);
   Index<dim> beyond = grid.coordinates(cell);
   for (int a = 0; a < dim; ++a)
-    beyond[a] += static_cast<int>(std::lround(normal[a] / steepest));
+    beyond[a] += static_cast<int>(std::lround(plane->normal[a] / std::abs(plane->normal[axis])));
   const int other = grid.cell(beyond);
   if (other < 0 || !grid.in_domain(other) || !solids.is_fluid(other))
     return;
@@ -152,8 +177,8 @@ void LiquidVolume<dim>::list_beyond_shell(const SolidCells<dim>& solids, int cel
   for (int k = 0; k < n_corners; ++k) {
     Point<dim> corner = center - half;
     for (int a = 0; a < dim; ++a)
-      corner[a] += (k >> a & 1) * h;
-    depth[k] = normal.dot(middle - corner);
+      corner[a] += (k >> a & 1) * domain_.spacing();
+    depth[k] = plane->normal.dot(plane->point - corner);
   }
   const double volume = wet_fraction<dim>(depth) * domain_.cell_volume();
   shares_[cell] -= volume;
@@ -161,7 +186,25 @@ void LiquidVolume<dim>::list_beyond_shell(const SolidCells<dim>& solids, int cel
 }
 
 template <int dim>
-void LiquidVolume<dim>::list_beyond_shells(const SolidCells<dim>& solids) {
+bool LiquidVolume<dim>::stays_dry(const CellField& phi, int cell) const {
+  // A share is dry from phi = h/2, and phi may change by as much.
+  const double dry = domain_.spacing();
+  if (phi[cell] < dry)
+    return false;
+  const Index<dim> middle = domain_.grid.coordinates(cell);
+  for (int k = 0; k < (dim == 2 ? 9 : 27); ++k) {
+    Index<dim> at = middle;
+    for (int a = 0, rest = k; a < dim; ++a, rest /= 3)
+      at[a] += rest % 3 - 1;
+    const int other = domain_.grid.cell(at);
+    if (other >= 0 && phi[other] < dry)
+      return false;
+  }
+  return true;
+}
+
+template <int dim>
+void LiquidVolume<dim>::list_beyond_shells(const SolidCells<dim>& solids, const CellField& phi) {
   if (!solids.state.surface)
     return;
   const auto& all = solids.state.surface->solids();
@@ -170,7 +213,7 @@ void LiquidVolume<dim>::list_beyond_shells(const SolidCells<dim>& solids) {
   std::vector<int> touching;
   domain_.grid.for_each_owned_cell([&](int cell) {
     if (solids.near[cell] && solids.is_fluid(cell))
-      list_beyond_shell(solids, cell, touching);
+      list_beyond_shell(solids, phi, cell, touching);
   });
 }
 
@@ -197,7 +240,7 @@ void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& 
   full_.clear();
   if (!solids.near.empty())
     shares_.assign(phi.size(), 0);
-  list_beyond_shells(solids);
+  list_beyond_shells(solids, phi);
   domain_.grid.for_each_owned_cell([&](int cell) {
     const bool near = !solids.near.empty() && solids.near[cell];
     if (near || (std::abs(phi[cell]) < deep && solids.is_fluid(cell)))

@@ -48,9 +48,12 @@ class LiquidVolume {
   bool is_divided(const SolidCells<dim>& solids, const std::array<int, n_corners>& corners) const;
   double volume_of_cell(int cell) const;
   void list_full(int cell);
-  void list_beyond_shells(const SolidCells<dim>& solids);
+  void list_beyond_shells(const SolidCells<dim>& solids, const CellField& phi);
   /// Gives what of a cell is beyond the shell in it, taken as a plane, to the cell there.
-  void list_beyond_shell(const SolidCells<dim>& solids, int cell, std::vector<int>& touching);
+  void list_beyond_shell(const SolidCells<dim>& solids, const CellField& phi, int cell,
+                         std::vector<int>& touching);
+  /// Neither it nor a cell around it will have liquid before the list is made anew.
+  bool stays_dry(const CellField& phi, int cell) const;
   void list_divided_cells(const SolidCells<dim>& solids);
   void add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
                std::vector<double>& sums) const;
