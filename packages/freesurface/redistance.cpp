@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid/flagged_tiles.hpp"
 #include "grid/tile_field.hpp"
 
 namespace lockstep {
@@ -68,11 +69,10 @@ class March {
         first_waiting_(waiting_.size()) {}
 
   void set_near_cells(NearCells near_cells) {
-    for (int tile = 0; tile < domain_.grid.n_tiles(); ++tile)
-      for (int i = 0, cell = tile * tile_volume<dim>; tiles_[tile] && i < tile_volume<dim>;
-           ++i, ++cell)
-        if (solids_.is_fluid(cell))
-          set_ways(cell, near_cells);
+    for_each_stored_cell_of(domain_.grid, tiles_, [&](int cell) {
+      if (solids_.is_fluid(cell))
+        set_ways(cell, near_cells);
+    });
   }
   /// From all that waits, until nothing changes here.
   void go() {
@@ -202,11 +202,10 @@ void redistance(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   do
     march.go();
   while (march.take_from_others());
-  for (int tile = 0; tile < domain.grid.n_owned_tiles(); ++tile)
-    for (int i = 0, cell = tile * tile_volume<dim>; tiles[tile] && i < tile_volume<dim>;
-         ++i, ++cell)
-      if (solids.is_fluid(cell))
-        phi[cell] = phi[cell] < 0 ? -march.distance(cell) : march.distance(cell);
+  for_each_owned_cell_of(domain.grid, tiles, [&](int cell) {
+    if (solids.is_fluid(cell))
+      phi[cell] = phi[cell] < 0 ? -march.distance(cell) : march.distance(cell);
+  });
   domain.halo.fill(phi);
 }
 

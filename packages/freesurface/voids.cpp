@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mac/domain/cell_at_side.hpp"
 #include "mac/liquid/cell_groups.hpp"
 
 namespace lockstep {
@@ -15,14 +16,11 @@ constexpr double least_depth = 1e-3, most_depth = 0.1;
 
 template <int dim>
 bool at_open_side(const MacDomain<dim>& domain, int cell) {
-  const Index<dim> place = domain.grid.coordinates(cell);
-  for (int a = 0; a < dim; ++a)
-    for (int end = 0; end < 2; ++end)
-      if (place[a] == (end == 0 ? 0 : domain.grid.n_cells()[a] - 1) &&
-          !domain.boundary.side(a, end).closed() && !domain.boundary.periodic(a))
-        return true;
-  return false;
+  return at_side(domain, cell, [](const BoundarySide<dim>& side) {
+    return !side.closed() && side.type != SideType::periodic;
+  });
 }
+
 template <int dim>
 std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                              int most_cells, CellField& phi) {

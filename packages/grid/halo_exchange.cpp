@@ -191,6 +191,8 @@ void HaloExchange<dim>::fill(const std::vector<std::vector<Value>*>& fields) con
 template <int dim>
 template <typename Value>
 void HaloExchange<dim>::fill(TileField<dim, Value>& field) const {
+  LOCKSTEP_ASSERT(field.n_stored_tiles() << log_tile_volume<dim> ==
+                  static_cast<std::size_t>(n_stored_cells_));
   if (neighbors_.empty())
     return;
   outgoing_.resize(source_cells_.size() * sizeof(Value));

@@ -41,7 +41,7 @@ class HaloExchange {
     fill(std::vector<std::vector<Value>*>(fields));
   }
 
-  /// Where the field has values.
+  /// Where the field has values here; of tiles without any at their owner comes that elsewhere.
   template <typename Value>
   void fill(TileField<dim, Value>& field) const;
 

@@ -10,8 +10,6 @@ namespace lockstep {
 template <int dim, typename Value = double>
 class TileField {
  public:
-  /// No tile has values.
-  TileField() = default;
   /// `has_values`: of stored tiles. All values begin as that elsewhere.
   TileField(const std::vector<char>& has_values, Value elsewhere) : slot_(has_values.size(), 0) {
     int n = 1;
@@ -26,12 +24,12 @@ class TileField {
   /// Of a cell that has a value.
   void set(int cell, Value value) { values_[place(cell)] = value; }
 
-  /// Where the value of a cell is among all; below `begin()` it has none. Places run along with the
-  /// cells of a tile, and tile by tile.
+  /// Where the value of a cell is among all; below `tile_volume` it has none. Places run along with
+  /// the cells of a tile, and tile by tile.
   int place(int cell) const {
     return slot_[cell >> log_tile_volume<dim>] + (cell & (tile_volume<dim> - 1));
   }
-  static constexpr int begin() { return tile_volume<dim>; }
+  std::size_t n_stored_tiles() const { return slot_.size(); }
   int end() const { return static_cast<int>(values_.size()); }
   Value& at_place(int place) { return values_[place]; }
   const Value& at_place(int place) const { return values_[place]; }

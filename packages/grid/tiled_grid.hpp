@@ -52,7 +52,7 @@ class TiledGrid {
   /// Whether a tile, given its cells of the domain [begin, end), should exist. Called on one rank
   /// only for each tile, so it must not communicate, and it must not depend on the rank.
   using TileChoice = std::function<bool(const Index<dim>& begin, const Index<dim>& end)>;
-  /// The work of a tile, on any scale (default: its number of cells); same rules.
+  /// The work of a tile, in that of a cell (default: its number of cells); same rules.
   using TileWeight = std::function<int(const Index<dim>& begin, const Index<dim>& end)>;
 
   /// Collective. Creates the tiles chosen (default all; a tile with extra layer cells only follows

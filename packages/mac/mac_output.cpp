@@ -1,6 +1,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
+#include "grid/flagged_tiles.hpp"
 #include "mac/liquid/liquid_mesh.hpp"
 #include "mac/mac_fluid.hpp"
 #include "output/checkpoint.hpp"
@@ -27,18 +28,6 @@ std::vector<CellBlock> tile_blocks(const TiledGrid<dim>& grid, std::vector<int>&
     tiles.push_back(tile);
   }
   return blocks;
-}
-
-/// Calls f(cell) for the cells of a block, x fastest.
-template <int dim, typename Function>
-void for_each_cell_of_tile(const TiledGrid<dim>& grid, int tile, const Function& f) {
-  const Index<dim> extent = grid.tile_domain_extent(tile);
-  const int depth = dim == 3 ? extent[dim - 1] : 1;
-  constexpr int width = tile_width<dim>;
-  for (int z = 0; z < depth; ++z)
-    for (int y = 0; y < extent[1]; ++y)
-      for (int x = 0; x < extent[0]; ++x)
-        f((tile << log_tile_volume<dim>)+(z * width + y) * width + x);
 }
 
 template <int dim>

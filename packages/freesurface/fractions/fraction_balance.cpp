@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "freesurface/voids.hpp"
+#include "grid/flagged_tiles.hpp"
 
 namespace lockstep {
 
@@ -236,13 +237,12 @@ template <int dim>
 void remove_crumbs(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                    const std::vector<char>& tiles, Fractions& fractions) {
   std::vector<int> crumbs;
-  for (std::size_t tile = 0; tile < tiles.size(); ++tile)
-    for (int i = 0, cell = static_cast<int>(tile) * tile_volume<dim>;
-         tiles[tile] && i < tile_volume<dim>; ++i, ++cell)
-      if (const double liquid = fractions.liquid[cell];
-          is_mixed(liquid) && solids.is_fluid(cell) &&
-          !touches(domain, solids, fractions.liquid, cell, liquid <= 0.5))
-        crumbs.push_back(cell);
+  for_each_owned_cell_of(domain.grid, tiles, [&](int cell) {
+    if (const double liquid = fractions.liquid[cell];
+        is_mixed(liquid) && solids.is_fluid(cell) &&
+        !touches(domain, solids, fractions.liquid, cell, liquid <= 0.5))
+      crumbs.push_back(cell);
+  });
   for (const int cell : crumbs)
     fractions.set(cell, fractions.liquid[cell] > 0.5 ? 1 : 0);
   domain.halo.fill(fractions.liquid);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid/flagged_tiles.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -120,17 +122,15 @@ void FractionPlanes<dim>::find(const SolidCells<dim>& solids, const std::vector<
                                const CellField& fraction) {
   for (CellField& number : numbers_)
     number.resize(fraction.size());
-  for (std::size_t tile = 0; tile < tiles.size(); ++tile)
-    for (int i = 0, cell = static_cast<int>(tile) * tile_volume<dim>;
-         tiles[tile] && i < tile_volume<dim>; ++i, ++cell) {
-      if (!is_mixed(fraction[cell]) || !solids.is_fluid(cell))
-        continue;
-      const CellPlane<dim> plane =
-          plane_of_fraction<dim>(normal(solids, fraction, cell), fraction[cell]);
-      for (int a = 0; a < dim; ++a)
-        numbers_[a][cell] = plane.normal[a];
-      numbers_[dim][cell] = plane.constant;
-    }
+  for_each_owned_cell_of(domain_.grid, tiles, [&](int cell) {
+    if (!is_mixed(fraction[cell]) || !solids.is_fluid(cell))
+      return;
+    const CellPlane<dim> plane =
+        plane_of_fraction<dim>(normal(solids, fraction, cell), fraction[cell]);
+    for (int a = 0; a < dim; ++a)
+      numbers_[a][cell] = plane.normal[a];
+    numbers_[dim][cell] = plane.constant;
+  });
   std::vector<CellField*> fields;
   for (CellField& number : numbers_)
     fields.push_back(&number);
@@ -155,28 +155,26 @@ void FractionPlanes<dim>::set_distance(const SolidCells<dim>& solids,
   const TiledGrid<dim>& grid = domain_.grid;
   const double h = domain_.spacing();
   const Point<dim> center = Point<dim>::Constant(0.5);
-  for (std::size_t tile = 0; tile < tiles.size(); ++tile)
-    for (int i = 0, cell = static_cast<int>(tile) * tile_volume<dim>;
-         tiles[tile] && i < tile_volume<dim>; ++i, ++cell) {
-      if (!solids.is_fluid(cell))
-        continue;
-      double distance = cut_off / h;
-      if (is_mixed(fraction[cell])) {
-        distance = distance_to(cell, center);
-      } else {
-        for (const Around<dim>& other : cells_around(grid, solids, cell)) {
-          Point<dim> place = center;
-          for (int a = 0; a < dim; ++a)
-            place[a] -= other.offset[a];
-          if (is_mixed(fraction[other.cell]))
-            distance = std::min(distance, distance_to(other.cell, place));
-        }
-        if (is_beside_full_jump(grid, solids, fraction, cell))
-          distance = std::min(distance, 0.5);
+  for_each_owned_cell_of(grid, tiles, [&](int cell) {
+    if (!solids.is_fluid(cell))
+      return;
+    double distance = cut_off / h;
+    if (is_mixed(fraction[cell])) {
+      distance = distance_to(cell, center);
+    } else {
+      for (const Around<dim>& other : cells_around(grid, solids, cell)) {
+        Point<dim> place = center;
+        for (int a = 0; a < dim; ++a)
+          place[a] -= other.offset[a];
+        if (is_mixed(fraction[other.cell]))
+          distance = std::min(distance, distance_to(other.cell, place));
       }
-      // A centre on the surface is dry.
-      phi[cell] = fraction[cell] > 0.5 ? -std::max(distance, 1e-12) * h : distance * h;
+      if (is_beside_full_jump(grid, solids, fraction, cell))
+        distance = std::min(distance, 0.5);
     }
+    // A centre on the surface is dry.
+    phi[cell] = fraction[cell] > 0.5 ? -std::max(distance, 1e-12) * h : distance * h;
+  });
   domain_.halo.fill(phi);
 }
 

@@ -4,18 +4,18 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "grid/flagged_tiles.hpp"
 
 namespace lockstep {
 
 namespace {
 template <int dim, typename Function>
-void for_each_fluid_cell(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                         const Function& f) {
-  for (std::size_t tile = 0; tile < tiles.size(); ++tile)
-    for (int i = 0, cell = static_cast<int>(tile) * tile_volume<dim>;
-         tiles[tile] && i < tile_volume<dim>; ++i, ++cell)
-      if (solids.is_fluid(cell))
-        f(cell);
+void for_each_fluid_cell(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                         const std::vector<char>& tiles, const Function& f) {
+  for_each_owned_cell_of(grid, tiles, [&](int cell) {
+    if (solids.is_fluid(cell))
+      f(cell);
+  });
 }
 
 /// The face of a cell, -1 if it is not stored: then it is shut.
@@ -31,7 +31,7 @@ double FractionTransport<dim>::courant_number(const SolidCells<dim>& solids,
                                               double cut_off, const FaceField<dim>& velocity,
                                               double dt) const {
   double largest = 0;
-  for_each_fluid_cell(solids, tiles, [&](int cell) {
+  for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) {
     if (std::abs(phi[cell]) >= cut_off)
       return;
     double sum = 0;
@@ -87,7 +87,7 @@ void FractionTransport<dim>::sweep(const SolidCells<dim>& solids, const std::vec
   const TiledGrid<dim>& grid = domain_.grid;
   const double per_speed = dt / grid.spacing();
   planes_.find(solids, tiles, liquid);
-  for_each_fluid_cell(solids, tiles, [&](int cell) {
+  for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) {
     double change = 0, growth = 0;
     for (int side = 0; side < 2; ++side) {
       const int face = face_of(grid, cell, axis, side);
@@ -104,7 +104,7 @@ void FractionTransport<dim>::sweep(const SolidCells<dim>& solids, const std::vec
     }
     swept_[cell] = liquid[cell] + (change + (grows_[cell] ? growth : 0));
   });
-  for_each_fluid_cell(solids, tiles, [&](int cell) { liquid[cell] = swept_[cell]; });
+  for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) { liquid[cell] = swept_[cell]; });
   domain_.halo.fill(liquid);
 }
 
@@ -119,11 +119,11 @@ double FractionTransport<dim>::advance(const SolidCells<dim>& solids,
   arrived_.assign(before_.size(), 0);
   grows_.assign(before_.size(), 0);
   left_ = 0;
-  for_each_fluid_cell(solids, tiles,
+  for_each_fluid_cell(domain_.grid, solids, tiles,
                       [&](int cell) { grows_[cell] = is_solved[cell] && before_[cell] > 0.5; });
   for (int i = 0; i < dim; ++i)
     sweep(solids, tiles, velocity, dt, (first_axis + i) % dim, fractions.liquid);
-  for_each_fluid_cell(solids, tiles, [&](int cell) {
+  for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) {
     double& liquid = fractions.liquid[cell];
     if (liquid < negligible_fraction)
       liquid = 0;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/errors.hpp"
+#include "mac/domain/cell_at_side.hpp"
 
 namespace lockstep {
 
@@ -23,17 +24,6 @@ bool at_top(const MacDomain<dim>& domain, const Point<dim>& gravity, int cell) {
     return false;
   const int last = gravity[axis] < 0 ? domain.grid.n_cells()[axis] - 1 : 0;
   return domain.grid.coordinates(cell)[axis] == last;
-}
-
-template <int dim>
-bool at_open_side(const MacDomain<dim>& domain, int cell) {
-  const Index<dim> place = domain.grid.coordinates(cell);
-  for (int a = 0; a < dim; ++a)
-    for (int end = 0; end < 2; ++end)
-      if (place[a] == (end == 0 ? 0 : domain.grid.n_cells()[a] - 1) &&
-          domain.boundary.side(a, end).type == SideType::open)
-        return true;
-  return false;
 }
 
 /// In whose box x is, within the domain or beyond it.
@@ -65,12 +55,13 @@ template <int dim>
 std::vector<char> GasPockets<dim>::open_groups(const CellGroups& groups,
                                                const CellField& phi) const {
   const TiledGrid<dim>& grid = domain_.grid;
+  const auto is_open_side = [](const auto& side) { return side.type == SideType::open; };
   std::vector<double> n_open(groups.n, 0.0);
   grid.for_each_owned_cell([&](int cell) {
     if (groups.of_cell[cell] < 0)
       return;
     n_open[groups.of_cell[cell]] +=
-        at_open_side(domain_, cell) ||
+        at_side(domain_, cell, is_open_side) ||
         (parameters_.atmosphere.empty() && at_top(domain_, gravity_, cell));
   });
   for (const Point<dim>& point : parameters_.atmosphere) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "grid/flagged_tiles.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -47,17 +49,6 @@ std::vector<char> tiles_within(const TiledGrid<dim>& grid, const CellField& dist
     tiles[tile] = (Values(distance.data() + tile * tile_volume<dim>).abs() < reach).any();
   }
   return tiles;
-}
-
-/// Calls f(cell) for the owned cells of the domain in those tiles.
-template <int dim, typename Function>
-void for_each_cell_of(const TiledGrid<dim>& grid, const std::vector<char>& tiles,
-                      const Function& f) {
-  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile)
-    for (int i = 0, cell = tile * tile_volume<dim>; tiles[tile] && i < tile_volume<dim>;
-         ++i, ++cell)
-      if (grid.in_domain(cell))
-        f(cell);
 }
 
 /// Of phi, one-sided where a neighbour is missing.
@@ -104,7 +95,7 @@ NearSurface<dim> normal_speed(const MacDomain<dim>& domain, const std::vector<ch
                               const FaceField<dim>& velocity) {
   NearSurface<dim> result(domain, tiles);
   const double reach = reach_of_motion * domain.spacing();
-  for_each_cell_of(domain.grid, tiles, [&](int cell) {
+  for_each_owned_cell_of(domain.grid, tiles, [&](int cell) {
     if (std::abs(distance[cell]) >= reach || geometry.near_surface(cell) ||
         geometry.state.cells[cell] == CellState::solid)
       return;
@@ -133,7 +124,7 @@ CellField lead_of_short_waves(const MacDomain<dim>& domain, const MacGeometry<di
   const auto speed = normal_speed<dim>(domain, tiles, geometry, distance, velocity);
   const auto difference = [&](const NearSurface<dim>& field, double reach) {
     NearSurface<dim> result(domain, tiles);
-    for_each_cell_of(grid, tiles, [&](int cell) {
+    for_each_owned_cell_of(grid, tiles, [&](int cell) {
       if (field.values[cell] != unknown && std::abs(distance[cell]) < reach * h)
         result.values.set(cell, roughness(field, normal(grid, distance, cell), cell));
     });
