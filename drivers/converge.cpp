@@ -143,7 +143,7 @@ int run_study(const Study& study, const Arguments& arguments) {
     if (outcome.exit_code != 0)
       return outcome.exit_code;
   }
-  return 0;
+  return forwarded_signal() == 0 ? 0 : 128 + forwarded_signal();
 }
 
 int run(int argc, char** argv) {

@@ -93,6 +93,7 @@ void print_plug_ins() {
   };
   print(registries.fluids);
   print(registries.solids);
+  print(registries.articulations);
   print(registries.couplings);
   print(registries.contacts);
   print(registries.strategies);

@@ -1,9 +1,7 @@
 #include "contact/gauss_seidel_contact.hpp"
 
 #include <Tpetra_Vector.hpp>
-#include <algorithm>
 
-#include "base/errors.hpp"
 #include "contact/contact_problem.hpp"
 #include "contact/impact_zones.hpp"
 
@@ -20,15 +18,6 @@ Momentum<dim> reaction(const SolidSystem<dim>& solids, const Vector& change,
   apply(*solids.mass(), change, reaction, 1, -1);
   solids.reduction().keep_reactions(reaction);
   return solids.momentum(reaction);
-}
-
-void check_names(const std::map<std::string, double>& by_name,
-                 const std::vector<SolidDescription>& solids) {
-  for (const auto& [name, value] : by_name) {
-    const auto has_name = [&wanted = name](const auto& solid) { return solid.name == wanted; };
-    check_input(std::any_of(solids.begin(), solids.end(), has_name),
-                "\"Contact/Skins/{0}\": there is no solid \"{0}\"; name one of \"Solids\".", name);
-  }
 }
 
 /// What dofs that are combinations have beside their terms. Collective.
@@ -54,7 +43,6 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   ContactReport<dim> report;
   if (!solids.has_unknowns())
     return report;
-  check_names(options_.thickness_of, solids.solids());
   ContactShapes<dim> shapes(solids, topology_);
   if (solids.joints())
     shapes.set_drift(replicated(solids, *drift_of(solids, velocity)));

@@ -1,5 +1,8 @@
 #include "contact/register_contact.hpp"
 
+#include <algorithm>
+
+#include "base/errors.hpp"
 #include "contact/gauss_seidel_contact.hpp"
 
 namespace lockstep {
@@ -76,6 +79,14 @@ GaussSeidelOptions options_from(const ParameterList& list) {
   return options;
 }
 
+void check_names(const std::map<std::string, double>& by_name,
+                 const std::vector<std::string>& solids) {
+  for (const auto& [name, value] : by_name) {
+    check_input(std::find(solids.begin(), solids.end(), name) != solids.end(),
+                "\"Contact/Skins/{0}\": there is no solid \"{0}\"; name one of \"Solids\".", name);
+  }
+}
+
 }  // namespace
 
 template <int dim>
@@ -86,6 +97,7 @@ void register_contact(ContactRegistry<dim>& contacts) {
       "projected Gauss-Seidel on velocities.",
       contact_parameters, [](const ParameterList& list, const ContactSetting<dim>& setting) {
         GaussSeidelOptions options = options_from(list);
+        check_names(options.thickness_of, setting.solids);
         if (!list.get<bool>("Between Jointed Solids"))
           options.apart = setting.jointed;
         return std::make_unique<GaussSeidelContact<dim>>(

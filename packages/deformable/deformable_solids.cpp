@@ -84,7 +84,8 @@ void DeformableSolids<dim>::explicit_momentum(double, double dt, Vector& momentu
     if (bodies_[body_of_node_[i]].integration == TimeIntegration::explicit_forces)
       force -= damping_.row_times(i, velocity);
     Point<dim> impulse = dt * force;
-    if (!limiting_impulse_.empty())
+    // Before the positions move, S1 may be solved again, and is limited anew.
+    if (moved_ && !limiting_impulse_.empty())
       impulse += limiting_impulse_[i];
     for (int a = 0; a < dim; ++a)
       values[dim * i + a] += impulse[a];

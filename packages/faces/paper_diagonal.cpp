@@ -72,7 +72,9 @@ std::vector<Triplet> paper_diagonal_triplets(
   const std::vector<SolidState<dim>> states = solids.states();
   std::vector<Triplet> triplets;
   for (int s = 0; s < static_cast<int>(states.size()); ++s) {
-    if (!solids.solids()[s].rigid || solids.solids()[s].prescribed)
+    const SolidDescription& solid = solids.solids()[s];
+    const bool is_seen = solid.simplex_begin < solid.simplex_end;
+    if (!solid.rigid || solid.prescribed || !is_seen)
       continue;
     const double mass = states[s].mass;
     const Point<dim> center = states[s].center_of_mass;

@@ -178,6 +178,7 @@ class MacFluid : public FluidDiscretization<dim>,
   int steps_to_sharing_ = 0;                      ///< before work is next compared between ranks
   std::vector<GlobalIndex> compared_work_;        ///< at surfaces, of this rank's tiles, then
   bool has_room_ = false;                         ///< for the first surface
+  bool has_begun_ = false;                        ///< with a geometry: sinks may empty it later
   MacParameters<dim> parameters_;
   Scalars<dim> scalars_;
   RayHalo<dim> ray_halo_;

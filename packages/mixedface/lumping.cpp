@@ -120,16 +120,17 @@ struct MassFactor {
   double at(const Point<dim>& x) const { return factor.dot(moments_of<dim>(x - center, axis)); }
 };
 
+/// By solid and axis; null: none.
+template <int dim>
+using CorrectionTable = std::vector<const MassFactor<dim>*>;
+
 /// By solid and axis, those that keep the masses of all their faces positive, on all ranks.
 template <int dim>
 std::vector<double> smallest_factors(const std::vector<ControlVolume<dim>>& volumes,
                                      const std::vector<std::vector<SurfaceShare<dim>>>& shares,
-                                     const std::vector<MassFactor<dim>>& corrections, int n_solids,
+                                     const CorrectionTable<dim>& correction,
                                      const std::vector<double>& masses, const Communicator& comm) {
-  std::vector<double> smallest(n_solids * dim, 1);
-  std::vector<const MassFactor<dim>*> correction(n_solids * dim, nullptr);
-  for (const MassFactor<dim>& one : corrections)
-    correction[one.solid * dim + one.axis] = &one;
+  std::vector<double> smallest(correction.size(), 1);
   for (std::size_t f = 0; f < volumes.size(); ++f) {
     if (masses[f] <= 0)
       continue;
@@ -147,14 +148,12 @@ std::vector<double> smallest_factors(const std::vector<ControlVolume<dim>>& volu
 template <int dim>
 void scale_masses(const std::vector<ControlVolume<dim>>& volumes,
                   const std::vector<std::vector<SurfaceShare<dim>>>& shares,
-                  const MassFactor<dim>& correction, const std::vector<double>& original,
-                  std::vector<double>& masses) {
+                  const CorrectionTable<dim>& correction, std::vector<double>& masses) {
   for (std::size_t f = 0; f < volumes.size(); ++f) {
-    if (volumes[f].direction != correction.axis)
-      continue;
+    const double original = masses[f];
     for (const SurfaceShare<dim>& share : shares[f]) {
-      if (share.solid == correction.solid)
-        masses[f] += share.weight * original[f] * correction.at(volumes[f].center);
+      if (const auto* one = correction[share.solid * dim + volumes[f].direction])
+        masses[f] += share.weight * original * one->at(volumes[f].center);
     }
   }
 }
@@ -226,23 +225,26 @@ std::vector<DisplacedExcess<dim>> balance_masses(
     solid_volumes[s] = part.volume;
   }
   const auto balances = accumulate<dim>(volumes, shares, centers, masses, comm);
-  const std::vector<double> original = masses;
   const auto corrections =
       corrections_of<dim>(solids, balances, centers, solid_volumes, wet, density);
-  const std::vector<double> smallest = smallest_factors<dim>(
-      volumes, shares, corrections, static_cast<int>(solids.size()), original, comm);
+  CorrectionTable<dim> correction(solids.size() * dim, nullptr);
+  for (const MassFactor<dim>& one : corrections)
+    correction[one.solid * dim + one.axis] = &one;
+  const std::vector<double> smallest =
+      smallest_factors<dim>(volumes, shares, correction, masses, comm);
   std::vector<DisplacedExcess<dim>> unseen;
   for (const MassFactor<dim>& one : corrections) {
-    if (one.solvable && smallest[one.solid * dim + one.axis] > 0) {
-      scale_masses<dim>(volumes, shares, one, original, masses);
+    const std::size_t place = one.solid * dim + one.axis;
+    if (one.solvable && smallest[place] > 0)
       continue;
-    }
+    correction[place] = nullptr;
     DisplacedExcess<dim> left{one.solid, one.axis, one.center, -one.excess[0], Point<dim>::Zero()};
     for (int k = 1; k < dim; ++k)
       left.moment[(one.axis + k) % dim] = -one.excess[k];
     if (left.mass != 0 || !left.moment.isZero(0))
       unseen.push_back(left);
   }
+  scale_masses<dim>(volumes, shares, correction, masses);
   return unseen;
 }
 

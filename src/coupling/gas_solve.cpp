@@ -32,8 +32,9 @@ Answer answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
   gas.push(unit, rhs);
   relative_part_removed(blocks.null_space, *rhs.pressure);
   // What opens the pocket is a small difference of what goes through its faces.
-  const SolveRequest exact{request.name + ", gas", std::min(request.tolerance, 1e-10), 0};
-  report.iterations += strategy.solve(blocks, rhs, answer.unknowns, exact).iterations;
+  const SolveRequest exact{request.name + ", gas", std::min(request.tolerance, 1e-10), 0,
+                           request.step};
+  report.add_work(strategy.solve(blocks, rhs, answer.unknowns, exact));
   answer.rates = gas.rates(answer.unknowns, true);
   answer.rates[pocket] += gas.conductance[pocket];
   return answer;

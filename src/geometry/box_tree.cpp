@@ -7,6 +7,9 @@ namespace lockstep {
 
 namespace {
 
+/// Of the nodes of a tree, until its boxes are sorted anew.
+constexpr double most_growth = 1.5;
+
 /// Sorts different numbers: if there are many, by a map of bits.
 void sort_ids(std::vector<int>& ids) {
   constexpr int many = 32;
@@ -35,18 +38,45 @@ BoxTree<dim>::BoxTree(std::vector<Box<dim>> boxes, BoxOrder order)
   n_leaves_ = 1;
   while (n_leaves_ * in_leaf < n_boxes())
     n_leaves_ *= 2;
-  if (!order_ || order_->size() != boxes_.size()) {
-    std::vector<int> sorted(boxes_.size());
-    std::iota(sorted.begin(), sorted.end(), 0);
-    sort(sorted, 0, n_leaves_);
-    order_ = std::make_shared<const std::vector<int>>(std::move(sorted));
-  }
   nodes_.resize(2 * n_leaves_);
-  for (int leaf = 0; leaf < n_leaves_; ++leaf)
+  if (order_ && order_->places.size() == boxes_.size()) {
+    fill_nodes(order_->places);
+    if (extent() <= most_growth * order_->extent)
+      return;
+  }
+  std::vector<int> places = sorted();
+  fill_nodes(places);
+  order_ = std::make_shared<const SortedBoxes>(SortedBoxes{std::move(places), extent()});
+}
+
+template <int dim>
+void BoxTree<dim>::fill_nodes(const std::vector<int>& order) {
+  for (int leaf = 0; leaf < n_leaves_; ++leaf) {
+    Box<dim>& node = nodes_[n_leaves_ + leaf];
+    node.setEmpty();
     for (int k = first_of(leaf); k < first_of(leaf + 1); ++k)
-      nodes_[n_leaves_ + leaf].extend(boxes_[(*order_)[k]]);
+      node.extend(boxes_[order[k]]);
+  }
   for (int node = n_leaves_ - 1; node > 0; --node)
     nodes_[node] = nodes_[2 * node].merged(nodes_[2 * node + 1]);
+}
+
+/// Sums the sides of all nodes: how much a search meets.
+template <int dim>
+double BoxTree<dim>::extent() const {
+  double sum = 0;
+  for (const Box<dim>& node : nodes_)
+    if (!node.isEmpty())
+      sum += node.sizes().sum();
+  return sum;
+}
+
+template <int dim>
+std::vector<int> BoxTree<dim>::sorted() const {
+  std::vector<int> order(boxes_.size());
+  std::iota(order.begin(), order.end(), 0);
+  sort(order, 0, n_leaves_);
+  return order;
 }
 
 /// Halves the boxes of some leaves along the axis on which their centres spread farthest.

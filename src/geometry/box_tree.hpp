@@ -7,8 +7,12 @@
 
 namespace lockstep {
 
-/// Which boxes are near each other: places of a balanced binary tree.
-using BoxOrder = std::shared_ptr<const std::vector<int>>;
+/// Which boxes are near each other.
+struct SortedBoxes {
+  std::vector<int> places;  ///< in a balanced binary tree
+  double extent = 0;        ///< of the tree's nodes together when they were sorted [m]
+};
+using BoxOrder = std::shared_ptr<const SortedBoxes>;
 
 /// Finds those of many boxes that touch another or are near a point. What it finds does not depend
 /// on the order, so that boxes that have moved a little may be sorted as they were before.
@@ -16,7 +20,7 @@ template <int dim>
 class BoxTree {
  public:
   BoxTree() = default;
-  /// Sorts the boxes; or takes the `order` of a tree of as many.
+  /// Sorts the boxes; or takes the `order` of a tree of as many, as long as it is of use.
   explicit BoxTree(std::vector<Box<dim>> boxes, BoxOrder order = nullptr);
 
   const BoxOrder& order() const { return order_; }
@@ -38,6 +42,9 @@ class BoxTree {
     return static_cast<int>(static_cast<long long>(leaf) * n_boxes() / n_leaves_);
   }
   void sort(std::vector<int>& order, int begin_leaf, int end_leaf) const;
+  std::vector<int> sorted() const;
+  void fill_nodes(const std::vector<int>& order);
+  double extent() const;
 
   std::vector<Box<dim>> boxes_;
   BoxOrder order_;
@@ -61,7 +68,7 @@ bool BoxTree<dim>::any_touching(const Box<dim>& box, const Function& f) const {
       }
       const int leaf = node - n_leaves_, end = first_of(leaf + 1);
       for (int k = first_of(leaf); k < end; ++k)
-        if (const int i = (*order_)[k]; boxes_[i].intersects(box) && f(i))
+        if (const int i = order_->places[k]; boxes_[i].intersects(box) && f(i))
           return true;
     }
     if (n_waiting == 0)
@@ -92,7 +99,7 @@ void BoxTree<dim>::near(const Point<dim>& x, const Reach& reach, const Function&
       }
       const int leaf = now.node - n_leaves_, end = first_of(leaf + 1);
       for (int k = first_of(leaf); k < end; ++k) {
-        const int i = (*order_)[k];
+        const int i = order_->places[k];
         if (const double square = boxes_[i].squaredExteriorDistance(x); square <= reach())
           f(i);
       }

@@ -36,6 +36,7 @@ struct ContactSetting {
       closed_sides{};          ///< [axis][lower, upper] is a wall for solids
   double smallest_length = 1;  ///< that the fluid resolves, h [m]
   Communicator comm;
+  std::vector<std::string> solids;  ///< their names
   /// Pairs of solids that joints connect, by name.
   std::vector<std::pair<std::string, std::string>> jointed;
 };

@@ -15,6 +15,7 @@ struct SolveRequest {
   /// reached, the solve is done, even where every term of these rows vanishes and `tolerance` has
   /// nothing to scale with.
   double negligible_pressure_residual = 0;
+  long long step = 0;  ///< of which it is one, counted as in history.csv; 0: of none
 };
 
 struct SolveReport {
@@ -25,6 +26,16 @@ struct SolveReport {
   double setup_seconds = 0, solve_seconds = 0;
   int preconditioner_builds = 0, preconditioner_reuses = 0;
   long stored_nonzeros = 0;  ///< of matrices that the strategy assembled; 0 if it does not count
+
+  /// Adds what another solve has cost, whose solution this one's stands for.
+  void add_work(const SolveReport& other) {
+    iterations += other.iterations;
+    solid_iterations += other.solid_iterations;
+    setup_seconds += other.setup_seconds;
+    solve_seconds += other.solve_seconds;
+    preconditioner_builds += other.preconditioner_builds;
+    preconditioner_reuses += other.preconditioner_reuses;
+  }
 };
 
 /// A way to solve Eq. 16.

@@ -117,6 +117,8 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, Vector& r, Vector& x,
   x.putScalar(0);
   constexpr double trusted_fall = 1e-3;
   double r_norm = norm(r), true_norm = r_norm;
+  check_solve(std::isfinite(r_norm), "{}: the right-hand side is not finite (|r| = {}).",
+              request.name, r_norm);
   RoundOff round_off(r_norm);
   double r_dot_z = 0;
   int iteration = 0;

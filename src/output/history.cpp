@@ -12,40 +12,12 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "output/csv_line.hpp"
 #include "output/on_root.hpp"
 
 namespace lockstep {
 
 namespace {
-/// Text with a separator or a quote in it is quoted, after RFC 4180.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"#") == std::string::npos)
-    return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"')
-      result += '"';
-    result += c;
-  }
-  return result + '"';
-}
-
-/// The fields of a line; quotes are kept.
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool inside_quotes = false;
-  for (const char c : line) {
-    if (c == '"')
-      inside_quotes = !inside_quotes;
-    if (c == ',' && !inside_quotes) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
 std::string names_of(const std::vector<HistoryColumn>& columns) {
   std::string line;
   for (const HistoryColumn& column : columns) {
@@ -115,7 +87,7 @@ std::string HistoryTable::kept_rows(const std::string& text, long long step) con
       names_seen = true;
       continue;
     }
-    const std::vector<std::string> fields = split(line);
+    const std::vector<std::string> fields = csv_fields(line);
     if (fields.size() != columns_.size())
       continue;
     const std::string& field = fields[step_column];
@@ -135,8 +107,9 @@ std::string HistoryTable::format_row(const std::vector<HistoryValue>& values) co
     if (i > 0)
       line += ',';
     if (const auto* number = std::get_if<double>(&values[i])) {
-      check_output(std::isfinite(*number), "'{}': column '{}' would become {}; the run is broken.",
-                   path_, columns_[i].name, *number);
+      check_output(std::isfinite(*number) || (std::isnan(*number) && columns_[i].may_be_unknown),
+                   "'{}': column '{}' would become {}; the run is broken.", path_, columns_[i].name,
+                   *number);
       line += fmt::format("{:.17g}", *number);
     } else if (const auto* integer = std::get_if<long long>(&values[i])) {
       line += fmt::format("{}", *integer);
@@ -144,7 +117,7 @@ std::string HistoryTable::format_row(const std::vector<HistoryValue>& values) co
       const std::string& text = std::get<std::string>(values[i]);
       check_output(text.find_first_of("\r\n") == std::string::npos,
                    "'{}': column '{}' would hold a line break.", path_, columns_[i].name);
-      line += quoted(text);
+      line += csv_field(text);
     }
   }
   return line + "\n";

@@ -11,6 +11,7 @@ struct HistoryColumn {
   std::string name;
   std::string unit;  ///< "1" if it has none
   std::string description;
+  bool may_be_unknown = false;  ///< "nan" where a plug-in does not tell
 };
 
 /// One entry of a row. Numbers are written with 17 significant digits.
@@ -21,7 +22,7 @@ using HistoryValue = std::variant<long long, double, std::string>;
 /// that a killed run leaves whole rows. One of the columns is called "step".
 ///
 /// All member functions are collective; rank 0 writes and its values count. They throw OutputError
-/// (full disk, a number that is not finite, with the name of the column).
+/// (full disk, a number that is not finite and may not be unknown, with the name of the column).
 class HistoryTable {
  public:
   HistoryTable(const Communicator& comm, const std::string& path,

@@ -54,8 +54,10 @@ std::vector<HistoryColumn> history_columns(bool with_liquid,
                     "torque over dt of forces that were linearised");
   for (HistoryColumn column : std::vector<HistoryColumn>{
            {"solid_iterations", "1", "inner ones on the solids' block, both solves"},
-           {"momentum_error", "1", "audit: imbalance over the largest momentum or impulses"},
-           {"angular_momentum_error", "1", "the same for angular momentum (0 if periodic)"},
+           {"momentum_error", "1",
+            "audit: imbalance over the largest momentum or impulses; nan where a plug-in has none",
+            true},
+           {"angular_momentum_error", "1", "the same for angular momentum (0 if periodic)", true},
            {"fluid_kinetic_energy", "J", ""},
            {"solid_kinetic_energy", "J", ""},
            {"elastic_energy", "J", ""},

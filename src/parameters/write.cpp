@@ -1,9 +1,5 @@
 #include "parameters/write.hpp"
 
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-
 #include "base/errors.hpp"
 #include "base/xml_text.hpp"
 #include "parameters/parameter_rule.hpp"
@@ -100,23 +96,6 @@ std::string to_xml(const ParameterList& list) {
   std::string xml;
   add_list(xml, list, list.name(), "", 0);
   return xml;
-}
-
-void write_xml(const ParameterList& list, const std::string& path) {
-  const std::string xml = to_xml(list);
-  const std::string beside = path + ".part";
-  std::ofstream stream(beside, std::ios::binary);
-  stream << xml;
-  stream.close();
-  std::error_code error;
-  if (stream)
-    std::filesystem::rename(beside, path, error);
-  if (!stream || error) {
-    std::remove(beside.c_str());
-    throw OutputError(fmt::format(
-        "Cannot write \"{}\". Check that the folder exists, is writable and has space left.",
-        path));
-  }
 }
 
 std::vector<std::string> differences_from_default(const ParameterList& list,

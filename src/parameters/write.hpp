@@ -10,10 +10,6 @@ namespace lockstep {
 /// included. Throws OutputError for a value that XML cannot hold.
 std::string to_xml(const ParameterList& list);
 
-/// Writes it beside `path`, then renames. Not collective: call it on one rank. Throws OutputError
-/// if the file cannot be written.
-void write_xml(const ParameterList& list, const std::string& path);
-
 /// One line for every parameter of a validated list that was chosen by the user:
 /// `Fluid/Density = 998 (default 1000)`; without the bracket where there is no default.
 std::vector<std::string> differences_from_default(const ParameterList& list,

@@ -61,7 +61,9 @@ Variables take_constants(Document& document) {
   return constants;
 }
 
-int dimension_of(const Document& document) {
+}  // namespace
+
+int scene_dimension(const Document& document) {
   const ParameterList& list = document.list;
   check_input(list.isType<int>("Dimension"), "{}: \"Dimension\" (int) is required; it is 2 or 3.",
               document.source.file);
@@ -70,8 +72,6 @@ int dimension_of(const Document& document) {
               document.source.place("Dimension"), dimension);
   return dimension;
 }
-
-}  // namespace
 
 void expand_scene(Document& document, std::vector<std::string>& settings,
                   const Communicator& comm) {
@@ -83,7 +83,7 @@ void expand_scene(Document& document, std::vector<std::string>& settings,
   settings.erase(settings.begin(), others);
   const Variables constants = take_constants(document);
   apply_defaults(document);
-  make_copies(document, dimension_of(document), constants);
+  make_copies(document, scene_dimension(document), constants);
   evaluate_formulas(document.list, constants, document.source);
 }
 

@@ -11,9 +11,9 @@ struct BlockResidual {
   double pressure = 0, solid = 0;  ///< 2-norms
   double pressure_scale = 0, solid_scale = 0;  ///< same units
 
-  /// 0 where everything vanishes.
-  double relative_pressure() const { return pressure > 0 ? pressure / pressure_scale : 0; }
-  double relative_solid() const { return solid > 0 ? solid / solid_scale : 0; }
+  /// 0 where everything vanishes; NaN if the residual is.
+  double relative_pressure() const { return pressure == 0 ? 0 : pressure / pressure_scale; }
+  double relative_solid() const { return solid == 0 ? 0 : solid / solid_scale; }
   double norm() const { return pressure + solid; }
 };
 

@@ -27,8 +27,10 @@ DumpingStrategy::DumpingStrategy(std::unique_ptr<SolverStrategy> strategy,
 
 SolveReport DumpingStrategy::solve(const BlockSystem& system, const BlockVector& rhs,
                                    BlockVector& solution, const SolveRequest& request) {
-  if (request.name == request_.solve && ++n_solves_ == request_.step)
+  if (!has_written_ && request.name == request_.solve && request.step == request_.step) {
     write_system(request_.file, system, rhs);
+    has_written_ = true;
+  }
   return strategy_->solve(system, rhs, solution, request);
 }
 

@@ -8,8 +8,8 @@ namespace lockstep {
 
 /// Which system to write, and where.
 struct DumpRequest {
-  int step = 1;       ///< counted from the start of this run
-  std::string solve;  ///< "S1", "F2" or "S2"
+  long long step = 1;  ///< counted as in history.csv
+  std::string solve;   ///< "S1", "F2" or "S2"
   std::string file;
 };
 
@@ -24,6 +24,7 @@ class DumpingStrategy : public SolverStrategy {
   std::string name() const override { return strategy_->name(); }
   void save(CheckpointWriter& checkpoint) const override { strategy_->save(checkpoint); }
   void load(const CheckpointReader& checkpoint) override { strategy_->load(checkpoint); }
+  std::function<void()> undo() override { return strategy_->undo(); }
   void prepare(const BlockSystem& system) override { strategy_->prepare(system); }
   SolveReport solve(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
                     const SolveRequest& request) override;
@@ -31,7 +32,7 @@ class DumpingStrategy : public SolverStrategy {
  private:
   std::unique_ptr<SolverStrategy> strategy_;
   DumpRequest request_;
-  int n_solves_ = 0;  ///< of that name so far: one a step
+  bool has_written_ = false;  ///< a step may solve it again, about what it found
 };
 
 }  // namespace lockstep

@@ -7,7 +7,7 @@ namespace Stratimikos {
 class DefaultLinearSolverBuilder;
 }
 
-/// Private to src/linear: one translation unit for each heavy package.
+/// Private to src/solve: one translation unit for each heavy package.
 namespace lockstep {
 
 void register_muelu(Stratimikos::DefaultLinearSolverBuilder& builder);

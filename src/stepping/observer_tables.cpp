@@ -18,8 +18,8 @@ void check_name(const std::string& name) {
               "In \"Observers\", \"{}\" cannot be the name of a file; use letters, digits, blanks, "
               "- and _.",
               name.substr(0, 100));
-  check_input(name != "history" && name != "bodies",
-              "In \"Observers\", \"{}\" is the name of a table that every run has; take another.",
+  check_input(name != "history" && name != "bodies" && name != "joints",
+              "In \"Observers\", \"{}\" is the name of a table that runs have; take another.",
               name);
 }
 
@@ -103,6 +103,9 @@ void ObserverTables<dim>::save(CheckpointWriter& checkpoint) const {
 template <int dim>
 void ObserverTables<dim>::load(const CheckpointReader& checkpoint) {
   for (Watch& watch : watches_) {
+    // One that is new looks after the next step.
+    if (!checkpoint.file().has_attribute("/", attribute_of(watch.name)))
+      continue;
     watch.observer->load(checkpoint);
     watch.last_time =
         checkpoint.file().template read_attribute<double>("/", attribute_of(watch.name));

@@ -30,8 +30,8 @@ class ObserverTables {
  private:
   struct Watch {
     std::string name;
-    double interval = 0;   ///< [s]
-    double last_time = 0;  ///< of its last look [s]
+    double interval = 0;        ///< [s]
+    double last_time = -1e300;  ///< of its last look [s]
     std::unique_ptr<Observer<dim>> observer;
     std::unique_ptr<HistoryTable> table;
   };

@@ -224,15 +224,6 @@ ParameterList scene_parameters(const Registries<dim>& registries, const std::str
   return scene;
 }
 
-int scene_dimension(const Document& document) {
-  check_input(document.list.isType<int>("Dimension"),
-              "{}: \"Dimension\" (int) is required; it is 2 or 3.", document.source.file);
-  const int dimension = document.list.get<int>("Dimension");
-  check_input(dimension == 2 || dimension == 3, "{}: \"Dimension\" is {}; it must be 2 or 3.",
-              document.source.place("Dimension"), dimension);
-  return dimension;
-}
-
 std::string scene_fluid(const Document& document, const std::vector<std::string>& settings) {
   const std::string setting = "Fluid/Type=";
   std::string fluid;
@@ -314,6 +305,8 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
     setting.domain = bounds;
     setting.smallest_length = fluid.smallest_length();
     setting.comm = comm;
+    for (const SolidDescription& solid : components.solids->solids())
+      setting.solids.push_back(solid.name);
     setting.jointed = jointed_pairs(scene);
     if (const auto* bounded = side_of<BoundedFluid<dim>>(fluid))
       setting.closed_sides = bounded->closed_sides();

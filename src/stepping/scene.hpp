@@ -28,9 +28,8 @@ struct SceneOptions {
   StepperOptions stepper;
 };
 
-/// Reads "Dimension" of a document that is not validated yet. Throws InputError if it is missing.
-int scene_dimension(const Document& document);
-/// The "Type" of its fluid, as the document or a `--set` has it; empty if neither says.
+/// The "Type" of a scene's fluid, as the document, not validated yet, or a `--set` has it; empty if
+/// neither says.
 std::string scene_fluid(const Document& document, const std::vector<std::string>& settings);
 
 /// Throws InputError if times near the start cannot be told apart a step away.

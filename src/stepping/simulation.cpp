@@ -46,9 +46,10 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
     scene_options_.time.end = *options.end_time;
   if (options.steps)
     scene_options_.time.most_steps = *options.steps;
-  check_input(scene_options_.time.end > scene_options_.time.start,
-              "--end-time {} s must be later than the start of the scene, {} s.",
-              scene_options_.time.end, scene_options_.time.start);
+  check_input(
+      std::isfinite(scene_options_.time.end) && scene_options_.time.end > scene_options_.time.start,
+      "--end-time {} s must be a number later than the start of the scene, {} s.",
+      scene_options_.time.end, scene_options_.time.start);
   scene_options_.time.fixed_step = even_step(scene_options_.time);
   check_time_resolution(scene_options_.time);
   if (options.dump_system) {
@@ -118,6 +119,13 @@ void Simulation<dim>::begin_outputs() {
   record_input(comm_, options_.output_directory, options_.scene_file, to_xml(scene_));
   header_ = run_header(comm_, options_.command_line);
   write_summary(comm_, options_.output_directory, unfinished_summary("running", "", header_));
+  recorded([&] { begin_tables(); });
+  first_step_ = step_;
+  last_checkpoint_ = stepper_->time();
+}
+
+template <int dim>
+void Simulation<dim>::begin_tables() {
   if (options_.restart_file.empty()) {
     discard_checkpoints_after(comm_, options_.output_directory, -1);
     tables_.start();
@@ -133,8 +141,6 @@ void Simulation<dim>::begin_outputs() {
     frames_.resume(stepper_->time());
     last_frame_ = frames_.n_frames() > 0 ? frames_.last_time() : -1e300;
   }
-  first_step_ = step_;
-  last_checkpoint_ = stepper_->time();
 }
 
 template <int dim>

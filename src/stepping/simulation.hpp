@@ -73,6 +73,7 @@ class Simulation {
   template <typename Function>
   void recorded(const Function& f);
   void begin_outputs();
+  void begin_tables();
   void end_outputs(double wall_seconds);
   /// On rank 0, not collective: others may have failed elsewhere.
   void record_failure(const std::string& message) const noexcept;

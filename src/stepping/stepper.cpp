@@ -48,9 +48,21 @@ void Stepper<dim>::resume(double time, double last_dt, long long n_steps) {
 
 template <int dim>
 void Stepper<dim>::freeze() {
-  system_.freeze(components_.solids->snapshot());
+  freeze(components_.solids->snapshot());
   components_.fluid->begin_prediction();
   last_momentum_ = total_momentum(fluid_momentum());
+}
+
+template <int dim>
+void Stepper<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>>& surface) {
+  system_.freeze(surface);
+  frozen_at_rest_ = solids_rest();
+}
+
+/// Nothing moves them now, nor has them ready to move.
+template <int dim>
+bool Stepper<dim>::solids_rest() const {
+  return !coupled() && components_.solids->largest_surface_speed() == 0;
 }
 
 /// A step that is interrupted afterwards leaves the fluid on its new cells.
@@ -213,9 +225,9 @@ CoupledSolution Stepper<dim>::solve_newton(const StepContext<dim>& context,
       break;
     system_.forget_solid_block();
     momentum->update(1, *solids.explicit_momentum(context.time, context.dt), -1, *before, 1);
-    const int iterations = report.iterations;
+    const SolveReport earlier = report;
     solution = solve(context, momentum, name, report, incompatibility);
-    report.iterations += iterations;
+    report.add_work(earlier);
   }
   return solution;
 }
@@ -229,7 +241,7 @@ SolveRequest Stepper<dim>::request(const std::string& name, double dt) const {
   const double speed = fluid.largest_speed() + dt * fluid.gravity().norm();
   const double area = std::pow(fluid.smallest_length(), dim - 1);
   const auto n_cells = static_cast<double>(fluid.pressure_map()->getGlobalNumElements());
-  return {name, options_.tolerance, 1e-15 * speed * area * std::sqrt(n_cells)};
+  return {name, options_.tolerance, 1e-15 * speed * area * std::sqrt(n_cells), n_steps_ + 1};
 }
 
 /// Of u*.

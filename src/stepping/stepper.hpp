@@ -54,6 +54,8 @@ class Stepper {
     CoupledSolution solution;
   };
   void freeze();
+  void freeze(const std::shared_ptr<const SurfaceSnapshot<dim>>& surface);
+  bool solids_rest() const;
   void make_room(double dt);
   /// All of a step but its end: nothing yet that cannot be undone.
   Solved solve_step(double dt, StepReport<dim>& report);
@@ -116,6 +118,7 @@ class Stepper {
   double last_dt_ = 0;           ///< 0 before the first step
   long long n_steps_ = 0;        ///< taken
   bool fluid_moved_ = false;     ///< to other cells, before this step
+  bool frozen_at_rest_ = false;  ///< the geometry is that of solids that did not move then
   Momentum<dim> last_momentum_;  ///< at the end of the last step
   /// Of joints, from S1 to S2: the half of their impulses that acts where the step begins; null:
   /// all of them acts at its end.

@@ -54,10 +54,10 @@ CoupledSolution Stepper<dim>::solve_settled(const StepContext<dim>& context,
     settle_motion<dim>(solids, nullptr, context, {}, *solution.velocity, *solution.velocity,
                        *momentum);
     system_.forget_solid_block();
-    const int iterations = report.s2.iterations;
+    const SolveReport earlier = report.s2;
     solution =
         solve(context, momentum, name_of(context.phase), report.s2, report.incompatibility_s2);
-    report.s2.iterations += iterations;
+    report.s2.add_work(earlier);
   }
   return solution;
 }

@@ -67,11 +67,11 @@ void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>&
   velocity = rcp(new Vector(*velocity, Teuchos::Copy));
   RCP<const Vector> drift = close();
   if (!drift.is_null()) {
-    const int iterations = report.s1.iterations;
+    const SolveReport earlier = report.s1;
     context.constraints = solids.constraints(context.time, end, drift);
     velocity = find_motion(context, prediction, report);
     velocity = rcp(new Vector(*velocity, Teuchos::Copy));
-    report.s1.iterations += iterations;
+    report.s1.add_work(earlier);
     drift = close();
   }
   felt_at_start_ = Teuchos::null;

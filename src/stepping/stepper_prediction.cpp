@@ -181,15 +181,19 @@ void Stepper<dim>::advect(double dt, StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   const auto& solids = *components_.solids;
   const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
-  const auto after = solids.empty() ? before : solids.snapshot();
+  auto after = solids.empty() ? before : solids.snapshot();
+  const bool stays =
+      frozen_at_rest_ && solids_rest() && after->mesh().vertices == before->mesh().vertices;
+  if (stays)
+    after = before;
   const MovingSurface<dim> moving{before, after, [&solids](const SurfacePoint<dim>& point) {
                                     return solids.effective_velocity(point, point.position);
                                   }};
   fluid.advect(time_, dt, moving);
   {
     ScopedPhase geometry(timers_, "geometry");
-    if (!solids.empty() || fluid.geometry_changes())
-      system_.freeze(after);
+    if (!stays || fluid.geometry_changes())
+      freeze(after);
   }
   fluid.revalidate(moving);
   reset_unseen_faces();

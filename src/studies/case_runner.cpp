@@ -177,7 +177,7 @@ std::vector<CaseOutcome> run_cases(
   std::exception_ptr failure;
   Concurrency concurrency;
   const auto work = [&] {
-    for (std::size_t i = next++; i < cases.size() && !stop; i = next++) {
+    for (std::size_t i = next++; i < cases.size() && !stop && forwarded_signal() == 0; i = next++) {
       try {
         const auto begin = [&](const std::string& log) {
           const std::lock_guard<std::mutex> lock(mutex);

@@ -21,7 +21,10 @@ namespace {
 /// Children that run now, for the signal handler; 0: a free place.
 std::array<std::atomic<pid_t>, 64> children{};
 
+std::atomic<int> received{0};
+
 extern "C" void forward_signal(int signal) {
+  received = signal;
   for (const std::atomic<pid_t>& child : children) {
     if (child > 0)
       kill(child, signal);
@@ -145,6 +148,10 @@ ChildResult run_child(const std::vector<std::string>& command, const std::string
   }
   const double seconds = std::chrono::duration<double>(Clock::now() - start_time).count();
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), seconds};
+}
+
+int forwarded_signal() {
+  return received;
 }
 
 void forward_signals_to_children() {

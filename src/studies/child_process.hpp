@@ -20,5 +20,7 @@ ChildResult run_child(const std::vector<std::string>& command, const std::string
 /// From now on SIGTERM and SIGINT are handed to the children that run, instead of ending this
 /// program: they end in their own way, and `run_child` reports it.
 void forward_signals_to_children();
+/// The last one that came since, whether or not a child ran; 0: none.
+int forwarded_signal();
 
 }  // namespace lockstep

@@ -1,13 +1,14 @@
 #include "studies/frame_field.hpp"
 
 #include "base/errors.hpp"
+#include "output/xdmf.hpp"
 #include "studies/frame_file.hpp"
 
 namespace lockstep {
 
 FrameField read_last_frame(const std::string& run_directory, const std::string& field) {
   const FrameFile file(frame_files(run_directory).back());
-  FrameFile::Values dataset = file.dataset("/fluid/" + field);
+  FrameFile::Values dataset = file.dataset("/fluid/" + xdmf::stored_name(field));
   const auto& extents = dataset.extents;
   check_output(extents.size() == 3 || extents.size() == 4,
                "The field \"{}\" in the frames of {} has {} extents.", field, run_directory,

@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "output/csv_line.hpp"
 #include "parameters/strict_xml.hpp"
 
 namespace lockstep {
@@ -16,14 +17,6 @@ namespace {
 
 using Row = std::map<std::string, std::string>;
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> parts;
-  std::istringstream stream(line);
-  for (std::string part; std::getline(stream, part, ',');)
-    parts.push_back(part);
-  return parts;
-}
-
 std::vector<Row> read_csv(const std::string& file) {
   std::istringstream stream(read_whole_file(file));
   std::vector<std::string> names;
@@ -31,7 +24,7 @@ std::vector<Row> read_csv(const std::string& file) {
   for (std::string line; std::getline(stream, line);) {
     if (line.empty() || line.front() == '#')
       continue;
-    const std::vector<std::string> parts = split(line);
+    const std::vector<std::string> parts = csv_fields(line);
     if (names.empty()) {
       names = parts;
       continue;

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
+#include "output/xdmf.hpp"
 #include "studies/frame_file.hpp"
 
 namespace lockstep {
@@ -20,7 +21,7 @@ struct Surface {
 };
 
 Surface read_surface(const FrameFile& file, const std::string& solid) {
-  const std::string group = "/solids/" + solid;
+  const std::string group = "/solids/" + xdmf::stored_name(solid);
   const auto vertices = file.dataset(group + "/vertices");
   const auto simplices = file.dataset(group + "/simplices");
   check_output(

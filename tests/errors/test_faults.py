@@ -29,6 +29,14 @@ def read_table(path):
     return [{name: text for name, text in row.items() if name != "wall_seconds"} for row in csv.DictReader(lines)]
 
 
+def with_gauges(*names):
+    """The scene, and as many gauges of the pressure above the ball, looked at each step."""
+    gauges = "".join(f'<ParameterList name="{name}"><Parameter name="Type" type="string" value="points"/>'
+                     '<Parameter name="Points" type="Array(double)" value="{.5, 1.5}"/></ParameterList>' for name in names)
+    return SCENE.replace('  <ParameterList name="Time">', f'  <ParameterList name="Observers">{gauges}</ParameterList>\n'
+                         '  <ParameterList name="Time">')
+
+
 def read_last_frame(path):
     """The datasets of the last frame, after a look at all of them."""
     fields = {}
@@ -217,6 +225,16 @@ class Faults(unittest.TestCase):
             result = simulate(folder, "--restart", newest_checkpoint(folder),
                               *(word for setting in others for word in ("--set", setting)))
             self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_an_observer_that_is_new_at_a_restart(self):
+        """It looks from the next step on; the one that was there goes on."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(simulate(folder, "--steps", 3, scene=with_gauges("old")).returncode, 0)
+            result = simulate(folder, "--restart", newest_checkpoint(folder), "--steps", 5, scene=with_gauges("old", "new"))
+            self.assertEqual(result.returncode, 0, result.stderr)
+            old, new = (read_table(Path(folder) / "output" / f"{name}.csv") for name in ("old", "new"))
+            self.assertEqual([row["step"] for row in old], ["0", "1", "2", "3", "4", "5"])
+            self.assertEqual(new, old[4:])
 
     def test_checkpoint_of_another_mesh(self):
         square = "v 0.3 0.3 0\nv 0.7 0.3 0\nv 0.7 0.7 0\nv 0.3 0.7 0\nl 1 2 3 4 1\n"

@@ -24,7 +24,7 @@ void CellDistance<dim>::build(const std::vector<Box<dim>>& boxes, const Index<di
     all.extend(box);
   if (all.isEmpty())
     return;
-  int size = 1;
+  std::size_t size = 1;
   for (int a = 0; a < dim; ++a) {
     all.min()[a] -= limit;
     all.max()[a] += limit;
@@ -46,7 +46,7 @@ void CellDistance<dim>::build(const std::vector<Box<dim>>& boxes, const Index<di
       any = any && low < high;
     }
     for (int a = 0; any && a < dim;) {
-      int row = cell[dim - 1];
+      std::size_t row = cell[dim - 1];
       for (int b = dim - 2; b > 0; --b)
         row = row * count_[b] + cell[b];
       std::fill_n(nearness_.begin() + row * count_[0] + first[0], last[0] - first[0], limit + 1);
@@ -61,20 +61,20 @@ void CellDistance<dim>::build(const std::vector<Box<dim>>& boxes, const Index<di
 /// The maximum norm's distance is found axis by axis.
 template <int dim>
 void CellDistance<dim>::spread(int axis) {
-  int stride = 1;
+  std::size_t stride = 1;
   for (int a = 0; a < axis; ++a)
     stride *= count_[a];
-  const int plane = stride * count_[axis], size = static_cast<int>(nearness_.size());
+  const std::size_t plane = stride * count_[axis];
   const std::vector<unsigned char> before = nearness_;
   for (int step = 1; step <= std::min(limit_, count_[axis] - 1); ++step) {
-    const int shift = step * stride;
+    const std::size_t shift = step * stride;
     const auto most = static_cast<unsigned char>(limit_ + 1 - step);
-    for (int first = 0; first < size; first += plane) {
+    for (std::size_t first = 0; first < nearness_.size(); first += plane) {
       unsigned char* to = nearness_.data() + first;
       const unsigned char* from = before.data() + first;
-      for (int i = 0; i < plane - shift; ++i)
+      for (std::size_t i = 0; i < plane - shift; ++i)
         to[i] = std::max(to[i], std::min(from[i + shift], most));
-      for (int i = shift; i < plane; ++i)
+      for (std::size_t i = shift; i < plane; ++i)
         to[i] = std::max(to[i], std::min(from[i - shift], most));
     }
   }

@@ -69,7 +69,7 @@ struct Analysis {
 /// Not yet factored. The last analyses are kept: the matrices of a solid, several a step, mostly
 /// have their entries in the same places, and an analysis takes as long as the factors.
 MultifrontalCholesky analyzed(const MultifrontalCholesky::Matrix& matrix) {
-  constexpr std::size_t most = 8;
+  constexpr std::size_t most = 64, most_entries = 20000000;
   static std::list<Analysis> kept;  // the last one used first
   const auto found = std::find_if(kept.begin(), kept.end(),
                                   [&](const Analysis& one) { return one.is_of(matrix); });
@@ -77,8 +77,13 @@ MultifrontalCholesky analyzed(const MultifrontalCholesky::Matrix& matrix) {
     kept.splice(kept.begin(), kept, found);
   else
     kept.emplace_front(matrix);
-  if (kept.size() > most)
+  std::size_t n_entries = 0;
+  for (const Analysis& one : kept)
+    n_entries += one.rows.size();
+  while (kept.size() > most || (kept.size() > 1 && n_entries > most_entries)) {
+    n_entries -= kept.back().rows.size();
     kept.pop_back();
+  }
   return kept.front().factors;
 }
 

@@ -252,5 +252,19 @@ TEST(ContactRegistration, IsChosenByName) {
   EXPECT_EQ(model->name(), "gauss seidel");
 }
 
+TEST(ContactRegistration, RefusesASkinOfAnUnknownSolid) {
+  ContactRegistry<2> contacts("contact model");
+  register_contact(contacts);
+  ParameterList list;
+  list.sublist("Skins").sublist("curtain").set("Thickness", 0.01);
+  validate(list, contacts.valid_parameters("gauss seidel"), Source());
+  ContactSetting<2> setting;
+  setting.comm = world_communicator();
+  setting.solids = {"Ball", "curtain"};
+  EXPECT_NO_THROW(contacts.create("gauss seidel", list, setting));
+  setting.solids = {"Ball"};
+  EXPECT_THROW(contacts.create("gauss seidel", list, setting), InputError);
+}
+
 }  // namespace
 }  // namespace lockstep::test

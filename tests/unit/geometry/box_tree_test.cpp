@@ -84,6 +84,19 @@ TEST(BoxTree, OfNothing) {
       Point<3>(0, 0, 0), [] { return 1e300; }, [](int) { FAIL(); });
 }
 
+TEST(BoxTree, IsSortedAnewOnceItsBoxesHaveMixed) {
+  std::mt19937 random(7);
+  auto boxes = random_boxes<2>(100, random);
+  const BoxTree<2> first(boxes);
+  for (Box<2>& box : boxes)
+    box.translate(Point<2>(3, 0.01));
+  const BoxTree<2> moved(boxes, first.order());
+  EXPECT_EQ(moved.order(), first.order());
+  std::shuffle(boxes.begin(), boxes.end(), random);
+  const BoxTree<2> mixed(boxes, moved.order());
+  EXPECT_EQ(mixed.order()->places, BoxTree<2>(boxes).order()->places);
+}
+
 TEST(BoxTree, AnOrderOfOthersIsNotTaken) {
   std::mt19937 random(6);
   const BoxTree<2> few(random_boxes<2>(10, random));

@@ -1,6 +1,8 @@
 // Where conjugate gradients end: at the target, at round-off, or with an error.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <Tpetra_Core.hpp>
 #include <Tpetra_Vector.hpp>
 
@@ -51,6 +53,14 @@ RCP<Vector> wave(const RCP<const Map>& map) {
 }
 
 }  // namespace
+
+TEST(ConjugateGradients, RefuseARightHandSideThatIsNoNumber) {
+  const auto map = ring();
+  Vector x(map), rhs(map);
+  rhs.putScalar(std::numeric_limits<double>::quiet_NaN());
+  const Action plain = [](const Vector& r, Vector& z) { z.assign(r); };
+  EXPECT_THROW(conjugate_gradients(ring_laplacian(1), plain, rhs, x, {}), SolveError);
+}
 
 TEST(ConjugateGradients, EndAtRoundOffWhereTheTargetIsBelowIt) {
   const auto map = ring();

@@ -29,6 +29,12 @@ void viscous_step(MacFluid<dim>& fluid, double dt, Momentum<dim>& impulse) {
   impulse = fluid.accept_viscous(solution, solution, dt);
 }
 
+Vector ones(const ViscousSystem<2>& system) {
+  Vector result(system.map);
+  result.putScalar(1);
+  return result;
+}
+
 TEST(Viscosity, TaylorGreenDecaysAtItsRate) {
   const int n = 32;
   const double h = 1.0 / n, dt = 0.01, viscosity = 0.2, density = 2, k = 2 * M_PI;
@@ -50,6 +56,25 @@ TEST(Viscosity, TaylorGreenDecaysAtItsRate) {
   EXPECT_NEAR(fluid->kinetic_energy() / before, factor * factor, 1e-11);
   EXPECT_NEAR(eigenvalue / (2 * k * k), 1, 0.005);
   EXPECT_LT(impulse.linear.norm(), 1e-12);
+}
+
+// What an inflow pulls along is what comes in, wherever within faces its opening ends.
+TEST(Viscosity, AnOpeningPullsByWhatComesIn) {
+  const auto pull = [](double lower, double upper) {
+    Case<2> scene({8, 8}, 1. / 8);
+    scene.side("x lower", "inflow", {2, 0}).side("x upper", "open");
+    ParameterList& opening = scene.domain.sublist("Sides").sublist("x lower").sublist("Opening");
+    opening.set("Lower", numbers({0.0, lower})).set("Upper", numbers({0.0, upper}));
+    scene.fluid.set("Viscosity", 0.3);
+    const auto fluid = scene.make();
+    fluid->set_geometry(nullptr, BlockedFaces<2>());
+    fluid->begin_prediction();
+    return fluid->viscous_system()->wall_force->dot(ones(*fluid->viscous_system()));
+  };
+  const double of_four = pull(0.25, 0.75);
+  EXPECT_NEAR(of_four, 0.3 * 2 * 4, 1e-12);
+  for (const double upper : {0.3, 0.32, 0.6, 0.74})
+    EXPECT_NEAR(pull(0.25, upper), of_four * (upper - 0.25) / 0.5, 1e-12);
 }
 
 TEST(Viscosity, InviscidFluidHasNoSystem) {

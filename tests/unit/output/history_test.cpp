@@ -10,6 +10,7 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "output/csv_line.hpp"
 #include "test_folder.hpp"
 
 namespace lockstep::test {
@@ -43,6 +44,23 @@ TEST_F(History, WritesUnitsNamesAndExactNumbers) {
   expect_content(header + row_1);
   table.append_row({2LL, 0.2, "c"});
   expect_content(header + row_1 + row_2);
+}
+
+TEST_F(History, SaysNanOfWhatMayBeUnknown) {
+  HistoryTable table(comm, path, {{"step", "1", ""}, {"error", "1", "", true}});
+  table.start();
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  table.append_row({1LL, unknown});
+  expect_content("# step [1]: \n# error [1]: \nstep,error\n1,nan\n");
+  EXPECT_THROW(table.append_row({2LL, std::numeric_limits<double>::infinity()}), OutputError);
+}
+
+TEST(CsvLine, GivesBackWhatWasWritten) {
+  const std::vector<std::string> texts{"", "plain", "a,b", "he said \"no\", twice", "\"", "#1"};
+  std::string line = csv_field(texts.front());
+  for (std::size_t i = 1; i < texts.size(); ++i)
+    line += "," + csv_field(texts[i]);
+  EXPECT_EQ(csv_fields(line), texts);
 }
 
 TEST_F(History, ResumesATornTable) {

@@ -54,8 +54,8 @@ for k in range(25):
     size = 1 + 0.1 * math.cos(2 * math.pi * k / 8)
     with h5py.File(folder / f"frames/frame-{k:06}.h5", "w") as file:
         file.attrs["time"] = 0.05 * k
-        file["solids/Ball 1/vertices"] = [[0.0, 0, 0], [size, 0, 0], [size, size, 0], [0, size, 0]]
-        file["solids/Ball 1/simplices"] = [[0, 1], [1, 2], [2, 3], [3, 0]]
+        file["solids/Ball_1/vertices"] = [[0.0, 0, 0], [size, 0, 0], [size, size, 0], [0, size, 0]]
+        file["solids/Ball_1/simplices"] = [[0, 1], [1, 2], [2, 3], [3, 0]]
         fluid = file.create_group("fluid")
         for axis, spacing in zip("xyz", (h, h, 1.0)):
             fluid.attrs[f"origin_{axis}"] = 0.0
