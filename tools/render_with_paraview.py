@@ -8,7 +8,7 @@ simple._DisableFirstRenderCameraReset()
 
 SOLID_COLOURS = [(.80, .36, .25), (.30, .50, .72), (.87, .70, .30), (.45, .65, .42), (.58, .45, .68), (.55, .55, .55)]
 
-SMOKE_COLOUR = (.55, .57, .6)
+SMOKE_COLOUR = (.68, .7, .73)
 WATER, WATER_COLOUR = "water", (.32, .56, .78)
 
 
@@ -64,7 +64,7 @@ def show_fluid(job, view):
     is_smoke = job["volume"] and job["field"] == "smoke"
     if is_smoke:  # lit, and as grey as it is
         table.RGBPoints = [low, *SMOKE_COLOUR, high, *SMOKE_COLOUR]
-        display.Shade, display.Ambient, display.Diffuse = 1, 0.35, 0.75
+        display.Shade, display.Ambient, display.Diffuse = 1, 0.75, 0.45
     opacity = simple.GetOpacityTransferFunction(job["field"])
     opacity.Points = [low, 0.0, 0.5, 0.0, high, 0.6, 0.5, 0.0]
     bar = simple.GetScalarBar(table, view)

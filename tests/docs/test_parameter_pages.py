@@ -16,7 +16,7 @@ import parameter_pages  # noqa: E402
 import shipped_scenes  # noqa: E402
 
 PREFIXES = {"fluid": "fluid", "solid": "solid", "coupling": "coupling", "contact model": "contact",
-            "solver strategy": "strategy", "observer": "observer"}
+            "solver strategy": "strategy", "observer": "observer", "articulation": "articulation"}
 
 
 def printed(*options):
