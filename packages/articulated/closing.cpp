@@ -55,12 +55,7 @@ class Rows {
               .size());
       n_rows_ += problem.joints[j].goal.given ? n_rates<dim>(problem.joints[j].kind) : 0;
     }
-    unit_ = 0;
-    for (const int j : problem.mechanism.joints) {
-      for (const JointSide<dim>& side : problem.joints[j].sides)
-        unit_ = std::max(unit_, side.body == space ? 0 : side.point.norm());
-    }
-    unit_ = unit_ > 0 ? unit_ : 1;
+    unit_ = reach(problem.mechanism, problem.joints);
   }
 
   int n_columns() const { return n_columns_; }
@@ -200,9 +195,26 @@ void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& cha
 }
 
 template <int dim>
-double largest_gap(const Joint<dim>& joint, const std::vector<BodyPose<dim>>& poses) {
-  const Eigen::VectorXd open = gap(joint.kind, place_of(joint, poses).pose);
-  return open.size() == 0 ? 0 : open.lpNorm<Eigen::Infinity>();
+double reach(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints) {
+  double farthest = 0;
+  for (const int j : mechanism.joints) {
+    for (const JointSide<dim>& side : joints[j].sides)
+      farthest = std::max(farthest, side.body == space ? 0 : side.point.norm());
+  }
+  return farthest > 0 ? farthest : 1;
+}
+
+template <int dim>
+double largest_gap(const Joint<dim>& joint, const std::vector<BodyPose<dim>>& poses, double unit) {
+  const RelativePose<dim> pose = place_of(joint, poses).pose;
+  const std::vector<Screw<dim>> held = held_rows(joint.kind, pose);
+  const Eigen::VectorXd open = gap(joint.kind, pose);
+  double largest = 0;
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    const double scale = held[k].linear.isZero(0) ? 1 : 1 / unit;
+    largest = std::max(largest, scale * std::abs(open[static_cast<Eigen::Index>(k)]));
+  }
+  return largest;
 }
 
 template BodyPose<2> moved(const BodyPose<2>&, const TwistVector<2>&, double);
@@ -215,7 +227,9 @@ template void follow_rates(const ClosingProblem<2>&, const Eigen::VectorXd&,
                            std::vector<TwistVector<2>>&);
 template void follow_rates(const ClosingProblem<3>&, const Eigen::VectorXd&,
                            std::vector<TwistVector<3>>&);
-template double largest_gap(const Joint<2>&, const std::vector<BodyPose<2>>&);
-template double largest_gap(const Joint<3>&, const std::vector<BodyPose<3>>&);
+template double reach(const Mechanism&, const std::vector<Joint<2>>&);
+template double reach(const Mechanism&, const std::vector<Joint<3>>&);
+template double largest_gap(const Joint<2>&, const std::vector<BodyPose<2>>&, double);
+template double largest_gap(const Joint<3>&, const std::vector<BodyPose<3>>&, double);
 
 }  // namespace lockstep

@@ -36,8 +36,12 @@ BodyPose<dim> moved(const BodyPose<dim>& pose, const TwistVector<dim>& twist, do
 template <int dim>
 TwistVector<dim> twist_to(const BodyPose<dim>& from, const BodyPose<dim>& to, double dt);
 
-/// The largest gap of a mechanism's joints [m, rad].
+/// How far from the middle of a body its joints are at most; 1 if all are there [m].
 template <int dim>
-double largest_gap(const Joint<dim>& joint, const std::vector<BodyPose<dim>>& poses);
+double reach(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints);
+/// The largest gap of a joint: of lengths in `unit` [m], of angles in rad.
+template <int dim>
+double largest_gap(const Joint<dim>& joint, const std::vector<BodyPose<dim>>& poses,
+                   double unit = 1);
 
 }  // namespace lockstep

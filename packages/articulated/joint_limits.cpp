@@ -64,6 +64,8 @@ JointLimits read_limits(const ParameterList& joint, const std::string& name,
   if (turns_about_any<dim>(kind)) {
     if (joint.isParameter("Upper Limit"))
       limits.largest_turn = joint.get<double>("Upper Limit");
+    check_input(limits.largest_turn > 0,
+                "The joint \"{}\" may turn by 0 at most, about any axis; make it a weld.", name);
     return limits;
   }
   if (!joint.isParameter("Lower Limit") && !joint.isParameter("Upper Limit"))
@@ -89,7 +91,7 @@ std::vector<RateLimit> rate_limits(const JointKind& kind, const JointLimits& lim
                                    const Eigen::VectorXd& q, const Eigen::VectorXd& rates,
                                    double dt) {
   std::vector<RateLimit> all;
-  if (limits.largest_turn > 0) {
+  if (std::isfinite(limits.largest_turn)) {
     // The tangent of the bound where the motion leads: |q| changes as its part along q does.
     const Eigen::VectorXd there = q + dt * rates;
     if (there.norm() == 0)
@@ -111,7 +113,7 @@ std::vector<RateLimit> rate_limits(const JointKind& kind, const JointLimits& lim
 
 bool at_limit(const JointLimits& limits, const Eigen::VectorXd& q, int k) {
   constexpr double close = 1e-6;
-  if (limits.largest_turn > 0)
+  if (std::isfinite(limits.largest_turn))
     return q.norm() >= limits.largest_turn - close;
   return limits.lower.size() > 0 &&
          (q[k] <= limits.lower[k] + close || q[k] >= limits.upper[k] - close);

@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,8 +12,9 @@ namespace lockstep {
 /// How far the coordinates of a joint may go. Empty: as far as they like.
 struct JointLimits {
   Eigen::VectorXd lower, upper;  ///< by coordinate [rad, m]; infinite: none
-  double largest_turn = 0;       ///< of a ball, from the start about any axis [rad]; 0: any
-  bool any() const { return lower.size() > 0 || largest_turn > 0; }
+  /// Of a ball, from the start about any axis [rad]; infinite: none.
+  double largest_turn = std::numeric_limits<double>::infinity();
+  bool any() const { return lower.size() > 0 || std::isfinite(largest_turn); }
 };
 
 /// Declares them in the list of a joint of this kind.

@@ -79,10 +79,13 @@ std::vector<char> DeformableSolids<dim>::free_rims() const {
 template <int dim>
 std::vector<char> DeformableSolids<dim>::can_sweep(const Box<dim>& domain) const {
   std::vector<double> attached(bodies_.size(), 0);
-  std::vector<char> on_surface(space_.n_owned(), 0);
-  for (const GlobalIndex node : surface_node_) {
-    if (space_.dof_map()->isNodeGlobalElement(dim * node))
-      on_surface[space_.dof_map()->getLocalElement(dim * node) / dim] = 1;
+  std::vector<char> on_surface;
+  if (!attached_.empty()) {
+    on_surface.assign(space_.n_owned(), 0);
+    for (const GlobalIndex node : surface_node_) {
+      if (space_.dof_map()->isNodeGlobalElement(dim * node))
+        on_surface[space_.dof_map()->getLocalElement(dim * node) / dim] = 1;
+    }
   }
   for (const auto& [node, carrier] : attached_) {
     const int b = body_of_node_[node];
