@@ -94,7 +94,7 @@ class SteppedRun : public AnyRun {
 
   std::vector<JointState> joints() const override {
     const ConstraintModel* joints = solids().joints();
-    return joints ? joints->states() : std::vector<JointState>();
+    return joints ? joints->states(time()) : std::vector<JointState>();
   }
 
   void set_force(const std::string& body, const std::vector<double>& force,

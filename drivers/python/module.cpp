@@ -109,6 +109,7 @@ py::dict joints(const Run& run) {
     one["target"] = joint.target;
     one["torque"] = joint.torque;
     one["power"] = joint.power;
+    one["limit_torque"] = joint.limit_torque;
     one["gap"] = joint.gap;
     one["at_limit"] = joint.at_limit;
     all[py::str(joint.name)].cast<py::list>().append(one);
@@ -198,8 +199,9 @@ targets set from here are not in it. quiet: no line a step. Raises InputError, a
           "By name: position (centre of mass) [m], velocity [m/s], angular_velocity [rad/s], mass "
           "[kg] (0: prescribed), volume [m^d], kinetic_energy and elastic_energy [J].");
   run.def("joints", &joints,
-          "By name a list of coordinates: q [rad, m], rate, target, torque [N m, N], power [W], "
-          "gap, at_limit; see joints.csv.");
+          "By name a list of coordinates: q [rad, m], rate, target (at the present time), torque "
+          "[N m, N], power [W], limit_torque, gap, at_limit; see joints.csv. Torques and power are "
+          "those of the last step, 0 before the first one.");
   run.def(
       "set_force",
       [](const Run& self, const std::string& body, const py::object& force,

@@ -96,6 +96,24 @@ bool Articulation<dim>::any_acts() const {
 }
 
 template <int dim>
+ControlLaw Articulation<dim>::control(double time, double dt, bool moved) const {
+  ControlLaw all{Eigen::VectorXd::Zero(n_rates_), Eigen::VectorXd::Zero(n_rates_)};
+  ControlTimes times{time, dt};
+  if (options_.fully_implicit)
+    times.middle = 1;
+  else
+    times.implicit = moved ? 0.5 : 1;
+  for (const Joint<dim>& joint : joints_) {
+    if (!joint.control.acts())
+      continue;
+    const ControlLaw law = control_law<dim>(joint.kind, joint.control, joint.at_begin, times);
+    all.constant.segment(joint.first_rate, law.constant.size()) = law.constant;
+    all.slope.segment(joint.first_rate, law.slope.size()) = law.slope;
+  }
+  return all;
+}
+
+template <int dim>
 void Articulation<dim>::begin_step(double time, double dt) {
   for (Joint<dim>& joint : joints_) {
     joint.at_begin = {joint.q, rates_of(joint)};

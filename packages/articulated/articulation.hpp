@@ -54,6 +54,9 @@ class Articulation {
   Eigen::VectorXd rates_of(const Joint<dim>& joint) const;
   const std::vector<char>& given() const { return given_; }
   bool any_acts() const;  ///< springs and dampers
+  /// Springs and dampers in the step from `time` over dt, by rate: torque = constant - slope rate.
+  /// `moved`: after the bodies went to their places of its end.
+  ControlLaw control(double time, double dt, bool moved) const;
 
  private:
   void set_gains();
@@ -78,12 +81,12 @@ class JointConstraints : public ConstraintModel, public SteeredJoints {
   std::vector<Combination> combinations() const override;
   ClosedMotion close(double time, double dt, Vector& velocity) override;
   std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const override;
-  std::vector<std::pair<std::string, std::vector<GlobalIndex>>> motors() const override;
+  std::vector<GivenMotion> given_motions() const override;
   std::string limited() const override;
   bool has_implicit_forces() const override { return articulation_->any_acts(); }
   int largest_block() const override;
-  void take_note(const RCP<const Vector>& at_start, const Vector& at_end, double dt) override;
-  std::vector<JointState> states() const override;
+  void take_note(const JointImpulses& impulses, double time, double dt) override;
+  std::vector<JointState> states(double time) const override;
   std::string note() const override;
   void set_target(const std::string& joint, double time, const std::vector<double>& q,
                   const std::vector<double>& rate) override;
@@ -98,8 +101,8 @@ class JointConstraints : public ConstraintModel, public SteeredJoints {
 
   std::shared_ptr<Articulation<dim>> articulation_;
   Communicator comm_;
-  Eigen::VectorXd torque_;   ///< by rate, of the last step
-  double dt_ = 0, end_ = 0;  ///< of the last step [s]
+  Eigen::VectorXd torque_, limit_torque_;  ///< by rate, of the last step
+  double dt_ = 0;                          ///< of the last step [s]; 0: there was none
   bool two_halves_ = false;
 };
 

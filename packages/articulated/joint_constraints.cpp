@@ -91,7 +91,7 @@ void JointConstraints<dim>::set_twists(const std::vector<TwistVector<dim>>& twis
 /// short steps they alone do.
 template <int dim>
 void check_closed(const ClosingProblem<dim>& problem, const std::vector<TwistVector<dim>>& twists) {
-  constexpr double open = 1e-3;  // m, rad
+  constexpr double open = 1e-3;  // rad, of the mechanism's reach
   const Mechanism& mechanism = problem.mechanism;
   const auto is_given = [&](int j) { return problem.joints[j].goal.given; };
   if (mechanism.grounds.empty() &&
@@ -100,15 +100,16 @@ void check_closed(const ClosingProblem<dim>& problem, const std::vector<TwistVec
   std::vector<BodyPose<dim>> poses = problem.ends;
   for (const int body : mechanism.bodies)
     poses[body] = moved(problem.poses[body], twists[body], problem.dt);
+  const double unit = reach(mechanism, problem.joints);
   for (const int j : mechanism.loops) {
-    const double gap = largest_gap(problem.joints[j], poses);
+    const double gap = largest_gap(problem.joints[j], poses, unit);
     std::vector<std::string> names;
     for (const int k : loop_of(mechanism, problem.joints, j))
       names.push_back("\"" + problem.joints[k].name + "\"");
     check_solve(gap <= open,
-                "The joints {} form a loop that cannot close: a gap of {:.2g} m is left; check "
-                "where their motors and prescribed solids lead.",
-                fmt::join(names, ", "), gap);
+                "The joints {} form a loop that cannot close: a gap of {:.2g} m is left, or of an "
+                "angle as many rad; check where their motors and prescribed solids lead.",
+                fmt::join(names, ", "), largest_gap(problem.joints[j], poses));
   }
 }
 
@@ -165,7 +166,6 @@ ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& veloci
                               .mass.llt()
                               .solve(Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>::Identity());
   }
-  end_ = time + dt;
   bool closed = true;
   for (const Mechanism& mechanism : articulation_->mechanisms()) {
     const ClosingProblem<dim> problem{mechanism, articulation_->joints(), poses,
@@ -209,15 +209,22 @@ std::vector<JointLimit> JointConstraints<dim>::limits(double dt,
 }
 
 template <int dim>
-std::vector<std::pair<std::string, std::vector<GlobalIndex>>> JointConstraints<dim>::motors()
-    const {
-  std::vector<std::pair<std::string, std::vector<GlobalIndex>>> all;
+std::vector<GivenMotion> JointConstraints<dim>::given_motions() const {
+  std::vector<GivenMotion> all;
   for (const Joint<dim>& joint : articulation_->joints()) {
     if (!joint.goal.given)
       continue;
     std::vector<GlobalIndex> dofs(joint.q.size());
     std::iota(dofs.begin(), dofs.end(), articulation_->dofs().first_rate + joint.first_rate);
-    all.emplace_back(joint.name, std::move(dofs));
+    all.push_back({"the motor \"" + joint.name + "\"", std::move(dofs)});
+  }
+  const auto& bodies = articulation_->bodies();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].prescribed())
+      continue;
+    std::vector<GlobalIndex> dofs(n_twist<dim>);
+    std::iota(dofs.begin(), dofs.end(), articulation_->dofs().first_of_body[b]);
+    all.push_back({"what \"" + bodies[b].name + "\" carries by joints", std::move(dofs)});
   }
   return all;
 }
@@ -246,17 +253,22 @@ int JointConstraints<dim>::largest_block() const {
 }
 
 template <int dim>
-void JointConstraints<dim>::take_note(const RCP<const Vector>& at_start, const Vector& at_end,
-                                      double dt) {
-  two_halves_ = !at_start.is_null();
-  torque_ = gather_rates(at_end) / dt;
-  if (two_halves_)
-    torque_ += gather_rates(*at_start) / dt;
+void JointConstraints<dim>::take_note(const JointImpulses& impulses, double time, double dt) {
+  two_halves_ = !impulses.at_start.is_null();
   dt_ = dt;
+  torque_ = gather_rates(*impulses.at_end) / dt;
+  if (two_halves_)
+    torque_ += gather_rates(*impulses.at_start) / dt;
+  // S1 takes none of the springs' impulses away from S2.
+  const ControlLaw springs = articulation_->control(time, dt, true);
+  torque_ += springs.constant - springs.slope.cwiseProduct(articulation_->rates());
+  limit_torque_ = Eigen::VectorXd::Zero(articulation_->n_rates());
+  for (const auto& [dof, impulse] : impulses.of_limits)
+    limit_torque_[dof - articulation_->dofs().first_rate] += impulse / dt;
 }
 
 template <int dim>
-std::vector<JointState> JointConstraints<dim>::states() const {
+std::vector<JointState> JointConstraints<dim>::states(double time) const {
   const std::vector<BodyPose<dim>> poses = articulation_->poses();
   std::vector<JointState> states;
   for (const Joint<dim>& joint : articulation_->joints()) {
@@ -268,15 +280,16 @@ std::vector<JointState> JointConstraints<dim>::states() const {
     const auto n = static_cast<int>(joint.q.size());
     Eigen::VectorXd target = joint.q;
     if (joint.control.target)
-      target = joint.control.target(end_).q;
+      target = joint.control.target(time).q;
     for (int k = 0; k < n; ++k) {
       state.coordinate = n > 1 ? k + 1 : 0;
       state.q = joint.q[k];
       state.rate = rates[k];
       state.target = target[k];
       state.at_limit = at_limit(joint.limits, joint.q, k);
-      if (joint.first_rate >= 0 && joint.control.type != ControlType::free && dt_ > 0) {
+      if (joint.first_rate >= 0 && dt_ > 0) {
         state.torque = torque_[joint.first_rate + k];
+        state.limit_torque = limit_torque_[joint.first_rate + k];
         state.power = state.torque * (joint.q[k] - joint.at_begin.q[k]) / dt_;
       }
       states.push_back(state);

@@ -45,29 +45,10 @@ JointRates<dim>::JointRates(std::shared_ptr<Articulation<dim>> articulation,
       time_(start_time) {}
 
 template <int dim>
-ControlLaw JointRates<dim>::control() const {
-  ControlLaw all{Eigen::VectorXd::Zero(articulation_->n_rates()),
-                 Eigen::VectorXd::Zero(articulation_->n_rates())};
-  ControlTimes times{begin_, step_dt_};
-  if (articulation_->options().fully_implicit)
-    times.middle = 1;
-  else
-    times.implicit = moved_ ? 0.5 : 1;
-  for (const Joint<dim>& joint : articulation_->joints()) {
-    if (!joint.control.acts())
-      continue;
-    const ControlLaw law = control_law<dim>(joint.kind, joint.control, joint.at_begin, times);
-    all.constant.segment(joint.first_rate, law.constant.size()) = law.constant;
-    all.slope.segment(joint.first_rate, law.slope.size()) = law.slope;
-  }
-  return all;
-}
-
-template <int dim>
 RCP<const LinearOperator> JointRates<dim>::implicit_force(double) const {
   if (!articulation_->any_acts())
     return Teuchos::null;
-  return diagonal(map_, -control().slope);
+  return diagonal(map_, -articulation_->control(begin_, step_dt_, moved_).slope);
 }
 
 template <int dim>
@@ -75,7 +56,7 @@ void JointRates<dim>::explicit_momentum(double, double dt, Vector& momentum) con
   momentum.putScalar(0);
   if (!articulation_->any_acts() || !is_root(comm_))
     return;
-  const Eigen::VectorXd impulse = dt * control().constant;
+  const Eigen::VectorXd impulse = dt * articulation_->control(begin_, step_dt_, moved_).constant;
   std::copy_n(impulse.data(), impulse.size(), momentum.getDataNonConst().begin());
 }
 

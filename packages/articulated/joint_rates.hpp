@@ -46,8 +46,6 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim> {
 
  private:
   Eigen::VectorXd gather(const Vector& velocity) const;
-  /// Springs and dampers, by rate: torque = constant - slope rate.
-  ControlLaw control() const;
   std::vector<double> state() const;
   void set_state(const std::vector<double>& values);
 

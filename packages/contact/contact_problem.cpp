@@ -3,27 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/interruption.hpp"
-
 namespace lockstep {
 
 namespace {
-constexpr int most_rounds = 12;
-constexpr int most_searches = 3;
-constexpr int most_impact_rounds = 20;
 /// What surfaces that would have met keep between them, and the overlap of skins that is left
 /// alone, over the sum of their half thicknesses.
 constexpr double clearance = 0.25;
-/// Contacts of a pair that become active at once: enough to hold a face.
-template <int dim>
-constexpr int most_at_once = dim == 2 ? 2 : 4;
-
-double value(const JointLimit& limit, const std::vector<double>& velocity) {
-  double sum = 0;
-  for (const auto& [dof, weight] : limit.terms)
-    sum += weight * velocity[dof];
-  return sum;
-}
 
 /// The same for equal places.
 template <int dim>
@@ -120,14 +105,18 @@ bool ContactProblem<dim>::any_bends(const Pair& pair) const {
   return !solids[pair.first].rigid || (pair.second >= 0 && !solids[pair.second].rigid);
 }
 
+template <int dim>
+double ContactProblem<dim>::clearance_between(int solid, int other) const {
+  return clearance * (half_thickness_[solid] + half_thickness_[other]);
+}
+
 /// Rigid bodies may overlap a little so that contacts stay; skins do the same without touching.
 template <int dim>
 double ContactProblem<dim>::slop(const Contact<dim>& contact) const {
   const double usual = options_.slop * spacing_;
   if (contact.other < 0 || !any_bends({contact.solid, contact.other}))
     return usual;
-  return std::min(usual,
-                  clearance * (half_thickness_[contact.solid] + half_thickness_[contact.other]));
+  return std::min(usual, clearance_between(contact.solid, contact.other));
 }
 
 template <int dim>
@@ -204,165 +193,43 @@ bool ContactProblem<dim>::prepare(const std::vector<double>& before,
   bool is_searched = expected || worst_violation(motion, motion_before) > 0;
   if (is_searched)
     add_candidates(motion, motion_before);
-  for (const Candidate& candidate : candidates_) {
-    scale_ = std::max(scale_, candidate.target - normal_velocity(motion, candidate.contact));
-  }
   if (const ConstraintModel* joints = system_.joints()) {
     for (JointLimit& limit : joints->limits(dt_, velocity)) {
-      limit.terms = shapes_.resolved(limit.terms);
       // What is beyond comes back as positions, not with a speed of its own.
       const double room = phase_ == ContactPhase::position ? limit.room : std::max(limit.room, 0.);
-      scale_ = std::max(scale_, -room / dt_ - value(limit, velocity));
-      limits_.push_back({std::move(limit), -room / dt_});
+      auto resolved = shapes_.resolved(limit.terms);
+      limits_.push_back({std::move(limit), std::move(resolved), -room / dt_});
     }
   }
-  if (scale_ == 0) {
-    for (const Contact<dim>& contact : impacts_of(velocity))
-      scale_ = std::max(scale_, -contact.gap / dt_ - normal_velocity(motion, contact));
-  }
+  find_scale(motion, velocity);
   if (scale_ > 0 && !is_searched)
     add_candidates(motion, motion_before);
   return scale_ > 0;
 }
 
 template <int dim>
-void ContactProblem<dim>::activate(Candidate& candidate, ImpulseSolver<dim>& solver) const {
-  candidate.active = true;
-  solver.add(candidate.contact, candidate.target, friction(candidate.contact));
-}
-
-template <int dim>
-int ContactProblem<dim>::activate_violated(const SolidMotion<dim>& motion, int most,
-                                           double tolerance, ImpulseSolver<dim>& solver) {
-  int n_activated = 0;
-  for (auto& [pair, members] : pairs_) {
-    std::vector<std::pair<double, int>> violated;
-    for (int k : members) {
-      const Candidate& candidate = candidates_[k];
-      const double lack = candidate.target - normal_velocity(motion, candidate.contact);
-      if (!candidate.active && lack > tolerance)
-        violated.push_back({lack, k});
-    }
-    std::vector<Point<dim>> chosen;
-    const bool all = any_bends(pair);
-    for (const auto& [lack, k] : violated) {
-      if (all)
-        activate(candidates_[k], solver);
-      n_activated += all ? 1 : 0;
-    }
-    for (int n = 0; n < most && !all; ++n) {
-      double best = 0;
-      int next = -1;
-      for (const auto& [lack, k] : violated) {
-        double distance = 1e300;
-        for (const Point<dim>& x : chosen)
-          distance = std::min(distance, (candidates_[k].contact.x - x).norm());
-        const double value = chosen.empty() ? lack : lack * distance;
-        if (!candidates_[k].active && value > best * (1 + 1e-9)) {
-          best = value;
-          next = k;
-        }
-      }
-      if (next < 0)
-        break;
-      chosen.push_back(candidates_[next].contact.x);
-      activate(candidates_[next], solver);
-      ++n_activated;
-    }
+double ContactProblem<dim>::largest_violation(const SolidMotion<dim>& motion,
+                                              const std::vector<double>& velocity) const {
+  double largest = 0;
+  for (const Candidate& candidate : candidates_) {
+    if (!candidate.active)
+      largest = std::max(largest, candidate.target - normal_velocity(motion, candidate.contact));
   }
-  return n_activated;
-}
-
-template <int dim>
-int ContactProblem<dim>::activate_limits(const std::vector<double>& velocity, double tolerance,
-                                         ImpulseSolver<dim>& solver) {
-  int n_activated = 0;
-  for (Limit& one : limits_) {
-    if (one.active || one.target - value(one.limit, velocity) <= tolerance)
-      continue;
-    one.active = true;
-    solver.add(one.limit.terms, one.target);
-    ++n_activated;
+  for (const Limit& one : limits_) {
+    if (!one.active)
+      largest = std::max(largest, one.target - one.value(velocity));
   }
-  return n_activated;
+  return largest;
 }
 
 template <int dim>
-void ContactProblem<dim>::extend_search(const std::vector<double>& velocity) {
-  const SolidMotion<dim> motion(system_, shapes_, velocity);
-  const double allowed = 0.5 * options_.margin * spacing_ / dt_;
-  bool farther = false;
-  for (int i = 0; i < shapes_.n_solids(); ++i) {
-    if (motion.range(i).isEmpty())
-      continue;
-    Box<dim> known = searched_[i];
-    known = Box<dim>(known.min().cwiseMin(0.0).array() - allowed,
-                     known.max().cwiseMax(0.0).array() + allowed);
-    farther = farther || !known.contains(motion.range(i));
-  }
-  if (farther)
-    add_candidates(motion, SolidMotion<dim>(system_, shapes_, before_));
-}
-
-template <int dim>
-int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
-  int sweeps = 0, searches = 1;
-  for (int round = 0; round < most_rounds; ++round) {
-    poll_interruption(system_.comm());
-    const SolidMotion<dim> motion(system_, shapes_, solver.velocity());
-    const double tolerance = (round == 0 ? 0 : 10) * options_.tolerance * scale_;
-    const int most = round == 0 ? most_at_once<dim> : 2;
-    const int n_limits = activate_limits(solver.velocity(), tolerance, solver);
-    if (activate_violated(motion, most, tolerance, solver) + n_limits == 0)
-      break;
-    sweeps += solver.iterate(std::max(1, options_.sweeps / 8), options_.tolerance * scale_);
-    if (phase_ == ContactPhase::position && searches < most_searches) {
-      const std::size_t known = candidates_.size();
-      extend_search(solver.velocity());
-      searches += candidates_.size() > known ? 1 : 0;
-    }
-  }
-  sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
-  return sweeps + stop_impacts(solver);
-}
-
-template <int dim>
-bool ContactProblem<dim>::follows_impacts() const {
-  const auto& solids = shapes_.solids();
-  return phase_ == ContactPhase::position &&
-         std::any_of(solids.begin(), solids.end(),
-                     [](const SolidDescription& solid) { return !solid.rigid; });
-}
-
-template <int dim>
-std::vector<Contact<dim>> ContactProblem<dim>::impacts_of(
-    const std::vector<double>& velocity) const {
-  std::vector<Contact<dim>> contacts;
-  if (!follows_impacts())
-    return contacts;
-  const SolidMotion<dim> motion(system_, shapes_, velocity);
-  const SurfacePath<dim> path(shapes_, motion, dt_);
-  for (const FoundImpact<dim>& found : find_impacts(shapes_, path, options_.self_contact)) {
-    const double apart =
-        clearance * (half_thickness_[found.pair.solid] + half_thickness_[found.pair.other]);
-    contacts.push_back(impact_contact(shapes_, motion, path, found, apart, dt_));
-  }
-  return contacts;
-}
-
-template <int dim>
-int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
-  int sweeps = 0;
-  for (int round = 0; round < most_impact_rounds; ++round) {
-    poll_interruption(system_.comm());
-    const std::vector<Contact<dim>> impacts = impacts_of(solver.velocity());
-    if (impacts.empty())
-      break;
-    for (const Contact<dim>& contact : impacts)
-      solver.add(contact, -contact.gap / dt_, friction(contact));
-    sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
-  }
-  return sweeps;
+void ContactProblem<dim>::find_scale(const SolidMotion<dim>& motion,
+                                     const std::vector<double>& velocity) {
+  scale_ = largest_violation(motion, velocity);
+  if (scale_ > 0)
+    return;
+  for (const Contact<dim>& contact : impacts_of(velocity))
+    scale_ = std::max(scale_, -contact.gap / dt_ - normal_velocity(motion, contact));
 }
 
 template <int dim>

@@ -29,18 +29,29 @@ class ContactProblem {
   int solve(ImpulseSolver<dim>& solver);
 
   double deepest_overlap() const;
+  /// Of limits of joints, by dof of a coordinate.
+  std::vector<std::pair<GlobalIndex, double>> limit_impulses(
+      const ImpulseSolver<dim>& solver) const;
 
  private:
   struct Candidate {
     Contact<dim> contact;
-    double target = 0;  ///< least normal velocity [m/s]
-    bool active = false;
+    double target = 0;    ///< least normal velocity [m/s]
+    bool active = false;  ///< or nothing moves along it
   };
   /// Of a coordinate of a joint.
   struct Limit {
     JointLimit limit;
-    double target = 0;  ///< least value of its combination [m/s]
-    bool active = false;
+    std::vector<std::pair<GlobalIndex, double>> resolved;  ///< the same by dofs that others follow
+    double target = 0;                                     ///< least value of its combination [m/s]
+    bool active = false;                                   ///< or nothing moves it
+    int number = -1;                                       ///< in the solver
+    double value(const std::vector<double>& velocity) const {
+      double sum = 0;
+      for (const auto& [dof, weight] : resolved)
+        sum += weight * velocity[dof];
+      return sum;
+    }
   };
   using Pair = std::pair<int, int>;
 
@@ -57,8 +68,17 @@ class ContactProblem {
               const std::optional<double>& of_walls) const;
   double friction(const Contact<dim>& contact) const;
   double slop(const Contact<dim>& contact) const;
+  /// What surfaces of solids that are not both rigid keep between them [m].
+  double clearance_between(int solid, int other) const;
   bool any_bends(const Pair& pair) const;
-  void activate(Candidate& candidate, ImpulseSolver<dim>& solver) const;
+  /// Of what is not active.
+  double largest_violation(const SolidMotion<dim>& motion,
+                           const std::vector<double>& velocity) const;
+  void find_scale(const SolidMotion<dim>& motion, const std::vector<double>& velocity);
+  /// What nothing moves along takes no part in anything: no impulse would change it.
+  void leave_out_immovable(ImpulseSolver<dim>& solver);
+  /// False if nothing moves along it.
+  bool activate(Candidate& candidate, ImpulseSolver<dim>& solver) const;
   /// Activates up to `most` candidates of every pair, the most violated first, then those farthest
   /// from the others; returns how many.
   int activate_violated(const SolidMotion<dim>& motion, int most, double tolerance,
@@ -89,7 +109,7 @@ class ContactProblem {
   std::vector<Limit> limits_;
   std::map<Pair, std::vector<int>> pairs_;                      ///< candidates of each pair
   std::unordered_map<std::size_t, std::vector<int>> by_place_;  ///< candidates by hash_of
-  double scale_ = 0;    ///< largest violation at the start [m/s]
+  double scale_ = 0;    ///< largest violation at the start, of what can move [m/s]
   double deepest_ = 0;  ///< overlap of what is no candidate [m]
 };
 

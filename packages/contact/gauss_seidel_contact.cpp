@@ -9,15 +9,18 @@ namespace lockstep {
 
 namespace {
 
-/// What constraints gave to the solids while contact acted: what M_S dV has in their rows beyond
-/// the contact's own impulse. Collective.
+/// What constraints gave to the solids while contact acted, of which later solves do not know: what
+/// these hear of it, `told`, and contact itself did not give. Null `told`: M_S dV. Collective.
 template <int dim>
-Momentum<dim> reaction(const SolidSystem<dim>& solids, const Vector& change,
-                       const Vector& impulse) {
-  Vector reaction(impulse, Teuchos::Copy);
-  apply(*solids.mass(), change, reaction, 1, -1);
-  solids.reduction().keep_reactions(reaction);
-  return solids.momentum(reaction);
+RCP<const Vector> reactions_of(const SolidSystem<dim>& solids, const Vector& impulse,
+                               const RCP<const Vector>& told, const Vector& change) {
+  const auto reactions = rcp(new Vector(impulse, Teuchos::Copy));
+  if (told.is_null())
+    apply(*solids.mass(), change, *reactions, 1, -1);
+  else
+    reactions->update(1, *told, -1);
+  solids.reduction().keep_reactions(*reactions);
+  return reactions;
 }
 
 /// What dofs that are combinations have beside their terms. Collective.
@@ -61,6 +64,7 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   report.iterations = problem.solve(solver);
   report.n_contacts = solver.n_contacts();
   report.external_impulse = solver.external_impulse();
+  report.limit_impulses = problem.limit_impulses(solver);
 
   const RCP<const Vector> impulse = distributed(solids, solver.generalized_impulse());
   if (response) {
@@ -87,10 +91,8 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   }
   solids.reduction().follow(*change);
   if (solids.reduction().has_given() || solids.joints()) {
-    if (response)  // what acts on locked dofs goes to what holds them
-      report.external_impulse += solids.momentum(*report.impulse) - solids.momentum(*impulse);
-    else
-      report.external_impulse += reaction(solids, *change, *impulse);
+    report.reactions = reactions_of(solids, *impulse, report.impulse, *change);
+    report.external_impulse += solids.momentum(*report.reactions);
   }
   velocity.update(1, *change, 1);
   return report;

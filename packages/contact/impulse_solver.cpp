@@ -11,8 +11,8 @@
 namespace lockstep {
 
 namespace {
-/// Below this part of what its dofs would answer one by one, the response of a contact is the
-/// round-off of joints that let nothing move along it.
+/// Below this part of what its dofs would answer one by one, the response of a contact or a limit
+/// is the round-off of joints that let nothing move along it.
 constexpr double unmovable = 1e-10;
 
 template <int dim>
@@ -103,12 +103,10 @@ void ImpulseSolver<dim>::add_response(Row& row) {
 }
 
 template <int dim>
-void ImpulseSolver<dim>::add(const Contact<dim>& contact, double target, double friction) {
+typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& contact) {
   const auto& solids = system_.solids();
   Row row;
   row.contact = contact;
-  row.target = target;
-  row.friction = friction;
   row.tangent_impulse.setZero();
   row.solid_prescribed = solids[contact.solid].prescribed;
   row.other_prescribed = contact.other < 0 || solids[contact.other].prescribed;
@@ -118,24 +116,74 @@ void ImpulseSolver<dim>::add(const Contact<dim>& contact, double target, double 
     add_side(row, contact.other, contact.other_point, contact.other_place(), -1);
   row.end = static_cast<int>(jacobian_.size());
   add_response(row);
-  rows_.push_back(row);
+  return row;
+}
+
+/// The row that was made last.
+template <int dim>
+void ImpulseSolver<dim>::forget_last(const Row& row) {
+  jacobian_.resize(row.begin);
+  response_.resize(row.response_begin);
 }
 
 template <int dim>
-void ImpulseSolver<dim>::add(const std::vector<std::pair<GlobalIndex, double>>& terms,
-                             double least) {
+bool ImpulseSolver<dim>::add(const Contact<dim>& contact, double target, double friction) {
+  Row row = row_of(contact);
+  if (!(row.normal_response > 0)) {
+    forget_last(row);
+    return false;
+  }
+  row.target = target;
+  row.friction = friction;
+  rows_.push_back(row);
+  return true;
+}
+
+template <int dim>
+bool ImpulseSolver<dim>::can_move(const Contact<dim>& contact) {
+  const Row row = row_of(contact);
+  forget_last(row);
+  return row.normal_response > 0;
+}
+
+/// Without a response if nothing of it can move.
+template <int dim>
+LimitImpulses::Row ImpulseSolver<dim>::row_of(const Terms& terms) {
   LimitImpulses::Row row;
-  row.least = least;
   std::map<int, double> weights, response;
   for (const auto& [dof, weight] : shapes_.resolved(terms))
     weights[static_cast<int>(dof)] += weight;
+  double of_parts = 0, of_all = 0;
   for (const auto& [dof, weight] : weights) {
-    for (const auto& [other, value] : mobility_.row(dof))
+    for (const auto& [other, value] : mobility_.row(dof)) {
       response[other] += weight * value;
+      if (other == dof)
+        of_parts += weight * weight * value;
+    }
+  }
+  for (const auto& [dof, velocity] : response) {
+    const auto weight = weights.find(dof);
+    of_all += weight == weights.end() ? 0 : weight->second * velocity;
   }
   row.weights.assign(weights.begin(), weights.end());
-  row.response.assign(response.begin(), response.end());
+  if (of_all > unmovable * of_parts)
+    row.response.assign(response.begin(), response.end());
+  return row;
+}
+
+template <int dim>
+int ImpulseSolver<dim>::add(const Terms& terms, double least) {
+  LimitImpulses::Row row = row_of(terms);
+  if (row.response.empty())
+    return -1;
+  row.least = least;
   limits_.add(std::move(row));
+  return limits_.size() - 1;
+}
+
+template <int dim>
+bool ImpulseSolver<dim>::can_move(const Terms& terms) {
+  return !row_of(terms).response.empty();
 }
 
 template <int dim>
@@ -191,8 +239,6 @@ int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance) {
   for (int sweep = 1; sweep <= maximum_sweeps; ++sweep) {
     double change = limits_.relax(velocity_);
     for (Row& row : rows_) {
-      if (!(row.normal_response > 0))
-        continue;
       change = std::max(change, relax_normal(row));
       change = std::max(change, relax_friction(row));
     }

@@ -16,11 +16,19 @@ class ImpulseSolver {
   ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
                 Mobility<dim>& mobility, std::vector<double> velocity);
 
-  /// Target: least normal velocity of `contact.solid` relative to the other [m/s]. Collective if
-  /// the mobility is.
-  void add(const Contact<dim>& contact, double target, double friction);
-  /// Of joints: `least` value of the combination [m/s].
-  void add(const std::vector<std::pair<GlobalIndex, double>>& terms, double least);
+  using Terms = std::vector<std::pair<GlobalIndex, double>>;  ///< dof and weight
+
+  /// `target`: least normal velocity of `contact.solid` relative to the other [m/s]; `friction`:
+  /// Coulomb's coefficient [1]. Adds nothing, and returns false, if no push of the contact changes
+  /// that velocity. Collective if the mobility is.
+  bool add(const Contact<dim>& contact, double target, double friction);
+  /// A limit of joints: the sum of weights times velocities of dofs, of whatever unit, is not to be
+  /// below `least`. Returns its number; -1, and adds nothing, if no impulse on it changes that sum.
+  /// Collective if the mobility is.
+  int add(const Terms& terms, double least);
+  /// Whether `add` would add it. Collective if the mobility is.
+  bool can_move(const Contact<dim>& contact);
+  bool can_move(const Terms& terms);
   /// Sweeps until no velocity at a contact changes by more than `tolerance` [m/s]; returns the
   /// number of sweeps.
   int iterate(int maximum_sweeps, double tolerance);
@@ -28,6 +36,8 @@ class ImpulseSolver {
   /// With limits of joints.
   int n_contacts() const { return static_cast<int>(rows_.size()) + limits_.size(); }
   const std::vector<double>& velocity() const { return velocity_; }
+  /// What the limit with this number gave: times the weights, on their dofs.
+  double limit_impulse(int number) const { return limits_.impulse(number); }
   /// J^T impulses, by id: on the dofs of the surfaces themselves, combinations or not.
   std::vector<double> generalized_impulse() const;
   /// What walls and prescribed solids gave to the others.
@@ -53,6 +63,9 @@ class ImpulseSolver {
     Eigen::Matrix<double, dim - 1, 1> tangent_impulse;
   };
 
+  Row row_of(const Contact<dim>& contact);
+  void forget_last(const Row& row);
+  LimitImpulses::Row row_of(const Terms& terms);
   void add_side(Row& row, int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
                 double sign);
   void add_entries(const SurfacePoint<dim>& point, const Point<dim>& x,

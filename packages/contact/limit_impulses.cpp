@@ -1,7 +1,10 @@
 #include "contact/limit_impulses.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+
+#include "base/errors.hpp"
 
 namespace lockstep {
 
@@ -32,39 +35,92 @@ Eigen::VectorXd solved_for(const std::vector<char>& pushes, const Eigen::MatrixX
   return x;
 }
 
-}  // namespace
-
-Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
-  constexpr int most_blocks = 10;  // without progress, before rows go one by one
+/// By exchange of all rows that are wrong at once; false if that leads nowhere.
+bool exchange_blocks(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  constexpr int most_idle = 10;  // rounds without progress
   constexpr double round_off = 1e-13;
+  constexpr double solved = 1e-9;  // what a block that is nearly singular may be off by
   const auto n = static_cast<int>(b.size());
+  const double scale = b.cwiseAbs().maxCoeff();
   std::vector<char> pushes(n, 0);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  int fewest = n + 1, blocks_left = most_blocks;
-  for (int round = 0; round < 20 * (n + most_blocks); ++round) {
+  int fewest = n + 1, idle = 0;
+  while (idle <= most_idle) {
     x = solved_for(pushes, a, b);
     const Eigen::VectorXd rest = a * x + b;
-    const double scale = b.cwiseAbs().maxCoeff();
     std::vector<int> wrong;
     for (int k = 0; k < n; ++k) {
       if (pushes[k] ? x[k] < 0 : rest[k] < -round_off * scale)
         wrong.push_back(k);
     }
     if (wrong.empty())
-      break;
+      return rest.minCoeff() >= -solved * scale;
     const int n_wrong = static_cast<int>(wrong.size());
-    if (n_wrong < fewest) {
-      fewest = n_wrong;
-      blocks_left = most_blocks;
-    } else if (blocks_left > 0) {
-      --blocks_left;
-    }
-    if (blocks_left == 0)
-      wrong = {wrong.back()};
+    idle = n_wrong < fewest ? 0 : idle + 1;
+    fewest = std::min(fewest, n_wrong);
     for (const int k : wrong)
       pushes[k] = pushes[k] ? 0 : 1;
   }
-  return x.cwiseMax(0);
+  return false;
+}
+
+/// Of 1/2 x.A x + b.x over x >= 0, by the active sets of Lawson and Hanson: one row after the other
+/// joins those that push, and those leave that would pull, so the sum falls in every round.
+Eigen::VectorXd descend(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  constexpr double round_off = 1e-12;
+  const auto n = static_cast<int>(b.size());
+  const double scale = b.cwiseAbs().maxCoeff();
+  std::vector<char> pushes(n, 0), idle(n, 0);  // idle: joined last without an effect
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  for (int round = 0; round < 10 * n + 100; ++round) {
+    const Eigen::VectorXd rest = a * x + b;
+    int next = -1;
+    for (int k = 0; k < n; ++k) {
+      if (!pushes[k] && !idle[k] && (next < 0 || rest[k] < rest[next]))
+        next = k;
+    }
+    if (next < 0 || rest[next] >= -round_off * scale)
+      break;
+    pushes[next] = 1;
+    for (bool pulls = true; pulls;) {
+      const Eigen::VectorXd whole = solved_for(pushes, a, b);
+      double part = 1;
+      for (int k = 0; k < n; ++k) {
+        if (pushes[k] && whole[k] <= 0)
+          part = std::min(part, x[k] > 0 ? x[k] / (x[k] - whole[k]) : 0);
+      }
+      x += part * (whole - x);
+      pulls = false;
+      for (int k = 0; k < n; ++k) {
+        if (!pushes[k] || whole[k] > 0 || x[k] > 1e-14 * x.maxCoeff())
+          continue;
+        pushes[k] = 0;
+        x[k] = 0;
+        pulls = true;
+      }
+    }
+    if (pushes[next])
+      std::fill(idle.begin(), idle.end(), 0);
+    else
+      idle[next] = 1;
+  }
+  return x;
+}
+
+}  // namespace
+
+Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  constexpr double acceptable = 1e-6;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
+  if (exchange_blocks(a, b, x))
+    return x.cwiseMax(0);
+  x = descend(a, b);
+  const double broken = -(a * x + b).minCoeff(), scale = b.cwiseAbs().maxCoeff();
+  check_solve(broken <= acceptable * scale,
+              "The limits of joints contradict one another: of {} that act together one is left "
+              "{:.2g} m/s beyond, where {:.2g} m/s were to be stopped. Look at the limits of "
+              "joints that a loop ties together, or take shorter steps.",
+              b.size(), broken, scale);
+  return x;
 }
 
 void LimitImpulses::add(Row row) {

@@ -17,6 +17,7 @@ class LimitImpulses {
   };
   void add(Row row);
   int size() const { return static_cast<int>(rows_.size()); }
+  double impulse(int row) const { return impulses_[row]; }
 
   /// Changes the velocities, and the impulses given so far, to those that meet all bounds: impulses
   /// only push, and only at bounds that are reached. Returns the largest change of a row's value.
@@ -32,8 +33,10 @@ class LimitImpulses {
   Eigen::VectorXd impulses_;
 };
 
-/// x >= 0 with A x + b >= 0 and one of both zero in every row, for a symmetric positive definite A:
-/// by exchange of blocks, and of single rows where that does not end.
+/// x >= 0 with A x + b >= 0 and one of both zero in every row, for a symmetric positive definite A
+/// (semidefinite but for round-off): by exchange of blocks of rows, which takes a few solves; where
+/// that does not end, by descent of 1/2 x.A x + b.x, which does. Throws SolveError if rows are left
+/// that no x meets.
 Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 }  // namespace lockstep

@@ -110,14 +110,14 @@ PrescribedFlux flux_of_given(const std::string& name, const CrsMatrix& coupling_
 
 }  // namespace
 
-/// Of motors one by one, and of all else that is given.
+/// Of motors and of prescribed solids with joints one by one, and of all else that is given.
 template <int dim>
 void CoupledSystem<dim>::add_given_fluxes(const Reduction& constraints,
                                           std::vector<PrescribedFlux>& fluxes) const {
   const CrsMatrix& transposed = *coupling_.coupling_transposed();
   Vector rest(*constraints.offset(), Teuchos::Copy);
   if (const auto* joints = std::as_const(solids_).joints()) {
-    for (const auto& [name, dofs] : joints->motors()) {
+    for (const auto& [name, dofs] : joints->given_motions()) {
       const RCP<Vector> own = make_vector(solids_.map());
       for (const GlobalIndex dof : dofs) {
         const int row = solids_.map()->getLocalElement(dof);
@@ -127,7 +127,7 @@ void CoupledSystem<dim>::add_given_fluxes(const Reduction& constraints,
       const RCP<const Vector> moved = constraints.with_velocity(own).offset();
       if (moved.is_null())
         continue;
-      fluxes.push_back(flux_of_given("the motor \"" + name + "\"", transposed, *moved));
+      fluxes.push_back(flux_of_given(name, transposed, *moved));
       rest.update(-1, *moved, 1);
     }
   }

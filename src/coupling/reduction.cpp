@@ -250,10 +250,15 @@ void Reduction::select(Vector& velocity) const {
   set_zero(combined_, velocity);
 }
 
-RCP<Vector> Reduction::felt(const Vector& impulses) const {
-  const RCP<Vector> result = make_vector(impulses.getMap());
+RCP<Vector> Reduction::on_given(const Vector& reactions) const {
+  Vector sums(reactions, Teuchos::Copy);
   if (has_combinations())
-    combinations_->apply(impulses, *result, Teuchos::TRANS);
+    combinations_->apply(reactions, sums, Teuchos::TRANS, 1, 1);
+  const RCP<Vector> result = make_vector(reactions.getMap());
+  const auto from = sums.getData();
+  const auto values = result->getDataNonConst();
+  for (const int row : given_)
+    values[row] = from[row];
   return result;
 }
 

@@ -60,8 +60,9 @@ class Reduction {
   void follow(Vector& velocity) const;
   /// y of V: zero where there is no unknown. Local.
   void select(Vector& velocity) const;
-  /// What dofs that others follow feel of the impulses on these. Collective.
-  RCP<Vector> felt(const Vector& impulses) const;
+  /// What holds given dofs, by themselves and through the combinations of them, of the reactions
+  /// that `keep_reactions` left. Collective.
+  RCP<Vector> on_given(const Vector& reactions) const;
   /// q := q without what acts on given dofs. Local.
   void drop_given(Vector& momentum) const;
   /// q := P^T q. Collective.

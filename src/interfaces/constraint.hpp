@@ -32,6 +32,7 @@ struct JointState {
   double q = 0, rate = 0, target = 0;
   double torque = 0;        ///< mean over the step, of control on the second solid [N m, N]
   double power = 0;         ///< of control, mean over the step [W]
+  double limit_torque = 0;  ///< mean over the step, of limits on the second solid [N m, N]
   double gap = 0;           ///< of the joint [m, rad]
   bool two_halves = false;  ///< half of its impulse acted where the step began
   bool at_limit = false;    ///< or beyond
@@ -42,6 +43,21 @@ struct JointState {
 struct JointLimit {
   std::vector<std::pair<GlobalIndex, double>> terms;  ///< dof and weight
   double room = 0;  ///< how far the coordinate may still go [m]; negative: it is beyond
+};
+
+/// What joints gave in a step, generalized.
+struct JointImpulses {
+  /// Of what holds given dofs (`Reduction::on_given`), where the step began (null: nothing), and
+  /// where it ended.
+  RCP<const Vector> at_start, at_end;
+  std::vector<std::pair<GlobalIndex, double>>
+      of_limits;  ///< dof and impulse; the same on all ranks
+};
+
+/// Dofs whose velocities are given.
+struct GivenMotion {
+  std::string name;  ///< of what moves them, as messages have it
+  std::vector<GlobalIndex> dofs;
 };
 
 /// Ties between solids of one or more models, as combinations of dofs (coupling/reduction.hpp), so
@@ -57,19 +73,18 @@ class ConstraintModel : public PlugIn {
   /// At the present positions, for motions with about the velocity V (by dof, of all solids).
   /// Local, the same on all ranks.
   virtual std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const = 0;
-  /// Joints whose rates are given: their names, and those dofs.
-  virtual std::vector<std::pair<std::string, std::vector<GlobalIndex>>> motors() const = 0;
+  /// Joints whose rates are given, and prescribed solids that carry others.
+  virtual std::vector<GivenMotion> given_motions() const = 0;
   /// The name of a joint that has limits; empty: none.
   virtual std::string limited() const = 0;
   /// Whether forces on their own dofs are implicit: springs, dampers.
   virtual bool has_implicit_forces() const = 0;
   /// At most as many unknowns move the solids that are tied to one another.
   virtual int largest_block() const = 0;
-  /// What their own dofs feel of the impulses that joints gave where the step of dt began (null:
-  /// nothing), and where it ended (`Reduction::felt`). Collective.
-  virtual void take_note(const RCP<const Vector>& at_start, const Vector& at_end, double dt) = 0;
-  /// Local, the same on all ranks.
-  virtual std::vector<JointState> states() const = 0;
+  /// At the end of a step from `time` over dt, whose velocities joints know already. Collective.
+  virtual void take_note(const JointImpulses& impulses, double time, double dt) = 0;
+  /// Targets are those of `time`. Local, the same on all ranks.
+  virtual std::vector<JointState> states(double time) const = 0;
   /// What there is, for `--explain`. Local.
   virtual std::string note() const = 0;
 };

@@ -1,5 +1,7 @@
 #pragma once
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
@@ -19,6 +21,11 @@ struct ContactReport {
   double deepest_overlap = 0;      ///< before resolution [m]
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global
   RCP<const Vector> impulse;  ///< generalized, on the free dofs, if there was a `ContactResponse`
+  /// What constraints gave while contact acted, of which no solve hears: generalized, as
+  /// `Reduction::keep_reactions` leaves it. Null: nothing.
+  RCP<const Vector> reactions;
+  /// Of limits of joints, by dof of a coordinate; the same on all ranks.
+  std::vector<std::pair<GlobalIndex, double>> limit_impulses;
 };
 
 /// Gives the operator that takes generalized impulses on the free dofs to changes of velocity, when

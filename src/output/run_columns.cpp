@@ -117,9 +117,10 @@ std::vector<HistoryColumn> joint_columns() {
           {"name", "1", "of the joint; with the number of the coordinate if it has several"},
           {"q", "rad, m", "the coordinate, 0 at the start"},
           {"rate", "rad/s, m/s", "its rate"},
-          {"target", "rad, m", "where control wants it; without control as q"},
+          {"target", "rad, m", "where control wants it at that time; without control as q"},
           {"torque", "N m, N", "of control on the second solid, mean over the step"},
           {"power", "W", "of control, mean over the step"},
+          {"limit_torque", "N m, N", "of limits on the second solid, mean over the step"},
           {"gap", "m, rad", "how far the joint is open"},
           {"two_halves", "1", "1: half of its impulse acted where the step began; 0: none did"},
           {"at_limit", "1", "1: the coordinate is at a limit, or beyond"}};

@@ -115,7 +115,7 @@ void RunTables<dim>::append_joints(long long step, double time,
     std::vector<HistoryValue> row;
     const std::string number = joint.coordinate > 0 ? " " + std::to_string(joint.coordinate) : "";
     append_each(row, step, time, joint.name + number, joint.q, joint.rate, joint.target,
-                joint.torque, joint.power, joint.gap,
+                joint.torque, joint.power, joint.limit_torque, joint.gap,
                 static_cast<long long>(joint.two_halves ? 1 : 0),
                 static_cast<long long>(joint.at_limit ? 1 : 0));
     rows.push_back(std::move(row));

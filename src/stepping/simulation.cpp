@@ -288,7 +288,7 @@ void Simulation<dim>::write_rows() {
   const std::vector<SolidState<dim>> states = components_.solids->states();
   tables_.append(step_, *report_, states, step_seconds_);
   if (const ConstraintModel* joints = components_.solids->joints())
-    tables_.append_joints(step_, report_->time, joints->states());
+    tables_.append_joints(step_, report_->time, joints->states(report_->time));
   if (!observers_.empty()) {
     ScopedPhase phase(timers_, "observers");
     observers_.observe(step_, view(states));

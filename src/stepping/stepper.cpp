@@ -272,6 +272,20 @@ void Stepper<dim>::check_possible(const StepContext<dim>& context, double incomp
   check_solve(impossible.empty(), "At {:.6g} s: {}", end, impossible);
 }
 
+/// What they gave in this step: contact acts before S2, which finds what is left.
+template <int dim>
+void Stepper<dim>::tell_joints(const StepContext<dim>& context, const StepReport<dim>& report) {
+  auto& solids = *components_.solids;
+  if (!solids.joints() || report.reactions.is_null())
+    return;
+  Vector reactions(*report.reactions, Teuchos::Copy);
+  if (!report.contact_velocity.reactions.is_null())
+    reactions.update(1, *report.contact_velocity.reactions, 1);
+  solids.joints()->take_note({held_at_start_, solids.reduction().on_given(reactions),
+                              report.contact_velocity.limit_impulses},
+                             context.time, context.dt);
+}
+
 /// F4 and the end of the audit.
 template <int dim>
 void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
@@ -281,12 +295,6 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
   report.max_divergence =
       largest_divergence(system_.blocks(context.dt), solution, fluid.smallest_length(), dim);
   audit_solve<dim>(components_, sides_, system_, context, solution, prediction.viscous, report);
-  if (solids.joints() && !report.reactions.is_null()) {
-    const RCP<Vector> felt = solids.reduction().felt(*report.reactions);
-    if (!report.contact_velocity.impulse.is_null())  // limits act on the same dofs as control
-      felt->update(-1, *report.contact_velocity.impulse, 1);
-    solids.joints()->take_note(felt_at_start_, *felt, context.dt);
-  }
   fluid.project(*solution.unknowns.pressure);
   if (!prediction.pressure.is_null() && sides_.pressure_memory)
     sides_.pressure_memory->correct_pressure(*prediction.pressure);
@@ -309,6 +317,7 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
     const auto after = make_vector(solids.map());
     apply(*solids.mass(), *solution.velocity, *after);
     report.solid_momentum = solids.momentum(*after);
+    tell_joints(context, report);
   }
   report.n_clamped_elements = solids.n_clamped_elements();
   report.ledger.close(report.fluid_momentum + report.solid_momentum);

@@ -106,6 +106,7 @@ class Stepper {
   void make_advection_velocity(double dt, StepReport<dim>& report);  // F2
   void advect(double dt, StepReport<dim>& report);                   // F3
   void finish(const Solved& solved, StepReport<dim>& report);        // F4
+  void tell_joints(const StepContext<dim>& context, const StepReport<dim>& report);
   Momentum<dim> fluid_momentum() const;
   Momentum<dim> total_momentum(const Momentum<dim>& of_fluid) const;
 
@@ -123,7 +124,7 @@ class Stepper {
   /// Of joints, from S1 to S2: the half of their impulses that acts where the step begins; null:
   /// all of them acts at its end.
   RCP<Vector> start_impulse_;
-  RCP<const Vector> felt_at_start_;  ///< of it, by the dofs of joints
+  RCP<const Vector> held_at_start_;  ///< of it, what holds given dofs
 };
 
 }  // namespace lockstep

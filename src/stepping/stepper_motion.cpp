@@ -74,12 +74,12 @@ void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>&
     report.s1.add_work(earlier);
     drift = close();
   }
-  felt_at_start_ = Teuchos::null;
+  held_at_start_ = Teuchos::null;
   if (drift.is_null()) {
     start_impulse_ = Teuchos::null;
     return;
   }
-  felt_at_start_ = solids.reduction().felt(*start_impulse_);
+  held_at_start_ = solids.reduction().on_given(*start_impulse_);
   solids.reduction().drop_given(*start_impulse_);
 }
 

@@ -175,6 +175,26 @@ class Limits(unittest.TestCase):
         self.assertAlmostEqual(max(abs(row["q"]) for row in rows["CD"]), .3, delta=1e-6)
         self.assertAlmostEqual(abs(rows["CD"][-1]["q"]), .3, delta=1e-6)
 
+    def test_a_motor_that_goes_past_its_limit_troubles_nobody(self):
+        """No impulse can hold it: what is wrong there is no measure of what may be wrong elsewhere."""
+        solids, hinges = links(6)
+        for hinge in hinges.values():
+            hinge.update({"Lower Limit": -.06, "Upper Limit": .06})
+        _, alone = run(limited(solids, hinges, .02, .5, GRAVITY))
+        mill = {"Left": unseen_box((0., 9.5), 0.), "Top": unseen_box((.5, 10.), 0.), "Right": unseen_box((1., 9.5), 0.)}
+        for name in ("Left", "Right"):
+            mill[name]["Orientation"] = math.pi / 2
+        swing = {"Type": "sinusoid", "Amplitude": .8, "Frequency": 1.}
+        bars = {"M0": joint("hinge", ("space", "Left"), (0., 9.), Control="prescribed", Target=swing),
+                "M1": joint("hinge", ("Left", "Top"), (0., 10.)), "M3": joint("hinge", ("Right", "space"), (1., 9.)),
+                "M2": joint("hinge", ("Top", "Right"), (1., 10.), **{"Lower Limit": -.01, "Upper Limit": .01})}
+        both = limited({**mill, **solids}, {**bars, **hinges}, .02, .5, GRAVITY)
+        _, beside = run(both)
+        for name, rows in alone.items():
+            for row, other in zip(rows, beside[name]):
+                self.assertAlmostEqual(row["y"], other["y"], delta=1e-9)
+        self.assertGreater(max(row["q"] for row in joints_of(both)["M2"]), .5)
+
     def test_restart_at_a_limit(self):
         solids, hinges = links(3)
         for hinge in hinges.values():

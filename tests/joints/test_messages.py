@@ -19,16 +19,21 @@ def motor(**target):
     return {"Control": "prescribed", "Target": target}
 
 
+def square(size, amplitude):
+    """Four links of which three motors turn as they please."""
+    places = {"A": (.5, 0.), "B": (1., .5), "C": (.5, 1.), "D": (0., .5)}
+    solids = {name: {**unseen_box((size * x, size * y), 0.), "Orientation": 0. if name in "AC" else 1.5707963,
+                     "Geometry": {"Shape": "box", "Size": (size, .2 * size)}} for name, (x, y) in places.items()}
+    corners = {"AB": (size, 0.), "BC": (size, size), "CD": (0., size), "DA": (0., 0.)}
+    joints = {name: joint("hinge", tuple(name), corner) for name, corner in corners.items()}
+    for name, part in (("AB", 1.), ("BC", .8), ("CD", .6)):
+        joints[name].update(motor(Type="sinusoid", Amplitude=part * amplitude, Frequency=.5))
+    return solids, joints
+
+
 class Messages(unittest.TestCase):
     def test_a_loop_that_motors_pull_apart(self):
-        """A square of four links of which three motors turn as they please."""
-        places = {"A": (.5, 0.), "B": (1., .5), "C": (.5, 1.), "D": (0., .5)}
-        solids = {name: {**unseen_box(place, 0.), "Orientation": 0. if name in "AC" else 1.5707963}
-                  for name, place in places.items()}
-        corners = {"AB": (1., 0.), "BC": (1., 1.), "CD": (0., 1.), "DA": (0., 0.)}
-        joints = {name: joint("hinge", tuple(name), corner) for name, corner in corners.items()}
-        for name, amplitude in (("AB", .5), ("BC", .4), ("CD", .3)):
-            joints[name].update(motor(Type="sinusoid", Amplitude=amplitude, Frequency=.5))
+        solids, joints = square(1., .5)
         joints["tail"] = joint("weld", ("A", "E"), (.5, -.1))  # in no loop
         solids["E"] = unseen_box((.5, -.2), 0.)
         code, text = message(vacuum(solids, joints, .02, 1.))
@@ -36,6 +41,19 @@ class Messages(unittest.TestCase):
         for part in ("\"AB\"", "\"BC\"", "\"CD\"", "\"DA\"", "loop that cannot close", "a gap of"):
             self.assertIn(part, text)
         self.assertNotIn("tail", text)
+
+    def test_a_small_loop_that_motors_pull_apart(self):
+        """Of a finger's breadth, by less than a millimetre."""
+        code, text = message(vacuum(*square(.01, .02), .02, 1.))
+        self.assertEqual(code, 3, text)
+        self.assertIn("loop that cannot close", text)
+
+    def test_a_ball_that_may_not_turn(self):
+        solids = {"A": unseen_box((0., 0., 0.), (1., 2., -1.))}
+        code, text = message(vacuum(solids, {"S": joint("ball", ("space", "A"), (.1, .2, 0.), **{"Upper Limit": 0.})}, .02, 1.))
+        self.assertEqual(code, 2, text)
+        for part in ("\"S\"", "make it a weld"):
+            self.assertIn(part, text)
 
     def test_a_motor_that_shrinks_closed_fluid(self):
         """A piston across a closed tank."""
@@ -46,6 +64,17 @@ class Messages(unittest.TestCase):
         self.assertEqual(code, 2, text)
         for part in ("cells of fluid are closed in", "the motor \"Push\"", "Open a side of the domain"):
             self.assertIn(part, text)
+
+    def test_a_prescribed_solid_that_shrinks_closed_fluid_through_a_joint(self):
+        """A piston on a rod that nobody sees, which goes to and fro."""
+        solids = {"Piston": {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.1, 1.2)}, "Density": 1000., "Position": (.4, .5)},
+                  "Rod": {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.2, .05)}, "Position": (.3, .5), "Seen by Fluid": False,
+                          "Motion": {"Type": "sinusoid", "Amplitude": (.05, 0.), "Frequency": 1.}}}
+        code, text = message(tank(solids, {"Rivet": joint("weld", ("Rod", "Piston"), (.4, .5))}, "flux"))
+        self.assertEqual(code, 2, text)
+        for part in ("what \"Rod\" carries by joints", "Open a side of the domain"):
+            self.assertIn(part, text)
+        self.assertNotIn("pins", text)
 
 
 if __name__ == "__main__":

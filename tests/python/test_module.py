@@ -135,6 +135,21 @@ class Module(unittest.TestCase):
                 run.step()
         self.assertIn('"failed"', (self.root / "run" / "summary.json").read_text())
 
+    def test_targets_are_those_of_the_present_time(self):
+        """Before the first step too, and after a restart; torques begin with a step."""
+        joint = {"Type": "hinge", "Solids": ("Box", "space"), "Point": (0., .5), "Control": "proportional derivative",
+                 "Natural Frequency": 5., "Target": {"Type": "sinusoid", "Amplitude": .3, "Frequency": 2., "Phase": .4}}
+        scene = tank(solids={"Box": unseen_box()}, Joints={"Hinge": joint}, Contact={"Type": "none"})
+        for restart, begin in (("", 0.), (str(self.root / "run" / "checkpoint-000003.h5"), .03)):
+            with self.open(scene, restart=restart) as run:
+                self.assertAlmostEqual(run.time, begin)
+                while True:
+                    state, = run.joints()["Hinge"]
+                    self.assertAlmostEqual(state["target"], .3 * math.sin(4 * math.pi * run.time + .4), delta=1e-12)
+                    self.assertEqual(state["torque"] == 0, run.time == begin)
+                    if (not restart and run.n_steps == 3) or not run.step():
+                        break
+
     def test_reads_water_at_rest(self):
         for dimension in (2, 3):
             with self.subTest(dimension=dimension), self.open(tank(dimension)) as run:

@@ -65,6 +65,36 @@ TYPED_TEST(Contacts, AStackOfThreeBoxesStays) {
   }
 }
 
+/// A body that is locked, and hit hard all the time: no impulse helps it, so it is no measure of
+/// how well others are to rest.
+TYPED_TEST(Contacts, WhatCannotMoveTroublesNobody) {
+  constexpr int dim = TypeParam::value;
+  std::vector<RigidBody<dim>> bodies;
+  for (int i = 0; i < 3; ++i)
+    bodies.push_back(rough(box<dim>(4 * h, up<dim>((2 + 4 * i) * h), 2 * h), 0.5));
+  const Point<dim> aside = 30 * h * Point<dim>::Unit(0);
+  bodies.push_back(box<dim>(4 * h, aside + up<dim>(20 * h), 2 * h));
+  bodies.back().locked.fill(true);
+  bodies.push_back(fixed(box<dim>(4 * h, aside + up<dim>(40 * h), 2 * h)));
+  bodies.back().script = [](double) {
+    ScriptedMotion<dim> motion;
+    motion.velocity = up<dim>(-100);
+    return motion;
+  };
+  World<dim> alone(bodies, up<dim>(-g), cube_walls<dim>());
+  bodies.back().pose.position = aside + up<dim>(24 * h);
+  bodies.back().initial_pose = bodies.back().pose;
+  World<dim> beside(bodies, up<dim>(-g), cube_walls<dim>());
+  for (int n = 0; n < 20; ++n) {
+    alone.step(0.01);
+    beside.step(0.01);
+    EXPECT_GT(alone.velocity_report.n_contacts, 0);
+    EXPECT_EQ(beside.velocity_report.n_contacts, alone.velocity_report.n_contacts);
+    for (int i = 0; i < 3; ++i)
+      EXPECT_LT((beside.state(i).velocity - alone.state(i).velocity).norm(), 1e-12) << i;
+  }
+}
+
 double cpu_seconds() {
   return double(std::clock()) / CLOCKS_PER_SEC;
 }

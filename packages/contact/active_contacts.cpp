@@ -1,0 +1,208 @@
+// Which contacts and limits act: found round by round.
+#include <algorithm>
+
+#include "base/interruption.hpp"
+#include "contact/contact_problem.hpp"
+
+namespace lockstep {
+
+namespace {
+constexpr int most_rounds = 12;
+constexpr int most_searches = 3;
+constexpr int most_impact_rounds = 20;
+/// Contacts of a pair that become active at once: enough to hold a face.
+template <int dim>
+constexpr int most_at_once = dim == 2 ? 2 : 4;
+}  // namespace
+
+template <int dim>
+void ContactProblem<dim>::leave_out_immovable(ImpulseSolver<dim>& solver) {
+  const std::vector<double>& velocity = solver.velocity();
+  const SolidMotion<dim> motion(system_, shapes_, velocity);
+  bool any = false;
+  for (Candidate& candidate : candidates_) {
+    const Contact<dim>& contact = candidate.contact;
+    if (any_bends({contact.solid, contact.other}) && !system_.joints())
+      continue;  // nodes that are held are no candidates
+    if (candidate.target > normal_velocity(motion, contact) && !solver.can_move(contact))
+      any = candidate.active = true;
+  }
+  for (Limit& one : limits_) {
+    if (one.target > one.value(velocity) && !solver.can_move(one.resolved))
+      any = one.active = true;
+  }
+  if (any)
+    find_scale(motion, velocity);
+}
+
+template <int dim>
+bool ContactProblem<dim>::activate(Candidate& candidate, ImpulseSolver<dim>& solver) const {
+  candidate.active = true;
+  return solver.add(candidate.contact, candidate.target, friction(candidate.contact));
+}
+
+template <int dim>
+int ContactProblem<dim>::activate_violated(const SolidMotion<dim>& motion, int most,
+                                           double tolerance, ImpulseSolver<dim>& solver) {
+  int n_activated = 0;
+  for (auto& [pair, members] : pairs_) {
+    std::vector<std::pair<double, int>> violated;
+    for (int k : members) {
+      const Candidate& candidate = candidates_[k];
+      const double lack = candidate.target - normal_velocity(motion, candidate.contact);
+      if (!candidate.active && lack > tolerance)
+        violated.push_back({lack, k});
+    }
+    std::vector<Point<dim>> chosen;
+    const bool all = any_bends(pair);
+    for (const auto& [lack, k] : violated) {
+      if (all && activate(candidates_[k], solver))
+        ++n_activated;
+    }
+    for (int n = 0; n < most && !all;) {
+      double best = 0;
+      int next = -1;
+      for (const auto& [lack, k] : violated) {
+        double distance = 1e300;
+        for (const Point<dim>& x : chosen)
+          distance = std::min(distance, (candidates_[k].contact.x - x).norm());
+        const double value = chosen.empty() ? lack : lack * distance;
+        if (!candidates_[k].active && value > best * (1 + 1e-9)) {
+          best = value;
+          next = k;
+        }
+      }
+      if (next < 0)
+        break;
+      if (!activate(candidates_[next], solver))
+        continue;
+      chosen.push_back(candidates_[next].contact.x);
+      ++n_activated;
+      ++n;
+    }
+  }
+  return n_activated;
+}
+
+template <int dim>
+int ContactProblem<dim>::activate_limits(const std::vector<double>& velocity, double tolerance,
+                                         ImpulseSolver<dim>& solver) {
+  int n_activated = 0;
+  for (Limit& one : limits_) {
+    if (one.active || one.target - one.value(velocity) <= tolerance)
+      continue;
+    one.active = true;
+    one.number = solver.add(one.resolved, one.target);
+    n_activated += one.number >= 0 ? 1 : 0;
+  }
+  return n_activated;
+}
+
+template <int dim>
+void ContactProblem<dim>::extend_search(const std::vector<double>& velocity) {
+  const SolidMotion<dim> motion(system_, shapes_, velocity);
+  const double allowed = 0.5 * options_.margin * spacing_ / dt_;
+  bool farther = false;
+  for (int i = 0; i < shapes_.n_solids(); ++i) {
+    if (motion.range(i).isEmpty())
+      continue;
+    Box<dim> known = searched_[i];
+    known = Box<dim>(known.min().cwiseMin(0.0).array() - allowed,
+                     known.max().cwiseMax(0.0).array() + allowed);
+    farther = farther || !known.contains(motion.range(i));
+  }
+  if (farther)
+    add_candidates(motion, SolidMotion<dim>(system_, shapes_, before_));
+}
+
+template <int dim>
+int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
+  int sweeps = 0, searches = 1;
+  if (system_.joints() || system_.reduction().has_given())
+    leave_out_immovable(solver);
+  if (scale_ == 0)
+    return 0;
+  for (int round = 0; round < most_rounds; ++round) {
+    poll_interruption(system_.comm());
+    const SolidMotion<dim> motion(system_, shapes_, solver.velocity());
+    const double tolerance = (round == 0 ? 0 : 10) * options_.tolerance * scale_;
+    const int most = round == 0 ? most_at_once<dim> : 2;
+    const int n_limits = activate_limits(solver.velocity(), tolerance, solver);
+    if (activate_violated(motion, most, tolerance, solver) + n_limits == 0)
+      break;
+    sweeps += solver.iterate(std::max(1, options_.sweeps / 8), options_.tolerance * scale_);
+    if (phase_ == ContactPhase::position && searches < most_searches) {
+      const std::size_t known = candidates_.size();
+      extend_search(solver.velocity());
+      searches += candidates_.size() > known ? 1 : 0;
+    }
+  }
+  sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
+  return sweeps + stop_impacts(solver);
+}
+
+template <int dim>
+bool ContactProblem<dim>::follows_impacts() const {
+  const auto& solids = shapes_.solids();
+  return phase_ == ContactPhase::position &&
+         std::any_of(solids.begin(), solids.end(),
+                     [](const SolidDescription& solid) { return !solid.rigid; });
+}
+
+template <int dim>
+std::vector<Contact<dim>> ContactProblem<dim>::impacts_of(
+    const std::vector<double>& velocity) const {
+  std::vector<Contact<dim>> contacts;
+  if (!follows_impacts())
+    return contacts;
+  const SolidMotion<dim> motion(system_, shapes_, velocity);
+  const SurfacePath<dim> path(shapes_, motion, dt_);
+  for (const FoundImpact<dim>& found : find_impacts(shapes_, path, options_.self_contact)) {
+    const double apart = clearance_between(found.pair.solid, found.pair.other);
+    contacts.push_back(impact_contact(shapes_, motion, path, found, apart, dt_));
+  }
+  return contacts;
+}
+
+template <int dim>
+int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
+  int sweeps = 0;
+  for (int round = 0; round < most_impact_rounds; ++round) {
+    poll_interruption(system_.comm());
+    const std::vector<Contact<dim>> impacts = impacts_of(solver.velocity());
+    bool any = false;
+    for (const Contact<dim>& contact : impacts)
+      any = solver.add(contact, -contact.gap / dt_, friction(contact)) || any;
+    if (!any)
+      break;
+    sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
+  }
+  return sweeps;
+}
+
+template <int dim>
+std::vector<std::pair<GlobalIndex, double>> ContactProblem<dim>::limit_impulses(
+    const ImpulseSolver<dim>& solver) const {
+  std::vector<std::pair<GlobalIndex, double>> all;
+  for (const Limit& one : limits_) {
+    const double impulse = one.number >= 0 ? solver.limit_impulse(one.number) : 0;
+    for (const auto& [dof, weight] : one.limit.terms) {
+      if (impulse != 0)
+        all.emplace_back(dof, impulse * weight);
+    }
+  }
+  return all;
+}
+
+template void ContactProblem<2>::leave_out_immovable(ImpulseSolver<2>&);
+template std::vector<Contact<2>> ContactProblem<2>::impacts_of(const std::vector<double>&) const;
+template int ContactProblem<2>::solve(ImpulseSolver<2>&);
+template std::vector<std::pair<GlobalIndex, double>> ContactProblem<2>::limit_impulses(
+    const ImpulseSolver<2>&) const;
+template void ContactProblem<3>::leave_out_immovable(ImpulseSolver<3>&);
+template std::vector<Contact<3>> ContactProblem<3>::impacts_of(const std::vector<double>&) const;
+template int ContactProblem<3>::solve(ImpulseSolver<3>&);
+template std::vector<std::pair<GlobalIndex, double>> ContactProblem<3>::limit_impulses(
+    const ImpulseSolver<3>&) const;
+
+}  // namespace lockstep
