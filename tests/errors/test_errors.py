@@ -6,124 +6,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import bad_meshes
+import bad_water
+from bad_input import (BALL, BLOCK, BODY_TYPE, CELLS, DENSITY, DIMENSION, END, FAR_CORNERS, FLUID_DENSITY, GEOMETRY,
+                       INFLOW, NAME, POSITION, RADIUS, SCENE_3D, SHAPE, SIDE, SLIDING, TWO_BALLS, UPPER, Case, value)
 from program import SCENE, SIMULATE, simulate
-
-TETRAHEDRON = """v 0 0 0
-v 1 0 0
-v 0 1 0
-v 0 0 1
-f 1 3 2
-f 1 2 4
-f 1 4 3
-f 2 3 4
-"""
-FLAT = """v 0 0 0
-v 1 0 0
-v 0 1 0
-f 1 2 3
-f 1 3 2
-"""
-
-INNER_TETRAHEDRON = """v .1 .1 .1
-v .3 .1 .1
-v .1 .3 .1
-v .1 .1 .3
-f 5 7 6
-f 5 6 8
-f 5 8 7
-f 6 7 8
-"""
-BOW_TIE = """v 0 0 0
-v .4 .2 0
-v .4 0 0
-v 0 .2 0
-l 1 2
-l 2 3
-l 3 4
-l 4 1
-"""
-
-
-class Case:
-    """What differs from the good scene, and what the message must say."""
-
-    def __init__(self, name, expected, change=(), sets=(), arguments=(), files=(), scene=None):
-        self.name, self.expected = name, [expected] if isinstance(expected, str) else expected
-        self.arguments = [*arguments]
-        for assignment in sets:
-            self.arguments += ["--set", assignment]
-        self.files = dict(files)
-        self.scene = scene if scene is not None else SCENE
-        for old, new in change if isinstance(change, list) else [change] if change else []:
-            assert self.scene.count(old) == 1, f"{name}: {old!r} must occur once"
-            self.scene = self.scene.replace(old, new)
-
-
-def value(name, type_name, text):
-    return f'<Parameter name="{name}" type="{type_name}" value="{text}"/>'
-
-
-SHAPE = value("Shape", "string", "ball")
-RADIUS = value("Radius", "double", "0.3")
-GEOMETRY = f"{SHAPE}\n        {RADIUS}"
-DENSITY = value("Density", "double", "500")
-FLUID_DENSITY = value("Density", "double", "1000")
-DIMENSION = value("Dimension", "int", "2")
-CELLS = value("Cells", "Array(int)", "{12, 24}")
-SIDE = value("Type", "string", "wall")
-END = value("End", "double", "0.5")
-BODY_TYPE = value("Type", "string", "rigid body")
-POSITION = value("Position", "Array(double)", "{0.5, 0.5}")
-INFLOW = value("Type", "string", "inflow") + value("Velocity", "Array(double)", "{1, 0}")
-UPPER = value("Upper", "Array(double)", "{1, 2}")
-FAR_CORNERS = value("Lower", "Array(double)", "{1e15, 0}") + value("Upper", "Array(double)", "{1000000000000001, 2}")
-NAME = '<ParameterList name="Ball">'
-BALL = SCENE[SCENE.index(NAME):SCENE.index("    </ParameterList>\n  </ParameterList>\n  <ParameterList name=\"Time\"")]
-TWO_BALLS = (BALL.replace(NAME, '<ParameterList name="B 1">') + "</ParameterList>\n" +
-             BALL.replace(NAME, '<ParameterList name="B_1">').replace("{0.5, 0.5}", "{0.5, 1.5}"))
-# A block from wall to wall that slides along the tank.
-BLOCK = value("Shape", "string", "box") + value("Size", "Array(double)", "{1.2, 0.4}")
-SLIDING = """<ParameterList name="Motion"> <Parameter name="Type" type="string" value="sinusoid"/>
-  <Parameter name="Amplitude" type="Array(double)" value="{0, 0.1}"/>
-  <Parameter name="Frequency" type="double" value="1"/> </ParameterList>"""
-SCENE_3D = (SCENE.replace(DIMENSION, value("Dimension", "int", "3"))
-            .replace("{1, 2}", "{1, 2, 1}").replace("{12, 24}", "{6, 12, 6}")
-            .replace("{0, -9.8}", "{0, -9.8, 0}").replace("{0.5, 0.5}", "{0.3, 0.3, 0.3}"))
-
-SOFT_SCENE_3D = (SCENE_3D.replace(BODY_TYPE, value("Type", "string", "deformable body"))
-                 .replace(DENSITY, DENSITY + '<ParameterList name="Material">' +
-                          value("Young's Modulus", "double", "1e4") + "</ParameterList>"))
-
-
-def mesh(text, name="body.obj"):
-    """A 3D scene whose body is read from a file."""
-    return {"scene": SCENE_3D, "files": [(name, text)] if text is not None else [],
-            "change": (GEOMETRY, value("Shape", "string", "file") + value("File", "string", name))}
-
-
-FREE_SURFACE = """<ParameterList name="Free Surface"> <ParameterList name="Liquid"> <ParameterList name="Pool">
-  <Parameter name="Type" type="string" value="level"/> <Parameter name="Height" type="double" value="1.2"/>
-  </ParameterList> </ParameterList> REST </ParameterList>"""
-
-
-def water(rest="", liquid=None, solid="Ball"):
-    """The good scene with a free surface."""
-    scene = SCENE.replace(value("Order in Time", "int", "2"), FREE_SURFACE.replace("REST", rest)).replace(NAME, f'<ParameterList name="{solid}">')
-    return {"scene": scene if liquid is None else scene.replace(value("Type", "string", "level") + " " +
-                                                                value("Height", "double", "1.2"), liquid)}
-
-
-def watch(*places):
-    """Watched places: names, points and more."""
-    lists = [f'<ParameterList name="{name}">' + value("Point", "Array(double)", point) + more + "</ParameterList>"
-             for name, point, more in places]
-    return water('<ParameterList name="Watch">' + "".join(lists) + "</ParameterList>")
-
-
-def filled(name, text=None):
-    """Liquid in what a file holds."""
-    return {"files": [(name, text)] if text else [],
-            **water(liquid=value("Type", "string", "mesh") + value("File", "string", name))}
 
 
 def joint(kind, solids, more="", second=""):
@@ -297,63 +184,6 @@ CASES = [
     Case("a solid without a letter", ["\".\"", "cannot be stored"], change=(NAME, '<ParameterList name=".">')),
     Case("a solid in two lines", ["line break", "one line"], change=(NAME, '<ParameterList name="Ball&#10;2">')),
     Case("two solids stored as one", ["\"B 1\"", "\"B_1\"", "another"], change=(BALL, TWO_BALLS)),
-
-    # Meshes.
-    Case("a flat volume", ["Ball", "flat"], **mesh(FLAT)),
-    Case("no mesh", ["body.obj", "cannot open"], **mesh(None)),
-    Case("a mesh that is a pipe", ["pipe.obj", "pipe, not a file"], **mesh(None, "pipe.obj")),
-    Case("a volume mesh that is a pipe", ["pipe.vtk", "pipe, not a file"],
-         **{**mesh(None, "pipe.vtk"), "scene": SOFT_SCENE_3D}),
-    Case("an open mesh", ["'Ball'", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
-    Case("a triangle turned against its neighbours", "oriented against each other",
-         **mesh(TETRAHEDRON.replace("f 2 3 4", "f 2 4 3"))),
-    Case("a coordinate nan", ["body.obj, line 2", "'nan'", "finite"], **mesh(TETRAHEDRON.replace("v 1 0 0", "v nan 0 0"))),
-    Case("a coordinate inf", ["body.obj, line 2", "'-inf'"], **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1 -inf 0"))),
-    Case("a coordinate beyond doubles", ["body.obj, line 2", "'1e999'"],
-         **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1e999 0 0"))),
-    Case("a hexadecimal coordinate", ["body.obj, line 2", "'0x10'"],
-         **mesh(TETRAHEDRON.replace("v 1 0 0", "v 0x10 0 0"))),
-    Case("a vertex without number", ["body.obj, line 5", "'/1'"], **mesh(TETRAHEDRON.replace("f 1 3 2", "f /1 3 2"))),
-    Case("a huge vertex number", ["body.obj, line 5", "'99999999999999999999'"],
-         **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 99999999999999999999"))),
-    Case("a hole in the file's numbers", ["body.obj", "1 hole, with 3 edges", "vertex 2 at (1, 0, 0)", "line 5",
-                                          "\"Weld\"", "\"Thin Shell\""],
-         **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
-    Case("a hole that faces outwards", ["1 of its 2 closed parts faces the wrong way", "bounds a hole", "line 13"],
-         **mesh(TETRAHEDRON + INNER_TETRAHEDRON)),
-    Case("an outline that crosses itself", ["crosses itself in 1 pair of segments", "line 5", "line 7"],
-         arguments=["--validate"], scene=SCENE, files=[("body.obj", BOW_TIE)],
-         change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.obj"))),
-    Case("welded to nothing", "\"Weld\" = 9", files=[("body.obj", TETRAHEDRON)], scene=SCENE_3D,
-         change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.obj") +
-                 value("Weld", "double", "9"))),
-    Case("a ball that is welded", "has no \"Weld\"", change=(RADIUS, RADIUS + value("Weld", "double", "1"))),
-    Case("a vertex that is not there", ["line 5", "vertex 9 does not exist"],
-         **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 9"))),
-    Case("a mesh without faces", "no triangles", **mesh(TETRAHEDRON.split("f", 1)[0])),
-    Case("an unknown kind of file", "body.ply", **mesh(TETRAHEDRON, "body.ply")),
-    Case("a mesh that is no mesh", "OFF", **mesh("solid", "body.off")),
-
-    # Water.
-    Case("gas at less than no pressure", ["Gas Pressure", "above minus"],
-         **water(value("Trapped Air", "string", "ideal gas") + value("Gas Pressure", "double", "-2e5"))),
-    Case("an atmosphere that is nowhere", ["Atmosphere", "outside of the domain"],
-         **water(value("Trapped Air", "string", "constant volume") + value("Atmosphere", "Array(double)", "{9, 9}"))),
-    Case("half an atmosphere", ["Atmosphere", "has 1 numbers"],
-         **water(value("Trapped Air", "string", "ideal gas") + value("Atmosphere", "Array(double)", "{0.5}"))),
-    Case("trapped air between tiles that move", ["Trapped Air", "leave them out"],
-         sets=["Fluid/Moving Tiles/Tile Margin=9"], **water(value("Trapped Air", "string", "ideal gas"))),
-    Case("a solid with the water's name", ["\"water\"", "fluid's surface in frames"], **water(solid="water")),
-    Case("a watch in a solid", ["watch \"Hold\"", "inside a solid"], **watch(("Hold", "{0.5, 0.5}", ""))),
-    Case("a watch outside", ["watch \"Hold\"", "outside of the domain"], **watch(("Hold", "{0.5, 7}", ""))),
-    Case("two watches of one column", ["\"Watch\"", "watch_B_1_volume"],
-         **watch(("B 1", "{0.1, 0.1}", ""), ("B_1", "{0.1, 0.2}", ""))),
-    Case("a watch that moves with nobody", ["watch \"Hold\"", "\"Boat\"", "no solid"],
-         **watch(("Hold", "{0.1, 0.1}", value("Solid", "string", "Boat")))),
-    Case("a watch of a hair", ["\"Radius\"", "greater than 0"],
-         **watch(("Hold", "{0.1, 0.1}", value("Radius", "double", "0")))),
-    Case("liquid in no file", ["pool.obj", "cannot open this surface file"], **filled("pool.obj")),
-    Case("liquid in an open line", ["Pool", "pool.obj"], **filled("pool.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\n")),
 ]
 
 
@@ -396,9 +226,10 @@ class BadInput(unittest.TestCase):
                 self.assertFalse((Path(folder) / "output").exists(), "--validate must not write")
 
     def test_cases(self):
-        self.assertGreaterEqual(len(CASES), 30)
+        cases = CASES + bad_meshes.CASES + bad_water.CASES
+        self.assertGreaterEqual(len(cases), 30)
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            failures = [failure for failure in pool.map(run, CASES) if failure]
+            failures = [failure for failure in pool.map(run, cases) if failure]
         self.assertFalse(failures, "\n".join(failures))
 
     def test_links_lead_nowhere(self):

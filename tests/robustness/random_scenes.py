@@ -27,7 +27,8 @@ from invariants import (Tables, check_energy, check_frames, check_restart, check
                         has_energy_bound)
 from parameter_list import to_xml
 from runs import program, run
-from scenes import NEEDS_FLUID_ALONE, random_scene
+from scenes import random_scene
+from solvers import NEEDS_FLUID_ALONE
 
 # What a strategy or a scene may be refused for, in the program's words.
 NO_UNKNOWNS = re.compile(r"some rank owns no (pressure|solid) unknown")

@@ -11,17 +11,13 @@ import random
 import gases
 import joints
 import liquids
+import solvers
 from liquids import AXES
 from parameter_list import to_xml
 from rigid_solids import rigid_body
 from soft_solids import carried, cloth, deformable_body
 
 NAMES = ["Ball", "Body 2", "x,y 1", "A & B", "Körper", "Körper 2", "b-3", "Zelt"]
-TOLERANCE = 1e-10
-# Strategies that can solve every scene; the others are drawn where docs/solvers.md says they can.
-GENERAL_STRATEGIES = ["schur-cg"] * 8 + ["pressure-schur", "direct", "paper"]
-NEEDS_FLUID_ALONE = {"bramble-pasciak", "uzawa", "block-lu", "solid-schur"}  # refuse a region that a solid closes
-BELOS_STRATEGIES = {"block-lu", "gauss-seidel", "simple"}
 
 
 @dataclasses.dataclass
@@ -313,44 +309,6 @@ def contact(world, solid_lists):
     return chosen
 
 
-def strategy(world, coupling_list, solid_lists):
-    """A strategy and inverses of its blocks; those of limited use only in their domain."""
-    rng, facts = world.rng, world.facts
-    names = list(GENERAL_STRATEGIES)
-    limited = []
-    rigid_only = facts.dynamic_rigid and not (facts.soft or facts.attached or facts.closed_shell)
-    if rigid_only and coupling_list["Type"] == "mixed face":
-        limited += ["solid-schur", "block-lu", "bramble-pasciak", "block-elimination", "simple"]
-        if facts.lightest >= 1:
-            limited.append("gauss-seidel")
-        if facts.lightest >= 20:
-            limited += ["uzawa"] * 3
-    name = rng.choice(limited if limited and rng.random() < 0.5 else names)
-    chosen = {"Type": name, "Maximum Iterations": 5000}
-    facts.strategy = name
-    facts.needs_full_ranks = name in BELOS_STRATEGIES
-    if name == "paper":
-        chosen["Krylov Method"] = rng.choice(["Belos MINRES", "Lockstep MINRES"])
-        facts.needs_full_ranks = chosen["Krylov Method"] == "Belos MINRES"
-    if name in ("schur-cg", "pressure-schur") and rng.random() < 0.25:
-        kind = rng.choice(["MueLu", "Incomplete Cholesky", "Multigrid"])  # the last wants whole tiles along periodic axes
-        chosen["Pressure Inverse"] = {"Type": "Automatic" if kind == "Multigrid" and world.facts.periodic else kind}
-        facts.pressure_by_muelu = kind == "MueLu" and name == "pressure-schur"
-    if name in ("schur-cg", "pressure-schur") and solid_lists and rng.random() < 0.25:
-        kinds = ["Exact", "Jacobi", "Additive Multilevel", "MueLu"] if facts.soft else ["Exact", "Block Diagonal"]
-        chosen["Solid Inverse"] = {"Type": rng.choice(kinds)}
-        facts.solid_by_muelu = chosen["Solid Inverse"]["Type"] == "MueLu"
-    return chosen
-
-
-def solver(world, coupling_list, solid_lists):
-    chosen = {"Tolerance": TOLERANCE, "Strategy": strategy(world, coupling_list, solid_lists)}
-    chosen["Viscous Tolerance"] = 1e-12
-    if world.facts.soft and world.rng.random() < 0.25:
-        chosen["Newton Iterations"] = world.rng.randint(2, 3)
-    return chosen
-
-
 def time(world):
     rng = world.rng
     chosen = {"Start": world.start, "End": world.start + 100 * world.dt, "Steps": world.n_steps,
@@ -397,7 +355,7 @@ def random_scene(seed):
     content["Contact"] = contact(world, content["Solids"])
     if joints.FIRST_SEED <= seed < gases.FIRST_SEED:
         joints.add_joints(world, content, seed)
-    content["Solver"] = solver(world, content["Coupling"], content["Solids"])
+    content["Solver"] = solvers.solver(world, content["Coupling"], content["Solids"])
     content["Time"] = time(world)
     content["Observers"] = observers(world)
     content["Output"] = {"Precision": "double", "Checkpoint Interval": 1e-9 * world.dt, "Keep Checkpoints": 10}

@@ -1,0 +1,82 @@
+"""Bad input: surfaces and volumes from files."""
+from bad_input import GEOMETRY, RADIUS, SCENE_3D, SOFT_SCENE_3D, Case, value
+from program import SCENE
+
+TETRAHEDRON = """v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+"""
+FLAT = """v 0 0 0
+v 1 0 0
+v 0 1 0
+f 1 2 3
+f 1 3 2
+"""
+
+INNER_TETRAHEDRON = """v .1 .1 .1
+v .3 .1 .1
+v .1 .3 .1
+v .1 .1 .3
+f 5 7 6
+f 5 6 8
+f 5 8 7
+f 6 7 8
+"""
+BOW_TIE = """v 0 0 0
+v .4 .2 0
+v .4 0 0
+v 0 .2 0
+l 1 2
+l 2 3
+l 3 4
+l 4 1
+"""
+
+
+def mesh(text, name="body.obj"):
+    """A 3D scene whose body is read from a file."""
+    return {"scene": SCENE_3D, "files": [(name, text)] if text is not None else [],
+            "change": (GEOMETRY, value("Shape", "string", "file") + value("File", "string", name))}
+
+
+CASES = [
+    Case("a flat volume", ["Ball", "flat"], **mesh(FLAT)),
+    Case("no mesh", ["body.obj", "cannot open"], **mesh(None)),
+    Case("a mesh that is a pipe", ["pipe.obj", "pipe, not a file"], **mesh(None, "pipe.obj")),
+    Case("a volume mesh that is a pipe", ["pipe.vtk", "pipe, not a file"],
+         **{**mesh(None, "pipe.vtk"), "scene": SOFT_SCENE_3D}),
+    Case("an open mesh", ["'Ball'", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
+    Case("a triangle turned against its neighbours", "oriented against each other",
+         **mesh(TETRAHEDRON.replace("f 2 3 4", "f 2 4 3"))),
+    Case("a coordinate nan", ["body.obj, line 2", "'nan'", "finite"], **mesh(TETRAHEDRON.replace("v 1 0 0", "v nan 0 0"))),
+    Case("a coordinate inf", ["body.obj, line 2", "'-inf'"], **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1 -inf 0"))),
+    Case("a coordinate beyond doubles", ["body.obj, line 2", "'1e999'"],
+         **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1e999 0 0"))),
+    Case("a hexadecimal coordinate", ["body.obj, line 2", "'0x10'"],
+         **mesh(TETRAHEDRON.replace("v 1 0 0", "v 0x10 0 0"))),
+    Case("a vertex without number", ["body.obj, line 5", "'/1'"], **mesh(TETRAHEDRON.replace("f 1 3 2", "f /1 3 2"))),
+    Case("a huge vertex number", ["body.obj, line 5", "'99999999999999999999'"],
+         **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 99999999999999999999"))),
+    Case("a hole in the file's numbers", ["body.obj", "1 hole, with 3 edges", "vertex 2 at (1, 0, 0)", "line 5",
+                                          "\"Weld\"", "\"Thin Shell\""],
+         **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
+    Case("a hole that faces outwards", ["1 of its 2 closed parts faces the wrong way", "bounds a hole", "line 13"],
+         **mesh(TETRAHEDRON + INNER_TETRAHEDRON)),
+    Case("an outline that crosses itself", ["crosses itself in 1 pair of segments", "line 5", "line 7"],
+         arguments=["--validate"], scene=SCENE, files=[("body.obj", BOW_TIE)],
+         change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.obj"))),
+    Case("welded to nothing", "\"Weld\" = 9", files=[("body.obj", TETRAHEDRON)], scene=SCENE_3D,
+         change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.obj") +
+                 value("Weld", "double", "9"))),
+    Case("a ball that is welded", "has no \"Weld\"", change=(RADIUS, RADIUS + value("Weld", "double", "1"))),
+    Case("a vertex that is not there", ["line 5", "vertex 9 does not exist"],
+         **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 9"))),
+    Case("a mesh without faces", "no triangles", **mesh(TETRAHEDRON.split("f", 1)[0])),
+    Case("an unknown kind of file", "body.ply", **mesh(TETRAHEDRON, "body.ply")),
+    Case("a mesh that is no mesh", "OFF", **mesh("solid", "body.off")),
+]

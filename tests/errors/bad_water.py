@@ -1,0 +1,50 @@
+"""Bad input: water and air."""
+from bad_input import NAME, Case, value
+from program import SCENE
+
+FREE_SURFACE = """<ParameterList name="Free Surface"> <ParameterList name="Liquid"> <ParameterList name="Pool">
+  <Parameter name="Type" type="string" value="level"/> <Parameter name="Height" type="double" value="1.2"/>
+  </ParameterList> </ParameterList> REST </ParameterList>"""
+
+
+def water(rest="", liquid=None, solid="Ball"):
+    """The good scene with a free surface."""
+    scene = SCENE.replace(value("Order in Time", "int", "2"), FREE_SURFACE.replace("REST", rest)).replace(NAME, f'<ParameterList name="{solid}">')
+    return {"scene": scene if liquid is None else scene.replace(value("Type", "string", "level") + " " +
+                                                                value("Height", "double", "1.2"), liquid)}
+
+
+def watch(*places):
+    """Watched places: names, points and more."""
+    lists = [f'<ParameterList name="{name}">' + value("Point", "Array(double)", point) + more + "</ParameterList>"
+             for name, point, more in places]
+    return water('<ParameterList name="Watch">' + "".join(lists) + "</ParameterList>")
+
+
+def filled(name, text=None):
+    """Liquid in what a file holds."""
+    return {"files": [(name, text)] if text else [],
+            **water(liquid=value("Type", "string", "mesh") + value("File", "string", name))}
+
+
+CASES = [
+    Case("gas at less than no pressure", ["Gas Pressure", "above minus"],
+         **water(value("Trapped Air", "string", "ideal gas") + value("Gas Pressure", "double", "-2e5"))),
+    Case("an atmosphere that is nowhere", ["Atmosphere", "outside of the domain"],
+         **water(value("Trapped Air", "string", "constant volume") + value("Atmosphere", "Array(double)", "{9, 9}"))),
+    Case("half an atmosphere", ["Atmosphere", "has 1 numbers"],
+         **water(value("Trapped Air", "string", "ideal gas") + value("Atmosphere", "Array(double)", "{0.5}"))),
+    Case("trapped air between tiles that move", ["Trapped Air", "leave them out"],
+         sets=["Fluid/Moving Tiles/Tile Margin=9"], **water(value("Trapped Air", "string", "ideal gas"))),
+    Case("a solid with the water's name", ["\"water\"", "fluid's surface in frames"], **water(solid="water")),
+    Case("a watch in a solid", ["watch \"Hold\"", "inside a solid"], **watch(("Hold", "{0.5, 0.5}", ""))),
+    Case("a watch outside", ["watch \"Hold\"", "outside of the domain"], **watch(("Hold", "{0.5, 7}", ""))),
+    Case("two watches of one column", ["\"Watch\"", "watch_B_1_volume"],
+         **watch(("B 1", "{0.1, 0.1}", ""), ("B_1", "{0.1, 0.2}", ""))),
+    Case("a watch that moves with nobody", ["watch \"Hold\"", "\"Boat\"", "no solid"],
+         **watch(("Hold", "{0.1, 0.1}", value("Solid", "string", "Boat")))),
+    Case("a watch of a hair", ["\"Radius\"", "greater than 0"],
+         **watch(("Hold", "{0.1, 0.1}", value("Radius", "double", "0")))),
+    Case("liquid in no file", ["pool.obj", "cannot open this surface file"], **filled("pool.obj")),
+    Case("liquid in an open line", ["Pool", "pool.obj"], **filled("pool.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\n")),
+]
