@@ -85,7 +85,7 @@ CASES = [
     Case("a restart from a pipe", ["pipe.h5", "pipe, not a file"], arguments=["--restart", "pipe.h5"]),
     Case("a solver file that is a pipe", ["pipe.h5", "pipe, not a file"], sets=["Solver/File=pipe.h5"]),
     Case("a solver file that is a device", ["/dev/zero", "device, not a file"], sets=["Solver/File=/dev/zero"]),
-    Case("an end before the start", "must be later", arguments=["--end-time", "-1"]),
+    Case("an end before the start", ["--end-time", "later than the start"], arguments=["--end-time", "-1"]),
     Case("an output folder that is a file", "scene.xml", arguments=["--output", "scene.xml"]),
 
     # The file as XML.
