@@ -3,13 +3,17 @@
 #include <Eigen/Dense>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <cmath>
 
+#include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
+#include "linear/symmetry_check.hpp"
 
 namespace lockstep {
 
 namespace {
-/// Below this part of the conductance a pocket cannot open: what is around it is all closed in.
+/// Below this part of what would open it if no unknown answered a pocket cannot open: what is
+/// around it is all closed in.
 constexpr double closed_in = 1e-9;
 
 /// What p̂ = 1 in one pocket does.
@@ -17,7 +21,31 @@ struct Answer {
   int pocket = 0;
   BlockVector unknowns;
   std::vector<double> rates;  ///< of all pockets [m^dim/s]
+  double unanswered = 0;      ///< what would open this one if no pressure answered [m^dim/s]
 };
+
+/// What the pocket's push opens of it where solids move by the diagonal of their mass alone.
+double opened_by_solids(int pocket, const GasProblem& gas, const BlockSystem& blocks,
+                        const BlockVector& rhs) {
+  const auto mass = blocks.has_solid() ? assembled(blocks.solids.op) : RCP<const CrsMatrix>();
+  if (mass.is_null())
+    return 0;
+  BlockVector moved{make_vector(rhs.pressure->getMap()), make_vector(rhs.solid->getMap())};
+  Vector inverse(rhs.solid->getMap());
+  inverse.reciprocal(*diagonal_of(*mass));
+  moved.solid->elementWiseMultiply(1, inverse, *rhs.solid, 0);
+  return std::abs(gas.rates(moved, true)[pocket]);
+}
+
+/// Round-off of the pressure rows where p̂ is about 1 everywhere.
+double round_off_of_rows(const BlockSystem& blocks, const RCP<const Map>& map) {
+  constexpr double round_off = 1e-14;
+  Vector unit(map), product(map);
+  pseudo_random(unit, 1);
+  unit.scale(1 / std::max(unit.normInf(), 1e-300));
+  apply(*blocks.pressure.op, unit, product);
+  return round_off * product.norm2();
+}
 
 Answer answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
                  const BlockSystem& blocks, const SolveRequest& request, const BlockVector& like,
@@ -31,12 +59,14 @@ Answer answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
   unit[pocket] = 1;
   gas.push(unit, rhs);
   relative_part_removed(blocks.null_space, *rhs.pressure);
-  // What opens the pocket is a small difference of what goes through its faces.
-  const SolveRequest exact{request.name + ", gas", std::min(request.tolerance, 1e-10), 0,
-                           request.step};
+  // What opens the pocket is a small difference of what goes through its faces. Where all is closed
+  // in, pressures hold the solids still, and nothing is left for the tolerance to be a part of.
+  const SolveRequest exact{request.name + ", gas", std::min(request.tolerance, 1e-10),
+                           round_off_of_rows(blocks, like.pressure->getMap()), request.step};
   report.add_work(strategy.solve(blocks, rhs, answer.unknowns, exact));
   answer.rates = gas.rates(answer.unknowns, true);
   answer.rates[pocket] += gas.conductance[pocket];
+  answer.unanswered = gas.conductance[pocket] + opened_by_solids(pocket, gas, blocks, rhs);
   return answer;
 }
 
@@ -71,7 +101,7 @@ std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strate
     if (!pocket.keeps_volume && !(gas.with_springs && may_be_stiff))
       continue;
     Answer answer = answer_to(k, gas, strategy, blocks, request, unknowns, report);
-    if (answer.rates[k] <= closed_in * gas.conductance[k])
+    if (answer.rates[k] <= closed_in * answer.unanswered)
       continue;
     const double part = pocket.keeps_volume ? 1 : implicit_part(stiff * answer.rates[k]);
     if (part == 0)

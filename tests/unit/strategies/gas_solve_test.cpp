@@ -1,0 +1,60 @@
+// Pockets of gas beside solids, with a strategy that solves what they answer.
+#include <gtest/gtest.h>
+
+#include <Tpetra_CrsMatrix.hpp>
+
+#include "conformance/saddle_problem.hpp"
+#include "coupling/gas_solve.hpp"
+#include "strategies/register_strategies.hpp"
+#include "support/world.hpp"
+
+namespace lockstep::test {
+namespace {
+
+/// Gas pushes from outside on all that a closed tank of liquid has for walls that move: the
+/// pressure of the liquid takes that up, and nothing moves. The gas cannot get the volume that it
+/// lacks, and no pressure does anything about it.
+TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
+  SaddleOptions options;
+  options.open_top = false;
+  options.elastic_wall = true;
+  options.plate_mass = 50;
+  const SaddleProblem problem(world(), options);
+  const BlockSystem& blocks = problem.system;
+  BlockVector rhs = problem.zero(), unknowns = problem.zero();
+  Vector area(rhs.solid->getMap());
+  Vector one(rhs.pressure->getMap());
+  one.putScalar(1);
+  blocks.coupling_transposed->apply(one, area);
+  ASSERT_GT(area.norm2(), 0);
+
+  GasPocket pocket;
+  pocket.volume = 1;
+  pocket.pressure = 3;
+  pocket.keeps_volume = true;
+  pocket.missing = 0.1;
+  GasProblem gas{{pocket}, {0.}, 0.5, true, {}, {}};
+  gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
+    to.solid->update(pressure[0], area, 1);
+  };
+  gas.rates = [&](const BlockVector& found, bool) {
+    return std::vector<double>{area.dot(*found.solid)};
+  };
+  StrategyRegistry registry("solver strategy");
+  register_strategies(registry);
+  for (const std::string name : {"schur-cg", "direct"}) {
+    rhs = problem.zero();
+    const auto strategy = registry.create(name, ParameterList());
+    strategy->prepare(blocks);
+    SolveReport report;
+    const std::vector<double> pressure =
+        solve_with_gas(gas, *strategy, blocks, {"S2", 1e-10, 1e-12}, rhs, unknowns, report);
+    EXPECT_EQ(pressure[0], 1.5) << name;
+    unknowns.pressure->update(-1.5, one, 1);
+    EXPECT_LT(unknowns.pressure->normInf(), 1e-6) << name;
+    EXPECT_LT(unknowns.solid->normInf(), 1e-9) << name;
+  }
+}
+
+}  // namespace
+}  // namespace lockstep::test
