@@ -77,7 +77,7 @@ const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
   check_input(!liquid_ || has_begun_ || geometry_.volume > 0,
               "Of what is in \"Liquid\", nothing is in the domain and outside of solids.");
   has_begun_ = true;
-  if (parameters_.viscosity.viscosity > 0)
+  if (parameters_.viscosity.viscosity > 0 && !tension_is_implicit())
     viscosity_ = std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.viscosity);
   set_prescribed(velocity_);
   set_prescribed(prediction_);
@@ -244,6 +244,11 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
     const Momentum<dim> shifts{Point<dim>::Zero(), moment_of_shifts(now) - shifts_before};
     surface_impulse_ += sum_over_ranks(shifts, domain_.grid.comm());
     given.impulse += surface_impulse_;
+    if (liquid_->tension_is_implicit()) {
+      const ImplicitTension implicit{dt * liquid_->tension(), &liquid_->interface().distance()};
+      viscosity_ =
+          std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.viscosity, implicit);
+    }
   }
   domain_.halo.fill(prediction_);
   given.impulse += sum_over_ranks(mine, domain_.grid.comm());
@@ -267,7 +272,12 @@ Momentum<dim> MacFluid<dim>::accept_viscous(const Vector& solution, const Vector
   shifts.angular = -moment_of_shifts(now);
   viscosity_->store(solution, prediction_);
   domain_.halo.fill(prediction_);
-  const Momentum<dim> impulse = viscosity_->impulse(prediction_, time_, dt);
+  Momentum<dim> impulse = viscosity_->impulse(prediction_, time_, dt);
+  if (tension_is_implicit()) {
+    const Momentum<dim> implicit = viscosity_->tension_impulse(prediction_, dt);
+    surface_impulse_ += implicit;
+    impulse += implicit;
+  }
   viscosity_->store(velocity, prediction_);
   domain_.halo.fill(prediction_);
   // The scheme's forces act at the faces' centres, the momentum counts where the fluid is.

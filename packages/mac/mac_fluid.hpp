@@ -78,7 +78,11 @@ class MacFluid : public FluidDiscretization<dim>,
   void begin_prediction() override;
   void begin_advection_velocity(double dt) override;
   ForceImpulse<dim> add_forces(double time, double dt) override;
-  bool is_viscous() const override { return parameters_.viscosity.viscosity > 0; }
+  /// Implicit surface tension wants the viscous solve, too.
+  bool is_viscous() const override {
+    return parameters_.viscosity.viscosity > 0 || tension_is_implicit();
+  }
+  bool wants_present_pressure() const override { return tension_is_implicit(); }
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
   Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;
@@ -163,6 +167,7 @@ class MacFluid : public FluidDiscretization<dim>,
   using FaceFunction = std::function<double(int axis, int cell)>;
   AngularVector<dim> moment_of_shifts(const FaceFunction& velocity) const;
   Momentum<dim> push_sources(double time);
+  bool tension_is_implicit() const { return liquid_ && liquid_->tension_is_implicit(); }
   void push_surface(double dt);                    ///< by surface tension
   void settle_gas();                               ///< for the frozen geometry
   void bound_pressure(CellField& pressure) const;  ///< of the last step, beside the void
@@ -200,7 +205,7 @@ class MacFluid : public FluidDiscretization<dim>,
   std::vector<StoredField> fields_;              ///< all that are kept from step to step
   InvalidSamples<dim> invalid_;
   double time_ = 0;                ///< of walls and inflows
-  Momentum<dim> surface_impulse_;  ///< of surface tension in the last forces
+  Momentum<dim> surface_impulse_;  ///< of surface tension in the last forces and viscous solve
   double last_step_ = 0;           ///< dt of the last forces, for p = p̂ / dt in pictures
 };
 

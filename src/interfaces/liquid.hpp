@@ -73,7 +73,8 @@ class LiquidFluid {
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
   virtual LiquidReport liquid() const = 0;
   virtual bool traps_gas() const { return false; }  ///< reports have `gas`. Local.
-  /// What surface tension gave in the last `add_forces`, as part of its impulse. Global. Local.
+  /// What surface tension gave in the last `add_forces`, as part of its impulse, and in a viscous
+  /// solve since then, as part of what `accept_viscous` returned. Global. Local.
   virtual Momentum<dim> surface_impulse() const { return {}; }
   /// Of the watched places, as columns have them. Local.
   virtual std::vector<std::string> watch_names() const { return {}; }

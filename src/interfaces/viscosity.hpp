@@ -47,6 +47,9 @@ class ViscousFluid {
   virtual ~ViscousFluid() = default;
   /// False: inviscid in this scene, the two functions below are never called. Local.
   virtual bool is_viscous() const = 0;
+  /// The viscous solve must read the pressure that the forces on u* call for, which is one more
+  /// solve. False: the last step's will do. Local.
+  virtual bool wants_present_pressure() const { return false; }
   /// Of the present u*. Collective.
   virtual std::unique_ptr<ViscousSystem<dim>> viscous_system() const = 0;
   /// Returns the impulse of walls, open sides and the internal couple of the scheme over dt, each

@@ -18,7 +18,11 @@ std::string Simulation<dim>::explain() {
   line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(),
                             fluid.smallest_length(), fluid.pressure_map()->getGlobalNumElements()));
   const bool reads_pressure = scene_options_.stepper.incremental_pressure;
-  line("viscous solve", !viscosity_of(*components_.fluid) ? "off (inviscid)"
+  const auto* viscous = viscosity_of(*components_.fluid);
+  line("viscous solve", !viscous ? "off (inviscid)"
+                        : viscous->wants_present_pressure()
+                            ? "on (surface tension is semi-implicit), after one more "
+                              "pressure solve"
                         : reads_pressure ? "on (viscosity > 0), reads the last pressure"
                                          : "on (viscosity > 0), without pressure");
   int n_prescribed = 0, n_shells = 0;

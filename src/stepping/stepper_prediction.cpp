@@ -32,12 +32,13 @@ template <int dim>
 Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
                                              StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
+  const auto* liquid = liquid_of<dim>(fluid);
+  Momentum<dim> tension;
   {
     ScopedPhase phase(timers_, "forces");
     const ForceImpulse<dim> given = fluid.add_forces(context.time, context.dt);
     if (context.ledger) {
-      const auto* liquid = liquid_of<dim>(fluid);
-      const Momentum<dim> tension = liquid ? liquid->surface_impulse() : Momentum<dim>();
+      tension = liquid ? liquid->surface_impulse() : Momentum<dim>();
       context.ledger->add(
           "body forces",
           given.impulse + system_.lumped_fluid_momentum(given.coupled_change) - tension);
@@ -48,18 +49,22 @@ Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
   if (!sides_.viscous_fluid)
     return {};
   Prediction<dim> prediction = predict_viscosity(context, report);
-  if (context.ledger)
-    context.ledger->add("viscous boundaries", prediction.viscous.boundary_impulse);
+  if (context.ledger) {
+    const Momentum<dim> implicit = liquid ? liquid->surface_impulse() - tension : Momentum<dim>();
+    context.ledger->add("viscous boundaries", prediction.viscous.boundary_impulse - implicit);
+    if (liquid)
+      context.ledger->add("surface tension", implicit);
+  }
   return prediction;
 }
 
 /// p̂ that the viscous solve reads: that of the last step. In the first two steps that of a solve
 /// without viscosity: what the first step's pressure did to velocities that were no flow at the
-/// start is an impulse, and comes once.
+/// start is an impulse, and comes once. A fluid may ask for the latter in every step.
 template <int dim>
 RCP<const Vector> Stepper<dim>::expected_pressure(const StepContext<dim>& context,
                                                   StepReport<dim>& report) {
-  if (n_steps_ > 1)
+  if (n_steps_ > 1 && !sides_.viscous_fluid->wants_present_pressure())
     return last_pressure(context.dt);
   const RCP<Vector> momentum = coupled() ? solid_momentum(context.on_trial(), {}, report)
                                          : make_vector(components_.solids->map());
@@ -79,7 +84,7 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
   const double dt = context.dt;
   auto& fluid = *components_.fluid;
   RCP<const Vector> pressure;
-  if (options_.incremental_pressure)
+  if (options_.incremental_pressure || sides_.viscous_fluid->wants_present_pressure())
     pressure = expected_pressure(context, report);
   ScopedPhase phase(timers_, "viscosity");
   RCP<const LinearOperator> block;

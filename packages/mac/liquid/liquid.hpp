@@ -34,6 +34,9 @@ class Liquid {
                FaceField<dim>& advection_velocity, FaceField<dim>& velocity);
 
   double tension() const { return parameters_.tension; }  ///< of the surface [N/m]
+  bool tension_is_implicit() const {
+    return parameters_.tension > 0 && parameters_.tension_is_implicit;
+  }
   const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
   /// By how much the pressure's phi is ahead of the interface's [m], from the last step.
   CellField& lead() { return lead_; }

@@ -156,9 +156,15 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
       "Pressures are taken to be no nearer to the surface than this part of a cell [1].");
   declare_at_least(
       list, "Surface Tension", 0.0, 0.0,
-      "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature. Explicit, so that "
-      "steps are at most 0.28 sqrt(density h^3 / sigma); the surface meets solids and sides at 90 "
-      "degrees. 0: none.");
+      "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature; the surface meets "
+      "solids and sides at 90 degrees. 0: none.");
+  declare_choice(
+      list, "Tension Integration", "explicit", {"explicit", "semi-implicit"},
+      "explicit: steps are at most 0.28 sqrt(density h^3 / sigma). semi-implicit: 16 times that; "
+      "what the surface does within the step is foreseen by a viscous solve in which sigma dt "
+      "times the surface Laplacian holds the velocity back, and one more pressure solve before "
+      "it. Damps ripples a few cells long, and what turns and swings, the more the longer the "
+      "step.");
   declare_trapped_air(list);
   declare_between(list, "Pressure Order", 2, 1, 2,
                   "2: p = 0 where the surface is. 1: at the centre of the first cell above it, to "
@@ -167,7 +173,8 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
 
 FreeSurfaceParameters read_free_surface(const ParameterList& list) {
   return {list.get<double>("Smallest Distance"), list.get<int>("Pressure Order"),
-          list.get<double>("Surface Tension")};
+          list.get<double>("Surface Tension"),
+          list.get<std::string>("Tension Integration") == "semi-implicit"};
 }
 
 template <int dim>

@@ -10,6 +10,7 @@ struct FreeSurfaceParameters {
   double smallest_distance = 1e-5;  ///< see FreeSurface
   int pressure_order = 2;
   double tension = 0;  ///< of the surface [N/m]
+  bool tension_is_implicit = false;
 };
 
 /// Declares the list "Free Surface" of a fluid.

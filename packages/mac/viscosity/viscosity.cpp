@@ -9,9 +9,9 @@ namespace lockstep {
 
 template <int dim>
 Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                          const ViscosityParameters& parameters)
+                          const ViscosityParameters& parameters, const ImplicitTension& tension)
     : domain_(domain) {
-  ViscousLinks<dim> found = find_viscous_links(domain, geometry, parameters);
+  ViscousLinks<dim> found = find_viscous_links(domain, geometry, parameters, tension);
   map_ = found.map;
   faces_ = std::move(found.faces);
   stiffness_ = found.stiffness;
@@ -20,6 +20,7 @@ Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& 
   sides_ = std::move(found.sides);
   couples_ = std::move(found.couples);
   cross_pulls_ = std::move(found.cross_pulls);
+  tension_pulls_ = std::move(found.tension_pulls);
   viscosity_ = found.viscosity;
 }
 
@@ -70,11 +71,7 @@ Momentum<dim> Viscosity<dim>::impulse(const FaceField<dim>& velocity, double tim
     const double pull = side.coefficient * (side_velocity(side, time) - velocity[axis][cell]);
     result.add(grid.face_center(axis, cell), axis, dt * pull);
   }
-  for (const CrossPull& cross : cross_pulls_) {
-    const auto [axis, cell] = faces_[cross.row];
-    const double pull = -cross.coefficient * velocity[cross.from.axis][cross.from.cell];
-    result.add(grid.face_center(axis, cell), axis, dt * pull);
-  }
+  result += sum_of(cross_pulls_, velocity, dt);
   const double h = grid.spacing();
   for (const CoupleEnd& couple : couples_) {
     const auto [axis, cell] = faces_[couple.row];
@@ -84,6 +81,24 @@ Momentum<dim> Viscosity<dim>::impulse(const FaceField<dim>& velocity, double tim
         cross<dim>(Point<dim>::Unit(couple.across) * -h, Point<dim>::Unit(axis) * sum);
   }
   return sum_over_ranks(result, grid.comm());
+}
+
+template <int dim>
+Momentum<dim> Viscosity<dim>::tension_impulse(const FaceField<dim>& velocity, double dt) const {
+  return sum_over_ranks(sum_of(tension_pulls_, velocity, dt), domain_.grid.comm());
+}
+
+/// Of this rank.
+template <int dim>
+Momentum<dim> Viscosity<dim>::sum_of(const std::vector<CrossPull>& pulls,
+                                     const FaceField<dim>& velocity, double dt) const {
+  Momentum<dim> result;
+  for (const CrossPull& pull : pulls) {
+    const auto [axis, cell] = faces_[pull.row];
+    const double force = -pull.coefficient * velocity[pull.from.axis][pull.from.cell];
+    result.add(domain_.grid.face_center(axis, cell), axis, dt * force);
+  }
+  return result;
 }
 
 template class Viscosity<2>;

@@ -17,7 +17,7 @@ class Viscosity {
  public:
   /// Collective. `domain` must outlive this.
   Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-            const ViscosityParameters& parameters);
+            const ViscosityParameters& parameters, const ImplicitTension& tension = {});
 
   /// The system for the present velocities; matrix and links are shared with earlier ones. `time`
   /// sets the velocity of walls and inflows. Collective.
@@ -28,8 +28,13 @@ class Viscosity {
   /// the couple of parallel forces between neighbours. The halo of `velocity` must be valid.
   /// Collective.
   Momentum<dim> impulse(const FaceField<dim>& velocity, double time, double dt) const;
+  /// That of implicit surface tension over dt: a couple, as it holds back what turns. The halo of
+  /// `velocity` must be valid. Collective.
+  Momentum<dim> tension_impulse(const FaceField<dim>& velocity, double dt) const;
 
  private:
+  Momentum<dim> sum_of(const std::vector<CrossPull>& pulls, const FaceField<dim>& velocity,
+                       double dt) const;
   double side_velocity(const SideLink& side, double time) const;
 
   const MacDomain<dim>& domain_;
@@ -40,7 +45,7 @@ class Viscosity {
   std::vector<ViscousLink<dim>> links_;
   std::vector<SideLink> sides_;
   std::vector<CoupleEnd> couples_;
-  std::vector<CrossPull> cross_pulls_;
+  std::vector<CrossPull> cross_pulls_, tension_pulls_;
   double viscosity_;
 };
 

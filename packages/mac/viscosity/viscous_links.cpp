@@ -7,6 +7,7 @@
 
 #include "linear/row_builder.hpp"
 #include "mac/viscosity/stress_at_void.hpp"
+#include "mac/viscosity/surface_laplacian.hpp"
 
 namespace lockstep {
 
@@ -38,10 +39,16 @@ template <int dim>
 class Builder {
  public:
   Builder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-          const ViscosityParameters& parameters)
-      : domain_(domain), geometry_(geometry), grid_(domain.grid), parameters_(parameters) {
-    if (parameters.has_void && void_is_clear(domain, geometry))
+          const ViscosityParameters& parameters, const ImplicitTension& tension)
+      : domain_(domain),
+        geometry_(geometry),
+        grid_(domain.grid),
+        parameters_(parameters),
+        tension_(tension.strength) {
+    if (parameters.viscosity > 0 && parameters.has_void && void_is_clear(domain, geometry))
       at_void_.emplace(domain, geometry);
+    if (tension.strength > 0)
+      along_surface_.emplace(domain, geometry, *tension.distance);
   }
 
   ViscousLinks<dim> build() {
@@ -53,12 +60,14 @@ class Builder {
     for (row_ = 0; row_ < n; ++row_) {
       start_row(result_.faces[row_]);
       // In the order of the ids within a tile.
-      for (int across = dim - 1; across >= 0; --across)
+      for (int across = dim - 1; across >= 0 && is_viscous(); --across)
         add_link(across, 0, rows);
       const std::size_t middle = rows.add(ids_[face_.axis][face_.cell], 0);
-      for (int across = 0; across < dim; ++across)
+      for (int across = 0; across < dim && is_viscous(); ++across)
         add_link(across, 1, rows);
       rows.set(middle, diagonal_);
+      if (along_surface_)
+        add_tension(rows);
       if (at_void_)
         add_partners(rows);
       rows.end_row();
@@ -117,6 +126,15 @@ class Builder {
   double full_coefficient(int across) const {
     const double unit = parameters_.viscosity * domain_.face_area() / domain_.spacing();
     return across != face_.axis && cells_.at_side() ? 0.5 * unit : unit;
+  }
+
+  bool is_viscous() const { return parameters_.viscosity > 0; }
+
+  void add_tension(RowBuilder& rows) {
+    along_surface_->for_each_entry(face_, [&](const FaceId& other, double value) {
+      rows.add(ids_[other.axis][other.cell], tension_ * value);
+      result_.tension_pulls.push_back({row_, other, tension_ * value});
+    });
   }
 
   void add_partners(RowBuilder& rows) {
@@ -249,6 +267,8 @@ class Builder {
   const TiledGrid<dim>& grid_;
   ViscosityParameters parameters_;
   std::optional<StressAtVoid<dim>> at_void_;
+  double tension_ = 0;  ///< sigma dt
+  std::optional<SurfaceLaplacian<dim>> along_surface_;
   ViscousLinks<dim> result_;
   std::array<std::vector<GlobalIndex>, dim> ids_;
   std::vector<Coupled> coupled_;
@@ -264,13 +284,14 @@ class Builder {
 
 template <int dim>
 ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     const ViscosityParameters& parameters) {
-  return Builder<dim>(domain, geometry, parameters).build();
+                                     const ViscosityParameters& parameters,
+                                     const ImplicitTension& tension) {
+  return Builder<dim>(domain, geometry, parameters, tension).build();
 }
 
 template ViscousLinks<2> find_viscous_links<2>(const MacDomain<2>&, const MacGeometry<2>&,
-                                               const ViscosityParameters&);
+                                               const ViscosityParameters&, const ImplicitTension&);
 template ViscousLinks<3> find_viscous_links<3>(const MacDomain<3>&, const MacGeometry<3>&,
-                                               const ViscosityParameters&);
+                                               const ViscosityParameters&, const ImplicitTension&);
 
 }  // namespace lockstep

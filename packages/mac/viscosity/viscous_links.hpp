@@ -10,6 +10,12 @@ struct ViscosityParameters {
   bool has_void = false;  ///< above a free surface: the form is that of the symmetric stress there
 };
 
+/// What surface tension that is implicit adds: sigma dt times the surface Laplacian.
+struct ImplicitTension {
+  double strength = 0;                  ///< sigma dt [N s/m]; 0: none
+  const CellField* distance = nullptr;  ///< phi on all stored cells [m]
+};
+
 /// A side of the domain pulls on a free velocity.
 struct SideLink {
   int row = 0;             ///< local
@@ -27,7 +33,7 @@ struct CoupleEnd {
   double coefficient = 0;  ///< [kg/s], negative at the lower end
 };
 
-/// A free velocity at right angles to another pulls on it: with -coefficient times itself.
+/// A free velocity pulls on another, or on itself: with -coefficient times itself.
 struct CrossPull {
   int row = 0;  ///< local
   FaceId from;
@@ -44,13 +50,15 @@ struct ViscousLinks {
   std::vector<ViscousLink<dim>> links;
   std::vector<SideLink> sides;
   std::vector<CoupleEnd> couples;
-  std::vector<CrossPull> cross_pulls;  ///< beside a void
-  double viscosity = 0;                ///< [Pa s]
+  std::vector<CrossPull> cross_pulls;    ///< beside a void, at right angles
+  std::vector<CrossPull> tension_pulls;  ///< all that implicit surface tension does
+  double viscosity = 0;                  ///< [Pa s]
 };
 
 /// Collective.
 template <int dim>
 ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     const ViscosityParameters& parameters);
+                                     const ViscosityParameters& parameters,
+                                     const ImplicitTension& tension = {});
 
 }  // namespace lockstep
