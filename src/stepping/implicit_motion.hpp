@@ -14,6 +14,10 @@ struct SettledMotion {
   bool linearised_anew = false;  ///< D is another one than before
 };
 
+/// (M_S - dt D)^-1 with locked rows of the identity. Collective.
+template <int dim>
+RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, double dt);
+
 /// What a solve over dt is to find for the solids alone: with the impulses of the fluid as they
 /// are, the velocity that minimises
 ///
@@ -27,12 +31,14 @@ struct SettledMotion {
 /// of it, where the search begins. `contact` may be null; it holds over the whole step. `adjust`:
 /// what velocities must fulfil besides, if anything, done to those of every linearisation.
 /// `momentum`, the explicit one of the solve, changes by that of forces linearised anew.
+/// `known_response`: the `implicit_response` of now, for who has it.
 /// Collective.
 template <int dim>
 SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
                                  const StepContext<dim>& context,
                                  const std::function<void(Vector&)>& adjust,
-                                 const Vector& predicted, const Vector& first, Vector& momentum);
+                                 const Vector& predicted, const Vector& first, Vector& momentum,
+                                 const RCP<const LinearOperator>& known_response = {});
 
 /// What `sweep_volumes` has made of velocities is taken back to where it costs the solids little
 /// energy, stiff ones would be strained by it; and left to `settle_motion` where that acts.

@@ -30,9 +30,11 @@ template <int dim>
 ContactReport<dim> Stepper<dim>::settled_momentum(const StepContext<dim>& context,
                                                   Vector& momentum) {
   auto& solids = *components_.solids;
-  const RCP<const Vector> predicted = solids.velocity_of(momentum, context.dt, context.constraints);
-  const SettledMotion<dim> settled = settle_motion<dim>(solids, components_.contact.get(), context,
-                                                        {}, *predicted, *predicted, momentum);
+  const auto response = implicit_response<dim>(solids, context.dt);
+  const RCP<const Vector> predicted =
+      solids.velocity_of(momentum, context.dt, context.constraints, *response);
+  const SettledMotion<dim> settled = settle_motion<dim>(
+      solids, components_.contact.get(), context, {}, *predicted, *predicted, momentum, response);
   if (settled.linearised_anew)
     system_.forget_solid_block();
   if (!settled.contact.impulse.is_null())

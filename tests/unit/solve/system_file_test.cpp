@@ -91,7 +91,9 @@ TEST(SystemFile, OneSolveOfOneStepIsWritten) {
       rhs.pressure->scale(step + (name[1] == '2' ? 10 : 0));
       if (step == 2 && name[1] == '2')
         norm = rhs.pressure->norm2();
-      strategy.solve(problem.system, rhs, solution, {name, 1e-8});
+      SolveRequest request{name, 1e-8};
+      request.step = step;
+      strategy.solve(problem.system, rhs, solution, request);
     }
   }
   EXPECT_NEAR(read_system(file, comm).rhs.pressure->norm2(), norm, 1e-12 * norm);
