@@ -46,6 +46,14 @@ def bodies(dim):
     return "\n".join(lines) + "\n"
 
 
+def joints():
+    """A hinge that turns by 0.3 a step, and a slider that stands still: their rows alternate."""
+    lines = ["# q [rad, m]: the coordinate", "# at_limit [1]: 1 if it is there", "step,time,name,q,at_limit"]
+    for k in range(1, N_STEPS + 1):
+        lines += [f"{k},{0.1 * k},knee,{0.3 * k},0", f"{k},{0.1 * k},slide,-2,1"]
+    return "\n".join(lines) + "\n"
+
+
 def main(folder, dim, title="a </script> in a title", view=""):
     make_frames.main(folder, dim)
     folder, text = Path(folder), title.replace("<", "&lt;")
@@ -53,6 +61,7 @@ def main(folder, dim, title="a </script> in a title", view=""):
     (folder / "input.xml").write_text(f"<!-- the scene of {title} -->\n")
     (folder / "history.csv").write_text(history())
     (folder / "bodies.csv").write_text(bodies(dim))
+    (folder / "joints.csv").write_text(joints())
     phases = [{"name": name, "min_seconds": seconds, "mean_seconds": seconds, "max_seconds": seconds, "calls": N_STEPS}
               for name, seconds in (("step", 3.0), ("step / S2", 2.0))]
     (folder / "summary.json").write_text(json.dumps({

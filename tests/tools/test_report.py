@@ -96,10 +96,26 @@ class Data(Pages):
             numpy.testing.assert_allclose(history["fluid_kinetic_energy"], history["time"] ** 2, rtol=1e-6)
             units = [column["unit"] for column in run["tables"]["history.csv"]["columns"]]
             self.assertEqual(units, ["1", "s", "s", "1", "J"])
-            body = self.columns(data, run["tables"]["bodies.csv"]["body"])
+            body = self.columns(data, run["tables"]["bodies.csv"]["named"]["body"])
             numpy.testing.assert_allclose(body["x"], [1.42, 1.44, 1.46, 1.48, 1.5], rtol=1e-6)
             self.assertNotIn("z" if dim == 2 else "w", body)
             self.assertIn(["state", "done"], run["facts"])
+
+    def test_tables_with_several_rows_a_time_are_told_apart_by_name(self):
+        make_run.main(self.folder / "run", 3)
+        # An observer of one's own may write such a table too, its names wherever they are, and call one as the page calls its own parts.
+        (self.folder / "run" / "own.csv").write_text("name,time,force\ncolumns,0.1,5\nblob,0.1,7\ncolumns,0.2,6\n")
+        data = data_of(self.page(self.folder / "run"))
+        tables = data["runs"][0]["tables"]
+        joints = {name: self.columns(data, table) for name, table in tables["joints.csv"]["named"].items()}
+        self.assertEqual(list(joints), ["knee", "slide"])
+        numpy.testing.assert_allclose(joints["knee"]["time"], [0.1, 0.2, 0.3, 0.4, 0.5], rtol=1e-6)
+        numpy.testing.assert_allclose(joints["knee"]["q"], [0.3, 0.6, 0.9, 1.2, 1.5], rtol=1e-6)
+        numpy.testing.assert_array_equal(joints["slide"]["q"], [-2] * 5)
+        self.assertEqual(list(joints["slide"]), ["step", "time", "q", "at_limit"])
+        own = tables["own.csv"]["named"]
+        numpy.testing.assert_array_equal(self.columns(data, own["columns"])["force"], [5, 6])
+        numpy.testing.assert_array_equal(self.columns(data, own["blob"])["force"], [7])
 
     def test_what_repeats_is_stored_once(self):
         make_run.main(self.folder / "run", 3)
@@ -204,7 +220,7 @@ class Data(Pages):
         # All columns that the page draws of a history, by the names of that time.
         wanted = re.findall(r'\["(\w+)", "[^"]*"\]', (TOOLS / "report_page" / "curves.js").read_text())
         self.assertEqual([name for name in wanted if name not in history], ["liquid_volume_target"])
-        self.assertEqual(set(run["tables"]["bodies.csv"]), {"Disc", "Tail", "Curtain"})
+        self.assertEqual(set(run["tables"]["bodies.csv"]["named"]), {"Disc", "Tail", "Curtain"})
         self.assertTrue(any(phase["name"] == "step / S2" for phase in run["phases"]))
 
 

@@ -208,7 +208,7 @@ class PageInBrowser(unittest.TestCase):
     def test_curves(self):
         self.open(2)
         titles = self.browser.run("[...document.querySelectorAll('.plot')].map((plot) => plot.dataset.title)")
-        self.assertEqual(titles, ["Energy", "Iterations", "Time step", "Bodies"])
+        self.assertEqual(titles, ["Energy", "Iterations", "Time step", "Bodies", "Joints"])
         # The energy is t squared: half way up at 1 / sqrt(2) of the time, as drawn.
         path = self.browser.run("document.querySelector('.plot .curve').getAttribute('d')")
         points = [tuple(map(float, pair)) for pair in re.findall(r"[ML]([\d.]+) ([\d.]+)", path)]
@@ -217,7 +217,13 @@ class PageInBrowser(unittest.TestCase):
         numpy.testing.assert_allclose(numpy.array(heights) / heights[-1], (times ** 2 - 0.01) / 0.24, atol=2e-3)
         self.choose("scrub", 1)
         values = self.browser.run("[...document.querySelectorAll('.plot .value')].map((value) => value.textContent)")
-        self.assertEqual(values, ["0.25", "5", "0.1", "1.5", "1.6"])
+        self.assertEqual(values, ["0.25", "5", "0.1", "1.5", "1.6", "1.5", "-2"])
+        # A curve for each joint, not one that jumps from one to the other: times only grow along it.
+        paths = self.browser.run("[...document.querySelectorAll('[data-title=Joints] .curve')].map((path) => path.getAttribute('d'))")
+        of_knee, of_slide = ([tuple(map(float, pair)) for pair in re.findall(r"[ML]([\d.]+) ([\d.]+)", path)] for path in paths)
+        self.assertEqual([len(of_knee), len({y for _, y in of_knee}), len({y for _, y in of_slide})], [5, 5, 1])
+        choices = self.browser.run("[...document.querySelectorAll('[data-title=Joints] option')].map((option) => option.textContent)")
+        self.assertEqual(choices, ["q [rad, m]", "at_limit"])
         self.browser.run("document.querySelector('[data-title=Bodies] .legend button').click()")
         self.assertEqual(self.browser.run("document.querySelectorAll('[data-title=Bodies] .curve').length"), 1)
 

@@ -27,13 +27,21 @@ function historyPlots(dimension) {
   ];
 }
 
-/// Bodies: a choice for each column, a curve for each body.
-function bodiesPlot(table) {
-  const names = Object.keys(table), { columns } = table[names[0]];
+/// A table packed for the page is one of rows by time, or has one for each name of a body, a joint, ...
+function partsOf(table) {
+  return table.named ? Object.values(table.named) : [table];
+}
+
+const TITLES = { "bodies.csv": "Bodies", "joints.csv": "Joints" };
+const FIRST_SHOWN = { "bodies.csv": 1 };  // y, which most often is up
+
+/// Bodies, joints and other things that have names: a choice for each column, a curve for each name.
+function namedPlot(file, { named }) {
+  const names = Object.keys(named), { columns } = named[names[0]];
   const choices = {};
   for (const { name, unit } of columns.filter((column) => !["step", "time"].includes(column.name)))
-    choices[`${name} [${unit}]`] = names.map((body) => ({ body, column: name, label: body }));
-  return { title: "Bodies", unit: "", chosen: Object.keys(choices)[1], choices };
+    choices[unit && unit !== "1" ? `${name} [${unit}]` : name] = names.map((one) => ({ named: one, column: name, label: one }));
+  return { title: TITLES[file] ?? file.replace(/\.csv$/, ""), unit: "", chosen: Object.keys(choices)[FIRST_SHOWN[file] ?? 0], choices };
 }
 
 /// Any other table: a choice for each column.
@@ -50,33 +58,35 @@ function plotsOf(runs) {
   for (const run of runs) {
     for (const [file, table] of Object.entries(run.tables)) {
       if (file === "history.csv" || plots.some((plot) => plot.file === file)) continue;
-      if (file === "bodies.csv" ? !Object.keys(table).length : !table.columns) continue;
-      plots.push({ file, ...(file === "bodies.csv" ? bodiesPlot(table) : tablePlot(file, table)) });
+      if (partsOf(table).length) plots.push({ file, ...(table.named ? namedPlot : tablePlot)(file, table) });
     }
   }
   return plots.map((plot) => ({ ...plot, choices: choicesThatAre(plot, runs) })).filter(({ choices }) => Object.keys(choices).length);
 }
 
+/// The table that a curve is drawn from; undefined if the run has none.
+function tableOf(run, file, named) {
+  const table = run.tables[file];
+  return named === undefined ? table : table?.named?.[named];
+}
+
 /// The choices of a plot for which at least one run has a column.
 function choicesThatAre({ file, choices }, runs) {
-  const has = ({ column, body }) => runs.some((run) => {
-    const table = body ? run.tables[file]?.[body] : run.tables[file];
-    return table?.columns.some(({ name }) => name === column);
-  });
+  const has = ({ column, named }) => runs.some((run) => tableOf(run, file, named)?.columns.some(({ name }) => name === column));
   return Object.fromEntries(Object.entries(choices).filter(([, columns]) => columns.some(has)));
 }
 
-/// The curves of one choice: columns by colour, runs by dashes; what is zero throughout is left out.
+/// The curves of one choice: columns by colour, runs by dashes; what is zero or no number throughout is left out.
 async function curvesOf(runs, plot, choice) {
   const wanted = [];
   for (const [r, run] of runs.entries()) {
     const specs = run.tables[plot.file] ? plot.choices[choice] : [];
     const alone = plot.choices[choice].length === 1;
-    for (const [c, { column, label, sum, body }] of specs.entries()) {
-      const table = body ? run.tables[plot.file][body] : run.tables[plot.file];
+    for (const [c, { column, label, sum, named }] of specs.entries()) {
+      const table = tableOf(run, plot.file, named);
       if (!table || !table.n) continue;
       const columns = await columnsOf(table);
-      if (!columns[column] || columns[column].every((value) => !(value !== 0))) continue;
+      if (!columns[column] || columns[column].every((value) => !value)) continue;
       const colour = CURVE_COLOURS[(alone ? r : c) % CURVE_COLOURS.length];
       wanted.push({ label: runs.length > 1 ? `${label}, ${run.label}` : label, colour, dash: alone ? "" : DASHES[r % DASHES.length],
         x: columns.time, y: sum ? sumsOf(columns[column]) : columns[column] });

@@ -239,7 +239,8 @@ function fillDetails() {
     const of = state.runs.length > 1 ? ` of ${run.label}` : "";
     parts.push(make("details", {}, make("summary", {}, `Parameters${of} that are not the defaults`), parameterTable(run.parameters, ["parameter", "value"])),
       make("details", {}, make("summary", {}, `Scene file${of}`), make("pre", {}, run.scene)));
-    const thinned = Object.entries(run.tables).filter(([, table]) => table.every > 1).map(([file, table]) => `every ${table.every}th row of ${file}`);
+    const thinned = Object.entries(run.tables).map(([file, table]) => [file, Math.max(1, ...partsOf(table).map(({ every }) => every))])
+      .filter(([, every]) => every > 1).map(([file, every]) => `every ${every}th row of ${file}`);
     if (run.every > 1) thinned.push(`every ${run.every}th of ${run.n_written} frames`);
     if (thinned.length) parts.push(make("p", { class: "note" }, `Shown${of}: ${thinned.join(", ")}.`));
   }
@@ -251,7 +252,7 @@ function fillDetails() {
 
 /// Tables are new whenever they have grown; what they were is asked for no more.
 function forgetTables(old, fresh) {
-  const names = (runs) => new Set(runs.flatMap((run) => Object.values(run.tables).flatMap((table) => (table.blob ? [table] : Object.values(table)).map(({ blob }) => blob))));
+  const names = (runs) => new Set(runs.flatMap((run) => Object.values(run.tables).flatMap(partsOf).map(({ blob }) => blob)));
   const kept = names(fresh);
   for (const name of names(old)) if (!kept.has(name)) bytesByName.delete(name);
 }

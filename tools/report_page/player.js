@@ -235,7 +235,7 @@ class Player {
 
   /// Where the bodies have been, from bodies.csv.
   async loadPaths() {
-    for (const [name, table] of Object.entries(this.run.tables["bodies.csv"] ?? {})) {
+    for (const [name, table] of Object.entries(this.run.tables["bodies.csv"]?.named ?? {})) {
       const { time, x, y, z } = await columnsOf(table);
       const places = new Float32Array(3 * time.length);
       for (let i = 0; i < time.length; ++i) places.set([x[i], y[i], z ? z[i] : 2e-3], 3 * i);

@@ -12,7 +12,7 @@ from report_page.blobs import pack_numbers
 from report_page.state import progress_of, state_of
 
 MOST_ROWS = 20_000  # of a table; of longer ones every nth
-BODIES, HISTORY = "bodies.csv", "history.csv"
+HISTORY = "history.csv"
 
 
 def pack_run(folder, blobs, frames):
@@ -76,19 +76,23 @@ def read_table(path):
 
 
 def pack_tables(tables, blobs):
+    """Of a table that has several rows a time, told apart by a column `name`, one under `named` for each name."""
     packed = {}
     for file, table in tables.items():
         names = [column["name"] for column in table["columns"]]
-        if file == BODIES:
-            which = names.index("name")
-            of = {}
-            for row in table["rows"]:
-                of.setdefault(row[which], []).append(row[:which] + row[which + 1:])
-            columns = [column for column in table["columns"] if column["name"] != "name"]
-            packed[file] = {name: pack_rows(columns, rows, blobs) for name, rows in of.items()}
+        if "time" in names and "name" in names:
+            packed[file] = {"named": pack_by_name(table, names.index("name"), blobs)}
         elif "time" in names:
             packed[file] = pack_rows(table["columns"], table["rows"], blobs)
     return packed
+
+
+def pack_by_name(table, which, blobs):
+    rows_of = {}
+    for row in table["rows"]:
+        rows_of.setdefault(row[which], []).append(row[:which] + row[which + 1:])
+    columns = table["columns"][:which] + table["columns"][which + 1:]
+    return {name: pack_rows(columns, rows, blobs) for name, rows in rows_of.items()}
 
 
 def pack_rows(columns, rows, blobs):
