@@ -140,7 +140,7 @@ def main():
     view.UseColorPaletteForBackground = 0
     view.Background = [1.0, 1.0, 1.0]
     view.OrientationAxesVisibility = 0
-    view.UseFXAA = 1
+    view.UseFXAA = int(not job["fast"])
     bounds = show_fluid(job, view) if job["field"] else None
     if job["boxes"] and job["dim"] == 3:
         bounds = show_outline(job, view)
@@ -148,8 +148,10 @@ def main():
     if WATER in job["surfaces"]:
         show_water(job, view)
         # Peels of what shines through, so that nearer and farther faces are told apart.
-        view.DepthPeeling = 1
+        view.DepthPeeling = int(not job["fast"])
     place_camera(job, view, bounds or solid_bounds)
+    if job["fast"]:
+        view.GetRenderWindow().SetMultiSamples(0)
     for time, picture in zip(job["times"], job["pictures"]):
         view.ViewTime = time
         simple.Render(view)

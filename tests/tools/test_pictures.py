@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import h5py
@@ -17,9 +18,17 @@ import make_run
 
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
-loader = importlib.machinery.SourceFileLoader("plot_frame", str(TOOLS / "plot-frame"))
-plot_frame = importlib.util.module_from_spec(importlib.util.spec_from_loader("plot_frame", loader))
-loader.exec_module(plot_frame)
+
+
+def load(name):
+    """A program of tools/ as a module."""
+    loader = importlib.machinery.SourceFileLoader(name.replace("-", "_"), str(TOOLS / name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
+    loader.exec_module(module)
+    return module
+
+
+plot_frame = load("plot-frame")
 
 
 class FixedArray:
@@ -212,6 +221,26 @@ class Render(Pictures):
         result = self.run_tool("render", "--movie", "--size", "320x240")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertGreater((Path(self.folder.name) / "render.mp4").stat().st_size, 1000)
+
+    def test_a_preview_shows_the_same_with_a_quarter_of_the_pixels(self):
+        make_run.main(self.folder.name, 3)
+        pictures = []
+        for arguments in ([], ["--fast"]):
+            result = self.run_tool("render", *arguments)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            pictures.append(imread(Path(self.folder.name) / "render.png")[..., :3])
+        self.assertEqual([picture.shape for picture in pictures], [(960, 1280, 3), (480, 640, 3)])
+        means = pictures[0].reshape(480, 2, 640, 2, 3).mean(axis=(1, 3))
+        self.assertLess(numpy.abs(means - pictures[1]).mean(), 0.01)
+
+    def test_a_preview_of_a_movie_has_few_frames_and_lasts_as_long(self):
+        make_run.main(self.folder.name, 2)
+        render = load("render")
+        for most, times, rate in ((2, [0.0, 0.5], 25), (1, [0.0], 12.5)):
+            render.MOST_PREVIEW_FRAMES = most
+            with unittest.mock.patch.object(sys, "argv", ["render", self.folder.name, "--movie", "--fast"]):
+                options = render.arguments()
+            self.assertEqual((render.job(options)["times"], options.rate), (times, rate))
 
 
 if __name__ == "__main__":
