@@ -3,6 +3,7 @@
 - links between pages lead to files, and to headings that exist
 - code quoted from a file stands in it literally; a quotation begins with a comment line that names
   the file: <!-- from: template/driver.cpp -->
+- every page of docs/results stands in their list
 - paths of the tree in backticks exist, and in `file.cpp: function` the file has that word
 """
 import re
@@ -65,6 +66,14 @@ class Docs(unittest.TestCase):
                         last = word.split("::")[-1]
                         self.assertTrue(any(re.search(rf"\b{re.escape(last)}\b", file.read_text()) for file in found),
                                         f"no {last} in {name}")
+
+    def test_pages_of_results_are_listed(self):
+        results = ROOT / "docs" / "results"
+        index = (results / "README.md").read_text()
+        for page in sorted(results.glob("*.md")):
+            if page.name != "README.md":
+                with self.subTest(page=page.name):
+                    self.assertIn(f"`{page.stem}`", index)
 
 
 if __name__ == "__main__":
