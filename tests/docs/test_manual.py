@@ -53,9 +53,10 @@ class Manual(unittest.TestCase):
 
     def test_formulas_are_set(self):
         """What is between dollar signs goes to the script that sets it, and the fonts are there."""
-        page = (self.site / "docs/derivation.html").read_text()
-        self.assertNotIn("$", re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL))
-        self.assertGreater(page.count('class="arithmatex"'), 20)
+        for name in ("derivation", "method"):
+            page = (self.site / f"docs/{name}.html").read_text()
+            self.assertNotIn("$", re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL))
+            self.assertGreater(page.count('class="arithmatex"'), 20)
         self.assertIn("auto-render.min.js", page)
         self.assertTrue(list((self.site / "katex/fonts").glob("*.woff2")))
         shell = shutil.which("chromium-headless-shell")
