@@ -1,6 +1,6 @@
 """What can be checked of the documentation without reading it. Usage: test_docs.py ROOT
 
-- links between pages lead to files, and to headings that exist
+- links between pages lead to files, and to headings that exist; pictures are there
 - code quoted from a file stands in it literally; a quotation begins with a comment line that names
   the file: <!-- from: template/driver.cpp -->
 - every page of docs/results stands in their list
@@ -13,6 +13,7 @@ from pathlib import Path
 
 ROOT = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path(__file__).resolve().parents[2]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+PICTURE = re.compile(r'<img src="([^"]+)"')
 QUOTE = re.compile(r"<!-- from: (\S+) -->\n```\w*\n(.*?)```", re.DOTALL)
 PATH = re.compile(r"`((?:src|packages|drivers|tests|docs|tools|template|cmake|xml-params)/[\w./*-]+)(?:: ([\w:~]+))?[^`]*`")
 
@@ -35,7 +36,8 @@ def squeezed(text):
 class Docs(unittest.TestCase):
     def test_links(self):
         for page in pages():
-            for target in LINK.findall(page.read_text()):
+            text = page.read_text()
+            for target in LINK.findall(text) + PICTURE.findall(text):
                 if re.match(r"https?:|mailto:", target):
                     continue
                 name, _, anchor = target.partition("#")
