@@ -28,7 +28,7 @@ LevelSetParameters read_level_set_parameters(const ParameterList& list);
 /// phi as a signed distance at cell centres, carried along rays and made a distance again; where
 /// there are particles, corrected by them (Enright et al. 2002).
 template <int dim>
-class LevelSet : public InterfaceModel<dim> {
+class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
  public:
   using typename InterfaceModel<dim>::Surface;
 

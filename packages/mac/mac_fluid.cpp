@@ -41,6 +41,9 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
     for (StoredField& field : liquid_->gas()->fields())
       fields_.push_back(std::move(field));
   if (fluid.isSublist("Moving Tiles")) {
+    check_input(!liquid_ || migrating_interface(),
+                "The interface \"{}\" cannot follow \"Moving Tiles\"; leave them out.",
+                liquid_ ? liquid_->interface().name() : "");
     moving_tiles_.emplace(fluid,
                           DomainDescription<dim>{domain_.grid.description(), domain_.boundary});
     owners_ = domain_.grid.tile_owners();
@@ -79,8 +82,8 @@ const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
   has_begun_ = true;
   if (parameters_.viscosity.viscosity > 0 && !tension_is_implicit())
     viscosity_ = std::make_unique<Viscosity<dim>>(domain_, geometry_, parameters_.viscosity);
-  set_prescribed(velocity_);
-  set_prescribed(prediction_);
+  set_prescribed(time_, velocity_);
+  set_prescribed(time_, prediction_);
   return geometry_;
 }
 
@@ -157,17 +160,33 @@ void MacFluid<dim>::begin_prediction() {
 }
 
 template <int dim>
-void MacFluid<dim>::begin_advection_velocity(double dt) {
+bool MacFluid<dim>::begin_advection_velocity(double dt) {
   begin_prediction();
-  if (history_)
-    history_->extrapolate(dt, prediction_);
+  if (!history_)
+    return true;
+  history_->extrapolate(dt, prediction_);
+  // Rates of cells that were made one step ago are not those of a flow.
+  return steps_since_regrid_ > 1;
+}
+
+template <int dim>
+bool MacFluid<dim>::jumped() const {
+  const double round_off = 1e-6 * last_step_, begin = time_ - last_step_;
+  for (const auto& sides : domain_.boundary.sides)
+    for (const BoundarySide<dim>& side : sides)
+      if (side.jumps(begin - round_off, time_))
+        return true;
+  return scalars_.begin_to_push(begin - accepted_step_ + round_off, begin + round_off);
 }
 
 template <int dim>
 void MacFluid<dim>::accept() {
   largest_speed_.reset();
-  if (history_)
-    history_->accept(velocity_, prediction_, geometry_.state, last_step_);
+  if (history_) {
+    set_prescribed(time_ - last_step_, velocity_);  // the geometry may have been frozen since
+    history_->accept(velocity_, prediction_, geometry_.state, last_step_, jumped());
+  }
+  steps_since_regrid_ = std::min(steps_since_regrid_ + 1, 2);
   velocity_ = prediction_;
   accepted_pressure_ = scaled_pressure_;
   accepted_cells_ = geometry_.state.cells;
@@ -206,7 +225,7 @@ template <int dim>
 ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   time_ = time + dt;
   last_step_ = dt;
-  set_prescribed(prediction_);
+  set_prescribed(time_, prediction_);
   ForceImpulse<dim> given;
   given.impulse = push_sources(time);
   const ForceField<dim> force(domain_, geometry_, parameters_.forces, scalars_);

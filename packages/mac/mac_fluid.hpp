@@ -76,7 +76,7 @@ class MacFluid : public FluidDiscretization<dim>,
 
   bool begin_step(double time, double dt, const std::function<double()>& solid_speed) override;
   void begin_prediction() override;
-  void begin_advection_velocity(double dt) override;
+  bool begin_advection_velocity(double dt) override;
   ForceImpulse<dim> add_forces(double time, double dt) override;
   /// Implicit surface tension wants the viscous solve, too.
   bool is_viscous() const override {
@@ -148,7 +148,9 @@ class MacFluid : public FluidDiscretization<dim>,
     const FaceState state = geometry_.state.faces[axis][cell];
     return state == FaceState::free || state == FaceState::coupled;
   }
-  void set_prescribed(FaceField<dim>& velocity) const;
+  void set_prescribed(double time, FaceField<dim>& velocity) const;
+  /// What is prescribed jumped in the step that ends now.
+  bool jumped() const;
   /// Other tiles: all fields move; what else was made of the grid waits for `freeze`.
   void regrid(const TileOwners& owners);
   void rest_at_rim();
@@ -160,6 +162,8 @@ class MacFluid : public FluidDiscretization<dim>,
   /// Tiles for the first surface, before any step.
   void make_room_for(const Surface& surface);
   bool share_work();
+  /// Of the liquid; null: its interface cannot live on other tiles.
+  MigratingInterface<dim>* migrating_interface();
   void save_tiles(CheckpointWriter& checkpoint) const;
   void load_tiles(const CheckpointReader& checkpoint);
   /// What partly open faces of this rank add to an angular momentum, because their fluid moves
@@ -180,6 +184,7 @@ class MacFluid : public FluidDiscretization<dim>,
   MacDomain<dim> domain_;
   std::optional<MovingTiles<dim>> moving_tiles_;  ///< none: all tiles exist, always
   TileOwners owners_;                             ///< of the tiles; empty: as at the start
+  int steps_since_regrid_ = 2;                    ///< accepted; 2: or more
   int steps_to_sharing_ = 0;                      ///< before work is next compared between ranks
   std::vector<GlobalIndex> compared_work_;        ///< at surfaces, of this rank's tiles, then
   bool has_room_ = false;                         ///< for the first surface

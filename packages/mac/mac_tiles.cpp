@@ -70,16 +70,25 @@ typename MovingTiles<dim>::Present MacFluid<dim>::present(const MacState<dim>& s
 }
 
 template <int dim>
+MigratingInterface<dim>* MacFluid<dim>::migrating_interface() {
+  return side_of<MigratingInterface<dim>>(liquid_->interface());
+}
+
+template <int dim>
 bool MacFluid<dim>::begin_step(double time, double dt, const std::function<double()>& solid_speed) {
-  if (!moving_tiles_)
-    return share_work();
+  if (!moving_tiles_) {
+    if (share_work())
+      steps_since_regrid_ = 0;
+    return steps_since_regrid_ == 0;
+  }
   auto now = present(geometry_.state, time, dt);
   now.largest_speed = largest_speed();
   now.solid_speed = solid_speed();
-  const std::optional<TileOwners> owners = moving_tiles_->change(now);
-  if (owners)
+  if (const std::optional<TileOwners> owners = moving_tiles_->change(now)) {
     regrid(*owners);
-  return owners.has_value();
+    steps_since_regrid_ = 0;
+  }
+  return steps_since_regrid_ == 0;
 }
 
 /// Gives ranks other tiles where surfaces have made their work uneven. The same work as at the last
@@ -87,7 +96,8 @@ bool MacFluid<dim>::begin_step(double time, double dt, const std::function<doubl
 template <int dim>
 bool MacFluid<dim>::share_work() {
   const Communicator& comm = domain_.grid.comm();
-  if (comm->getSize() == 1 || !geometry_.state.surface || steps_to_sharing_ > 0)
+  if (comm->getSize() == 1 || !geometry_.state.surface || steps_to_sharing_ > 0 ||
+      (liquid_ && !migrating_interface()))
     return false;
   constexpr int steps_between = 20;
   steps_to_sharing_ = steps_between;
@@ -135,7 +145,7 @@ void MacFluid<dim>::regrid(const TileOwners& owners) {
                    [](char state) { return static_cast<CellState>(state); });
   }
   const std::function<void()> finish_liquid =
-      liquid_ ? liquid_->interface().migrate(migration) : std::function<void()>();
+      liquid_ ? migrating_interface()->migrate(migration) : std::function<void()>();
   viscosity_.reset();
   geometry_ = {};
   largest_speed_.reset();
@@ -212,6 +222,8 @@ void MacFluid<dim>::save_tiles(CheckpointWriter& checkpoint) const {
                                                domain_.grid.comm()->getSize());
   checkpoint.file().write_attribute<long long>("fluid/tiles", "steps_to_sharing",
                                                steps_to_sharing_);
+  checkpoint.file().write_attribute<long long>("fluid/tiles", "steps_since_regrid",
+                                               steps_since_regrid_);
 }
 
 template <int dim>
@@ -228,6 +240,9 @@ void MacFluid<dim>::load_tiles(const CheckpointReader& checkpoint) {
   if (file.has_attribute("fluid/tiles", "steps_to_sharing"))
     steps_to_sharing_ =
         static_cast<int>(file.read_attribute<long long>("fluid/tiles", "steps_to_sharing"));
+  if (file.has_attribute("fluid/tiles", "steps_since_regrid"))
+    steps_since_regrid_ =
+        static_cast<int>(file.read_attribute<long long>("fluid/tiles", "steps_since_regrid"));
   if (file.read_attribute<long long>("fluid/tiles", "ranks") != comm->getSize())
     owners = share_tiles(domain_.grid.tile_lattice(), comm, owners.tiles,
                          std::vector<GlobalIndex>(owners.tiles.size(), tile_volume<dim>));
@@ -238,6 +253,8 @@ template MovingTiles<2>::Present MacFluid<2>::present(const MacState<2>&, double
 template MovingTiles<3>::Present MacFluid<3>::present(const MacState<3>&, double, double) const;
 template bool MacFluid<2>::begin_step(double, double, const std::function<double()>&);
 template bool MacFluid<3>::begin_step(double, double, const std::function<double()>&);
+template MigratingInterface<2>* MacFluid<2>::migrating_interface();
+template MigratingInterface<3>* MacFluid<3>::migrating_interface();
 template bool MacFluid<2>::share_work();
 template bool MacFluid<3>::share_work();
 template void MacFluid<2>::make_room_for(const Surface&);

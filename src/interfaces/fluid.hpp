@@ -153,7 +153,8 @@ class FluidDiscretization : public PlugIn {
   // The phases of a step.
 
   /// A step from `time` to time + dt begins: room may be made where things will move. True if
-  /// u^n now lives on other cells, without being free of divergence there: then the geometry is to
+  /// u^n lives on other cells than when it was accepted, without being free of divergence there,
+  /// also where a step before this one had moved it and was not finished: then the geometry is to
   /// be frozen anew. `solid_speed`: that of the fastest solid [m/s]; collective, for those who want
   /// it. Default: the fluid always has room.
   virtual bool begin_step(double /*time*/, double /*dt*/,
@@ -162,8 +163,12 @@ class FluidDiscretization : public PlugIn {
   }
   virtual void begin_prediction() = 0;  ///< u* := u^n
   /// u* := the velocity to carry things over a step of dt, before F2 makes it free of divergence:
-  /// u^n, or nearer to the middle of the step.
-  virtual void begin_advection_velocity(double /*dt*/) { begin_prediction(); }
+  /// u^n, or nearer to the middle of the step. True if it is as free of divergence as u^n where
+  /// there are no solids, so that F2 has nothing to do; the same on all ranks.
+  virtual bool begin_advection_velocity(double /*dt*/) {
+    begin_prediction();
+    return true;
+  }
   /// u* += dt f on all velocities outside solids.
   virtual ForceImpulse<dim> add_forces(double time, double dt) = 0;
   /// F3: u_ADV := u*, as F2 left it; then u* := u^n carried along u_ADV, and all scalars. Rays stop

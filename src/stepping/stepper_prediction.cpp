@@ -162,9 +162,9 @@ template <int dim>
 void Stepper<dim>::make_advection_velocity(double dt, StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   auto& coupling = *components_.coupling;
-  fluid.begin_advection_velocity(dt);
-  if (components_.solids->empty() && last_dt_ > 0 && !fluid_moved_)
-    return;  // u^n is divergence-free already
+  const bool has_no_divergence = fluid.begin_advection_velocity(dt);
+  if (components_.solids->empty() && last_dt_ > 0 && !fluid_moved_ && has_no_divergence)
+    return;
   ScopedPhase phase(timers_, "F2");
   const std::vector<double> effective = coupling.effective_velocity(*components_.solids);
   fluid.set_coupled_velocity(effective);

@@ -22,7 +22,7 @@ VolumeOfFluidParameters read_volume_of_fluid_parameters(const ParameterList& lis
 /// fractions stand for. What moving solids and crumbs cost or give is kept account of where it
 /// arises, and the bodies of liquid there get it back.
 template <int dim>
-class VolumeOfFluid : public InterfaceModel<dim> {
+class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim> {
  public:
   using typename InterfaceModel<dim>::Surface;
 

@@ -39,6 +39,11 @@ struct BoundarySide {
     return ramp_time > 0 && time < ramp_time ? std::max(time, 0.0) / ramp_time
                                              : 1;  // time may be < 0
   }
+  /// Whether the velocity jumps in (begin, end].
+  bool jumps(double begin, double end) const {
+    return velocity != Point<dim>::Zero() && begin <= end_time && end_time < end &&
+           ramp(end_time) > 0;
+  }
   /// At `x` on this side, which is normal to `axis`.
   Point<dim> velocity_at(int axis, const Point<dim>& x, double time) const {
     return velocity * (ramp(time) * (type == SideType::inflow ? shape.factor(axis, x) : 1));

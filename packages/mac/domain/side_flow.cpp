@@ -21,11 +21,11 @@ void for_each_inflow(const Boundary<dim>& boundary, const Function& f) {
 }  // namespace
 
 template <int dim>
-void MacFluid<dim>::set_prescribed(FaceField<dim>& velocity) const {
+void MacFluid<dim>::set_prescribed(double time, FaceField<dim>& velocity) const {
   for (const auto& [axis, cell] : geometry_.prescribed) {
     const int end = geometry_.state.cells[cell] == CellState::outside ? 1 : 0;
     const Box<dim> face = domain_.face_box(axis, cell);
-    velocity[axis][cell] = domain_.boundary.side(axis, end).mean_velocity(axis, face, time_)[axis];
+    velocity[axis][cell] = domain_.boundary.side(axis, end).mean_velocity(axis, face, time)[axis];
   }
   domain_.halo.fill(velocity);
 }
@@ -115,8 +115,8 @@ template std::array<std::array<bool, 2>, 2> MacFluid<2>::closed_sides() const;
 template std::array<std::array<bool, 2>, 3> MacFluid<3>::closed_sides() const;
 template bool MacFluid<2>::is_periodic() const;
 template bool MacFluid<3>::is_periodic() const;
-template void MacFluid<2>::set_prescribed(FaceField<2>&) const;
-template void MacFluid<3>::set_prescribed(FaceField<3>&) const;
+template void MacFluid<2>::set_prescribed(double, FaceField<2>&) const;
+template void MacFluid<3>::set_prescribed(double, FaceField<3>&) const;
 template std::vector<PrescribedFlux> MacFluid<2>::side_fluxes(double) const;
 template std::vector<PrescribedFlux> MacFluid<3>::side_fluxes(double) const;
 template std::vector<std::pair<std::string, std::string>> MacFluid<2>::notes() const;

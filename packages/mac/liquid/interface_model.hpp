@@ -90,13 +90,19 @@ class InterfaceModel : public PlugIn {
     throw InputError(fmt::format(
         "The interface \"{}\" cannot tell how much is where; leave out \"Watch\".", this->name()));
   }
+};
+
+/// A side interface of models that can live on other tiles. With one that does without, tiles stay
+/// as they are: there can be no "Moving Tiles", and ranks keep those that they have, however uneven
+/// the work at solids becomes.
+template <int dim>
+class MigratingInterface {
+ public:
+  virtual ~MigratingInterface() = default;
   /// The tiles of the domain are about to change, between two steps; new ones are dry. Carries over
   /// what lives on them, and returns what is to be done once the domain has its new grid.
-  /// Collective. Default: throws InputError.
-  virtual std::function<void()> migrate(const TileMigration<dim>&) {
-    throw InputError(fmt::format(
-        "The interface \"{}\" cannot follow \"Moving Tiles\"; leave them out.", this->name()));
-  }
+  /// Collective.
+  virtual std::function<void()> migrate(const TileMigration<dim>&) = 0;
 };
 
 /// Interface models by name. They are built for a domain, which must outlive them.

@@ -21,14 +21,16 @@ void VelocityHistory<dim>::add(double scale, const FaceField<dim>& change, FaceF
 
 template <int dim>
 void VelocityHistory<dim>::accept(const FaceField<dim>& before, const FaceField<dim>& after,
-                                  const MacState<dim>& state, double dt) {
+                                  const MacState<dim>& state, double dt, bool jumped) {
+  const double scale = jumped ? 0 : 1 / dt;
   for (int axis = 0; axis < dim; ++axis) {
     for (std::size_t i = 0; i < after[axis].size(); ++i) {
       const double free = state.faces[axis][i] == FaceState::free ? 1 : 0;
-      const double per_step = free * free_[axis][i] / dt;
-      acceleration_[axis][i] = per_step * (after[axis][i] - advected_[axis][i]);
-      rate_[axis][i] = per_step * (after[axis][i] - before[axis][i]);
-      free_[axis][i] = free;
+      const double given = state.faces[axis][i] == FaceState::prescribed ? 1 : 0;
+      const double per_step = scale * free_[axis][i];
+      acceleration_[axis][i] = free * per_step * (after[axis][i] - advected_[axis][i]);
+      rate_[axis][i] = (free + given) * per_step * (after[axis][i] - before[axis][i]);
+      free_[axis][i] = free + given;
     }
   }
 }

@@ -7,9 +7,11 @@
 
 namespace lockstep {
 
-/// What makes advection second order in time: how fast velocities on faces that stay free changed
-/// in the last step. Zero elsewhere, and in the first step, whose change may be an impulse. Ghost
-/// faces included. Local.
+/// What makes advection second order in time: how fast velocities on faces that stay free, or that
+/// sides of the domain prescribe, changed in the last step. Zero elsewhere, and in steps whose
+/// change may be an impulse: the first one, and those in which what is prescribed jumps. Without
+/// solids u + dt/2 du/dt is as free of divergence as u^n and u^{n-1} were. Ghost faces included.
+/// Local.
 template <int dim>
 class VelocityHistory {
  public:
@@ -24,9 +26,9 @@ class VelocityHistory {
   void add_acceleration(double scale, FaceField<dim>& u) const { add(scale, acceleration_, u); }
 
   void set_advected(const FaceField<dim>& u) { advected_ = u; }
-  /// After a step of dt from `before` to `after`.
+  /// After a step of dt from `before` to `after`; `jumped`: its change was an impulse.
   void accept(const FaceField<dim>& before, const FaceField<dim>& after, const MacState<dim>& state,
-              double dt);
+              double dt, bool jumped = false);
 
   /// All that a restart needs. Valid while this is neither moved nor copied.
   std::vector<StoredField> fields() {
@@ -39,7 +41,7 @@ class VelocityHistory {
 
   FaceField<dim> acceleration_, rate_;  ///< [m/s^2]
   FaceField<dim> advected_;             ///< of the present step [m/s]
-  FaceField<dim> free_;                 ///< 1 on faces that were free at the end of the last step
+  FaceField<dim> free_;  ///< 1 on faces that were free or prescribed at the end of the last step
 };
 
 }  // namespace lockstep

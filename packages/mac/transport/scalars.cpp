@@ -160,6 +160,14 @@ bool Scalars<dim>::sources_push(double time) const {
 }
 
 template <int dim>
+bool Scalars<dim>::begin_to_push(double earlier, double now) const {
+  for (const ScalarSource<dim>& source : sources_)
+    if (source.velocity && source.active(now) && !source.active(earlier))
+      return true;
+  return false;
+}
+
+template <int dim>
 void Scalars<dim>::push(const MacGeometry<dim>& geometry, double time,
                         FaceField<dim>& velocity) const {
   const TiledGrid<dim>& grid = domain_.grid;

@@ -94,13 +94,20 @@ TEST(Fluid, HistoryByHand) {
   FaceField<2> middle = constant(3), start = constant(3);
   history.extrapolate(0.2, middle);
   history.add_acceleration(0.1, start);
+  // What jumps has no rate, nor has the next step one that begins before the jump.
+  history.accept(constant(3), constant(9), state, 0.1, true);
+  FaceField<2> after_jump = constant(9);
+  history.extrapolate(0.2, after_jump);
+  history.add_acceleration(0.1, after_jump);
+  EXPECT_EQ(after_jump, constant(9));
   int n_free = 0;
   for (int axis = 0; axis < 2; ++axis)
     grid.for_each_owned_face(axis, [&](int cell) {
       const bool free = state.faces[axis][cell] == FaceState::free;
       n_free += free;
       EXPECT_EQ(untouched[axis][cell], 1);
-      EXPECT_NEAR(middle[axis][cell], free ? 3 + 0.1 * 20 : 3, 1e-12);
+      const bool is_given = state.faces[axis][cell] == FaceState::prescribed;
+      EXPECT_NEAR(middle[axis][cell], free || is_given ? 3 + 0.1 * 20 : 3, 1e-12);
       EXPECT_NEAR(start[axis][cell], free ? 3 + 0.1 * 5 : 3, 1e-12);
     });
   EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(n_free)), 24);
@@ -167,6 +174,39 @@ TEST(Fluid, AJetEntersThroughItsOpeningUntilItEnds) {
     project(*fluid);
     fluid->accept();
     EXPECT_NEAR(fluid->momentum().linear[0], end < 1 ? 1000 * flux * (2 - 0.0625) : 0, 1e-5);
+  }
+}
+
+/// In a channel whose inflow ramps up and ends at once, what carries things with "Order in Time" 2
+/// is the flow in the middle of the step, at the inflow too, and rests as soon as the inflow does.
+TEST(Fluid, TheFlowThatCarriesFollowsRampsAndNoJumps) {
+  Case<2> scene({16, 8}, 0.125);
+  scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
+  scene.side("y lower", "slip wall").side("y upper", "slip wall");
+  scene.domain.sublist("Sides").sublist("x lower").set("Ramp Time", 10.0).set("End Time", 1.0);
+  scene.fluid.set("Order in Time", 2);
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  const TiledGrid<2>& grid = fluid->domain().grid;
+  Vector divergence(fluid->pressure_map());
+  constexpr double dt = 0.125;
+  for (int step = 0; step < 12; ++step) {
+    const double time = step * dt;
+    EXPECT_TRUE(fluid->begin_advection_velocity(dt));
+    fluid->divergence(divergence);
+    EXPECT_LE(divergence.normInf(), 1e-8) << time;
+    // The first rate is that of the second step.
+    const double expected = time > 1 ? 0 : 0.1 * (step > 1 ? time + dt / 2 : time);
+    grid.for_each_owned_face(0, [&](int cell) {
+      if (fluid->geometry().state.faces[0][cell] != FaceState::inactive) {
+        EXPECT_NEAR(fluid->prediction()[0][cell], expected, 1e-8) << time;
+      }
+    });
+    fluid->advect(time, dt, no_surface<2>());
+    fluid->revalidate(no_surface<2>());
+    fluid->add_forces(time, dt);
+    project(*fluid);
+    fluid->accept();
   }
 }
 

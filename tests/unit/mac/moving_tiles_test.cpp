@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
 #include "base/errors.hpp"
-#include "mac_cases.hpp"
+#include "liquid_cases.hpp"
+#include "output/checkpoint.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -122,12 +125,49 @@ TEST(MovingTiles, FollowTheFluid) {
     return was_free ? moving(x) : Point<2>(0, 0);
   };
   EXPECT_EQ(largest_difference(*fluid, expected), 0);
+  EXPECT_TRUE(fluid->begin_step(0, 0.01, no_solids)) << "until a step is accepted";
+  fluid->accept();
   EXPECT_FALSE(fluid->begin_step(0.01, 0.01, no_solids));
   fluid->set_prediction([](const Point<2>&) { return Point<2>(0, 0); });
   fluid->accept();
   EXPECT_TRUE(fluid->begin_step(0.02, 0.01, no_solids));
   fluid->set_geometry(nullptr, BlockedFaces<2>());
   EXPECT_EQ(n_cells(), n_at_start);
+}
+
+/// A step that a signal ends after its tiles have moved leaves u^n with a divergence there, in the
+/// checkpoint as well.
+TEST(MovingTiles, MovesOutliveARestart) {
+  const std::string folder = (std::filesystem::temp_directory_path() /
+                              ("lockstep_moved_tiles_" + std::to_string(world()->getSize())))
+                                 .string();
+  if (is_root(world()))
+    std::filesystem::create_directories(folder);
+  world()->barrier();
+  Case<2> scene = tall_tank({3, 1}, {5, 2});
+  const auto fluid = scene.make(), restarted = scene.make();
+  for (MacFluid<2>* one : {fluid.get(), restarted.get()})
+    one->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  fluid->set_prediction([](const Point<2>& x) { return Point<2>(1 + x[0], 2 - x[1]); });
+  fluid->accept();
+  for (const bool moves : {true, false}) {
+    EXPECT_EQ(fluid->begin_step(0, 0.01, no_solids), moves);
+    {
+      CheckpointWriter writer(world(), folder, {moves ? 1 : 2, 0, "<ParameterList/>"});
+      fluid->save(writer);
+      writer.finish(2);
+    }
+    restarted->load(CheckpointReader(world(), latest_checkpoint(folder)));
+    restarted->set_geometry(nullptr, BlockedFaces<2>());
+    EXPECT_EQ(restarted->begin_step(0, 0.01, no_solids), moves);
+    fluid->set_geometry(nullptr, BlockedFaces<2>());
+    fluid->begin_prediction();
+    fluid->accept();
+  }
+  world()->barrier();
+  if (is_root(world()))
+    std::filesystem::remove_all(folder);
 }
 
 TEST(MovingTiles, MakeRoomForSolids) {
@@ -161,6 +201,20 @@ TEST(MovingTiles, WorkIsComparedEveryTwentyAcceptedSteps) {
   for (const int step : shared)
     EXPECT_EQ(step % 20, 0) << step;
   EXPECT_EQ(shared.size() > 1, world()->getSize() > 1);
+}
+
+/// An interface that cannot live on other tiles is refused with "Moving Tiles", before any step;
+/// and without them ranks keep the tiles they have.
+TEST(MovingTiles, InterfacesThatStayWhereTheyAre) {
+  Case<2> scene({128, 128}, 1. / 128);
+  add_ball<2>(scene, {0.6, 0.6}, 0.3);
+  const auto fluid = make_liquid(scene);
+  const auto disc =
+      Solids<2>().add(ball_surface<2>(0.2, 0.02), Point<2>(0.25, 0.25), true).snapshot();
+  fluid->set_geometry(disc, BlockedFaces<2>());
+  EXPECT_FALSE(fluid->begin_step(0, 0.01, no_solids));
+  scene.fluid.sublist("Moving Tiles");
+  EXPECT_THROW(make_liquid(scene), InputError);
 }
 
 TEST(MovingTiles, RefuseForcesThatWouldMoveTheFluidFarAway) {

@@ -26,9 +26,10 @@ class RecordingFluid : public FakeFluid<2> {
     calls_.push_back("fluid: u* = u");
     FakeFluid<2>::begin_prediction();
   }
-  void begin_advection_velocity(double dt) override {
+  bool begin_advection_velocity(double dt) override {
     calls_.push_back(fmt::format("fluid: u* to advect over {}", dt));
     FakeFluid<2>::begin_prediction();
+    return true;
   }
   ForceImpulse<2> add_forces(double time, double dt) override {
     calls_.push_back(fmt::format("fluid: forces over {}", dt));
@@ -100,6 +101,29 @@ class RecordingSolid : public FakeSolid<2> {
   std::function<void()> undo() override {
     return [this] { calls_.push_back("solids: undo"); };
   }
+
+ private:
+  Calls& calls_;
+};
+
+/// Joints that tie nothing.
+class RecordingJoints : public ConstraintModel {
+ public:
+  explicit RecordingJoints(Calls& calls) : calls_(calls) {}
+  std::string name() const override { return "recording"; }
+  std::function<void()> undo() override {
+    return [this] { calls_.push_back("joints: undo"); };
+  }
+  std::vector<Combination> combinations() const override { return {}; }
+  ClosedMotion close(double, double, Vector&) override { return {}; }
+  std::vector<JointLimit> limits(double, const std::vector<double>&) const override { return {}; }
+  std::vector<GivenMotion> given_motions() const override { return {}; }
+  std::string limited() const override { return ""; }
+  bool has_implicit_forces() const override { return false; }
+  int largest_block() const override { return 0; }
+  void take_note(const JointImpulses&, double, double) override {}
+  std::vector<JointState> states(double) const override { return {}; }
+  std::string note() const override { return ""; }
 
  private:
   Calls& calls_;
