@@ -26,6 +26,8 @@ template <int dim, typename Function>
 void for_each_plug_in(Components<dim>& components, const Function& f) {
   for (int m = 0; m < components.solids->n_models(); ++m)
     f(components.solids->model(m));
+  if (ConstraintModel* joints = components.solids->joints())
+    f(*joints);
   f(*components.fluid);
   f(*components.coupling);
   f(*components.strategy);

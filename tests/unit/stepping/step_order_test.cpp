@@ -36,13 +36,14 @@ FakeBody<2> plate() {
 
 struct Recorded {
   explicit Recorded(const FakeBox<2>& box, std::vector<FakeBody<2>> bodies = {plate()},
-                    bool with_contact = true) {
+                    bool with_contact = true, bool with_joints = false) {
     const Communicator comm = Tpetra::getDefaultComm();
     components.fluid = std::make_unique<RecordingFluid>(box, comm, calls);
     Models<2> models;
     if (!bodies.empty())
       models.push_back(std::make_unique<RecordingSolid>(std::move(bodies), comm, calls));
-    components.solids = std::make_unique<SolidSystem<2>>(std::move(models), comm);
+    components.solids = std::make_unique<SolidSystem<2>>(
+        std::move(models), comm, with_joints ? std::make_unique<RecordingJoints>(calls) : nullptr);
     components.coupling = std::make_unique<MixedFaceCoupling<2>>(MixedFaceOptions());
     components.strategy = std::make_unique<RecordingStrategy>(calls);
     if (with_contact)
@@ -154,6 +155,18 @@ TEST(StepOrder, ASignalPutsTheStepBack) {
   EXPECT_EQ(recorded.calls.back(), "fluid: undo");
   EXPECT_EQ(count(recorded.calls, "fluid: u = u*"), 0);
   EXPECT_EQ(recorded.stepper->time(), 3);
+}
+
+TEST(StepOrder, JointsArePutBackToo) {
+  Recorded recorded(tank(), {plate()}, true, true);
+  std::vector<std::string> names;
+  for_each_plug_in(recorded.components,
+                   [&](const PlugIn& plug_in) { names.push_back(plug_in.name()); });
+  EXPECT_EQ(std::count(names.begin(), names.end(), "recording"), 3);  // joints, strategy, contact
+  note_signal(SIGTERM);
+  EXPECT_THROW(recorded.step(), Interrupted);
+  note_signal(0);
+  EXPECT_EQ(count(recorded.calls, "joints: undo"), 1);
 }
 
 }  // namespace lockstep::test
