@@ -53,7 +53,11 @@ WholeField whole(const BoxFrame& box, const BoxField& field, const Communicator&
       }
     }
   }
-  sum_all(comm, result.values.data(), static_cast<int>(result.values.size()));
+  constexpr std::size_t at_once = std::size_t{1} << 28;  // MPI counts by int
+  for (std::size_t first = 0; first < result.values.size(); first += at_once) {
+    const std::size_t n_values = std::min(at_once, result.values.size() - first);
+    sum_all(comm, result.values.data() + first, static_cast<int>(n_values));
+  }
   return result;
 }
 

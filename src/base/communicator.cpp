@@ -1,6 +1,8 @@
 #include "base/communicator.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
+#include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "base/errors.hpp"
@@ -28,9 +30,16 @@ T reduce(const Communicator& comm, T value, MPI_Datatype type, MPI_Op op) {
 template <typename T>
 std::vector<T> gather(const Communicator& comm, const std::vector<T>& values, MPI_Datatype type) {
   const MPI_Comm mpi = raw_communicator(comm);
-  const int n = static_cast<int>(values.size());
+  const int most = std::numeric_limits<int>::max();
+  // More than that of one rank stays more than that of all.
+  const int n = static_cast<int>(std::min<std::size_t>(values.size(), most));
   std::vector<int> counts(comm->getSize()), starts(comm->getSize(), 0);
   MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, mpi);
+  const GlobalIndex n_all = std::accumulate(counts.begin(), counts.end(), GlobalIndex{0});
+  check_solve(n_all < most,
+              "A list of {} numbers or more is wanted on every rank, more than MPI can send; the "
+              "scene is too large.",
+              n_all);
   std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
   std::vector<T> all(starts.back() + counts.back());
   MPI_Allgatherv(values.data(), n, type, all.data(), counts.data(), starts.data(), type, mpi);

@@ -256,7 +256,7 @@ std::vector<T> CheckpointReader::read_distributed(
     asked[rank].push_back(wanted_global_ids[i]);
     places[rank].push_back(i);
   }
-  std::vector<int> n_asked;
+  std::vector<GlobalIndex> n_asked;
   const std::vector<long long> requests = send_to_ranks(comm_, asked, &n_asked);
   std::vector<std::vector<T>> replies(n_ranks);
   auto request = requests.begin();

@@ -21,9 +21,11 @@ inline int rank_of(GlobalIndex i, GlobalIndex n, int n_ranks) {
 }
 
 /// Collective: sends outgoing[r] to rank r and returns what arrived, in the order of the senders;
-/// the number of values from each sender goes to `counts` if given. T: double, long long.
+/// the number of values from each sender goes to `counts` if given. MPI counts by int: what is
+/// longer than `longest_message` goes in pieces. T: double, long long.
 template <typename T>
 std::vector<T> send_to_ranks(const Communicator& comm, const std::vector<std::vector<T>>& outgoing,
-                             std::vector<int>* counts = nullptr);
+                             std::vector<GlobalIndex>* counts = nullptr,
+                             GlobalIndex longest_message = GlobalIndex{1} << 30);
 
 }  // namespace lockstep

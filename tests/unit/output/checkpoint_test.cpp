@@ -11,6 +11,7 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "output/exchange.hpp"
 #include "test_folder.hpp"
 
 namespace lockstep::test {
@@ -58,6 +59,27 @@ void expect_all_entities(const Communicator& comm, const std::string& path) {
   }
   EXPECT_EQ(reader.read_distributed<long long>("fluid/phase", wanted), wanted);
   EXPECT_THAT(reader.file().read_all<double>("pose"), ElementsAre(1, 2, 3));
+}
+
+/// In pieces of three as at once; rank r sends 5 r + k numbers to rank k.
+TEST(Exchange, LongMessagesGoInPieces) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  const int rank = comm->getRank(), n_ranks = comm->getSize();
+  std::vector<std::vector<double>> outgoing(n_ranks);
+  std::vector<double> expected;
+  std::vector<GlobalIndex> expected_counts;
+  for (int other = 0; other < n_ranks; ++other) {
+    for (int k = 0; k < 5 * rank + other; ++k)
+      outgoing[other].push_back(100 * rank + other + 0.01 * k);
+    expected_counts.push_back(5 * other + rank);
+    for (int k = 0; k < 5 * other + rank; ++k)
+      expected.push_back(100 * other + rank + 0.01 * k);
+  }
+  for (const GlobalIndex longest : {1 << 30, 3}) {
+    std::vector<GlobalIndex> counts;
+    EXPECT_EQ(send_to_ranks(comm, outgoing, &counts, longest), expected);
+    EXPECT_EQ(counts, expected_counts);
+  }
 }
 
 TEST(Checkpoint, ReadsBackOnTheSameAndOnOtherRankCounts) {
