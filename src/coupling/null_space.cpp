@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/disjoint_sets.hpp"
+#include "base/errors.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/overlap.hpp"
 
@@ -26,10 +28,25 @@ Triangle triangle_of(std::vector<int> columns, const Eigen::MatrixXd& rows) {
   return {std::move(columns), qr.matrixQR().topRows(n).triangularView<Eigen::Upper>()};
 }
 
+/// Regions that solids may tie to one another, in one triangle: work grows with the cube of them.
+/// Of more than these only the columns are kept, for the message.
+constexpr std::size_t most_tied_regions = 5000;
+
+bool is_too_large(const std::vector<int>& columns) {
+  return columns.size() > most_tied_regions;
+}
+
+Triangle empty_triangle(std::vector<int> columns) {
+  Eigen::MatrixXd no_rows(0, is_too_large(columns) ? 0 : columns.size());
+  return {std::move(columns), std::move(no_rows)};
+}
+
 Triangle joined(const Triangle& a, const Triangle& b) {
   std::vector<int> columns;
   std::set_union(a.columns.begin(), a.columns.end(), b.columns.begin(), b.columns.end(),
                  std::back_inserter(columns));
+  if (is_too_large(columns))
+    return empty_triangle(std::move(columns));
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(a.r.rows() + b.r.rows(), columns.size());
   Eigen::Index first = 0;
   for (const Triangle* part : {&a, &b}) {
@@ -42,105 +59,246 @@ Triangle joined(const Triangle& a, const Triangle& b) {
   return triangle_of(std::move(columns), rows);
 }
 
+/// Triangles that share no column: what solids tie together of the regions.
+using Triangles = std::vector<Triangle>;
+
+/// Why these cannot be dealt with; empty: they can.
+std::string too_many(const Triangles& triangles) {
+  std::size_t most = 0;
+  for (const Triangle& triangle : triangles)
+    most = std::max(most, triangle.columns.size());
+  if (most <= most_tied_regions)
+    return "";
+  return fmt::format(
+      "Solids tie {} closed regions of fluid to one another, more than the {} whose pressures can "
+      "be compared; are solids so close that the cells between them are cut off one by one? Take "
+      "finer cells, or fewer solids.",
+      most, most_tied_regions);
+}
+
 /// Numbers of a region and its weight at the columns of B^T on this rank; -1: not singular.
 struct ColumnRegions {
   std::vector<int> column_of;  ///< by column of B^T
   std::vector<double> weight;  ///< by column of the result
 };
 
-/// R of this rank's rows of B^T chi, some rows at a time.
-Triangle local_triangle(const CrsMatrix& coupling_transposed, const ColumnRegions& regions) {
+/// Calls f(row, regions, values) for the rows of B^T chi of this rank that see a singular region:
+/// a region as often as a row has entries in it.
+template <typename Function>
+void for_each_row(const CrsMatrix& coupling_transposed, const ColumnRegions& regions,
+                  const Function& f) {
   std::vector<int> columns;
-  for (const int column : regions.column_of) {
-    if (column >= 0)
-      columns.push_back(column);
-  }
-  std::sort(columns.begin(), columns.end());
-  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
-  const auto n = static_cast<Eigen::Index>(columns.size());
-  std::vector<Eigen::Index> place(regions.weight.size(), 0);
-  for (Eigen::Index k = 0; k < n; ++k)
-    place[columns[k]] = k;
-  const Eigen::Index most = std::max<Eigen::Index>(256, 2 * n);
-  const Triangle nothing{columns, Eigen::MatrixXd(0, n)};
-  if (n == 0)
-    return nothing;
-  Triangle result = nothing;
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(most, n);
-  Eigen::Index n_rows = 0;
-  const auto take = [&] {
-    result = joined(result, triangle_of(columns, rows.topRows(n_rows)));
-    rows.setZero();
-    n_rows = 0;
-  };
+  std::vector<double> entries;
   for (int row = 0; row < static_cast<int>(coupling_transposed.getNodeNumRows()); ++row) {
     typename CrsMatrix::local_inds_host_view_type indices;
     typename CrsMatrix::values_host_view_type values;
     coupling_transposed.getLocalRowView(row, indices, values);
-    bool any = false;
+    columns.clear();
+    entries.clear();
     for (std::size_t k = 0; k < indices.extent(0); ++k) {
       const int column = regions.column_of[indices(k)];
       if (column < 0)
         continue;
-      rows(n_rows, place[column]) += values(k) * regions.weight[column];
-      any = true;
+      columns.push_back(column);
+      entries.push_back(values(k) * regions.weight[column]);
     }
-    n_rows += any;
-    if (n_rows == most)
+    if (!columns.empty())
+      f(columns, entries);
+  }
+}
+
+/// R of some columns, to which rows are given one by one.
+class GrowingTriangle {
+ public:
+  GrowingTriangle(std::vector<int> columns, Eigen::Index n_rows)
+      : columns_(std::move(columns)),
+        most_(std::min<Eigen::Index>(n_rows, std::max<Eigen::Index>(256, 2 * n_columns()))),
+        result_(empty_triangle(columns_)) {}
+
+  void add(const std::vector<int>& columns, const std::vector<double>& values) {
+    if (is_too_large(columns_))
+      return;
+    if (rows_.size() == 0)
+      rows_ = Eigen::MatrixXd::Zero(most_, n_columns());
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      rows_(n_rows_, std::lower_bound(columns_.begin(), columns_.end(), columns[k]) -
+                         columns_.begin()) += values[k];
+    if (++n_rows_ == most_)
       take();
   }
-  take();
+  Triangle finished() {
+    if (n_rows_ > 0)
+      take();
+    return std::move(result_);
+  }
+
+ private:
+  Eigen::Index n_columns() const { return static_cast<Eigen::Index>(columns_.size()); }
+  void take() {
+    result_ = joined(result_, triangle_of(columns_, rows_.topRows(n_rows_)));
+    rows_.setZero();
+    n_rows_ = 0;
+  }
+
+  std::vector<int> columns_;
+  Eigen::Index most_, n_rows_ = 0;
+  Triangle result_;
+  Eigen::MatrixXd rows_;
+};
+
+/// R of this rank's rows of B^T chi, by groups of regions that have no row in common.
+Triangles local_triangles(const CrsMatrix& coupling_transposed, const ColumnRegions& regions) {
+  const int n = static_cast<int>(regions.weight.size());
+  DisjointSets tied(n);
+  std::vector<Eigen::Index> n_rows(n, 0);
+  std::vector<char> is_seen(n, 0);
+  for (const int column : regions.column_of) {
+    if (column >= 0)
+      is_seen[column] = 1;
+  }
+  for_each_row(coupling_transposed, regions, [&](const auto& columns, const auto&) {
+    for (const int column : columns)
+      tied.join(columns.front(), column);
+    ++n_rows[columns.front()];
+  });
+  std::vector<int> group_of(n, -1);
+  std::vector<std::vector<int>> groups;
+  std::vector<Eigen::Index> rows_of_group;
+  for (int column = 0; column < n; ++column) {
+    if (!is_seen[column])
+      continue;
+    int& group = group_of[tied.root(column)];
+    if (group < 0) {
+      group = static_cast<int>(groups.size());
+      groups.emplace_back();
+      rows_of_group.push_back(0);
+    }
+    groups[group].push_back(column);
+    rows_of_group[group] += n_rows[column];
+  }
+  std::vector<GrowingTriangle> growing;
+  for (std::size_t group = 0; group < groups.size(); ++group)
+    growing.emplace_back(groups[group], rows_of_group[group]);
+  for_each_row(coupling_transposed, regions, [&](const auto& columns, const auto& values) {
+    growing[group_of[tied.root(columns.front())]].add(columns, values);
+  });
+  Triangles result;
+  for (GrowingTriangle& triangle : growing)
+    result.push_back(triangle.finished());
   return result;
 }
 
-/// The triangle of all ranks' rows, on rank 0: ranks hand theirs to one below them, log2(ranks)
+/// Those that share columns become one.
+Triangles joined(Triangles all, int n_columns) {
+  DisjointSets tied(n_columns);
+  for (const Triangle& triangle : all) {
+    for (const int column : triangle.columns)
+      tied.join(triangle.columns.front(), column);
+  }
+  std::vector<int> place(n_columns, -1);
+  Triangles result;
+  for (Triangle& triangle : all) {
+    int& mine = place[tied.root(triangle.columns.front())];
+    if (mine < 0) {
+      mine = static_cast<int>(result.size());
+      result.push_back(std::move(triangle));
+    } else {
+      result[mine] = joined(result[mine], triangle);
+    }
+  }
+  return result;
+}
+
+void send(const Triangles& triangles, int rank, MPI_Comm mpi) {
+  const int n = static_cast<int>(triangles.size());
+  MPI_Send(&n, 1, MPI_INT, rank, 0, mpi);
+  for (const Triangle& triangle : triangles) {
+    const int shape[3] = {static_cast<int>(triangle.columns.size()),
+                          static_cast<int>(triangle.r.rows()), static_cast<int>(triangle.r.cols())};
+    MPI_Send(shape, 3, MPI_INT, rank, 0, mpi);
+    MPI_Send(triangle.columns.data(), shape[0], MPI_INT, rank, 0, mpi);
+    MPI_Send(triangle.r.data(), shape[1] * shape[2], MPI_DOUBLE, rank, 0, mpi);
+  }
+}
+
+void receive(int rank, MPI_Comm mpi, Triangles& triangles) {
+  int n = 0;
+  MPI_Recv(&n, 1, MPI_INT, rank, 0, mpi, MPI_STATUS_IGNORE);
+  for (int k = 0; k < n; ++k) {
+    int shape[3];
+    MPI_Recv(shape, 3, MPI_INT, rank, 0, mpi, MPI_STATUS_IGNORE);
+    Triangle other{std::vector<int>(shape[0]), Eigen::MatrixXd(shape[1], shape[2])};
+    MPI_Recv(other.columns.data(), shape[0], MPI_INT, rank, 0, mpi, MPI_STATUS_IGNORE);
+    MPI_Recv(other.r.data(), shape[1] * shape[2], MPI_DOUBLE, rank, 0, mpi, MPI_STATUS_IGNORE);
+    triangles.push_back(std::move(other));
+  }
+}
+
+/// The triangles of all ranks' rows, on rank 0: ranks hand theirs to one below them, log2(ranks)
 /// times.
-Triangle brought_together(Triangle mine, const Communicator& comm) {
+Triangles brought_together(Triangles mine, int n_columns, const Communicator& comm) {
   const MPI_Comm mpi = raw_communicator(comm);
   const int rank = comm->getRank(), n_ranks = comm->getSize();
   for (int step = 1; step < n_ranks; step *= 2) {
     if (rank % (2 * step) == step) {
-      const int shape[2] = {static_cast<int>(mine.r.rows()), static_cast<int>(mine.r.cols())};
-      MPI_Send(shape, 2, MPI_INT, rank - step, 0, mpi);
-      MPI_Send(mine.columns.data(), shape[1], MPI_INT, rank - step, 0, mpi);
-      MPI_Send(mine.r.data(), shape[0] * shape[1], MPI_DOUBLE, rank - step, 0, mpi);
+      send(mine, rank - step, mpi);
       break;
     }
     if (rank + step >= n_ranks)
       continue;
-    int shape[2];
-    MPI_Recv(shape, 2, MPI_INT, rank + step, 0, mpi, MPI_STATUS_IGNORE);
-    Triangle other{std::vector<int>(shape[1]), Eigen::MatrixXd(shape[0], shape[1])};
-    MPI_Recv(other.columns.data(), shape[1], MPI_INT, rank + step, 0, mpi, MPI_STATUS_IGNORE);
-    MPI_Recv(other.r.data(), shape[0] * shape[1], MPI_DOUBLE, rank + step, 0, mpi,
-             MPI_STATUS_IGNORE);
-    mine = joined(mine, other);
+    receive(rank + step, mpi, mine);
+    mine = joined(std::move(mine), n_columns);
   }
   return mine;
 }
 
-/// Combinations of columns that the matrix of this triangle takes to zero, to within `threshold`:
-/// the right singular vectors of those, and the other columns alone. On rank 0.
-std::vector<std::vector<NullSpace::Part>> kernel_of(const Triangle& triangle, int n_columns,
+/// Orthonormal columns that the square matrix takes to zero, to within `threshold`.
+Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& square, double threshold) {
+  constexpr Eigen::Index most_for_svd = 64;  // beyond, it takes fifty times as long as a QR
+  const Eigen::Index n = square.cols();
+  if (n <= most_for_svd) {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullV);
+    const Eigen::Index rank = (svd.singularValues().array() > threshold).count();
+    return svd.matrixV().rightCols(n - rank);
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(square);
+  const auto& r = qr.matrixQR();
+  const Eigen::Index rank = (r.diagonal().array().abs() > threshold).count();
+  Eigen::MatrixXd basis(n, n - rank);
+  basis.topRows(rank) = -r.topLeftCorner(rank, rank)
+                             .triangularView<Eigen::Upper>()
+                             .solve(r.topRightCorner(rank, n - rank));
+  basis.bottomRows(n - rank).setIdentity();
+  const Eigen::MatrixXd in_place = qr.colsPermutation() * basis;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> orthogonal(in_place);
+  return orthogonal.householderQ() * Eigen::MatrixXd::Identity(n, n - rank);
+}
+
+/// Combinations of columns that the matrix of these triangles takes to zero, to within `threshold`,
+/// and the columns in none of them alone. On rank 0.
+std::vector<std::vector<NullSpace::Part>> kernel_of(const Triangles& triangles, int n_columns,
                                                     double threshold) {
   std::vector<std::vector<NullSpace::Part>> kernel;
+  std::vector<char> is_tied(n_columns, 0);
+  for (const Triangle& triangle : triangles) {
+    for (const int column : triangle.columns)
+      is_tied[column] = 1;
+  }
   for (int column = 0; column < n_columns; ++column) {
-    if (!std::binary_search(triangle.columns.begin(), triangle.columns.end(), column))
+    if (!is_tied[column])
       kernel.push_back({{column, 1}});
   }
-  const auto n = static_cast<Eigen::Index>(triangle.columns.size());
-  if (n == 0)
-    return kernel;
-  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
-  square.topRows(triangle.r.rows()) = triangle.r;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullV);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    if (svd.singularValues()[k] > threshold)
-      continue;
-    std::vector<NullSpace::Part> vector;
-    for (Eigen::Index c = 0; c < n; ++c)
-      vector.push_back({triangle.columns[c], svd.matrixV()(c, k)});
-    kernel.push_back(std::move(vector));
+  for (const Triangle& triangle : triangles) {
+    const auto n = static_cast<Eigen::Index>(triangle.columns.size());
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
+    square.topRows(triangle.r.rows()) = triangle.r;
+    const Eigen::MatrixXd basis = kernel_of(square, threshold);
+    for (Eigen::Index k = 0; k < basis.cols(); ++k) {
+      std::vector<NullSpace::Part> vector;
+      for (Eigen::Index c = 0; c < n; ++c)
+        vector.push_back({triangle.columns[c], basis(c, k)});
+      kernel.push_back(std::move(vector));
+    }
   }
   return kernel;
 }
@@ -209,11 +367,14 @@ NullSpaces find_null_spaces(const PressureRegions& regions, const RCP<const Map>
     return {pressure, pressure};
   const Communicator comm = pressure_map->getComm();
   const ColumnRegions columns = regions_of_columns(*coupling_transposed, pressure);
-  const Triangle all = brought_together(local_triangle(*coupling_transposed, columns), comm);
+  const int n_columns = static_cast<int>(pressure.size());
+  const Triangles all =
+      brought_together(local_triangles(*coupling_transposed, columns), n_columns, comm);
+  throw_on_all(comm, is_root(comm) ? too_many(all) : "", static_cast<int>(ExitCode::solve_failed));
   const double threshold = round_off_of_sums(*coupling_transposed);
   std::vector<std::vector<NullSpace::Part>> coupled;
   if (is_root(comm))
-    coupled = kernel_of(all, static_cast<int>(pressure.size()), threshold);
+    coupled = kernel_of(all, n_columns, threshold);
   broadcast(coupled, comm);
   for (auto& parts : coupled) {
     for (NullSpace::Part& part : parts)

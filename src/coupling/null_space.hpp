@@ -11,9 +11,11 @@ struct NullSpaces {
 };
 
 /// The kernel over the regions R without a Dirichlet face: all c with sum_R c_R B^T chi_R = 0, from
-/// an SVD of the (solid dofs x regions) matrix B^T chi, whose triangle is brought together over a
-/// tree of ranks. `coupling_transposed` may be null (no dynamic solids): then both spaces are the
-/// same. Collective.
+/// the (solid dofs x regions) matrix B^T chi. Each group of regions that solids tie to one another
+/// has a triangle R of its own, brought together over a tree of ranks; its kernel comes from an
+/// SVD, or in large groups from a QR factorisation with pivoting. `coupling_transposed` may be null
+/// (no dynamic solids): then both spaces are the same. Throws SolveError for more than 5000 regions
+/// in a group. Collective.
 NullSpaces find_null_spaces(const PressureRegions& regions, const RCP<const Map>& pressure_map,
                             const RCP<const CrsMatrix>& coupling_transposed);
 

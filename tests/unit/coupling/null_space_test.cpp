@@ -6,6 +6,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "base/errors.hpp"
 #include "coupling/null_space.hpp"
 #include "linear/matrix_rows.hpp"
 #include "support/coupled_case.hpp"
@@ -139,6 +140,55 @@ TEST(NullSpace, ManyRegionsOnAllRanks) {
     for (std::size_t l = 0; l <= k; ++l)
       EXPECT_NEAR(n->dot(*found.coupled.vector(l)), k == l ? 1 : 0, 1e-12);
   }
+}
+
+/// Two chains of n regions each, in which every solid compares two neighbours and one solid in the
+/// middle of each chain is not there: four levels are left, constant from end to end.
+TEST(NullSpace, LongChainsOfRegions) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  constexpr int n = 150, n_regions = 2 * n;
+  const int mine = is_root(comm) ? n_regions : 0;
+  const auto pressures = make_map(mine, comm), dofs = make_map(mine, comm);
+  PressureRegions regions;
+  regions.n_regions = n_regions;
+  regions.has_dirichlet.assign(n_regions, 0);
+  std::vector<std::vector<Entry>> rows(mine);
+  for (int region = 0; region < mine; ++region) {
+    regions.of_unknown.push_back(region);
+    const bool is_compared = region % n != n / 2 && region % n != n - 1;
+    if (is_compared)
+      rows[region] = {{region, 1. + region % 7}, {region + 1, -1. - region % 7}};
+  }
+  const RCP<const CrsMatrix> bt = matrix_from_rows(dofs, rows, pressures);
+  const NullSpaces found = find_null_spaces(regions, pressures, bt);
+  ASSERT_EQ(found.coupled.size(), 4u);
+  Vector product(dofs);
+  for (std::size_t k = 0; k < found.coupled.size(); ++k) {
+    const RCP<Vector> x = found.coupled.vector(k);
+    bt->apply(*x, product);
+    EXPECT_LT(product.norm2(), 1e-11);
+    for (std::size_t l = 0; l <= k; ++l)
+      EXPECT_NEAR(x->dot(*found.coupled.vector(l)), k == l ? 1 : 0, 1e-12);
+  }
+}
+
+/// More than can be compared is refused on all ranks, in a sentence.
+TEST(NullSpace, TooManyRegionsAreRefused) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  constexpr int n_regions = 5001;
+  const int mine = is_root(comm) ? n_regions : 0;
+  const auto pressures = make_map(mine, comm), dofs = make_map(mine, comm);
+  PressureRegions regions;
+  regions.n_regions = n_regions;
+  regions.has_dirichlet.assign(n_regions, 0);
+  std::vector<std::vector<Entry>> rows(mine);
+  for (int region = 0; region < mine; ++region) {
+    regions.of_unknown.push_back(region);
+    if (region + 1 < mine)
+      rows[region] = {{region, 1}, {region + 1, -1}};
+  }
+  const RCP<const CrsMatrix> bt = matrix_from_rows(dofs, rows, pressures);
+  EXPECT_THROW(find_null_spaces(regions, pressures, bt), SolveError);
 }
 
 }  // namespace lockstep::test
