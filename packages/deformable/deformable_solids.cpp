@@ -77,7 +77,7 @@ void DeformableSolids<dim>::explicit_momentum(double, double dt, Vector& momentu
     return body.integration == TimeIntegration::explicit_forces;
   });
   const Nodes velocity = any_explicit ? space_.with_ghosts(*velocity_) : Nodes();
-  const Nodes elastic = averaged_forces();
+  const Nodes& elastic = averaged_forces();
   const auto values = momentum.getDataNonConst();
   for (int i = 0; i < space_.n_owned(); ++i) {
     Point<dim> force = elastic[i] + node_force_[i] + node_mass_[i] * gravity_;
@@ -101,6 +101,7 @@ template <int dim>
 void DeformableSolids<dim>::begin_step(double time, double dt) {
   held_.begin_step(time);
   step_ = dt;
+  averaged_force_.reset();
   soften(dt);
 }
 
@@ -252,6 +253,7 @@ template <int dim>
 void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
   Nodes force(space_.n_local(), Point<dim>::Zero());
   implicit_force_ = Teuchos::null;
+  averaged_force_.reset();
   stiffness_.set_zero();
   damping_.set_zero();
   n_clamped_ = 0;

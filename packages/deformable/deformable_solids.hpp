@@ -86,6 +86,7 @@ class DeformableSolids : public SolidModel<dim>,
   void load(const CheckpointReader& reader) override;
 
   GlobalIndex n_clamped_elements() const override { return n_clamped_; }
+  double stretch_beyond_limit() const override { return stretch_beyond_limit_; }
   /// Owned nodes: their numbers in the order of the bodies, positions [m] and elastic forces [N].
   const NodeSpace<dim>& nodes() const { return space_; }
   const std::vector<Point<dim>>& positions() const { return x_; }
@@ -129,8 +130,8 @@ class DeformableSolids : public SolidModel<dim>,
   void soften(double dt);
   double least_mass(int node) const;  ///< a bound of the eigenvalues of M_S [kg]
   /// Elastic forces for a step: averaged over sub-steps where it is longer than a body's stable
-  /// one.
-  Nodes averaged_forces() const;
+  /// one, once for all who ask at the same positions.
+  const Nodes& averaged_forces() const;
   void average_forces(int body, Nodes& force) const;
   void update_states();
   Nodes mobility() const;
@@ -161,6 +162,7 @@ class DeformableSolids : public SolidModel<dim>,
   Nodes surface_velocity_;                      ///< of the last move [m/s]
 
   StrainLimit<dim> strain_limit_;
+  double stretch_beyond_limit_ = 0;
   Nodes limiting_impulse_;  ///< of the last `limit_motion`, until S2 has used it [kg m/s]
 
   RCP<const LinearOperator> mass_;
@@ -171,7 +173,8 @@ class DeformableSolids : public SolidModel<dim>,
   /// From `move` to the end of the step, if bodies are of second order: x_, theirs at the start
   /// [m]. Null on all ranks or on none, with nodes or without.
   std::optional<Nodes> before_;
-  Nodes elastic_force_;  ///< of the owned nodes [N]
+  Nodes elastic_force_;                          ///< of the owned nodes [N]
+  mutable std::optional<Nodes> averaged_force_;  ///< of these; none: not asked for yet
   RCP<const Vector> velocity_;
   std::vector<SolidState<dim>> states_;
   Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]

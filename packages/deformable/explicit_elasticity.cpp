@@ -97,16 +97,22 @@ void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
 }
 
 template <int dim>
-typename DeformableSolids<dim>::Nodes DeformableSolids<dim>::averaged_forces() const {
-  Nodes force = elastic_force_;
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    average_forces(static_cast<int>(b), force);
-  return force;
+const typename DeformableSolids<dim>::Nodes& DeformableSolids<dim>::averaged_forces() const {
+  const bool any = std::any_of(bodies_.begin(), bodies_.end(),
+                               [](const Body& body) { return body.most_sub_steps > 1; });
+  if (!any)
+    return elastic_force_;
+  if (!averaged_force_) {
+    averaged_force_ = elastic_force_;
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      average_forces(static_cast<int>(b), *averaged_force_);
+  }
+  return *averaged_force_;
 }
 
 template <int dim>
 AngularVector<dim> DeformableSolids<dim>::inner_angular_impulse(double dt) const {
-  const Nodes force = averaged_forces();
+  const Nodes& force = averaged_forces();
   Momentum<dim> sum;
   for (int i = 0; i < space_.n_owned(); ++i)
     sum.add(x_[i], dt * force[i] + (limiting_impulse_.empty() ? Point<dim>(Point<dim>::Zero())
@@ -118,8 +124,8 @@ template void DeformableSolids<2>::update_largest_stable_step();
 template void DeformableSolids<3>::update_largest_stable_step();
 template double DeformableSolids<2>::least_mass(int) const;
 template double DeformableSolids<3>::least_mass(int) const;
-template std::vector<Point<2>> DeformableSolids<2>::averaged_forces() const;
-template std::vector<Point<3>> DeformableSolids<3>::averaged_forces() const;
+template const std::vector<Point<2>>& DeformableSolids<2>::averaged_forces() const;
+template const std::vector<Point<3>>& DeformableSolids<3>::averaged_forces() const;
 template AngularVector<2> DeformableSolids<2>::inner_angular_impulse(double) const;
 template AngularVector<3> DeformableSolids<3>::inner_angular_impulse(double) const;
 template void DeformableSolids<2>::average_forces(int, Nodes&) const;

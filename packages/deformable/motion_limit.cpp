@@ -39,7 +39,8 @@ void DeformableSolids<dim>::limit_motion(double dt, Vector& velocity) {
   const Nodes inverse = space_.with_ghosts(*space_.vector(mobility()));
   Nodes limited = space_.with_ghosts(velocity);
   limiting_impulse_.assign(space_.n_local(), Point<dim>::Zero());
-  strain_limit_.apply(x_, inverse, dt, space_, comm_, limited, limiting_impulse_);
+  stretch_beyond_limit_ =
+      strain_limit_.apply(x_, inverse, dt, space_, comm_, limited, limiting_impulse_);
   velocity.update(1, *space_.vector(limited), 0);
 }
 

@@ -339,6 +339,16 @@ GlobalIndex SolidSystem<dim>::n_clamped_elements() const {
   return n;
 }
 
+template <int dim>
+double SolidSystem<dim>::stretch_beyond_limit() const {
+  double worst = 0;
+  for (int m = 0; m < n_models(); ++m) {
+    if (const auto* output = side<SolidOutput<dim>>(m))
+      worst = std::max(worst, output->stretch_beyond_limit());
+  }
+  return worst;
+}
+
 template class SolidSystem<2>;
 template class SolidSystem<3>;
 

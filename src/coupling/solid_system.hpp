@@ -103,6 +103,7 @@ class SolidSystem {
   Momentum<dim> momentum(const Vector& generalized_momentum) const;
   double largest_stable_step() const;
   GlobalIndex n_clamped_elements() const;  ///< of all models, see SolidOutput
+  double stretch_beyond_limit() const;     ///< in the worst place of all models, see SolidOutput
   /// True if all models tell their momentum (AuditedSolids).
   bool is_audited() const;
 

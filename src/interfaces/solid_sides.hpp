@@ -98,6 +98,8 @@ class SolidOutput {
   /// Elements whose implicit forces were changed to keep C definite, in the last step that used
   /// them; for the history. Global, local call.
   virtual GlobalIndex n_clamped_elements() const { return 0; }
+  /// What the last `limit_motion` left undone: stretch beyond its limit, in the worst place [1].
+  virtual double stretch_beyond_limit() const { return 0; }
 };
 
 }  // namespace lockstep

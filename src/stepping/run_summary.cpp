@@ -87,6 +87,8 @@ nlohmann::ordered_json RunSummary::json(const nlohmann::ordered_json& header, co
                                         {"step", run.step},
                                         {"time", run.time},
                                         {"pressure_unknowns", run.n_pressures},
+                                        {"cells", run.n_cells},
+                                        {"smallest_length", run.smallest_length},
                                         {"solid_unknowns", run.n_solid_unknowns},
                                         {"iterations",
                                          {{"s1", iteration_summary(s1_iterations_)},

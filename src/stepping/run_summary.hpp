@@ -14,6 +14,8 @@ struct RunFacts {
   long long n_steps = 0, step = 0;  ///< taken by this program, and the number of the last
   double time = 0;                  ///< [s]
   std::size_t n_pressures = 0;
+  double n_cells = 0;          ///< of the boxes in frames
+  double smallest_length = 0;  ///< that the fluid resolves [m]
   GlobalIndex n_solid_unknowns = 0;
   double wall_seconds = 0;
 };

@@ -24,6 +24,18 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Of its boxes in frames, cells without fluid included; of a fluid without boxes its pressures.
+template <int dim>
+double n_cells(const FluidDiscretization<dim>& fluid) {
+  std::vector<BoxFrame> boxes;
+  if (const auto* output = side_of<FluidOutput<dim>>(fluid))
+    output->add_frame(boxes);
+  double n = 0;
+  for (const BoxFrame& box : boxes)
+    n += double(box.n_cells[0]) * box.n_cells[1] * box.n_cells[2];
+  return boxes.empty() ? double(fluid.pressure_map()->getGlobalNumElements()) : n;
+}
+
 }  // namespace
 
 template <int dim>
@@ -216,6 +228,15 @@ void Simulation<dim>::warn() {
         "places, which contact cannot prevent; let them move less, or less far in a step.",
         step_, report.contact_position.n_crossings);
   }
+  constexpr double most_stretch = 0.01;
+  if (report.stretch_beyond_limit > most_stretch && !warned_of_stretch_) {
+    warned_of_stretch_ = true;
+    log_.warning(
+        "Step {}: where cloth is to move next, it is {:.2g} times as long as its \"Stretch Limit\" "
+        "allows; no more than that was reached by the sweeps over its edges. Shorter steps help, "
+        "unless what holds it pulls it apart. Later steps like this one are not told.",
+        step_, 1 + report.stretch_beyond_limit);
+  }
   // Up to here the drag of a disc two cells above a wall is right to 0.1 %.
   constexpr double most = 10;
   if (warned_of_viscous_step_ || report.viscous_number <= most * (1 + 1e-9) ||
@@ -335,13 +356,18 @@ void Simulation<dim>::end() {
 
 template <int dim>
 void Simulation<dim>::end_outputs(double wall_seconds) {
-  write_summary(
-      comm_, options_.output_directory,
-      summary_.json(header_,
-                    {signal_ == 0 ? "done" : "stopped by a signal", step_ - first_step_, step_,
-                     stepper_->time(), components_.fluid->pressure_map()->getGlobalNumElements(),
-                     components_.solids->n_unknowns(), wall_seconds},
-                    timers_.report(comm_), comm_));
+  const FluidDiscretization<dim>& fluid = *components_.fluid;
+  const RunFacts facts{signal_ == 0 ? "done" : "stopped by a signal",
+                       step_ - first_step_,
+                       step_,
+                       stepper_->time(),
+                       fluid.pressure_map()->getGlobalNumElements(),
+                       n_cells(fluid),
+                       fluid.smallest_length(),
+                       components_.solids->n_unknowns(),
+                       wall_seconds};
+  write_summary(comm_, options_.output_directory,
+                summary_.json(header_, facts, timers_.report(comm_), comm_));
   log_.normal("{}", timing_table(timers_.report(comm_)));
   if (signal_ != 0) {
     log_.normal("Stopped by signal {} after step {}; the checkpoint in {} continues the run.",

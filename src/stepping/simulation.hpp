@@ -98,7 +98,7 @@ class Simulation {
   FrameWriter frames_;
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
-  bool warned_of_viscous_step_ = false;
+  bool warned_of_viscous_step_ = false, warned_of_stretch_ = false;
   double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
   std::optional<StepReport<dim>> report_;  ///< of the last step
   double step_seconds_ = 0;                ///< it took so long

@@ -33,7 +33,8 @@ struct StepReport {
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]
   double fluid_volume = 0;
   std::optional<LiquidReport> liquid;               ///< if it has a free surface
-  GlobalIndex n_clamped_elements = 0;               ///< see SolidModel
+  GlobalIndex n_clamped_elements = 0;               ///< see SolidOutput
+  double stretch_beyond_limit = 0;                  ///< the same
   std::vector<Momentum<dim>> hydrodynamic_impulse;  ///< per solid over dt, angular about the origin
   ContactReport<dim> contact_position, contact_velocity;
   RCP<const Vector> reactions;  ///< of constraints in S2, generalized; null: nothing moves freely

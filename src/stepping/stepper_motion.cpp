@@ -30,6 +30,7 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
   }
   ScopedPhase phase(timers_, "solid motion");
   solids.limit_motion(dt, *half_velocity);
+  report.stretch_beyond_limit = solids.stretch_beyond_limit();
   // Shells push the fluid of closed regions, bodies only take back what straight steps add.
   const auto sweep_shells = [&](Vector& velocity) {
     sweep_volumes(rates_of_kind(swept, solids, false), solids, dt, velocity);

@@ -96,14 +96,16 @@ RunResults read_run(const std::string& directory) {
   }
   const std::string parameters = directory + "/used-parameters.xml";
   run.scene = read_xml_string(read_whole_file(parameters), parameters).list;
-  const ParameterList& domain = run.scene.sublist("Domain");
-  const auto& cells = domain.get<ParameterArray<int>>("Cells");
-  run.n_cells = 1;
-  for (const int n : cells)
-    run.n_cells *= n;
-  run.spacing = (domain.get<ParameterArray<double>>("Upper")[0] -
-                 domain.get<ParameterArray<double>>("Lower")[0]) /
-                cells[0];
+  const auto fact = [&](const std::string& name) {
+    const auto found = run.summary.find("summary." + name);
+    check_output(found != run.summary.end(),
+                 "{} does not hold \"{}\": an older program wrote it, or another one; remove this "
+                 "folder and let the case run again.",
+                 summary, name);
+    return found->second;
+  };
+  run.n_cells = fact("cells");
+  run.spacing = fact("smallest_length");
   for (const Variables& row : run.rows)
     run.mean_step += row.at("dt") / static_cast<double>(run.rows.size());
   return run;

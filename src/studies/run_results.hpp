@@ -15,8 +15,8 @@ struct RunResults {
   std::vector<Variables> rows;
   Variables summary;     ///< "summary.name", "summary.iterations.s1.median", ...
   ParameterList scene;   ///< used-parameters.xml
-  double spacing = 0;    ///< h [m]
-  double n_cells = 0;    ///< of the whole box
+  double spacing = 0;    ///< h, the smallest length that the fluid resolves [m]
+  double n_cells = 0;    ///< of the boxes in frames
   double mean_step = 0;  ///< [s]
 };
 

@@ -164,7 +164,25 @@ TEST(Constraints, StrainIsLimited) {
   }
   EXPECT_LE(worst, 1.0011);
   EXPECT_GE(worst, 0.99);  // it hangs in its limits
+  EXPECT_LE(alone.system.stretch_beyond_limit(), 0.001);
   EXPECT_LE(lowest, -0.3);
+}
+
+/// What is held apart stays longer than it may, and the model says by how much.
+TEST(Constraints, StrainThatCannotBeLimitedIsTold) {
+  const ParameterList given =
+      scene_list(geometry("sheet", numbers("Size", "1, 1, 0") + text("Normal", "z") +
+                                       number("Mesh Spacing", "0.3")) +
+                     number("Young&apos;s Modulus", "1") + number("Thickness", "0.001") +
+                     number("Surface Density", "1") + number("Stretch Limit", "0.05") +
+                     numbers("Stretch", "1.2, 1.2, 1") + region("-2, -2, -1", "2, 2, 1", ""),
+                 cloth_parameters<3>());
+  std::vector<DeformableBody<3>> bodies;
+  bodies.push_back(read_cloth<3>("sheet", given, 0.1));
+  Alone<3> alone(std::make_unique<DeformableSolids<3>>("cloth", std::move(bodies),
+                                                       Point<3>(0, 0, 0), world()));
+  alone.step(0.1);
+  EXPECT_NEAR(alone.system.stretch_beyond_limit(), 1.2 / 1.05 - 1, 1e-12);
 }
 
 /// Free, the limit gives no linear momentum, and it acts in S2 as in S1.

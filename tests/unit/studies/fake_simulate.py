@@ -39,7 +39,7 @@ h = 1 / cells[0]
 (folder / "bodies.csv").write_text(
     "step,time,name,vx\n" + "".join(f"{k},0,Ball 1,{k * (2 + h * h + offset)}\n" for k in (1, 2, 3)))
 (folder / "summary.json").write_text(json.dumps({
-    "wall_seconds": 2.0, "ranks": ranks, "peak_memory_mb": 10 * ranks,
+    "cells": cells[0] * cells[1], "smallest_length": h, "wall_seconds": 2.0, "ranks": ranks, "peak_memory_mb": 10 * ranks,
     "iterations": {"s1": {"median": 4, "max": 9}, "s2": {"median": 6, "max": 7}}}))
 (folder / "used-parameters.xml").write_text(f"""<ParameterList name="Scene">
   <ParameterList name="Domain">
