@@ -43,14 +43,6 @@ Multigrid<dim>::Multigrid(std::shared_ptr<const LatticeLayout> layout,
 }
 
 template <int dim>
-std::size_t Multigrid<dim>::n_moved_cells() const {
-  std::size_t n = 0;
-  for (const Transfer& transfer : transfers_)
-    n += transfer.moved.size();
-  return n;
-}
-
-template <int dim>
 std::size_t Multigrid<dim>::bytes() const {
   std::size_t n = 0;
   for (std::size_t level = 0; level < stencils_.size(); ++level)

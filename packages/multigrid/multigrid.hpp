@@ -50,7 +50,6 @@ class Multigrid {
 
   const StencilLevel<dim>& finest() const { return stencils_.front(); }
   int n_levels() const { return static_cast<int>(stencils_.size()); }
-  std::size_t n_moved_cells() const;
   std::size_t bytes() const;
 
  private:

@@ -210,28 +210,6 @@ CoupledSolution Stepper<dim>::solve(const StepContext<dim>& context, const RCP<V
   return solution;
 }
 
-/// Newton's method on the elastic forces at the positions that the solution reaches: every
-/// iteration is a coupled solve, whose explicit momentum differs from the last one's by theirs.
-template <int dim>
-CoupledSolution Stepper<dim>::solve_newton(const StepContext<dim>& context,
-                                           const RCP<Vector>& momentum, SolveReport& report,
-                                           double& incompatibility) {
-  auto& solids = *components_.solids;
-  const std::string name = name_of(context.phase);
-  CoupledSolution solution = solve(context, momentum, name, report, incompatibility);
-  for (int k = 1; k < options_.newton_iterations && coupled(); ++k) {
-    const RCP<const Vector> before = solids.explicit_momentum(context.time, context.dt);
-    if (!solids.linearise(context.dt, *solution.velocity))
-      break;
-    system_.forget_solid_block();
-    momentum->update(1, *solids.explicit_momentum(context.time, context.dt), -1, *before, 1);
-    const SolveReport earlier = report;
-    solution = solve(context, momentum, name, report, incompatibility);
-    report.add_work(earlier);
-  }
-  return solution;
-}
-
 /// Residuals below the round-off of the fluxes, with the speed that gravity may add, are nothing:
 /// in each cell a few bits of what passes a face, in the norm over all cells root of their number
 /// as much.

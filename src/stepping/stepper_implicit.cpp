@@ -24,6 +24,28 @@ double Stepper<dim>::resolved_part(double dt) const {
   return 1 / ((1 + ratio) * (1 + ratio));
 }
 
+/// Newton's method on the elastic forces at the positions that the solution reaches: every
+/// iteration is a coupled solve, whose explicit momentum differs from the last one's by theirs.
+template <int dim>
+CoupledSolution Stepper<dim>::solve_newton(const StepContext<dim>& context,
+                                           const RCP<Vector>& momentum, SolveReport& report,
+                                           double& incompatibility) {
+  auto& solids = *components_.solids;
+  const std::string name = name_of(context.phase);
+  CoupledSolution solution = solve(context, momentum, name, report, incompatibility);
+  for (int k = 1; k < options_.newton_iterations && coupled(); ++k) {
+    const RCP<const Vector> before = solids.explicit_momentum(context.time, context.dt);
+    if (!solids.linearise(context.dt, *solution.velocity))
+      break;
+    system_.forget_solid_block();
+    momentum->update(1, *solids.explicit_momentum(context.time, context.dt), -1, *before, 1);
+    const SolveReport earlier = report;
+    solution = solve(context, momentum, name, report, incompatibility);
+    report.add_work(earlier);
+  }
+  return solution;
+}
+
 /// Where inner forces are implicit contact acts on V_S* = (M_S - dt D)^-1 momentum, so that it
 /// holds what it would have to at the end of the step, and finds the forces of that place.
 template <int dim>
@@ -64,6 +86,10 @@ CoupledSolution Stepper<dim>::solve_settled(const StepContext<dim>& context,
   return solution;
 }
 
+template CoupledSolution Stepper<2>::solve_newton(const StepContext<2>&, const RCP<Vector>&,
+                                                  SolveReport&, double&);
+template CoupledSolution Stepper<3>::solve_newton(const StepContext<3>&, const RCP<Vector>&,
+                                                  SolveReport&, double&);
 template double Stepper<2>::resolved_part(double) const;
 template ContactReport<2> Stepper<2>::settled_momentum(const StepContext<2>&, Vector&);
 template CoupledSolution Stepper<2>::solve_settled(const StepContext<2>&, const RCP<Vector>&,

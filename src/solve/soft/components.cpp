@@ -5,46 +5,40 @@
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
-#include <numeric>
 #include <set>
+
+#include "base/disjoint_sets.hpp"
 
 namespace lockstep {
 
 namespace {
 
-/// Sets of this rank's columns (union-find), each with the lowest row id known to be in it.
+/// Sets of this rank's columns, each with the lowest row id known to be in it.
 class ColumnSets {
  public:
   explicit ColumnSets(const CrsMatrix& matrix)
-      : parent_(matrix.getColMap()->getNodeNumElements()), lowest_(parent_.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-    for (std::size_t column = 0; column < parent_.size(); ++column)
+      : sets_(static_cast<int>(matrix.getColMap()->getNodeNumElements())),
+        lowest_(matrix.getColMap()->getNodeNumElements()) {
+    for (std::size_t column = 0; column < lowest_.size(); ++column)
       lowest_[column] = matrix.getColMap()->getGlobalElement(static_cast<int>(column));
   }
 
   void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    parent_[b] = a;
-    lowest_[a] = std::min(lowest_[a], lowest_[b]);
+    const GlobalIndex together = std::min(lowest(a), lowest(b));
+    sets_.join(a, b);
+    lowest_[sets_.root(a)] = together;
   }
-  GlobalIndex lowest(int column) { return lowest_[root(column)]; }
+  GlobalIndex lowest(int column) { return lowest_[sets_.root(column)]; }
   /// True if that is news.
   bool lower(int column, GlobalIndex id) {
-    GlobalIndex& lowest = lowest_[root(column)];
+    GlobalIndex& lowest = lowest_[sets_.root(column)];
     const bool is_news = id < lowest;
     lowest = std::min(lowest, id);
     return is_news;
   }
 
  private:
-  int root(int column) {
-    while (parent_[column] != column)
-      column = parent_[column] = parent_[parent_[column]];
-    return column;
-  }
-
-  std::vector<int> parent_;
+  DisjointSets sets_;
   std::vector<GlobalIndex> lowest_;
 };
 

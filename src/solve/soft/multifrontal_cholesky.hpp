@@ -33,8 +33,6 @@ class MultifrontalCholesky {
     int n_rows() const { return n_columns() + static_cast<int>(below.size()); }
   };
 
-  void eliminate(Supernode& node, Eigen::MatrixXd& front, Eigen::MatrixXd& update, bool& positive);
-
   std::vector<int> place_of_;  ///< row of A -> row of the ordered matrix
   std::vector<Supernode> nodes_;
 };
