@@ -85,7 +85,7 @@ class Frame:
     grids: list
 
     def __getitem__(self, name):
-        """The grid of that name: "fluid", a solid, "SOLID elements" or "water"."""
+        """The grid of that name: "fluid", a solid, "SOLID elements", "water" or "drops"."""
         for grid in self.grids:
             if grid.name == name:
                 return grid
@@ -101,8 +101,13 @@ class Frame:
 
     @property
     def surfaces(self):
-        """Of all solids, one each: not the elements of deformable ones, whose surfaces are there too."""
-        return [grid for grid in self.grids if not grid.is_box and not self._is_elements(grid)]
+        """Of all solids, one each: not the elements of deformable ones, whose surfaces are there too. And of water."""
+        return [grid for grid in self.grids if not grid.is_box and grid.n_corners > 1 and not self._is_elements(grid)]
+
+    @property
+    def points(self):
+        """Drops of water: points with radii, if there are any."""
+        return [grid for grid in self.grids if grid.n_corners == 1]
 
     @property
     def elements(self):
@@ -159,7 +164,7 @@ def _grid(element, folder):
         grid.n_cells = [max(n - 1, 1) for n in reversed(nodes)] + [1] * (3 - len(nodes))
         grid.dim = 2 if grid.n_cells[2] == 1 else 3
     else:
-        grid.n_corners = {"Polyline": 2, "Triangle": 3, "Tetrahedron": 4}[kind]
+        grid.n_corners = {"Polyvertex": 1, "Polyline": 2, "Triangle": 3, "Tetrahedron": 4}[kind]
         grid.dim = 2 if grid.n_corners == 2 else 3
         grid.vertices = _array(items[0], folder)
         grid.simplices = _array(topology.find("DataItem"), folder)

@@ -107,6 +107,15 @@ def show_water(job, view):
     display.Opacity, display.Specular, display.SpecularPower = 0.45, 0.6, 40
 
 
+def show_drops(job, view):
+    drops = simple.Glyph(Input=open_grids(job, job["drops"]), GlyphType="Sphere")
+    drops.ScaleArray, drops.ScaleFactor = ["POINTS", "radius"], 2.0  # the sphere's radius is a half
+    drops.OrientationArray, drops.GlyphMode = ["POINTS", "No orientation array"], "All Points"
+    display = simple.Show(drops, view)
+    display.ColorArrayName = ["POINTS", ""]
+    display.AmbientColor = display.DiffuseColor = WATER_COLOUR
+
+
 def show_outline(job, view):
     fluid = open_grids(job, job["boxes"])
     fluid.UpdatePipeline(job["times"][0])
@@ -149,6 +158,8 @@ def main():
         show_water(job, view)
         # Peels of what shines through, so that nearer and farther faces are told apart.
         view.DepthPeeling = int(not job["fast"])
+    if job["drops"]:
+        show_drops(job, view)
     place_camera(job, view, bounds or solid_bounds)
     if job["fast"]:
         view.GetRenderWindow().SetMultiSamples(0)

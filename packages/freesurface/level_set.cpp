@@ -5,6 +5,7 @@
 
 #include "freesurface/band_tiles.hpp"
 #include "freesurface/continuation.hpp"
+#include "freesurface/particles/drop_births.hpp"
 #include "freesurface/particles/particle_correction.hpp"
 #include "freesurface/particles/particle_motion.hpp"
 #include "freesurface/particles/particle_seeding.hpp"
@@ -63,7 +64,10 @@ LevelSet<dim>::LevelSet(const MacDomain<dim>& domain, const LevelSetParameters& 
       solids_(find_solid_cells<dim>(domain, nullptr)),
       volume_(domain, parameters.volume),
       particles_(domain.grid.n_owned_tiles()),
-      in_band_(domain.grid.n_owned_cells(), 0) {}
+      in_band_(domain.grid.n_owned_cells(), 0) {
+  if (parameters_.particles && parameters_.particles->drops)
+    drops_ = std::make_unique<Drops<dim>>(domain);
+}
 
 template <int dim>
 int LevelSet<dim>::band(double largest_displacement) const {
@@ -96,6 +100,8 @@ void LevelSet<dim>::initialise(const SignedDistance<dim>& distance, const Surfac
   volume_.begin(solids_, phi_);
   particles_.assign(grid.n_owned_tiles(), {});
   n_restored_ = 0;
+  if (drops_)
+    drops_->clear();
   KeptSurface<dim> kept;
   seed(kept, true);
 }
@@ -135,6 +141,8 @@ double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
     restore(step, tiles);
   volume_.inherit(replaced ? *replaced : solids_, solids_, phi_, transport.invalid().cells,
                   static_cast<int>(std::ceil(displacement)) + 1);
+  if (drops_)
+    release_drops(step, transport.frame());
   return displacement;
 }
 
@@ -220,6 +228,44 @@ void LevelSet<dim>::add_sources(const InterfaceStep<dim>& step) {
 }
 
 template <int dim>
+void LevelSet<dim>::release_drops(const InterfaceStep<dim>& step,
+                                  const TransportFrame<dim>& frame) {
+  std::vector<int> cells;
+  std::vector<Drop<dim>> born =
+      take_lone_particles(domain_, solids_, step.kept, phi_, frame, particles_, cells);
+  const double volume = domain_.cell_volume() / parameters_.particles->per_cell;
+  const std::vector<double> parts = volume_.take_drops(solids_, phi_, cells, volume);
+  for (std::size_t i = 0; i < born.size(); ++i) {
+    if (parts[i] == 0)
+      continue;
+    born[i].volume = parts[i] * volume;
+    born[i].next = born[i].velocity + step.dt * step.gravity;
+    drops_->add(born[i]);
+  }
+}
+
+template <int dim>
+void LevelSet<dim>::collect_drops(const InterfaceStep<dim>& step) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const auto near = step.kept.of(solids_.state.surface, grid, 2);
+  for (const SignedDistance<dim>& sink : step.sinks)
+    drops_->remove([&](const Drop<dim>& drop) { return sink(drop.position) < 0; });
+  std::vector<int> cells;
+  std::vector<double> volumes;
+  drops_->take([&](const Drop<dim>& drop) {
+    const int cell = grid.cell_containing(drop.position);
+    if (cell < 0 || !grid.owned(cell) || volume_.groups().of_cell[cell] < 0 ||
+        (!near->empty() && near->first_hit(drop.position, grid.center(cell))))
+      return false;
+    cells.push_back(cell);
+    volumes.push_back(drop.volume);
+    return true;
+  });
+  volume_.give_drops(cells, volumes);
+  drops_->count();
+}
+
+template <int dim>
 void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
   find_solids(step.surface.before);
   if (loaded_) {
@@ -227,8 +273,12 @@ void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
     loaded_.reset();
   }
   volume_.flow_out(solids_, phi_, step.advection_velocity, step.dt);
+  if (drops_)
+    volume_.lose(drops_->fly(step.surface, step.gravity, step.dt));
   const double displacement = carry(step);
   add_sources(step);
+  if (drops_)
+    collect_drops(step);
   const VolumeShift shift = volume_.correct(solids_, displacement, phi_);
   if (parameters_.particles)
     shift_particles(domain_, solids_, step.kept, shift, phi_, particles_);
@@ -263,6 +313,8 @@ void LevelSet<dim>::save(CheckpointWriter& checkpoint) const {
   checkpoint.file().write_replicated("fluid/liquid_ledger", numbers);
   if (parameters_.particles)
     save_particles(domain_, particles_, in_band_, checkpoint);
+  if (drops_)
+    drops_->save(checkpoint);
 }
 
 template <int dim>
@@ -275,21 +327,26 @@ void LevelSet<dim>::load(const CheckpointReader& checkpoint) {
   loaded_ = VolumeTargets{{numbers.begin() + 5, numbers.end()}, numbers[2], numbers[3], numbers[4]};
   if (parameters_.particles)
     load_particles(domain_, checkpoint, particles_, in_band_);
+  if (drops_)
+    drops_->load(checkpoint);
 }
 
 template <int dim>
 std::function<void()> LevelSet<dim>::undo() {
-  return [this, phi = phi_, moved = moved_, surface = solids_.state.surface,
-          targets = volume_.targets(), particles = particles_, in_band = in_band_,
-          n_restored = n_restored_] {
-    phi_ = phi;
-    moved_ = moved;
-    find_solids(surface);
-    volume_.restore(solids_, phi_, targets);
-    particles_ = particles;
-    in_band_ = in_band;
-    n_restored_ = n_restored;
-  };
+  return
+      [this, phi = phi_, moved = moved_, surface = solids_.state.surface,
+       targets = volume_.targets(), particles = particles_, in_band = in_band_,
+       n_restored = n_restored_, undo_drops = drops_ ? drops_->undo() : std::function<void()>()] {
+        if (undo_drops)
+          undo_drops();
+        phi_ = phi;
+        moved_ = moved;
+        find_solids(surface);
+        volume_.restore(solids_, phi_, targets);
+        particles_ = particles;
+        in_band_ = in_band;
+        n_restored_ = n_restored;
+      };
 }
 
 template <int dim>
@@ -303,6 +360,8 @@ std::function<void()> LevelSet<dim>::migrate(const TileMigration<dim>& migration
     solids_ = find_solid_cells(domain_, solids_.state.surface);
     if (!loaded_)
       volume_.restore(solids_, phi_, VolumeTargets(volume_.targets()));
+    if (drops_)
+      drops_->redistribute();
   };
 }
 

@@ -9,6 +9,9 @@
 
 namespace lockstep {
 
+template <int dim>
+struct TransportFrame;
+
 /// The numbers of a level set.
 struct LevelSetParameters {
   int band = 6;           ///< cells around the surface in which phi is known
@@ -48,6 +51,7 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   int band(double largest_displacement) const override;
   LiquidLedger ledger() const override { return volume_.state(); }
   LiquidCells cells_with_liquid(const Surface& surface, KeptSurface<dim>& kept) override;
+  Drops<dim>* drops() const override { return drops_.get(); }
   WatchedLiquid liquid_in(const std::vector<char>& cells) const override {
     return volume_.in_cells(phi_, cells);
   }
@@ -68,6 +72,9 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   void fill_voids();
   void seed(KeptSurface<dim>& kept, bool all);
   void add_sources(const InterfaceStep<dim>& step);
+  /// Of particles that no cell shows.
+  void release_drops(const InterfaceStep<dim>& step, const TransportFrame<dim>& frame);
+  void collect_drops(const InterfaceStep<dim>& step);
   void finish();
 
   const MacDomain<dim>& domain_;
@@ -77,8 +84,9 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   double moved_ = 0;        ///< since phi was made a distance, at most [cells]
   VolumeLedger<dim> volume_;
   ParticleTiles<dim> particles_;
-  std::vector<char> in_band_;  ///< owned cells that have been given particles
-  long long n_restored_ = 0;   ///< how often phi has been made a distance
+  std::vector<char> in_band_;          ///< owned cells that have been given particles
+  std::unique_ptr<Drops<dim>> drops_;  ///< null: there are never any
+  long long n_restored_ = 0;           ///< how often phi has been made a distance
   GlobalIndex n_lost_ = 0;
   std::optional<VolumeTargets> loaded_;  ///< of a checkpoint, until the solids are known
 };

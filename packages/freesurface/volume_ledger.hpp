@@ -59,6 +59,15 @@ class VolumeLedger {
   void remove(const SolidCells<dim>& solids, const CellField& phi);
   /// Takes what a source has made of `before` into the targets. Collective.
   void create(const SolidCells<dim>& solids, const CellField& before, const CellField& phi);
+  /// Takes a volume [m^dim] for a drop at each of these owned cells off the body nearest to it, or,
+  /// where none is within a few cells, off all in the same closed space. Returns the parts of them
+  /// that there were. Collective.
+  std::vector<double> take_drops(const SolidCells<dim>& solids, const CellField& phi,
+                                 const std::vector<int>& cells, double volume);
+  /// Gives the volumes of drops to the bodies that these owned cells belong to. Collective.
+  void give_drops(const std::vector<int>& cells, const std::vector<double>& volumes);
+  /// Volume that is lost for good, on this rank. Collective.
+  void lose(double volume) { targets_.lost += sum_all(domain_.grid.comm(), volume); }
   /// Shifts phi until bodies have their targets, over at most `largest_shift` max(1, cfl) cells.
   /// `phi` on the halo of width 1, which is set on return. Returns what it has done, empty:
   /// nothing. Collective.

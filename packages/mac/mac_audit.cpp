@@ -40,6 +40,8 @@ Momentum<dim> MacFluid<dim>::momentum() const {
     mine += moments.total();
   }
   mine.angular += moment_of_shifts([&](int axis, int cell) { return prediction_[axis][cell]; });
+  if (has_drops())
+    mine += momentum_of_drops();
   return sum_over_ranks(mine, domain_.grid.comm());
 }
 
@@ -59,6 +61,8 @@ double MacFluid<dim>::kinetic_energy() const {
     });
   }
   mine += geometry_.face_table.regular().mass * squares.sum();
+  if (has_drops())
+    mine += 2 * energy_of_drops();
   return 0.5 * sum_all(domain_.grid.comm(), mine);
 }
 

@@ -255,6 +255,8 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   }
   if (moving_tiles_)
     mine += push_at_rim(force.of_surroundings(), dt);
+  if (has_drops())
+    mine += speed_up_drops();
   mine.angular += moment_of_shifts([&](int axis, int cell) { return dt * force(axis, cell); });
   if (liquid_ && liquid_->tension() > 0) {
     const auto now = [&](int axis, int cell) { return prediction_[axis][cell]; };
@@ -367,6 +369,8 @@ void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
                         scalar.ambient, scalar.values);
     invalid_ = {};
   }
+  if (has_drops())
+    give_back_momentum();
   if (history_)
     history_->set_advected(prediction_);
 }

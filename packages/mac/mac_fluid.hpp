@@ -99,6 +99,8 @@ class MacFluid : public FluidDiscretization<dim>,
   std::vector<WetBody<dim>> wet_bodies() const override;
   LiquidReport liquid() const override { return liquid_->report(); }
   bool traps_gas() const override { return holds_gas(); }
+  bool has_drops() const override { return liquid_ && liquid_->drops(); }
+  std::vector<SurfaceImpulse<dim>> impulses_on_solids() const override;
   Momentum<dim> surface_impulse() const override { return surface_impulse_; }
   std::vector<std::string> watch_names() const override { return liquid_->watch_names(); }
   Box<dim> bounds() const override;
@@ -122,9 +124,11 @@ class MacFluid : public FluidDiscretization<dim>,
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
   void add_frame(std::vector<BoxFrame>& boxes) const override;
   std::vector<std::string> surface_names() const override {
+    if (has_drops())
+      return {"water", "drops"};
     return liquid_ ? std::vector<std::string>{"water"} : std::vector<std::string>();
   }
-  /// "water"; gathered, since frames are few and a surface small.
+  /// "water", "drops"; gathered, since frames are few and a surface small.
   void add_surfaces(std::vector<SurfaceFrame>& surfaces) const override;
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell
   /// included.
@@ -172,6 +176,11 @@ class MacFluid : public FluidDiscretization<dim>,
   AngularVector<dim> moment_of_shifts(const FaceFunction& velocity) const;
   Momentum<dim> push_sources(double time);
   bool tension_is_implicit() const { return liquid_ && liquid_->tension_is_implicit(); }
+  Momentum<dim> speed_up_drops();  ///< of this rank
+  Momentum<dim> momentum_of_drops() const;
+  double energy_of_drops() const;
+  void give_back_momentum();  ///< of drops that have fallen into the liquid
+  SurfaceFrame frame_of_drops() const;
   void push_surface(double dt);                    ///< by surface tension
   void settle_gas();                               ///< for the frozen geometry
   void bound_pressure(CellField& pressure) const;  ///< of the last step, beside the void

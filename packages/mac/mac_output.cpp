@@ -109,6 +109,8 @@ void MacFluid<dim>::add_surfaces(std::vector<SurfaceFrame>& surfaces) const {
   const std::vector<GlobalIndex> all = gather_all(comm, simplices);
   frame.simplices.assign(all.begin(), all.end());
   surfaces.push_back(std::move(frame));
+  if (has_drops())
+    surfaces.push_back(frame_of_drops());
 }
 
 template <int dim>

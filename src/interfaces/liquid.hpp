@@ -26,6 +26,20 @@ struct GasReport {
   double pressure = 0;  ///< in the largest, above that of the void, in the last step [Pa]
 };
 
+/// The drops that fly beside the liquid. Global.
+struct DropsReport {
+  long long n = 0;
+  double volume = 0;  ///< of all of them; no part of the liquid's, nor of its target [m^dim]
+};
+
+/// An impulse on a surface, that of a drop that hits it.
+template <int dim>
+struct SurfaceImpulse {
+  SurfacePoint<dim> point;                  ///< of the snapshot at the end of the step
+  Point<dim> place = Point<dim>::Zero();    ///< where it acts [m]
+  Point<dim> impulse = Point<dim>::Zero();  ///< [kg m/s]
+};
+
 /// How much liquid there is, and what became of it. Global.
 struct LiquidReport {
   double volume = 0;  ///< [m^dim]
@@ -35,6 +49,7 @@ struct LiquidReport {
   long long n_bodies = 0;              ///< connected bodies of liquid
   std::vector<WatchedLiquid> watches;  ///< in the order of their names
   std::optional<GasReport> gas;        ///< if any may be trapped
+  std::optional<DropsReport> drops;    ///< if there may be any
 };
 
 /// What of a closed solid lies in a liquid, and what the grid takes that for: below the plane that
@@ -73,6 +88,10 @@ class LiquidFluid {
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
   virtual LiquidReport liquid() const = 0;
   virtual bool traps_gas() const { return false; }  ///< reports have `gas`. Local.
+  virtual bool has_drops() const { return false; }  ///< reports have `drops`. Local.
+  /// What drops gave to solids in the last `advect`, on every rank; the forces after it take it
+  /// from the drops. Collective.
+  virtual std::vector<SurfaceImpulse<dim>> impulses_on_solids() const { return {}; }
   /// What surface tension gave in the last `add_forces`, as part of its impulse, and in a viscous
   /// solve since then, as part of what `accept_viscous` returned. Global. Local.
   virtual Momentum<dim> surface_impulse() const { return {}; }

@@ -49,8 +49,8 @@ struct SurfaceFrame {
   std::string name;
   int dimension = 3;             ///< coordinates of a vertex
   std::vector<double> vertices;  ///< [m], the coordinates of a vertex together
-  int simplex_size = 3;          ///< vertices of a simplex: 2 segments, 3 triangles, 4 tetrahedra
-  std::vector<int> simplices;    ///< vertex numbers, those of a simplex together
+  int simplex_size = 3;  ///< vertices of a simplex: 1 points, 2 segments, 3 triangles, 4 tetrahedra
+  std::vector<int> simplices;  ///< vertex numbers, those of a simplex together
   std::vector<SurfaceField> fields;
 };
 

@@ -29,7 +29,8 @@ void add_rotation(std::vector<HistoryColumn>& columns, const std::string& name,
 
 template <int dim>
 std::vector<HistoryColumn> history_columns(bool with_liquid,
-                                           const std::vector<std::string>& watches, bool with_gas) {
+                                           const std::vector<std::string>& watches, bool with_gas,
+                                           bool with_drops) {
   std::vector<HistoryColumn> columns = {
       {"step", "1", "number of the step"},
       {"time", "s", "at the end of the step"},
@@ -94,6 +95,10 @@ std::vector<HistoryColumn> history_columns(bool with_liquid,
                {"gas_volume", unit, "of them all"},
                {"gas_pressure", "Pa", "in the largest, above the atmosphere's"}})
         columns.push_back(column);
+    if (with_drops) {
+      columns.push_back({"drops", "1", "of liquid, which fly beside it"});
+      columns.push_back({"drops_volume", unit, "of them all; no part of the liquid's"});
+    }
   }
   return columns;
 }
@@ -126,8 +131,10 @@ std::vector<HistoryColumn> joint_columns() {
           {"at_limit", "1", "1: the coordinate is at a limit, or beyond"}};
 }
 
-template std::vector<HistoryColumn> history_columns<2>(bool, const std::vector<std::string>&, bool);
-template std::vector<HistoryColumn> history_columns<3>(bool, const std::vector<std::string>&, bool);
+template std::vector<HistoryColumn> history_columns<2>(bool, const std::vector<std::string>&, bool,
+                                                       bool);
+template std::vector<HistoryColumn> history_columns<3>(bool, const std::vector<std::string>&, bool,
+                                                       bool);
 template std::vector<HistoryColumn> body_columns<2>();
 template std::vector<HistoryColumn> body_columns<3>();
 

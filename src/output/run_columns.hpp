@@ -8,11 +8,12 @@ namespace lockstep {
 
 /// Columns of history.csv, bodies.csv and joints.csv; what is written, and what the formulas of a
 /// study may name. Those of a liquid with a free surface stand at the end, of its watched places,
-/// and of trapped gas.
+/// of trapped gas and of
+/// drops.
 template <int dim>
 std::vector<HistoryColumn> history_columns(bool with_liquid,
                                            const std::vector<std::string>& watches = {},
-                                           bool with_gas = false);
+                                           bool with_gas = false, bool with_drops = false);
 template <int dim>
 std::vector<HistoryColumn> body_columns();
 std::vector<HistoryColumn> joint_columns();

@@ -52,6 +52,8 @@ std::string triple(double z, double y, double x) {
 }
 
 std::string topology_type(int simplex_size) {
+  if (simplex_size == 1)
+    return "TopologyType=\"Polyvertex\" NodesPerElement=\"1\"";
   if (simplex_size == 2)
     return "TopologyType=\"Polyline\" NodesPerElement=\"2\"";
   return simplex_size == 3 ? "TopologyType=\"Triangle\"" : "TopologyType=\"Tetrahedron\"";

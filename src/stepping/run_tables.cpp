@@ -27,7 +27,7 @@ RunTables<dim>::RunTables(const Communicator& comm, const std::string& directory
     : history_(comm, directory + "/history.csv",
                history_columns<dim>(liquid != nullptr,
                                     liquid ? liquid->watch_names() : std::vector<std::string>(),
-                                    liquid && liquid->traps_gas())),
+                                    liquid && liquid->traps_gas(), liquid && liquid->has_drops())),
       bodies_(comm, directory + "/bodies.csv", body_columns<dim>()) {
   if (with_joints)
     joints_.emplace(comm, directory + "/joints.csv", joint_columns());
@@ -81,6 +81,8 @@ std::vector<HistoryValue> history_row(long long step, const StepReport<dim>& rep
       append_each(row, watched.volume, watched.target, watched.leak);
     if (liquid->gas)
       append_each(row, liquid->gas->n_pockets, liquid->gas->volume, liquid->gas->pressure);
+    if (liquid->drops)
+      append_each(row, liquid->drops->n, liquid->drops->volume);
   }
   return row;
 }

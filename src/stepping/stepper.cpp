@@ -120,6 +120,8 @@ RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
     if (!start_impulse_.is_null())
       context.ledger->add("joints", solids.momentum(*start_impulse_));
   }
+  if (!context.moves_positions())
+    add_drops(context, *momentum, report);
   if (context.phase == Phase::S2 && components_.contact) {
     ScopedPhase phase(timers_, "contact");
     report.contact_velocity = contact_momentum(context, *momentum);
@@ -371,10 +373,12 @@ typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim
   ScopedPhase phase(timers_, "S2");
   context.phase = Phase::S2;
   RCP<Vector> momentum = make_vector(solids.map());
-  if (coupled())
+  if (coupled()) {
     momentum = solid_momentum(context, prediction, report);
-  else
+  } else {
     unseen_buoyancy(dt, report);
+    add_drops(context, *momentum, report);
+  }
   CoupledSolution solution = solve_settled(context, momentum, report);
   check_possible(context, report.incompatibility_s2);
   return {context, prediction, solution};

@@ -71,8 +71,8 @@ Variables names_of_run(const Study& study, const StudyCase& study_case) {
 
 /// Adds the columns of history.csv, and those of bodies.csv that the formula names.
 void add_columns(const std::string& formula, const Bodies& bodies, Variables& variables) {
-  for (const auto& columns : {history_columns<2>(true, bodies.watches, true),
-                              history_columns<3>(true, bodies.watches, true)}) {
+  for (const auto& columns : {history_columns<2>(true, bodies.watches, true, true),
+                              history_columns<3>(true, bodies.watches, true, true)}) {
     for (const HistoryColumn& column : columns)
       variables[column.name] = 1;
   }

@@ -74,7 +74,25 @@ def write_body(file, group, dim):
    </Grid>""" + write_elements(file, group, len(vertices), dim)
 
 
-def main(folder, dim):
+def write_drops(file, group, drops):
+    points = numpy.array(drops)
+    file[f"{group}/vertices"], file[f"{group}/radius"] = points[:, :3], points[:, 3]
+    file[f"{group}/simplices"] = numpy.arange(len(points), dtype="i4")
+    return f"""
+   <Grid Name="drops" GridType="Uniform">
+    <Topology TopologyType="Polyvertex" NodesPerElement="1" NumberOfElements="{len(points)}">
+     <DataItem Dimensions="{len(points)} 1" NumberType="Int" Format="HDF">frames.h5:{group}/simplices</DataItem>
+    </Topology>
+    <Geometry GeometryType="XYZ">
+     <DataItem Dimensions="{len(points)} 3" NumberType="Float" Precision="8" Format="HDF">frames.h5:{group}/vertices</DataItem>
+    </Geometry>
+    <Attribute Name="radius" AttributeType="Scalar" Center="Node">
+     <DataItem Dimensions="{len(points)}" NumberType="Float" Precision="8" Format="HDF">frames.h5:{group}/radius</DataItem>
+    </Attribute>
+   </Grid>"""
+
+
+def main(folder, dim, drops=()):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     frames = ""
@@ -84,6 +102,8 @@ def main(folder, dim):
             frames += f'\n  <Grid Name="frame {number}" GridType="Collection" CollectionType="Spatial">'
             frames += f'\n   <Time Value="{time}"/>'
             frames += write_fluid(file, group + "/fluid", dim, time) + write_body(file, group + "/body", dim)
+            if number == 1 and len(drops) > 0:  # x, y, z, radius
+                frames += write_drops(file, group + "/drops", drops)
             frames += "\n  </Grid>"
     (folder / "frames.xmf").write_text(
         '<?xml version="1.0"?>\n<Xdmf Version="2.0">\n <Domain>\n'

@@ -46,8 +46,8 @@ class Pictures(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
 
-    def make(self, dim):
-        make_frames.main(self.folder.name, dim)
+    def make(self, dim, drops=()):
+        make_frames.main(self.folder.name, dim, drops)
         return plot_frame.read_frames(self.folder.name)
 
     def run_tool(self, name, *arguments):
@@ -99,6 +99,20 @@ class PlotFrame(Pictures):
             frame = self.make(dim)[0]
             self.assertEqual([surface.name for surface in frame.surfaces], ["body"])
             self.assertEqual(frame.elements["body"].n_corners, dim + 1)
+
+    def test_drops_are_no_surfaces_but_balls(self):
+        for dim, axis in ((2, 2), (3, 1)):
+            drops = [(1.1, .3, .2, .05), (1.9, .6, -.1, .1)]
+            before, frame = self.make(dim, drops)
+            self.assertEqual([len(before.points), len(frame.points)], [0, 1])
+            self.assertEqual([surface.name for surface in frame.surfaces], ["body"])
+            axes = plot_frame.pyplot.figure().add_subplot()
+            plot_frame.draw_drops(axes, frame, axis)
+            (circles,) = axes.collections
+            for (x, y, z, radius), path in zip(drops, circles.get_paths()):
+                seen = (x, y) if axis == 2 else (x, z)
+                numpy.testing.assert_allclose(path.get_extents().get_points(), [[s - radius for s in seen], [s + radius for s in seen]],
+                                              atol=1e-12)
 
     def test_tetrahedra_are_drawn_by_their_boundary(self):
         body = self.make(3)[0].elements["body"]

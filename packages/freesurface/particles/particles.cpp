@@ -32,6 +32,12 @@ void declare_particles(ParameterList& list) {
   declare_positive(list, "Reseed Interval", 20,
                    "Steps after which particles are added where there are too few and taken away "
                    "where there are too many.");
+  declare_choice(list, "Drops", "none", {"none", "ballistic"},
+                 "Of particles of the liquid that no wet cell is around. none: they go with the "
+                 "velocity that is carried on into the void, and their volume is that of other "
+                 "liquid. ballistic: they leave with h^dim / \"Particles per Cell\" and the "
+                 "velocity there, fly and hit solids, and give volume and momentum back in the "
+                 "first wet cell.");
 }
 
 ParticleParameters read_particles(const ParameterList& list) {
@@ -39,6 +45,7 @@ ParticleParameters read_particles(const ParameterList& list) {
   parameters.per_cell = list.get<int>("Particles per Cell");
   parameters.band = list.get<int>("Particle Band");
   parameters.interval = list.get<int>("Reseed Interval");
+  parameters.drops = list.get<std::string>("Drops") == "ballistic";
   return parameters;
 }
 

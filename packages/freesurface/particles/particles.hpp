@@ -11,11 +11,12 @@ namespace lockstep {
 /// The numbers of the particles that watch over a level set.
 struct ParticleParameters {
   int per_cell = 16;
-  int band = 3;       ///< cells on both sides of the surface in which they are
-  int interval = 20;  ///< steps between two reseedings
+  int band = 3;        ///< cells on both sides of the surface in which they are
+  int interval = 20;   ///< steps between two reseedings
+  bool drops = false;  ///< those of the liquid that no cell shows fly as drops
 };
 
-/// Declares "Particles per Cell", "Particle Band" and "Reseed Interval".
+/// Declares "Particles per Cell", "Particle Band", "Reseed Interval" and "Drops".
 void declare_particles(ParameterList& list);
 ParticleParameters read_particles(const ParameterList& list);
 

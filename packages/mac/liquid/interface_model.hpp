@@ -9,6 +9,7 @@
 #include "interfaces/liquid.hpp"
 #include "interfaces/plug_in.hpp"
 #include "mac/domain/mac_domain.hpp"
+#include "mac/liquid/drops.hpp"
 #include "mac/transport/nearby_surface.hpp"
 #include "mac/transport/ray_halo.hpp"
 #include "parameters/registry.hpp"
@@ -26,7 +27,6 @@ struct LiquidLedger {
   double shift = 0;   ///< what corrections have added and taken away since the start, both positive
   double lost = 0;    ///< of bodies that vanished and left no other in their closed space
   int n_components = 0;  ///< bodies of liquid
-  double drops = 0;      ///< in drops that the grid does not resolve
 };
 
 /// Stored cells (1) with liquid, owned and of the halo of width 1.
@@ -48,6 +48,7 @@ struct InterfaceStep {
   double dt = 0;    ///< [s]
   /// Liquid is created inside these and removed inside those, at the end of the step.
   std::vector<SignedDistance<dim>> sources, sinks;
+  Point<dim> gravity = Point<dim>::Zero();  ///< [m/s^2]; drops fall with it
 };
 
 /// The surface of a liquid: where it is, how it moves. A plug-in kind; a model knows no pressure.
@@ -76,6 +77,8 @@ class InterfaceModel : public PlugIn {
   virtual int band(double largest_displacement) const = 0;
   /// At the present time. Local.
   virtual LiquidLedger ledger() const = 0;
+  /// Liquid that has left the interface for the time being; null: none ever does. Local.
+  virtual Drops<dim>* drops() const { return nullptr; }
   /// Where there is liquid among the present solids. Collective. Default: the wet cells.
   virtual LiquidCells cells_with_liquid(const Surface&, KeptSurface<dim>&) {
     const CellField& phi = distance();

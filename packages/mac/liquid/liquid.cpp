@@ -128,6 +128,8 @@ LiquidReport Liquid<dim>::report() const {
     report.watches = audit_->report();
   if (gas_)
     report.gas = gas_->report();
+  if (drops())
+    report.drops = drops()->report();
   return report;
 }
 

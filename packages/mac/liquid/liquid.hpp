@@ -42,6 +42,7 @@ class Liquid {
   CellField& lead() { return lead_; }
   GasPockets<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
   const GasPockets<dim>* gas() const { return gas_.get(); }
+  Drops<dim>* drops() const { return interface_->drops(); }  ///< null: there are never any
   InterfaceModel<dim>& interface() { return *interface_; }
   const InterfaceModel<dim>& interface() const { return *interface_; }
   /// Linear between the centres of cells; near cells that this rank owns. After `begin`. Local.

@@ -1,0 +1,87 @@
+"""Spray of a wave that breaks over a post, among a ball afloat, a raft that falls and a shelf: drops have their part of volume and
+momentum, both balanced to round-off; the same on any number of ranks, and continued from a checkpoint bit for bit."""
+import shutil
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+from simulation import STATE, assert_close, column, simulate, table, without_times  # noqa: E402
+
+N_STEPS = 60
+SIDES = {f"{axis} {end}": {"Type": "slip wall"} for axis in "xy" for end in ("lower", "upper")}
+
+
+def scene(drops, moving_tiles=False):
+    surface = {"Interface": {"Type": "particle level set", "Drops": drops},
+               "Liquid": {"Column": {"Type": "box", "Lower": (-1., -1.), "Upper": (.5, .6)},
+                          "Pool": {"Type": "level", "Height": .14}}}
+    solids = {
+        "Post": {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.1, .2)}, "Position": (.9, .1),
+                 "Motion": {"Type": "static"}},
+        "Shelf": {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (.3, 0.), "Normal": "y"},
+                  "Position": (1.4, .42), "Motion": {"Type": "static"}},
+        "Raft": {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (.3, 0.), "Normal": "y"}, "Surface Density": 8.,
+                 "Position": (1.1, .9)},
+        "Ball": {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .09}, "Density": 300.,
+                 "Position": (1.3, .17)}}
+    fluid = {"Density": 1000., "Gravity": (0., -9.8), "Free Surface": surface}
+    if moving_tiles:
+        fluid["Moving Tiles"] = {}
+    return xml("Scene", {
+        "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (1.6, 1.), "Cells": (48, 30), "Sides": SIDES},
+        "Fluid": fluid, "Solids": solids, "Contact": {"Type": "none"}, "Solver": {"Tolerance": 1e-11},
+        "Time": {"End": 10., "Fixed Step": .01}, "Output": {"Checkpoint Interval": .35, "Keep Checkpoints": 9}})
+
+
+def run(file, output, steps, ranks=1, restart=()):
+    simulate(file, output, "--steps", steps, *restart, ranks=ranks)
+    return without_times(table(output / "history.csv")), table(output / "bodies.csv")
+
+
+class Drops(unittest.TestCase):
+    def test_ledgers_ranks_and_restart(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "scene.xml"
+            file.write_text(scene("ballistic"))
+            runs = {ranks: run(file, Path(folder) / str(ranks), N_STEPS, ranks) for ranks in (1, 2, 4)}
+            for history, bodies in runs.values():
+                self.check_ledgers(history)
+                assert_close(runs[1][1], bodies, STATE, 1e-6)
+                assert_close(runs[1][0], history, ("liquid_volume", "fluid_kinetic_energy", "drops_volume"), 1e-6)
+            self.check_restart(file, Path(folder) / "2", runs[2], 2)
+
+    def test_moving_tiles(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "scene.xml"
+            file.write_text(scene("ballistic", moving_tiles=True))
+            tiles = run(file, Path(folder) / "tiles", N_STEPS)
+            self.check_ledgers(tiles[0])
+            self.check_restart(file, Path(folder) / "tiles", tiles, 1)
+
+    def check_restart(self, file, output, whole, ranks):
+        again = Path(shutil.copytree(output, f"{output}-again"))
+        middle = sorted(again.glob("checkpoint-*.h5"))[0]
+        self.assertEqual(run(file, again, N_STEPS, ranks, ("--restart", middle)), whole)
+
+    def check_ledgers(self, history):
+        self.assertEqual(len(history), N_STEPS)
+        for name in ("momentum_error", "angular_momentum_error"):
+            self.assertLess(max(column(history, name)), 1e-12, name)
+        self.assertGreater(max(column(history, "drops")), 20)
+        self.assertEqual(max(column(history, "lost_volume")), 0)
+        whole = [t + d for t, d in zip(column(history, "liquid_volume_target"), column(history, "drops_volume"))]
+        self.assertLess(max(whole) - min(whole), 1e-13 * whole[0])
+
+    def test_without_drops_nothing_is_told_of_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "scene.xml"
+            file.write_text(scene("none"))
+            history, _ = run(file, Path(folder) / "none", 2)
+            self.assertNotIn("drops", history[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
