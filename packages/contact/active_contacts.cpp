@@ -116,6 +116,13 @@ void ContactProblem<dim>::extend_search(const std::vector<double>& velocity) {
 }
 
 template <int dim>
+int ContactProblem<dim>::sweep(ImpulseSolver<dim>& solver, int most) const {
+  constexpr double round_off = 1e-9;  // in cells: limits of a loop may leave no play between them
+  const double tolerance = options_.tolerance * scale_;
+  return solver.iterate(most, tolerance, std::max(tolerance, round_off * spacing_ / dt_));
+}
+
+template <int dim>
 int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
   int sweeps = 0, searches = 1;
   if (system_.joints() || system_.reduction().has_given())
@@ -130,14 +137,14 @@ int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
     const int n_limits = activate_limits(solver.velocity(), tolerance, solver);
     if (activate_violated(motion, most, tolerance, solver) + n_limits == 0)
       break;
-    sweeps += solver.iterate(std::max(1, options_.sweeps / 8), options_.tolerance * scale_);
+    sweeps += sweep(solver, std::max(1, options_.sweeps / 8));
     if (phase_ == ContactPhase::position && searches < most_searches) {
       const std::size_t known = candidates_.size();
       extend_search(solver.velocity());
       searches += candidates_.size() > known ? 1 : 0;
     }
   }
-  sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
+  sweeps += sweep(solver, options_.sweeps);
   return sweeps + stop_impacts(solver);
 }
 
@@ -175,7 +182,7 @@ int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
       any = solver.add(contact, -contact.gap / dt_, friction(contact)) || any;
     if (!any)
       break;
-    sweeps += solver.iterate(options_.sweeps, options_.tolerance * scale_);
+    sweeps += sweep(solver, options_.sweeps);
   }
   return sweeps;
 }

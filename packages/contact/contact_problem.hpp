@@ -86,6 +86,8 @@ class ContactProblem {
   /// Activates those limits of joints that are violated; returns how many.
   int activate_limits(const std::vector<double>& velocity, double tolerance,
                       ImpulseSolver<dim>& solver);
+  /// At most so many sweeps; returns how many.
+  int sweep(ImpulseSolver<dim>& solver, int most) const;
   /// Looks again if the solution moves solids farther than the search had looked.
   void extend_search(const std::vector<double>& velocity);
   bool follows_impacts() const;

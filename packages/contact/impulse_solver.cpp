@@ -235,9 +235,9 @@ double ImpulseSolver<dim>::relax_friction(Row& row) {
 }
 
 template <int dim>
-int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance) {
+int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance, double negligible) {
   for (int sweep = 1; sweep <= maximum_sweeps; ++sweep) {
-    double change = limits_.relax(velocity_);
+    double change = limits_.relax(velocity_, negligible);
     for (Row& row : rows_) {
       change = std::max(change, relax_normal(row));
       change = std::max(change, relax_friction(row));

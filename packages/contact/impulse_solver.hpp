@@ -30,8 +30,9 @@ class ImpulseSolver {
   bool can_move(const Contact<dim>& contact);
   bool can_move(const Terms& terms);
   /// Sweeps until no velocity at a contact changes by more than `tolerance` [m/s]; returns the
-  /// number of sweeps.
-  int iterate(int maximum_sweeps, double tolerance);
+  /// number of sweeps. Limits of joints that contradict one another may be missed by `negligible`
+  /// [m/s].
+  int iterate(int maximum_sweeps, double tolerance, double negligible = 0);
 
   /// With limits of joints.
   int n_contacts() const { return static_cast<int>(rows_.size()) + limits_.size(); }

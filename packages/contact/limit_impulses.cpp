@@ -108,14 +108,24 @@ Eigen::VectorXd descend(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
 
 }  // namespace
 
-Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
+                                      double negligible) {
   constexpr double acceptable = 1e-6;
+  const double scale = b.cwiseAbs().maxCoeff();
+  const double allowed = std::max(acceptable * scale, negligible);
+  // Lifted, rows that depend on one another have a solution, but one that need not solve A itself.
+  Eigen::MatrixXd lifted = a;
+  lifted.diagonal() *= 1 + 1e-12;
+  const auto broken_by = [&](const Eigen::VectorXd& x) { return -(a * x + b).minCoeff(); };
   Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
-  if (exchange_blocks(a, b, x))
-    return x.cwiseMax(0);
-  x = descend(a, b);
-  const double broken = -(a * x + b).minCoeff(), scale = b.cwiseAbs().maxCoeff();
-  check_solve(broken <= acceptable * scale,
+  if (exchange_blocks(lifted, b, x)) {
+    x = x.cwiseMax(0);
+    if (broken_by(x) <= allowed)
+      return x;
+  }
+  x = descend(lifted, b);
+  const double broken = broken_by(x);
+  check_solve(broken <= allowed,
               "The limits of joints contradict one another: of {} that act together one is left "
               "{:.2g} m/s beyond, where {:.2g} m/s were to be stopped. Look at the limits of "
               "joints that a loop ties together, or take shorter steps.",
@@ -141,8 +151,6 @@ void LimitImpulses::add(Row row) {
       sum += static_cast<std::size_t>(id) < response.size() ? weight * response[id] : 0;
     matrix_(k, n - 1) = matrix_(n - 1, k) = sum;
   }
-  // Both limits of one coordinate are the same row twice.
-  matrix_(n - 1, n - 1) *= 1 + 1e-12;
 }
 
 double LimitImpulses::value(const Row& row, const std::vector<double>& velocity) const {
@@ -152,13 +160,14 @@ double LimitImpulses::value(const Row& row, const std::vector<double>& velocity)
   return sum;
 }
 
-double LimitImpulses::relax(std::vector<double>& velocity) {
+double LimitImpulses::relax(std::vector<double>& velocity, double negligible) {
   if (rows_.empty())
     return 0;
   Eigen::VectorXd lack(impulses_.size());
   for (Eigen::Index k = 0; k < lack.size(); ++k)
     lack[k] = value(rows_[k], velocity) - rows_[k].least;
-  const Eigen::VectorXd wanted = solve_complementarity(matrix_, lack - matrix_ * impulses_);
+  const Eigen::VectorXd wanted =
+      solve_complementarity(matrix_, lack - matrix_ * impulses_, negligible);
   const Eigen::VectorXd change = wanted - impulses_;
   impulses_ = wanted;
   for (Eigen::Index k = 0; k < change.size(); ++k) {

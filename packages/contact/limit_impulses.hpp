@@ -20,8 +20,9 @@ class LimitImpulses {
   double impulse(int row) const { return impulses_[row]; }
 
   /// Changes the velocities, and the impulses given so far, to those that meet all bounds: impulses
-  /// only push, and only at bounds that are reached. Returns the largest change of a row's value.
-  double relax(std::vector<double>& velocity);
+  /// only push, and only at bounds that are reached. Where bounds contradict one another, they may
+  /// be missed by `negligible` [m/s]. Returns the largest change of a row's value.
+  double relax(std::vector<double>& velocity, double negligible = 0);
   /// Adds J^T impulses, by id.
   void add_to(std::vector<double>& total) const;
 
@@ -34,9 +35,10 @@ class LimitImpulses {
 };
 
 /// x >= 0 with A x + b >= 0 and one of both zero in every row, for a symmetric positive definite A
-/// (semidefinite but for round-off): by exchange of blocks of rows, which takes a few solves; where
+/// or semidefinite: by exchange of blocks of rows, which takes a few solves; where
 /// that does not end, by descent of 1/2 x.A x + b.x, which does. Throws SolveError if rows are left
-/// that no x meets.
-Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+/// that no x meets, by more than `negligible` and than round-off.
+Eigen::VectorXd solve_complementarity(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
+                                      double negligible = 0);
 
 }  // namespace lockstep

@@ -27,7 +27,7 @@ void MacFluid<dim>::push_surface(double dt) {
 
 /// Gravity and the shortest waves of a surface at rest: their pressure answers within a step up to
 /// about 1.3 times sqrt(h / g). Of surface tension the shortest waves must not go over more than
-/// their length (Brackbill et al. 1992, without air); implicit, it is stable to some 25 times that:
+/// their length (Brackbill et al. 1992, without air); implicit, it is stable to some 12 times that:
 /// beyond, waves reach deeper than the layer that is held back.
 template <int dim>
 double MacFluid<dim>::largest_stable_step() const {
@@ -38,7 +38,7 @@ double MacFluid<dim>::largest_stable_step() const {
   const double tension = liquid_->tension();
   if (tension == 0)
     return by_gravity;
-  const double part = tension_is_implicit() ? 16 * 0.28 : 0.28;
+  const double part = tension_is_implicit() ? 8 * 0.28 : 0.28;
   return std::min(by_gravity, part * std::sqrt(parameters_.density * h * h * h / tension));
 }
 

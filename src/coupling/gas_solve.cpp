@@ -59,10 +59,12 @@ Answer answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
   unit[pocket] = 1;
   gas.push(unit, rhs);
   relative_part_removed(blocks.null_space, *rhs.pressure);
-  // What opens the pocket is a small difference of what goes through its faces. Where all is closed
-  // in, pressures hold the solids still, and nothing is left for the tolerance to be a part of.
-  const SolveRequest exact{request.name + ", gas", std::min(request.tolerance, 1e-10),
-                           round_off_of_rows(blocks, like.pressure->getMap()), request.step};
+  // What opens the pocket is a small difference of what goes through its faces. Where only solids
+  // are beside it and all is closed in, pressures hold them still, and nothing is left for the
+  // tolerance to be a part of.
+  SolveRequest exact{request.name + ", gas", std::min(request.tolerance, 1e-10), 0, request.step};
+  if (gas.conductance[pocket] == 0)
+    exact.negligible_pressure_residual = round_off_of_rows(blocks, like.pressure->getMap());
   report.add_work(strategy.solve(blocks, rhs, answer.unknowns, exact));
   answer.rates = gas.rates(answer.unknowns, true);
   answer.rates[pocket] += gas.conductance[pocket];

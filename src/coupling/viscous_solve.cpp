@@ -217,14 +217,14 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
                                  const SoftNodes& soft_nodes,
                                  const RCP<const Vector>& lumped_momentum, double dt,
                                  const Reduction& constraints, const ViscousOptions& options) {
+  // Where the solve is for surface tension alone, nothing ties solids to it.
+  const bool with_solids =
+      solids.has_unknowns() &&
+      sum_all(solids.comm(), static_cast<GlobalIndex>(system.links.size())) > 0;
   const ViscousBonds<dim> links(system, solids, coupling);
   const ViscousOperator<dim> op{
-      system,
-      links,
-      solid_block,
-      constraints,
-      dt,
-      ViscousRows(system.map, solids.has_unknowns() ? solids.map() : RCP<const Map>())};
+      system,      links, solid_block,
+      constraints, dt,    ViscousRows(system.map, with_solids ? solids.map() : RCP<const Map>())};
 
   // The pull of prescribed solids and given dofs on resting fluid, on the right-hand side.
   const RCP<const Vector> given = links.end_velocity(constraints.offset(), true);
@@ -237,7 +237,7 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
     links.take_from_fluid(dt, *prescribed, false, *momentum);
   }
   op.rows.fluid_of(x)->update(1, *system.velocity, 0);
-  if (solids.has_unknowns()) {
+  if (with_solids) {
     Vector pulled(*lumped_momentum, Teuchos::Copy);
     prescribed->update(1, *links.couple_pull(*given), 1);
     links.pull_on_solids(dt, *prescribed, 1, pulled);
@@ -252,9 +252,11 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
       solve_by_name<dim>(op, make_preconditioner<dim>(op, soft_nodes, options), rhs, x, options);
 
   const RCP<const Vector> fluid_velocity = op.rows.fluid_of(std::as_const(x));
-  if (solids.has_unknowns()) {
+  if (with_solids) {
     result.solid_velocity = rcp(new Vector(*op.rows.solid_of(x), Teuchos::Copy));
     constraints.expand(*result.solid_velocity);
+  } else if (solids.has_unknowns()) {
+    result.solid_velocity = solids.velocity();
   }
   const RCP<const Vector> ends = links.end_velocity(result.solid_velocity, true);
   const RCP<const Vector> pull = links.pull(*fluid_velocity, *ends);

@@ -58,7 +58,8 @@ class SolidModel : public PlugIn {
   /// Local.
   virtual void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                             VelocityRow<dim>& row) const = 0;
-  /// Velocity [m/s] of a prescribed solid's surface at the present time; zero for dynamic ones.
+  /// Velocity [m/s] of a prescribed solid's surface at the present time; zero for dynamic ones. A
+  /// solid whose `states` tell no velocity counts as at rest, and is not asked again.
   /// Default, for models without prescribed solids: zero. Local.
   virtual Point<dim> prescribed_velocity(const SurfacePoint<dim>&, const Point<dim>&) const {
     return Point<dim>::Zero();

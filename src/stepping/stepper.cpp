@@ -363,8 +363,9 @@ typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim
     prediction = predict_forces(context, report);
   }
   move_solids(context.in(Phase::S1), prediction, report);  // S1
-  make_advection_velocity(dt, report);                     // F2
-  advect(dt, report);                                      // F3
+  report.s1.add_work(prediction.pressure_work);
+  make_advection_velocity(dt, report);  // F2
+  advect(dt, report);                   // F3
   context = context_of_velocities(dt, report.ledger);
   {
     ScopedPhase phase(timers_, "F3 forces");
@@ -380,6 +381,7 @@ typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim
     add_drops(context, *momentum, report);
   }
   CoupledSolution solution = solve_settled(context, momentum, report);
+  report.s2.add_work(prediction.pressure_work);
   check_possible(context, report.incompatibility_s2);
   return {context, prediction, solution};
 }

@@ -26,6 +26,14 @@ template <int dim>
 struct Prediction {
   ViscousResult<dim> viscous;  ///< empty without viscosity
   RCP<Vector> pressure;        ///< what S2 leaves out for the next step; null: nothing
+  SolveReport pressure_work;   ///< of a pressure that was solved for just for it
+};
+
+/// What is expected of the pressure of a solve, before it.
+struct ExpectedPressure {
+  RCP<const Vector> of_fluid;  ///< p̂
+  std::vector<double> of_gas;  ///< p̂ of pockets
+  SolveReport work;            ///< what finding it took
 };
 
 /// The step F1 S1 F2 F3 S2 F4 of Section 7.
@@ -66,7 +74,7 @@ class Stepper {
   // F1, and the forces of F3.
   Prediction<dim> predict_forces(const StepContext<dim>& context, StepReport<dim>& report);
   Prediction<dim> predict_viscosity(const StepContext<dim>& context, StepReport<dim>& report);
-  RCP<const Vector> expected_pressure(const StepContext<dim>& context, StepReport<dim>& report);
+  ExpectedPressure expected_pressure(const StepContext<dim>& context, StepReport<dim>& report);
   RCP<Vector> last_pressure(double dt) const;
   RCP<Vector> viscous_pressure(double viscosity, double dt, const RCP<const Vector>& velocity);
   void reset_unseen_faces();

@@ -76,6 +76,7 @@ void Stepper<dim>::solve_coupled(const StepContext<dim>& context, const BlockSys
   coupling.set_gas_pressure(pressure);
   solution.gas_momentum = make_vector(solids.map());
   coupling.add_gas_push(pressure, *solution.gas_momentum);
+  solution.gas_pressure = pressure;
 }
 
 /// F2: pockets that keep their volume do so in u_ADV, too; others have the solids' effective

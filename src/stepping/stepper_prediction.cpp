@@ -58,19 +58,26 @@ Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
   return prediction;
 }
 
-/// p̂ that the viscous solve reads: that of the last step. In the first two steps that of a solve
-/// without viscosity: what the first step's pressure did to velocities that were no flow at the
-/// start is an impulse, and comes once. A fluid may ask for the latter in every step.
+/// What the viscous solve reads: p̂ and that of pockets of gas, those of the last step. In the first
+/// two steps that of a solve without viscosity: what the first step's pressure did to velocities
+/// that were no flow at the start is an impulse, and comes once. A fluid may ask for the latter in
+/// every step.
 template <int dim>
-RCP<const Vector> Stepper<dim>::expected_pressure(const StepContext<dim>& context,
-                                                  StepReport<dim>& report) {
+ExpectedPressure Stepper<dim>::expected_pressure(const StepContext<dim>& context,
+                                                 StepReport<dim>& report) {
   if (n_steps_ > 1 && !sides_.viscous_fluid->wants_present_pressure())
-    return last_pressure(context.dt);
+    return {last_pressure(context.dt),
+            has_gas() ? expected_gas_pressure(context.dt) : std::vector<double>(),
+            {}};
   const RCP<Vector> momentum = coupled() ? solid_momentum(context.on_trial(), {}, report)
                                          : make_vector(components_.solids->map());
-  SolveReport iterations;
+  ExpectedPressure result;
   double incompatibility = 0;
-  return solve(context, momentum, "first pressure", iterations, incompatibility).unknowns.pressure;
+  const CoupledSolution solution =
+      solve(context, momentum, "first pressure", result.work, incompatibility);
+  result.of_fluid = solution.unknowns.pressure;
+  result.of_gas = solution.gas_pressure;
+  return result;
 }
 
 /// Implicit viscosity in the incremental form of pressure correction (Guermond, Minev and Shen
@@ -83,9 +90,10 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
                                                 StepReport<dim>& report) {
   const double dt = context.dt;
   auto& fluid = *components_.fluid;
-  RCP<const Vector> pressure;
+  ExpectedPressure expected;
   if (options_.incremental_pressure || sides_.viscous_fluid->wants_present_pressure())
-    pressure = expected_pressure(context, report);
+    expected = expected_pressure(context, report);
+  const RCP<const Vector>& pressure = expected.of_fluid;
   ScopedPhase phase(timers_, "viscosity");
   RCP<const LinearOperator> block;
   SoftNodes soft_nodes;
@@ -103,7 +111,7 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
     system_.subtract_given(dt, context.constraints, *row);
   }
   const bool feels_gas = has_gas() && !pressure.is_null();
-  const std::vector<double> gas = feels_gas ? expected_gas_pressure(dt) : std::vector<double>();
+  const std::vector<double>& gas = expected.of_gas;
   if (feels_gas) {
     sides_.gas_fluid->set_gas_pressure(gas);
     if (!row.is_null())
@@ -113,6 +121,7 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
     fluid.project(*pressure);
   const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
   Prediction<dim> prediction;
+  prediction.pressure_work = expected.work;
   prediction.viscous = solve_viscous<dim>(*viscous, *sides_.viscous_fluid, *components_.solids,
                                           *sides_.viscous_coupling, block, soft_nodes, row, dt,
                                           context.constraints, options_.viscous);

@@ -141,6 +141,8 @@ ChildResult run_child(const std::vector<std::string>& command, const std::string
                             child);
   check_output(failure == 0, "Cannot start '{}': {}.", command.front(), std::strerror(failure));
   const ListedChild listed(child);
+  if (received != 0)  // it came before the child was listed
+    kill(child, received);
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     check_output(errno == EINTR, "Lost '{}' while waiting for it: {}.", command.front(),

@@ -62,10 +62,16 @@ SeenCell cell_seen_from(const Point<dim>& x, const TiledGrid<dim>& grid,
                         const SolidCells<dim>& solids, const NearbySurface<dim>& surface) {
   const Point<dim> inside = grid.wrap(x);
   Index<dim> middle;
-  for (int a = 0; a < dim; ++a)
-    middle[a] = static_cast<int>(std::floor((inside[a] - grid.lower()[a]) / grid.spacing()));
+  for (int a = 0; a < dim; ++a) {
+    const double position = (inside[a] - grid.lower()[a]) / grid.spacing();
+    // Rounding may leave a wrapped place a hair below the period, or at its end.
+    const double margin = grid.description().periodic[a] ? 0.5 : 0;
+    if (!(position >= -margin && position < grid.n_cells()[a] + margin))
+      return {};
+    middle[a] = static_cast<int>(std::floor(position));
+  }
   SeenCell best;
-  for (int k = 0; grid.in_domain(middle) && k < (dim == 2 ? 9 : 27); ++k) {
+  for (int k = 0; k < (dim == 2 ? 9 : 27); ++k) {
     Index<dim> at = middle;
     for (int a = 0, rest = k; a < dim; ++a, rest /= 3)
       at[a] += rest % 3 - 1;

@@ -38,6 +38,12 @@ struct MacDomain {
   double spacing() const { return grid.spacing(); }
   double cell_volume() const { return dim == 2 ? spacing() * spacing() : cube(spacing()); }
   double face_area() const { return cell_volume() / spacing(); }
+  Box<dim> bounds() const {
+    Point<dim> upper = grid.lower();
+    for (int a = 0; a < dim; ++a)
+      upper[a] += grid.n_cells()[a] * spacing();
+    return Box<dim>(grid.lower(), upper);
+  }
   /// The lower face of a cell, flat along its axis.
   Box<dim> face_box(int axis, int cell) const {
     const Point<dim> center = grid.face_center(axis, cell);

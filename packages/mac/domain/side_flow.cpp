@@ -85,11 +85,7 @@ std::vector<std::pair<std::string, std::string>> MacFluid<dim>::notes() const {
 
 template <int dim>
 Box<dim> MacFluid<dim>::bounds() const {
-  const Point<dim> lower = domain_.grid.lower();
-  Point<dim> upper = lower;
-  for (int a = 0; a < dim; ++a)
-    upper[a] += domain_.grid.n_cells()[a] * domain_.spacing();
-  return Box<dim>(lower, upper);
+  return domain_.bounds();
 }
 
 template <int dim>

@@ -160,7 +160,7 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
       "solids and sides at 90 degrees. 0: none.");
   declare_choice(
       list, "Tension Integration", "explicit", {"explicit", "semi-implicit"},
-      "explicit: steps are at most 0.28 sqrt(density h^3 / sigma). semi-implicit: 16 times that; "
+      "explicit: steps are at most 0.28 sqrt(density h^3 / sigma). semi-implicit: 8 times that; "
       "what the surface does within the step is foreseen by a viscous solve in which sigma dt "
       "times the surface Laplacian holds the velocity back, and one more pressure solve before "
       "it. Damps ripples a few cells long, and what turns and swings, the more the longer the "

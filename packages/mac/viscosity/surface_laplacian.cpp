@@ -1,5 +1,6 @@
 #include "mac/viscosity/surface_laplacian.hpp"
 
+#include <bitset>
 #include <cmath>
 #include <limits>
 
@@ -40,7 +41,8 @@ bool SurfaceLaplacian<dim>::look(int axis, const Index<dim>& lowest, double& del
     --place[axis];
     const double below = distance_at(place);
     place[axis] += 2;
-    normal[axis] += 0.5 * (distance_at(place) - below);
+    // All corners have this part of the gradient, over twice the distance; others are pairs.
+    normal[axis] += 0.25 * (distance_at(place) - below);
   }
   distance /= n_corners / 2;
   const double steepness = normal.norm();
@@ -66,16 +68,34 @@ double SurfaceLaplacian<dim>::part_in_domain(int axis, const Index<dim>& lowest)
 }
 
 template <int dim>
-bool SurfaceLaplacian<dim>::is_bonded(const Cube& cube, int axis, int corner, int along) const {
-  const int upper = corner | 1 << along, lower = upper ^ 1 << along;
-  if (!cube.is_free[lower] || !cube.is_free[upper])
+bool SurfaceLaplacian<dim>::is_bonded(int axis, int lower, int upper, int along) const {
+  const auto is_free = [&](int cell) {
+    return cell >= 0 && geometry_.state.faces[axis][cell] == FaceState::free;
+  };
+  if (!is_free(lower) || !is_free(upper))
     return false;
-  if (along == axis || !geometry_.near_surface(cube.cells[lower]))
+  if (along == axis || !geometry_.near_surface(lower))
     return true;
   const SurfaceSnapshot<dim>& solids = *geometry_.state.surface;
-  const Point<dim> start = domain_.grid.face_center(axis, cube.cells[lower]);
+  const Point<dim> start = domain_.grid.face_center(axis, lower);
   const Point<dim> end = start + Point<dim>::Unit(along) * domain_.spacing();
   return !solids.first_hit(start, end) && !solids.first_hit(end, start);
+}
+
+template <int dim>
+const typename SurfaceLaplacian<dim>::Cube* SurfaceLaplacian<dim>::cube_at(
+    int axis, const Index<dim>& lowest) {
+  if (axis != axis_) {
+    cubes_.clear();
+    axis_ = axis;
+  }
+  std::int64_t key = 0;
+  for (int a = 0; a < dim; ++a)
+    key = key * (domain_.grid.n_cells()[a] + 2) + lowest[a] + 1;
+  const auto [found, is_new] = cubes_.try_emplace(key);
+  if (is_new && !make_cube(axis, lowest, found->second))
+    found->second.is_empty = true;
+  return found->second.is_empty ? nullptr : &found->second;
 }
 
 template <int dim>
@@ -90,15 +110,22 @@ bool SurfaceLaplacian<dim>::make_cube(int axis, const Index<dim>& lowest, Cube& 
     Index<dim> place = lowest;
     for (int a = 0; a < dim; ++a)
       place[a] += corner >> a & 1;
-    const int cell = cube.cells[corner] = grid.cell(place);
-    cube.is_free[corner] = cell >= 0 && geometry_.state.faces[axis][cell] == FaceState::free;
+    cube.cells[corner] = grid.cell(place);
+  }
+  std::array<std::bitset<dim>, n_corners> bonded;
+  for (int upper = 0; upper < n_corners; ++upper) {
+    for (int a = 0; a < dim; ++a) {
+      const int lower = upper ^ 1 << a;
+      if (upper >> a & 1)
+        bonded[lower][a] = bonded[upper][a] =
+            is_bonded(axis, cube.cells[lower], cube.cells[upper], a);
+    }
   }
   // The gradient is known best at the corners from which most bonds go.
   std::array<int, n_corners> bonds{};
   int most = 0, n_used = 0;
   for (int corner = 0; corner < n_corners; ++corner) {
-    for (int a = 0; a < dim; ++a)
-      bonds[corner] += is_bonded(cube, axis, corner, a) ? 1 : 0;
+    bonds[corner] = static_cast<int>(bonded[corner].count());
     if (bonds[corner] > most)
       n_used = 0;
     most = std::max(most, bonds[corner]);
@@ -114,7 +141,7 @@ bool SurfaceLaplacian<dim>::make_cube(int axis, const Index<dim>& lowest, Cube& 
       continue;
     Eigen::Matrix<double, dim, n_corners> gradient = Eigen::Matrix<double, dim, n_corners>::Zero();
     for (int a = 0; a < dim; ++a) {
-      if (!is_bonded(cube, axis, corner, a))
+      if (!bonded[corner][a])
         continue;
       gradient(a, corner | 1 << a) = 1 / h;
       gradient(a, (corner | 1 << a) ^ 1 << a) = -1 / h;

@@ -44,14 +44,15 @@ std::unique_ptr<ViscousSystem<dim>> Viscosity<dim>::system(const FaceField<dim>&
   return result;
 }
 
-/// The mean over what a face's control volume has of the side: what comes in there.
+/// The mean over what a face's control volume has of the side: what comes in there. At other sides,
+/// and at seams, half of the volume is outside.
 template <int dim>
 double Viscosity<dim>::side_velocity(const SideLink& side, double time) const {
   const auto [axis, cell] = faces_[side.row];
   const Point<dim> x = domain_.grid.face_center(axis, cell);
   const Point<dim> half = Point<dim>::Constant(domain_.grid.spacing() / 2);
-  return domain_.boundary.side(side.axis, side.end)
-      .mean_velocity(side.axis, Box<dim>(x - half, x + half), time)[axis];
+  const Box<dim> volume = Box<dim>(x - half, x + half).intersection(domain_.bounds());
+  return domain_.boundary.side(side.axis, side.end).mean_velocity(side.axis, volume, time)[axis];
 }
 
 template <int dim>

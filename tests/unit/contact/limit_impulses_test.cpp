@@ -73,7 +73,6 @@ TEST(LimitImpulses, DependentRows) {
     for (int k = n / 2; k < n && trial % 3 > 0; ++k)
       rows.row(k) = (trial % 3 == 1 ? -1 : 1) * rows.row(k - n / 2);
     Eigen::MatrixXd a = rows * rows.transpose();
-    a.diagonal() *= 1 + 1e-12;
     Eigen::VectorXd b =
         rows * Eigen::VectorXd::NullaryExpr(n_motions, [&] { return normal(random); });
     for (double& room : b)
@@ -94,6 +93,27 @@ TEST(LimitImpulses, ContradictionIsSaid) {
     FAIL();
   } catch (const SolveError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("one is left 2 m/s beyond"));
+  }
+}
+
+/// One motion that is to be at least something and at most less.
+TEST(LimitImpulses, ContradictionOfTwoLimitsIsSaid) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 500; ++trial) {
+    const double gap = std::pow(10, -4 + 3e-3 * static_cast<double>(random() % 1000));
+    const double least = normal(random), response = std::exp(normal(random));
+    const auto limits = [&](double negligible) {
+      LimitImpulses two;
+      two.add({{{0, 1}}, {{0, response}}, least + gap});
+      two.add({{{0, -1}}, {{0, -response}}, -least});
+      std::vector<double> velocity{normal(random)};
+      two.relax(velocity, negligible);
+      return velocity[0];
+    };
+    EXPECT_THROW(limits(0), SolveError) << gap;
+    EXPECT_THROW(limits(0.3 * gap), SolveError) << gap;
+    EXPECT_NEAR(limits(1.1 * gap), least + gap / 2, gap) << gap;
   }
 }
 

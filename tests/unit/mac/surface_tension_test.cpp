@@ -106,12 +106,12 @@ struct Held {
 };
 
 template <int dim>
-Held<dim> held_back(int n, double radius,
+Held<dim> held_back(int n, const std::function<void(Case<dim>&)>& add_liquid,
                     const std::function<Point<dim>(const Point<dim>&)>& velocity) {
   const double tension = 0.7, dt = 0.01;
   Case<dim> scene(cube<dim>(n), 1.0 / n);
   scene.fluid.set("Density", 3.0);
-  add_ball<dim>(scene, Point<dim>::Constant(0.5), radius);
+  add_liquid(scene);
   scene.fluid.sublist("Free Surface")
       .set("Surface Tension", tension)
       .set("Tension Integration", "semi-implicit");
@@ -119,7 +119,7 @@ Held<dim> held_back(int n, double radius,
   fluid->set_geometry(nullptr, BlockedFaces<dim>());
   EXPECT_TRUE(fluid->is_viscous());
   EXPECT_NEAR(fluid->largest_stable_step(),
-              16 * 0.28 * std::sqrt(3 * std::pow(1.0 / n, 3) / tension), 1e-12);
+              8 * 0.28 * std::sqrt(3 * std::pow(1.0 / n, 3) / tension), 1e-12);
   fluid->begin_prediction();
   fluid->add_forces(0, dt);
   fluid->set_prediction(velocity);
@@ -146,7 +146,8 @@ template <int dim>
 void expect_turning_is_held_back(int n, double least) {
   const double radius = 0.31, area = dim == 2 ? 2 * M_PI * radius : 4 * M_PI * radius * radius;
   const Point<dim> center = Point<dim>::Constant(0.5);
-  const Held<dim> turning = held_back<dim>(n, radius, [&](const Point<dim>& x) {
+  const auto ball = [&](Case<dim>& scene) { add_ball<dim>(scene, center, radius); };
+  const Held<dim> turning = held_back<dim>(n, ball, [&](const Point<dim>& x) {
     Point<dim> u = Point<dim>::Zero();
     u[0] = -(x - center)[1];
     u[1] = (x - center)[0];
@@ -156,19 +157,46 @@ void expect_turning_is_held_back(int n, double least) {
   const double expected = area * (dim == 2 ? 1 : 4.0 / 3);
   // The outermost part of the layer around the surface has no velocities.
   EXPECT_GT(turning.work / expected, least);
-  EXPECT_LT(turning.work / expected, 1.02);
+  EXPECT_LT(turning.work / expected, 1);
   EXPECT_LT(turning.asymmetry, 1e-14);
   // Power is couple times rate; linear momentum stays.
   EXPECT_NEAR(turning.impulse.angular[dim == 2 ? 0 : 2], -turning.work, 1e-9 * turning.work);
   EXPECT_LT(turning.impulse.linear.norm(), 1e-12);
   const Held<dim> uniform =
-      held_back<dim>(n, radius, [](const Point<dim>&) { return Point<dim>::Constant(0.3); });
+      held_back<dim>(n, ball, [](const Point<dim>&) { return Point<dim>::Constant(0.3); });
   EXPECT_LT(std::abs(uniform.work), 1e-13);
 }
 
 TEST(SurfaceTension, ItsImplicitPartHoldsBackWhatTurns) {
-  expect_turning_is_held_back<2>(32, 0.92);
-  expect_turning_is_held_back<3>(16, 0.75);
+  expect_turning_is_held_back<2>(32, 0.77);
+  expect_turning_is_held_back<3>(16, 0.7);
+}
+
+/// A slanted plane: what changes along it is held back, not what changes across it; but for a part
+/// where single neighbours do not know across from along.
+template <int dim>
+void expect_only_what_is_along_is_held_back(int n, const Point<dim>& up, double part) {
+  const Point<dim> normal = up.normalized();
+  const auto plane = [&](Case<dim>& scene) {
+    scene.fluid.set("Gravity", components<dim>(-normal));
+    add_level<dim>(scene, normal.dot(Point<dim>::Constant(0.5)));
+  };
+  Point<dim> along = Point<dim>::Unit(0) - normal * normal[0];
+  along.normalize();
+  const auto held_along = [&](const Point<dim>& direction) {
+    return held_back<dim>(n, plane,
+                          [=](const Point<dim>& x) {
+                            return Point<dim>(Point<dim>::Unit(0) * direction.dot(x));
+                          })
+        .work;
+  };
+  EXPECT_LT(held_along(normal), part * held_along(along));
+}
+
+TEST(SurfaceTension, ItsImplicitPartHoldsBackOnlyWhatIsAlongTheSurface) {
+  expect_only_what_is_along_is_held_back<2>(32, {1, 1}, 0.005);
+  expect_only_what_is_along_is_held_back<2>(32, {0.4, 1}, 0.08);
+  expect_only_what_is_along_is_held_back<3>(16, {1, 1, 1}, 0.02);
 }
 
 }  // namespace

@@ -77,6 +77,35 @@ TEST(Viscosity, AnOpeningPullsByWhatComesIn) {
     EXPECT_NEAR(pull(0.25, upper), of_four * (upper - 0.25) / 0.5, 1e-12);
 }
 
+// Faces at seams and open sides have half of their volume outside.
+TEST(Viscosity, AnInflowPullsAlikeAtSeamsAndSides) {
+  for (const bool periodic : {true, false}) {
+    Case<2> scene({8, 8}, 1. / 8);
+    if (periodic)
+      scene.side("x lower", "periodic").side("x upper", "periodic");
+    else
+      scene.side("x lower", "open").side("x upper", "open");
+    scene.side("y lower", "inflow", {1, 1}).side("y upper", "open");
+    scene.fluid.set("Viscosity", 0.3);
+    const auto fluid = scene.make();
+    fluid->set_geometry(nullptr, BlockedFaces<2>());
+    fluid->begin_prediction();
+    const auto system = fluid->viscous_system();
+    GlobalIndex along = 0, across = 0;
+    const auto force = system->wall_force->getData();
+    for (const double value : force) {
+      if (value == 2 * 0.3)
+        along += 1;  // half a cell away, over a whole one
+      else if (value == 0.3)
+        across += 1;  // a cell away; or over half a cell, at an open side
+      else
+        EXPECT_EQ(value, 0);
+    }
+    EXPECT_EQ(sum_all(world(), along), periodic ? 8 : 7);
+    EXPECT_EQ(sum_all(world(), across), periodic ? 8 : 10);
+  }
+}
+
 TEST(Viscosity, InviscidFluidHasNoSystem) {
   Case<2> scene({8, 8}, 0.1);
   const auto fluid = scene.make();
