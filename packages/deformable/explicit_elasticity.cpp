@@ -52,7 +52,9 @@ double DeformableSolids<dim>::least_mass(int node) const {
 /// of its places a mode of frequency omega feels, of its stiffness, 6/z^2 (1 - sin z/z), z = omega
 /// t: slow modes all of it, fast ones what a step of dt carries, m (omega dt)^2 < 2 (never zero or
 /// negative, as with equal weights), whatever mass the fluid adds. The forces at every place sum to
-/// zero, and so does their mean.
+/// zero, and so does their mean. Nodes that a rigid body carries move here as others do: held, they
+/// would pull with all of their stiffness at a body that may be too light for it, while the mean of
+/// modes of all nodes is carried by any mass that is added to theirs.
 template <int dim>
 void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
   const Body& body = bodies_[b];
@@ -62,8 +64,6 @@ void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
   std::vector<char> free(dim * space_.n_owned(), 1);
   for (const int dof : held_.dofs())
     free[dof] = 0;
-  for (const auto& attached : attached_)
-    std::fill_n(free.begin() + dim * attached.first, dim, 0);
 
   const int n = steps.n;
   Nodes x = x_, velocity(space_.n_owned(), Point<dim>::Zero());

@@ -3,6 +3,7 @@ its joints do is the energy that there is."""
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import numpy as np
@@ -23,13 +24,17 @@ def area(mesh):
     return abs((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) / 2
 
 
-def swim(ranks, end, *settings):
+def swim(ranks, end, *settings, jointed=True):
     """Tables by name, and the areas of the flesh in all frames."""
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "output"
+        scene = ElementTree.parse(ROOT / "xml-params/scenes/fish-2d.xml")
+        if not jointed:
+            scene.getroot().remove(scene.find("*[@name='Joints']"))
+        scene.write(Path(folder) / "fish.xml")
         options = [part for setting in (*CLOSED, f"Time/End={end}", *settings) for part in ("--set", setting)]
-        simulation.simulate(ROOT / "xml-params/scenes/fish-2d.xml", output, *options, ranks=ranks)
-        tables = {name: table(output / f"{name}.csv") for name in ("history", "bodies", "joints")}
+        simulation.simulate(Path(folder) / "fish.xml", output, *options, ranks=ranks)
+        tables = {name: table(output / f"{name}.csv") for name in ("history", "bodies", "joints") if jointed or name != "joints"}
         return tables, [area(frame["Flesh"]) for frame in read_frames(output)]
 
 
@@ -58,6 +63,35 @@ class Fish(unittest.TestCase):
             self.assertLess(max(row["angular_momentum_error"] for row in tables["history"]), 1e-10)
             places.append([row["x"] for row in tables["bodies"] if row["name"] == "Flesh"][-1])
         self.assertLess(np.ptp(places), 1e-6)
+
+    def test_joints_take_no_iterations(self):
+        """Bones that nothing but flesh ties to one another need as many, but S1 is solved twice with joints."""
+        def iterations(jointed):
+            history = swim(1, .2, "Solids/Flesh/Velocity={0.5, 0.2}", jointed=jointed)[0]["history"]
+            return [sum(row[name] for row in history) for name in ("s1_iterations", "s2_iterations")]
+        jointed, free = iterations(True), iterations(False)
+        self.assertGreater(free[1], 0)
+        self.assertLessEqual(jointed[0], 2 * free[0])
+        self.assertLessEqual(jointed[1], free[1])
+
+    def test_sub_steps(self):
+        """Of explicit flesh, whose own stable step is a tenth of the step, on bones that weigh less than it: it moves as
+        implicit flesh does, a little softer."""
+        explicit = ("Solids/Flesh/Time Integration=semi-implicit", "Solids/Flesh/Most Sub-Steps=200")
+        places, energies = [], []
+        for settings in (explicit, ()):
+            tables, areas = swim(1, .5, *settings)
+            history = tables["history"]
+            self.assertEqual(len(history), 25)
+            for name in ("momentum_error", "angular_momentum_error"):
+                self.assertLess(max(row[name] for row in history), 1e-10)
+            self.assertLess(np.abs(np.array(areas) / areas[0] - 1).max(), 4e-3)
+            places.append([(row["x"], row["y"]) for row in tables["bodies"] if row["name"] == "Flesh"])
+            energies.append(max(row["solid_kinetic_energy"] + row["fluid_kinetic_energy"] for row in history))
+        self.assertGreater(np.ptp(np.array(places[1])[:, 1]), 1e-3)
+        self.assertLess(np.abs(np.subtract(*places)).max(), 4.5e-4)
+        self.assertLess(energies[0], 2 * energies[1])
+        self.assertGreater(energies[0], energies[1] / 2)
 
     def test_it_swims(self):
         """And has no more energy than its joints put in. Its area goes with what the grid sees of its shape."""
