@@ -225,7 +225,8 @@ targets set from here are not in it. quiet: no line a step. Raises InputError, a
       },
       arg("joint"), arg("q"), arg("rate") = 0.,
       "From the next step on, until set again: the target of a joint under control, q [rad, m] now "
-      "and moving with `rate`; a number, or one for each coordinate.");
+      "and moving with `rate`; a number, or one for each coordinate. \"NAME 2\" is the second "
+      "coordinate of the joint NAME alone, if it is not that of a ball.");
   run.def(
       "sample",
       [](const Run& self, const Eigen::MatrixXd& points) {

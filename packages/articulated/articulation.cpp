@@ -30,10 +30,9 @@ Articulation<dim>::Articulation(std::vector<JointedBody<dim>> bodies,
         "leave one of them free.",
         joint.name);
     joint.at_begin = {joint.q, Eigen::VectorXd::Zero(joint.q.size())};
-    joint.goal.given = joint.control.given();
-    joint.goal.at_end = joint.at_begin;
-    for (int k = 0; k < joint.q.size() && joint.goal.given; ++k)
-      given_[joint.first_rate + k] = 1;
+    joint.goal = joint.at_begin;
+    for (int k = 0; k < joint.q.size() && joint.control.any_given(); ++k)
+      given_[joint.first_rate + k] = joint.control.given(k) ? 1 : 0;
   }
   n_dofs_ = n_rates_;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -63,20 +62,22 @@ void Articulation<dim>::set_gains() {
     const Eigen::LDLT<Eigen::MatrixXd> root(inertia.topLeftCorner(n_root, n_root));
     for (const int j : mechanism.joints) {
       Joint<dim>& joint = joints_[j];
-      JointControl& control = joint.control;
-      if (!control.natural_frequency || joint.first_rate < 0)
+      if (joint.first_rate < 0)
         continue;
       const auto first = std::find(basis.columns.begin(), basis.columns.end(),
                                    dofs_.first_rate + joint.first_rate);
       for (int k = 0; k < joint.q.size(); ++k) {
+        CoordinateControl& control = joint.control.coordinates[k];
+        if (!control.natural_frequency)
+          continue;
         const Eigen::Index c = first - basis.columns.begin() + k;
         double own = inertia(c, c);
         if (n_root > 0)
           own -= inertia.col(c).head(n_root).dot(
               root.solve(Eigen::VectorXd(inertia.col(c).head(n_root))));
         const double frequency = *control.natural_frequency;
-        control.stiffness[k] = frequency * frequency * own;
-        control.damping[k] = 2 * control.damping_ratio * frequency * own;
+        control.stiffness = frequency * frequency * own;
+        control.damping = 2 * control.damping_ratio * frequency * own;
       }
     }
   }
@@ -92,23 +93,25 @@ Eigen::VectorXd Articulation<dim>::rates_of(const Joint<dim>& joint) const {
 template <int dim>
 bool Articulation<dim>::any_acts() const {
   return std::any_of(joints_.begin(), joints_.end(),
-                     [](const Joint<dim>& joint) { return joint.control.acts(); });
+                     [](const Joint<dim>& joint) { return joint.control.any_acts(); });
 }
 
 template <int dim>
 ControlLaw Articulation<dim>::control(double time, double dt, bool moved) const {
-  ControlLaw all{Eigen::VectorXd::Zero(n_rates_), Eigen::VectorXd::Zero(n_rates_)};
+  ControlLaw all{Eigen::VectorXd::Zero(n_rates_), Eigen::VectorXd::Zero(n_rates_),
+                 std::vector<char>(n_rates_, 0)};
   ControlTimes times{time, dt};
   if (options_.fully_implicit)
     times.middle = 1;
   else
     times.implicit = moved ? 0.5 : 1;
   for (const Joint<dim>& joint : joints_) {
-    if (!joint.control.acts())
+    if (!joint.control.any_acts())
       continue;
     const ControlLaw law = control_law<dim>(joint.kind, joint.control, joint.at_begin, times);
     all.constant.segment(joint.first_rate, law.constant.size()) = law.constant;
     all.slope.segment(joint.first_rate, law.slope.size()) = law.slope;
+    std::copy(law.limited.begin(), law.limited.end(), all.limited.begin() + joint.first_rate);
   }
   return all;
 }
@@ -117,8 +120,8 @@ template <int dim>
 void Articulation<dim>::begin_step(double time, double dt) {
   for (Joint<dim>& joint : joints_) {
     joint.at_begin = {joint.q, rates_of(joint)};
-    if (joint.goal.given)
-      joint.goal.at_end = given_motion<dim>(joint.kind, joint.control, joint.at_begin, time, dt);
+    if (joint.control.any_given())
+      joint.goal = given_motion<dim>(joint.kind, joint.control, joint.at_begin, time, dt);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "articulated/closing.hpp"
 #include "articulated/mechanism.hpp"
 #include "interfaces/constraint.hpp"
+#include "interfaces/limited_torques.hpp"
 #include "interfaces/steering.hpp"
 
 namespace lockstep {
@@ -73,7 +74,7 @@ class Articulation {
 
 /// The ties between the bodies of an articulation.
 template <int dim>
-class JointConstraints : public ConstraintModel, public SteeredJoints {
+class JointConstraints : public ConstraintModel, public SteeredJoints, public LimitedTorques {
  public:
   JointConstraints(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm);
 
@@ -87,6 +88,7 @@ class JointConstraints : public ConstraintModel, public SteeredJoints {
   int largest_block() const override;
   void take_note(const JointImpulses& impulses, double time, double dt) override;
   std::vector<JointState> states(double time) const override;
+  std::vector<char> limited_torques() const override;
   std::string note() const override;
   void set_target(const std::string& joint, double time, const std::vector<double>& q,
                   const std::vector<double>& rate) override;
@@ -102,6 +104,7 @@ class JointConstraints : public ConstraintModel, public SteeredJoints {
   std::shared_ptr<Articulation<dim>> articulation_;
   Communicator comm_;
   Eigen::VectorXd torque_, limit_torque_;  ///< by rate, of the last step
+  std::vector<char> limited_;              ///< likewise: by the largest torque
   double dt_ = 0;                          ///< of the last step [s]; 0: there was none
   bool two_halves_ = false;
 };

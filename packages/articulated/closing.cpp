@@ -53,7 +53,8 @@ class Rows {
       n_rows_ += static_cast<int>(
           held_rows(problem.joints[j].kind, place_of(problem.joints[j], problem.poses).pose)
               .size());
-      n_rows_ += problem.joints[j].goal.given ? n_rates<dim>(problem.joints[j].kind) : 0;
+      for (const CoordinateControl& control : problem.joints[j].control.coordinates)
+        n_rows_ += control.given() ? 1 : 0;
     }
     unit_ = reach(problem.mechanism, problem.joints);
   }
@@ -74,12 +75,14 @@ class Rows {
       const Eigen::VectorXd open = gap(joint.kind, place.pose);
       for (std::size_t k = 0; k < held.size(); ++k)
         set(row++, held[k], open[k], joint, place, poses, rows, gaps);
-      if (!joint.goal.given)
+      if (!joint.control.any_given())
         continue;
       const std::vector<Screw<dim>> rates = rate_rows(joint.kind, place.pose);
-      const Eigen::VectorXd left = distance_to(joint.kind, place.pose, joint.goal.at_end.q);
-      for (std::size_t k = 0; k < rates.size(); ++k)
-        set(row++, rates[k], -left[k], joint, place, poses, rows, gaps);
+      const Eigen::VectorXd left = distance_to(joint.kind, place.pose, joint.goal.q);
+      for (int k = 0; k < left.size(); ++k) {
+        if (joint.control.given(k))
+          set(row++, rates[k], -left[k], joint, place, poses, rows, gaps);
+      }
     }
   }
 

@@ -93,7 +93,7 @@ template <int dim>
 void check_closed(const ClosingProblem<dim>& problem, const std::vector<TwistVector<dim>>& twists) {
   constexpr double open = 1e-3;  // rad, of the mechanism's reach
   const Mechanism& mechanism = problem.mechanism;
-  const auto is_given = [&](int j) { return problem.joints[j].goal.given; };
+  const auto is_given = [&](int j) { return problem.joints[j].control.any_given(); };
   if (mechanism.grounds.empty() &&
       std::none_of(mechanism.joints.begin(), mechanism.joints.end(), is_given))
     return;
@@ -212,10 +212,13 @@ template <int dim>
 std::vector<GivenMotion> JointConstraints<dim>::given_motions() const {
   std::vector<GivenMotion> all;
   for (const Joint<dim>& joint : articulation_->joints()) {
-    if (!joint.goal.given)
+    std::vector<GlobalIndex> dofs;
+    for (int k = 0; k < joint.q.size(); ++k) {
+      if (joint.control.given(k))
+        dofs.push_back(articulation_->dofs().first_rate + joint.first_rate + k);
+    }
+    if (dofs.empty())
       continue;
-    std::vector<GlobalIndex> dofs(joint.q.size());
-    std::iota(dofs.begin(), dofs.end(), articulation_->dofs().first_rate + joint.first_rate);
     all.push_back({"the motor \"" + joint.name + "\"", std::move(dofs)});
   }
   const auto& bodies = articulation_->bodies();
@@ -262,6 +265,7 @@ void JointConstraints<dim>::take_note(const JointImpulses& impulses, double time
   // S1 takes none of the springs' impulses away from S2.
   const ControlLaw springs = articulation_->control(time, dt, true);
   torque_ += springs.constant - springs.slope.cwiseProduct(articulation_->rates());
+  limited_ = springs.limited;
   limit_torque_ = Eigen::VectorXd::Zero(articulation_->n_rates());
   for (const auto& [dof, impulse] : impulses.of_limits)
     limit_torque_[dof - articulation_->dofs().first_rate] += impulse / dt;
@@ -279,13 +283,13 @@ std::vector<JointState> JointConstraints<dim>::states(double time) const {
     const Eigen::VectorXd rates = articulation_->rates_of(joint);
     const auto n = static_cast<int>(joint.q.size());
     Eigen::VectorXd target = joint.q;
-    if (joint.control.target)
-      target = joint.control.target(time).q;
+    if (joint.control.any())
+      target = joint.control.target_at(time).q;
     for (int k = 0; k < n; ++k) {
       state.coordinate = n > 1 ? k + 1 : 0;
       state.q = joint.q[k];
       state.rate = rates[k];
-      state.target = target[k];
+      state.target = joint.control.free(k) ? state.q : target[k];
       state.at_limit = at_limit(joint.limits, joint.q, k);
       if (joint.first_rate >= 0 && dt_ > 0) {
         state.torque = torque_[joint.first_rate + k];
@@ -301,24 +305,67 @@ std::vector<JointState> JointConstraints<dim>::states(double time) const {
 }
 
 template <int dim>
+std::vector<char> JointConstraints<dim>::limited_torques() const {
+  std::vector<char> all;
+  for (const Joint<dim>& joint : articulation_->joints()) {
+    const auto n = std::max<Eigen::Index>(joint.q.size(), 1);  // a weld has an entry too
+    for (Eigen::Index k = 0; k < n; ++k)
+      all.push_back(joint.first_rate >= 0 && joint.q.size() > 0 && !limited_.empty()
+                        ? limited_[joint.first_rate + k]
+                        : 0);
+  }
+  return all;
+}
+
+namespace {
+
+/// The joint of that name; of "NAME k" the joint NAME and its coordinate k, from 0, else -1.
+template <int dim>
+std::pair<Joint<dim>*, int> joint_named(std::vector<Joint<dim>>& joints, const std::string& name) {
+  for (Joint<dim>& joint : joints) {
+    if (joint.name == name)
+      return {&joint, -1};
+    for (int k = 0; k < joint.q.size() && joint.q.size() > 1; ++k) {
+      if (joint.name + " " + std::to_string(k + 1) == name)
+        return {&joint, k};
+    }
+  }
+  throw InputError(fmt::format("There is no joint \"{}\".", name));
+}
+
+/// A straight line through `place` at `time`.
+JointTarget moving_target(double time, const std::vector<double>& place,
+                          const std::vector<double>& speed) {
+  const auto n = static_cast<Eigen::Index>(place.size());
+  const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(place.data(), n);
+  const Eigen::VectorXd rate = Eigen::Map<const Eigen::VectorXd>(speed.data(), n);
+  return [time, q, rate](double t) { return TargetValue{q + (t - time) * rate, rate}; };
+}
+
+}  // namespace
+
+template <int dim>
 void JointConstraints<dim>::set_target(const std::string& name, double time,
                                        const std::vector<double>& q,
                                        const std::vector<double>& rate) {
-  auto& joints = articulation_->joints();
-  const auto joint = std::find_if(joints.begin(), joints.end(),
-                                  [&name](const Joint<dim>& one) { return one.name == name; });
-  check_input(joint != joints.end(), "There is no joint \"{}\".", name);
-  check_input(joint->control.type != ControlType::free,
+  const auto [joint, k] = joint_named(articulation_->joints(), name);
+  JointControl& control = joint->control;
+  check_input(k < 0 ? control.any() : !control.free(k),
               "The joint \"{}\" is free; give it a \"Control\" before a target.", name);
-  const auto n = static_cast<std::size_t>(joint->q.size());
+  const std::size_t n = k < 0 ? joint->q.size() : 1;
   check_input(q.size() == n && rate.size() == n,
               "The target of the joint \"{}\" has {} values and {} rates; it has {} coordinates.",
               name, q.size(), rate.size(), n);
-  const Eigen::VectorXd place = Eigen::Map<const Eigen::VectorXd>(q.data(), joint->q.size());
-  const Eigen::VectorXd speed = Eigen::Map<const Eigen::VectorXd>(rate.data(), joint->q.size());
-  joint->control.target = [time, place, speed](double t) {
-    return TargetValue{place + (t - time) * speed, speed};
-  };
+  check_input(k < 0 || joint->kind.turn != JointTurn::any,
+              "The coordinates of the joint \"{}\" have one target; give it for all of them.",
+              joint->name);
+  if (k >= 0) {
+    control.coordinates[k].own_target = moving_target(time, q, rate);
+    return;
+  }
+  control.target = moving_target(time, q, rate);
+  for (CoordinateControl& one : control.coordinates)
+    one.own_target = nullptr;
 }
 
 template <int dim>

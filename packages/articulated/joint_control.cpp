@@ -1,5 +1,6 @@
 #include "articulated/joint_control.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -19,15 +20,16 @@ Eigen::VectorXd way_to(const JointKind& kind, const Eigen::VectorXd& q,
 
 /// The rates of a joint whose coordinates are those of the target.
 template <int dim>
-Eigen::VectorXd rates_of(const JointKind& kind, const JointTarget& target, double time) {
+Eigen::VectorXd rates_of(const JointKind& kind, const JointControl& control, double time) {
   if (kind.turn != JointTurn::any)
-    return target(time).rate;
+    return control.target_at(time).rate;
   constexpr double by = 1e-5;  // s
-  return way_to<dim>(kind, target(time - by).q, target(time + by).q) / (2 * by);
+  return way_to<dim>(kind, control.target_at(time - by).q, control.target_at(time + by).q) /
+         (2 * by);
 }
 
 /// x and its rate of x'' + 2 ratio frequency x' + frequency^2 x = 0 after dt.
-void oscillate(double frequency, double ratio, double dt, Eigen::VectorXd& x, Eigen::VectorXd& v) {
+void oscillate(double frequency, double ratio, double dt, double& x, double& v) {
   const double decay = ratio * frequency;
   const double square = frequency * frequency - decay * decay;  // of the damped frequency
   const double root = std::sqrt(std::abs(square)), phase = root * dt;
@@ -44,51 +46,22 @@ void oscillate(double frequency, double ratio, double dt, Eigen::VectorXd& x, Ei
     even = 0.5 * (slow + fast);
     odd = 0.5 * (slow - fast) / root;
   }
-  const Eigen::VectorXd before = x;
+  const double before = x;
   x = even * before + odd * (v + decay * before);
   v = (even - decay * odd) * v - frequency * frequency * odd * before;
 }
 
-}  // namespace
-
-void declare_control(ParameterList& joint, int n) {
-  declare_choice(
-      joint, "Control", "free",
-      {"free", "proportional derivative", "prescribed rate", "prescribed"},
-      "What acts on the joint's coordinates. free: nothing; proportional derivative: a spring and "
-      "a "
-      "damper to \"Target\", which yields to loads; prescribed rate: the rates of a mass on such a "
-      "spring, by whatever torque they take; prescribed: \"Target\" itself, likewise.");
-  declare_optional<double>(
-      joint, "Natural Frequency",
-      "Of the oscillator that control makes of the joint, undamped [rad/s]. Springs are that "
-      "squared times the inertia that the joint has at the start without fluid.");
-  declare_at_least(joint, "Damping Ratio", 1.0, 0.0,
-                   "1 is critical, with \"Natural Frequency\" [1].");
-  declare_optional<double>(joint, "Stiffness",
-                           "Of the spring, instead of a frequency [N m/rad, N/m].");
-  declare_at_least(joint, "Damping", 0.0, 0.0,
-                   "Of the damper beside \"Stiffness\" [N m s, N s/m].");
-  declare_optional<double>(joint, "Largest Torque",
-                           "Of spring and damper together [N m, N]. Absent: none.");
-  for (const char* name : {"Natural Frequency", "Largest Torque"})
-    set_positive(joint, name);
-  set_at_least(joint, "Stiffness", 0);
-  declare_target(joint, n);
-}
-
-JointControl read_control(const ParameterList& joint, const std::string& name, int n,
-                          const std::function<double(const ParameterArray<double>&)>& place) {
-  JointControl control;
-  const auto& type = joint.get<std::string>("Control");
+/// `name`: as messages have it.
+CoordinateControl read_one_control(const ParameterList& list, const std::string& name) {
+  CoordinateControl control;
+  const auto& type = list.get<std::string>("Control");
   if (type == "free")
     return control;
   control.type = type == "prescribed"        ? ControlType::prescribed
                  : type == "prescribed rate" ? ControlType::prescribed_rate
                                              : ControlType::proportional_derivative;
-  control.target = read_target(joint, n, place, name);
-  const bool by_frequency = joint.isParameter("Natural Frequency");
-  const bool by_stiffness = joint.isParameter("Stiffness");
+  const bool by_frequency = list.isParameter("Natural Frequency");
+  const bool by_stiffness = list.isParameter("Stiffness");
   check_input(!(by_frequency && by_stiffness),
               "The joint \"{}\" has both \"Natural Frequency\" and \"Stiffness\"; leave out one.",
               name);
@@ -96,27 +69,113 @@ JointControl read_control(const ParameterList& joint, const std::string& name, i
       control.type == ControlType::prescribed || by_frequency || (by_stiffness && control.acts()),
       "The joint \"{}\" is under \"{}\" control, but has no \"Natural Frequency\"; give one{}.",
       name, type, control.acts() ? ", or \"Stiffness\" and \"Damping\"" : "");
-  control.damping_ratio = joint.get<double>("Damping Ratio");
+  control.damping_ratio = list.get<double>("Damping Ratio");
   if (by_frequency)
-    control.natural_frequency = joint.get<double>("Natural Frequency");
-  control.stiffness =
-      Eigen::VectorXd::Constant(n, by_stiffness ? joint.get<double>("Stiffness") : 0);
-  control.damping = Eigen::VectorXd::Constant(n, joint.get<double>("Damping"));
-  if (joint.isParameter("Largest Torque"))
-    control.largest_torque = joint.get<double>("Largest Torque");
+    control.natural_frequency = list.get<double>("Natural Frequency");
+  if (by_stiffness)
+    control.stiffness = list.get<double>("Stiffness");
+  control.damping = list.get<double>("Damping");
+  if (list.isParameter("Largest Torque"))
+    control.largest_torque = list.get<double>("Largest Torque");
+  return control;
+}
+
+}  // namespace
+
+TargetValue JointControl::target_at(double time) const {
+  const auto n = static_cast<Eigen::Index>(coordinates.size());
+  TargetValue value =
+      target ? target(time) : TargetValue{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (!coordinates[k].own_target)
+      continue;
+    const TargetValue own = coordinates[k].own_target(time);
+    value.q[k] = own.q[0];
+    value.rate[k] = own.rate[0];
+  }
+  return value;
+}
+
+bool JointControl::any_given() const {
+  return std::any_of(coordinates.begin(), coordinates.end(),
+                     [](const CoordinateControl& one) { return one.given(); });
+}
+bool JointControl::any_acts() const {
+  return std::any_of(coordinates.begin(), coordinates.end(),
+                     [](const CoordinateControl& one) { return one.acts(); });
+}
+bool JointControl::any() const {
+  return any_given() || any_acts();
+}
+
+std::string coordinate_list(int k) {
+  return "Coordinate " + std::to_string(k + 1);
+}
+
+void declare_control(ParameterList& list, int n) {
+  declare_choice(
+      list, "Control", "free", {"free", "proportional derivative", "prescribed rate", "prescribed"},
+      "What acts on the joint's coordinates. free: nothing; proportional derivative: a spring and "
+      "a "
+      "damper to \"Target\", which yields to loads; prescribed rate: the rates of a mass on such a "
+      "spring, by whatever torque they take; prescribed: \"Target\" itself, likewise.");
+  declare_optional<double>(
+      list, "Natural Frequency",
+      "Of the oscillator that control makes of the joint, undamped [rad/s]. Springs are that "
+      "squared times the inertia that the joint has at the start without fluid.");
+  declare_at_least(list, "Damping Ratio", 1.0, 0.0,
+                   "1 is critical, with \"Natural Frequency\" [1].");
+  declare_optional<double>(list, "Stiffness",
+                           "Of the spring, instead of a frequency [N m/rad, N/m].");
+  declare_at_least(list, "Damping", 0.0, 0.0, "Of the damper beside \"Stiffness\" [N m s, N s/m].");
+  declare_optional<double>(list, "Largest Torque",
+                           "Of spring and damper together [N m, N]. Absent: none.");
+  for (const char* parameter : {"Natural Frequency", "Largest Torque"})
+    set_positive(list, parameter);
+  set_at_least(list, "Stiffness", 0);
+  declare_target(list, n);
+}
+
+template <int dim>
+JointControl read_control(const ParameterList& joint, const std::string& name,
+                          const JointKind& kind,
+                          const std::function<double(const ParameterArray<double>&)>& place) {
+  const int n = n_rates<dim>(kind);
+  JointControl control;
+  control.coordinates.assign(n, read_one_control(joint, name));
+  if (control.any())
+    control.target = read_target(joint, n, place, name);
+  for (int k = 0; k < n && has_separate_coordinates<dim>(kind); ++k) {
+    if (!joint.isSublist(coordinate_list(k)))
+      continue;
+    const ParameterList& list = joint.sublist(coordinate_list(k));
+    const std::string own_name = name + "/" + coordinate_list(k);
+    control.coordinates[k] = read_one_control(list, own_name);
+    if (!control.coordinates[k].free())
+      control.coordinates[k].own_target = read_target(list, 1, place, own_name);
+  }
   return control;
 }
 
 template <int dim>
 TargetValue given_motion(const JointKind& kind, const JointControl& control,
                          const TargetValue& present, double time, double dt) {
-  TargetValue end{control.target(time + dt).q, rates_of<dim>(kind, control.target, time + dt)};
-  if (control.type == ControlType::prescribed)
-    return end;
+  TargetValue end{control.target_at(time + dt).q, rates_of<dim>(kind, control, time + dt)};
   // The way to the target is what oscillates.
-  Eigen::VectorXd way = -way_to<dim>(kind, present.q, control.target(time).q);
-  Eigen::VectorXd rate = present.rate - rates_of<dim>(kind, control.target, time);
-  oscillate(*control.natural_frequency, control.damping_ratio, dt, way, rate);
+  Eigen::VectorXd way = -way_to<dim>(kind, present.q, control.target_at(time).q);
+  Eigen::VectorXd rate = present.rate - rates_of<dim>(kind, control, time);
+  bool oscillates = false;
+  for (Eigen::Index k = 0; k < way.size(); ++k) {
+    const CoordinateControl& one = control.coordinates[k];
+    if (one.type == ControlType::prescribed_rate) {
+      oscillate(*one.natural_frequency, one.damping_ratio, dt, way[k], rate[k]);
+      oscillates = true;
+    } else {
+      way[k] = rate[k] = 0;
+    }
+  }
+  if (!oscillates)
+    return end;
   end.q = advanced<dim>(kind, end.q, way);
   end.rate += rate;
   return end;
@@ -126,27 +185,33 @@ template <int dim>
 ControlLaw control_law(const JointKind& kind, const JointControl& control,
                        const TargetValue& present, const ControlTimes& times) {
   const double lead = times.middle * times.dt, middle = times.time + lead;
-  const Eigen::VectorXd way = way_to<dim>(kind, present.q, control.target(middle).q);
-  const Eigen::VectorXd wanted = rates_of<dim>(kind, control.target, middle);
-  const auto& stiffness = control.stiffness;
-  const auto& damping = control.damping;
-  ControlLaw law;
+  const Eigen::VectorXd way = way_to<dim>(kind, present.q, control.target_at(middle).q);
+  const Eigen::VectorXd wanted = rates_of<dim>(kind, control, middle);
   const double explicit_part = 1 - times.implicit;
-  law.constant =
-      stiffness.cwiseProduct(way) + damping.cwiseProduct(wanted - explicit_part * present.rate);
-  law.slope = lead * stiffness + (1 - explicit_part) * damping;
-  const Eigen::VectorXd expected = stiffness.cwiseProduct(way - lead * present.rate) +
-                                   damping.cwiseProduct(wanted - present.rate);
-  for (Eigen::Index k = 0; k < expected.size(); ++k) {
-    if (std::abs(expected[k]) <= control.largest_torque)
+  const Eigen::Index n = way.size();
+  ControlLaw law{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), std::vector<char>(n, 0)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const CoordinateControl& one = control.coordinates[k];
+    if (!one.acts())
       continue;
-    law.constant[k] = std::copysign(control.largest_torque, expected[k]);
+    const double rate = present.rate[k];
+    law.constant[k] = one.stiffness * way[k] + one.damping * (wanted[k] - explicit_part * rate);
+    law.slope[k] = lead * one.stiffness + (1 - explicit_part) * one.damping;
+    const double expected =
+        one.stiffness * (way[k] - lead * rate) + one.damping * (wanted[k] - rate);
+    if (std::abs(expected) <= one.largest_torque)
+      continue;
+    law.constant[k] = std::copysign(one.largest_torque, expected);
     law.slope[k] = 0;
-    law.limited = true;
+    law.limited[k] = 1;
   }
   return law;
 }
 
+template JointControl read_control<2>(const ParameterList&, const std::string&, const JointKind&,
+                                      const std::function<double(const ParameterArray<double>&)>&);
+template JointControl read_control<3>(const ParameterList&, const std::string&, const JointKind&,
+                                      const std::function<double(const ParameterArray<double>&)>&);
 template TargetValue given_motion<2>(const JointKind&, const JointControl&, const TargetValue&,
                                      double, double);
 template TargetValue given_motion<3>(const JointKind&, const JointControl&, const TargetValue&,

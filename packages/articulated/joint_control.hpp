@@ -2,6 +2,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "articulated/joint_kind.hpp"
 #include "articulated/joint_target.hpp"
@@ -12,38 +13,58 @@ namespace lockstep {
 /// prescribed_rate: the rates of such an oscillator, whatever they take. prescribed: the target.
 enum class ControlType { free, proportional_derivative, prescribed_rate, prescribed };
 
-/// What acts on the coordinates of a joint, alike on all of them.
-struct JointControl {
+/// What acts on a coordinate of a joint.
+struct CoordinateControl {
   ControlType type = ControlType::free;
-  JointTarget target;
   /// Of the oscillator [rad/s], [1]; gains are that times the inertia that the joint has at the
   /// start. Without it, gains are given.
   std::optional<double> natural_frequency;
   double damping_ratio = 1;
-  Eigen::VectorXd stiffness, damping;  ///< gains, by coordinate [N m/rad, N/m], times s
+  double stiffness = 0, damping = 0;  ///< gains [N m/rad, N/m], times s
   double largest_torque = std::numeric_limits<double>::infinity();  ///< [N m, N]
+  JointTarget own_target;  ///< of this coordinate alone; null: it has that of the joint
 
+  bool free() const { return type == ControlType::free; }
   bool given() const {
     return type == ControlType::prescribed || type == ControlType::prescribed_rate;
   }
   bool acts() const { return type == ControlType::proportional_derivative; }
 };
 
-/// Declares it in the list of a joint with n coordinates.
-void declare_control(ParameterList& joint, int n);
+/// Of all coordinates of a joint. Those of a ball are alike.
+struct JointControl {
+  std::vector<CoordinateControl> coordinates;
+  JointTarget target;  ///< of all that have none of their own; may be null, if there are none
+
+  /// Of all; what it says of free ones means nothing.
+  TargetValue target_at(double time) const;
+  bool free(int k) const { return coordinates[k].free(); }
+  bool given(int k) const { return coordinates[k].given(); }
+  bool any_given() const;
+  bool any_acts() const;
+  bool any() const;  ///< not all are free
+};
+
+/// Declares what acts on n coordinates alike.
+void declare_control(ParameterList& list, int n);
+/// The list of what one coordinate has instead; k: from 0.
+std::string coordinate_list(int k);
 /// Of a validated joint; `place`: see `read_target`. Throws InputError.
-JointControl read_control(const ParameterList& joint, const std::string& name, int n,
+template <int dim>
+JointControl read_control(const ParameterList& joint, const std::string& name,
+                          const JointKind& kind,
                           const std::function<double(const ParameterArray<double>&)>& place);
 
-/// Where a joint is to be after dt, and how fast, if that is given.
+/// Where the given coordinates of a joint are to be after dt, and how fast; of the others what it
+/// says means nothing.
 template <int dim>
 TargetValue given_motion(const JointKind& kind, const JointControl& control,
                          const TargetValue& present, double time, double dt);
 
-/// Spring and damper over a step: torque = `constant` - `slope` rate.
+/// Springs and dampers over a step, by coordinate: torque = `constant` - `slope` rate.
 struct ControlLaw {
   Eigen::VectorXd constant, slope;
-  bool limited = false;  ///< by the largest torque: then no slope
+  std::vector<char> limited;  ///< by the largest torque: then no slope
 };
 /// Where in a step springs and dampers act.
 struct ControlTimes {

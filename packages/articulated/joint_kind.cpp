@@ -158,6 +158,11 @@ int n_rates(const JointKind& kind) {
 }
 
 template <int dim>
+bool has_separate_coordinates(const JointKind& kind) {
+  return n_rates<dim>(kind) > 1 && kind.turn != JointTurn::any;
+}
+
+template <int dim>
 std::vector<Screw<dim>> free_screws(const JointKind& kind, const RelativePose<dim>& pose) {
   std::vector<Screw<dim>> screws;
   for (const int axis : kind.slides)
@@ -262,6 +267,8 @@ template std::vector<DescribedKind> joint_kinds<2>();
 template std::vector<DescribedKind> joint_kinds<3>();
 template int n_rates<2>(const JointKind&);
 template int n_rates<3>(const JointKind&);
+template bool has_separate_coordinates<2>(const JointKind&);
+template bool has_separate_coordinates<3>(const JointKind&);
 template std::vector<Screw<2>> free_screws(const JointKind&, const RelativePose<2>&);
 template std::vector<Screw<3>> free_screws(const JointKind&, const RelativePose<3>&);
 template std::vector<Screw<2>> rate_rows(const JointKind&, const RelativePose<2>&);

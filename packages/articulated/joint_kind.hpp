@@ -46,6 +46,10 @@ std::vector<DescribedKind> joint_kinds();
 
 template <int dim>
 int n_rates(const JointKind& kind);
+/// Whether it has several coordinates that mean something one by one, unlike those of a rotation
+/// vector.
+template <int dim>
+bool has_separate_coordinates(const JointKind& kind);
 
 /// The motions that its rates stand for, one a rate.
 template <int dim>

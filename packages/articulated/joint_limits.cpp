@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "articulated/joint_control.hpp"
 #include "base/errors.hpp"
 #include "motion/list_values.hpp"
 
@@ -17,20 +18,27 @@ bool turns_about_any(const JointKind& kind) {
   return kind.turn == JointTurn::any && n_rotations<dim> > 1;
 }
 
-/// Of all coordinates; `absent` where there is none.
+/// Of all coordinates, those that one has alone before those of all; `absent` where there is none.
 Eigen::VectorXd bounds(const ParameterList& joint, const std::string& name, const std::string& side,
                        int n, double absent) {
   Eigen::VectorXd values = Eigen::VectorXd::Constant(n, absent);
-  if (!joint.isParameter(side))
-    return values;
   if (n == 1) {
-    values[0] = joint.get<double>(side);
+    if (joint.isParameter(side))
+      values[0] = joint.get<double>(side);
     return values;
   }
-  const auto& all = joint.get<ParameterArray<double>>(side);
-  check_input(all.size() == n, "The \"{}\" of the joint \"{}\" has {} numbers; give {}.", side,
-              name, all.size(), n);
-  return Eigen::Map<const Eigen::VectorXd>(all.getRawPtr(), n);
+  if (joint.isParameter(side)) {
+    const auto& all = joint.get<ParameterArray<double>>(side);
+    check_input(all.size() == n, "The \"{}\" of the joint \"{}\" has {} numbers; give {}.", side,
+                name, all.size(), n);
+    values = Eigen::Map<const Eigen::VectorXd>(all.getRawPtr(), n);
+  }
+  for (int k = 0; k < n; ++k) {
+    const std::string own = coordinate_list(k);
+    if (joint.isSublist(own) && joint.sublist(own).isParameter(side))
+      values[k] = joint.sublist(own).get<double>(side);
+  }
+  return values;
 }
 
 }  // namespace
@@ -45,15 +53,19 @@ void declare_limits(ParameterList& joint, const JointKind& kind) {
     set_between(joint, "Upper Limit", 0, 3.14159);
     return;
   }
+  declare_limit_pair(joint, n);
+}
+
+void declare_limit_pair(ParameterList& list, int n) {
   for (const auto& [side, least] :
        {std::pair{"Lower Limit", "least"}, {"Upper Limit", "largest"}}) {
     const std::string doc =
         fmt::format("The {} that {} may be [rad, m]; 0 at the start. Absent: none.", least,
                     n == 1 ? "the coordinate" : "each of the coordinates");
     if (n == 1)
-      declare_optional<double>(joint, side, doc);
+      declare_optional<double>(list, side, doc);
     else
-      declare_optional<ParameterArray<double>>(joint, side, doc);
+      declare_optional<ParameterArray<double>>(list, side, doc);
   }
 }
 
@@ -68,11 +80,13 @@ JointLimits read_limits(const ParameterList& joint, const std::string& name,
                 "The joint \"{}\" may turn by 0 at most, about any axis; make it a weld.", name);
     return limits;
   }
-  if (!joint.isParameter("Lower Limit") && !joint.isParameter("Upper Limit"))
-    return limits;
   const int n = n_rates<dim>(kind);
-  limits.lower = bounds(joint, name, "Lower Limit", n, -none);
-  limits.upper = bounds(joint, name, "Upper Limit", n, none);
+  const Eigen::VectorXd lowest = bounds(joint, name, "Lower Limit", n, -none);
+  const Eigen::VectorXd highest = bounds(joint, name, "Upper Limit", n, none);
+  if (n == 0 || (lowest.maxCoeff() == -none && highest.minCoeff() == none))
+    return limits;
+  limits.lower = lowest;
+  limits.upper = highest;
   for (int k = 0; k < n; ++k) {
     const double lower = limits.lower[k], upper = limits.upper[k];
     check_input(lower <= upper, "The joint \"{}\" has its lower limit {} above its upper limit {}.",

@@ -14,12 +14,19 @@ struct JointLimits {
   Eigen::VectorXd lower, upper;  ///< by coordinate [rad, m]; infinite: none
   /// Of a ball, from the start about any axis [rad]; infinite: none.
   double largest_turn = std::numeric_limits<double>::infinity();
+  /// Whether coordinate k has one.
+  bool bounds(int k) const {
+    return std::isfinite(largest_turn) ||
+           (lower.size() > 0 && (std::isfinite(lower[k]) || std::isfinite(upper[k])));
+  }
   bool any() const { return lower.size() > 0 || std::isfinite(largest_turn); }
 };
 
 /// Declares them in the list of a joint of this kind.
 template <int dim>
 void declare_limits(ParameterList& joint, const JointKind& kind);
+/// Of n coordinates alike.
+void declare_limit_pair(ParameterList& list, int n);
 /// Of a validated joint. Throws InputError.
 template <int dim>
 JointLimits read_limits(const ParameterList& joint, const std::string& name, const JointKind& kind);

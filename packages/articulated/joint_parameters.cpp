@@ -53,7 +53,12 @@ class BodyFinder {
         check_input(other.empty(), "\"{}\" is jointed, so it has no \"{}\"; use a joint to \"{}\".",
                     name, other, name_of_space);
         const GlobalIndex own = jointable->first_dof(number);
-        return {name, jointable, number, own == no_index ? no_index : first + own};
+        return {name,
+                jointable,
+                number,
+                own == no_index ? no_index : first + own,
+                jointable->rigid_frame(number).mass(0, 0),
+                solids[s].simplex_end > solids[s].simplex_begin};
       }
       first += static_cast<GlobalIndex>(model->dof_map()->getGlobalNumElements());
     }
@@ -134,7 +139,31 @@ ParameterList parameters_of(const JointKind& kind) {
     declare_control(list, n_rates<dim>(kind));
     declare_limits<dim>(list, kind);
   }
+  for (int k = 0; k < n_rates<dim>(kind) && has_separate_coordinates<dim>(kind); ++k) {
+    const bool slides = k < static_cast<int>(kind.slides.size());
+    ParameterList& own = declare_optional_list(
+        list, coordinate_list(k),
+        fmt::format("Control of this {} alone, in place of the joint's; limits, where it has them, "
+                    "likewise.",
+                    slides ? "displacement" : "angle"));
+    declare_control(own, 1);
+    declare_limit_pair(own, 1);
+  }
   return list;
+}
+
+/// No limit stops a coordinate that is given.
+template <int dim>
+void check_limits(const Joint<dim>& joint) {
+  for (int k = 0; k < static_cast<int>(joint.control.coordinates.size()); ++k) {
+    const CoordinateControl& control = joint.control.coordinates[k];
+    check_input(
+        !control.given() || !joint.limits.bounds(k),
+        "The joint \"{}\" is under \"{}\" control, which no limit stops; leave out its "
+        "limits{}.",
+        joint.name, control.type == ControlType::prescribed ? "prescribed" : "prescribed rate",
+        joint.control.coordinates.size() > 1 ? fmt::format(" of coordinate {}", k + 1) : "");
+  }
 }
 
 template <int dim>
@@ -174,13 +203,9 @@ Joint<dim> read_joint(const std::string& name, const ParameterList& list, BodyFi
     return point.dot(along.normalized());
   };
   if (n_rates<dim>(joint.kind) > 0)
-    joint.control = read_control(list, name, n_rates<dim>(joint.kind), place);
+    joint.control = read_control<dim>(list, name, joint.kind, place);
   joint.limits = read_limits<dim>(list, name, joint.kind);
-  if (joint.limits.any())
-    check_input(!joint.control.given(),
-                "The joint \"{}\" is under \"{}\" control, which no limit stops; leave out its "
-                "limits.",
-                name, list.get<std::string>("Control"));
+  check_limits(joint);
   check_input(movable, "The joint \"{}\" connects two prescribed solids; nothing can move it.",
               name);
   return joint;

@@ -83,13 +83,16 @@ template <int dim>
 std::vector<double> JointRates<dim>::locked_velocities(double begin, double end) const {
   std::vector<double> values;
   for (const Joint<dim>& joint : articulation_->joints()) {
-    if (!joint.goal.given || !is_root(comm_))
+    if (!joint.control.any_given() || !is_root(comm_))
       continue;
-    Eigen::VectorXd rates = joint.goal.at_end.rate;
+    Eigen::VectorXd rates = joint.goal.rate;
     if (end > begin)
-      rates = distance_to(joint.kind, pose_of<dim>(joint.kind, joint.q), joint.goal.at_end.q) /
-              (end - begin);
-    values.insert(values.end(), rates.data(), rates.data() + rates.size());
+      rates =
+          distance_to(joint.kind, pose_of<dim>(joint.kind, joint.q), joint.goal.q) / (end - begin);
+    for (int k = 0; k < rates.size(); ++k) {
+      if (joint.control.given(k))
+        values.push_back(rates[k]);
+    }
   }
   const auto& bodies = articulation_->bodies();
   for (int b = 0; b < static_cast<int>(bodies.size()) && is_root(comm_); ++b) {

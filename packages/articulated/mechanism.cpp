@@ -135,24 +135,28 @@ class TreeMotion {
   MotionBasis<dim> basis_;
 };
 
-/// What loops hold, over the columns of the tree. Lengths count in `unit`.
+/// What loops hold, over the columns of the tree. Lengths count in `unit`. `size`: of the motions
+/// of sides that rows compare; where a loop says nothing new these cancel to round-off.
 template <int dim>
 Eigen::MatrixXd loop_rows(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints,
                           const std::vector<BodyPose<dim>>& poses, const TreeMotion<dim>& tree,
-                          double unit) {
+                          double unit, double& size) {
   std::vector<Eigen::RowVectorXd> rows;
+  size = 0;
   for (const int j : mechanism.loops) {
     const JointPlace<dim> place = place_of(joints[j], poses);
     for (const Screw<dim>& held : held_rows(joints[j].kind, place.pose)) {
+      const double scale = held.linear.isZero(0) ? 1 : 1 / unit;
       Eigen::RowVectorXd row;
       for (int side = 0; side < 2; ++side) {
         const int body = joints[j].sides[side].body;
         const TwistVector<dim> reads =
             row_on_side(held, place, side, pose_of(poses, body).position);
-        const Eigen::RowVectorXd part = reads.transpose() * tree.twists(body);
+        const Eigen::RowVectorXd part = scale * reads.transpose() * tree.twists(body);
+        size = std::max(size, part.template lpNorm<Eigen::Infinity>());
         row = side == 0 ? part : Eigen::RowVectorXd(row + part);
       }
-      rows.push_back(held.linear.isZero(0) ? row : Eigen::RowVectorXd(row / unit));
+      rows.push_back(std::move(row));
     }
   }
   Eigen::MatrixXd all(rows.size(), rows.empty() ? 0 : rows.front().size());
@@ -180,13 +184,14 @@ MotionBasis<dim> motion_basis(const Mechanism& mechanism,
                               const std::vector<Joint<dim>>& joints,
                               const std::vector<BodyPose<dim>>& poses, const RateDofs& dofs,
                               const std::vector<char>& given) {
-  constexpr double dependent = 1e-9;  // of the largest pivot
+  constexpr double dependent = 1e-9;  // of the motions that are compared
   TreeMotion<dim> tree(mechanism, bodies, joints, poses, dofs);
   MotionBasis<dim>& basis = tree.basis();
   if (mechanism.loops.empty())
     return basis;
+  double size = 0;
   const Eigen::MatrixXd all =
-      loop_rows(mechanism, joints, poses, tree, extent(mechanism, joints, poses));
+      loop_rows(mechanism, joints, poses, tree, extent(mechanism, joints, poses), size);
   // A free root moves all sides of all loops alike: its columns are round-off.
   std::vector<int> free, held;
   const GlobalIndex n_all = static_cast<GlobalIndex>(given.size());
@@ -204,8 +209,8 @@ MotionBasis<dim> motion_basis(const Mechanism& mechanism,
   for (std::size_t k = 0; k < free.size(); ++k)
     of_free.col(static_cast<Eigen::Index>(k)) = all.col(free[k]);
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(of_free);
-  qr.setThreshold(dependent);
-  const Eigen::Index rank = qr.rank();
+  const auto pivots = qr.matrixQR().diagonal().cwiseAbs();
+  const Eigen::Index rank = (pivots.array() > dependent * size).count();
   const Eigen::MatrixXd rotated = qr.householderQ().transpose() * all;
   const auto order = qr.colsPermutation().indices();
   const auto upper =

@@ -23,6 +23,8 @@ struct JointedBody {
   const JointableSolids<dim>* model = nullptr;
   int solid = -1;                    ///< its number there
   GlobalIndex first_dof = no_index;  ///< in the stack of all solids; no_index: prescribed
+  double mass = 0;                   ///< [kg]
+  bool in_fluid = false;             ///< which adds to its mass
   bool prescribed() const { return first_dof == no_index; }
 };
 
@@ -42,12 +44,6 @@ struct JointSide {
   Axes<dim> axes = Axes<dim>::Identity();
 };
 
-/// Coordinates of a joint that are given at the end of a step, and their rates there.
-struct JointGoal {
-  bool given = false;
-  TargetValue at_end;
-};
-
 template <int dim>
 struct Joint {
   std::string name;
@@ -58,9 +54,9 @@ struct Joint {
   int first_rate = -1;   ///< among those of all joints; -1: it closes a loop and has none
   Eigen::VectorXd q;     ///< present coordinates
   TargetValue at_begin;  ///< of the step: coordinates and rates
-  JointGoal goal;        ///< of the step
+  TargetValue goal;      ///< where given coordinates are at the step's end
 
-  bool wants_rates() const { return control.type != ControlType::free || limits.any(); }
+  bool wants_rates() const { return control.any() || limits.any(); }
 };
 
 /// Where a joint and its two sides are in space.
@@ -82,8 +78,8 @@ struct Mechanism {
 };
 
 /// Spanning trees: rooted in space and in prescribed bodies if a joint leads there, else in the
-/// body that its first joint names first. Joints that want rates are in the tree before others;
-/// the tree's joints get the numbers of their rates.
+/// body that its first joint names first, or, if no fluid sees that, a much heavier one. Joints
+/// that want rates are in the tree before others; the tree's joints get the numbers of their rates.
 template <int dim>
 std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodies,
                                        std::vector<Joint<dim>>& joints);

@@ -58,22 +58,44 @@ void grow(Mechanism& mechanism, const std::vector<JointedBody<dim>>& bodies,
   }
 }
 
-/// Trees that hang on the ground by one joint; other joints to the ground close loops.
 template <int dim>
-Mechanism grown_from(int joint, const std::vector<JointedBody<dim>>& bodies,
+Mechanism grown_from(int start, int carrier, const std::vector<JointedBody<dim>>& bodies,
                      const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
                      std::vector<char>& reached) {
   Mechanism mechanism;
-  const auto& sides = joints[joint].sides;
-  const bool first_is_ground = is_ground(bodies, sides[0].body);
-  const bool on_ground = first_is_ground || is_ground(bodies, sides[1].body);
-  const int start = sides[first_is_ground ? 1 : 0].body;
-  mechanism.root = on_ground ? space : start;
+  mechanism.root = carrier >= 0 ? space : start;
   mechanism.bodies.push_back(start);
-  mechanism.carriers.push_back(on_ground ? joint : -1);
+  mechanism.carriers.push_back(carrier);
   reached[start] = 1;
   grow(mechanism, bodies, joints, in_tree, reached);
   return mechanism;
+}
+
+/// Trees that hang on the ground by this joint (other joints to the ground close loops), or free
+/// ones. Where a body much heavier than the others is the root, no rate moves it, and what the
+/// light ones have of inertia is not lost in its. What fluid sees is heavier than it looks and
+/// stays the root.
+template <int dim>
+Mechanism tree_with(int joint, const std::vector<JointedBody<dim>>& bodies,
+                    const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
+                    std::vector<char>& reached) {
+  constexpr double much = 10;
+  const auto& sides = joints[joint].sides;
+  const bool first_is_ground = is_ground(bodies, sides[0].body);
+  const int start = sides[first_is_ground ? 1 : 0].body;
+  if (first_is_ground || is_ground(bodies, sides[1].body))
+    return grown_from(start, joint, bodies, joints, in_tree, reached);
+  Mechanism mechanism = grown_from(start, -1, bodies, joints, in_tree, reached);
+  if (bodies[start].in_fluid)
+    return mechanism;
+  const int heaviest = *std::max_element(
+      mechanism.bodies.begin(), mechanism.bodies.end(),
+      [&bodies](int one, int other) { return bodies[one].mass < bodies[other].mass; });
+  if (bodies[heaviest].mass <= much * bodies[start].mass)
+    return mechanism;
+  for (const int body : mechanism.bodies)
+    reached[body] = 0;
+  return grown_from(heaviest, -1, bodies, joints, in_tree, reached);
 }
 
 }  // namespace
@@ -91,7 +113,7 @@ std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodi
       const bool touches = is_ground(bodies, first) || is_ground(bodies, second);
       const int start = is_ground(bodies, first) ? second : first;
       if (in_tree[j] && touches == on_ground && !reached[start])
-        mechanisms.push_back(grown_from(static_cast<int>(j), bodies, joints, in_tree, reached));
+        mechanisms.push_back(tree_with(static_cast<int>(j), bodies, joints, in_tree, reached));
     }
   }
   int n_all = 0;

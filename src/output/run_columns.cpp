@@ -128,7 +128,8 @@ std::vector<HistoryColumn> joint_columns() {
           {"limit_torque", "N m, N", "of limits on the second solid, mean over the step"},
           {"gap", "m, rad", "how far the joint is open"},
           {"two_halves", "1", "1: half of its impulse acted where the step began; 0: none did"},
-          {"at_limit", "1", "1: the coordinate is at a limit, or beyond"}};
+          {"at_limit", "1", "1: the coordinate is at a limit, or beyond"},
+          {"limited", "1", "1: the torque is the largest that control may give"}};
 }
 
 template std::vector<HistoryColumn> history_columns<2>(bool, const std::vector<std::string>&, bool,

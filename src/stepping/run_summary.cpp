@@ -70,6 +70,17 @@ void RunSummary::count(const SolveReport& s1, const SolveReport& f2, const Solve
   }
 }
 
+void RunSummary::count(const std::vector<JointState>& joints,
+                       const std::vector<char>& limited_torques) {
+  const bool at_end = std::any_of(joints.begin(), joints.end(),
+                                  [](const JointState& joint) { return !joint.two_halves; });
+  const bool limited = std::any_of(limited_torques.begin(), limited_torques.end(),
+                                   [](char one) { return one != 0; });
+  has_joints_ = true;
+  end_impulses_ += at_end ? 1 : 0;
+  limited_torques_ += limited ? 1 : 0;
+}
+
 nlohmann::ordered_json RunSummary::json(const nlohmann::ordered_json& header, const RunFacts& run,
                                         const std::vector<PhaseTime>& phases,
                                         const Communicator& comm) const {
@@ -104,6 +115,9 @@ nlohmann::ordered_json RunSummary::json(const nlohmann::ordered_json& header, co
                                         {"peak_memory_mb", memory.all_ranks_mb},
                                         {"peak_memory_largest_rank_mb", memory.largest_rank_mb},
                                         {"phases", phase_times}});
+  if (has_joints_)
+    summary["joints"] = {{"steps_of_end_impulses", end_impulses_},
+                         {"steps_of_limited_torques", limited_torques_}};
   return summary;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "interfaces/constraint.hpp"
 #include "output/timers.hpp"
 #include "stepping/step_report.hpp"
 
@@ -37,6 +38,8 @@ class RunSummary {
     largest_momentum_error_ = larger(report.momentum_error, largest_momentum_error_);
     largest_angular_error_ = larger(report.angular_momentum_error, largest_angular_error_);
   }
+  /// After a step.
+  void count(const std::vector<JointState>& joints, const std::vector<char>& limited_torques);
   /// Collective.
   nlohmann::ordered_json json(const nlohmann::ordered_json& header, const RunFacts& run,
                               const std::vector<PhaseTime>& phases, const Communicator& comm) const;
@@ -50,6 +53,8 @@ class RunSummary {
   double largest_momentum_error_ = 0, largest_angular_error_ = 0, worst_residual_ = 0;
   int preconditioner_builds_ = 0, preconditioner_reuses_ = 0;
   long stored_nonzeros_ = 0;
+  bool has_joints_ = false;
+  long end_impulses_ = 0, limited_torques_ = 0;  ///< steps
 };
 
 }  // namespace lockstep

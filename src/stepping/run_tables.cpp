@@ -111,15 +111,18 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
 
 template <int dim>
 void RunTables<dim>::append_joints(long long step, double time,
-                                   const std::vector<JointState>& joints) {
+                                   const std::vector<JointState>& joints,
+                                   const std::vector<char>& limited) {
   std::vector<std::vector<HistoryValue>> rows;
-  for (const JointState& joint : joints) {
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const JointState& joint = joints[k];
     std::vector<HistoryValue> row;
     const std::string number = joint.coordinate > 0 ? " " + std::to_string(joint.coordinate) : "";
     append_each(row, step, time, joint.name + number, joint.q, joint.rate, joint.target,
                 joint.torque, joint.power, joint.limit_torque, joint.gap,
                 static_cast<long long>(joint.two_halves ? 1 : 0),
-                static_cast<long long>(joint.at_limit ? 1 : 0));
+                static_cast<long long>(joint.at_limit ? 1 : 0),
+                static_cast<long long>(limited[k] != 0 ? 1 : 0));
     rows.push_back(std::move(row));
   }
   joints_->append_rows(rows);

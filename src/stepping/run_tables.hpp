@@ -23,7 +23,9 @@ class RunTables {
   void append(long long step, const StepReport<dim>& report,
               const std::vector<SolidState<dim>>& states, double wall_seconds);
   /// Likewise. Only with joints.
-  void append_joints(long long step, double time, const std::vector<JointState>& joints);
+  /// `limited`: by coordinate, whether its torque was the largest.
+  void append_joints(long long step, double time, const std::vector<JointState>& joints,
+                     const std::vector<char>& limited);
   const std::vector<HistoryColumn>& columns() const {
     return history_.columns();
   }  ///< of history.csv

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "base/interruption.hpp"
+#include "interfaces/limited_torques.hpp"
 #include "interfaces/liquid.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
@@ -304,12 +305,25 @@ bool Simulation<dim>::step() {
   return taken;
 }
 
+namespace {
+/// By coordinate; none are where joints know nothing of it.
+std::vector<char> limited_torques(const ConstraintModel& joints, std::size_t n_coordinates) {
+  if (const auto* model = side_of<LimitedTorques>(joints))
+    return model->limited_torques();
+  return std::vector<char>(n_coordinates, 0);
+}
+}  // namespace
+
 template <int dim>
 void Simulation<dim>::write_rows() {
   const std::vector<SolidState<dim>> states = components_.solids->states();
   tables_.append(step_, *report_, states, step_seconds_);
-  if (const ConstraintModel* joints = components_.solids->joints())
-    tables_.append_joints(step_, report_->time, joints->states(report_->time));
+  if (const ConstraintModel* joints = components_.solids->joints()) {
+    const std::vector<JointState> coordinates = joints->states(report_->time);
+    const std::vector<char> limited = limited_torques(*joints, coordinates.size());
+    tables_.append_joints(step_, report_->time, coordinates, limited);
+    summary_.count(coordinates, limited);
+  }
   if (!observers_.empty()) {
     ScopedPhase phase(timers_, "observers");
     observers_.observe(step_, view(states));

@@ -1,4 +1,5 @@
 """Scenes of jointed bodies, and what comes of them."""
+import json
 import sys
 import tempfile
 from pathlib import Path
@@ -56,6 +57,13 @@ def run(scene, ranks=1, arguments=(), folder=None):
         for row in table(output / "bodies.csv"):
             bodies.setdefault(row["name"], []).append(row)
         return table(output / "history.csv"), bodies
+
+
+def summary_of(scene, ranks=1, arguments=()):
+    """summary.json."""
+    with tempfile.TemporaryDirectory() as folder:
+        run(scene, ranks, arguments, folder)
+        return json.loads((Path(folder) / "output/summary.json").read_text())
 
 
 def joints_of(scene, arguments=()):

@@ -4,26 +4,16 @@ import math
 import unittest
 
 import numpy as np
-from jointed_scene import joint, joints_of, run, tank, unseen_box, vacuum
-
-ARM = {"A": unseen_box((0., 0.), 0.)}
-INERTIA = (1 + .2 ** 2) / 12 + .5 ** 2  # about the hinge
-
-
-def arm(step, end, load=0., **control):
-    solids = {"A": {**ARM["A"], "Torque": load}}
-    return vacuum(solids, {"H": joint("hinge", ("space", "A"), (-.5, 0.), **control)}, step, end)
-
-
-def spring(step, ratio=1., **more):
-    return arm(step, 2., Control="proportional derivative", Target={"Type": "constant", "Value": 1.},
-               **{"Natural Frequency": 1., "Damping Ratio": ratio, **more})
-
+from joint_cases import ARM_INERTIA as INERTIA
+from joint_cases import motor_arm as arm
+from joint_cases import sprung_arm as spring
+from joint_cases import swimmer, swum
+from jointed_scene import joint, joints_of, run, summary_of, unseen_box, vacuum
 
 class Control(unittest.TestCase):
     def test_a_spring_takes_the_joint_to_its_target(self):
         """Critically damped: (1 + t) e^-t of the way is left."""
-        for step, bound in ((.5, .0052), (.25, .00135), (.125, .00034)):
+        for step, bound in ((.5, .005), (.25, .00135), (.125, .00033)):
             last = joints_of(spring(step))["H"][-1]
             self.assertLess(abs(last["q"] - (1 - 3 * math.exp(-2))), bound)
 
@@ -66,11 +56,22 @@ class Control(unittest.TestCase):
         self.assertAlmostEqual(last["torque"], -load, delta=4e-3)
 
     def test_torques_have_a_bound(self):
-        """Short of the target the largest torque turns the arm evenly."""
-        rows = joints_of(arm(.05, 1., Control="proportional derivative", Stiffness=1e4, Damping=0.,
-                             **{"Largest Torque": .1, "Target": {"Type": "constant", "Value": 3.}}))["H"]
+        """Short of the target the largest torque turns the arm evenly; a softer spring comes below it. Steps are counted."""
+        bounded = arm(.05, 1., Control="proportional derivative", Stiffness=1e4, Damping=0.,
+                      **{"Largest Torque": .1, "Target": {"Type": "constant", "Value": 3.}})
+        rows = joints_of(bounded)["H"]
+        self.assertTrue(all(row["limited"] == 1 for row in rows))
         self.assertAlmostEqual(rows[-1]["torque"], .1, delta=1e-10)
         self.assertAlmostEqual(rows[-1]["q"], .5 * .1 / INERTIA, delta=1e-3)
+        self.assertEqual(summary_of(bounded)["joints"], {"steps_of_end_impulses": 0, "steps_of_limited_torques": 20})
+        softer = spring(.05, **{"Largest Torque": .9 * INERTIA})
+        rows = joints_of(softer)["H"]
+        for row in rows:  # it pulls by its stiffness times the way to the target, a little less at once
+            self.assertEqual(row["limited"], abs(abs(row["torque"]) - .9 * INERTIA) < 1e-9)
+        bounds = [row["limited"] for row in rows]
+        self.assertEqual(bounds, sorted(bounds, reverse=True))
+        self.assertTrue(0 < sum(bounds) < len(bounds))
+        self.assertEqual(summary_of(softer)["joints"]["steps_of_limited_torques"], sum(bounds))
 
     def test_a_prescribed_rate_knows_no_load(self):
         for load in (0., 30.):
@@ -112,24 +113,25 @@ class Control(unittest.TestCase):
     def test_to_and_fro_leads_nowhere_in_honey(self):
         """Two links with one hinge between them: no rhythm of one coordinate swims without inertia (Purcell's scallop).
         In water the same stroke does."""
-        def link(length, x):
-            return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (length, .06)}, "Density": 1000.,
-                    "Position": (x, .5)}
-        stroke = {"Type": "sinusoid", "Amplitude": .8, "Frequency": 1.}
-        hinge = {"H": joint("hinge", ("Long", "Short"), (.5, .5), Control="prescribed", Target=stroke)}
         way = {}
         for viscosity in (1000., 1.):
-            scene = tank({"Long": link(.25, .36), "Short": link(.15, .59)}, hinge, "flux", viscosity, .01, 3.)
-            scene["Fluid"]["Gravity"] = (0., 0.)
-            scene["Domain"]["Cells"] = (32, 32)
-            scene["Solver"] = {"Tolerance": 1e-9}
-            history, bodies = run(scene)
-            places = np.array([(row["x"], row["y"]) for row in bodies["Long"]])
-            way[viscosity] = np.linalg.norm(places[299] - places[199])
+            history, bodies = run(swimmer(viscosity, 3.))
+            way[viscosity] = swum(bodies)
             self.assertLess(max(row["momentum_error"] for row in history), 1e-12)
-            self.assertGreater(np.ptp(places[200:, 1]), 5e-3)  # it does move to and fro
-        self.assertLess(way[1000.], 1e-3 * .4)
-        self.assertGreater(way[1.], 1e-2 * .4)
+            self.assertGreater(np.ptp([row["y"] for row in bodies["Long"][200:]]), 5e-3)  # it does move to and fro
+        self.assertLess(way[1000.], 1e-3)
+        self.assertGreater(way[1.], 1e-2)
+
+    def test_the_swimmers_ledger_closes_on_all_ranks(self):
+        ends = []
+        for ranks in (1, 2, 4):
+            history, bodies = run(swimmer(1., .3), ranks)
+            self.assertEqual(len(history), 30)
+            for name in ("momentum_error", "angular_momentum_error"):
+                self.assertLess(max(row[name] for row in history), 1e-12)
+            ends.append([bodies[name][-1][axis] for name in ("Long", "Short") for axis in ("x", "y", "vx", "vy", "wz")])
+        for one in ends[1:]:
+            self.assertLess(np.abs(np.subtract(one, ends[0])).max(), 1e-7)
 
     def test_control_in_space(self):
         """A ball on a spring comes to its target from anywhere."""

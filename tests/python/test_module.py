@@ -126,6 +126,23 @@ class Module(unittest.TestCase):
             np.testing.assert_allclose([state["q"] for state in states], (0, run.time, 0), atol=1e-9)
             self.assertFalse(states[0]["at_limit"])
 
+    def test_coordinates_have_targets_of_their_own(self):
+        """By the names of joints.csv: the turn of a sleeve is driven, its slide free."""
+        joint = {"Type": "cylinder", "Solids": ("space", "Box"), "Point": (0., .5, .5), "Axis": (0., 0., 1.),
+                 "Coordinate 2": {"Control": "prescribed", "Target": {"Type": "constant"}}}
+        scene = tank(3, {"Box": {**unseen_box(3), "Velocity": (0., 0., .2)}}, Joints={"Sleeve": joint}, Contact={"Type": "none"},
+                     Domain={"Cells": (8,) * 3}, Fluid={"Density": 1000., "Gravity": (0., 0., 0.)})
+        with self.open(scene) as run:
+            run.set_target("Sleeve 2", 0., .7)
+            with self.assertRaisesRegex(lockstep.InputError, "\"Sleeve 1\" is free"):
+                run.set_target("Sleeve 1", .1)
+            while run.step():
+                pass
+            slide, turn = run.joints()["Sleeve"]
+            self.assertAlmostEqual(turn["q"], .7 * run.time, delta=1e-12)
+            self.assertAlmostEqual(slide["q"], .2 * run.time, delta=1e-12)
+            run.set_target("Sleeve", (9., turn["q"]))  # that of the free one means nothing
+
     def test_a_run_that_failed_goes_no_further(self):
         with self.assertRaises(lockstep.InputError):
             with self.open(tank(solids={"Ball": ball(Force=(1e300, 0.))})) as run:

@@ -142,6 +142,37 @@ TEST(Mechanism, LoopsMakeRatesCombinations) {
   EXPECT_LT(largest_violation(linkage, mechanisms[0], basis), 1e-13);
 }
 
+TEST(Mechanism, ASecondHingeOfADoorSaysNothingNew) {
+  for (const double turn : {0.1, 0.7, 2.3}) {
+    Linkage<3> linkage;
+    linkage.add_body({0.3, -0.2, 0.1}, {turn, 0.2, 0.3});
+    linkage.add_body({0.1, 0.7, -0.3}, {-0.4, turn, 0.1});
+    linkage.add_joint(kind("hinge"), 0, 1, {0, 0, 0});
+    linkage.add_joint(kind("hinge"), 0, 1, {1. / 3, 0, 0});
+    const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
+    ASSERT_EQ(mechanisms[0].loops.size(), 1u);
+    const MotionBasis<3> basis = basis_of(linkage, mechanisms[0]);
+    EXPECT_TRUE(basis.dependent.empty());
+    EXPECT_LT(largest_violation(linkage, mechanisms[0], basis), 1e-13);
+  }
+}
+
+TEST(Mechanism, AHeavyBodyIsTheRoot) {
+  Linkage<2> linkage = four_bars();
+  for (JointedBody<2>& body : linkage.bodies)
+    body.mass = 1;
+  linkage.bodies[2].mass = 9;
+  EXPECT_EQ(find_mechanisms(linkage.bodies, linkage.joints)[0].root, 0);
+  linkage.bodies[2].mass = 11;
+  const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
+  ASSERT_EQ(mechanisms.size(), 1u);
+  EXPECT_EQ(mechanisms[0].root, 2);
+  EXPECT_EQ(mechanisms[0].bodies.size(), 4u);
+  EXPECT_LT(largest_violation(linkage, mechanisms[0], basis_of(linkage, mechanisms[0])), 1e-13);
+  linkage.bodies[0].in_fluid = true;
+  EXPECT_EQ(find_mechanisms(linkage.bodies, linkage.joints)[0].root, 0);
+}
+
 TEST(Mechanism, GroundsAreRootsAndTheirMotionIsHandedOn) {
   Linkage<2> linkage;
   const int cart = linkage.add_body({0, 0}, AngularVector<2>(0), false);
