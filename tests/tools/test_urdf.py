@@ -1,5 +1,7 @@
 """Robots as scenes: where bodies and joints come to be, by hand; that they run; what is refused. Usage: test_urdf.py SIMULATE"""
+import csv
 import math
+import struct
 import subprocess
 import sys
 import tempfile
@@ -94,15 +96,40 @@ class Robots(unittest.TestCase):
         glue = root.find("ParameterList[@name='Joints']/ParameterList[@name='glue']/Parameter[@name='Solids']")
         self.assertEqual(glue.get("value"), "{arm, tip}")
 
-    def test_it_runs(self):
-        self.scene(ALL_KINDS)
-        done = subprocess.run([sys.argv[1], self.folder / "scene.xml", "--output", self.folder / "run", "--steps", "2",
+    def run_steps(self, n=2):
+        """history.csv and bodies.csv, rows by column."""
+        done = subprocess.run([sys.argv[1], self.folder / "scene.xml", "--output", self.folder / "run", "--steps", str(n),
                                "--set", "Domain/Cells={16, 16, 16}", "--set", "Domain/Lower={-2, -2, -2}",
                                "--set", "Domain/Upper={2, 2, 2}", "--quiet"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        header, *rows = [line.split(",") for line in (self.folder / "run" / "history.csv").read_text().splitlines()
-                         if not line.startswith("#")]
-        self.assertLess(float(rows[-1][header.index("momentum_error")]), 1e-10)
+        return [list(csv.DictReader(line for line in (self.folder / "run" / name).read_text().splitlines()
+                                    if not line.startswith("#"))) for name in ("history.csv", "bodies.csv")]
+
+    def test_it_runs(self):
+        self.scene(ALL_KINDS)
+        history, _ = self.run_steps()
+        self.assertLess(float(history[-1]["momentum_error"]), 1e-10)
+
+    def test_a_mesh_runs(self):
+        """A cube as an STL file in millimetres, turned and on a hinge, moves as a box does."""
+        corners = [(x, y, z) for x in (-200., 200.) for y in (-200., 200.) for z in (-200., 200.)]
+        faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        triangles = [half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]
+        with open(self.folder / "cube.STL", "wb") as file:
+            file.write(bytes(80) + struct.pack("<I", len(triangles)))
+            for triangle in triangles:
+                file.write(struct.pack("<12fH", 0, 0, 0, *(x for k in triangle for x in corners[k]), 0))
+        ends = []
+        for shape in ('<mesh filename="cube.STL" scale="0.001 0.001 0.001"/>', '<box size="0.4 0.4 0.4"/>'):
+            cube = link("hammer", shape, 200., .6, (200 / 6 * .16, 200 / 6 * .16))
+            self.scene(robot(link("stand"), cube, joint("j", "continuous", "stand", "hammer", "0.1 0.2 0.3", "0.3 0.4 0.5")),
+                       "--fixed-base")
+            history, bodies = self.run_steps(3)
+            self.assertLess(float(history[-1]["momentum_error"]), 1e-10)
+            ends.append(next(row for row in reversed(bodies) if row["name"] == "hammer"))
+        self.assertGreater(abs(float(ends[0]["wy"])), .01)
+        for name in ("x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz"):
+            self.assertAlmostEqual(float(ends[0][name]), float(ends[1][name]), delta=1e-5, msg=name)
 
     def test_a_fixed_base_and_a_mass_without_shape(self):
         bare = link("arm").split("<collision>")[0] + "</link>"
