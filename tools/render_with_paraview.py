@@ -69,6 +69,8 @@ def show_fluid(job, view):
     opacity.Points = [low, 0.0, 0.5, 0.0, high, 0.6, 0.5, 0.0]
     bar = simple.GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle = job["field"], "magnitude" if job["is_vector"] else ""
+    bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.86, 0.35], 0.3
+    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.2g", "%.2g"
     bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
     display.SetScalarBarVisibility(view, not is_smoke)
     return bounds
