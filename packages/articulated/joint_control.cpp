@@ -149,6 +149,8 @@ JointControl read_control(const ParameterList& joint, const std::string& name,
     if (!joint.isSublist(coordinate_list(k)))
       continue;
     const ParameterList& list = joint.sublist(coordinate_list(k));
+    if (list.getEntry("Control").isDefault())
+      continue;  // limits alone leave it what the joint has
     const std::string own_name = name + "/" + coordinate_list(k);
     control.coordinates[k] = read_one_control(list, own_name);
     if (!control.coordinates[k].free())

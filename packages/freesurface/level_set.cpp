@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "freesurface/band_tiles.hpp"
 #include "freesurface/continuation.hpp"
 #include "freesurface/particles/drop_births.hpp"
@@ -53,6 +54,11 @@ LevelSetParameters read_level_set_parameters(const ParameterList& list) {
   parameters.volume = read_volume_correction(list);
   if (list.isParameter("Particles per Cell"))
     parameters.particles = read_particles(list);
+  check_input(!parameters.particles || !parameters.particles->drops ||
+                  parameters.volume.correction != VolumeCorrection::none,
+              "{}: \"Drops\" take their volume from the liquid and give it back, which \"Volume "
+              "Correction\" = none does not let them; take component or global, or no drops.",
+              list.name());
   return parameters;
 }
 

@@ -48,6 +48,10 @@ void MacFluid<dim>::give_back_momentum() {
     in_cell.mass += mass;
     in_cell.momentum += mass * drop.velocity;
   }
+  // What coupled faces hold is lumped with the solids.
+  const auto is_free = [&](int axis, int face) {
+    return face >= 0 && geometry_.state.faces[axis][face] == FaceState::free;
+  };
   FaceField<dim> change;
   for (CellField& component : change)
     component.assign(grid.n_stored_cells(), 0);
@@ -56,7 +60,7 @@ void MacFluid<dim>::give_back_momentum() {
       double mass = 0, momentum = 0;
       const std::array<int, 2> faces{cell, grid.neighbor(cell, axis, 1)};
       for (const int face : faces)
-        if (face >= 0 && moves(axis, face)) {
+        if (is_free(axis, face)) {
           mass += geometry_.mass(axis, face);
           momentum += geometry_.mass(axis, face) * prediction_[axis][face];
         }
@@ -65,7 +69,7 @@ void MacFluid<dim>::give_back_momentum() {
       const double before = momentum / mass;
       const double after = (momentum + in_cell.momentum[axis]) / (mass + in_cell.mass);
       for (const int face : faces)
-        if (face >= 0 && moves(axis, face))
+        if (is_free(axis, face))
           change[axis][face] += after - before;
     }
   domain_.halo.sum_to_owner(change);

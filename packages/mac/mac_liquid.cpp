@@ -12,9 +12,15 @@ namespace lockstep {
 template <int dim>
 void MacFluid<dim>::move_liquid(double time, double dt, const MovingSurface<dim>& surface,
                                 FaceField<dim>& advection) {
-  const InterfaceStep<dim> step{
-      advection,       surface, ray_halo_, nearby_, time, dt, scalars_.liquid_sources(time),
-      liquid_->sinks()};
+  const InterfaceStep<dim> step{advection,
+                                surface,
+                                ray_halo_,
+                                nearby_,
+                                time,
+                                dt,
+                                scalars_.liquid_sources(time),
+                                liquid_->sinks(),
+                                parameters_.forces.gravity};
   liquid_->advance(step, geometry_, advection, velocity_);
 }
 

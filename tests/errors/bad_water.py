@@ -45,6 +45,9 @@ CASES = [
          **watch(("Hold", "{0.1, 0.1}", value("Solid", "string", "Boat")))),
     Case("a watch of a hair", ["\"Radius\"", "greater than 0"],
          **watch(("Hold", "{0.1, 0.1}", value("Radius", "double", "0")))),
+    Case("drops of nothing", ["\"Drops\"", "\"Volume Correction\"", "no drops"],
+         **water('<ParameterList name="Interface">' + value("Type", "string", "particle level set") +
+                 value("Drops", "string", "ballistic") + value("Volume Correction", "string", "none") + "</ParameterList>")),
     Case("liquid in no file", ["pool.obj", "cannot open this surface file"], **filled("pool.obj")),
     Case("liquid in an open line", ["Pool", "pool.obj"], **filled("pool.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\n")),
 ]

@@ -6,8 +6,12 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import numpy
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
+from lockstep_frames import read_frames  # noqa: E402
 from simulation import STATE, assert_close, column, simulate, table, without_times  # noqa: E402
 
 N_STEPS = 60
@@ -17,7 +21,8 @@ SIDES = {f"{axis} {end}": {"Type": "slip wall"} for axis in "xy" for end in ("lo
 def scene(drops, moving_tiles=False):
     surface = {"Interface": {"Type": "particle level set", "Drops": drops},
                "Liquid": {"Column": {"Type": "box", "Lower": (-1., -1.), "Upper": (.5, .6)},
-                          "Pool": {"Type": "level", "Height": .14}}}
+                          "Pool": {"Type": "level", "Height": .14}},
+               "Watch": {"Tank": {"Point": (.2, .1)}}}
     solids = {
         "Post": {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.1, .2)}, "Position": (.9, .1),
                  "Motion": {"Type": "static"}},
@@ -33,7 +38,7 @@ def scene(drops, moving_tiles=False):
     return xml("Scene", {
         "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (1.6, 1.), "Cells": (48, 30), "Sides": SIDES},
         "Fluid": fluid, "Solids": solids, "Contact": {"Type": "none"}, "Solver": {"Tolerance": 1e-11},
-        "Time": {"End": 10., "Fixed Step": .01}, "Output": {"Checkpoint Interval": .35, "Keep Checkpoints": 9}})
+        "Time": {"End": 10., "Fixed Step": .01}, "Output": {"Checkpoint Interval": .35, "Keep Checkpoints": 9, "Precision": "double"}})
 
 
 def run(file, output, steps, ranks=1, restart=()):
@@ -51,7 +56,25 @@ class Drops(unittest.TestCase):
                 self.check_ledgers(history)
                 assert_close(runs[1][1], bodies, STATE, 1e-6)
                 assert_close(runs[1][0], history, ("liquid_volume", "fluid_kinetic_energy", "drops_volume"), 1e-6)
+            self.check_fall(Path(folder) / "1")
             self.check_restart(file, Path(folder) / "2", runs[2], 2)
+
+    def check_fall(self, output):
+        """From frame to frame, most drops go the way of stones."""
+        n_fallen, n_all, earlier = 0, 0, None
+        for frame in read_frames(output):
+            drops = frame["drops"] if "drops" in frame.names else None
+            now = (drops.points()[:, :2], drops.values("velocity")[:, :2]) if drops and len(drops.points()) else None
+            if now and earlier:
+                fall = numpy.array([0, -9.8])
+                places = earlier[0] + .01 * earlier[1] + .5 * .01**2 * fall
+                speeds = earlier[1] + .01 * fall
+                for place, speed in zip(places, speeds):
+                    n_all += 1
+                    n_fallen += numpy.min(numpy.abs(now[0] - place).max(1) + numpy.abs(now[1] - speed).max(1)) < 1e-9
+            earlier = now
+        self.assertGreater(n_all, 200)
+        self.assertGreater(n_fallen, .7 * n_all)
 
     def test_moving_tiles(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -71,8 +94,10 @@ class Drops(unittest.TestCase):
         for name in ("momentum_error", "angular_momentum_error"):
             self.assertLess(max(column(history, name)), 1e-12, name)
         self.assertGreater(max(column(history, "drops")), 20)
-        self.assertEqual(max(column(history, "lost_volume")), 0)
-        whole = [t + d for t, d in zip(column(history, "liquid_volume_target"), column(history, "drops_volume"))]
+        # The raft comes down on some, which then have no room.
+        self.assertLess(max(column(history, "lost_volume")), .002)
+        columns = [column(history, name) for name in ("liquid_volume_target", "drops_volume", "lost_volume")]
+        whole = [sum(parts) for parts in zip(*columns)]
         self.assertLess(max(whole) - min(whole), 1e-13 * whole[0])
 
     def test_without_drops_nothing_is_told_of_them(self):

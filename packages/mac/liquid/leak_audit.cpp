@@ -85,6 +85,7 @@ void LeakAudit<dim>::begin(const Surface& surface) {
                 x, name);
     anchors_.emplace_back(watch, present);
     report_.push_back({});
+    holds_solids_.push_back(1);
   }
 }
 
@@ -137,6 +138,22 @@ void LeakAudit<dim>::open(const InterfaceStep<dim>& step, InterfaceModel<dim>& i
   before_ = look(step.surface.before, interface, step.kept);
   motion_ = largest_motion(step.surface);
   lost_ = interface.ledger().lost;
+  has_drops_ = interface.drops();
+}
+
+template <int dim>
+bool LeakAudit<dim>::holds_solids(const Look& now, const std::vector<char>& cells) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  GlobalIndex n_beside = 0;
+  grid.for_each_owned_cell([&](int cell) {
+    if (!cells[cell] || now.cells[cell] != CellState::fluid)
+      return;
+    for (int side = 0; side < 2 * dim; ++side) {
+      const int other = grid.neighbor(cell, side / 2, side % 2);
+      n_beside += other >= 0 && now.cells[other] == CellState::solid;
+    }
+  });
+  return sum_all(grid.comm(), n_beside) > 0;
 }
 
 template <int dim>
@@ -152,8 +169,10 @@ void LeakAudit<dim>::close(const InterfaceStep<dim>& step, InterfaceModel<dim>& 
     std::vector<char> cells(grid.n_stored_cells(), 0);
     for (std::size_t cell = 0; cell < cells.size(); ++cell)
       cells[cell] = now.watched[cell] >> w & 1;
+    const bool held_solids = holds_solids_[w];
+    holds_solids_[w] = holds_solids(now, cells);
     const WatchedLiquid liquid = interface.liquid_in(cells);
-    if (has_report_ && stayed_closed(step, now, w))
+    if (has_report_ && !held_solids && !holds_solids_[w] && stayed_closed(step, now, w))
       check_target(step, w, liquid.target, interface.ledger().lost - lost_);
     report_[w] = liquid;
   }

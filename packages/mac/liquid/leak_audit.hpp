@@ -70,6 +70,9 @@ class LeakAudit {
   std::optional<SurfacePoint<dim>> swept(const InterfaceStep<dim>& step, const Near& near,
                                          int cell) const;
   void check_sides(const InterfaceStep<dim>& step, const Look& now) const;
+  /// Whether the place reaches to volumes of solids: the liquid of cells that these cut, and what
+  /// is owed to it, is told of no place, so that targets change a little. Collective.
+  bool holds_solids(const Look& now, const std::vector<char>& cells) const;
   /// True if nothing has come or gone between the place and the rest of the domain.
   bool stayed_closed(const InterfaceStep<dim>& step, const Look& now, std::size_t watch) const;
   /// Of a place that stayed closed the target may not change.
@@ -84,10 +87,12 @@ class LeakAudit {
   std::vector<Anchor<dim>> anchors_;
   std::vector<char> rimless_;  ///< by solid
   Look before_;
-  double lost_ = 0;    ///< of the ledger before the step [m^dim]
+  double lost_ = 0;  ///< of the ledger before the step [m^dim]
+  bool has_drops_ = false;
   double motion_ = 0;  ///< of surfaces in this step, at most [m]
   std::vector<WatchedLiquid> report_;
-  bool has_report_ = false;  ///< of the step before; not at the start or after a restart
+  std::vector<char> holds_solids_;  ///< by watch, after the last step
+  bool has_report_ = false;         ///< of the step before; not at the start or after a restart
 };
 
 }  // namespace lockstep

@@ -128,7 +128,9 @@ template <int dim>
 bool LeakAudit<dim>::stayed_closed(const InterfaceStep<dim>& step, const Look& now,
                                    std::size_t watch) const {
   const TiledGrid<dim>& grid = domain_.grid;
-  bool open = !step.sources.empty() || !step.sinks.empty() || watches_[watch].radius < 1e300;
+  // What flies is not the liquid's, and goes where it likes.
+  bool open =
+      has_drops_ || !step.sources.empty() || !step.sinks.empty() || watches_[watch].radius < 1e300;
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const SideType type = domain_.boundary.side(axis, end).type;
