@@ -104,6 +104,15 @@ class Coordinates(unittest.TestCase):
         self.assertAlmostEqual(rows["C 1"][-1]["q"], .1, delta=1e-9)
         self.assertAlmostEqual(rows["C 2"][-1]["q"], .8 * math.sin(math.pi), delta=1e-9)
 
+    def test_limits_alone_leave_the_control_of_the_joint(self):
+        spring = {"Control": "proportional derivative", "Natural Frequency": 3.}
+        scenes = [cylinder(**spring), cylinder(**spring, **{"Coordinate 1": {"Upper Limit": 9.}})]
+        scenes[1]["Contact"] = {"Type": "gauss seidel"}
+        alone, limited = map(joints_of, scenes)
+        self.assertLess(abs(alone["C 1"][-1]["q"]), .1)  # free, it would be at .4
+        for name in ("C 1", "C 2"):
+            self.assertAlmostEqual(alone[name][-1]["q"], limited[name][-1]["q"], delta=1e-12)
+
     def test_messages(self):
         for more, parts in (({"Coordinate 2": {**driven(**SWING), "Upper Limit": 1.}}, ("\"C\"", "prescribed", "limits of coordinate 2")),
                             ({"Coordinate 1": {"Control": "prescribed rate"}}, ("\"C/Coordinate 1\"", "Natural Frequency")),
