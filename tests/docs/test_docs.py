@@ -4,6 +4,7 @@
 - code quoted from a file stands in it literally; a quotation begins with a comment line that names
   the file: <!-- from: template/driver.cpp -->
 - every page of docs/results stands in their list
+- formulas are such as GitHub sets, too, whose Markdown reads them first
 - paths of the tree in backticks exist, and in `file.cpp: function` the file has that word
 """
 import re
@@ -15,6 +16,10 @@ ROOT = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path(__file__).
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 PICTURE = re.compile(r'<img src="([^"]+)"')
 QUOTE = re.compile(r"<!-- from: (\S+) -->\n```\w*\n(.*?)```", re.DOTALL)
+CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
+FORMULA = re.compile(r"\$\$(.+?)\$\$|(?<![\w\\$])\$(?!\s)([^$\n]+?)(?<!\s)\$(?![\w$])", re.DOTALL)
+# A backslash before punctuation (write \cr, \thinspace), what may begin emphasis, a macro that GitHub forbids.
+NOT_ON_GITHUB = re.compile(r"\\[^\w\s]|[^\w]_|\*|\\(?:operatorname|mbox|phantom)\b")
 PATH = re.compile(r"`((?:src|packages|drivers|tests|docs|tools|template|cmake|xml-params)/[\w./*-]+)(?:: ([\w:~]+))?[^`]*`")
 
 
@@ -57,6 +62,18 @@ class Docs(unittest.TestCase):
                     for part in re.split(r"^\s*(?://|#|<!--) \.\.\..*$", code, flags=re.MULTILINE):
                         self.assertIn(squeezed(part), text)
         self.assertGreater(n_quotations, 0)
+
+    def test_formulas(self):
+        n_formulas = 0
+        for page in pages():
+            text = CODE.sub("", page.read_text())
+            for formula in FORMULA.finditer(text):
+                n_formulas += 1
+                with self.subTest(page=page.name, formula=formula[0]):
+                    self.assertEqual(NOT_ON_GITHUB.findall(formula[0]), [])
+            for words in re.findall(r"\[([^\]]*)\]\(", text):  # of links, in which there is no formula
+                self.assertNotIn("$", words, page.name)
+        self.assertGreater(n_formulas, 200)
 
     def test_paths(self):
         for page in pages():

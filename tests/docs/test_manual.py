@@ -53,7 +53,7 @@ class Manual(unittest.TestCase):
 
     def test_formulas_are_set(self):
         """What is between dollar signs goes to the script that sets it, and the fonts are there."""
-        for name in ("derivation", "method"):
+        for name in ("derivation", "method", "solvers", "water"):
             page = (self.site / f"docs/{name}.html").read_text()
             self.assertNotIn("$", re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL))
             self.assertGreater(page.count('class="arithmatex"'), 20)
