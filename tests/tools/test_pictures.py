@@ -1,7 +1,6 @@
 """plot-frame and render on the folder of make_frames.py: smoke = x + t, velocity = (0, t, 0), one body."""
 import importlib.machinery
 import importlib.util
-import os
 import subprocess
 import sys
 import tempfile
@@ -18,6 +17,7 @@ import make_run
 
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
+from virtual_screen import VirtualScreen  # noqa: E402 (the path comes first)
 
 
 def load(name):
@@ -220,15 +220,21 @@ class Render(Pictures):
                           f"simple.LoadState({str(folder / 'render.pvsm')!r})\n"
                           f"simple.SaveScreenshot({str(folder / 'again.png')!r},\n"
                           "    simple.GetActiveViewOrCreate('RenderView'), ImageResolution=[320, 240])\n")
-        for _ in range(4):  # X may not be up in time
-            done = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 320x240x24", "pvbatch", script],
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                  env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
-            if done.returncode == 0:
-                break
+        with VirtualScreen(320, 240) as screen:
+            done = subprocess.run(["pvbatch", script], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                  env={**screen.environment, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
         self.assertEqual(done.returncode, 0)
         pictures = [imread(folder / name)[..., :3] for name in ("render.png", "again.png")]
         self.assertLess(numpy.abs(pictures[0] - pictures[1]).mean(), .01)
+
+    def test_several_at_once(self):
+        """Their screens do not meet, and none is gone when ParaView comes back to it."""
+        self.make(2)
+        pictures = [Path(self.folder.name) / f"{i}.png" for i in range(6)]
+        running = [subprocess.Popen([TOOLS / "render", self.folder.name, "--size", "64x48", "--output", picture],
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for picture in pictures]
+        self.assertEqual([one.wait() for one in running], [0] * len(running))
+        self.assertTrue(all(picture.is_file() for picture in pictures))
 
     def test_movie(self):
         self.make(3)
