@@ -17,6 +17,13 @@ run_step("The packed simulate" "${usr}/bin/simulate" "${scene}" --output "${WORK
 expect("step     2")
 run_step("The packed report" "${usr}/share/lockstep/tools/report" "${WORK_DIR}/run")
 expect("report.html")
+# Each finds the modules that it shares with others.
+file(GLOB tools LIST_DIRECTORIES false "${usr}/share/lockstep/tools/*")
+list(FILTER tools EXCLUDE REGEX "\\.py$")
+foreach(tool IN LISTS tools)
+  run_step("The packed ${tool}" "${tool}" --help)
+  expect("usage:")
+endforeach()
 run_step("The packed converge" "${usr}/bin/converge" "${usr}/share/lockstep/xml-params/studies/taylor-green.xml"
          --rungs 1:1 --series "inviscid, cubic" --output "${WORK_DIR}/study" --list)
 expect("Domain/Cells")
