@@ -1,5 +1,7 @@
 """The part of tools/render that runs inside pvbatch; its one argument is a description in JSON."""
+import itertools
 import json
+import math
 import sys
 
 from paraview import simple
@@ -9,7 +11,9 @@ simple._DisableFirstRenderCameraReset()
 SOLID_COLOURS = [(.80, .36, .25), (.30, .50, .72), (.87, .70, .30), (.45, .65, .42), (.58, .45, .68), (.55, .55, .55)]
 
 SMOKE_COLOUR = (.68, .7, .73)
-WATER, WATER_COLOUR = "water", (.32, .56, .78)
+# Of a cloud of another field, from the smallest value to the largest: what is slow is hardly there, what is fast glows.
+CLOUD_COLOURS = [(.76, .87, .95), (.30, .62, .85), (.16, .34, .66), (.55, .20, .50), (.93, .42, .20)]
+WATER, WATER_COLOUR = "water", (.24, .56, .86)
 
 
 def open_grids(job, names):
@@ -22,21 +26,14 @@ def open_grids(job, names):
     return reader
 
 
-def colour_range(job, source):
-    """Smallest and largest value of the field over the chosen times, so that colours do not flicker."""
-    low, high = float("inf"), -float("inf")
-    for time in job["times"]:
-        source.UpdatePipeline(time)
-        array = source.CellData.GetArray(job["field"])
-        a, b = array.GetRange(-1 if job["is_vector"] else 0)
-        low, high = min(low, a), max(high, b)
-    return (low, high) if high > low else (low, low + 1.0)
+def is_smoke(job):
+    return job["volume"] and job["field"] == "smoke"
 
 
 def show_fluid(job, view):
     fluid = open_grids(job, job["boxes"])
-    low, high = colour_range(job, fluid)
-    bounds = fluid.GetDataInformation().GetBounds()
+    low, high = job["range"]
+    bounds = job["bounds"]
     shown, representation = fluid, "Surface"
     if job["volume"]:
         # Volumes are drawn from one image with values at its points: the cells' centres. Between them smoke is interpolated,
@@ -50,52 +47,50 @@ def show_fluid(job, view):
         centre = [0.5 * (bounds[2 * i] + bounds[2 * i + 1]) for i in range(3)]
         if job["position"] is not None:
             centre[job["axis"]] = job["position"]
-        shown = simple.Slice(Input=fluid, SliceType="Plane")
+        # Values at the cells' corners: the plane goes over smoothly from cell to cell.
+        shown = simple.Slice(Input=simple.CellDatatoPointData(Input=fluid), SliceType="Plane")
         shown.SliceType.Origin = centre
         shown.SliceType.Normal = [float(i == job["axis"]) for i in range(3)]
     display = simple.Show(shown, view)
     display.SetRepresentationType(representation)
     display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the bar, without shading
-    where = "POINTS" if job["volume"] else "CELLS"
+    where = "POINTS" if job["dim"] == 3 else "CELLS"
     simple.ColorBy(display, (where, job["field"], "Magnitude") if job["is_vector"] else (where, job["field"]))
     table = simple.GetColorTransferFunction(job["field"])
     table.ApplyPreset("Viridis (matplotlib)", True)
     table.RescaleTransferFunction(low, high)
-    is_smoke = job["volume"] and job["field"] == "smoke"
-    if is_smoke:  # lit, and as grey as it is
+    if is_smoke(job):  # lit, and as grey as it is
         table.RGBPoints = [low, *SMOKE_COLOUR, high, *SMOKE_COLOUR]
         display.Shade, display.Ambient, display.Diffuse = 1, 0.75, 0.45
+    elif job["volume"]:
+        table.ColorSpace = "RGB"
+        places = [low + (high - low) * i / (len(CLOUD_COLOURS) - 1) for i in range(len(CLOUD_COLOURS))]
+        table.RGBPoints = [number for place, colour in zip(places, CLOUD_COLOURS) for number in (place, *colour)]
     opacity = simple.GetOpacityTransferFunction(job["field"])
     opacity.Points = [low, 0.0, 0.5, 0.0, high, 0.6, 0.5, 0.0]
     bar = simple.GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle = job["field"], "magnitude" if job["is_vector"] else ""
-    bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.86, 0.35], 0.3
+    bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.9, 0.35], 0.3
     bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.2g", "%.2g"
     bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
-    display.SetScalarBarVisibility(view, not is_smoke)
-    return bounds
+    display.SetScalarBarVisibility(view, not is_smoke(job))
 
 
 def show_solids(job, view):
-    bounds = None
-    for number, name in enumerate(name for name in job["surfaces"] if name != WATER):
-        solid = open_grids(job, [name])
-        solid.UpdatePipeline(job["times"][0])
-        shown = solid
+    solids = [name for name in job["surfaces"] if name != WATER]
+    # One reader for all of a colour: each reads the whole index, which is long where there are many.
+    for number, colour in enumerate(SOLID_COLOURS[:len(solids)]):
+        shown = solid = open_grids(job, solids[number::len(SOLID_COLOURS)])
         if job["dim"] == 3:  # round bodies look round, edges stay edges
             shown = simple.ExtractSurface(Input=simple.MergeBlocks(Input=solid))
             shown = simple.GenerateSurfaceNormals(Input=shown, FeatureAngle=50)
         display = simple.Show(shown, view)
         display.SetRepresentationType("Surface")
         display.ColorArrayName = ["POINTS", ""]  # ColorBy(display, None) fails on multiblock data
-        display.AmbientColor = display.DiffuseColor = SOLID_COLOURS[number % len(SOLID_COLOURS)]
+        display.AmbientColor = display.DiffuseColor = colour
         if job["dim"] == 3:  # what faces away from the light is not black
             display.Ambient, display.Diffuse = 0.25, 0.85
         display.LineWidth = 3
-        box = solid.GetDataInformation().GetBounds()
-        bounds = box if bounds is None else [pick(a, b) for pick, a, b in
-                                             zip((min, max) * 3, bounds, box)]
-    return bounds
 
 
 def show_water(job, view):
@@ -106,7 +101,8 @@ def show_water(job, view):
     display.SetRepresentationType("Surface")
     display.ColorArrayName = ["POINTS", ""]
     display.AmbientColor = display.DiffuseColor = WATER_COLOUR
-    display.Opacity, display.Specular, display.SpecularPower = 0.45, 0.6, 40
+    display.Opacity, display.Specular, display.SpecularPower = 0.4, 0.8, 60
+    display.Ambient, display.Diffuse = 0.22, 0.92
 
 
 def show_drops(job, view):
@@ -120,28 +116,49 @@ def show_drops(job, view):
 
 def show_outline(job, view):
     fluid = open_grids(job, job["boxes"])
-    fluid.UpdatePipeline(job["times"][0])
     box = simple.Show(simple.Outline(Input=fluid), view)
     box.AmbientColor = box.DiffuseColor = [0.4, 0.4, 0.4]
-    return fluid.GetDataInformation().GetBounds()
 
 
-def place_camera(job, view, bounds):
+def place_camera(job, view):
+    bounds = job["bounds"]
     centre = [0.5 * (bounds[2 * i] + bounds[2 * i + 1]) for i in range(3)]
     view.CameraFocalPoint = centre
     if job["dim"] == 2:
         view.CameraParallelProjection = 1
-        direction, up = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
-    else:
-        direction, up = job["direction"], [float(axis == job["up"]) for axis in range(3)]
-    view.CameraPosition = [c + d for c, d in zip(centre, direction)]
-    view.CameraViewUp = up
-    view.ResetCamera(*bounds)
-    if job["dim"] == 3:
-        # The view's properties do not know yet where ResetCamera went; the camera does.
-        focus, eye = job["centre"] or centre, view.GetActiveCamera().GetPosition()
-        view.CameraPosition = [f + (e - c) / job["zoom"] for f, e, c in zip(focus, eye, centre)]
-        view.CameraFocalPoint = focus
+        view.CameraPosition, view.CameraViewUp = [centre[0], centre[1], centre[2] + 1], (0.0, 1.0, 0.0)
+        view.ResetCamera(*bounds)
+        return
+    back = normalized(job["direction"])
+    focus = job["centre"] or centre
+    away = distance_to_all(job, back, view.CameraViewAngle) / job["zoom"]
+    view.CameraFocalPoint = focus
+    view.CameraPosition = [f + away * b for f, b in zip(focus, back)]
+    view.CameraViewUp = [float(axis == job["up"]) for axis in range(3)]
+
+
+def distance_to_all(job, back, angle):
+    """From the middle of the domain to an eye that has every corner of it in the picture; as in the player of tools/report."""
+    right = normalized(cross([float(axis == job["up"]) for axis in range(3)], back))
+    above = cross(back, right)
+    slope = math.tan(math.radians(angle) / 2)
+    # Beside the bar of colours, and the same on the other side.
+    aside = slope * job["size"][0] / job["size"][1] * (0.8 if job["field"] and not is_smoke(job) else 1)
+    half = [0.5 * (job["bounds"][2 * i + 1] - job["bounds"][2 * i]) for i in range(3)]
+    corners = [[sign * length for sign, length in zip(signs, half)] for signs in itertools.product((-1, 1), repeat=3)]
+    return 1.04 * max(dot(p, back) + max(abs(dot(p, above)) / slope, abs(dot(p, right)) / aside) for p in corners)
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def normalized(a):
+    return [x / math.sqrt(dot(a, a)) for x in a]
 
 
 def main():
@@ -152,17 +169,18 @@ def main():
     view.Background = [1.0, 1.0, 1.0]
     view.OrientationAxesVisibility = 0
     view.UseFXAA = int(not job["fast"])
-    bounds = show_fluid(job, view) if job["field"] else None
+    if job["field"]:
+        show_fluid(job, view)
     if job["boxes"] and job["dim"] == 3:
-        bounds = show_outline(job, view)
-    solid_bounds = show_solids(job, view)
+        show_outline(job, view)
+    show_solids(job, view)
     if WATER in job["surfaces"]:
         show_water(job, view)
         # Peels of what shines through, so that nearer and farther faces are told apart.
         view.DepthPeeling = int(not job["fast"])
     if job["drops"]:
         show_drops(job, view)
-    place_camera(job, view, bounds or solid_bounds)
+    place_camera(job, view)
     if job["fast"]:
         view.GetRenderWindow().SetMultiSamples(0)
     for time, picture in zip(job["times"], job["pictures"]):

@@ -4,13 +4,13 @@
 const AXES = ["x", "y", "z"];
 
 /// Plots of history.csv: each has choices by name, each choice a list of columns. `sum`: added up from
-/// the start.
-function historyPlots(dimension) {
+/// the start. `up` is the axis that is shown first.
+function historyPlots(dimension, up) {
   const byAxis = (columns) => Object.fromEntries(AXES.slice(0, dimension).map((axis) => [axis,
     columns.map(({ column, ...rest }) => ({ column: `${column}_${axis}`, ...rest }))]));
   const one = (...columns) => ({ "": columns.map(([column, label]) => ({ column, label })) });
   return [
-    { title: "Momentum ledger", unit: "kg m/s", chosen: "x",
+    { title: "Momentum ledger", unit: "kg m/s", chosen: AXES[up],
       choices: byAxis([{ column: "fluid_momentum", label: "fluid" }, { column: "solid_momentum", label: "solids" },
         { column: "boundary_impulse", label: "from walls and sides, so far", sum: true },
         { column: "transport_change", label: "by advection, so far", sum: true }]) },
@@ -19,7 +19,7 @@ function historyPlots(dimension) {
     { title: "Iterations", unit: "", choices: one(["s1_iterations", "S1"], ["f2_iterations", "F2"], ["s2_iterations", "S2"], ["viscous_iterations", "viscous"], ["solid_iterations", "of the solids' block"]) },
     { title: "Time step", unit: "s", choices: one(["dt", "dt"]) },
     { title: "CFL number", unit: "", choices: one(["cfl", "CFL"]) },
-    { title: "Volume of liquid", unit: "", choices: one(["liquid_volume", "volume"], ["liquid_volume_target", "target"]) },
+    { title: "Volume of liquid", unit: dimension === 3 ? "m³" : "m²", choices: one(["liquid_volume", "volume"], ["liquid_volume_target", "target"]) },
     { title: "Residuals", unit: "1", isLog: true, choices: one(["s1_residual", "S1"], ["f2_residual", "F2"], ["s2_residual", "S2"]) },
     { title: "Largest divergence", unit: "1/s", isLog: true, choices: one(["max_divergence", "divergence"]) },
     { title: "Contacts", unit: "", choices: one(["contacts", "contact points"]) },
@@ -33,15 +33,14 @@ function partsOf(table) {
 }
 
 const TITLES = { "bodies.csv": "Bodies", "joints.csv": "Joints" };
-const FIRST_SHOWN = { "bodies.csv": 1 };  // y, which most often is up
 
 /// Bodies, joints and other things that have names: a choice for each column, a curve for each name.
-function namedPlot(file, { named }) {
+function namedPlot(file, { named }, up) {
   const names = Object.keys(named), { columns } = named[names[0]];
   const choices = {};
   for (const { name, unit } of columns.filter((column) => !["step", "time"].includes(column.name)))
     choices[unit && unit !== "1" ? `${name} [${unit}]` : name] = names.map((one) => ({ named: one, column: name, label: one }));
-  return { title: TITLES[file] ?? file.replace(/\.csv$/, ""), unit: "", chosen: Object.keys(choices)[FIRST_SHOWN[file] ?? 0], choices };
+  return { title: TITLES[file] ?? file.replace(/\.csv$/, ""), unit: "", chosen: Object.keys(choices)[file === "bodies.csv" ? up : 0], choices };
 }
 
 /// Any other table: a choice for each column.
@@ -54,11 +53,12 @@ function tablePlot(file, table) {
 
 /// All plots of some runs: {file, title, unit, isLog, choices, chosen}.
 function plotsOf(runs) {
-  const plots = historyPlots(Math.max(...runs.map((run) => run.dimension))).map((plot) => ({ file: "history.csv", ...plot }));
+  const up = runs[0].view.up;
+  const plots = historyPlots(Math.max(...runs.map((run) => run.dimension)), up).map((plot) => ({ file: "history.csv", ...plot }));
   for (const run of runs) {
     for (const [file, table] of Object.entries(run.tables)) {
       if (file === "history.csv" || plots.some((plot) => plot.file === file)) continue;
-      if (partsOf(table).length) plots.push({ file, ...(table.named ? namedPlot : tablePlot)(file, table) });
+      if (partsOf(table).length) plots.push({ file, ...(table.named ? namedPlot : tablePlot)(file, table, up) });
     }
   }
   return plots.map((plot) => ({ ...plot, choices: choicesThatAre(plot, runs) })).filter(({ choices }) => Object.keys(choices).length);
