@@ -4,13 +4,13 @@
 const AXES = ["x", "y", "z"];
 
 /// Plots of history.csv: each has choices by name, each choice a list of columns. `sum`: added up from
-/// the start. `up` is the axis that is shown first.
-function historyPlots(dimension, up) {
+/// the start. `hasWater`: otherwise the volume of the liquid is that of all cells, and tells nothing.
+function historyPlots(dimension, hasWater) {
   const byAxis = (columns) => Object.fromEntries(AXES.slice(0, dimension).map((axis) => [axis,
     columns.map(({ column, ...rest }) => ({ column: `${column}_${axis}`, ...rest }))]));
   const one = (...columns) => ({ "": columns.map(([column, label]) => ({ column, label })) });
   return [
-    { title: "Momentum ledger", unit: "kg m/s", chosen: AXES[up],
+    { title: "Momentum ledger", unit: "kg m/s", chosen: "x",  // upwards the weight hides the rest
       choices: byAxis([{ column: "fluid_momentum", label: "fluid" }, { column: "solid_momentum", label: "solids" },
         { column: "boundary_impulse", label: "from walls and sides, so far", sum: true },
         { column: "transport_change", label: "by advection, so far", sum: true }]) },
@@ -19,12 +19,16 @@ function historyPlots(dimension, up) {
     { title: "Iterations", unit: "", choices: one(["s1_iterations", "S1"], ["f2_iterations", "F2"], ["s2_iterations", "S2"], ["viscous_iterations", "viscous"], ["solid_iterations", "of the solids' block"]) },
     { title: "Time step", unit: "s", choices: one(["dt", "dt"]) },
     { title: "CFL number", unit: "", choices: one(["cfl", "CFL"]) },
-    { title: "Volume of liquid", unit: dimension === 3 ? "m³" : "m²", choices: one(["liquid_volume", "volume"], ["liquid_volume_target", "target"]) },
+    ...(hasWater ? [{ title: "Volume of liquid", unit: dimension === 3 ? "m³" : "m²", choices: one(["liquid_volume", "volume"], ["liquid_volume_target", "target"]) }] : []),
     { title: "Residuals", unit: "1", isLog: true, choices: one(["s1_residual", "S1"], ["f2_residual", "F2"], ["s2_residual", "S2"]) },
     { title: "Largest divergence", unit: "1/s", isLog: true, choices: one(["max_divergence", "divergence"]) },
     { title: "Contacts", unit: "", choices: one(["contacts", "contact points"]) },
     { title: "Wall time of a step", unit: "s", choices: one(["wall_seconds", "wall time"]) },
   ];
+}
+
+function showsWater(run) {
+  return run.frames.some((frame) => frame.surfaces.some(({ water }) => water));
 }
 
 /// A table packed for the page is one of rows by time, or has one for each name of a body, a joint, ...
@@ -53,8 +57,8 @@ function tablePlot(file, table) {
 
 /// All plots of some runs: {file, title, unit, isLog, choices, chosen}.
 function plotsOf(runs) {
-  const up = runs[0].view.up;
-  const plots = historyPlots(Math.max(...runs.map((run) => run.dimension)), up).map((plot) => ({ file: "history.csv", ...plot }));
+  const up = runs[0].view.up, hasWater = runs.some(showsWater);
+  const plots = historyPlots(Math.max(...runs.map((run) => run.dimension)), hasWater).map((plot) => ({ file: "history.csv", ...plot }));
   for (const run of runs) {
     for (const [file, table] of Object.entries(run.tables)) {
       if (file === "history.csv" || plots.some((plot) => plot.file === file)) continue;

@@ -86,7 +86,7 @@ function fillFields() {
   const kept = at("field").value, names = fieldNames();
   at("field").replaceChildren(make("option", { value: "" }, "none"),
     ...names.map((name) => make("option", { value: name }, isMagnitude(name) ? `|${name}|` : name)));
-  const hasWater = state.runs.some((run) => run.frames.some((frame) => frame.surfaces.some(({ water }) => water)));
+  const hasWater = state.runs.some(showsWater);
   // Water is shown by its surface, and hides a slice.
   const usual = hasWater && state.runs[0].dimension === 3 ? "" : names[0] ?? "";
   const first = state.runs.map((run) => run.view.field).find((name) => names.includes(name)) ?? usual;
