@@ -15,6 +15,8 @@ if ((EUID == 0)); then
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
 export OMPI_MCA_rmaps_base_oversubscribe=1
+# Open MPI's hwloc would ask X servers for graphics cards, and complain where one does not know us.
+export HWLOC_COMPONENTS=${HWLOC_COMPONENTS:--gl}
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 
 # Core-minutes of a build without a compiler cache, from a sample of the files: of the programs, and of the tests besides.

@@ -1,8 +1,7 @@
 """A screen in memory to draw on, as ParaView of Debian draws through X only.
 
 Not xvfb-run: an X server starts anew when its last client leaves, unless told -noreset, and refuses who knocks meanwhile. ParaView looks at the screen, leaves and comes back at once, and
-then ended by SIGABRT, seldom on an idle machine, nearly always where several drew. Two xvfb-run that begin together also choose the same number; here the server finds one that is free,
-and says so when it is ready.
+then ended by SIGABRT, seldom on an idle machine, nearly always where several drew. Two xvfb-run that begin together also choose the same number.
 """
 import os
 import secrets
@@ -13,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 SECONDS = 120  # until it is up; on a busy machine some
+TRIES = 10     # each with a number of its own
 
 
 class ScreenError(Exception):
@@ -26,34 +26,42 @@ class VirtualScreen:
         self.folder = tempfile.TemporaryDirectory()
         cookie = Path(self.folder.name) / "cookie"
         cookie.write_bytes(_cookie())
-        read_end, write_end = os.pipe()
+        # Not the first ten, which hwloc, and so every MPI program, asks for graphics cards, and complains when refused.
+        for _ in range(TRIES):
+            number = 100 + secrets.randbelow(9000)
+            if self._starts(["Xvfb", f":{number}", "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp", "-noreset", "-auth", cookie]):
+                self.environment = dict(os.environ, DISPLAY=f":{number}", XAUTHORITY=str(cookie))
+                return
+        self.folder.cleanup()
+        raise ScreenError(f"Xvfb, which gives ParaView a screen, did not start, {TRIES} times.")
+
+    def _starts(self, command):
+        """Whether it came up; where another server has the number, or a file of one that was killed, it ends at once."""
+        ready, its_end = os.pipe()
         try:
-            self.server = subprocess.Popen(
-                ["Xvfb", "-displayfd", str(write_end), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp", "-noreset", "-auth", cookie],
-                pass_fds=(write_end,), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            self.server = subprocess.Popen([*command, "-displayfd", str(its_end)], pass_fds=(its_end,), stdin=subprocess.DEVNULL,
+                                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         except OSError as error:
+            self.folder.cleanup()
+            os.close(ready)
             raise ScreenError(f"Xvfb does not start: {error}; tools/set-up --paraview installs it.") from error
         finally:
-            os.close(write_end)
-        number = self._read_number(read_end)
-        self.environment = dict(os.environ, DISPLAY=f":{number}", XAUTHORITY=str(cookie))
+            os.close(its_end)
+        with os.fdopen(ready) as pipe:
+            is_up = bool(select.select([pipe], [], [], SECONDS)[0]) and pipe.readline().strip() != ""
+        if not is_up:
+            self._stop()
+        return is_up
 
-    def _read_number(self, pipe):
-        with os.fdopen(pipe) as file:
-            ready = select.select([file], [], [], SECONDS)[0]
-            number = file.readline().strip() if ready else ""
-        if not number:
-            self.__exit__()
-            raise ScreenError(f"Xvfb, which gives ParaView a screen, was not ready after {SECONDS} s." if not ready
-                              else "Xvfb, which gives ParaView a screen, ended at once.")
-        return number
+    def _stop(self):
+        self.server.terminate()
+        self.server.wait()
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        self.server.terminate()
-        self.server.wait()
+        self._stop()
         self.folder.cleanup()
 
 
