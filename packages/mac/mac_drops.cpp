@@ -1,4 +1,5 @@
 // What a fluid does with drops that its grid does not show.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -28,9 +29,9 @@ Momentum<dim> MacFluid<dim>::speed_up_drops() {
   return mine;
 }
 
-/// They become one with the fluid of the faces around their cell. Their mass comes with the next
-/// correction of the volume, at the velocity that is found here: so that both together are what the
-/// drops had.
+/// The faces around their cell gain what the drops have beyond the fluid there, m (v - u). Their
+/// mass m follows with the next correction of the volume, spread over the body's surface at
+/// velocities of the fluid, so that both together bring what the drops had.
 template <int dim>
 void MacFluid<dim>::give_back_momentum() {
   const TiledGrid<dim>& grid = domain_.grid;
@@ -66,11 +67,12 @@ void MacFluid<dim>::give_back_momentum() {
         }
       if (mass == 0)
         continue;
-      const double before = momentum / mass;
-      const double after = (momentum + in_cell.momentum[axis]) / (mass + in_cell.mass);
+      const double beyond = in_cell.momentum[axis] / in_cell.mass - momentum / mass;
+      // Drops heavier than the fluid there take it along, no faster than they are.
+      const double gained = beyond * std::min(1., in_cell.mass / mass);
       for (const int face : faces)
         if (is_free(axis, face))
-          change[axis][face] += after - before;
+          change[axis][face] += gained;
     }
   domain_.halo.sum_to_owner(change);
   for (int axis = 0; axis < dim; ++axis)

@@ -79,6 +79,18 @@ std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot() const {
 }
 
 template <int dim>
+bool SolidSystem<dim>::is_where(const SurfaceSnapshot<dim>& snapshot) const {
+  auto there = snapshot.mesh().vertices.begin();
+  for (const auto& solid_model : models_) {
+    const auto& here = solid_model->surface().vertices;
+    if (!std::equal(here.begin(), here.end(), there))
+      return false;
+    there += static_cast<std::ptrdiff_t>(here.size());
+  }
+  return true;
+}
+
+template <int dim>
 std::vector<SolidState<dim>> SolidSystem<dim>::states() const {
   std::vector<SolidState<dim>> all;
   for (const auto& solid_model : models_) {

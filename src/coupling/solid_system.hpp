@@ -35,6 +35,8 @@ class SolidSystem {
 
   /// The surfaces at the present positions. Solids are numbered over all models.
   std::shared_ptr<const SurfaceSnapshot<dim>> snapshot() const;
+  /// True if the surfaces are where this snapshot of them has them, to the last bit.
+  bool is_where(const SurfaceSnapshot<dim>& snapshot) const;
   const std::vector<SolidDescription>& solids() const { return solids_; }
   std::vector<SolidState<dim>> states() const;
   /// Largest 1-norm of the velocity of a surface vertex, each solid taken as rigid [m/s]. Local.

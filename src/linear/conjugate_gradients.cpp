@@ -145,6 +145,8 @@ int conjugate_gradients(ConjugateGradientKernels& kernels, Vector& r, Vector& x,
         request.name, curvature, iteration, r_norm);
     r_norm = std::sqrt(kernels.advance(r_dot_z / curvature, x, r));
     ++iteration;
+    check_solve(std::isfinite(r_norm), "{}: the residual is not finite after {} iterations.",
+                request.name, iteration);
     if (request.true_residual && r_norm <= trusted_fall * true_norm) {
       if (!request.true_residual(x, r))
         break;

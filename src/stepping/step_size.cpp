@@ -22,7 +22,7 @@ double step_to_end(const TimeOptions& time, double now, double wanted) {
   const double left = time.end - now;
   if (wanted >= left * (1 - 1e-9))
     return left;
-  return time.fixed_step == 0 && left < 2 * wanted ? left / 2 : wanted;
+  return left < 2 * wanted * (1 - 1e-9) ? left / 2 : wanted;
 }
 
 }  // namespace lockstep

@@ -19,8 +19,9 @@ double even_step(const TimeOptions& time);
 /// suggests, at most the largest one.
 double wanted_step(const TimeOptions& time, double suggested);
 
-/// The step to take at `now`, at most `wanted`, so that the last one ends at the end. Without a
-/// fixed step, the last two share what is left.
+/// The step to take at `now`, at most `wanted`, so that the last one ends at the end. Where steps
+/// of that length do not, the last two share what is left: also fixed ones, of a run that went on
+/// after it had been stopped, or some of which had to be shorter.
 double step_to_end(const TimeOptions& time, double now, double wanted);
 
 }  // namespace lockstep

@@ -179,10 +179,11 @@ RCP<Vector> Stepper<dim>::last_pressure(double dt) const {
   return pressure;
 }
 
+/// Begins at what a solve of nearly the same found, if there was one, else at the last step's.
 template <int dim>
 CoupledSolution Stepper<dim>::solve(const StepContext<dim>& context, const RCP<Vector>& momentum,
                                     const std::string& name, SolveReport& report,
-                                    double& incompatibility) {
+                                    double& incompatibility, const BlockVector* nearby) {
   const Reduction& constraints = context.constraints;
   CoupledSolution solution;
   solution.momentum = momentum;
@@ -192,10 +193,12 @@ CoupledSolution Stepper<dim>::solve(const StepContext<dim>& context, const RCP<V
     solution.rhs = system_.right_hand_side(*momentum, context.dt, constraints, incompatibility);
   }
   const BlockSystem& blocks = system_.blocks(context.dt);
-  solution.unknowns.pressure = last_pressure(context.dt);
+  solution.unknowns.pressure =
+      nearby ? rcp(new Vector(*nearby->pressure, Teuchos::Copy)) : last_pressure(context.dt);
   project_out(blocks.null_space, *solution.unknowns.pressure);
   if (coupled()) {
-    solution.unknowns.solid = components_.solids->velocity();
+    solution.unknowns.solid =
+        nearby ? rcp(new Vector(*nearby->solid, Teuchos::Copy)) : components_.solids->velocity();
     constraints.select(*solution.unknowns.solid);
   }
   {

@@ -87,18 +87,20 @@ class Stepper {
   RCP<Vector> solid_momentum(const StepContext<dim>& context, const Prediction<dim>& prediction,
                              StepReport<dim>& report);
   CoupledSolution solve(const StepContext<dim>& context, const RCP<Vector>& momentum,
-                        const std::string& name, SolveReport& report, double& incompatibility);
+                        const std::string& name, SolveReport& report, double& incompatibility,
+                        const BlockVector* nearby = nullptr);
   CoupledSolution solve_newton(const StepContext<dim>& context, const RCP<Vector>& momentum,
-                               SolveReport& report, double& incompatibility);
+                               SolveReport& report, double& incompatibility,
+                               const BlockVector* nearby = nullptr);
   CoupledSolution solve_settled(const StepContext<dim>& context, const RCP<Vector>& momentum,
                                 StepReport<dim>& report);
   ContactResponse contact_response(double dt) const;
   ContactReport<dim> contact_momentum(const StepContext<dim>& context, Vector& momentum);
   ContactReport<dim> settled_momentum(const StepContext<dim>& context, Vector& momentum);
   RCP<Vector> find_motion(const StepContext<dim>& context, const Prediction<dim>& prediction,
-                          StepReport<dim>& report);
+                          BlockVector& solution, StepReport<dim>& report);
   void close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
-                    RCP<Vector>& velocity, StepReport<dim>& report);
+                    BlockVector& solution, RCP<Vector>& velocity, StepReport<dim>& report);
   void move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
                    StepReport<dim>& report);
   // Pockets of gas.

@@ -29,10 +29,10 @@ double Stepper<dim>::resolved_part(double dt) const {
 template <int dim>
 CoupledSolution Stepper<dim>::solve_newton(const StepContext<dim>& context,
                                            const RCP<Vector>& momentum, SolveReport& report,
-                                           double& incompatibility) {
+                                           double& incompatibility, const BlockVector* nearby) {
   auto& solids = *components_.solids;
   const std::string name = name_of(context.phase);
-  CoupledSolution solution = solve(context, momentum, name, report, incompatibility);
+  CoupledSolution solution = solve(context, momentum, name, report, incompatibility, nearby);
   for (int k = 1; k < options_.newton_iterations && coupled(); ++k) {
     const RCP<const Vector> before = solids.explicit_momentum(context.time, context.dt);
     if (!solids.linearise(context.dt, *solution.velocity))
@@ -40,7 +40,7 @@ CoupledSolution Stepper<dim>::solve_newton(const StepContext<dim>& context,
     system_.forget_solid_block();
     momentum->update(1, *solids.explicit_momentum(context.time, context.dt), -1, *before, 1);
     const SolveReport earlier = report;
-    solution = solve(context, momentum, name, report, incompatibility);
+    solution = solve(context, momentum, name, report, incompatibility, &solution.unknowns);
     report.add_work(earlier);
   }
   return solution;
@@ -79,17 +79,17 @@ CoupledSolution Stepper<dim>::solve_settled(const StepContext<dim>& context,
                        *momentum);
     system_.forget_solid_block();
     const SolveReport earlier = report.s2;
-    solution =
-        solve(context, momentum, name_of(context.phase), report.s2, report.incompatibility_s2);
+    solution = solve(context, momentum, name_of(context.phase), report.s2,
+                     report.incompatibility_s2, &solution.unknowns);
     report.s2.add_work(earlier);
   }
   return solution;
 }
 
 template CoupledSolution Stepper<2>::solve_newton(const StepContext<2>&, const RCP<Vector>&,
-                                                  SolveReport&, double&);
+                                                  SolveReport&, double&, const BlockVector*);
 template CoupledSolution Stepper<3>::solve_newton(const StepContext<3>&, const RCP<Vector>&,
-                                                  SolveReport&, double&);
+                                                  SolveReport&, double&, const BlockVector*);
 template double Stepper<2>::resolved_part(double) const;
 template ContactReport<2> Stepper<2>::settled_momentum(const StepContext<2>&, Vector&);
 template CoupledSolution Stepper<2>::solve_settled(const StepContext<2>&, const RCP<Vector>&,

@@ -8,10 +8,12 @@
 namespace lockstep {
 
 /// V^{n+1/2}: soft solids keep the volumes of closed regions, contact acts. With joints also the
-/// impulses that these give.
+/// impulses that these give. `solution`: where the solve begins, empty at the last step's, and what
+/// it finds.
 template <int dim>
 RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
-                                      const Prediction<dim>& prediction, StepReport<dim>& report) {
+                                      const Prediction<dim>& prediction, BlockVector& solution,
+                                      StepReport<dim>& report) {
   auto& solids = *components_.solids;
   const double dt = context.step_dt;
   RCP<Vector> half_velocity = make_vector(solids.map());
@@ -20,12 +22,14 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
   if (coupled()) {
     ScopedPhase phase(timers_, "S1");
     momentum = solid_momentum(context, prediction, report);
-    const CoupledSolution solution =
-        solve_newton(context, momentum, report.s1, report.incompatibility_s1);
-    half_velocity = solution.velocity;
+    const CoupledSolution found =
+        solve_newton(context, momentum, report.s1, report.incompatibility_s1,
+                     solution.pressure.is_null() ? nullptr : &solution);
+    solution = found.unknowns;
+    half_velocity = found.velocity;
     if (solids.joints())
       start_impulse_ = system_.reactions(context.dt, context.constraints, *momentum,
-                                         {solution.unknowns.pressure, solution.velocity});
+                                         {solution.pressure, half_velocity});
     swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
   }
   ScopedPhase phase(timers_, "solid motion");
@@ -44,6 +48,8 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
     const SettledMotion<dim> settled =
         settle_motion<dim>(solids, components_.contact.get(), context, sweep_shells, as_solved,
                            *half_velocity, *momentum);
+    if (settled.linearised_anew)
+      system_.forget_solid_block();
     half_velocity = settled.velocity;
     report.contact_position = settled.contact;
   } else if (components_.contact && coupled()) {
@@ -58,7 +64,8 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
 /// and what is still left to close is of higher order.
 template <int dim>
 void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
-                                RCP<Vector>& velocity, StepReport<dim>& report) {
+                                BlockVector& solution, RCP<Vector>& velocity,
+                                StepReport<dim>& report) {
   auto& solids = *components_.solids;
   const double end = context.time + context.step_dt;
   const auto close = [&] {
@@ -70,7 +77,7 @@ void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>&
   if (!drift.is_null()) {
     const SolveReport earlier = report.s1;
     context.constraints = solids.constraints(context.time, end, drift);
-    velocity = find_motion(context, prediction, report);
+    velocity = find_motion(context, prediction, solution, report);
     velocity = rcp(new Vector(*velocity, Teuchos::Copy));
     report.s1.add_work(earlier);
     drift = close();
@@ -90,9 +97,10 @@ void Stepper<dim>::move_solids(const StepContext<dim>& context, const Prediction
                                StepReport<dim>& report) {
   auto& solids = *components_.solids;
   start_impulse_ = Teuchos::null;
-  RCP<Vector> velocity = find_motion(context, prediction, report);
+  BlockVector solution;
+  RCP<Vector> velocity = find_motion(context, prediction, solution, report);
   if (coupled() && solids.joints())
-    close_joints(context, prediction, velocity, report);
+    close_joints(context, prediction, solution, velocity, report);
   ScopedPhase phase(timers_, "solid motion");
   solids.move(*velocity, context.time, context.step_dt);
 }

@@ -195,11 +195,9 @@ void Stepper<dim>::advect(double dt, StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   const auto& solids = *components_.solids;
   const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
-  auto after = solids.empty() ? before : solids.snapshot();
   const bool stays =
-      frozen_at_rest_ && solids_rest() && after->mesh().vertices == before->mesh().vertices;
-  if (stays)
-    after = before;
+      frozen_at_rest_ && solids_rest() && (solids.empty() || solids.is_where(*before));
+  const auto after = stays || solids.empty() ? before : solids.snapshot();
   const MovingSurface<dim> moving{before, after, [&solids](const SurfacePoint<dim>& point) {
                                     return solids.effective_velocity(point, point.position);
                                   }};

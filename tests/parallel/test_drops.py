@@ -6,10 +6,13 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import h5py
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "errors"))
+from program import with_checksum, without_checksum  # noqa: E402
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 from lockstep_frames import read_frames  # noqa: E402
 from simulation import STATE, assert_close, column, simulate, table, without_times  # noqa: E402
@@ -44,6 +47,15 @@ def scene(drops, moving_tiles=False):
 def run(file, output, steps, ranks=1, restart=()):
     simulate(file, output, "--steps", steps, *restart, ranks=ranks)
     return without_times(table(output / "history.csv")), table(output / "bodies.csv")
+
+
+def put_drop(checkpoint, numbers):
+    """What a checkpoint holds of drops: ranks, then rank, place, velocity, volume of each."""
+    checkpoint.write_bytes(without_checksum(checkpoint.read_bytes()))
+    with h5py.File(checkpoint, "a") as file:
+        del file["fluid/drops"]
+        file["fluid/drops"] = numpy.array(numbers, float)
+    checkpoint.write_bytes(with_checksum(checkpoint.read_bytes()))
 
 
 class Drops(unittest.TestCase):
@@ -99,6 +111,28 @@ class Drops(unittest.TestCase):
         columns = [column(history, name) for name in ("liquid_volume_target", "drops_volume", "lost_volume")]
         whole = [sum(parts) for parts in zip(*columns)]
         self.assertLess(max(whole) - min(whole), 1e-13 * whole[0])
+
+    def test_what_falls_into_water_moves_it(self):
+        """One drop above a pool at rest, periodic along x: all of its momentum along x ends in the water."""
+        sides = {f"x {end}": {"Type": "periodic"} for end in ("lower", "upper")}
+        pool = xml("Scene", {
+            "Dimension": 2, "Domain": {"Upper": (1.6, 1.), "Cells": (48, 30), "Sides": sides},
+            "Fluid": {"Density": 1000., "Gravity": (0., -9.8), "Free Surface": {
+                "Interface": {"Type": "particle level set", "Drops": "ballistic"}, "Liquid": {"Pool": {"Type": "level", "Height": .34}}}},
+            "Solver": {"Tolerance": 1e-12}, "Output": {"Checkpoint Interval": .01},
+            "Time": {"End": 10., "Fixed Step": .01}})
+        volume = 1e-9
+        for ranks in 1, 2:
+            with self.subTest(ranks=ranks), tempfile.TemporaryDirectory() as folder:
+                file, output = Path(folder) / "scene.xml", Path(folder) / "output"
+                file.write_text(pool)
+                run(file, output, 1, ranks)
+                checkpoint = sorted(output.glob("checkpoint-*.h5"))[-1]
+                put_drop(checkpoint, [ranks, 0, .5, .36, 1, 0, volume])
+                history, _ = run(file, output, 12, ranks, ("--restart", checkpoint))
+                self.assertEqual((column(history, "drops")[1], column(history, "drops")[-1]), (1, 0))
+                for momentum in column(history, "fluid_momentum_x")[1:]:
+                    self.assertLess(abs(momentum - 1000 * volume), 1e-9 * 1000 * volume)
 
     def test_without_drops_nothing_is_told_of_them(self):
         with tempfile.TemporaryDirectory() as folder:

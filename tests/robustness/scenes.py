@@ -11,6 +11,7 @@ import random
 import gases
 import joints
 import liquids
+import long_tension
 import solvers
 from liquids import AXES
 from parameter_list import to_xml
@@ -349,7 +350,9 @@ def random_scene(seed):
                "Fluid": fluid(world, side_lists), "Solids": solids(world)}
     if liquids.FIRST_SEED <= seed < joints.FIRST_SEED or seed >= gases.FIRST_SEED:
         liquids.fill_with_liquid(world, content, seed)
-    if seed >= gases.FIRST_SEED:
+    if seed >= long_tension.FIRST_SEED:
+        long_tension.lengthen(world, content, seed)
+    elif seed >= gases.FIRST_SEED:
         gases.trap_air(world, content, seed)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])

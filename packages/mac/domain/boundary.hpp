@@ -39,7 +39,7 @@ struct BoundarySide {
     return ramp_time > 0 && time < ramp_time ? std::max(time, 0.0) / ramp_time
                                              : 1;  // time may be < 0
   }
-  /// Whether the velocity jumps in (begin, end].
+  /// Whether the velocity jumps in [begin, end); at `end_time` it still is what it was.
   bool jumps(double begin, double end) const {
     return velocity != Point<dim>::Zero() && begin <= end_time && end_time < end &&
            ramp(end_time) > 0;

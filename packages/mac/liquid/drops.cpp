@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mac/transport/largest_move.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -34,16 +36,6 @@ Drop<dim> unpack(const double* numbers) {
   drop.next = drop.velocity;
   drop.volume = numbers[2 * dim];
   return drop;
-}
-
-/// The largest way of a vertex over the step [m].
-template <int dim>
-double largest_move(const MovingSurface<dim>& surface) {
-  const auto &from = surface.before->mesh().vertices, &to = surface.after->mesh().vertices;
-  double largest = 0;
-  for (std::size_t v = 0; v < from.size(); ++v)
-    largest = std::max(largest, (to[v] - from[v]).norm());
-  return largest;
 }
 }  // namespace
 
@@ -117,7 +109,7 @@ double Drops<dim>::fly(const MovingSurface<dim>& surface, const Point<dim>& grav
   state_.is_due = true;
   state_.by_gravity = dt * gravity;
   const bool has_solids = surface.before && !surface.before->empty() && surface.after;
-  const double reach = has_solids && !state_.drops.empty() ? largest_move(surface) : 0;
+  const double reach = state_.drops.empty() ? 0 : largest_move(surface);
   std::vector<Drop<dim>> still_there;
   double without_room = 0;
   for (Drop<dim> drop : state_.drops) {

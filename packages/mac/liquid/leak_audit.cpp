@@ -6,24 +6,12 @@
 #include "base/errors.hpp"
 #include "mac/liquid/flood.hpp"
 #include "mac/state/surface_marks.hpp"
+#include "mac/transport/largest_move.hpp"
 
 namespace lockstep {
 
 namespace {
 constexpr int most_watches = 30;
-
-/// How far a vertex goes in the step, at most [m].
-template <int dim>
-double largest_motion(const MovingSurface<dim>& surface) {
-  if (!surface.before || !surface.after)
-    return 0;
-  const auto& from = surface.before->mesh().vertices;
-  const auto& to = surface.after->mesh().vertices;
-  double largest = 0;
-  for (std::size_t v = 0; v < from.size(); ++v)
-    largest = std::max(largest, (to[v] - from[v]).norm());
-  return largest;
-}
 }  // namespace
 
 template <int dim>
@@ -136,7 +124,7 @@ typename LeakAudit<dim>::Look LeakAudit<dim>::look(const Surface& surface,
 template <int dim>
 void LeakAudit<dim>::open(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface) {
   before_ = look(step.surface.before, interface, step.kept);
-  motion_ = largest_motion(step.surface);
+  motion_ = largest_move(step.surface);
   lost_ = interface.ledger().lost;
   has_drops_ = interface.drops();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/simplex_queries.hpp"
+#include "mac/transport/largest_move.hpp"
 
 namespace lockstep {
 
@@ -13,19 +14,6 @@ namespace {
 constexpr double stand_off = 1e-3;
 /// How far from a surface what is followed stays [cells].
 constexpr double clearance = 0.1;
-
-/// Largest displacement of a vertex over the step [m].
-template <int dim>
-double largest_move(const MovingSurface<dim>& surface) {
-  double largest = 0;
-  if (!surface.before || !surface.after)
-    return largest;
-  const auto& from = surface.before->mesh().vertices;
-  const auto& to = surface.after->mesh().vertices;
-  for (std::size_t v = 0; v < from.size(); ++v)
-    largest = std::max(largest, (to[v] - from[v]).squaredNorm());
-  return std::sqrt(largest);
-}
 
 }  // namespace
 

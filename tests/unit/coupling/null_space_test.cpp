@@ -98,6 +98,18 @@ TEST(NullSpace, PistonBetweenClosedEndsLeavesOneLevel) {
   EXPECT_EQ(null_space_sizes(held), Sizes(2, 2));
 }
 
+/// Orthonormal vectors in the kernel of B^T.
+void expect_null_vectors(const NullSpace& vectors, const CrsMatrix& coupling_transposed) {
+  Vector product(coupling_transposed.getRangeMap());
+  for (std::size_t k = 0; k < vectors.size(); ++k) {
+    const RCP<Vector> x = vectors.vector(k);
+    coupling_transposed.apply(*x, product);
+    EXPECT_LT(product.norm2(), 1e-11);
+    for (std::size_t l = 0; l <= k; ++l)
+      EXPECT_NEAR(x->dot(*vectors.vector(l)), k == l ? 1 : 0, 1e-12);
+  }
+}
+
 /// Ten closed regions and an open one, round robin on all ranks, and dofs that compare some of
 /// them: 0 + 1 + 2 in many rows, 3 with 4, 5 on its own; the rest none.
 TEST(NullSpace, ManyRegionsOnAllRanks) {
@@ -132,14 +144,7 @@ TEST(NullSpace, ManyRegionsOnAllRanks) {
   const NullSpaces found = find_null_spaces(regions, pressures, bt);
   EXPECT_EQ(found.pressure.size(), 10u);
   ASSERT_EQ(found.coupled.size(), 6u);  // {0, 1, 2}, {3, 4}, 6, 8, 9, 10
-  Vector product(dofs);
-  for (std::size_t k = 0; k < found.coupled.size(); ++k) {
-    const RCP<Vector> n = found.coupled.vector(k);
-    bt->apply(*n, product);
-    EXPECT_LT(product.norm2(), 1e-11);
-    for (std::size_t l = 0; l <= k; ++l)
-      EXPECT_NEAR(n->dot(*found.coupled.vector(l)), k == l ? 1 : 0, 1e-12);
-  }
+  expect_null_vectors(found.coupled, *bt);
 }
 
 /// Two chains of n regions each, in which every solid compares two neighbours and one solid in the
@@ -162,14 +167,7 @@ TEST(NullSpace, LongChainsOfRegions) {
   const RCP<const CrsMatrix> bt = matrix_from_rows(dofs, rows, pressures);
   const NullSpaces found = find_null_spaces(regions, pressures, bt);
   ASSERT_EQ(found.coupled.size(), 4u);
-  Vector product(dofs);
-  for (std::size_t k = 0; k < found.coupled.size(); ++k) {
-    const RCP<Vector> x = found.coupled.vector(k);
-    bt->apply(*x, product);
-    EXPECT_LT(product.norm2(), 1e-11);
-    for (std::size_t l = 0; l <= k; ++l)
-      EXPECT_NEAR(x->dot(*found.coupled.vector(l)), k == l ? 1 : 0, 1e-12);
-  }
+  expect_null_vectors(found.coupled, *bt);
 }
 
 /// More than can be compared is refused on all ranks, in a sentence.

@@ -67,7 +67,10 @@ TEST(StepSize, TheLastStepsEndAtTheEnd) {
   EXPECT_EQ(step_to_end(time, 0.95, 0.1), 1 - 0.95);
   EXPECT_EQ(step_to_end(time, 0.9, 0.1 * (1 - 1e-12)), 1 - 0.9);  // no step of round-off
   time.fixed_step = 0.1;
-  EXPECT_EQ(step_to_end(time, 0.85, 0.1), 0.1);
+  EXPECT_EQ(step_to_end(time, 0.8, 0.1), 0.1);
+  EXPECT_EQ(step_to_end(time, 0.9 + 1e-12, 0.1), 1 - (0.9 + 1e-12));
+  // Fixed steps after some that had to be shorter.
+  EXPECT_DOUBLE_EQ(step_to_end(time, 0.85, 0.1), 0.075);
   EXPECT_EQ(step_to_end(time, 0.95, 0.1), 1 - 0.95);
 }
 
