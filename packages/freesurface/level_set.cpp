@@ -312,7 +312,7 @@ template <int dim>
 void LevelSet<dim>::save(CheckpointWriter& checkpoint) const {
   CellField phi = phi_;
   save_fields(domain_, {{"interface_distance", {&phi}}}, checkpoint);
-  const VolumeTargets& targets = volume_.targets();
+  const VolumeTargets& targets = loaded_ ? *loaded_ : volume_.targets();
   std::vector<double> numbers = {moved_, static_cast<double>(n_restored_), targets.loose,
                                  targets.lost, targets.shift};
   numbers.insert(numbers.end(), targets.of_group.begin(), targets.of_group.end());
@@ -339,20 +339,22 @@ void LevelSet<dim>::load(const CheckpointReader& checkpoint) {
 
 template <int dim>
 std::function<void()> LevelSet<dim>::undo() {
-  return
-      [this, phi = phi_, moved = moved_, surface = solids_.state.surface,
-       targets = volume_.targets(), particles = particles_, in_band = in_band_,
-       n_restored = n_restored_, undo_drops = drops_ ? drops_->undo() : std::function<void()>()] {
-        if (undo_drops)
-          undo_drops();
-        phi_ = phi;
-        moved_ = moved;
-        find_solids(surface);
-        volume_.restore(solids_, phi_, targets);
-        particles_ = particles;
-        in_band_ = in_band;
-        n_restored_ = n_restored;
-      };
+  return [this, phi = phi_, moved = moved_, surface = solids_.state.surface,
+          targets = volume_.targets(), particles = particles_, in_band = in_band_,
+          n_restored = n_restored_, loaded = loaded_,
+          undo_drops = drops_ ? drops_->undo() : std::function<void()>()] {
+    if (undo_drops)
+      undo_drops();
+    phi_ = phi;
+    moved_ = moved;
+    find_solids(surface);
+    loaded_ = loaded;
+    if (!loaded_)
+      volume_.restore(solids_, phi_, targets);
+    particles_ = particles;
+    in_band_ = in_band;
+    n_restored_ = n_restored;
+  };
 }
 
 template <int dim>

@@ -51,10 +51,25 @@ std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>
     }
   });
   sum_all(grid.comm(), sums.data(), static_cast<int>(sums.size()));
+  std::vector<char> is_small(voids.n);
+  for (int group = 0; group < voids.n; ++group)
+    is_small[group] =
+        sums[3 * group] <= most_cells && sums[3 * group + 1] > 0 && sums[3 * group + 2] == 0;
+  if (std::count(is_small.begin(), is_small.end(), 1) == 0)
+    return filled;
+
+  const CellGroups spaces = find_closed_spaces(domain, solids);
+  const auto is_in_small = [&](int cell) {
+    return voids.of_cell[cell] >= 0 && is_small[voids.of_cell[cell]];
+  };
+  std::vector<double> remaining(spaces.n, 0.0);
   grid.for_each_owned_cell([&](int cell) {
-    const int group = voids.of_cell[cell];
-    if (group < 0 || sums[3 * group] > most_cells || sums[3 * group + 1] == 0 ||
-        sums[3 * group + 2] > 0)
+    if (spaces.of_cell[cell] >= 0 && phi[cell] >= 0 && !is_in_small(cell))
+      remaining[spaces.of_cell[cell]] += 1;
+  });
+  sum_all(grid.comm(), remaining.data(), spaces.n);
+  grid.for_each_owned_cell([&](int cell) {
+    if (!is_in_small(cell) || remaining[spaces.of_cell[cell]] == 0)
       return;
     phi[cell] = -std::clamp(phi[cell], least_depth * h, most_depth * h);
     filled.push_back(cell);

@@ -19,7 +19,7 @@ void declare_volume_correction(ParameterList& list) {
                  "Shifts the surface so that no volume is gained or lost. component: each body of "
                  "liquid keeps its own, and nothing goes through a shell; global: all together; "
                  "none: volume is measured only.");
-  declare_between(list, "Largest Shift", 0.1, 0.0, 1.0,
+  declare_between(list, "Largest Shift", 0.2, 0.0, 1.0,
                   "By which the correction may shift the surface in a step that carries it over no "
                   "more than a cell; in longer steps as many times as much [cells].");
 }
@@ -68,14 +68,9 @@ std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& sol
   if (parameters_.correction != VolumeCorrection::component ||
       !(debt > negligible_debt * std::abs(target)))
     return shift;
-  std::vector<int> space(groups_.n, 0);
-  int n_spaces = 1;
-  if (solids.state.surface) {
-    const CellGroups spaces = find_spaces(solids);
-    space = spaces_of_bodies(spaces, groups_);
-    n_spaces = spaces.n;
-  }
-  std::vector<double> owed_in(n_spaces, 0.0), area_in(n_spaces, 0.0);
+  const CellGroups spaces = find_closed_spaces(domain_, solids);
+  const std::vector<int> space = places_among(spaces, groups_);
+  std::vector<double> owed_in(spaces.n, 0.0), area_in(spaces.n, 0.0);
   const auto stands_in = [&](int body) { return std::abs(shift[body]) < left[body]; };
   for (int body = 0; body < groups_.n; ++body) {
     owed_in[space[body]] += owed[body];
@@ -94,13 +89,11 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
     return {};
   const double most = parameters_.largest_shift * domain_.spacing() * std::max(1.0, cfl);
   VolumeShift done;
-  std::vector<int> label;
-  std::vector<double> left;
+  CellGroups shifted;  // what the cells on and beside bodies belong to
+  std::vector<double> left(groups_.n, most);
   bool has_regrouped = true;
   // A second time for what is not linear in the shift.
   for (int pass = 0; pass < 2; ++pass) {
-    if (has_regrouped)
-      left.assign(groups_.n, most);
     std::vector<double> shift = limited_shifts(solids, left);
     bool any = false;
     for (int body = 0; body < groups_.n; ++body) {
@@ -114,25 +107,33 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
     if (!any)
       break;
     if (has_regrouped) {
-      label = groups_.of_cell;
-      spread_labels(domain_, solids, phi, shifted_layers, label);
+      shifted = groups_;
+      spread_labels(domain_, solids, phi, shifted_layers, shifted.of_cell);
     }
-    if (pass == 0)
-      done = {label, shift};
+    done.resize(phi.size(), 0);
     double n_changed = 0;
     domain_.grid.for_each_owned_cell([&](int cell) {
-      if (label[cell] < 0 || !solids.is_fluid(cell))
+      const int body = shifted.of_cell[cell];
+      if (body < 0 || !solids.is_fluid(cell))
         return;
       const bool was_wet = phi[cell] < 0;
-      phi[cell] -= shift[label[cell]];
+      phi[cell] -= shift[body];
+      done[cell] += shift[body];
       n_changed += was_wet != (phi[cell] < 0);
     });
     domain_.halo.fill(phi);
+    if (most > 0.5 * domain_.spacing())
+      measure_.prepare(solids, phi);
     has_regrouped = sum_all(domain_.grid.comm(), n_changed) > 0;
-    if (has_regrouped)
+    if (has_regrouped) {
       regroup(solids, solids, phi, {}, 1);
-    else
+      const std::vector<double> left_before = left;
+      left.clear();
+      for (const int before : places_among(shifted, groups_))
+        left.push_back(left_before[before]);
+    } else {
       volumes_ = measure_.measure(phi, groups_);
+    }
   }
   return done;
 }

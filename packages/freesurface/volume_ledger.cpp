@@ -97,8 +97,11 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
       });
     }
   sum_all(grid.comm(), out.data(), groups_.n);
-  for (int group = 0; group < groups_.n; ++group)
-    targets_.of_group[group] -= out[group];
+  for (int group = 0; group < groups_.n; ++group) {
+    // In a long step more may pass than a small body has.
+    double& target = targets_.of_group[group];
+    target -= std::min(out[group], std::max(target, 0.0));
+  }
 }
 
 template <int dim>
@@ -214,13 +217,10 @@ void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const Cel
 }
 
 template <int dim>
-CellGroups VolumeLedger<dim>::find_spaces(const SolidCells<dim>& solids) const {
-  return find_groups(domain_, solids, std::vector<char>(groups_.of_cell.size(), 1));
-}
-
-template <int dim>
-std::vector<int> VolumeLedger<dim>::spaces_of_bodies(const CellGroups& spaces,
-                                                     const CellGroups& bodies) const {
+std::vector<int> VolumeLedger<dim>::places_among(const CellGroups& spaces,
+                                                 const CellGroups& bodies) const {
+  if (spaces.n == 1)
+    return std::vector<int>(bodies.n, 0);
   Overlaps mine;
   std::pair<int, int> last{-1, -1};
   domain_.grid.for_each_owned_cell([&](int cell) {
@@ -238,14 +238,14 @@ template <int dim>
 void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
                                   const std::vector<int>& places, const std::vector<char>& homeless,
                                   std::vector<double>& target) {
-  const CellGroups spaces = find_spaces(solids);
+  const CellGroups spaces = find_closed_spaces(domain_, solids);
   Overlaps of_old;
   domain_.grid.for_each_owned_cell([&](int cell) {
     const int old = places[cell];
     if (old >= 0 && homeless[old] && solids.is_fluid(cell))
       of_old[{old, spaces.of_cell[cell]}] += 1;
   });
-  const std::vector<int> space = spaces_of_bodies(spaces, groups);
+  const std::vector<int> space = places_among(spaces, groups);
   std::vector<double> volume_in_space(spaces.n, 0.0);
   for (int group = 0; group < groups.n; ++group)
     volume_in_space[space[group]] += volumes_.volume[group];

@@ -16,7 +16,7 @@ enum class VolumeCorrection {
 /// How the volume of a liquid is kept.
 struct VolumeParameters {
   VolumeCorrection correction = VolumeCorrection::component;
-  double largest_shift = 0.1;  ///< of the surface in a step in which nothing crosses a cell [cells]
+  double largest_shift = 0.2;  ///< of the surface in a step in which nothing crosses a cell [cells]
 };
 
 /// Declares "Volume Correction" and "Largest Shift".
@@ -29,11 +29,8 @@ struct VolumeTargets {
   double loose = 0, lost = 0, shift = 0;
 };
 
-/// By how much phi has been lowered, for each body.
-struct VolumeShift {
-  std::vector<int> body_of_cell;  ///< of stored cells on and beside a body, else -1
-  std::vector<double> of_body;    ///< [m]
-};
+/// By how much phi has been lowered in owned cells on and beside bodies [m]; empty: nowhere.
+using VolumeShift = CellField;
 
 /// Keeps account of the volume of each body of liquid and sees to it that phi has it. A body's
 /// target changes by known fluxes only; where bodies merge it is added, where one parts it is
@@ -97,9 +94,8 @@ class VolumeLedger {
   void share_out(const SolidCells<dim>& solids, const CellGroups& groups,
                  const std::vector<int>& places, const std::vector<char>& homeless,
                  std::vector<double>& target);
-  /// The closed spaces that surfaces of solids leave, and the one that each body is in.
-  CellGroups find_spaces(const SolidCells<dim>& solids) const;
-  std::vector<int> spaces_of_bodies(const CellGroups& spaces, const CellGroups& bodies) const;
+  /// The group that each body is in: a closed space, or what it was before.
+  std::vector<int> places_among(const CellGroups& spaces, const CellGroups& bodies) const;
   std::vector<double> wanted_shifts(const GroupVolumes& now) const;
   std::vector<double> limited_shifts(const SolidCells<dim>& solids,
                                      const std::vector<double>& left) const;

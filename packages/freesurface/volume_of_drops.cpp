@@ -46,8 +46,8 @@ std::vector<double> VolumeLedger<dim>::take_drops(const SolidCells<dim>& solids,
   if (sum_all(comm, n_far) == 0)
     return parts;
 
-  const CellGroups spaces = find_spaces(solids);
-  const std::vector<int> space = spaces_of_bodies(spaces, groups_);
+  const CellGroups spaces = find_closed_spaces(domain_, solids);
+  const std::vector<int> space = places_among(spaces, groups_);
   std::vector<double> wanted_in(spaces.n, 0), there(spaces.n, 0);
   for (const int cell : cells)
     if (nearest[cell] < 0 && spaces.of_cell[cell] >= 0)

@@ -33,11 +33,16 @@ def segment(y, integration):
             "Time Integration": integration}
 
 
-def scene(dimension, solids, coupling, viscosity=0.):
+def pool(interface):
+    return {"Free Surface": {"Interface": {"Type": interface}, "Liquid": {"Pool": {"Type": "level", "Height": .55}},
+                             "Watch": {"Tank": {"Point": (.2, .2)}}}}
+
+
+def scene(dimension, solids, coupling, viscosity=0., surface={}):
     n_cells = {2: 16, 3: 8}[dimension]  # one tile
     return xml("Scene", {
         "Dimension": dimension, "Domain": {"Cells": (n_cells,) * dimension},
-        "Fluid": {"Density": 1000., "Gravity": (0., -9.8, 0.)[:dimension], "Viscosity": viscosity},
+        "Fluid": {"Density": 1000., "Gravity": (0., -9.8, 0.)[:dimension], "Viscosity": viscosity, **surface},
         "Solids": solids, "Coupling": {"Type": coupling}, "Time": {"End": 1., "Fixed Step": .005}})
 
 
@@ -58,6 +63,8 @@ CASES = [  # name, dimension, solids, ranks, more
     ("rigid, 3D", 3, {"Ball": ball(3)}, (3,), {}),
     ("both", 2, {"Soft": SOFT_2D, "Ball": ball(2, Position=(.5, .8))}, (3,), {"viscosity": 1.}),
     ("two nodes, which ranks beyond own none of", 2, {"Cloth": segment(.5, "second-order")}, (3,), {}),
+    ("watched water", 2, {"Ball": ball(2)}, (2,), {"surface": pool("particle level set")}),
+    ("watched volumes of water", 2, {"Ball": ball(2)}, (3,), {"surface": pool("volume of fluid")}),
     ("several explicit bodies", 2, {"A": segment(.3, "explicit"), "B": segment(.6, "explicit")}, (5,), {}),
 ]
 

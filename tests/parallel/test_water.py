@@ -57,6 +57,14 @@ class Water(unittest.TestCase):
             again = shutil.copytree(Path(folder) / "2", Path(folder) / "again")
             middle = sorted(again.glob("checkpoint-*.h5"))[0]
             self.assertEqual(run(file, again, steps, 2, ("--restart", middle)), runs[2])
+            self.check_idle_restart(file, Path(folder), middle.name, runs[2])
+
+    def check_idle_restart(self, file, folder, checkpoint, whole):
+        """A run that has nothing left to do writes a checkpoint that others go on from."""
+        idle = Path(shutil.copytree(folder / "2", folder / "idle"))
+        at = int(checkpoint.split("-")[1].split(".")[0])
+        run(file, idle, at, 2, ("--restart", idle / checkpoint))
+        self.assertEqual(run(file, idle, len(whole[0]), 2, ("--restart", idle / checkpoint)), whole)
 
     def test_particles(self):
         self.check(2, "particle level set", "mixed face", 20)

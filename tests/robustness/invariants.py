@@ -20,7 +20,7 @@ import numpy
 from runs import read_table
 
 LEDGER = 1e-10
-LIQUID = 5e-2  # scenes of some hundred cells; a shift mends a tenth of a cell a step
+LIQUID = 5e-2  # scenes of some hundred cells; a shift mends a fifth of a cell a step
 SMALLEST_VOID = {2: 8, 3: 27}  # cells, the default
 FASTEST_OF_FRACTIONS = 2  # cells a step
 DIVERGENCE = 1e-6
@@ -77,8 +77,10 @@ def scales(scene, tables):
     for c in ("vx", "vy", "vz"):
         if bodies and c in bodies[0]:
             speed = max(speed, abs(number(bodies, c)).max())
-    gravity = math.hypot(*scene.content["Fluid"].get("Gravity", [0.0]))
-    speed = max(speed, 1e-3 * h / scene.dt, gravity * scene.dt)
+    fluid = scene.content["Fluid"]
+    gravity = math.hypot(*fluid.get("Gravity", [0.0]))
+    tension = fluid.get("Free Surface", {}).get("Surface Tension", 0) / (fluid["Density"] * h ** 2)
+    speed = max(speed, 1e-3 * h / scene.dt, gravity * scene.dt, tension * scene.dt)
     return length, h, speed
 
 

@@ -128,9 +128,7 @@ class Books {
     const TiledGrid<dim>& grid = domain_.grid;
     if (!space_of_body_.empty())
       return;
-    spaces_ = CellGroups{std::vector<int>(body_.size(), 0), 1};
-    if (solids_.state.surface)
-      spaces_ = find_groups(domain_, solids_, std::vector<char>(body_.size(), 1));
+    spaces_ = find_closed_spaces(domain_, solids_);
     // Of each body cells, and the sum of their spaces' numbers.
     std::vector<double> sums(2 * n_, 0.0);
     grid.for_each_owned_cell([&](int cell) {

@@ -1,8 +1,33 @@
 #include "freesurface/particles/drop_births.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace lockstep {
+
+namespace {
+/// Particles of a tile may stand in any order; drops, whose momenta are summed, do not.
+template <int dim>
+std::vector<Drop<dim>> in_order_of_places(const std::vector<Drop<dim>>& drops,
+                                          std::vector<int>& cells) {
+  std::vector<int> order(drops.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const auto &x = drops[a].position, &y = drops[b].position;
+    return cells[a] != cells[b]
+               ? cells[a] < cells[b]
+               : std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+  });
+  std::vector<Drop<dim>> sorted;
+  std::vector<int> sorted_cells;
+  for (const int i : order) {
+    sorted.push_back(drops[i]);
+    sorted_cells.push_back(cells[i]);
+  }
+  cells.swap(sorted_cells);
+  return sorted;
+}
+}  // namespace
 
 template <int dim>
 std::vector<Drop<dim>> take_lone_particles(const MacDomain<dim>& domain,
@@ -55,7 +80,7 @@ std::vector<Drop<dim>> take_lone_particles(const MacDomain<dim>& domain,
     const auto last = std::remove_if(particles.begin(), particles.end(), leaves);
     particles.erase(last, particles.end());
   }
-  return drops;
+  return in_order_of_places(drops, cells);
 }
 
 template std::vector<Drop<2>> take_lone_particles<2>(const MacDomain<2>&, const SolidCells<2>&,

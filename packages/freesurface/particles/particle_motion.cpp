@@ -151,7 +151,7 @@ template <int dim>
 void shift_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                      KeptSurface<dim>& kept, const VolumeShift& shift, const CellField& phi,
                      ParticleTiles<dim>& tiles) {
-  if (shift.of_body.empty())
+  if (shift.empty())
     return;
   const double h = domain.spacing();
   const SampleLattice<dim> lattice(domain.grid);
@@ -170,8 +170,7 @@ void shift_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids
     const Index<dim>& begin = domain.grid.tile_begin(static_cast<int>(tile));
     const auto shift_at = [&](const Particle<dim>& particle) {
       const std::size_t cell = tile * tile_volume<dim> + particle.cell_in_tile();
-      const int body = shift.body_of_cell[cell];
-      return body < 0 || std::abs(phi[cell]) > shifted_band * h ? 0 : shift.of_body[body];
+      return std::abs(phi[cell]) > shifted_band * h ? 0 : shift[cell];
     };
     const auto is_shifted = [&](const Particle<dim>& particle) { return shift_at(particle) != 0; };
     bool has_entered = false;

@@ -133,6 +133,36 @@ std::pair<std::vector<int>, int> number_groups(const std::vector<GlobalIndex>& s
   return {number, n_groups};
 }
 
+/// Beside cells that are not stored, though inside the domain.
+template <int dim>
+bool at_rim(const TiledGrid<dim>& grid, int cell) {
+  for (int i = 0; i < 2 * dim; ++i) {
+    const int axis = i / 2, last = i % 2 == 0 ? 0 : grid.n_cells()[axis] - 1;
+    if (grid.neighbor(cell, axis, i % 2) < 0 &&
+        (grid.description().periodic[axis] || grid.coordinates(cell)[axis] != last))
+      return true;
+  }
+  return false;
+}
+
+/// All groups at the rim of the cells that are stored become the first of them.
+template <int dim>
+void join_at_rim(const TiledGrid<dim>& grid, CellGroups& groups) {
+  std::vector<double> touches(groups.n, 0.0);
+  grid.for_each_owned_cell([&](int cell) {
+    const int group = groups.of_cell[cell];
+    if (group >= 0 && touches[group] == 0)
+      touches[group] = at_rim(grid, cell);
+  });
+  sum_all(grid.comm(), touches.data(), groups.n);
+  int first = 0;
+  while (first < groups.n && touches[first] == 0)
+    ++first;
+  for (int& group : groups.of_cell)
+    if (group >= 0 && touches[group] > 0)
+      group = first;
+}
+
 void make_unique(std::vector<std::pair<int, int>>& pairs) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
@@ -187,6 +217,21 @@ CellGroups find_groups(const MacDomain<dim>& domain, const SolidCells<dim>& soli
 }
 
 template <int dim>
+CellGroups find_closed_spaces(const MacDomain<dim>& domain, const SolidCells<dim>& solids) {
+  const std::size_t n_cells = solids.state.cells.size();
+  CellGroups spaces{std::vector<int>(n_cells, -1), 1};
+  for (std::size_t cell = 0; cell < n_cells; ++cell)
+    if (solids.is_fluid(static_cast<int>(cell)))
+      spaces.of_cell[cell] = 0;
+  if (!solids.state.surface)
+    return spaces;
+  spaces = find_groups(domain, solids, std::vector<char>(n_cells, 1));
+  if (!domain.grid.is_complete())
+    join_at_rim(domain.grid, spaces);
+  return spaces;
+}
+
+template <int dim>
 void spread_labels(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                    const CellField& phi, int layers, std::vector<int>& label) {
   const TiledGrid<dim>& grid = domain.grid;
@@ -223,6 +268,8 @@ void spread_labels(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   }
 }
 
+template CellGroups find_closed_spaces<2>(const MacDomain<2>&, const SolidCells<2>&);
+template CellGroups find_closed_spaces<3>(const MacDomain<3>&, const SolidCells<3>&);
 template void spread_labels<2>(const MacDomain<2>&, const SolidCells<2>&, const CellField&, int,
                                std::vector<int>&);
 template void spread_labels<3>(const MacDomain<3>&, const SolidCells<3>&, const CellField&, int,

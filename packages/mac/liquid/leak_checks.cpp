@@ -98,8 +98,9 @@ int LeakAudit<dim>::parting_solid(const SurfaceSnapshot<dim>& surface, int axis,
 
 template <int dim>
 void LeakAudit<dim>::check_sides(const InterfaceStep<dim>& step, const Look& now) const {
-  if (before_.blocked.empty() || now.blocked.empty())
-    return;
+  const auto is_empty = [](const auto& surface) { return !surface || surface->empty(); };
+  if (is_empty(step.surface.before) || is_empty(step.surface.after))
+    return;  // the same on all ranks, also on those without cells
   const TiledGrid<dim>& grid = domain_.grid;
   const auto near = step.kept.of(step.surface.before, grid, 2);
   std::vector<int> leaked;

@@ -27,6 +27,15 @@ double largest_displacement(const MacDomain<dim>& domain, const MacState<dim>& s
     });
   return max_all(domain.grid.comm(), fastest) * dt / domain.spacing();
 }
+
+/// Beyond what is extended nothing moves: what the liquid once left there would count as motion.
+template <int dim>
+void stop_beyond(const MacState<dim>& state, FaceField<dim>& velocity) {
+  for (int axis = 0; axis < dim; ++axis)
+    for (std::size_t cell = 0; cell < velocity[axis].size(); ++cell)
+      if (state.faces[axis][cell] == FaceState::inactive)
+        velocity[axis][cell] = 0;
+}
 }  // namespace
 
 template <int dim>
@@ -94,8 +103,11 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
   const VelocityExtension<dim> extension(domain_, interface_->distance(), band, geometry.near,
                                          *solids, geometry.state);
   extension.extend(step.time, step.surface.velocity, advection_velocity);
-  if (&velocity != &advection_velocity)
+  stop_beyond<dim>(geometry.state, advection_velocity);
+  if (&velocity != &advection_velocity) {
     extension.extend(step.time, step.surface.velocity, velocity);
+    stop_beyond<dim>(geometry.state, velocity);
+  }
   if (gravity_ > 0)
     lead_ = lead_of_short_waves<dim>(domain_, geometry, interface_->distance(), advection_velocity,
                                      gravity_, step.dt);

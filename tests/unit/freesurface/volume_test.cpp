@@ -261,6 +261,24 @@ TEST(Voids, SmallOnesUnderWaterAreFilled) {
   EXPECT_EQ(n_left, 10);  // the longer one and the one at the open side
 }
 
+/// Of a closed tank: without them nothing could take back what the correction of the volume owes.
+TEST(Voids, TheLastOfAClosedTankStay) {
+  Bath<2> bath(closed_cube<2>(32));
+  const auto solids = find_solid_cells<2>(bath.domain, nullptr);
+  const auto& grid = bath.domain.grid;
+  for (const bool has_more : {false, true}) {
+    CellField phi(grid.n_stored_cells(), -6 * bath.domain.spacing());
+    grid.for_each_stored_cell([&](int c) {
+      const Index<2> at = grid.coordinates(c);
+      const bool is_small = at[0] == 7 && at[1] > 3 && at[1] < 12;
+      if (is_small || (has_more && at[0] == 20 && at[1] > 3 && at[1] < 13))
+        phi[c] = 0.5 * bath.domain.spacing();
+    });
+    const auto filled = close_voids(bath.domain, solids, 8, phi);
+    EXPECT_EQ(sum_all(world(), static_cast<double>(filled.size())), has_more ? 8 : 0);
+  }
+}
+
 template <int dim>
 double volume_of_ball(double r) {
   return dim == 2 ? pi * r * r : 4 * pi * r * r * r / 3;
