@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "base/interruption.hpp"
+#include "base/lone_process.hpp"
 #include "base/memory.hpp"
 #include "base/shortened.hpp"
 #include "output/build_information.hpp"
@@ -170,6 +171,7 @@ int run(int argc, char** argv, const Communicator& comm) {
 
 int main(int argc, char** argv) {
   keep_freed_memory();
+  expect_no_other_ranks();
   auto held_signals = std::make_unique<HeldSignals>();
   int n_for_kokkos = 1;  // the program's name alone: of --help it would print its own
   Tpetra::ScopeGuard scope(&n_for_kokkos, &argv);

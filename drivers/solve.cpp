@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
+#include "base/lone_process.hpp"
 #include "base/memory.hpp"
 #include "base/shortened.hpp"
 #include "output/on_root.hpp"
@@ -203,6 +204,7 @@ int run(int argc, char** argv, const Communicator& comm) {
 
 int main(int argc, char** argv) {
   keep_freed_memory();
+  expect_no_other_ranks();
   int n_for_kokkos = 1;  // the program's name alone: of --help it would print its own
   Tpetra::ScopeGuard scope(&n_for_kokkos, &argv);
   const Communicator comm = Tpetra::getDefaultComm();

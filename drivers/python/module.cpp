@@ -9,6 +9,7 @@
 
 #include "any_run.hpp"
 #include "base/errors.hpp"
+#include "base/lone_process.hpp"
 #include "base/memory.hpp"
 #include "output/build_information.hpp"
 
@@ -139,6 +140,7 @@ py::dict surfaces(const Run& run) {
 /// MPI and Kokkos live from here to the end of Python; if mpi4py began MPI, it ends it.
 void begin_and_end_with_python() {
   keep_freed_memory();
+  expect_no_other_ranks();
   try {
     py::module_::import("mpi4py.MPI");
   } catch (const py::error_already_set& error) {
