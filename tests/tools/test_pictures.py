@@ -159,6 +159,27 @@ class PlotFrame(Pictures):
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertGreater(imread(Path(self.folder.name) / "frame.png").std(), 0.1)
 
+    def test_parts_of_a_movie_hold_its_frames(self):
+        """Of a run with many bodies ParaView is given a few frames at a time, each once, with all that is in them."""
+        make_run.main(self.folder.name, 3)
+        render, whole = load("render"), plot_frame.read_frames(self.folder.name)
+        with unittest.mock.patch.object(sys, "argv", ["render", self.folder.name, "--movie"]):
+            options = render.arguments()
+        description = render.job(options)
+        self.assertEqual(description["bounds"], [1, 2, 0, .75, -.25, .25])
+        self.assertEqual(len(list(render.parts_of(description["frames"]))), 1)
+        render.MOST_GRIDS = 1
+        found = []
+        for part in render.parts_of(description["frames"]):
+            with tempfile.TemporaryDirectory() as where:
+                render.index_of_a_part(self.folder.name, [frame["time"] for frame in part], where)
+                for frame in plot_frame.read_frames(where):
+                    found.append((frame.time, frame.names, float(frame["fluid"].values("smoke").sum())))
+        self.assertEqual(found, [(frame.time, frame.names, float(frame["fluid"].values("smoke").sum())) for frame in whole])
+        options.state = True
+        with self.assertRaisesRegex(render.FramesError, "--state"):
+            render.job(options)
+
     def test_messages(self):
         self.assertIn("holds no frames.xmf", self.run_tool("plot-frame").stderr)
         self.make(3)
