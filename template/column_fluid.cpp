@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "linear/triplet_matrix.hpp"
+#include "output/checkpoint.hpp"
 
 using namespace lockstep;
 
@@ -166,4 +168,17 @@ double ColumnFluid::kinetic_energy() const {
       energy += 0.5 * mass(face) * predicted_[face] * predicted_[face];
   }
   return energy;
+}
+
+void ColumnFluid::save(CheckpointWriter& checkpoint) const {
+  checkpoint.file().create_group("column");
+  checkpoint.file().write_replicated("column/velocity", velocity_);
+}
+
+void ColumnFluid::load(const CheckpointReader& checkpoint) {
+  const auto values = checkpoint.file().read_all<double>("column/velocity");
+  check_input(values.size() == velocity_.size(),
+              "{}: the checkpoint's channel has {} faces, that of the scene {}.",
+              checkpoint.file().path(), values.size(), velocity_.size());
+  velocity_ = values;
 }

@@ -6,19 +6,25 @@
 /// A fluid of your own: a straight channel along x, one cell wide, open (p = 0) at both ends. Its
 /// incompressible velocity is uniform between solids, so nothing is carried along by advection.
 /// Pressures are distributed over the ranks; the few velocities are kept on every rank. Of the side
-/// interfaces it has one, so that its runs audit their momentum.
+/// interfaces it has one, so that its runs audit their momentum. As always in 2D here, masses and
+/// forces are those of a metre of depth: kg/m, N/m.
 class ColumnFluid : public lockstep::FluidDiscretization<2>, public lockstep::AuditedFluid<2> {
  public:
   struct Options {
     int n_cells = 20;
     double length = 2;      ///< along x, from 0 [m]
     double width = 0.5;     ///< across, from y = 0 [m]
-    double density = 1000;  ///< [kg/m^2]
+    double density = 1000;  ///< [kg/m^3]
     double gravity = 0;     ///< along x [m/s^2]
   };
   ColumnFluid(const Options& options, const lockstep::Communicator& comm);
 
   std::string name() const override { return "column"; }
+  void save(lockstep::CheckpointWriter& checkpoint) const override;
+  void load(const lockstep::CheckpointReader& checkpoint) override;
+  std::function<void()> undo() override {
+    return [this, before = velocity_] { velocity_ = before; };
+  }
   const std::vector<double>& predicted() const { return predicted_; }  ///< u* at the faces [m/s]
 
   void divergence(lockstep::Vector& rhs) const override;

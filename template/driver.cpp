@@ -1,7 +1,6 @@
 // Eq. 16 from a fluid and a solid of your own, solved as an XML file says: driver SOLVER.xml
 #include <fmt/format.h>
 
-#include <Teuchos_XMLParameterListHelpers.hpp>
 #include <Tpetra_Core.hpp>
 #include <Tpetra_Vector.hpp>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "column_fluid.hpp"
 #include "coupling/coupled_system.hpp"
 #include "mixedface/mixed_face_coupling.hpp"
+#include "parameters/strict_xml.hpp"
 #include "piston.hpp"
 #include "solve/solve_with_stratimikos.hpp"
 #include "stepping/scene_file.hpp"
@@ -31,9 +31,9 @@ void run(const std::string& solver_file, const Communicator& comm) {
   double removed = 0;
   const BlockVector rhs = system.right_hand_side(*solids.explicit_momentum(0, dt), removed);
   // 3. Belos MINRES with a Teko block preconditioner.
-  const auto list = Teuchos::getParametersFromXmlFile(solver_file);
+  const ParameterList list = read_xml(solver_file, comm).list;
   BlockVector solution{make_vector(fluid.pressure_map()), make_vector(solids.map())};
-  const auto report = solve_with_stratimikos(system.blocks(dt), rhs, solution, *list);
+  const auto report = solve_with_stratimikos(system.blocks(dt), rhs, solution, list);
   // 4. The velocities of both sides: all move together, at dt F / (m + rho A L).
   fluid.project(*solution.pressure);
   solids.set_velocity(*solution.solid);

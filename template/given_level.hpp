@@ -8,7 +8,7 @@ namespace lockstep {
 class GivenLevel : public InterfaceModel<2> {
  public:
   struct Options {
-    double height = 0;  ///< at t = 0 [m]
+    double height = 0;  ///< at the start of the run [m]
     double speed = 0;   ///< at which it rises [m/s]
   };
 
@@ -26,11 +26,12 @@ class GivenLevel : public InterfaceModel<2> {
   LiquidLedger ledger() const override;
 
  private:
-  void draw(double time);
+  /// phi, known everywhere, so that nothing of it is cut off beyond the band.
+  void draw(double level);
 
   Options options_;
   const MacDomain<2>& domain_;
-  double time_ = 0;  ///< [s]
+  double level_;  ///< of the surface at present [m]
   CellField phi_;
 };
 

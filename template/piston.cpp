@@ -3,7 +3,9 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "base/errors.hpp"
 #include "linear/triplet_matrix.hpp"
+#include "output/checkpoint.hpp"
 
 using namespace lockstep;
 
@@ -78,4 +80,28 @@ std::vector<SolidState<2>> Piston::states() const {
   state.mass = options_.mass;
   state.kinetic_energy = 0.5 * options_.mass * velocity_ * velocity_;
   return {state};
+}
+
+void Piston::set_state(const std::array<double, 3>& state) {
+  position_ = state[0];
+  velocity_ = state[1];
+  last_velocity_ = state[2];
+  place();
+}
+
+void Piston::save(CheckpointWriter& checkpoint) const {
+  const auto now = state();
+  checkpoint.file().create_group("piston");
+  checkpoint.file().write_replicated("piston/state", std::vector<double>(now.begin(), now.end()));
+}
+
+void Piston::load(const CheckpointReader& checkpoint) {
+  const auto values = checkpoint.file().read_all<double>("piston/state");
+  check_input(values.size() == 3, "{}: the checkpoint's piston is incomplete; take another one.",
+              checkpoint.file().path());
+  set_state({values[0], values[1], values[2]});
+}
+
+std::function<void()> Piston::undo() {
+  return [this, before = state()] { set_state(before); };
 }

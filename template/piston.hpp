@@ -1,10 +1,12 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "interfaces/solid_sides.hpp"
 
 /// A solid of your own: a thin plate across a channel that slides along x and is pushed by a
-/// constant force. One unknown, its velocity, on rank 0.
+/// constant force. One unknown, its velocity, on rank 0. Masses and forces are those of a metre of
+/// depth, as in column_fluid.hpp.
 class Piston : public lockstep::SolidModel<2>, public lockstep::AuditedSolids<2> {
  public:
   struct Options {
@@ -16,6 +18,9 @@ class Piston : public lockstep::SolidModel<2>, public lockstep::AuditedSolids<2>
   Piston(const Options& options, const lockstep::Communicator& comm);
 
   std::string name() const override { return "piston"; }
+  void save(lockstep::CheckpointWriter& checkpoint) const override;
+  void load(const lockstep::CheckpointReader& checkpoint) override;
+  std::function<void()> undo() override;
   const std::vector<lockstep::SolidDescription>& solids() const override { return solids_; }
   const lockstep::SurfaceMesh<2>& surface() const override { return surface_; }
   void velocity_row(const lockstep::SurfacePoint<2>& point, const lockstep::Point<2>& x,
@@ -41,7 +46,11 @@ class Piston : public lockstep::SolidModel<2>, public lockstep::AuditedSolids<2>
   /// The one entry of a vector on `map_`, on every rank. Collective.
   double only_entry(const lockstep::Vector& vector) const;
   lockstep::Point<2> center() const { return {position_, options_.width / 2}; }
+  /// The surface, at the present position.
   void place();
+  /// Position [m], velocity and that of the last `move` [m/s].
+  std::array<double, 3> state() const { return {position_, velocity_, last_velocity_}; }
+  void set_state(const std::array<double, 3>& state);
 
   Options options_;
   lockstep::Communicator comm_;

@@ -1,5 +1,6 @@
 // The same two plug-ins, an observer and an interface model, under names of their own in scene
-// files: simulate SCENE.xml OUTPUT_FOLDER
+// files: simulate SCENE.xml OUTPUT_FOLDER [--set "List/Name=value"]... [--restart CHECKPOINT]
+#include <CLI/CLI.hpp>
 #include <Tpetra_Core.hpp>
 #include <iostream>
 
@@ -7,6 +8,7 @@
 #include "given_level.hpp"
 #include "parameters/strict_xml.hpp"
 #include "piston.hpp"
+#include "scenes/expand_scene.hpp"
 #include "shipped/shipped_plug_ins.hpp"
 #include "stepping/scene_file.hpp"
 #include "stepping/simulation.hpp"
@@ -15,7 +17,7 @@ using namespace lockstep;
 
 ParameterList column_parameters() {
   ParameterList list;
-  declare_positive(list, "Density", 1000., "Of the fluid [kg/m^2].");
+  declare_positive(list, "Density", 1000., "Of the fluid [kg/m^3].");
   declare(list, "Gravity", 0., "Along the channel [m/s^2].");
   return list;
 }
@@ -68,7 +70,7 @@ std::unique_ptr<GivenLevel> make_level(const ParameterList& list, const MacDomai
       GivenLevel::Options{list.get<double>("Height"), list.get<double>("Speed")}, domain);
 }
 
-int run(const std::string& scene_file, const std::string& output, const Communicator& comm) {
+Registries<2> plug_ins() {
   const auto interfaces = shipped_interface_models<2>();
   interfaces->add("given level", "A flat surface at a given height.", level_parameters, make_level);
   Registries<2> registries = shipped_plug_ins<2>(interfaces);
@@ -78,11 +80,29 @@ int run(const std::string& scene_file, const std::string& output, const Communic
   registries.observers.add(
       "stroke", "How far the first solid has come.", [] { return ParameterList(); },
       [](const ParameterList&) { return std::make_unique<Stroke>(); });
-  Document scene = read_xml(scene_file, comm);
-  complete_scene(scene, {}, scene_parameters<2>(registries, scene_fluid(scene, {})), comm);
+  return registries;
+}
+
+int run(int argc, char** argv, const Communicator& comm) {
   RunOptions options;
-  options.scene_file = scene_file;
-  options.output_directory = output;
+  std::vector<std::string> settings;
+  CLI::App app("Runs a scene with plug-ins of its own.");
+  app.add_option("scene", options.scene_file)->required();
+  app.add_option("output", options.output_directory)->required();
+  app.add_option("--set", settings)->expected(1)->take_all();
+  app.add_option("--restart", options.restart_file);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(std::string(error.what()) +
+                     "\nUsage: simulate SCENE.xml OUTPUT_FOLDER [--set \"List/Name=value\"]... "
+                     "[--restart CHECKPOINT]");
+  }
+  Document scene = read_xml(options.scene_file, comm, FormulaPolicy::kept);
+  expand_scene(scene, settings, comm);
+  const Registries<2> registries = plug_ins();
+  complete_scene(scene, settings, scene_parameters<2>(registries, scene_fluid(scene, settings)),
+                 comm);
   const Log log(comm, std::cout, LogLevel::normal);
   return Simulation<2>(registries, scene.list, options, comm, log).run();
 }
@@ -90,8 +110,5 @@ int run(const std::string& scene_file, const std::string& output, const Communic
 int main(int argc, char** argv) {
   Tpetra::ScopeGuard scope(&argc, &argv);
   const Communicator comm = Tpetra::getDefaultComm();
-  return run_and_report(comm, [&] {
-    check_input(argc == 3, "Usage: simulate SCENE.xml OUTPUT_FOLDER");
-    return run(argv[1], argv[2], comm);
-  });
+  return run_and_report(comm, [&] { return run(argc, argv, comm); });
 }

@@ -10,7 +10,7 @@ class Stroke : public Observer<2> {
   std::string name() const override { return "stroke"; }
   std::vector<ObservedColumn> columns() const override {
     return {{"stroke", "m", "way of the first solid along x"},
-            {"energy", "J", "kinetic energy of that solid"}};
+            {"energy", "J/m", "kinetic energy of that solid"}};
   }
   std::vector<std::vector<double>> observe(const RunView<2>& run) override;
   void save(CheckpointWriter& checkpoint) const override;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "linear/triplet_matrix.hpp"
+#include "output/checkpoint.hpp"
 
 namespace lockstep {
 
@@ -357,6 +358,18 @@ Momentum<dim> FakeFluid<dim>::boundary_pressure_impulse(const Vector& scaled_pre
         (inner == 1 ? 1 : -1) * face.volume.area * pressure[face.volume.sides[inner].unknown]);
   }
   return impulse;
+}
+
+template <int dim>
+void FakeFluid<dim>::save(CheckpointWriter& checkpoint) const {
+  checkpoint.file().create_group("fluid");
+  checkpoint.file().write_replicated("fluid/velocity", velocity_);
+}
+
+template <int dim>
+void FakeFluid<dim>::load(const CheckpointReader& checkpoint) {
+  velocity_ = checkpoint.file().template read_all<double>("fluid/velocity");
+  predicted_ = velocity_;
 }
 
 template class FakeFluid<2>;

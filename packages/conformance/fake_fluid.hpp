@@ -48,6 +48,11 @@ class FakeFluid : public FluidDiscretization<dim>,
   const std::vector<double>& predicted() const { return predicted_; }  ///< u* of all faces
 
   std::string name() const override { return "fake fluid"; }
+  void save(CheckpointWriter& checkpoint) const override;
+  void load(const CheckpointReader& checkpoint) override;
+  std::function<void()> undo() override {
+    return [this, before = velocity_] { velocity_ = before; };
+  }
   void divergence(Vector& rhs) const override;
   void project(const Vector& scaled_pressure) override;
   std::vector<double> coupled_velocity() const override;

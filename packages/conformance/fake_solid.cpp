@@ -6,6 +6,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "linear/triplet_matrix.hpp"
+#include "output/checkpoint.hpp"
 
 namespace lockstep {
 namespace {
@@ -275,6 +276,50 @@ std::vector<SolidState<dim>> FakeSolid<dim>::states() const {
     all.push_back(state);
   }
   return all;
+}
+
+template <int dim>
+std::vector<double> FakeSolid<dim>::state() const {
+  std::vector<double> values = velocity_;
+  values.insert(values.end(), last_velocity_.begin(), last_velocity_.end());
+  for (const FakeBody<dim>& body : bodies_)
+    values.insert(values.end(), body.center.data(), body.center.data() + dim);
+  for (const Point<dim>& x : surface_.vertices)
+    values.insert(values.end(), x.data(), x.data() + dim);
+  return values;
+}
+
+template <int dim>
+void FakeSolid<dim>::set_state(const std::vector<double>& values) {
+  const double* next = values.data();
+  for (std::vector<double>* all : {&velocity_, &last_velocity_}) {
+    std::copy_n(next, all->size(), all->begin());
+    next += all->size();
+  }
+  for (FakeBody<dim>& body : bodies_) {
+    body.center = Eigen::Map<const Point<dim>>(next);
+    next += dim;
+  }
+  for (Point<dim>& x : surface_.vertices) {
+    x = Eigen::Map<const Point<dim>>(next);
+    next += dim;
+  }
+}
+
+template <int dim>
+std::function<void()> FakeSolid<dim>::undo() {
+  return [this, before = state()] { set_state(before); };
+}
+
+template <int dim>
+void FakeSolid<dim>::save(CheckpointWriter& checkpoint) const {
+  checkpoint.file().create_group("solids");
+  checkpoint.file().write_replicated("solids/state", state());
+}
+
+template <int dim>
+void FakeSolid<dim>::load(const CheckpointReader& checkpoint) {
+  set_state(checkpoint.file().template read_all<double>("solids/state"));
 }
 
 template class FakeSolid<2>;

@@ -39,6 +39,9 @@ class FakeSolid : public SolidModel<dim>, public AuditedSolids<dim> {
             const Communicator& comm);
 
   std::string name() const override { return "fake solid"; }
+  void save(CheckpointWriter& checkpoint) const override;
+  void load(const CheckpointReader& checkpoint) override;
+  std::function<void()> undo() override;
   const std::vector<SolidDescription>& solids() const override { return solids_; }
   const SurfaceMesh<dim>& surface() const override { return surface_; }
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
@@ -60,6 +63,9 @@ class FakeSolid : public SolidModel<dim>, public AuditedSolids<dim> {
 
  private:
   using Kind = typename FakeBody<dim>::Kind;
+  /// All numbers that a step changes.
+  std::vector<double> state() const;
+  void set_state(const std::vector<double>& values);
   int body_of(int simplex) const;
   /// Velocity of a surface point for these values of all dofs (prescribed: its own motion).
   Point<dim> velocity_at(const std::vector<double>& dofs, const SurfacePoint<dim>& point,

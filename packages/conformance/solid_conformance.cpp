@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "conformance/through_checkpoint.hpp"
 #include "interfaces/solid_sides.hpp"
 #include "linear/symmetry_check.hpp"
 
@@ -80,6 +81,21 @@ void check_operators(const SolidModel<dim>& model, Violations& found) {
   expect_small(found, symmetry_defect(*force), round_off, "implicit_force: D is not symmetric");
   expect_true(found, x->dot(*y) <= round_off * x->norm2() * y->norm2(),
               "implicit_force: D is not negative semidefinite");
+}
+
+/// Sets all dofs in motion but those that are held. What this gives, `velocity` must return.
+template <int dim>
+void set_in_motion(SolidModel<dim>& model, int seed, Violations& found) {
+  const auto given = make_vector(model.dof_map());
+  pseudo_random(*given, seed);
+  for (const GlobalIndex dof : model.locked_dofs())
+    if (given->getMap()->isNodeGlobalElement(dof))
+      given->replaceGlobalValue(dof, 0);
+  model.set_velocity(*given);
+  const double size = given->normInf();
+  given->update(-1, *model.velocity(), 1);
+  expect_small(found, given->normInf(), round_off * size,
+               "set_velocity: `velocity` returns another one [m/s, rad/s]");
 }
 
 /// Momentum and energy by M_S V_S and as the states report them.
@@ -181,9 +197,51 @@ void check_motion(SolidModel<dim>& model, Violations& found) {
     by_rows = std::max(by_rows, (moved - promised[s]).norm());
     by_effective = std::max(by_effective, (moved - model.effective_velocity(point, x)).norm());
   }
+  const auto n_dofs = static_cast<double>(model.dof_map()->getGlobalNumElements());
+  const double n_locked =
+      sum_all(model.dof_map()->getComm(), static_cast<double>(model.locked_dofs().size()));
+  expect_true(found, promised.empty() || n_locked == n_dofs || fastest > 0,
+              "velocity_row: no point of the surface moves, whatever the velocities");
   const double bound = 1e-4 * fastest + 1e-6;
   expect_small(found, by_rows, bound, "velocity_row: a point of the surface moves otherwise [m/s]");
   expect_small(found, by_effective, bound, "effective_velocity: not displacement over dt [m/s]");
+}
+
+/// All that a solid carries from step to step: places, velocities, what its states tell of them.
+template <int dim>
+std::vector<double> state_of(const SolidModel<dim>& model) {
+  std::vector<double> values = everywhere(*model.velocity());
+  const auto add = [&values](const auto& vector) {
+    values.insert(values.end(), vector.data(), vector.data() + vector.size());
+  };
+  for (const Point<dim>& vertex : model.surface().vertices)
+    add(vertex);
+  for (const SolidState<dim>& state : model.states()) {
+    add(state.center_of_mass);
+    add(state.velocity);
+    add(state.angular_velocity);
+  }
+  return values;
+}
+
+/// A step that is given up, and a run that is continued, find the solids as they were.
+template <int dim>
+void check_memory(SolidModel<dim>& model, Violations& found) {
+  const auto step = [&] {
+    const RCP<Vector> velocity = make_vector(model.dof_map());
+    velocity->update(1, *model.velocity(), 0);
+    model.move(*velocity, 0, dt);
+    set_in_motion(model, 8, found);
+  };
+  const std::vector<double> before = state_of(model);
+  const std::function<void()> undo = model.undo();
+  step();
+  undo();
+  expect_true(found, state_of(model) == before,
+              "undo: does not put back the places and velocities at the start of the step");
+  load_what_was_saved(model, model.dof_map()->getComm(), step, found);
+  expect_true(found, state_of(model) == before,
+              "save, load: places and velocities are not those that were saved");
 }
 
 }  // namespace
@@ -193,10 +251,13 @@ Violations check_solid(SolidModel<dim>& model) {
   Violations found;
   check_descriptions(model, found);
   check_operators(model, found);
+  model.begin_step(0, dt);
+  set_in_motion(model, 7, found);
   check_momentum(model, found);
   check_impulses(model, found);
   check_locks(model, found);
   check_motion(model, found);
+  check_memory(model, found);
   return found;
 }
 

@@ -4,8 +4,8 @@
 
 namespace lockstep {
 
-/// Holds a solid model against what SolidModel promises. Its solids should be in motion; they have
-/// moved a little afterwards. Collective; every rank gets the same sentences.
+/// Holds a solid model against what SolidModel promises. Its solids have other velocities
+/// afterwards, and have moved a little. Collective; every rank gets the same sentences.
 template <int dim>
 Violations check_solid(SolidModel<dim>& model);
 

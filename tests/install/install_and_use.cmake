@@ -38,6 +38,19 @@ foreach(ranks 1 2)
   endif()
 endforeach()
 
+# Half of it, and the rest from the checkpoint: as in one go, to the last digit.
+run_step("Half of the template's scene" "${copy}/build/simulate" "${copy}/piston.xml" "${copy}/run-halves"
+         --set "Time/Steps=5")
+run_step("The other half" "${copy}/build/simulate" "${copy}/piston.xml" "${copy}/run-halves"
+         --restart "${copy}/run-halves/checkpoint-000005.h5" --set "Time/End=4")
+foreach(table "bodies" "stroke of the piston")
+  file(STRINGS "${copy}/run-1/${table}.csv" whole)
+  file(STRINGS "${copy}/run-halves/${table}.csv" halves)
+  if(NOT whole STREQUAL halves)
+    message(FATAL_ERROR "The template's run in two halves has another ${table}.csv than in one go.")
+  endif()
+endforeach()
+
 # A tank three eighths full, whose surface the template's interface model gives.
 run_step("The template's level" "${copy}/build/simulate" "${copy}/level.xml" "${copy}/run-level")
 file(STRINGS "${copy}/run-level/history.csv" rows)

@@ -63,6 +63,22 @@ struct ForgetfulSides : FakeFluid<2> {
   Momentum<2> boundary_pressure_impulse(const Vector&) const override { return {}; }
 };
 
+struct ForgetfulFluid : FakeFluid<2> {
+  using FakeFluid<2>::FakeFluid;
+  void load(const CheckpointReader&) override {}
+};
+struct FluidThatKeepsAStep : FakeFluid<2> {
+  using FakeFluid<2>::FakeFluid;
+  ForceImpulse<2> add_forces(double time, double dt) override {
+    ForceImpulse<2> forces = FakeFluid<2>::add_forces(time, dt);
+    accept();
+    return forces;
+  }
+  std::function<void()> undo() override {
+    return [] {};
+  }
+};
+
 template <typename Fluid>
 Violations violations_of_fluid() {
   Fluid fluid(tank(), Tpetra::getDefaultComm());
@@ -76,6 +92,8 @@ TEST(Conformance, FindsFluidsThatBreakAPromise) {
   EXPECT_THAT(violations_of_fluid<WrongImpulse>(), Contains(HasSubstr("add_forces:")));
   EXPECT_THAT(violations_of_fluid<ForgetfulSides>(),
               Contains(HasSubstr("boundary_pressure_impulse:")));
+  EXPECT_THAT(violations_of_fluid<ForgetfulFluid>(), Contains(HasSubstr("save, load:")));
+  EXPECT_THAT(violations_of_fluid<FluidThatKeepsAStep>(), Contains(HasSubstr("undo:")));
 }
 
 struct FastRows : FakeSolid<2> {
@@ -107,20 +125,54 @@ struct PushingForce : FakeSolid<2> {
   RCP<const LinearOperator> implicit_force(double) const override { return mass(); }
 };
 
+struct StuckSolid : FakeSolid<2> {
+  using FakeSolid<2>::FakeSolid;
+  void set_velocity(const Vector&) override {}
+};
+struct ForgetfulSolid : FakeSolid<2> {
+  using FakeSolid<2>::FakeSolid;
+  void load(const CheckpointReader&) override {}
+};
+struct SolidWithoutFile : FakeSolid<2> {
+  using FakeSolid<2>::FakeSolid;
+  void save(CheckpointWriter&) const override {}
+};
+struct SolidThatKeepsAStep : FakeSolid<2> {
+  using FakeSolid<2>::FakeSolid;
+  std::function<void()> undo() override {
+    return [] {};
+  }
+};
+
 template <typename Solid>
-Violations violations_of_solid() {
+Violations violations_of_solid(bool moving) {
   FakeSolidOptions<2> options;
   options.gravity = {0, -10};
-  Solid solid({disc()}, options, Tpetra::getDefaultComm());
+  FakeBody<2> body = disc();
+  if (!moving) {
+    body.velocity.setZero();
+    body.angular_velocity.setZero();
+  }
+  Solid solid({body}, options, Tpetra::getDefaultComm());
   return check_solid<2>(solid);
 }
 
+/// Of solids at rest too: the suite sets them in motion.
 TEST(Conformance, FindsSolidsThatBreakAPromise) {
-  EXPECT_THAT(violations_of_solid<FakeSolid<2>>(), ::testing::IsEmpty());
-  EXPECT_THAT(violations_of_solid<FastRows>(), Contains(HasSubstr("velocity_row:")));
-  EXPECT_THAT(violations_of_solid<LazyMotion>(), Contains(HasSubstr("effective_velocity:")));
-  EXPECT_THAT(violations_of_solid<LightMomentum>(), Contains(HasSubstr("momentum_of_each:")));
-  EXPECT_THAT(violations_of_solid<PushingForce>(), Contains(HasSubstr("negative semidefinite")));
+  for (const bool moving : {true, false}) {
+    EXPECT_THAT(violations_of_solid<FakeSolid<2>>(moving), ::testing::IsEmpty());
+    EXPECT_THAT(violations_of_solid<FastRows>(moving), Contains(HasSubstr("velocity_row:")));
+    EXPECT_THAT(violations_of_solid<LazyMotion>(moving),
+                Contains(HasSubstr("effective_velocity:")));
+    EXPECT_THAT(violations_of_solid<LightMomentum>(moving),
+                Contains(HasSubstr("momentum_of_each:")));
+    EXPECT_THAT(violations_of_solid<PushingForce>(moving),
+                Contains(HasSubstr("negative semidefinite")));
+    EXPECT_THAT(violations_of_solid<StuckSolid>(moving), Contains(HasSubstr("set_velocity:")));
+    EXPECT_THAT(violations_of_solid<ForgetfulSolid>(moving), Contains(HasSubstr("save, load:")));
+    EXPECT_THAT(violations_of_solid<SolidWithoutFile>(moving), Contains(HasSubstr("load: ")));
+    EXPECT_THAT(violations_of_solid<SolidThatKeepsAStep>(moving), Contains(HasSubstr("undo:")));
+  }
 }
 
 struct LeakyVolumes : MixedFaceCoupling<2> {
