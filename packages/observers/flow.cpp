@@ -1,11 +1,20 @@
 #include "observers/flow.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "interfaces/fluid_sides.hpp"
 #include "observers/probes.hpp"
 
 namespace lockstep {
+
+namespace {
+const char* const axis_names[] = {"x", "y", "z"};
+/// 2000 by 2000; every rank asks for all of them.
+constexpr double most_squares = 4e6;
+}  // namespace
 
 template <int dim>
 ParameterList flow_parameters() {
@@ -44,20 +53,47 @@ std::vector<ObservedColumn> Flow<dim>::columns() const {
           {"mean_pressure", "Pa", "over that part; 0 if there is none"}};
 }
 
+/// The rest of it lies where there never is a fluid; across periodic sides there is one.
+template <int dim>
+Box<dim> Flow<dim>::part_in(const FluidDiscretization<dim>& fluid) const {
+  const auto* bounded = side_of<BoundedFluid<dim>>(fluid);
+  if (!bounded || bounded->is_periodic())
+    return window_;
+  const Box<dim> part = window_.intersection(bounded->bounds());
+  for (int a = 0; a < dim; ++a)
+    check_input(part.max()[a] > part.min()[a] || (a == axis_ && part.max()[a] == part.min()[a]),
+                "In \"Observers\", the window of a flow lies outside of the fluid: along {} it "
+                "reaches from {} to {} m, the domain from {} to {} m.",
+                axis_names[a], window_.min()[a], window_.max()[a], bounded->bounds().min()[a],
+                bounded->bounds().max()[a]);
+  return part;
+}
+
 template <int dim>
 std::vector<std::vector<double>> Flow<dim>::observe(const RunView<dim>& run) {
+  const Box<dim> window = part_in(run.fluid);
+  std::array<double, dim> wanted;
+  double total = 1;
+  for (int a = 0; a < dim; ++a) {
+    wanted[a] = a == axis_ ? 1 : std::ceil(window.sizes()[a] / run.fluid.smallest_length() - 1e-9);
+    total *= std::max(wanted[a], 1.);
+  }
+  check_input(
+      total <= most_squares,
+      "In \"Observers\", the window of a flow has {:g} squares as large as cells, more than "
+      "{:g}; make it smaller.",
+      total, most_squares);
   Index<dim> count;
-  Box<dim> middles = window_;
+  Box<dim> middles = window;
   double area = 1;
   for (int a = 0; a < dim; ++a) {
-    const double extent = window_.sizes()[a];
-    count[a] =
-        a == axis_ ? 1 : static_cast<int>(std::ceil(extent / run.fluid.smallest_length() - 1e-9));
+    count[a] = std::max(static_cast<int>(wanted[a]), 1);
     if (a == axis_)
       continue;
-    area *= extent / count[a];
-    middles.min()[a] += extent / (2 * count[a]);
-    middles.max()[a] -= extent / (2 * count[a]);
+    const double edge = window.sizes()[a] / count[a];
+    area *= edge;
+    middles.min()[a] += edge / 2;
+    middles.max()[a] -= edge / 2;
   }
   double rate = 0, open = 0, pressure = 0;
   for (const auto& sample :

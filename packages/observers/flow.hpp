@@ -19,6 +19,9 @@ class Flow : public Observer<dim> {
   std::vector<std::vector<double>> observe(const RunView<dim>& run) override;
 
  private:
+  /// Throws InputError if there is none.
+  Box<dim> part_in(const FluidDiscretization<dim>& fluid) const;
+
   int axis_ = 0;
   Box<dim> window_;  ///< without extent along the axis [m]
 };

@@ -54,6 +54,7 @@ class CheckpointReader {
 
   const CheckpointHeader& header() const { return header_; }
   const Hdf5File& file() const { return file_; }
+  Hdf5File& file() { return file_; }
 
   /// The values of these entities, in the order asked for; an entity may be asked for by several
   /// ranks. Throws InputError if the checkpoint lacks the array or one of the numbers.

@@ -121,7 +121,7 @@ GlobalIndex Hdf5File::reserve(const std::string& name, const std::vector<GlobalI
     const hdf5::Handle links = hdf5::own_properties(H5Pcreate(H5P_LINK_CREATE));
     H5Pset_create_intermediate_group(links, 1);
     const hdf5::Handle dataset = hdf5::own_dataset(H5Dcreate2(
-        id(), name.c_str(), hdf5::native_type<T>(), space, links, creation, H5P_DEFAULT));
+        id(), inside(name).c_str(), hdf5::native_type<T>(), space, links, creation, H5P_DEFAULT));
     if (!dataset.valid())
       failure = hdf5::last_error();
     if (failure.empty() && n_elements(extents) > 0) {
@@ -163,8 +163,8 @@ void Hdf5File::write_compressed(const std::string& name, const std::vector<Globa
   const hdf5::Handle links = hdf5::own_properties(H5Pcreate(H5P_LINK_CREATE));
   H5Pset_create_intermediate_group(links, 1);
   const hid_t type = hdf5::native_type<T>();
-  const hdf5::Handle dataset =
-      hdf5::own_dataset(H5Dcreate2(id(), name.c_str(), type, space, links, creation, H5P_DEFAULT));
+  const hdf5::Handle dataset = hdf5::own_dataset(
+      H5Dcreate2(id(), inside(name).c_str(), type, space, links, creation, H5P_DEFAULT));
   const bool written = dataset.valid() &&
                        H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0 &&
                        H5Dflush(dataset) >= 0;

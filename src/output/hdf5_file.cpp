@@ -74,6 +74,7 @@ Hdf5File::Hdf5File(const Communicator& comm, const std::string& path, bool writi
 Hdf5File::Hdf5File(Hdf5File&& other) noexcept
     : comm_(other.comm_),
       path_(std::move(other.path_)),
+      group_(std::move(other.group_)),
       writing_(other.writing_),
       id_(std::exchange(other.id_, -1)),
       structure_(std::move(other.structure_)),
@@ -163,11 +164,19 @@ void Hdf5File::close_with_checksum() {
   commit();
 }
 
+std::string Hdf5File::inside(const std::string& name) const {
+  if (group_.empty())
+    return name;
+  const std::size_t begin = name.find_first_not_of('/');
+  return begin == std::string::npos ? group_ : group_ + "/" + name.substr(begin);
+}
+
 void Hdf5File::create_group(const std::string& name) {
   const std::string failure = try_on_root(comm_, [&] {
     const hdf5::Handle links = hdf5::own_properties(H5Pcreate(H5P_LINK_CREATE));
     H5Pset_create_intermediate_group(links, 1);
-    return hdf5::own_group(H5Gcreate2(id(), name.c_str(), links, H5P_DEFAULT, H5P_DEFAULT)).valid();
+    return hdf5::own_group(H5Gcreate2(id(), inside(name).c_str(), links, H5P_DEFAULT, H5P_DEFAULT))
+        .valid();
   });
   agree(failure, fmt::format("create the group '{}'", name));
 }
@@ -175,7 +184,7 @@ void Hdf5File::create_group(const std::string& name) {
 void Hdf5File::link_external(const std::string& name, const std::string& file,
                              const std::string& target) {
   const std::string failure = try_on_root(comm_, [&] {
-    return H5Lcreate_external(file.c_str(), target.c_str(), id(), name.c_str(), H5P_DEFAULT,
+    return H5Lcreate_external(file.c_str(), target.c_str(), id(), inside(name).c_str(), H5P_DEFAULT,
                               H5P_DEFAULT) >= 0;
   });
   agree(failure, fmt::format("link '{}'", name));
@@ -199,7 +208,7 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
   agree(failure, fmt::format("write the attribute '{}'", name));
   failure = try_on_root(comm_, [&] {
     const hdf5::Handle space = hdf5::own_space(H5Screate(H5S_SCALAR));
-    const hdf5::Handle owner = hdf5::own_object(H5Oopen(id(), object.c_str(), H5P_DEFAULT));
+    const hdf5::Handle owner = hdf5::own_object(H5Oopen(id(), inside(object).c_str(), H5P_DEFAULT));
     const hdf5::Handle attribute =
         hdf5::own_attribute(H5Acreate2(owner, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT));
     return attribute.valid() && H5Awrite(attribute, type, data) >= 0;
@@ -212,7 +221,7 @@ void Hdf5File::write_text(const std::string& name, const std::string& text) {
     const hdf5::Handle type = text_type(text.size());
     const hdf5::Handle space = hdf5::own_space(H5Screate(H5S_SCALAR));
     const hdf5::Handle dataset = hdf5::own_dataset(
-        H5Dcreate2(id(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+        H5Dcreate2(id(), inside(name).c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     return dataset.valid() &&
            H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) >= 0;
   });

@@ -55,6 +55,9 @@ class Hdf5File {
   const std::string& path() const { return path_; }
   const Communicator& communicator() const { return comm_; }
 
+  /// From here on all names are those of things below this group, "/" is the group itself, until
+  /// the next call; an empty name ends it.
+  void enter(const std::string& group) { group_ = group; }
   /// Creates the group and the groups above it.
   void create_group(const std::string& name);
   /// This and everything else that reads needs a file from `open`.
@@ -112,6 +115,8 @@ class Hdf5File {
   void finish_part();
   void commit();
   void abandon() noexcept;
+  /// The name in the whole file of what is called so below the group that was entered.
+  std::string inside(const std::string& name) const;
   std::int64_t id() const { return writing_ ? structure_.id() : id_; }
   /// Throws on all ranks if any of them failed; `action` completes "Cannot ... in file".
   void agree(const std::string& failure, const std::string& action) const;
@@ -132,7 +137,7 @@ class Hdf5File {
                    GlobalIndex first, const std::vector<double>& values, int compression_level);
 
   Communicator comm_;
-  std::string path_;
+  std::string path_, group_;
   bool writing_ = false;
   std::int64_t id_ = -1;  // while reading: an hid_t, spelt out to keep hdf5.h out of this header
   hdf5::Structure structure_;  // while writing, on rank 0

@@ -67,7 +67,8 @@ OpenDataset open_dataset(hid_t file, const std::string& name) {
 
 }  // namespace
 
-bool Hdf5File::exists(const std::string& name) const {
+bool Hdf5File::exists(const std::string& below) const {
+  const std::string name = inside(below);
   if (name.empty() || name == "/")
     return true;
   for (std::size_t slash = name.find('/', 1);; slash = name.find('/', slash + 1)) {
@@ -82,7 +83,7 @@ bool Hdf5File::exists(const std::string& name) const {
 }
 
 bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {
-  const htri_t found = H5Aexists_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT);
+  const htri_t found = H5Aexists_by_name(id_, inside(object).c_str(), name.c_str(), H5P_DEFAULT);
   H5Eclear2(H5E_DEFAULT);
   return found > 0;
 }
@@ -93,8 +94,8 @@ std::vector<std::string> Hdf5File::names(const std::string& group) const {
     static_cast<std::vector<std::string>*>(list)->push_back(name);
     return 0;
   };
-  const herr_t status = H5Literate_by_name(id_, group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
-                                           append, &result, H5P_DEFAULT);
+  const herr_t status = H5Literate_by_name(id_, inside(group).c_str(), H5_INDEX_NAME, H5_ITER_INC,
+                                           nullptr, append, &result, H5P_DEFAULT);
   agree(status < 0 ? hdf5::last_error() : "", fmt::format("list the group '{}'", group));
   return result;
 }
@@ -104,7 +105,7 @@ T Hdf5File::read_attribute(const std::string& object, const std::string& name) c
   T value{};
   std::string failure;
   const hdf5::Handle attribute = hdf5::own_attribute(
-      H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+      H5Aopen_by_name(id_, inside(object).c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
   if (attribute.valid()) {
     const hdf5::Handle type = hdf5::own_type(H5Aget_type(attribute));
     const hdf5::Handle space = hdf5::own_space(H5Aget_space(attribute));
@@ -133,7 +134,7 @@ T Hdf5File::read_attribute(const std::string& object, const std::string& name) c
 }
 
 std::string Hdf5File::read_text(const std::string& name) const {
-  OpenDataset opened = open_dataset(id_, name);
+  OpenDataset opened = open_dataset(id_, inside(name));
   std::string text;
   if (opened.failure.empty())
     opened.failure = wrong_kind<std::string>(opened.type);
@@ -149,7 +150,7 @@ std::string Hdf5File::read_text(const std::string& name) const {
 }
 
 std::vector<GlobalIndex> Hdf5File::shape(const std::string& name) const {
-  const OpenDataset opened = open_dataset(id_, name);
+  const OpenDataset opened = open_dataset(id_, inside(name));
   agree(opened.failure, fmt::format("open the dataset '{}'", name));
   return {opened.extents.begin(), opened.extents.end()};
 }
@@ -157,7 +158,7 @@ std::vector<GlobalIndex> Hdf5File::shape(const std::string& name) const {
 template <typename T>
 std::vector<T> Hdf5File::read_rows(const std::string& name, GlobalIndex first_row,
                                    GlobalIndex n_rows) const {
-  OpenDataset opened = open_dataset(id_, name);
+  OpenDataset opened = open_dataset(id_, inside(name));
   if (opened.failure.empty())
     opened.failure = wrong_kind<T>(opened.type);
   std::vector<hsize_t> size = opened.extents;

@@ -35,6 +35,11 @@ std::string attribute_of(const std::string& name) {
   return "last look of " + name;
 }
 
+/// Of a checkpoint what belongs to one observer: two of one type would take the same names.
+std::string group_of(const std::string& name) {
+  return "observers/" + name;
+}
+
 }  // namespace
 
 template <int dim>
@@ -51,6 +56,15 @@ ObserverTables<dim>::ObserverTables(const ObserverRegistry<dim>& registry,
     watch.table = std::make_unique<HistoryTable>(comm, directory + "/" + name + ".csv",
                                                  table_columns(watch.observer->columns()));
     watches_.push_back(std::move(watch));
+  }
+}
+
+template <int dim>
+void ObserverTables<dim>::try_out(const ObserverRegistry<dim>& registry,
+                                  const ParameterList& observers, const RunView<dim>& run) {
+  for (const auto& [name, entry] : entries(observers)) {
+    const ParameterList& list = observers.sublist(name);
+    registry.create(list.get<std::string>("Type"), list)->observe(run);
   }
 }
 
@@ -95,20 +109,24 @@ void ObserverTables<dim>::observe(long long step, const RunView<dim>& run) {
 template <int dim>
 void ObserverTables<dim>::save(CheckpointWriter& checkpoint) const {
   for (const Watch& watch : watches_) {
+    checkpoint.file().create_group(group_of(watch.name));
+    checkpoint.file().enter(group_of(watch.name));
     watch.observer->save(checkpoint);
+    checkpoint.file().enter("");
     checkpoint.file().write_attribute("/", attribute_of(watch.name), watch.last_time);
   }
 }
 
 template <int dim>
-void ObserverTables<dim>::load(const CheckpointReader& checkpoint) {
+void ObserverTables<dim>::load(CheckpointReader& checkpoint) {
   for (Watch& watch : watches_) {
     // One that is new looks after the next step.
     if (!checkpoint.file().has_attribute("/", attribute_of(watch.name)))
       continue;
+    checkpoint.file().enter(group_of(watch.name));
     watch.observer->load(checkpoint);
-    watch.last_time =
-        checkpoint.file().template read_attribute<double>("/", attribute_of(watch.name));
+    checkpoint.file().enter("");
+    watch.last_time = checkpoint.file().read_attribute<double>("/", attribute_of(watch.name));
   }
 }
 

@@ -25,7 +25,11 @@ class ObserverTables {
   /// After a step; observers whose interval has not passed yet look away.
   void observe(long long step, const RunView<dim>& run);
   void save(CheckpointWriter& checkpoint) const;
-  void load(const CheckpointReader& checkpoint);
+  void load(CheckpointReader& checkpoint);
+  /// Lets other observers, made from the same lists, look once, so that what cannot be seen is told
+  /// before a run writes anything. Throws InputError.
+  static void try_out(const ObserverRegistry<dim>& registry, const ParameterList& observers,
+                      const RunView<dim>& run);
 
  private:
   struct Watch {

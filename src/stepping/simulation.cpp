@@ -73,6 +73,9 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
   stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
                                             scene_options_.time.start, timers_);
   check_names();
+  if (!observers_.empty())
+    ObserverTables<dim>::try_out(registries.observers, scene.sublist("Observers"),
+                                 view(components_.solids->states()));
 }
 
 /// Surfaces of fluid and solids lie side by side in frames.
@@ -199,12 +202,12 @@ void Simulation<dim>::write_checkpoint() {
 
 template <int dim>
 void Simulation<dim>::load_checkpoint() {
-  const CheckpointReader checkpoint(comm_, options_.restart_file);
+  CheckpointReader checkpoint(comm_, options_.restart_file);
   check_same_scene(scene_, files_, checkpoint.header(), options_.restart_file);
   for_each_plug_in(components_, [&](PlugIn& plug_in) { plug_in.load(checkpoint); });
   observers_.load(checkpoint);
   step_ = checkpoint.header().step;
-  last_dt_ = checkpoint.file().template read_attribute<double>("/", "last dt");
+  last_dt_ = checkpoint.file().read_attribute<double>("/", "last dt");
   stepper_->resume(checkpoint.header().time, last_dt_, step_);
 }
 

@@ -39,6 +39,14 @@ BONE = """<ParameterList name="Bone">
     </ParameterList>"""
 STATIC = '<ParameterList name="Motion"><Parameter name="Type" type="string" value="static"/></ParameterList>'
 LOCKED = '<Parameter name="Locked" type="Array(string)" value="{x}"/>'
+WINDOW = """  <ParameterList name="Observers">
+    <ParameterList name="through">
+      <Parameter name="Type" type="string" value="flow"/>
+      <Parameter name="Lower" type="Array(double)" value="{1.5, 0}"/>
+      <Parameter name="Upper" type="Array(double)" value="{1.5, 2}"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Time">"""
 
 CASES = [
     # The command line.
@@ -165,6 +173,10 @@ CASES = [
     Case("a locked dof that moves", "starts with a velocity",
          change=(POSITION, POSITION + value("Locked", "Array(string)", "{x}") +
                  value("Velocity", "Array(double)", "{1, 0}"))),
+
+    # What watches.
+    Case("a window beside the fluid", ["the window of a flow lies outside of the fluid", "along x it reaches from 1.5 to 1.5 m"],
+         change=('  <ParameterList name="Time">', WINDOW)),
 
     # Impossible scenes.
     Case("an inflow into a closed tank", ["At the start", "inflow \"x lower\" pushes in", "closed in"],

@@ -236,6 +236,22 @@ class Faults(unittest.TestCase):
             self.assertEqual([row["step"] for row in old], ["0", "1", "2", "3", "4", "5"])
             self.assertEqual(new, old[4:])
 
+    def test_an_observer_that_cannot_see_leaves_an_earlier_run_alone(self):
+        """And --validate tells it."""
+        blind = with_gauges("old").replace('value="points"', 'value="flow"').replace(
+            '<Parameter name="Points" type="Array(double)" value="{.5, 1.5}"/>',
+            '<Parameter name="Lower" type="Array(double)" value="{5, 0}"/><Parameter name="Upper" type="Array(double)" value="{5, 1}"/>')
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(simulate(folder, "--steps", 3, scene=with_gauges("old")).returncode, 0)
+            before = {path: path.read_bytes() for path in (Path(folder) / "output").rglob("*") if path.is_file()}
+            for more in ((), ("--validate",), ("--restart", newest_checkpoint(folder))):
+                with self.subTest(more=more):
+                    result = simulate(folder, *more, scene=blind)
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assertIn("outside of the fluid", result.stderr)
+                    after = {path: path.read_bytes() for path in (Path(folder) / "output").rglob("*") if path.is_file()}
+                    self.assertEqual(after, before)
+
     def test_checkpoint_of_another_mesh(self):
         square = "v 0.3 0.3 0\nv 0.7 0.3 0\nv 0.7 0.7 0\nv 0.3 0.7 0\nl 1 2 3 4 1\n"
         scene = SCENE.replace('"Shape" type="string" value="ball"', '"Shape" type="string" value="file"')

@@ -75,5 +75,27 @@ TEST(Flow, ThroughTheOpenPartOfAWindow) {
   EXPECT_THROW(Flow<2>(box(0, 0, 1, 1)), InputError);
 }
 
+TEST(Flow, OfAWindowThatSticksOutOnlyThePartInTheDomainIsSampled) {
+  const HalfPlane fluid;  // from 0 to 2
+  EXPECT_THAT(Flow<2>(box(1.5, -1e12, 1.5, 2)).observe({1, 0.1, fluid, no_solids}),
+              ElementsAre(ElementsAre(2, 2, 15)));
+  EXPECT_THROW(Flow<2>(box(1, 2.5, 1, 3)).observe({1, 0.1, fluid, no_solids}), InputError);
+  EXPECT_THROW(Flow<2>(box(-1, 0, -1, 2)).observe({1, 0.1, fluid, no_solids}), InputError);
+  EXPECT_THROW(Flow<2>(box(1, 2, 1, 3)).observe({1, 0.1, fluid, no_solids}), InputError);
+}
+
+/// Left and right of it the same fluid again.
+class PeriodicHalfPlane : public HalfPlane {
+ public:
+  bool is_periodic() const override { return true; }
+};
+
+TEST(Flow, TooManySquaresAreRefused) {
+  const PeriodicHalfPlane fluid;
+  EXPECT_THAT(Flow<2>(box(1.5, 0, 1.5, 4)).observe({1, 0.1, fluid, no_solids}),
+              ElementsAre(ElementsAre(8, 4, 15)));
+  EXPECT_THROW(Flow<2>(box(1.5, 0, 1.5, 1e12)).observe({1, 0.1, fluid, no_solids}), InputError);
+}
+
 }  // namespace
 }  // namespace lockstep::test
