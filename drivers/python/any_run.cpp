@@ -81,6 +81,7 @@ class SteppedRun : public AnyRun {
 
   bool step() override { return simulation_->step(); }
   void end() override { simulation_->end(); }
+  void stop(const std::string& message) override { simulation_->stop(message); }
   int dimension() const override { return dim; }
   double time() const override { return simulation_->time(); }
   long long n_steps() const override { return simulation_->n_steps(); }

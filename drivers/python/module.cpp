@@ -31,11 +31,17 @@ class Run {
     return *run_;
   }
   AnyRun* operator->() const { return &**this; }
-  void close(bool finished) {
-    if (run_ && finished)
+  void close() {
+    if (run_)
       run_->end();
     run_.reset();
   }
+  void stop(const std::string& message) {
+    const std::unique_ptr<AnyRun> run = std::move(run_);  // let go whatever happens
+    if (run)
+      run->stop(message);
+  }
+  void let_go() { run_.reset(); }
   static std::set<Run*>& open_runs() {
     static std::set<Run*> runs;
     return runs;
@@ -45,36 +51,53 @@ class Run {
   std::unique_ptr<AnyRun> run_;
 };
 
+std::string text_of(const py::object& text) {
+  return text.cast<std::string>();
+}
+
+/// Of a str, bytes or what the standard library takes for a path.
+std::string path_text(const py::object& path) {
+  return text_of(py::module_::import("os").attr("fsdecode")(path));
+}
+
+/// Numpy's numbers and arrays without an axis as Python's; anything else as it is.
+py::object plain(const py::handle& value) {
+  if (py::hasattr(value, "ndim") && py::object(value.attr("ndim")).equal(py::int_(0)))
+    return value.attr("item")();
+  return py::reinterpret_borrow<py::object>(value);
+}
+
 /// As a value of `--set`.
-std::string setting_text(const py::handle& value) {
+std::string setting_text(const py::handle& given) {
+  const py::object value = plain(given);
   if (py::isinstance<py::bool_>(value))
     return value.cast<bool>() ? "true" : "false";
   if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value))
-    return py::str(value).cast<std::string>();
+    return text_of(py::str(value));
   std::string text = "{";
   for (const py::handle& entry : value)
     text += (text.size() > 1 ? ", " : "") + setting_text(entry);
   return text + "}";
 }
 
-std::unique_ptr<Run> open(const std::string& scene, const std::string& output,
-                          const py::dict& settings, const std::string& restart, bool quiet) {
-  OpenRequest request{scene, output, restart, {}, quiet};
+std::unique_ptr<Run> open(const py::object& scene, const py::object& output,
+                          const py::dict& settings, const py::object& restart, bool quiet) {
+  OpenRequest request{path_text(scene), path_text(output), path_text(restart), {}, quiet};
   for (const auto& [name, value] : settings)
-    request.settings.push_back(py::str(name).cast<std::string>() + "=" + setting_text(value));
+    request.settings.push_back(text_of(py::str(name)) + "=" + setting_text(value));
   return std::make_unique<Run>(request);
 }
 
 /// One number or several, of Python's kinds or of numpy's.
-std::vector<double> numbers(const py::object& value) {
+std::vector<double> numbers(const py::object& given) {
+  const py::object value = plain(given);
   try {
     if (PyNumber_Check(value.ptr()) != 0 && !py::isinstance<py::sequence>(value) &&
         !py::isinstance<py::array>(value))
       return {py::float_(value).cast<double>()};
     return value.cast<std::vector<double>>();
   } catch (const std::exception&) {
-    throw InputError(py::str(value).cast<std::string>() +
-                     " is neither a number nor a list of numbers.");
+    throw InputError(text_of(py::str(value)) + " is neither a number nor a list of numbers.");
   }
 }
 
@@ -152,7 +175,7 @@ void begin_and_end_with_python() {
   Tpetra::initialize(&argc, &argv);
   py::module_::import("atexit").attr("register")(py::cpp_function([] {
     for (Run* run : Run::open_runs())
-      run->close(false);
+      run->let_go();
     Tpetra::finalize();
   }));
 }
@@ -171,7 +194,7 @@ All members are collective on several ranks: every rank calls them with the same
   run.def(py::init(&open), arg("scene"), arg("output") = "output", arg("settings") = py::dict(),
           arg("restart") = "", arg("quiet") = true, R"(Opens a scene and writes its start.
 
-scene: the file. output: the folder for frames, tables and checkpoints. settings: what `simulate --set`
+scene: the file, a text or a pathlib.Path, as the other two. output: the folder for frames, tables and checkpoints. settings: what `simulate --set`
 takes, as {"Time/End": 2.0, "Domain/Cells": (64, 64)}. restart: a checkpoint to go on from; forces and
 targets set from here are not in it. quiet: no line a step. Raises InputError, a ValueError.)");
   run.def(
@@ -179,13 +202,17 @@ targets set from here are not in it. quiet: no line a step. Raises InputError, a
       "Takes one step. False, and no step, at the end of the scene. Raises SolveError, an "
       "ArithmeticError, and OutputError, an OSError.");
   run.def(
-      "close", [](Run& self) { self.close(true); },
-      "Writes the last checkpoint and summary.json. `with Run(...) as run:` does so by itself.");
+      "close", [](Run& self) { self.close(); },
+      "Writes the last checkpoint and summary.json. `with Run(...) as run:` does so by itself; "
+      "after an exception it does so on one rank, and on several writes summary.json alone.");
   run.def(
       "__enter__", [](Run& self) -> Run& { return self; }, py::return_value_policy::reference);
-  run.def("__exit__", [](Run& self, const py::object& type, const py::object&, const py::object&) {
-    self.close(type.is_none());
-  });
+  run.def("__exit__",
+          [](Run& self, const py::object& type, const py::object& value, const py::object&) {
+            if (type.is_none())
+              return self.close();
+            self.stop(text_of(type.attr("__name__")) + ": " + text_of(py::str(value)));
+          });
   run.def_property_readonly(
       "dimension", [](const Run& self) { return self->dimension(); }, "2 or 3.");
   run.def_property_readonly(

@@ -25,7 +25,8 @@ struct RunFacts {
 /// process of rank 0 with the time of its start. Not collective.
 nlohmann::ordered_json run_header(const Communicator& comm, const std::string& command_line);
 
-/// summary.json of a run without an end: "running", or "failed" with the reason.
+/// summary.json of a run without an end: "running", or "failed" or "stopped by an exception" with
+/// the reason.
 nlohmann::ordered_json unfinished_summary(const std::string& status, const std::string& message,
                                           const nlohmann::ordered_json& header);
 

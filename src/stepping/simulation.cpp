@@ -262,7 +262,7 @@ void Simulation<dim>::recorded(const Function& f) {
     f();
   } catch (const std::exception& error) {
     failed_ = true;
-    record_failure(error.what());
+    record_ending("failed", error.what());
     throw;
   }
 }
@@ -372,6 +372,15 @@ void Simulation<dim>::end() {
 }
 
 template <int dim>
+void Simulation<dim>::stop(const std::string& message) {
+  if (failed_)
+    return;
+  if (comm_->getSize() == 1)
+    recorded([&] { write_checkpoint(); });
+  record_ending("stopped by an exception", message);
+}
+
+template <int dim>
 void Simulation<dim>::end_outputs(double wall_seconds) {
   const FluidDiscretization<dim>& fluid = *components_.fluid;
   const RunFacts facts{signal_ == 0 ? "done" : "stopped by a signal",
@@ -393,12 +402,13 @@ void Simulation<dim>::end_outputs(double wall_seconds) {
 }
 
 template <int dim>
-void Simulation<dim>::record_failure(const std::string& message) const noexcept {
+void Simulation<dim>::record_ending(const std::string& status,
+                                    const std::string& message) const noexcept {
   if (!is_root(comm_))
     return;
   try {
     write_file_atomically(options_.output_directory + "/summary.json",
-                          unfinished_summary("failed", message, header_).dump(2) + "\n");
+                          unfinished_summary(status, message, header_).dump(2) + "\n");
   } catch (const std::exception&) {
     // What failed is said by its own message; a full disk may hold no other.
   }

@@ -51,6 +51,10 @@ class Simulation {
   bool step();
   /// The last checkpoint and the summary; once, after all steps.
   void end();
+  /// In place of `end`, where the program around the run has failed: says so in summary.json. On
+  /// one rank with the last checkpoint; on several not all may have failed, so this is not
+  /// collective. What the run itself threw is told already.
+  void stop(const std::string& message);
 
   double time() const { return stepper_->time(); }  ///< [s]
   long long n_steps() const { return step_; }       ///< with those before a restart
@@ -76,7 +80,7 @@ class Simulation {
   void begin_tables();
   void end_outputs(double wall_seconds);
   /// On rank 0, not collective: others may have failed elsewhere.
-  void record_failure(const std::string& message) const noexcept;
+  void record_ending(const std::string& status, const std::string& message) const noexcept;
   RunView<dim> view(const std::vector<SolidState<dim>>& states) const;
   void check_names() const;
   void write_frame();

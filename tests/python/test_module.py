@@ -28,6 +28,19 @@ with lockstep.Run(sys.argv[1], sys.argv[2]) as run:
 with open(f"{sys.argv[2]}/of-process-{os.getpid()}.json", "w") as file:
     json.dump([float(number) for number in found], file)
 """
+FAILS_ON_RANK_0 = """
+import os, sys, lockstep
+with lockstep.Run(sys.argv[1], sys.argv[2]) as run:
+    run.step()
+    if os.environ["OMPI_COMM_WORLD_RANK"] == "0":
+        try:
+            with run:
+                raise RuntimeError("not today")
+        except RuntimeError as error:
+            print(error, file=sys.stderr, flush=True)
+            os._exit(1)
+    run.step()
+"""
 
 
 def tank(dimension=2, solids=None, **more):
@@ -151,6 +164,46 @@ class Module(unittest.TestCase):
                         pass
                 run.step()
         self.assertIn('"failed"', (self.root / "run" / "summary.json").read_text())
+
+    def test_a_script_that_fails_leaves_a_checkpoint(self):
+        scene = tank(solids={"Ball": ball()})
+        with self.assertRaisesRegex(ZeroDivisionError, "by zero"):
+            with self.open(scene) as run:
+                run.step()
+                run.step()
+                run.step() / 0
+        summary = json.loads((self.root / "run" / "summary.json").read_text())
+        self.assertEqual(summary["status"], "stopped by an exception")
+        self.assertEqual(summary["message"], "ZeroDivisionError: division by zero")
+        with self.open(scene, restart=self.root / "run" / "checkpoint-000003.h5") as run:
+            self.assertEqual(run.n_steps, 3)
+            while run.step():
+                pass
+        self.assertIn('"done"', (self.root / "run" / "summary.json").read_text())
+
+    def test_a_script_that_fails_on_one_of_several_ranks_is_not_waited_for(self):
+        scene = self.scene(tank(solids={"Ball": ball()}))
+        script = self.root / "script.py"
+        script.write_text(FAILS_ON_RANK_0)
+        start = [MPIEXEC, "--oversubscribe", "-np", "2", sys.executable, str(script), scene, str(self.root / "run")]
+        done = subprocess.run(start, capture_output=True, text=True, timeout=120, env=dict(os.environ))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("not today", done.stderr)
+        summary = json.loads((self.root / "run" / "summary.json").read_text())
+        self.assertEqual(summary["status"], "stopped by an exception")
+
+    def test_paths_and_numbers_of_every_kind(self):
+        """What numpy and pathlib make: no texts, and numbers that are arrays without an axis."""
+        scene = self.scene(tank(solids={"Box": unseen_box()}, Contact={"Type": "none"}, Fluid={"Density": 1.}))
+        settings = {"Time/End": np.array(.02), "Time/Steps": np.int64(1), "Output/Frames": np.bool_(False),
+                    "Domain/Cells": np.array((8, 8))}
+        with lockstep.Run(Path(scene), self.root / "run", settings) as run:
+            run.set_force("Box", (0., 0.), np.array(.5))
+            self.assertTrue(run.step())
+            self.assertFalse(run.step())
+            self.assertGreater(run.bodies()["Box"]["angular_velocity"][0], 0)
+        with self.assertRaisesRegex(TypeError, "PathLike"):
+            lockstep.Run(3)
 
     def test_targets_are_those_of_the_present_time(self):
         """Before the first step too, and after a restart; torques begin with a step."""

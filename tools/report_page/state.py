@@ -10,8 +10,8 @@ RECENT = 20  # steps that tell how fast a run is
 def state_of(summary):
     """What summary.json says, and whether the process that wrote "running" is still there."""
     status = summary.get("status", "not finished: no summary.json")
-    if status == "failed":
-        return f"failed: {summary.get('message', '')}"
+    if status in ("failed", "stopped by an exception"):
+        return f"{status}: {summary.get('message', '')}"
     if status != "running":
         return status
     host = summary.get("machine", {}).get("host")
