@@ -206,6 +206,23 @@ class Data(Pages):
         self.assertEqual(run["frames"], [])
         self.assertIn(["simulated time", "no step yet"], run["facts"])
 
+    def test_a_fluid_with_a_domain_of_its_own(self):
+        """Whose list may hold anything: the place of the player is that of what frames show."""
+        folder = self.folder / "run"
+        for dim in (2, 3):
+            make_run.main(folder, dim)
+            (wanted,) = data_of(self.page(folder))["runs"]
+            file = folder / "used-parameters.xml"
+            file.write_text(re.sub(r'(<ParameterList name="Domain">).*?(</ParameterList>)',
+                                   r'\1<Parameter name="Length" type="double" value="2"/>\2', file.read_text(), count=1, flags=re.S))
+            (run,) = data_of(self.page(folder))["runs"]
+            numpy.testing.assert_allclose(run["domain"][0][:dim], wanted["domain"][0], rtol=1e-12)
+            numpy.testing.assert_allclose(run["domain"][1][:dim], wanted["domain"][1], rtol=1e-12)
+            self.assertNotIn("grid", dict(run["facts"]))
+        (folder / "frames.xmf").unlink()
+        (run,) = data_of(self.page(folder))["runs"]
+        self.assertEqual(run["domain"], [[0, 0, 0], [1, 1, 1]])
+
     def test_real_run(self):
         if not PROGRAM:
             self.skipTest("no program was named")

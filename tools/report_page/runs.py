@@ -24,19 +24,38 @@ def pack_run(folder, blobs, frames):
     values = {name: value for name, value, _ in parameters}
     summary = read_summary(folder)
     tables = {path.name: read_table(path) for path in sorted(folder.glob("*.csv"))}
+    packed_frames = frames.pack(folder)
     return {
         "folder": folder.resolve().name,
         "title": values.get("Title", "").strip(),
         "dimension": int(values.get("Dimension", 3)),
         "view": view_of(values),
-        "domain": [numbers(values[f"Domain/{corner}"]) for corner in ("Lower", "Upper")],
+        "domain": domain(values, packed_frames["frames"]),
         "facts": facts(summary, values, tables.get(HISTORY)),
         "phases": summary.get("phases", []),
         "parameters": [(name, value) for name, value, is_default in parameters if not is_default],
         "scene": (folder / "input.xml").read_text(errors="replace") if (folder / "input.xml").is_file() else "",
         "tables": pack_tables(tables, blobs),
-        **frames.pack(folder),
+        **packed_frames,
     }
+
+
+def domain(values, frames):
+    """Its corners. A fluid of one's own may have another kind of domain: then those of what its frames show."""
+    if "Domain/Lower" in values and "Domain/Upper" in values:
+        return [numbers(values[f"Domain/{corner}"]) for corner in ("Lower", "Upper")]
+    lower, upper = [], []
+    for frame in frames:
+        shown = [surface["points"] for surface in frame["surfaces"] if surface["points"]["n"]]
+        lower += [points["low"] for points in shown]
+        upper += [numpy.add(points["low"], points["size"]) for points in shown]
+        if "box" in frame:
+            box = {name: numpy.resize(values, 3) for name, values in frame["box"].items()}
+            lower.append(box["origin"])
+            upper.append(box["origin"] + box["spacing"] * box["cells"])
+    if not lower:
+        return [[0.] * 3, [1.] * 3]
+    return [numpy.min(lower, axis=0).tolist(), numpy.max(upper, axis=0).tolist()]
 
 
 def differing_parameters(folders):
@@ -113,11 +132,11 @@ def facts(summary, values, history):
     """What ran, as lines of a table."""
     versions = summary.get("versions", {})
     last = last_row(history)
-    n_cells = [int(n) for n in numbers(values.get("Domain/Cells", "{0}"))]
+    n_cells = [int(n) for n in numbers(values["Domain/Cells"])] if "Domain/Cells" in values else None
     found = [
         ("state", state_of(summary)),
         ("progress", progress_of(summary, values, history)),
-        ("grid", " x ".join(map(str, n_cells)) + f" = {int(numpy.prod(n_cells)):,} cells"),
+        ("grid", " x ".join(map(str, n_cells)) + f" = {int(numpy.prod(n_cells)):,} cells" if n_cells else None),
         ("simulated time", f"{float(last['time']):.6g} s in {last['step']} steps" if last else "no step yet"),
         ("wall time", f"{summary['wall_seconds']:.4g} s" if "wall_seconds" in summary else None),
         ("ranks", summary.get("ranks")),
