@@ -83,36 +83,48 @@ double error_against(const BlockVector& exact, const BlockVector& solution) {
              : std::max(pressure, relative_difference(*solution.solid, *exact.solid));
 }
 
-/// The solution to round-off, or nothing where the system is too large for it.
-std::optional<BlockVector> exact_solution(const StoredSystem& stored,
-                                          const StrategyRegistry& strategies, int most_unknowns) {
+/// The solution to round-off, or why there is none.
+struct Reference {
+  std::optional<BlockVector> solution;
+  std::string note;
+};
+
+Reference exact_solution(const StoredSystem& stored, const StrategyRegistry& strategies,
+                         int most_unknowns) {
   if (stored.rhs.pressure->getGlobalLength() > static_cast<std::size_t>(most_unknowns))
-    return std::nullopt;
-  const auto direct = strategies.create("direct", strategies.valid_parameters("direct"));
-  BlockVector solution = zero_like(stored.rhs);
-  direct->prepare(stored.system);
-  direct->solve(stored.system, stored.rhs, solution, {"reference", 1e-11});
-  return solution;
+    return {std::nullopt,
+            fmt::format("more than {} pressure unknowns (--direct-limit)", most_unknowns)};
+  try {
+    const auto direct = strategies.create("direct", strategies.valid_parameters("direct"));
+    BlockVector solution = zero_like(stored.rhs);
+    direct->prepare(stored.system);
+    direct->solve(stored.system, stored.rhs, solution, {"reference", 1e-11});
+    return {solution, ""};
+  } catch (const SolveError& error) {
+    return {std::nullopt, error.what()};
+  }
 }
 
-Row try_strategy(const std::string& file, const StoredSystem& stored,
-                 const std::optional<BlockVector>& exact, const StrategyRegistry& strategies,
-                 const Arguments& arguments, const Communicator& comm) {
-  Row row;
-  row.file = file;
+/// A strategy that is to be tried.
+struct Candidate {
+  std::string file;
+  ParameterList list;
   double tolerance = 1e-8;
-  const ParameterList list = strategy_list(file, strategies, tolerance, comm);
-  row.strategy = list.get<std::string>("Type");
-  if (arguments.tolerance > 0)
-    tolerance = arguments.tolerance;
+};
+
+Row try_strategy(const Candidate& candidate, const StoredSystem& stored, const Reference& exact,
+                 const StrategyRegistry& strategies, const Communicator& comm) {
+  Row row;
+  row.file = candidate.file;
+  row.strategy = candidate.list.get<std::string>("Type");
   const double memory_before = restart_peak_memory();
   try {
-    const auto strategy = strategies.create(row.strategy, list);
+    const auto strategy = strategies.create(row.strategy, candidate.list);
     BlockVector solution = zero_like(stored.rhs);
     strategy->prepare(stored.system);
-    row.report = strategy->solve(stored.system, stored.rhs, solution, {"S2", tolerance});
-    if (exact)
-      row.error = error_against(*exact, solution);
+    row.report = strategy->solve(stored.system, stored.rhs, solution, {"S2", candidate.tolerance});
+    if (exact.solution)
+      row.error = error_against(*exact.solution, solution);
   } catch (const SolveError& error) {
     row.failure = error.what();
   }
@@ -148,6 +160,20 @@ std::string line(const Row& row) {
                      row.memory_mb);
 }
 
+std::vector<Candidate> read_candidates(const Arguments& arguments,
+                                       const StrategyRegistry& strategies,
+                                       const Communicator& comm) {
+  std::vector<Candidate> candidates;
+  for (const std::string& file : arguments.solver_files) {
+    Candidate candidate{file, {}};
+    candidate.list = strategy_list(file, strategies, candidate.tolerance, comm);
+    if (arguments.tolerance > 0)
+      candidate.tolerance = arguments.tolerance;
+    candidates.push_back(std::move(candidate));
+  }
+  return candidates;
+}
+
 int run(int argc, char** argv, const Communicator& comm) {
   // 1. The command line.
   Arguments arguments;
@@ -168,11 +194,12 @@ int run(int argc, char** argv, const Communicator& comm) {
     throw InputError(shortened(error.what(), 200) + " (see solve --help).");
   }
 
-  // 2. The strategies there are, the system, its exact solution.
+  // 2. The strategies to try, the system, its exact solution.
   StrategyRegistry strategies("solver strategy");
   register_strategies(strategies);
+  const std::vector<Candidate> candidates = read_candidates(arguments, strategies, comm);
   const StoredSystem stored = read_system(arguments.system_file, comm);
-  const auto exact = exact_solution(stored, strategies, arguments.most_direct_unknowns);
+  const Reference exact = exact_solution(stored, strategies, arguments.most_direct_unknowns);
   const auto print = [&comm](const std::string& text) {
     if (is_root(comm))
       std::cout << text << std::endl;
@@ -181,19 +208,22 @@ int run(int argc, char** argv, const Communicator& comm) {
                     stored.system.name, stored.rhs.pressure->getGlobalLength(),
                     stored.system.has_solid() ? stored.rhs.solid->getGlobalLength() : 0,
                     stored.system.null_space.size(), comm->getSize()));
+  if (!exact.solution)
+    print("no errors, as there is no reference: " + exact.note);
   print(fmt::format("{:<16} {:>10} {:>9} {:>9} {:>10} {:>10} {:>10} {:>8}", "strategy",
                     "iterations", "setup [s]", "solve [s]", "res. p", "res. V", "error", "MB"));
 
-  // 3. One after another, each from zero.
-  std::vector<Row> rows;
-  for (const std::string& file : arguments.solver_files) {
-    rows.push_back(try_strategy(file, stored, exact, strategies, arguments, comm));
-    print(line(rows.back()));
-  }
-  if (!arguments.output_directory.empty()) {
+  // 3. One after another, each from zero; the table has them as soon as they are done.
+  if (!arguments.output_directory.empty())
     create_output_directory(comm, arguments.output_directory);
-    on_root(comm,
-            [&] { write_file_atomically(arguments.output_directory + "/solvers.csv", csv(rows)); });
+  std::vector<Row> rows;
+  for (const Candidate& candidate : candidates) {
+    rows.push_back(try_strategy(candidate, stored, exact, strategies, comm));
+    print(line(rows.back()));
+    if (!arguments.output_directory.empty())
+      on_root(comm, [&] {
+        write_file_atomically(arguments.output_directory + "/solvers.csv", csv(rows));
+      });
   }
   const bool failed =
       std::any_of(rows.begin(), rows.end(), [](const Row& row) { return !row.failure.empty(); });

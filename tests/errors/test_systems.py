@@ -87,8 +87,8 @@ class Systems(unittest.TestCase):
         assert result.returncode == 0, result.stderr
         (cls.folder / "direct.xml").write_text(SOLVER)
 
-    def solve(self, path):
-        return subprocess.run([SOLVE, str(path), str(self.folder / "direct.xml")], stdout=subprocess.PIPE,
+    def solve(self, path, *arguments):
+        return subprocess.run([SOLVE, str(path), str(self.folder / "direct.xml"), *map(str, arguments)], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, text=True, timeout=120)
 
     def complaint(self, path):
@@ -128,6 +128,27 @@ class Systems(unittest.TestCase):
         for path in (self.system, plain, empty_rows):
             result = self.solve(path)
             self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_without_a_reference_strategies_are_compared_all_the_same(self):
+        """A part of the right-hand side that no flow can have, below the tolerance asked for, above that of the reference."""
+        def shifted(values):
+            return values + 1e-8 * abs(values).max()
+        path = self.mutated("no-reference", replaced("pressure rhs/values", shifted))
+        result = self.solve(path, "--tolerance", 1e-5, "--output", self.folder / "compared")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("no errors, as there is no reference: ", result.stdout)
+        row = (self.folder / "compared" / "solvers.csv").read_text().splitlines()[-1].split(",")
+        self.assertEqual(row[1], "direct")
+        self.assertEqual(row[-2], "")
+
+    def test_bad_solver_files_are_told_first(self):
+        bad = self.folder / "bad.xml"
+        bad.write_text(SOLVER.replace('"direct"/>', '"dirct"/>'))
+        result = self.solve(self.system, bad, "--output", self.folder / "nothing")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("dirct", result.stderr)
+        self.assertEqual(result.stdout, "")
+        self.assertFalse((self.folder / "nothing").exists())
 
     def test_mutations(self):
         all_mutations = list(mutations())
