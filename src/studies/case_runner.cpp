@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -161,6 +162,13 @@ CaseOutcome run_case(const StudyCase& study_case, const RunnerOptions& options,
   return outcome;
 }
 
+/// Bad input fails everywhere, and who interrupts or ends a run means all of them. A run that
+/// crashed, or that the system ended because memory ran out, is one failure like another.
+bool ends_the_study(int exit_code) {
+  return exit_code == static_cast<int>(ExitCode::bad_input) || exit_code == 128 + SIGINT ||
+         exit_code == 128 + SIGTERM;
+}
+
 }  // namespace
 
 std::vector<CaseOutcome> run_cases(
@@ -197,9 +205,7 @@ std::vector<CaseOutcome> run_cases(
         failure = std::current_exception();
         stop = true;
       }
-      // Bad input fails everywhere; a signal is meant for all.
-      if (outcomes[i].exit_code == static_cast<int>(ExitCode::bad_input) ||
-          outcomes[i].exit_code > 128)
+      if (ends_the_study(outcomes[i].exit_code))
         stop = true;
     }
   };

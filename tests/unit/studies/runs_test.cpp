@@ -256,6 +256,19 @@ TEST_F(Runs, BadInputStopsTheLadder) {
   EXPECT_EQ(outcomes[1].exit_code, 0);
 }
 
+TEST_F(Runs, ARunThatCrashedLeavesTheRestOneThatWasEndedDoesNot) {
+  options_.fresh = true;
+  const std::vector<std::pair<int, bool>> goes_on_after = {
+      {139, true}, {137, true}, {134, true}, {130, false}, {143, false}};
+  for (const auto& [code, goes_on] : goes_on_after) {
+    study_.assignments = {"Domain/Cells={[n], [n]}",
+                          fmt::format("Fake/Fail=[n == 4 ? {} : 0]", code)};
+    const auto outcomes = run();
+    EXPECT_EQ(outcomes[0].exit_code, code);
+    EXPECT_EQ(outcomes[1].done, goes_on) << code;
+  }
+}
+
 TEST_F(Runs, AMissingProgramIsNamed) {
   options_.simulate = folder_ + "/nothing";
   EXPECT_THROW(run(), InputError);
