@@ -5,7 +5,8 @@
   the file: <!-- from: template/driver.cpp -->
 - every page of docs/results stands in their list
 - formulas are such as GitHub sets, too, whose Markdown reads them first
-- paths of the tree in backticks exist, and in `file.cpp: function` the file has that word
+- paths of the tree in backticks exist, and in `file.cpp: function` the file has that word; names of
+  code files without a path are those of files
 """
 import re
 import sys
@@ -21,6 +22,9 @@ FORMULA = re.compile(r"\$\$(.+?)\$\$|(?<![\w\\$])\$(?!\s)([^$\n]+?)(?<!\s)\$(?![
 # A backslash before punctuation (write \cr, \thinspace), what may begin emphasis, a macro that GitHub forbids.
 NOT_ON_GITHUB = re.compile(r"\\[^\w\s]|[^\w]_|\*|\\(?:operatorname|mbox|phantom)\b")
 PATH = re.compile(r"`((?:src|packages|drivers|tests|docs|tools|template|cmake|xml-params)/[\w./*-]+)(?:: ([\w:~]+))?[^`]*`")
+
+NAME = re.compile(r"`([\w-]+\.(?:cpp|hpp|py|js|cmake))(?:: ([\w:~]+))?`")
+ROOMS = ("src", "packages", "drivers", "tests", "tools", "template", "cmake")
 
 
 def pages():
@@ -84,6 +88,20 @@ class Docs(unittest.TestCase):
                     if word:
                         last = word.split("::")[-1]
                         self.assertTrue(any(re.search(rf"\b{re.escape(last)}\b", file.read_text()) for file in found),
+                                        f"no {last} in {name}")
+
+    def test_names_of_code_files(self):
+        files = {}
+        for room in ROOMS:
+            for file in (ROOT / room).rglob("*.*"):
+                files.setdefault(file.name, []).append(file)
+        for page in pages():
+            for name, word in NAME.findall(page.read_text()):
+                with self.subTest(page=page.name, file=name):
+                    self.assertTrue(name in files, "there is no such file")
+                    if word:
+                        last = word.split("::")[-1]
+                        self.assertTrue(any(re.search(rf"\b{re.escape(last)}\b", file.read_text()) for file in files[name]),
                                         f"no {last} in {name}")
 
     def test_pages_of_results_are_listed(self):
