@@ -41,6 +41,7 @@ class Joint:
     axis: numpy.ndarray
     limits: tuple = ()
     damping: float = 0
+    has_actuator_limits: bool = False  # of effort or velocity
 
 
 def required(element, name, where):
@@ -141,6 +142,12 @@ def read_link(element, which_shapes, robot_file, packages):
         xx, xy, xz, yy, yz, zz = (numbers(tensor.get(name, "0"), 1, f"{where}: {name}")[0]
                                   for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
         link.inertia = numpy.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        if link.mass < 0:
+            raise RobotError(f"{where} has a mass of {link.mass:g} kg; give it one from 0 on.")
+        moments = numpy.linalg.eigvalsh(link.inertia)
+        if link.mass > 0 and (moments[0] < -1e-9 * abs(moments).max() or moments[2] <= 0):
+            raise RobotError(f"{where} has a mass and the moments of inertia {moments.tolist()}, which no body has; correct "
+                             "its <inertia>.")
     link.shapes = [read_shape(shape, where, robot_file, packages) for shape in element.findall(which_shapes)]
     return link
 
@@ -161,6 +168,8 @@ def read_joint(element, robot_file):
     joint = Joint(name, kind, parent, child, pose(element, where), axis / numpy.linalg.norm(axis))
     limit, dynamics = element.find("limit"), element.find("dynamics")
     if limit is not None:
+        joint.has_actuator_limits = any(numbers(limit.get(name, "0"), 1, f"{where}: {name}")[0] > 0
+                                        for name in ("effort", "velocity"))
         if kind in ("revolute", "prismatic"):
             joint.limits = tuple(numbers(limit.get(name, "0"), 1, f"{where}: {name}")[0] for name in ("lower", "upper"))
             if not joint.limits[0] <= 0 <= joint.limits[1]:

@@ -77,7 +77,8 @@ class Robots(unittest.TestCase):
 
     def test_bodies_and_joints_are_where_they_belong(self):
         root, notes = self.scene(ALL_KINDS, "--position", "0", "0", "1")
-        self.assertEqual(notes, "")
+        self.assertEqual(notes.count("note:"), 1)
+        self.assertIn('limits of effort and velocity are left out ("shoulder", "pump")', notes)
         self.assert_near(self.numbers(root, "Solids", "base", "Position"), (0, 0, 1.2))
         # The shoulder turns z of the arm to x of space, and x to -z.
         self.assert_near(self.numbers(root, "Solids", "arm", "Position"), (.2, 0, 1.5))
@@ -175,6 +176,9 @@ class Robots(unittest.TestCase):
             (robot(*two, joint("elbow", "revolute", "base", "arm", more='<limit lower="0.2" upper="1"/>')), "leave out 0"),
             (robot(*two, '<joint name="elbow" type="fixed"><child link="arm"/></joint>'), 'elbow.*<parent> lacks "link"'),
             (robot(link("base"), link("base")), 'two links are called "base"'), (robot("<link/>"), 'a link lacks "name"'),
+            (robot(link("base", mass=-2.)), 'link "base" has a mass of -2 kg'),
+            (robot(link("base", inertia=(0., 0.))), r'link "base" has a mass and the moments of inertia \[0.0, 0.0, 0.0\]'),
+            (robot(link("base", inertia=(-1., 1.))), 'which no body has'),
             (robot("<xacro:macro xmlns:xacro='x'/>"), "xacro"), ("<sdf/>", "no URDF"), ("<robot>", "Cannot read"))
         for text, sentence in cases:
             result = self.convert(text)
