@@ -69,6 +69,29 @@ std::vector<double> lumped_triplets(const LinearOperator& mass, const RCP<const 
   return triplets;
 }
 
+/// Row, column, value of this rank's part of the inverse. Collective.
+template <int dim>
+std::vector<double> own_triplets(const SolidSystem<dim>& system, bool& exact) {
+  exact = true;
+  // All blocks are small: solves have it already.
+  if (const auto inverse = assembled(system.mass_inverse()); !inverse.is_null())
+    return triplets_of(*inverse);
+  const RCP<const LinearOperator> mass = system.solid_block(Teuchos::null, 0);
+  const auto matrix = assembled(mass);
+  if (matrix.is_null()) {
+    exact = false;
+    return lumped_triplets(*mass, system.map());
+  }
+  const int largest = system.joints() ? system.joints()->largest_block() : 0;
+  const auto blocks =
+      block_diagonal_inverse(matrix, std::max(largest, largest_dense_block), "mass of the solids");
+  exact = blocks.exact;
+  std::vector<double> triplets = triplets_of(*blocks.inverse);
+  if (!exact)
+    lump_large_blocks(*mass, *blocks.inverse, triplets);
+  return triplets;
+}
+
 }  // namespace
 
 template <int dim>
@@ -98,23 +121,8 @@ RCP<Vector> distributed(const SolidSystem<dim>& system, const std::vector<double
 
 template <int dim>
 InverseMass replicated_inverse_mass(const SolidSystem<dim>& system) {
-  const RCP<const LinearOperator> mass = system.solid_block(Teuchos::null, 0);
-  const auto matrix = assembled(mass);
   InverseMass result;
-  std::vector<double> triplets;
-  if (matrix.is_null()) {
-    result.exact = false;
-    triplets = lumped_triplets(*mass, system.map());
-  } else {
-    const int largest = system.joints() ? system.joints()->largest_block() : 0;
-    const auto blocks = block_diagonal_inverse(matrix, std::max(largest, largest_dense_block),
-                                               "mass of the solids");
-    result.exact = blocks.exact;
-    triplets = triplets_of(*blocks.inverse);
-    if (!result.exact)
-      lump_large_blocks(*mass, *blocks.inverse, triplets);
-  }
-  const std::vector<double> all = gather_all(system.comm(), triplets);
+  const std::vector<double> all = gather_all(system.comm(), own_triplets(system, result.exact));
   std::vector<double> free(system.n_unknowns(), 1);
   if (!system.reduction().is_identity())
     free = replicated(system, *system.reduction().unknowns());

@@ -26,7 +26,11 @@ void SolidSystem<dim>::find_reduction() {
     for (const GlobalIndex id : model(m).locked_dofs())
       locked.push_back(begin_[m].id + id);
   }
-  reduction_ = Reduction(map_, std::move(combinations), std::move(locked));
+  Reduction found(map_, std::move(combinations), std::move(locked));
+  const bool may_stay = !found.has_combinations() && !reduction_.has_combinations();
+  if (!may_stay || found.differs_in_unknowns(reduction_))
+    mass_inverse_ = Teuchos::null;
+  reduction_ = std::move(found);
 }
 
 template <int dim>

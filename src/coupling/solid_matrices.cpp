@@ -82,6 +82,18 @@ SoftNodes SolidSystem<dim>::soft_nodes(const RCP<const CrsMatrix>& added) const 
 }
 
 template <int dim>
+RCP<const LinearOperator> SolidSystem<dim>::mass_inverse() const {
+  std::vector<RCP<const LinearOperator>> masses;
+  for (const auto& solid_model : models_)
+    masses.push_back(solid_model->mass());
+  if (mass_inverse_.is_null() || masses != of_masses_) {
+    mass_inverse_ = exact_inverse(solid_block(Teuchos::null, 0), "mass of the solids");
+    of_masses_ = std::move(masses);
+  }
+  return mass_inverse_;
+}
+
+template <int dim>
 RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& momentum, double dt,
                                           const Reduction& constraints,
                                           const LinearOperator& inverse) const {
@@ -98,8 +110,9 @@ RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& momentum, double dt,
 template <int dim>
 RCP<Vector> SolidSystem<dim>::velocity_of(const Vector& momentum, double dt,
                                           const Reduction& constraints) const {
-  const auto inverse = exact_inverse(solid_block(Teuchos::null, dt),
-                                     dt == 0 ? "mass of the solids" : "implicit forces of solids");
+  if (dt == 0)
+    return velocity_of(momentum, dt, constraints, *mass_inverse());
+  const auto inverse = exact_inverse(solid_block(Teuchos::null, dt), "implicit forces of solids");
   return velocity_of(momentum, dt, constraints, *inverse);
 }
 
@@ -108,6 +121,7 @@ template RCP<const LinearOperator> SolidSystem<2>::solid_block(const RCP<const C
 template RCP<const LinearOperator> SolidSystem<2>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
 template SoftNodes SolidSystem<2>::soft_nodes(const RCP<const CrsMatrix>&) const;
+template RCP<const LinearOperator> SolidSystem<2>::mass_inverse() const;
 template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&,
                                                  const LinearOperator&) const;
 template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&) const;
@@ -116,6 +130,7 @@ template RCP<const LinearOperator> SolidSystem<3>::solid_block(const RCP<const C
 template RCP<const LinearOperator> SolidSystem<3>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
 template SoftNodes SolidSystem<3>::soft_nodes(const RCP<const CrsMatrix>&) const;
+template RCP<const LinearOperator> SolidSystem<3>::mass_inverse() const;
 template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&,
                                                  const LinearOperator&) const;
 template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&) const;

@@ -53,6 +53,9 @@ class SolidSystem {
   RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
   /// M_S + added - dt D of all dofs; padding rows are zero. Applied part by part.
   RCP<const LinearOperator> full_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// The inverse of P^T M_S P, kept until a model has another mass or other dofs are unknowns: then
+  /// it is another object. Collective, and so is every application.
+  RCP<const LinearOperator> mass_inverse() const;
   /// The models' dofs in vectors of this rank, by the models' names.
   std::vector<Block> blocks() const;
   /// The models' rigid motions on `map`, with the masses M_S + added. Collective.
@@ -137,6 +140,8 @@ class SolidSystem {
   std::vector<char> carried_;                ///< models with attached nodes, on any rank
   std::vector<AttachedNode<dim>> attached_;  ///< of this rank, at the present positions
   Reduction reduction_;
+  mutable RCP<const LinearOperator> mass_inverse_;            ///< null: not asked for yet
+  mutable std::vector<RCP<const LinearOperator>> of_masses_;  ///< of the models
 };
 
 }  // namespace lockstep

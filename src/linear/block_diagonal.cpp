@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "linear/matrix_rows.hpp"
+#include "linear/overlap.hpp"
 
 namespace lockstep {
 
@@ -17,11 +18,48 @@ namespace {
 using Row = std::vector<Entry>;
 using Component = std::set<GlobalIndex>;  // sorted, so that all ranks invert it in the same order
 
-/// The rows this rank knows: its own, and those of other ranks that its components reach.
+/// Which rows of this rank have a nonzero beside the diagonal, in the row or in its column: the
+/// others, all of them where masses are lumped, are blocks of their own. Collective.
+std::vector<char> find_tied_rows(const CrsMatrix& matrix) {
+  const auto rows = matrix.getRowMap(), columns = matrix.getColMap();
+  std::vector<char> tied(rows->getNodeNumElements(), 0);
+  Vector in_column(columns);
+  {
+    const auto values_in_column = in_column.getDataNonConst();
+    typename CrsMatrix::local_inds_host_view_type indices;
+    typename CrsMatrix::values_host_view_type values;
+    for (std::size_t row = 0; row < tied.size(); ++row) {
+      matrix.getLocalRowView(static_cast<int>(row), indices, values);
+      const int own = columns->getLocalElement(rows->getGlobalElement(static_cast<int>(row)));
+      for (std::size_t k = 0; k < indices.extent(0); ++k) {
+        if (values(k) == 0 || indices(k) == own)
+          continue;
+        tied[row] = 1;
+        values_in_column[indices(k)] = 1;
+      }
+    }
+  }
+  Vector in_row(matrix.getDomainMap());
+  if (const auto importer = matrix.getGraph()->getImporter(); importer.is_null())
+    in_row.update(1, in_column, 0);
+  else
+    add_overlap(in_column, *importer, in_row);
+  const auto entries = in_row.getData();
+  for (std::size_t row = 0; row < tied.size(); ++row) {
+    const GlobalIndex id = rows->getGlobalElement(static_cast<int>(row));
+    if (entries[matrix.getDomainMap()->getLocalElement(id)] != 0)
+      tied[row] = 1;
+  }
+  return tied;
+}
+
+/// The rows this rank knows: its own that are tied to others, and those of other ranks that its
+/// components reach.
 class KnownRows {
  public:
-  explicit KnownRows(const RCP<const CrsMatrix>& matrix) : matrix_(matrix) {
-    add(*matrix, matrix->getRowMap()->getNodeElementList());
+  KnownRows(const RCP<const CrsMatrix>& matrix, const std::vector<char>& is_tied)
+      : matrix_(matrix) {
+    add(*matrix, matrix->getRowMap()->getNodeElementList(), is_tied);
   }
 
   /// Fetches rows from the ranks that own them. Collective.
@@ -32,7 +70,7 @@ class KnownRows {
     CrsMatrix fetched(wanted, 0);
     fetched.doImport(*matrix_, Import(matrix_->getRowMap(), wanted), Tpetra::INSERT);
     fetched.fillComplete(matrix_->getDomainMap(), matrix_->getRangeMap());
-    add(fetched, wanted->getNodeElementList());
+    add(fetched, wanted->getNodeElementList(), std::vector<char>(ids.size(), 1));
   }
 
   /// The row, or null if it has not been fetched.
@@ -66,12 +104,14 @@ class KnownRows {
   }
 
  private:
-  void add(const CrsMatrix& matrix, const Teuchos::ArrayView<const GlobalIndex>& ids) {
-    for (const GlobalIndex id : ids) {
-      rows_[id];
+  void add(const CrsMatrix& matrix, const Teuchos::ArrayView<const GlobalIndex>& ids,
+           const std::vector<char>& is_wanted) {
+    for (int row = 0; row < ids.size(); ++row) {
+      if (is_wanted[row])
+        rows_[ids[row]];
     }
     for_each_entry(matrix, [&](int row, GlobalIndex column, double value) {
-      if (value != 0)
+      if (value != 0 && is_wanted[row])
         rows_[ids[row]].push_back({column, value});
     });
   }
@@ -102,14 +142,16 @@ std::vector<Component> disjoint(std::vector<Component> components) {
   return result;
 }
 
-/// The components of this rank's rows, at most those up to `limit` whole; fetches what is missing.
-/// Collective.
-std::vector<Component> find_components(KnownRows& rows, const Map& map, int limit) {
+/// The components of this rank's tied rows, at most those up to `limit` whole; fetches what is
+/// missing. Collective.
+std::vector<Component> find_components(KnownRows& rows, const Map& map,
+                                       const std::vector<char>& is_tied, int limit) {
   while (true) {
     std::vector<Component> small, large;
     Component missing, done;
-    for (const GlobalIndex id : map.getNodeElementList()) {
-      if (done.count(id) > 0)
+    for (std::size_t row = 0; row < is_tied.size(); ++row) {
+      const GlobalIndex id = map.getGlobalElement(static_cast<int>(row));
+      if (!is_tied[row] || done.count(id) > 0)
         continue;
       Component component = rows.component(id, limit, missing);
       const bool is_small = static_cast<int>(component.size()) <= limit;
@@ -165,11 +207,15 @@ std::string not_positive_definite(const std::string& name) {
 BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, int largest_block,
                                             const std::string& name) {
   const auto map = matrix->getRowMap();
-  KnownRows rows(matrix);
+  const std::vector<char> is_tied = find_tied_rows(*matrix);
+  const bool any_tied = std::find(is_tied.begin(), is_tied.end(), 1) != is_tied.end();
+  if (max_all(map->getComm(), any_tied ? 1.0 : 0.0) == 0)
+    return {jacobi_inverse(*matrix, name), true};
+  KnownRows rows(matrix, is_tied);
   std::vector<Row> inverse_rows(map->getNodeNumElements());
   std::string failure;
   bool exact = true;
-  for (const Component& component : find_components(rows, *map, largest_block)) {
+  for (const Component& component : find_components(rows, *map, is_tied, largest_block)) {
     if (component.empty())
       continue;
     std::vector<GlobalIndex> ids(component.begin(), component.end());

@@ -5,7 +5,6 @@
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
-#include <set>
 
 #include "base/disjoint_sets.hpp"
 
@@ -45,19 +44,26 @@ class ColumnSets {
 /// How often each of these ids occurs on all ranks, in the same order.
 std::vector<GlobalIndex> occurrences(const std::vector<GlobalIndex>& ids,
                                      const RCP<const Map>& row_map) {
-  const std::set<GlobalIndex> sorted(ids.begin(), ids.end());
-  const std::vector<GlobalIndex> unique(sorted.begin(), sorted.end());
+  std::vector<GlobalIndex> unique = ids;
+  std::sort(unique.begin(), unique.end());
+  unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
   const auto map = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
                                Teuchos::arrayViewFromVector(unique), 0, row_map->getComm()));
   Vector here(map), everywhere(row_map);
-  for (const GlobalIndex id : ids)
-    here.sumIntoGlobalValue(id, 1.0);
+  const auto place_of = [&unique](GlobalIndex id) {
+    return std::lower_bound(unique.begin(), unique.end(), id) - unique.begin();
+  };
+  {
+    const auto counts = here.getDataNonConst();
+    for (const GlobalIndex id : ids)
+      counts[place_of(id)] += 1;
+  }
   everywhere.doExport(here, Tpetra::Export<int, GlobalIndex>(map, row_map), Tpetra::ADD);
   here.doImport(everywhere, Import(row_map, map), Tpetra::INSERT);
   const auto counts = here.getData();
   std::vector<GlobalIndex> result;
   for (const GlobalIndex id : ids)
-    result.push_back(static_cast<GlobalIndex>(counts[map->getLocalElement(id)]));
+    result.push_back(static_cast<GlobalIndex>(counts[place_of(id)]));
   return result;
 }
 

@@ -166,6 +166,18 @@ TEST(SolidSystem, RanksWithoutDofsArePadded) {
   }
 }
 
+TEST(SolidSystem, TheInverseOfTheMassStaysAsLongAsTheMass) {
+  SolidSystem<2> solids(fake_solids<2>({{sliding_plate()}, {loose_thread()}}),
+                        Tpetra::getDefaultComm());
+  const auto inverse = solids.mass_inverse();
+  solids.begin_step(0, 0.5);
+  solids.move(*solids.velocity(), 0, 0.5);
+  EXPECT_EQ(solids.mass_inverse(), inverse);  // lumped at nodes and of a plate that does not turn
+  const Eigen::MatrixXd product =
+      dense(solids.solid_block(Teuchos::null, 0)) * dense(solids.mass_inverse());
+  EXPECT_LT((product - Eigen::MatrixXd::Identity(product.rows(), product.cols())).norm(), 1e-14);
+}
+
 TEST(SolidSystem, SystemWithoutUnknownsStillHasRows) {
   FakeBody<2> fixed = sliding_plate();
   fixed.kind = FakeBody<2>::Kind::prescribed;

@@ -175,6 +175,37 @@ TEST(BlockDiagonal, AZeroOnOneSideOfTheDiagonalCountsNothingTwice) {
   }
 }
 
+/// Rows 3k that no other row has; of the others 3k+1 has 3k+2, wherever it lives, but that has not
+/// it.
+TEST(BlockDiagonal, RowsOfTheirOwnStayBesideOthers) {
+  for (const double beside : {0., 1e-17, 0.5}) {
+    const int n_local = world()->getRank() == 0 ? 7 : 4;
+    const auto map = make_map(n_local, world());
+    const auto n = static_cast<GlobalIndex>(map->getGlobalNumElements());
+    std::vector<std::vector<Entry>> rows(n_local);
+    for (int row = 0; row < n_local; ++row) {
+      const GlobalIndex id = map->getGlobalElement(row);
+      if (id % 3 == 2)
+        rows[row].push_back({id - 1, beside > 0.1 ? beside : 0});
+      rows[row].push_back({id, 2.0 + static_cast<double>(id)});
+      if (id % 3 == 1 && id + 1 < n)
+        rows[row].push_back({id + 1, beside});
+    }
+    const auto matrix = matrix_from_rows(map, rows);
+    const auto blocks = block_diagonal_inverse(matrix, 24, "test");
+    EXPECT_TRUE(blocks.exact);
+    EXPECT_LT(inverse_error(*as_operator(matrix), *as_operator(blocks.inverse)), 1e-14);
+    const GlobalIndex n_pairs = n / 3;
+    const auto n_entries = static_cast<GlobalIndex>(blocks.inverse->getGlobalNumEntries());
+    if (beside == 0) {
+      EXPECT_EQ(n_entries, n);
+    }
+    if (beside > 0.1) {
+      EXPECT_EQ(n_entries, n + 2 * n_pairs);
+    }
+  }
+}
+
 TEST(BlockDiagonal, InvertsBlocksThatSpanRanks) {
   const SaddleProblem problem(world(), {});
   const auto solid = assembled(problem.system.solids.op);
