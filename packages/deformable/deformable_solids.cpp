@@ -99,9 +99,11 @@ Momentum<dim> DeformableSolids<dim>::external_impulse(double, double dt) const {
 
 template <int dim>
 void DeformableSolids<dim>::begin_step(double time, double dt) {
-  held_.begin_step(time);
+  const bool holds_others = held_.begin_step(time);
+  if (holds_others ||
+      dt != step_)  // else S2 of the last step has averaged them where S1 needs them
+    averaged_force_.reset();
   step_ = dt;
-  averaged_force_.reset();
   soften(dt);
 }
 

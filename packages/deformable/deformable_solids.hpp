@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,8 @@
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
+
+struct SubSteps;
 
 /// All deformable bodies of a scene: volumes of finite elements and thin shells. The dofs are the
 /// velocities of the nodes, distributed by METIS; the surface is replicated.
@@ -132,11 +135,16 @@ class DeformableSolids : public SolidModel<dim>,
   /// Elastic forces for a step: averaged over sub-steps where it is longer than a body's stable
   /// one, once for all who ask at the same positions.
   const Nodes& averaged_forces() const;
-  void average_forces(int body, Nodes& force) const;
+  /// Those of bodies with these sub-steps.
+  void average_forces(const std::vector<int>& bodies, const SubSteps& steps, Nodes& force) const;
+  void check_finite(const Nodes& averaged) const;
+  /// The local nodes of a body: owned ones, ghosts.
+  std::array<std::array<int, 2>, 2> nodes_of(int body) const;
   void update_states();
   Nodes mobility() const;
   Nodes surface_values(const Nodes& owned) const;
   std::array<Point<dim>, dim> of_corners(int simplex, const Nodes& of_vertices) const;
+  void find_rims();
   std::vector<char> free_rims() const;
   Nodes area_shares() const;
   Nodes swelling() const;
@@ -160,6 +168,7 @@ class DeformableSolids : public SolidModel<dim>,
   std::vector<int> own_surface_vertices_;       ///< local nodes, in the order of gathering
   std::vector<int> gathered_surface_vertices_;  ///< the vertex of each gathered value
   Nodes surface_velocity_;                      ///< of the last move [m/s]
+  std::vector<int> rim_nodes_;                  ///< owned ones, where shells end
 
   StrainLimit<dim> strain_limit_;
   double stretch_beyond_limit_ = 0;

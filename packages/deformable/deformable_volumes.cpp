@@ -48,19 +48,15 @@ std::array<Point<dim>, dim> DeformableSolids<dim>::of_corners(int simplex,
   return corners;
 }
 
-/// Per solid: does a shell end at vertices that are not held?
+/// A shell ends at sides that one simplex alone has.
 template <int dim>
-std::vector<char> DeformableSolids<dim>::free_rims() const {
-  Nodes held(space_.n_owned(), Point<dim>::Zero());
-  for (const int dof : held_.dofs())
-    held[dof / dim][dof % dim] = 1;
-  const Nodes of_vertices = surface_values(held);
-  std::vector<char> result(solids_.size(), 0);
-  for (std::size_t b = 0; b < solids_.size(); ++b) {
-    if (solids_[b].closed)
+void DeformableSolids<dim>::find_rims() {
+  std::vector<char> is_rim(space_.n_owned(), 0);
+  for (const SolidDescription& solid : solids_) {
+    if (solid.closed)
       continue;
     std::map<std::vector<int>, int> sides;  // of simplices, by their vertices
-    for (int s = solids_[b].simplex_begin; s < solids_[b].simplex_end; ++s) {
+    for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
       for (int k = 0; k < dim; ++k) {
         std::vector<int> side(surface_.simplices[s].begin(), surface_.simplices[s].end());
         side.erase(side.begin() + k);
@@ -69,10 +65,34 @@ std::vector<char> DeformableSolids<dim>::free_rims() const {
       }
     }
     for (const auto& [side, n] : sides) {
-      for (const int v : side)
-        result[b] = result[b] || (n == 1 && of_vertices[v].minCoeff() == 0);
+      for (const int v : side) {
+        const GlobalIndex dof = dim * surface_node_[v];
+        if (n == 1 && space_.dof_map()->isNodeGlobalElement(dof))
+          is_rim[space_.dof_map()->getLocalElement(dof) / dim] = 1;
+      }
     }
   }
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    if (is_rim[i])
+      rim_nodes_.push_back(i);
+  }
+}
+
+/// Per solid: does a shell end at nodes that are not held?
+template <int dim>
+std::vector<char> DeformableSolids<dim>::free_rims() const {
+  std::vector<int> n_held(space_.n_owned(), 0);  // axes
+  for (const int dof : held_.dofs())
+    ++n_held[dof / dim];
+  std::vector<double> n_free(solids_.size(), 0);
+  for (const int node : rim_nodes_) {
+    if (n_held[node] < dim)
+      ++n_free[body_of_node_[node]];
+  }
+  sum_all(comm_, n_free.data(), static_cast<int>(n_free.size()));
+  std::vector<char> result(solids_.size(), 0);
+  for (std::size_t b = 0; b < solids_.size(); ++b)
+    result[b] = n_free[b] > 0;
   return result;
 }
 
@@ -216,6 +236,7 @@ void DeformableSolids<dim>::sweep(double dt, const std::vector<double>& volumes,
 
 template std::array<Point<2>, 2> DeformableSolids<2>::of_corners(
     int, const std::vector<Point<2>>&) const;
+template void DeformableSolids<2>::find_rims();
 template std::vector<char> DeformableSolids<2>::free_rims() const;
 template std::vector<char> DeformableSolids<2>::can_sweep(const Box<2>&) const;
 template std::vector<Point<2>> DeformableSolids<2>::area_shares() const;
@@ -225,6 +246,7 @@ template std::vector<Point<2>> DeformableSolids<2>::swelling() const;
 template void DeformableSolids<2>::sweep(double, const std::vector<double>&, Vector&) const;
 template std::array<Point<3>, 3> DeformableSolids<3>::of_corners(
     int, const std::vector<Point<3>>&) const;
+template void DeformableSolids<3>::find_rims();
 template std::vector<char> DeformableSolids<3>::free_rims() const;
 template std::vector<char> DeformableSolids<3>::can_sweep(const Box<3>&) const;
 template std::vector<Point<3>> DeformableSolids<3>::area_shares() const;

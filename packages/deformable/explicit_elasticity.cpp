@@ -1,6 +1,7 @@
 // Bodies whose elasticity is explicit, at steps longer than their own stable one.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/errors.hpp"
 #include "deformable/deformable_solids.hpp"
@@ -55,45 +56,71 @@ double DeformableSolids<dim>::least_mass(int node) const {
 /// zero, and so does their mean. Nodes that a rigid body carries move here as others do: held, they
 /// would pull with all of their stiffness at a body that may be too light for it, while the mean of
 /// modes of all nodes is carried by any mass that is added to theirs.
+///
+/// The bodies go side by side, so that ranks exchange positions once a sub-step.
 template <int dim>
-void DeformableSolids<dim>::average_forces(int b, Nodes& force) const {
-  const Body& body = bodies_[b];
-  const SubSteps steps = sub_steps_for(step_, body.elastic_step, body.most_sub_steps);
-  if (steps.n == 1)
-    return;
+void DeformableSolids<dim>::average_forces(const std::vector<int>& bodies, const SubSteps& steps,
+                                           Nodes& force) const {
   std::vector<char> free(dim * space_.n_owned(), 1);
   for (const int dof : held_.dofs())
     free[dof] = 0;
-
-  const int n = steps.n;
-  Nodes x = x_, velocity(space_.n_owned(), Point<dim>::Zero());
-  for (int k = 0; k < n; ++k) {
-    Nodes present(space_.n_local(), Point<dim>::Zero());
-    for (const auto& group : body.elements)
-      group->add_elastic_forces(x, space_.n_owned(), present);
+  const bool has_ghosts = comm_->getSize() > 1;
+  Nodes x = x_, velocity(space_.n_owned(), Point<dim>::Zero()), present(space_.n_local());
+  for (int k = 0; k < steps.n; ++k) {
     const double weight = steps.weight(k), kick = (k == 0 ? 0.5 : 1) * steps.length;
-    for (int i = 0; i < space_.n_owned(); ++i) {
-      if (body_of_node_[i] != b)
-        continue;
-      force[i] = (k == 0 ? Point<dim>(Point<dim>::Zero()) : force[i]) + weight * present[i];
-      const Point<dim> total = present[i] + node_force_[i] + node_mass_[i] * gravity_;
-      for (int a = 0; a < dim; ++a) {
-        if (!free[dim * i + a])
-          continue;
-        velocity[i][a] += kick / least_mass(i) * total[a];
-        x[i][a] += steps.length * velocity[i][a];
+    for (const int b : bodies) {
+      const auto [owned, ghosts] = nodes_of(b);
+      for (const auto& [begin, end] : {owned, ghosts})
+        std::fill(present.begin() + begin, present.begin() + end, Point<dim>::Zero());
+      for (const auto& group : bodies_[b].elements)
+        group->add_elastic_forces(x, space_.n_owned(), present);
+      for (int i = owned[0]; i < owned[1]; ++i) {
+        force[i] = (k == 0 ? Point<dim>(Point<dim>::Zero()) : force[i]) + weight * present[i];
+        const Point<dim> total = present[i] + node_force_[i] + node_mass_[i] * gravity_;
+        for (int a = 0; a < dim; ++a) {
+          if (!free[dim * i + a])
+            continue;
+          velocity[i][a] += kick / least_mass(i) * total[a];
+          x[i][a] += steps.length * velocity[i][a];
+        }
       }
     }
-    x = space_.with_ghosts(*space_.vector(x));
+    if (has_ghosts && k + 1 < steps.n)
+      x = space_.with_ghosts(*space_.vector(x));
   }
-  const bool finite =
-      std::all_of(force.begin(), force.end(), [](const Point<dim>& f) { return f.allFinite(); });
-  check_solve(max_all(comm_, static_cast<GlobalIndex>(finite ? 0 : 1)) == 0,
+}
+
+/// Numbers of nodes ascend with those of bodies, those of owned nodes and those of ghosts.
+template <int dim>
+std::array<std::array<int, 2>, 2> DeformableSolids<dim>::nodes_of(int body) const {
+  const auto range = [&](int begin, int end) {
+    const auto first = body_of_node_.begin();
+    const auto found = std::equal_range(first + begin, first + end, body);
+    return std::array<int, 2>{static_cast<int>(found.first - first),
+                              static_cast<int>(found.second - first)};
+  };
+  return {range(0, space_.n_owned()), range(space_.n_owned(), space_.n_local())};
+}
+
+template <int dim>
+void DeformableSolids<dim>::check_finite(const Nodes& averaged) const {
+  const int n_bodies = static_cast<int>(bodies_.size());
+  int crushed = n_bodies;
+  for (int i = 0; i < space_.n_owned() && crushed == n_bodies; ++i) {
+    if (!averaged[i].allFinite())
+      crushed = body_of_node_[i];
+  }
+  crushed = n_bodies - static_cast<int>(max_all(comm_, GlobalIndex(n_bodies - crushed)));
+  if (crushed == n_bodies)
+    return;
+  const Body& body = bodies_[crushed];
+  const SubSteps steps = sub_steps_for(step_, body.elastic_step, body.most_sub_steps);
+  check_solve(false,
               "The elastic forces of \"{}\" are not finite after {} sub-steps of {:.3g} s: its "
               "elements are crushed, and its material does not hold there. Take shorter steps, a "
               "\"Material\" that resists inversion (\"corotated\", \"neo-hookean\") or an implicit "
               "\"Time Integration\".",
-              body.name, n, steps.length);
+              body.name, steps.n, steps.length);
 }
 
 template <int dim>
@@ -102,11 +129,23 @@ const typename DeformableSolids<dim>::Nodes& DeformableSolids<dim>::averaged_for
                                [](const Body& body) { return body.most_sub_steps > 1; });
   if (!any)
     return elastic_force_;
-  if (!averaged_force_) {
-    averaged_force_ = elastic_force_;
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-      average_forces(static_cast<int>(b), *averaged_force_);
+  if (averaged_force_)
+    return *averaged_force_;
+  averaged_force_ = elastic_force_;
+  std::map<int, std::vector<int>> bodies_by_steps;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Body& body = bodies_[b];
+    const int n = sub_steps_for(step_, body.elastic_step, body.most_sub_steps).n;
+    if (n > 1)
+      bodies_by_steps[n].push_back(static_cast<int>(b));
   }
+  for (const auto& [n, bodies] : bodies_by_steps) {
+    const Body& one = bodies_[bodies.front()];
+    average_forces(bodies, sub_steps_for(step_, one.elastic_step, one.most_sub_steps),
+                   *averaged_force_);
+  }
+  if (!bodies_by_steps.empty())
+    check_finite(*averaged_force_);
   return *averaged_force_;
 }
 
@@ -128,7 +167,13 @@ template const std::vector<Point<2>>& DeformableSolids<2>::averaged_forces() con
 template const std::vector<Point<3>>& DeformableSolids<3>::averaged_forces() const;
 template AngularVector<2> DeformableSolids<2>::inner_angular_impulse(double) const;
 template AngularVector<3> DeformableSolids<3>::inner_angular_impulse(double) const;
-template void DeformableSolids<2>::average_forces(int, Nodes&) const;
-template void DeformableSolids<3>::average_forces(int, Nodes&) const;
+template void DeformableSolids<2>::average_forces(const std::vector<int>&, const SubSteps&,
+                                                  Nodes&) const;
+template void DeformableSolids<2>::check_finite(const Nodes&) const;
+template std::array<std::array<int, 2>, 2> DeformableSolids<2>::nodes_of(int) const;
+template void DeformableSolids<3>::average_forces(const std::vector<int>&, const SubSteps&,
+                                                  Nodes&) const;
+template void DeformableSolids<3>::check_finite(const Nodes&) const;
+template std::array<std::array<int, 2>, 2> DeformableSolids<3>::nodes_of(int) const;
 
 }  // namespace lockstep

@@ -17,10 +17,12 @@ void HeldNodes<dim>::hold(int node, int axis, const Point<dim>& at, int number) 
 }
 
 template <int dim>
-void HeldNodes<dim>::begin_step(double time) {
+bool HeldNodes<dim>::begin_step(double time) {
   constexpr double round_off = 1e-12;
+  const std::vector<char> before = released_;
   for (std::size_t h = 0; h < holds_.size(); ++h)
     released_[h] = holds_[h].release_time <= time + round_off * std::abs(time);
+  return released_ != before;
 }
 
 template <int dim>

@@ -32,8 +32,9 @@ class HeldNodes {
   /// Holds a node along an axis; `at` is where it starts [m]. Number -1: at rest for ever. Nodes
   /// ascend.
   void hold(int node, int axis, const Point<dim>& at, int number);
-  /// Lets go of what is released by the time at which a step begins [s].
-  void begin_step(double time);
+  /// Lets go of what is released by the time at which a step begins [s]. True if other dofs are
+  /// held than before, on all ranks.
+  bool begin_step(double time);
 
   /// Held in the present step, ascending.
   std::vector<int> dofs() const;

@@ -1,5 +1,6 @@
 #include "deformable/strain_limit.hpp"
 
+#include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <set>
@@ -57,8 +58,54 @@ StrainLimit<dim>::StrainLimit(const std::vector<LimitedEdge>& edges, const NodeS
     colors_.resize(std::max<std::size_t>(colors_.size(), colors[e] + 1));
     const auto [a, b] = edges[e].corners;
     if (numbers.rank[a] == rank || numbers.rank[b] == rank)
-      colors_[colors[e]].push_back({{numbers.local[a], numbers.local[b]}, edges[e].longest});
+      colors_[colors[e]].edges.push_back({{numbers.local[a], numbers.local[b]}, edges[e].longest});
   }
+  if (space.dof_map()->getComm()->getSize() == 1)
+    return;
+  for (std::size_t c = 0; c < colors_.size(); ++c) {
+    std::vector<char> is_changed(space.n_local(), 0);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      for (const int corner : edges[e].corners) {
+        if (colors[e] == static_cast<int>(c) && numbers.local[corner] >= 0)
+          is_changed[numbers.local[corner]] = 1;
+      }
+    }
+    prepare_exchange(colors_[c], is_changed, space);
+  }
+}
+
+template <int dim>
+void StrainLimit<dim>::prepare_exchange(Color& color, const std::vector<char>& is_changed,
+                                        const NodeSpace<dim>& space) const {
+  std::vector<GlobalIndex> dofs;
+  for (int i = 0; i < space.n_local(); ++i) {
+    if (!is_changed[i])
+      continue;
+    (i < space.n_owned() ? color.owned : color.ghosts).push_back(i);
+    for (int a = 0; a < dim && i >= space.n_owned(); ++a)
+      dofs.push_back(space.global_dof(dim * i + a));
+  }
+  const auto ghosts =
+      rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                  Teuchos::arrayViewFromVector(dofs), 0, space.dof_map()->getComm()));
+  color.import = rcp(new Import(space.dof_map(), ghosts));
+}
+
+/// The velocities of ghosts from their owners.
+template <int dim>
+void StrainLimit<dim>::exchange(const Color& color, Vector& sent, Nodes& velocity) const {
+  if (color.import.is_null())
+    return;
+  {
+    const auto values = sent.getDataNonConst();
+    for (const int i : color.owned)
+      Eigen::Map<Point<dim>>(values.getRawPtr() + dim * i) = velocity[i];
+  }
+  Vector received(color.import->getTargetMap());
+  received.doImport(sent, *color.import, Tpetra::INSERT);
+  const auto values = received.getData();
+  for (std::size_t k = 0; k < color.ghosts.size(); ++k)
+    velocity[color.ghosts[k]] = Eigen::Map<const Point<dim>>(values.getRawPtr() + dim * k);
 }
 
 template <int dim>
@@ -93,11 +140,12 @@ double StrainLimit<dim>::apply(const Nodes& x, const Nodes& inverse_mass, double
   constexpr int most_sweeps = 100;
   constexpr double tolerance = 1e-3;
   double worst = 0;
+  Vector sent(space.dof_map());
   for (int s = 0; s < most_sweeps; ++s) {
     worst = 0;
-    for (const auto& edges : colors_) {
-      worst = std::max(worst, sweep(edges, x, inverse_mass, dt, velocity, impulse));
-      velocity = space.with_ghosts(*space.vector(velocity));
+    for (const Color& color : colors_) {
+      worst = std::max(worst, sweep(color.edges, x, inverse_mass, dt, velocity, impulse));
+      exchange(color, sent, velocity);
     }
     worst = max_all(comm, worst);
     if (worst <= tolerance)

@@ -39,10 +39,21 @@ class StrainLimit {
                const Communicator& comm, Nodes& velocity, Nodes& impulse) const;
 
  private:
+  /// Edges without common nodes, in local numbers, and the nodes that other ranks' edges of them
+  /// change.
+  struct Color {
+    std::vector<LimitedEdge> edges;
+    RCP<const Import> import;  ///< of the ghosts' velocities; null: one rank
+    std::vector<int> ghosts;   ///< in the order of the import
+    std::vector<int> owned;    ///< that may be ghosts of others
+  };
+  void prepare_exchange(Color& color, const std::vector<char>& is_changed,
+                        const NodeSpace<dim>& space) const;
+  void exchange(const Color& color, Vector& sent, Nodes& velocity) const;
   double sweep(const std::vector<LimitedEdge>& edges, const Nodes& x, const Nodes& inverse_mass,
                double dt, Nodes& velocity, Nodes& impulse) const;
 
-  std::vector<std::vector<LimitedEdge>> colors_;  ///< in local numbers
+  std::vector<Color> colors_;
 };
 
 }  // namespace lockstep

@@ -255,6 +255,65 @@ TEST(SubSteps, ForceIsTheMeanOverThePath) {
   EXPECT_LE(solids->momentum_of_each(*after)[0].linear.norm(), 1e-13);
 }
 
+/// Impulses of elastic forces on owned nodes for a step of dt, in the order of the scene.
+std::vector<Point<2>> elastic_impulses(DeformableSolids<2>& solids) {
+  const auto before = make_vector(solids.dof_map()), after = make_vector(solids.dof_map());
+  solids.explicit_momentum(0, 0, *before);
+  solids.explicit_momentum(0, 1, *after);
+  after->update(-1, *before, 1);
+  const auto values = solids.nodes().owned(*after);
+  std::vector<double> mine;
+  for (int i = 0; i < solids.nodes().n_owned(); ++i)
+    mine.insert(mine.end(), {double(solids.nodes().original(i)), values[i].x(), values[i].y()});
+  const std::vector<double> all = gather_all(world(), mine);
+  std::vector<Point<2>> result(all.size() / 3);
+  for (std::size_t k = 0; k < all.size(); k += 3)
+    result[static_cast<std::size_t>(all[k])] = {all[k + 1], all[k + 2]};
+  return result;
+}
+
+TEST(SubSteps, BodiesSideBySideFeelWhatEachFeelsAlone) {
+  const auto stretched = [](const std::string& stiffness, const std::string& place) {
+    return box("1, 0.5", "0.25") + material("corotated", stiffness) + number("Density", "1") +
+           numbers("Stretch", "1.1, 0.95") + numbers("Position", place) + sub_steps("40");
+  };
+  // Two take as many sub-steps, one more, one none.
+  const std::vector<std::string> contents{stretched("1e4", "0, 0"), stretched("4e4", "2, 0"),
+                                          stretched("1", "4, 0"), stretched("1e4", "6, 0")};
+  const double dt = 4 / 20. * model<2>({contents[0]})->largest_stable_step();
+  const auto together = model<2>(contents);
+  together->begin_step(0, dt);
+  std::vector<Point<2>> alone;
+  for (const std::string& content : contents) {
+    const auto one = model<2>({content});
+    one->begin_step(0, dt);
+    for (const Point<2>& impulse : elastic_impulses(*one))
+      alone.push_back(impulse);
+  }
+  const auto impulses = elastic_impulses(*together);
+  ASSERT_EQ(impulses.size(), alone.size());
+  for (std::size_t i = 0; i < alone.size(); ++i)
+    EXPECT_LE((impulses[i] - alone[i]).norm(), 1e-11 * alone[0].norm()) << i;
+}
+
+/// The mean of a step serves the next one, unless that is of another length or holds other nodes.
+TEST(SubSteps, MeansAreFoundAnewWhereTheyDiffer) {
+  const std::string content =
+      box("1, 0.5", "0.25") + material("corotated", "1e4") + number("Density", "1") +
+      numbers("Stretch", "1.1, 0.95") + sub_steps("40") +
+      list("Pinned", list("end", numbers("Lower", "-0.5, -0.25") + numbers("Upper", "-0.5, 0.25") +
+                                     number("Release Time", "1")));
+  const double dt = 4 / 20. * model<2>({content})->largest_stable_step();
+  const auto solids = model<2>({content});
+  for (const auto& [time, length] :
+       {std::pair(0., dt), std::pair(0.1, dt), std::pair(0.2, 2 * dt), std::pair(2., 2 * dt)}) {
+    solids->begin_step(time, length);
+    const auto anew = model<2>({content});
+    anew->begin_step(time, length);
+    EXPECT_EQ(elastic_impulses(*solids), elastic_impulses(*anew)) << time;
+  }
+}
+
 TEST(SubSteps, StiffBodyIsStableAtTenTimesItsStep) {
   for (const std::string integration : {"explicit", "semi-implicit"}) {
     Alone<2> alone(
