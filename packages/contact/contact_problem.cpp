@@ -33,27 +33,18 @@ template <int dim>
 ContactProblem<dim>::ContactProblem(const SolidSystem<dim>& system,
                                     const ContactShapes<dim>& shapes,
                                     const std::vector<HalfSpace>& walls,
-                                    const GaussSeidelOptions& options, double spacing,
-                                    ContactPhase phase, double dt)
+                                    const GaussSeidelOptions& options, const SolidPairs& apart,
+                                    double spacing, ContactPhase phase, double dt)
     : system_(system),
       shapes_(shapes),
       walls_(walls),
       options_(options),
+      apart_(apart),
       spacing_(spacing),
       phase_(phase),
       dt_(dt) {
   for (const SolidDescription& solid : shapes.solids())
     half_thickness_.push_back(half_thickness_of(solid, options, spacing));
-  const auto number_of = [&shapes](const std::string& name) {
-    const auto& solids = shapes.solids();
-    const auto found = std::find_if(solids.begin(), solids.end(),
-                                    [&](const auto& solid) { return solid.name == name; });
-    return static_cast<int>(found - solids.begin());
-  };
-  for (const auto& [one, other] : options.apart) {
-    apart_.emplace(number_of(one), number_of(other));
-    apart_.emplace(number_of(other), number_of(one));
-  }
 }
 
 template <int dim>

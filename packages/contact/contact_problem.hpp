@@ -19,7 +19,7 @@ class ContactProblem {
   /// `before`: V_S at the beginning of the step, `velocity`: the one to change; both by id.
   ContactProblem(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
                  const std::vector<HalfSpace>& walls, const GaussSeidelOptions& options,
-                 double spacing, ContactPhase phase, double dt);
+                 const SolidPairs& apart, double spacing, ContactPhase phase, double dt);
 
   /// Finds the candidates; false if there is nothing to act on. Where that is not `expected`, most
   /// of what a solid that is not rigid has near itself is passed by at first.
@@ -100,10 +100,10 @@ class ContactProblem {
   const ContactShapes<dim>& shapes_;
   const std::vector<HalfSpace>& walls_;
   const GaussSeidelOptions& options_;
+  const SolidPairs& apart_;  ///< pairs that do not touch, in both orders
   double spacing_;
   ContactPhase phase_;
   double dt_;
-  std::set<Pair> apart_;                ///< pairs that do not touch, in both orders
   std::vector<double> half_thickness_;  ///< of the skin of each solid [m]
   std::vector<double> before_;
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed

@@ -1,9 +1,7 @@
 #include "contact/contact_search.hpp"
 
-#include <algorithm>
-#include <numeric>
-
 #include "contact/edge_contacts.hpp"
+#include "contact/meeting_pairs.hpp"
 #include "contact/surface_contacts.hpp"
 #include "contact/vertex_contacts.hpp"
 
@@ -23,31 +21,6 @@ Box<dim> reached_box(const ContactShapes<dim>& shapes, const SolidMotion<dim>& m
   }
   const double margin = 0.5 * reach.near + reach.half_thickness[solid];
   return Box<dim>(box.min().array() - margin, box.max().array() + margin);
-}
-
-/// Pairs whose boxes meet, by a sweep along axis 0; prescribed ones do not meet each other.
-template <int dim>
-std::vector<std::array<int, 2>> meeting_pairs(const ContactShapes<dim>& shapes,
-                                              const std::vector<Box<dim>>& boxes) {
-  std::vector<int> order;
-  for (int i = 0; i < shapes.n_solids(); ++i) {
-    if (shapes.solids()[i].simplex_begin < shapes.solids()[i].simplex_end)
-      order.push_back(i);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int i, int j) { return boxes[i].min()[0] < boxes[j].min()[0]; });
-  std::vector<std::array<int, 2>> pairs;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const Box<dim>& box = boxes[order[i]];
-    for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].min()[0] <= box.max()[0]; ++j) {
-      if (shapes.solids()[order[i]].prescribed && shapes.solids()[order[j]].prescribed)
-        continue;
-      if (box.intersects(boxes[order[j]]))
-        pairs.push_back({std::min(order[i], order[j]), std::max(order[i], order[j])});
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
 }
 
 template <int dim>
@@ -90,13 +63,18 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
   std::vector<Box<dim>> boxes;
   for (int i = 0; i < shapes.n_solids(); ++i)
     boxes.push_back(reached_box(shapes, motion, reach, i));
+  const auto& solids = shapes.solids();
   std::vector<Contact<dim>> contacts;
   std::vector<Box<dim>> vertices;
   for (const Point<dim>& x : shapes.mesh().vertices)
     vertices.emplace_back(x);
-  for (const auto& [i, j] : meeting_pairs(shapes, boxes)) {
-    if (!shapes.solids()[i].rigid || !shapes.solids()[j].rigid) {
-      add_surface_contacts(shapes, motion, vertices, reach, i, j, contacts);
+  PrimitivePairs<dim> primitives(shapes, std::move(vertices));
+  const auto any_moves = [&](int i, int j) {
+    return !solids[i].prescribed || !solids[j].prescribed;
+  };
+  for (const auto& [i, j] : meeting_pairs<dim>(boxes, any_moves)) {
+    if (!solids[i].rigid || !solids[j].rigid) {
+      add_surface_contacts(shapes, motion, primitives, reach, i, j, contacts);
       continue;
     }
     VertexContacts<dim>(shapes, motion, reach, i, j).find(contacts);
@@ -105,11 +83,11 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
       add_edge_contacts(shapes, reach, i, j, contacts);
   }
   for (int i = 0; i < shapes.n_solids(); ++i) {
-    const SolidDescription& solid = shapes.solids()[i];
+    const SolidDescription& solid = solids[i];
     if (solid.prescribed || solid.simplex_begin == solid.simplex_end)
       continue;
     if (reach.self && !solid.rigid)
-      add_surface_contacts(shapes, motion, vertices, reach, i, i, contacts);
+      add_surface_contacts(shapes, motion, primitives, reach, i, i, contacts);
     for (const HalfSpace& wall : walls) {
       const double nearest = wall.sign > 0 ? boxes[i].min()[wall.axis] - wall.coordinate
                                            : wall.coordinate - boxes[i].max()[wall.axis];

@@ -84,6 +84,7 @@ ContactTopology<dim>::ContactTopology(const SurfaceMesh<dim>& mesh,
   }
   edges_.resize(solids.size());
   sharp_edges_.resize(solids.size());
+  orders_.resize(solids.size());
   if constexpr (dim == 3) {
     for (std::size_t i = 0; i < solids.size(); ++i) {
       edges_[i] = find_edges(mesh, solids[i]);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coupling/solid_system.hpp"
+#include "geometry/box_tree.hpp"
 
 namespace lockstep {
 
@@ -34,11 +35,15 @@ class ContactTopology {
   const std::vector<SurfaceEdge>& edges(int solid) const { return edges_[solid]; }
   /// Those at which the surface bends by more than the mesh of a smooth body does, or ends.
   const std::vector<SurfaceEdge>& sharp_edges(int solid) const { return sharp_edges_[solid]; }
+  /// In which the boxes of a solid's vertices, simplices and edges stood in the last trees of them:
+  /// those that follow are mostly as good in the same one.
+  std::array<BoxOrder, 3>& orders(int solid) const { return orders_[solid]; }
 
  private:
   std::vector<std::array<int, dim>> simplices_;
   std::vector<int> begin_{0}, around_;
   std::vector<std::vector<SurfaceEdge>> edges_, sharp_edges_;
+  mutable std::vector<std::array<BoxOrder, 3>> orders_;
 };
 
 /// The surfaces of all solids at one instant, with the numbers of `SolidSystem::snapshot`, and what

@@ -1,6 +1,7 @@
 #include "contact/gauss_seidel_contact.hpp"
 
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
 #include "contact/contact_problem.hpp"
 #include "contact/impact_zones.hpp"
@@ -40,6 +41,41 @@ GaussSeidelContact<dim>::GaussSeidelContact(const GaussSeidelOptions& options,
     : options_(options), walls_(std::move(walls)), spacing_(grid_spacing) {}
 
 template <int dim>
+const InverseMass& GaussSeidelContact<dim>::inverse_mass_of(const SolidSystem<dim>& solids) {
+  const RCP<const LinearOperator> inverse = solids.mass_inverse();
+  if (inverse != known_inverse_) {
+    inverse_mass_ = replicated_inverse_mass(solids);
+    known_inverse_ = inverse;
+  }
+  return inverse_mass_;
+}
+
+template <int dim>
+const SolidPairs& GaussSeidelContact<dim>::apart_among(
+    const std::vector<SolidDescription>& solids) {
+  const bool are_known = std::equal(
+      numbers_.begin(), numbers_.end(), solids.begin(), solids.end(),
+      [](const std::string& name, const SolidDescription& solid) { return name == solid.name; });
+  if (are_known || options_.apart.empty())
+    return apart_;
+  std::map<std::string, int> number_of;
+  numbers_.clear();
+  for (const SolidDescription& solid : solids) {
+    number_of.emplace(solid.name, static_cast<int>(numbers_.size()));
+    numbers_.push_back(solid.name);
+  }
+  apart_.clear();
+  for (const auto& [one, other] : options_.apart) {
+    const auto first = number_of.find(one), second = number_of.find(other);
+    if (first == number_of.end() || second == number_of.end())
+      continue;
+    apart_.emplace(first->second, second->second);
+    apart_.emplace(second->second, first->second);
+  }
+  return apart_;
+}
+
+template <int dim>
 ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& solids,
                                                     ContactPhase phase, double dt, Vector& velocity,
                                                     const ContactResponse& response) {
@@ -49,7 +85,8 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   ContactShapes<dim> shapes(solids, topology_);
   if (solids.joints())
     shapes.set_drift(replicated(solids, *drift_of(solids, velocity)));
-  ContactProblem<dim> problem(solids, shapes, walls_, options_, spacing_, phase, dt);
+  ContactProblem<dim> problem(solids, shapes, walls_, options_, apart_among(shapes.solids()),
+                              spacing_, phase, dt);
   const std::vector<double> given = replicated(solids, velocity);
   bool& acted = acted_[phase == ContactPhase::position ? 0 : 1];
   const bool acts = problem.prepare(replicated(solids, *solids.velocity()), given, acted);
@@ -57,9 +94,9 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   report.deepest_overlap = problem.deepest_overlap();
   if (!acts)
     return report;
-  const InverseMass inverse_mass = replicated_inverse_mass(solids);
-  Mobility<dim> mobility = response ? Mobility<dim>(inverse_mass, solids, shapes, response())
-                                    : Mobility<dim>(inverse_mass);
+  const InverseMass& inverse_mass = inverse_mass_of(solids);
+  Mobility<dim> mobility =
+      response ? Mobility<dim>(inverse_mass, solids, response()) : Mobility<dim>(inverse_mass);
   ImpulseSolver<dim> solver(solids, shapes, mobility, given);
   report.iterations = problem.solve(solver);
   report.n_contacts = solver.n_contacts();
@@ -79,7 +116,7 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   }
   RCP<Vector> change = distributed(solids, resolved);
   if (response) {
-    // The solver knows surfaces only.
+    // What impact zones change, and of the impulses all that they move.
     change->update(-1, *distributed(solids, solver.velocity()), 1);
     Vector reduced(*report.impulse, Teuchos::Copy);
     solids.reduction().restrict(reduced);

@@ -2,14 +2,19 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "contact/contact_search.hpp"
 #include "contact/impulse_solver.hpp"
+#include "contact/inverse_mass.hpp"
 #include "interfaces/contact.hpp"
 
 namespace lockstep {
+
+using SolidPairs = std::set<std::pair<int, int>>;
 
 /// Lengths are in units of the grid spacing h.
 struct GaussSeidelOptions {
@@ -60,10 +65,17 @@ class GaussSeidelContact : public ContactModel<dim> {
                              Vector& velocity, const ContactResponse& response) override;
 
  private:
+  const InverseMass& inverse_mass_of(const SolidSystem<dim>& solids);
+  const SolidPairs& apart_among(const std::vector<SolidDescription>& solids);
+
   GaussSeidelOptions options_;
   std::vector<HalfSpace> walls_;
   double spacing_;
   ContactTopology<dim> topology_;
+  SolidPairs apart_;                  ///< `GaussSeidelOptions::apart` by number, in both orders
+  std::vector<std::string> numbers_;  ///< of solids with these names
+  RCP<const LinearOperator> known_inverse_;  ///< of which `inverse_mass_` is the copy
+  InverseMass inverse_mass_;
   /// By phase, whether there was something to act on last time; results do not depend on it.
   std::array<bool, 2> acted_{};
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/meeting_pairs.hpp"
+
 namespace lockstep {
 
 template <int dim>
@@ -14,6 +16,23 @@ SurfacePath<dim>::SurfacePath(const ContactShapes<dim>& shapes, const SolidMotio
       after[v] = motion.end_of_vertex(i, v, dt);
   }
 }
+
+namespace {
+/// Solids of which at least one is not rigid whose swept boxes meet, and such with themselves.
+template <int dim>
+std::vector<std::array<int, 2>> pairs_to_follow(const ContactShapes<dim>& shapes,
+                                                const std::vector<Box<dim>>& swept, bool self) {
+  const auto& solids = shapes.solids();
+  auto pairs =
+      meeting_pairs<dim>(swept, [&](int i, int j) { return !solids[i].rigid || !solids[j].rigid; });
+  for (int i = 0; self && i < shapes.n_solids(); ++i) {
+    if (!solids[i].rigid && !swept[i].isEmpty())
+      pairs.push_back({i, i});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+}  // namespace
 
 template <int dim>
 std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
@@ -29,22 +48,17 @@ std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
       solid_swept[i].extend(swept[v]);
   }
   std::vector<FoundImpact<dim>> found;
-  for (int i = 0; i < shapes.n_solids(); ++i) {
-    for (int j = i; j < shapes.n_solids(); ++j) {
-      const bool both_rigid = shapes.solids()[i].rigid && shapes.solids()[j].rigid;
-      if (both_rigid || (i == j && !self) || !solid_swept[i].intersects(solid_swept[j]))
-        continue;
-      for_each_primitive<dim>(
-          shapes, swept, 0, i, j, [&](const std::vector<PrimitivePair<dim>>& pairs) {
-            for (const PrimitivePair<dim>& pair : pairs) {
-              const auto impact = first_impact<dim>(pair.kind, points_of(pair, path.before),
-                                                    points_of(pair, path.after));
-              if (impact)
-                found.push_back({pair, *impact});
-            }
-          });
+  const auto keep_impacts = [&](const std::vector<PrimitivePair<dim>>& pairs) {
+    for (const PrimitivePair<dim>& pair : pairs) {
+      const auto impact =
+          first_impact<dim>(pair.kind, points_of(pair, path.before), points_of(pair, path.after));
+      if (impact)
+        found.push_back({pair, *impact});
     }
-  }
+  };
+  PrimitivePairs<dim> primitives(shapes, std::move(swept));
+  for (const auto& [i, j] : pairs_to_follow(shapes, solid_swept, self))
+    primitives.for_each(0, i, j, keep_impacts);
   return found;
 }
 

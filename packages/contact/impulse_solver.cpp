@@ -31,7 +31,10 @@ Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
 template <int dim>
 ImpulseSolver<dim>::ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
                                   Mobility<dim>& mobility, std::vector<double> velocity)
-    : system_(system), shapes_(shapes), mobility_(mobility), velocity_(std::move(velocity)) {}
+    : system_(system), shapes_(shapes), mobility_(mobility), velocity_(std::move(velocity)) {
+  if (responds())
+    given_ = velocity_;
+}
 
 template <int dim>
 void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& point,
@@ -44,7 +47,7 @@ void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& 
   }
   if (description.rigid) {
     row.prescribed += sign * shapes_.drift(point, x);
-    add_entries(point, x, sign * Factor::Identity());
+    add_entries(row, point, x, sign * Factor::Identity());
     return;
   }
   const auto factors = carried_point<dim>(shapes_.corners(point.simplex), point, x);
@@ -55,29 +58,39 @@ void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& 
     if (factors[k].isZero(0))
       continue;
     row.prescribed += sign * factors[k] * shapes_.drift(corner, x);
-    add_entries(corner, x, sign * factors[k]);
+    add_entries(row, corner, x, sign * factors[k]);
   }
 }
 
 template <int dim>
-void ImpulseSolver<dim>::add_entries(const SurfacePoint<dim>& point, const Point<dim>& x,
+void ImpulseSolver<dim>::add_entries(Row& row, const SurfacePoint<dim>& point, const Point<dim>& x,
                                      const Eigen::Matrix<double, dim, dim>& factor) {
   shapes_.velocity_row(point, x, velocity_row_);
   for (std::size_t k = 0; k < velocity_row_.dofs.size(); ++k) {
-    jacobian_.push_back(
-        {static_cast<int>(velocity_row_.dofs[k]), factor * velocity_row_.coefficients[k]});
+    const auto dof = static_cast<int>(velocity_row_.dofs[k]);
+    const Point<dim> coefficient = factor * velocity_row_.coefficients[k];
+    if (!responds()) {
+      jacobian_.push_back({dof, coefficient});
+      continue;
+    }
+    if (row.friction == 0 && row.contact.normal.dot(coefficient) == 0)
+      continue;  // what goes along the surface is not asked for
+    if (mobility_.is_held(dof))
+      row.prescribed += velocity_[dof] * coefficient;
+    else
+      jacobian_.push_back({activate(dof), coefficient});
   }
 }
 
+/// `of_parts`: the normal response if no dof took back what another gives.
 template <int dim>
-void ImpulseSolver<dim>::add_response(Row& row) {
+void ImpulseSolver<dim>::add_mass_response(Row& row, Compliance& compliance, double& of_parts) {
   std::map<int, Point<dim>> response;
-  double of_parts = 0;  // the normal response if no dof took back what another gives
   for (int k = row.begin; k < row.end; ++k) {
-    for (const auto& [dof, value] : mobility_.row(jacobian_[k].dof)) {
+    for (const auto& [dof, value] : mobility_.row(jacobian_[k].id)) {
       const auto place = response.try_emplace(dof, Point<dim>::Zero()).first;
       place->second += value * jacobian_[k].coefficient;
-      if (dof == jacobian_[k].dof)
+      if (dof == jacobian_[k].id)
         of_parts += value * std::pow(row.contact.normal.dot(jacobian_[k].coefficient), 2);
     }
   }
@@ -85,12 +98,21 @@ void ImpulseSolver<dim>::add_response(Row& row) {
   for (const auto& [dof, coefficient] : response)
     response_.push_back({dof, coefficient});
   row.response_end = static_cast<int>(response_.size());
-  Eigen::Matrix<double, dim, dim> compliance = Eigen::Matrix<double, dim, dim>::Zero();
   for (int k = row.begin; k < row.end; ++k) {
-    const auto found = response.find(jacobian_[k].dof);
+    const auto found = response.find(jacobian_[k].id);
     if (found != response.end())
       compliance += jacobian_[k].coefficient * found->second.transpose();
   }
+}
+
+template <int dim>
+void ImpulseSolver<dim>::add_response(Row& row) {
+  Compliance compliance = Compliance::Zero();
+  double of_parts = 0;
+  if (responds())
+    find_response(row, compliance, of_parts);
+  else
+    add_mass_response(row, compliance, of_parts);
   row.normal_response = row.contact.normal.dot(compliance * row.contact.normal);
   if (row.normal_response < unmovable * of_parts)
     row.normal_response = 0;
@@ -103,10 +125,12 @@ void ImpulseSolver<dim>::add_response(Row& row) {
 }
 
 template <int dim>
-typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& contact) {
+typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& contact,
+                                                            double friction) {
   const auto& solids = system_.solids();
   Row row;
   row.contact = contact;
+  row.friction = friction;
   row.tangent_impulse.setZero();
   row.solid_prescribed = solids[contact.solid].prescribed;
   row.other_prescribed = contact.other < 0 || solids[contact.other].prescribed;
@@ -115,6 +139,7 @@ typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& 
   if (contact.other >= 0)
     add_side(row, contact.other, contact.other_point, contact.other_place(), -1);
   row.end = static_cast<int>(jacobian_.size());
+  row.response_begin = row.response_end = static_cast<int>(response_.size());
   add_response(row);
   return row;
 }
@@ -128,41 +153,53 @@ void ImpulseSolver<dim>::forget_last(const Row& row) {
 
 template <int dim>
 bool ImpulseSolver<dim>::add(const Contact<dim>& contact, double target, double friction) {
-  Row row = row_of(contact);
+  Row row = row_of(contact, friction);
   if (!(row.normal_response > 0)) {
     forget_last(row);
     return false;
   }
   row.target = target;
-  row.friction = friction;
   rows_.push_back(row);
   return true;
 }
 
 template <int dim>
 bool ImpulseSolver<dim>::can_move(const Contact<dim>& contact) {
-  const Row row = row_of(contact);
+  const Row row = row_of(contact, 0);
   forget_last(row);
   return row.normal_response > 0;
 }
 
-/// Without a response if nothing of it can move.
+/// Without a response if nothing of it can move; `least` is what held dofs leave of zero.
 template <int dim>
 LimitImpulses::Row ImpulseSolver<dim>::row_of(const Terms& terms) {
   LimitImpulses::Row row;
   std::map<int, double> weights, response;
-  for (const auto& [dof, weight] : shapes_.resolved(terms))
-    weights[static_cast<int>(dof)] += weight;
-  double of_parts = 0, of_all = 0;
-  for (const auto& [dof, weight] : weights) {
-    for (const auto& [other, value] : mobility_.row(dof)) {
-      response[other] += weight * value;
-      if (other == dof)
-        of_parts += weight * weight * value;
-    }
+  for (const auto& [dof, weight] : shapes_.resolved(terms)) {
+    if (!responds())
+      weights[static_cast<int>(dof)] += weight;
+    else if (mobility_.is_held(static_cast<int>(dof)))
+      row.least -= weight * velocity_[dof];
+    else
+      weights[activate(static_cast<int>(dof))] += weight;
   }
-  for (const auto& [dof, velocity] : response) {
-    const auto weight = weights.find(dof);
+  double of_parts = 0, of_all = 0;
+  for (const auto& [id, weight] : weights) {
+    const auto add = [&, id = id, weight = weight](int other, double value) {
+      response[other] += weight * value;
+      if (other == id)
+        of_parts += weight * weight * value;
+    };
+    if (!responds()) {
+      for (const auto& [other, value] : mobility_.row(id))
+        add(other, value);
+      continue;
+    }
+    for (int other = 0; other < mobility_.n_active(); ++other)
+      add(other, mobility_.column(id)[other]);
+  }
+  for (const auto& [id, velocity] : response) {
+    const auto weight = weights.find(id);
     of_all += weight == weights.end() ? 0 : weight->second * velocity;
   }
   row.weights.assign(weights.begin(), weights.end());
@@ -176,7 +213,7 @@ int ImpulseSolver<dim>::add(const Terms& terms, double least) {
   LimitImpulses::Row row = row_of(terms);
   if (row.response.empty())
     return -1;
-  row.least = least;
+  row.least += least;
   limits_.add(std::move(row));
   return limits_.size() - 1;
 }
@@ -189,15 +226,21 @@ bool ImpulseSolver<dim>::can_move(const Terms& terms) {
 template <int dim>
 Point<dim> ImpulseSolver<dim>::relative_velocity(const Row& row) const {
   Point<dim> velocity = row.prescribed;
+  const std::vector<double>& known = velocity_by_id();
   for (int k = row.begin; k < row.end; ++k)
-    velocity += velocity_[jacobian_[k].dof] * jacobian_[k].coefficient;
+    velocity += known[jacobian_[k].id] * jacobian_[k].coefficient;
   return velocity;
 }
 
 template <int dim>
 void ImpulseSolver<dim>::push(const Row& row, const Point<dim>& impulse) {
   for (int k = row.response_begin; k < row.response_end; ++k)
-    velocity_[response_[k].dof] += response_[k].coefficient.dot(impulse);
+    velocity_[response_[k].id] += response_[k].coefficient.dot(impulse);
+  for (int k = row.begin; k < row.end && responds(); ++k) {
+    const double pushed = jacobian_[k].coefficient.dot(impulse);
+    if (pushed != 0)
+      mobility_.column(jacobian_[k].id).add_to(active_, pushed);
+  }
 }
 
 template <int dim>
@@ -236,16 +279,18 @@ double ImpulseSolver<dim>::relax_friction(Row& row) {
 
 template <int dim>
 int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance, double negligible) {
-  for (int sweep = 1; sweep <= maximum_sweeps; ++sweep) {
-    double change = limits_.relax(velocity_, negligible);
+  extend_limits();
+  int sweep = 0;
+  for (double change = 1e300; sweep < maximum_sweeps && !(change <= tolerance); ++sweep) {
+    change = limits_.relax(velocity_by_id(), negligible);
     for (Row& row : rows_) {
       change = std::max(change, relax_normal(row));
       change = std::max(change, relax_friction(row));
     }
-    if (change <= tolerance)
-      return sweep;
   }
-  return maximum_sweeps;
+  if (responds() && n_contacts() > 0)
+    find_velocity();
+  return sweep;
 }
 
 template <int dim>
@@ -289,7 +334,10 @@ std::vector<double> ImpulseSolver<dim>::generalized_impulse() const {
       add_side_impulse(row.contact.other, row.contact.other_point, row.contact.other_place(),
                        -pushed, total);
   }
-  limits_.add_to(total);
+  std::vector<double> of_limits(responds() ? active_.size() : total.size(), 0);
+  limits_.add_to(of_limits);
+  for (std::size_t id = 0; id < of_limits.size(); ++id)
+    total[dof_of(static_cast<int>(id))] += of_limits[id];
   return total;
 }
 

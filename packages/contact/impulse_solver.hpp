@@ -46,14 +46,15 @@ class ImpulseSolver {
 
  private:
   struct Entry {
-    int dof;
+    int id;
     Point<dim> coefficient;
   };
+  using Compliance = Eigen::Matrix<double, dim, dim>;
   using Tangents = Eigen::Matrix<double, dim, dim - 1>;
   struct Row {
     Contact<dim> contact;
     int begin = 0, end = 0;                    ///< in `jacobian_`
-    int response_begin = 0, response_end = 0;  ///< in `response_`: mobility J^T
+    int response_begin = 0, response_end = 0;  ///< in `response_`: M_S^-1 J^T, without a response
     Point<dim> prescribed = Point<dim>::Zero();
     double target = 0, friction = 0;
     double normal_response = 0, tangent_response = 0;  ///< velocity per impulse [1/kg]
@@ -64,14 +65,26 @@ class ImpulseSolver {
     Eigen::Matrix<double, dim - 1, 1> tangent_impulse;
   };
 
-  Row row_of(const Contact<dim>& contact);
+  /// With a response ids are numbers of active dofs, and `active_` their velocities; else they are
+  /// dofs.
+  bool responds() const { return !mobility_.response().is_null(); }
+  std::vector<double>& velocity_by_id() { return responds() ? active_ : velocity_; }
+  const std::vector<double>& velocity_by_id() const { return responds() ? active_ : velocity_; }
+  int dof_of(int id) const { return responds() ? mobility_.active_dof(id) : id; }
+  int activate(int dof);
+  void extend_limits();
+  void find_velocity();
+
+  Row row_of(const Contact<dim>& contact, double friction);
   void forget_last(const Row& row);
   LimitImpulses::Row row_of(const Terms& terms);
   void add_side(Row& row, int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
                 double sign);
-  void add_entries(const SurfacePoint<dim>& point, const Point<dim>& x,
+  void add_entries(Row& row, const SurfacePoint<dim>& point, const Point<dim>& x,
                    const Eigen::Matrix<double, dim, dim>& factor);
   void add_response(Row& row);
+  void add_mass_response(Row& row, Compliance& compliance, double& of_parts);
+  void find_response(const Row& row, Compliance& compliance, double& of_parts) const;
   Point<dim> relative_velocity(const Row& row) const;
   void push(const Row& row, const Point<dim>& impulse);
   void add_side_impulse(int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
@@ -83,7 +96,7 @@ class ImpulseSolver {
   const SolidSystem<dim>& system_;
   const ContactShapes<dim>& shapes_;
   Mobility<dim>& mobility_;
-  std::vector<double> velocity_;
+  std::vector<double> velocity_, active_, given_;
   VelocityRow<dim> velocity_row_;  ///< for use by add_entries alone
   std::vector<Row> rows_;
   std::vector<Entry> jacobian_, response_;

@@ -16,6 +16,9 @@ class LimitImpulses {
     double least = 0;
   };
   void add(Row row);
+  /// The response of a row at an id that it does not have yet.
+  void extend(int row, int id, double velocity) { rows_[row].response.emplace_back(id, velocity); }
+  const Row& row(int number) const { return rows_[number]; }
   int size() const { return static_cast<int>(rows_.size()); }
   double impulse(int row) const { return impulses_[row]; }
 

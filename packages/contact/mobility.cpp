@@ -1,60 +1,50 @@
 #include "contact/mobility.hpp"
 
 #include <Tpetra_Vector.hpp>
-#include <cmath>
-#include <set>
 
 namespace lockstep {
 
-namespace {
-/// Velocities far from an impulse, over that at its place, that are not worth keeping.
-constexpr double negligible = 1e-14;
-}  // namespace
-
 template <int dim>
 Mobility<dim>::Mobility(const InverseMass& inverse_mass, const SolidSystem<dim>& system,
-                        const ContactShapes<dim>& shapes, RCP<const LinearOperator> response)
+                        RCP<const LinearOperator> response)
     : inverse_mass_(inverse_mass),
       system_(&system),
       response_(std::move(response)),
-      rows_(inverse_mass.rows.size()) {
-  std::set<int> dofs;
-  VelocityRow<dim> row;
-  for (int i = 0; i < shapes.n_solids(); ++i) {
-    const SolidDescription& solid = shapes.solids()[i];
-    for (int v = solid.vertex_begin; v < solid.vertex_end && !solid.prescribed; ++v) {
-      const SurfacePoint<dim> point = shapes.at_vertex(v);
-      if (point.simplex < 0)
-        continue;
-      shapes.velocity_row(point, point.position, row);
-      dofs.insert(row.dofs.begin(), row.dofs.end());
-    }
-  }
-  if (system.joints()) {
-    for (const GlobalIndex dof : shapes.leading_dofs())
-      dofs.insert(static_cast<int>(dof));
-  }
-  surface_dofs_.assign(dofs.begin(), dofs.end());
-}
+      number_(inverse_mass.rows.size(), -1) {}
 
 template <int dim>
-const typename Mobility<dim>::Row& Mobility<dim>::row(int dof) {
-  if (response_.is_null() || inverse_mass_.rows[dof].empty())
-    return inverse_mass_.rows[dof];
-  std::optional<Row>& row = rows_[dof];
-  if (row)
-    return *row;
-  std::vector<double> unit(rows_.size(), 0);
-  unit[dof] = 1;
-  const RCP<Vector> velocity = make_vector(system_->map());
-  apply(*response_, *distributed(*system_, unit), *velocity);
-  const std::vector<double> values = replicated(*system_, *velocity);
-  row.emplace();
-  for (const int k : surface_dofs_) {
-    if (std::abs(values[k]) > negligible * values[dof] && !inverse_mass_.rows[k].empty())
-      row->push_back({k, values[k]});
+std::vector<double> Mobility<dim>::velocities(std::vector<double> impulses) const {
+  for (std::size_t dof = 0; dof < impulses.size(); ++dof) {
+    if (is_held(static_cast<int>(dof)))
+      impulses[dof] = 0;
   }
-  return *row;
+  const RCP<Vector> velocity = make_vector(system_->map());
+  apply(*response_, *distributed(*system_, impulses), *velocity);
+  std::vector<double> values = replicated(*system_, *velocity);
+  for (std::size_t dof = 0; dof < values.size(); ++dof) {
+    if (is_held(static_cast<int>(dof)))
+      values[dof] = 0;
+  }
+  return values;
+}
+
+/// The response is symmetric: its column is the new row of the others.
+template <int dim>
+int Mobility<dim>::activate(int dof) {
+  if (number_[dof] >= 0)
+    return number_[dof];
+  std::vector<double> unit(number_.size(), 0);
+  unit[dof] = 1;
+  const std::vector<double> values = velocities(std::move(unit));
+  number_[dof] = n_active();
+  active_.push_back(dof);
+  GrowingColumn column;
+  for (const int other : active_)
+    column.push_back(values[other]);
+  for (std::size_t k = 0; k < columns_.size(); ++k)
+    columns_[k].push_back(values[active_[k]]);
+  columns_.push_back(std::move(column));
+  return number_[dof];
 }
 
 template class Mobility<2>;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "geometry/box_tree.hpp"
-
 namespace lockstep {
 
 namespace {
@@ -16,85 +14,60 @@ struct Primitive {
 };
 
 template <int dim>
+Box<dim> inflated(const Box<dim>& box, double margin) {
+  return Box<dim>(box.min().array() - margin, box.max().array() + margin);
+}
+
+/// The pairs of two solids, in boxes that are near both.
+template <int dim>
 class PairFinder {
  public:
-  PairFinder(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertex_boxes,
-             double margin, int solid, int other, const UsePrimitivePairs<dim>& use)
-      : shapes_(shapes),
-        vertex_boxes_(vertex_boxes),
-        margin_(margin),
-        self_(solid == other),
-        use_(use) {
-    region_ = inflated(extent(solid)).intersection(inflated(extent(other)));
-  }
+  PairFinder(const ContactShapes<dim>& shapes, double margin, const Box<dim>& region, bool self,
+             const UsePrimitivePairs<dim>& use)
+      : shapes_(shapes), margin_(margin), region_(region), self_(self), use_(use) {}
 
   /// Vertices of `solid` against simplices of `other`.
-  void add_vertices(int solid, int other) {
-    add(PrimitiveKind::vertex_simplex, solid, vertices_of(solid), other, simplices_of(other));
+  void add_vertices(int solid, const BoxTree<dim>& vertices, int other,
+                    const BoxTree<dim>& simplices) {
+    const int first_vertex = shapes_.solids()[solid].vertex_begin;
+    const int first_simplex = shapes_.solids()[other].simplex_begin;
+    add<1, dim>(
+        PrimitiveKind::vertex_simplex, solid, vertices, other, simplices,
+        [&](int i) {
+          const int v = first_vertex + i;
+          return Primitive<1>{{v}, shapes_.at_vertex(v).simplex};
+        },
+        [&](int j) {
+          const int s = first_simplex + j;
+          return Primitive<dim>{shapes_.mesh().simplices[s], s};
+        });
   }
-  void add_edges(int solid, int other) {
-    add(PrimitiveKind::edge_edge, solid, edges_of(solid), other, edges_of(other));
+  void add_edges(int solid, const BoxTree<dim>& edges, int other, const BoxTree<dim>& others) {
+    const auto edge_of = [this](int of, int i) {
+      const SurfaceEdge& edge = shapes_.topology().edges(of)[i];
+      return Primitive<2>{edge.vertices, edge.simplices[0]};
+    };
+    add<2, 2>(
+        PrimitiveKind::edge_edge, solid, edges, other, others,
+        [&](int i) { return edge_of(solid, i); }, [&](int j) { return edge_of(other, j); });
   }
 
  private:
-  Box<dim> inflated(const Box<dim>& box) const {
-    return Box<dim>(box.min().array() - margin_, box.max().array() + margin_);
-  }
-  template <int n>
-  Box<dim> box_of(const std::array<int, n>& vertices) const {
-    Box<dim> box;
-    for (const int v : vertices)
-      box.extend(vertex_boxes_[v]);
-    return box;
-  }
-  Box<dim> extent(int solid) const {
-    Box<dim> box;
-    const SolidDescription& description = shapes_.solids()[solid];
-    for (int v = description.vertex_begin; v < description.vertex_end; ++v)
-      box.extend(vertex_boxes_[v]);
-    return box;
-  }
-  template <int n>
-  void keep(std::vector<Primitive<n>>& primitives, const Primitive<n>& primitive) const {
-    if (primitive.simplex >= 0 && region_.intersects(box_of<n>(primitive.vertices)))
-      primitives.push_back(primitive);
-  }
-
-  std::vector<Primitive<1>> vertices_of(int solid) const {
-    std::vector<Primitive<1>> found;
-    const SolidDescription& description = shapes_.solids()[solid];
-    for (int v = description.vertex_begin; v < description.vertex_end; ++v)
-      keep<1>(found, {{v}, shapes_.at_vertex(v).simplex});
-    return found;
-  }
-  std::vector<Primitive<dim>> simplices_of(int solid) const {
-    std::vector<Primitive<dim>> found;
-    const SolidDescription& description = shapes_.solids()[solid];
-    for (int s = description.simplex_begin; s < description.simplex_end; ++s)
-      keep<dim>(found, {shapes_.mesh().simplices[s], s});
-    return found;
-  }
-  std::vector<Primitive<2>> edges_of(int solid) const {
-    std::vector<Primitive<2>> found;
-    for (const SurfaceEdge& edge : shapes_.topology().edges(solid))
-      keep<2>(found, {edge.vertices, edge.simplices[0]});
-    return found;
-  }
-
-  template <int n, int m>
-  void add(PrimitiveKind kind, int solid, const std::vector<Primitive<n>>& first, int other,
-           const std::vector<Primitive<m>>& second) {
-    std::vector<Box<dim>> boxes;
-    for (const Primitive<m>& primitive : second)
-      boxes.push_back(box_of<m>(primitive.vertices));
-    const BoxTree<dim> tree(std::move(boxes));
-    std::vector<int> found;
-    for (int i = 0; i < static_cast<int>(first.size()); ++i) {
-      tree.touching(inflated(box_of<n>(first[i].vertices)), found);
+  /// `first` and `second` make primitives of their numbers in the trees.
+  template <int n, int m, typename First, typename Second>
+  void add(PrimitiveKind kind, int solid, const BoxTree<dim>& first_tree, int other,
+           const BoxTree<dim>& second_tree, const First& first, const Second& second) {
+    std::vector<int> near_both, found;
+    first_tree.touching(region_, near_both);
+    for (const int i : near_both) {
+      second_tree.touching(inflated<dim>(first_tree.box(i), margin_), found);
+      if (found.empty())
+        continue;
+      const Primitive<n> one = first(i);
       pairs_.clear();
       for (const int j : found) {
         if (kind == PrimitiveKind::vertex_simplex || !self_ || i < j)
-          add_pair(kind, solid, first[i], other, second[j]);
+          add_pair<n, m>(kind, solid, one, other, second(j));
       }
       if (!pairs_.empty())
         use_(pairs_);
@@ -122,10 +95,9 @@ class PairFinder {
   }
 
   const ContactShapes<dim>& shapes_;
-  const std::vector<Box<dim>>& vertex_boxes_;
   double margin_;
-  bool self_;
   Box<dim> region_;
+  bool self_;
   const UsePrimitivePairs<dim>& use_;
   std::vector<PrimitivePair<dim>> pairs_;  ///< of one first primitive
 };
@@ -133,14 +105,61 @@ class PairFinder {
 }  // namespace
 
 template <int dim>
-void for_each_primitive(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertex_boxes,
-                        double margin, int solid, int other, const UsePrimitivePairs<dim>& use) {
-  PairFinder<dim> finder(shapes, vertex_boxes, margin, solid, other, use);
-  finder.add_vertices(solid, other);
+PrimitivePairs<dim>::PrimitivePairs(const ContactShapes<dim>& shapes,
+                                    std::vector<Box<dim>> vertex_boxes)
+    : shapes_(shapes), vertex_boxes_(std::move(vertex_boxes)), trees_(shapes.n_solids()) {}
+
+template <int dim>
+const typename PrimitivePairs<dim>::Trees& PrimitivePairs<dim>::trees_of(int solid) {
+  if (!trees_[solid])
+    trees_[solid] = std::make_unique<const Trees>(make_trees(solid));
+  return *trees_[solid];
+}
+
+/// Vertices that no simplex has are empty boxes, which nothing finds.
+template <int dim>
+typename PrimitivePairs<dim>::Trees PrimitivePairs<dim>::make_trees(int solid) const {
+  const SolidDescription& description = shapes_.solids()[solid];
+  const auto box_of = [this](const auto& vertices) {
+    Box<dim> box;
+    for (const int v : vertices)
+      box.extend(vertex_boxes_[v]);
+    return box;
+  };
+  const auto make_tree = [](std::vector<Box<dim>> boxes, BoxOrder& order) {
+    BoxTree<dim> tree(std::move(boxes), order);
+    order = tree.order();
+    return tree;
+  };
+  Trees trees;
+  std::vector<Box<dim>> vertices, simplices, edges;
+  for (int v = description.vertex_begin; v < description.vertex_end; ++v) {
+    trees.extent.extend(vertex_boxes_[v]);
+    vertices.push_back(shapes_.at_vertex(v).simplex >= 0 ? vertex_boxes_[v] : Box<dim>());
+  }
+  for (int s = description.simplex_begin; s < description.simplex_end; ++s)
+    simplices.push_back(box_of(shapes_.mesh().simplices[s]));
+  for (const SurfaceEdge& edge : shapes_.topology().edges(solid))
+    edges.push_back(box_of(edge.vertices));
+  auto& orders = shapes_.topology().orders(solid);
+  trees.vertices = make_tree(std::move(vertices), orders[0]);
+  trees.simplices = make_tree(std::move(simplices), orders[1]);
+  trees.edges = make_tree(std::move(edges), orders[2]);
+  return trees;
+}
+
+template <int dim>
+void PrimitivePairs<dim>::for_each(double margin, int solid, int other,
+                                   const UsePrimitivePairs<dim>& use) {
+  const Trees &one = trees_of(solid), &two = trees_of(other);
+  const Box<dim> region =
+      inflated<dim>(one.extent, margin).intersection(inflated<dim>(two.extent, margin));
+  PairFinder<dim> finder(shapes_, margin, region, solid == other, use);
+  finder.add_vertices(solid, one.vertices, other, two.simplices);
   if (solid != other)
-    finder.add_vertices(other, solid);
+    finder.add_vertices(other, two.vertices, solid, one.simplices);
   if constexpr (dim == 3)
-    finder.add_edges(solid, other);
+    finder.add_edges(solid, one.edges, other, two.edges);
 }
 
 template <int dim>
@@ -162,10 +181,8 @@ std::array<SurfacePoint<dim>, 2> surface_points(const ContactShapes<dim>& shapes
   return points;
 }
 
-template void for_each_primitive<2>(const ContactShapes<2>&, const std::vector<Box<2>>&, double,
-                                    int, int, const UsePrimitivePairs<2>&);
-template void for_each_primitive<3>(const ContactShapes<3>&, const std::vector<Box<3>>&, double,
-                                    int, int, const UsePrimitivePairs<3>&);
+template class PrimitivePairs<2>;
+template class PrimitivePairs<3>;
 template std::array<SurfacePoint<2>, 2> surface_points<2>(const ContactShapes<2>&,
                                                           const PrimitivePair<2>&,
                                                           const PrimitiveWeights<2>&);

@@ -1,9 +1,11 @@
 #pragma once
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "contact/contact_shapes.hpp"
 #include "contact/continuous_collision.hpp"
+#include "geometry/box_tree.hpp"
 
 namespace lockstep {
 
@@ -20,12 +22,32 @@ struct PrimitivePair {
 template <int dim>
 using UsePrimitivePairs = std::function<void(const std::vector<PrimitivePair<dim>>&)>;
 
-/// Goes through all pairs of primitives of two solids (or of one with itself) whose boxes, the
-/// union of those of their vertices, come closer than `margin` in every direction; what contact
-/// cannot move is left out. By a tree of boxes. The order does not depend on the ranks. Local.
+/// The primitives of all solids with their boxes, the unions of those of their vertices: trees of
+/// them, made for the solids that are asked for. Local.
 template <int dim>
-void for_each_primitive(const ContactShapes<dim>& shapes, const std::vector<Box<dim>>& vertex_boxes,
-                        double margin, int solid, int other, const UsePrimitivePairs<dim>& use);
+class PrimitivePairs {
+ public:
+  /// Boxes that hold one vertex each.
+  PrimitivePairs(const ContactShapes<dim>& shapes, std::vector<Box<dim>> vertex_boxes);
+
+  /// Goes through all pairs of primitives of two solids (or of one with itself) whose boxes come
+  /// closer than `margin` in every direction; what contact cannot move is left out. The order does
+  /// not depend on the ranks.
+  void for_each(double margin, int solid, int other, const UsePrimitivePairs<dim>& use);
+
+ private:
+  /// Numbers in the trees count from the solid's first vertex, simplex and edge.
+  struct Trees {
+    Box<dim> extent;
+    BoxTree<dim> vertices, simplices, edges;
+  };
+  const Trees& trees_of(int solid);
+  Trees make_trees(int solid) const;
+
+  const ContactShapes<dim>& shapes_;
+  std::vector<Box<dim>> vertex_boxes_;
+  std::vector<std::unique_ptr<const Trees>> trees_;  ///< of each solid; null: not asked for yet
+};
 
 template <int dim>
 PrimitivePoints<dim> points_of(const PrimitivePair<dim>& pair,

@@ -166,8 +166,8 @@ class SurfaceContacts {
 
 template <int dim>
 void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
-                          const std::vector<Box<dim>>& vertices, const ContactReach& reach,
-                          int solid, int other, std::vector<Contact<dim>>& contacts) {
+                          PrimitivePairs<dim>& primitives, const ContactReach& reach, int solid,
+                          int other, std::vector<Contact<dim>>& contacts) {
   double range = reach.near + reach.half_thickness[solid] + reach.half_thickness[other];
   const bool any_closed = shapes.solids()[solid].closed || shapes.solids()[other].closed;
   if (solid != other && any_closed)
@@ -176,15 +176,15 @@ void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<di
   if (reach.violated_only && solid == other)
     approach.emplace(shapes, motion, solid, reach.dt);
   SurfaceContacts<dim> found(shapes, reach, approach ? &*approach : nullptr, contacts);
-  for_each_primitive<dim>(shapes, vertices, range, solid, other,
-                          [&](const std::vector<PrimitivePair<dim>>& pairs) { found.add(pairs); });
+  primitives.for_each(range, solid, other,
+                      [&](const std::vector<PrimitivePair<dim>>& pairs) { found.add(pairs); });
 }
 
 template void add_surface_contacts<2>(const ContactShapes<2>&, const SolidMotion<2>&,
-                                      const std::vector<Box<2>>&, const ContactReach&, int, int,
+                                      PrimitivePairs<2>&, const ContactReach&, int, int,
                                       std::vector<Contact<2>>&);
 template void add_surface_contacts<3>(const ContactShapes<3>&, const SolidMotion<3>&,
-                                      const std::vector<Box<3>>&, const ContactReach&, int, int,
+                                      PrimitivePairs<3>&, const ContactReach&, int, int,
                                       std::vector<Contact<3>>&);
 
 }  // namespace lockstep

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "contact/contact_search.hpp"
+#include "contact/primitive_pairs.hpp"
 
 namespace lockstep {
 
@@ -12,10 +13,10 @@ namespace lockstep {
 /// counts, but for vertices up to `reach.depth` inside another closed solid, which are pushed out.
 /// A solid does not touch itself across one edge of its mesh: there only impacts count.
 ///
-/// `vertices`: boxes that hold one vertex each.
+/// `primitives`: with boxes of vertices that hold their points alone.
 template <int dim>
 void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
-                          const std::vector<Box<dim>>& vertices, const ContactReach& reach,
-                          int solid, int other, std::vector<Contact<dim>>& contacts);
+                          PrimitivePairs<dim>& primitives, const ContactReach& reach, int solid,
+                          int other, std::vector<Contact<dim>>& contacts);
 
 }  // namespace lockstep
