@@ -112,28 +112,43 @@ SpinCouples<dim>::SpinCouples(const std::vector<ViscousLink<dim>>& links,
     : comm_(comm),
       solid_(links.size(), -1),
       spin_(links.size(), AngularVector<dim>::Zero()),
-      strength_(solids.size(), AngularVector<dim>::Zero()),
-      center_(solids.size()),
-      rates_(n_rotations<dim> * solids.size()) {
+      center_(solids.size()) {
   for (std::size_t l = 0; l < links.size(); ++l)
     solid_[l] = ends[l].solid;
   place_centers(links, ends);
   std::vector<Fit> fits = fit(links, ends);
+  std::vector<AngularVector<dim>> strength(solids.size(), AngularVector<dim>::Zero());
   for (std::size_t s = 0; s < solids.size(); ++s) {
     Fit& fit = fits[s];
     if (!fit.determined())
       continue;
     fit.normal = fit.normal.inverse().eval();
     // A soft container that deforms would gain energy from a negative one.
-    strength_[s] = solids[s].rigid ? fit.strength : AngularVector<dim>(fit.strength.cwiseMax(0));
-    empty_ = empty_ && strength_[s].isZero(0);
+    strength[s] = solids[s].rigid ? fit.strength : AngularVector<dim>(fit.strength.cwiseMax(0));
   }
+  keep_turning(fits, links, ends, strength);
+}
+
+/// Numbers those that turn anew: what is summed over ranks in every product should be theirs alone.
+template <int dim>
+void SpinCouples<dim>::keep_turning(const std::vector<Fit>& fits,
+                                    const std::vector<ViscousLink<dim>>& links,
+                                    const std::vector<LinkRow<dim>>& ends,
+                                    const std::vector<AngularVector<dim>>& strength) {
+  std::vector<int> number(strength.size(), -1);
+  for (std::size_t s = 0; s < strength.size(); ++s) {
+    if (strength[s].isZero(0))
+      continue;
+    number[s] = static_cast<int>(strength_.size());
+    strength_.push_back(strength[s]);
+  }
+  empty_ = strength_.empty();
+  rates_.resize(n_rotations<dim> * strength_.size());
   for (std::size_t l = 0; l < links.size(); ++l) {
     const int s = solid_[l];
-    if (s < 0 || strength_[s].isZero(0)) {
-      solid_[l] = -1;
+    solid_[l] = s < 0 ? -1 : number[s];
+    if (solid_[l] < 0)
       continue;
-    }
     const Motions<dim> motions =
         motions_at<dim>(ends[l].position - center_[s], links[l].direction, fits[s].length);
     spin_[l] = weight_of<dim>(links[l]) / fits[s].length *

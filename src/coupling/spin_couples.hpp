@@ -28,6 +28,9 @@ class SpinCouples {
 
  private:
   struct Fit;
+  void keep_turning(const std::vector<Fit>& fits, const std::vector<ViscousLink<dim>>& links,
+                    const std::vector<LinkRow<dim>>& ends,
+                    const std::vector<AngularVector<dim>>& strength);
   void place_centers(const std::vector<ViscousLink<dim>>& links,
                      const std::vector<LinkRow<dim>>& ends);
   std::vector<Fit> fit(const std::vector<ViscousLink<dim>>& links,
@@ -35,11 +38,11 @@ class SpinCouples {
 
   Communicator comm_;
   bool empty_ = true;
-  std::vector<int> solid_;                    ///< of each link; -1: none that turns
+  std::vector<int> solid_;                    ///< of each link, among those that turn; -1: none
   std::vector<AngularVector<dim>> spin_;      ///< column of S of each link [1/m]
-  std::vector<AngularVector<dim>> strength_;  ///< 2 mu V about each axis [kg m^2/s], per solid
+  std::vector<AngularVector<dim>> strength_;  ///< 2 mu V about each axis [kg m^2/s], of these
   std::vector<Point<dim>> center_;            ///< of the ends of each solid's links [m]
-  mutable std::vector<double> rates_;         ///< Omega of each solid
+  mutable std::vector<double> rates_;         ///< Omega of each of these
 };
 
 }  // namespace lockstep

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/volume_sweeper.hpp"
@@ -17,6 +18,7 @@ constexpr double as_they_like = std::numeric_limits<double>::quiet_NaN();
 
 /// A soft solid and a region: what its dofs push out of the region's cells.
 struct Push {
+  int solid = 0, region = 0;
   double along = 0;  ///< times what the surface sweeps, per velocity squared
   double size = 0;   ///< absolute values of the former's terms
   double rate = 0;   ///< at the given velocity [m^dim/s]
@@ -25,10 +27,11 @@ struct Push {
 /// All soft solids that can be told, and what they and others push out of the regions.
 struct Pushes {
   int n_regions = 0, n_solids = 0;
-  std::vector<Push> of;        ///< [solid * n_regions + region]
-  std::vector<double> others;  ///< [region], rate of all other solids [m^dim/s]
-  std::vector<double> norm;    ///< [solid], of what the surface sweeps, squared
-  std::vector<double> swept;   ///< [solid], by its surface at the given velocity [m^dim/s]
+  std::vector<Push> of;            ///< of solids with regions that they meet, in this order
+  std::vector<std::size_t> begin;  ///< [solid], in `of`; then its size
+  std::vector<double> others;      ///< [region], rate of all other solids [m^dim/s]
+  std::vector<double> norm;        ///< [solid], of what the surface sweeps, squared
+  std::vector<double> swept;       ///< [solid], by its surface at the given velocity [m^dim/s]
 };
 
 /// The local rows of the stack that belong to soft solids: their number among all that can be told
@@ -36,7 +39,7 @@ struct Pushes {
 struct SoftRows {
   std::vector<int> solid;
   std::vector<double> swept;
-  std::vector<std::pair<int, int>> names;  ///< model and solid in it, by number
+  std::vector<std::pair<int, int>> names;  ///< model and solid in it, by number: ascending
   std::vector<char> is_closed;             ///< by number
 };
 
@@ -94,12 +97,42 @@ std::vector<int> regions_of_columns(const CrsMatrix& coupling_transposed,
   return result;
 }
 
+/// Sums those of the same solid and region, in the order in which they come.
+void merge(std::vector<Push>& pushes) {
+  std::stable_sort(pushes.begin(), pushes.end(), [](const Push& a, const Push& b) {
+    return std::pair(a.solid, a.region) < std::pair(b.solid, b.region);
+  });
+  std::size_t n = 0;
+  for (const Push& push : pushes) {
+    if (n == 0 || pushes[n - 1].solid != push.solid || pushes[n - 1].region != push.region) {
+      pushes[n++] = push;
+      continue;
+    }
+    pushes[n - 1].along += push.along;
+    pushes[n - 1].size += push.size;
+    pushes[n - 1].rate += push.rate;
+  }
+  pushes.resize(n);
+}
+
+/// A solid meets few of many regions, and few ranks meet it. Collective.
+void gather(std::vector<Push>& pushes, const Communicator& comm) {
+  std::vector<double> mine;
+  for (const Push& push : pushes)
+    mine.insert(mine.end(),
+                {double(push.solid), double(push.region), push.along, push.size, push.rate});
+  const std::vector<double> all = gather_all(comm, mine);
+  pushes.clear();
+  for (std::size_t k = 0; k < all.size(); k += 5)
+    pushes.push_back({static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2],
+                      all[k + 3], all[k + 4]});
+  merge(pushes);
+}
+
 void sum_over_ranks(Pushes& pushes, const Communicator& comm) {
   std::vector<double> flat = pushes.others;
   flat.insert(flat.end(), pushes.norm.begin(), pushes.norm.end());
   flat.insert(flat.end(), pushes.swept.begin(), pushes.swept.end());
-  for (const Push& push : pushes.of)
-    flat.insert(flat.end(), {push.along, push.size, push.rate});
   sum_all(comm, flat.data(), static_cast<int>(flat.size()));
   auto value = flat.cbegin();
   for (double& rate : pushes.others)
@@ -108,11 +141,25 @@ void sum_over_ranks(Pushes& pushes, const Communicator& comm) {
     norm = *value++;
   for (double& rate : pushes.swept)
     rate = *value++;
-  for (Push& push : pushes.of) {
-    push.along = *value++;
-    push.size = *value++;
-    push.rate = *value++;
-  }
+  if (comm->getSize() > 1)
+    gather(pushes.of, comm);
+}
+
+void find_begins(Pushes& pushes) {
+  pushes.begin.assign(pushes.n_solids + 1, 0);
+  for (const Push& push : pushes.of)
+    ++pushes.begin[push.solid + 1];
+  std::partial_sum(pushes.begin.begin(), pushes.begin.end(), pushes.begin.begin());
+}
+
+/// That of a region, of few.
+Push& push_on(std::vector<Push>& of_solid, int solid, int region) {
+  const auto found = std::find_if(of_solid.begin(), of_solid.end(),
+                                  [region](const Push& push) { return push.region == region; });
+  if (found != of_solid.end())
+    return *found;
+  of_solid.push_back({solid, region, 0, 0, 0});
+  return of_solid.back();
 }
 
 Pushes pushes_of(const CrsMatrix& coupling_transposed, const PressureRegions& regions,
@@ -120,10 +167,10 @@ Pushes pushes_of(const CrsMatrix& coupling_transposed, const PressureRegions& re
   Pushes pushes;
   pushes.n_regions = regions.n_regions;
   pushes.n_solids = static_cast<int>(soft.names.size());
-  pushes.of.resize(std::size_t(pushes.n_solids) * pushes.n_regions);
   pushes.others.assign(pushes.n_regions, 0);
   pushes.norm.assign(pushes.n_solids, 0);
   pushes.swept.assign(pushes.n_solids, 0);
+  std::vector<std::vector<Push>> of_solid(pushes.n_solids);
   const std::vector<int> region = regions_of_columns(coupling_transposed, regions);
   const auto v = velocity.getData();
   Teuchos::ArrayView<const int> columns;
@@ -141,30 +188,32 @@ Pushes pushes_of(const CrsMatrix& coupling_transposed, const PressureRegions& re
         pushes.others[region[columns[k]]] += rate;
         continue;
       }
-      Push& push = pushes.of[std::size_t(s) * pushes.n_regions + region[columns[k]]];
+      Push& push = push_on(of_solid[s], s, region[columns[k]]);
       push.along += values[k] * soft.swept[row];
       push.size += std::abs(values[k] * soft.swept[row]);
       push.rate += rate;
     }
   }
+  for (const std::vector<Push>& some : of_solid)
+    pushes.of.insert(pushes.of.end(), some.begin(), some.end());
+  merge(pushes.of);
   const auto of_prescribed = prescribed.getData();
   for (std::size_t i = 0; i < regions.of_unknown.size(); ++i)
     pushes.others[regions.of_unknown[i]] += of_prescribed[i];
   sum_over_ranks(pushes, velocity.getMap()->getComm());
+  find_begins(pushes);
   return pushes;
 }
 
 /// Rigid and prescribed bodies inside the domain push out nothing on the whole: what their part of
 /// the faces makes beyond that belongs to those they share them with.
 void share_others(Pushes& pushes) {
-  for (int r = 0; r < pushes.n_regions; ++r) {
-    double total = 0;
-    for (int s = 0; s < pushes.n_solids; ++s)
-      total += std::abs(pushes.of[std::size_t(s) * pushes.n_regions + r].along);
-    for (int s = 0; s < pushes.n_solids && total > 0; ++s) {
-      Push& push = pushes.of[std::size_t(s) * pushes.n_regions + r];
-      push.rate += pushes.others[r] * std::abs(push.along) / total;
-    }
+  std::vector<double> total(pushes.n_regions, 0);
+  for (const Push& push : pushes.of)
+    total[push.region] += std::abs(push.along);
+  for (Push& push : pushes.of) {
+    if (total[push.region] > 0)
+      push.rate += pushes.others[push.region] * std::abs(push.along) / total[push.region];
   }
 }
 
@@ -175,8 +224,8 @@ bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
   for (int m = 0; m < solids.n_models(); ++m) {
     const SurfaceMesh<dim>& surface = solids.model(m).surface();
     for (std::size_t s = 0; s < solids.model(m).solids().size(); ++s) {
-      if (std::find(soft.names.begin(), soft.names.end(), std::make_pair(m, static_cast<int>(s))) !=
-          soft.names.end())
+      if (std::binary_search(soft.names.begin(), soft.names.end(),
+                             std::make_pair(m, static_cast<int>(s))))
         continue;
       const SolidDescription& solid = solids.model(m).solids()[s];
       if (!solid.closed || !(solid.rigid || solid.prescribed))
@@ -200,11 +249,11 @@ double rate_of(const Pushes& pushes, const PressureRegions& regions, int s, bool
   for (const int sign : {1, -1}) {
     bool all_closed = true;
     double along = 0, size = 0, rate = 0;
-    for (int r = 0; r < pushes.n_regions; ++r) {
-      const Push& push = pushes.of[std::size_t(s) * pushes.n_regions + r];
+    for (std::size_t k = pushes.begin[s]; k < pushes.begin[s + 1]; ++k) {
+      const Push& push = pushes.of[k];
       if (push.size == 0 || (!is_closed && sign * push.along <= 0))
         continue;
-      all_closed = all_closed && !regions.has_dirichlet[r];
+      all_closed = all_closed && !regions.has_dirichlet[push.region];
       along += sign * push.along;
       size += push.size;
       rate += sign * push.rate;

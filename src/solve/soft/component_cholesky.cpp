@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "base/errors.hpp"
 #include "base/interruption.hpp"
@@ -63,33 +64,64 @@ struct Analysis {
            std::equal(rows.begin(), rows.end(), matrix.innerIndexPtr());
   }
   std::vector<int> begin, rows;
+  std::size_t hash = 0;          ///< of these
   MultifrontalCholesky factors;  ///< without values
 };
 
-/// Not yet factored. The last analyses are kept: the matrices of a solid, several a step, mostly
-/// have their entries in the same places, and an analysis takes as long as the factors.
-MultifrontalCholesky analyzed(const MultifrontalCholesky::Matrix& matrix) {
-  constexpr std::size_t most = 64, most_entries = 20000000;
-  static std::list<Analysis> kept;  // the last one used first
-  const auto found = std::find_if(kept.begin(), kept.end(),
-                                  [&](const Analysis& one) { return one.is_of(matrix); });
-  if (found != kept.end())
-    kept.splice(kept.begin(), kept, found);
-  else
-    kept.emplace_front(matrix);
-  std::size_t n_entries = 0;
-  for (const Analysis& one : kept)
-    n_entries += one.rows.size();
-  while (kept.size() > most || (kept.size() > 1 && n_entries > most_entries)) {
-    n_entries -= kept.back().rows.size();
-    kept.pop_back();
-  }
-  return kept.front().factors;
+std::size_t hash_of(const MultifrontalCholesky::Matrix& matrix) {
+  std::size_t hash = static_cast<std::size_t>(matrix.outerSize());
+  const auto add = [&hash](int value) {
+    hash = (hash ^ static_cast<std::size_t>(value)) * 1099511628211u;  // FNV
+  };
+  std::for_each_n(matrix.outerIndexPtr(), matrix.outerSize() + 1, add);
+  std::for_each_n(matrix.innerIndexPtr(), matrix.nonZeros(), add);
+  return hash;
 }
+
+/// The last analyses: the matrices of a solid, several a step, mostly have their entries in the
+/// same places, and an analysis takes as long as the factors.
+class Analyses {
+ public:
+  /// Not yet factored.
+  const MultifrontalCholesky& of(const MultifrontalCholesky::Matrix& matrix) {
+    const std::size_t hash = hash_of(matrix);
+    const auto [begin, end] = places_.equal_range(hash);
+    const auto found =
+        std::find_if(begin, end, [&](const auto& place) { return place.second->is_of(matrix); });
+    if (found != end) {
+      kept_.splice(kept_.begin(), kept_, found->second);
+      return kept_.front().factors;
+    }
+    kept_.emplace_front(matrix);
+    places_.emplace(hash, kept_.begin());
+    kept_.front().hash = hash;
+    n_entries_ += kept_.front().rows.size();
+    while (kept_.size() > 1 && n_entries_ > most_entries)
+      forget_last();
+    return kept_.front().factors;
+  }
+
+ private:
+  static constexpr std::size_t most_entries = 20000000;
+
+  void forget_last() {
+    const Analysis& last = kept_.back();
+    n_entries_ -= last.rows.size();
+    const auto [begin, end] = places_.equal_range(last.hash);
+    places_.erase(
+        std::find_if(begin, end, [&](const auto& place) { return &*place.second == &last; }));
+    kept_.pop_back();
+  }
+
+  std::list<Analysis> kept_;  ///< the last one used first
+  std::unordered_multimap<std::size_t, std::list<Analysis>::iterator> places_;  ///< by hash
+  std::size_t n_entries_ = 0;
+};
 
 /// All on rank 0: `components` by row, `is_factored` is written.
 SolveInPlace factor_components(const CrsMatrix& gathered, const Vector& components,
                                double most_operations, Vector& is_factored) {
+  static Analyses analyses;
   const std::size_t n_rows = gathered.getNodeNumRows();
   std::map<double, std::vector<int>> rows_of_component;
   const auto ids = components.getData();
@@ -101,7 +133,7 @@ SolveInPlace factor_components(const CrsMatrix& gathered, const Vector& componen
     auto part = std::make_unique<Factored>();
     part->rows = std::move(rows);
     const MultifrontalCholesky::Matrix matrix = part_of(gathered, part->rows, place_of);
-    part->factors = analyzed(matrix);
+    part->factors = analyses.of(matrix);
     if (part->factors.n_operations() > most_operations)
       continue;
     if (!part->factors.factorize(matrix))

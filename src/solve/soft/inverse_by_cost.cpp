@@ -80,6 +80,7 @@ std::vector<GlobalIndex> large_components(const std::vector<RowComponent>& compo
   return ids;
 }
 
+/// With the bodies that it holds on any rank, numbered anew. Collective.
 SoftNodes restricted(const SoftNodes& all, const MatrixPart& part) {
   if (all.empty())
     return all;
@@ -89,9 +90,19 @@ SoftNodes restricted(const SoftNodes& all, const MatrixPart& part) {
     part.restrict_to(*all.motions->getVector(j), *motions->getVectorNonConst(j));
   result.motions = motions;
   result.mass = part.restricted(*all.mass);
-  result.n_bodies = all.n_bodies;
+  std::vector<double> is_inside(all.n_bodies, 0);
+  for (const int row : part.rows()) {
+    if (all.body_of_row[row] >= 0)
+      is_inside[all.body_of_row[row]] = 1;
+  }
+  sum_all(part.map()->getComm(), is_inside.data(), all.n_bodies);
+  std::vector<int> number(all.n_bodies, -1);
+  for (int b = 0; b < all.n_bodies; ++b) {
+    if (is_inside[b] > 0)
+      number[b] = result.n_bodies++;
+  }
   for (const int row : part.rows())
-    result.body_of_row.push_back(all.body_of_row[row]);
+    result.body_of_row.push_back(all.body_of_row[row] < 0 ? -1 : number[all.body_of_row[row]]);
   return result;
 }
 
