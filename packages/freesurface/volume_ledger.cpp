@@ -75,6 +75,18 @@ void VolumeLedger<dim>::restore(const SolidCells<dim>& solids, const CellField& 
   targets_ = targets;
 }
 
+/// The body that a fluid cell or one beside it belongs to, -1: none.
+template <int dim>
+int VolumeLedger<dim>::body_at(const SolidCells<dim>& solids, int cell) const {
+  int body = groups_.of_cell[cell];
+  for (int i = 0; body < 0 && i < 2 * dim; ++i) {
+    const int other = solids.seen_neighbor(domain_.grid, cell, i / 2, i % 2);
+    if (other >= 0)
+      body = groups_.of_cell[other];
+  }
+  return body;
+}
+
 template <int dim>
 void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField& phi,
                                  const FaceField<dim>& velocity, double dt) {
@@ -87,13 +99,16 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
       if (type != SideType::open && type != SideType::inflow)
         continue;
       for_each_cell_at_side(grid, axis, end, [&](int cell) {
-        if (phi[cell] >= 0 || !solids.is_fluid(cell))
+        // Also of cells that the surface is below the centre of: else the flow leaps as it passes.
+        const double wet = std::clamp(0.5 - phi[cell] / h, 0.0, 1.0);
+        const int body = wet > 0 && solids.is_fluid(cell) ? body_at(solids, cell) : -1;
+        if (body < 0)
           return;
         const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
         double speed = (end == 0 ? -1 : 1) * velocity[axis][face];
         if (type == SideType::open)
           speed = std::max(speed, 0.0);
-        out[groups_.of_cell[cell]] += speed * per_speed * std::min(1.0, 0.5 - phi[cell] / h);
+        out[body] += speed * per_speed * wet;
       });
     }
   sum_all(grid.comm(), out.data(), groups_.n);

@@ -7,6 +7,7 @@
 #include "interfaces/gas.hpp"
 #include "interfaces/liquid.hpp"
 #include "interfaces/prescribed_flux.hpp"
+#include "interfaces/surface_sampler.hpp"
 #include "mac/liquid/gas_faces.hpp"
 #include "mac/liquid/liquid.hpp"
 #include "mac/pressure/forces.hpp"
@@ -56,6 +57,7 @@ class MacFluid : public FluidDiscretization<dim>,
                  public LiquidFluid<dim>,
                  public PressureMemory<dim>,
                  public SideFluxes,
+                 public SurfaceSampler<dim>,
                  public ViscousFluid<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
@@ -133,6 +135,7 @@ class MacFluid : public FluidDiscretization<dim>,
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell
   /// included.
   std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const override;
+  std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const override;
   std::vector<PrescribedFlux> side_fluxes(double time) const override;
   std::function<void()> undo() override;
   std::vector<std::pair<std::string, std::string>> notes() const override;

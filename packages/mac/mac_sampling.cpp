@@ -58,6 +58,33 @@ std::vector<FluidSample<dim>> MacFluid<dim>::sample(const std::vector<Point<dim>
   return samples;
 }
 
+template <int dim>
+std::vector<double> MacFluid<dim>::surface_distances(const std::vector<Point<dim>>& points) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const SampleLattice<dim> lattice(grid);
+  const CellField& phi = liquid_->interface().distance();
+  constexpr double nothing_stored = 1e300;
+  const std::size_t n = points.size();
+  std::vector<double> values(2 * n, 0.0);  // distances; how many ranks know
+  for (std::size_t p = 0; p < n; ++p) {
+    const int cell = grid.cell_containing(points[p]);
+    if (cell < 0 || !grid.owned(cell))
+      continue;
+    const Point<dim> x = (grid.wrap(points[p]) - grid.lower()) / grid.spacing();
+    const auto stencil = lattice.locate(cell_centers, x);
+    values[p] = stencil.complete() ? interpolate<dim>(stencil, phi.data()) : phi[cell];
+    values[n + p] = 1;
+  }
+  sum_all(grid.comm(), values.data(), static_cast<int>(values.size()));
+  for (std::size_t p = 0; p < n; ++p)
+    if (values[n + p] == 0)
+      values[p] = nothing_stored;
+  values.resize(n);
+  return values;
+}
+
+template std::vector<double> MacFluid<2>::surface_distances(const std::vector<Point<2>>&) const;
+template std::vector<double> MacFluid<3>::surface_distances(const std::vector<Point<3>>&) const;
 template std::vector<FluidSample<2>> MacFluid<2>::sample(const std::vector<Point<2>>&) const;
 template std::vector<FluidSample<3>> MacFluid<3>::sample(const std::vector<Point<3>>&) const;
 

@@ -1,6 +1,7 @@
 #include "observers/register_observers.hpp"
 
 #include "observers/flow.hpp"
+#include "observers/gauge.hpp"
 #include "observers/probes.hpp"
 
 namespace lockstep {
@@ -18,6 +19,10 @@ void register_observers(ObserverRegistry<dim>& observers) {
   observers.add("flow", "Volume that flows through a window along an axis, and its mean pressure.",
                 flow_parameters<dim>,
                 [](const ParameterList& list) { return std::make_unique<Flow<dim>>(list); });
+  observers.add("gauge",
+                "How much of a line is in the liquid, as a wire that is held into it tells.",
+                gauge_parameters<dim>,
+                [](const ParameterList& list) { return std::make_unique<Gauge<dim>>(list); });
 }
 
 template void register_observers<2>(ObserverRegistry<2>&);

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// Registers the observers "points", "box" and "flow".
+/// Registers the observers "points", "box", "flow" and "gauge".
 template <int dim>
 void register_observers(ObserverRegistry<dim>& observers);
 

@@ -32,6 +32,7 @@ std::vector<std::string> names_in(const std::string& formula) {
 /// The solids of a scene, as far as the file itself says.
 struct Bodies {
   std::set<std::string> names;
+  std::set<std::string> observers;   ///< only their runs know the columns
   std::vector<std::string> watches;  ///< of the liquid
   bool has_water = false;            ///< a liquid with a surface, which frames have like a solid's
   bool complete = false;
@@ -47,6 +48,8 @@ Bodies bodies_of(const std::string& scene_file) {
     bodies.complete = !scene.isParameter("Include") && !scene.isParameter("Copies");
     for (const auto& [name, entry] : entries(scene.sublist("Solids")))
       bodies.names.insert(variable_name(name));
+    for (const auto& [name, entry] : entries(scene.sublist("Observers")))
+      bodies.observers.insert(variable_name(name));
     bodies.has_water = scene.sublist("Fluid").isSublist("Free Surface");
     for (const auto& [name, entry] :
          entries(scene.sublist("Fluid").sublist("Free Surface").sublist("Watch")))
@@ -69,7 +72,24 @@ Variables names_of_run(const Study& study, const StudyCase& study_case) {
   return variables;
 }
 
-/// Adds the columns of history.csv, and those of bodies.csv that the formula names.
+/// Whether a name is "OBSERVER.column" or "OBSERVER.2.column".
+bool is_observed(const std::string& name, const std::set<std::string>& observers) {
+  const std::size_t point = name.rfind('.');
+  if (point == std::string::npos || point == 0 || point + 1 == name.size())
+    return false;
+  if (observers.count(name.substr(0, point)) != 0)
+    return true;
+  const std::size_t before = name.rfind('.', point - 1);
+  if (before == std::string::npos || before + 1 == point)
+    return false;
+  const std::string row = name.substr(before + 1, point - before - 1);
+  return std::all_of(row.begin(), row.end(),
+                     [](unsigned char c) { return std::isdigit(c) != 0; }) &&
+         observers.count(name.substr(0, before)) != 0;
+}
+
+/// Adds the columns of history.csv, and those of bodies.csv and of observers that the formula
+/// names.
 void add_columns(const std::string& formula, const Bodies& bodies, Variables& variables) {
   for (const auto& columns : {history_columns<2>(true, bodies.watches, true, true),
                               history_columns<3>(true, bodies.watches, true, true)}) {
@@ -89,6 +109,8 @@ void add_columns(const std::string& formula, const Bodies& bodies, Variables& va
     const bool is_number = std::isdigit(static_cast<unsigned char>(name.front())) != 0;
     if (!bodies.complete && !is_number && point != std::string::npos && point > 0)
       add_body(name.substr(0, point));
+    if (is_observed(name, bodies.observers))
+      variables[name] = 1;
   }
 }
 

@@ -9,6 +9,7 @@
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
 #include "output/csv_line.hpp"
+#include "parameters/parameter_rule.hpp"
 #include "parameters/strict_xml.hpp"
 
 namespace lockstep {
@@ -71,6 +72,30 @@ void read_tables(const std::string& directory, std::vector<Variables>& rows) {
   }
 }
 
+/// Adds an observer's table to the rows of steps: its last look by then. With several rows a look,
+/// "NAME.2.column" is of the second.
+void read_observer(const std::string& directory, const std::string& name,
+                   std::vector<Variables>& rows) {
+  const std::string file = directory + "/" + name + ".csv";
+  std::map<double, std::vector<Row>> looks;  // by step
+  for (Row& line : read_csv(file))
+    looks[number(line, "step", file)].push_back(std::move(line));
+  for (Variables& row : rows) {
+    auto look = looks.upper_bound(row.at("step"));
+    if (look == looks.begin())
+      continue;
+    const std::vector<Row>& lines = (--look)->second;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      std::string prefix = variable_name(name) + ".";
+      if (lines.size() > 1)
+        prefix += std::to_string(i + 1) + ".";
+      for (const auto& [column, text] : lines[i])
+        if (column != "step" && column != "time")
+          row[prefix + column] = number(lines[i], column, file);
+    }
+  }
+}
+
 void flatten(const nlohmann::json& json, const std::string& prefix, Variables& result) {
   for (const auto& [name, value] : json.items()) {
     const std::string path = prefix + "." + variable_name(name);
@@ -96,6 +121,9 @@ RunResults read_run(const std::string& directory) {
   }
   const std::string parameters = directory + "/used-parameters.xml";
   run.scene = read_xml_string(read_whole_file(parameters), parameters).list;
+  if (run.scene.isSublist("Observers"))
+    for (const auto& [name, entry] : entries(run.scene.sublist("Observers")))
+      read_observer(directory, name, run.rows);
   const auto fact = [&](const std::string& name) {
     const auto found = run.summary.find("summary." + name);
     check_output(found != run.summary.end(),

@@ -77,8 +77,9 @@ std::vector<TypedSchema> quantity_types() {
   ParameterList table, surface, field, line;
   declare_required<std::string>(
       table, "Expression",
-      "Formula of the columns of history.csv, of bodies.csv as BODY.column, of summary.json as "
-      "summary.name, of constants, parameters and h, dt, cells, ranks.");
+      "Formula of the columns of history.csv, of bodies.csv as BODY.column, of the tables of "
+      "observers as OBSERVER.column or, where a look has several rows, OBSERVER.2.column, of "
+      "summary.json as summary.name, of constants, parameters and h, dt, cells, ranks.");
   declare_reduction(table);
   declare_required<std::string>(surface, "Solid",
                                 "Name of the solid, or \"water\" for the surface of a liquid.");

@@ -60,6 +60,21 @@ SCENE = """<ParameterList name="Scene">
 """
 
 
+# The same tank with 1.83 m of water, through which a line stands, and across which one lies.
+LEVEL = """    <ParameterList name="Free Surface"> <ParameterList name="Liquid"> <ParameterList name="Pool">
+      <Parameter name="Type" type="string" value="level"/> <Parameter name="Height" type="double" value="1.83"/>
+    </ParameterList> </ParameterList> </ParameterList>
+"""
+GAUGES = "".join(f"""    <ParameterList name="{name}">
+      <Parameter name="Type" type="string" value="gauge"/>
+      <Parameter name="Foot" type="Array(double)" value="{foot}"/>
+      <Parameter name="Head" type="Array(double)" value="{head}"/>
+    </ParameterList>
+""" for name, foot, head in (("standing", "{0.4, 0.2}", "{0.4, 2.9}"), ("slanting", "{0.4, 2.83}", "{1.6, 0.83}")))
+GRAVITY = '<Parameter name="Gravity" type="Array(double)" value="{0, -10}"/>\n'
+GAUGED = SCENE.replace(GRAVITY, GRAVITY + LEVEL).replace('  <ParameterList name="Observers">\n', '  <ParameterList name="Observers">\n' + GAUGES)
+
+
 def run(folder, ranks, *arguments):
     command = [MPIEXEC, "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
     command += [SIMULATE, str(folder / "scene.xml"), "--quiet", *arguments]
@@ -99,6 +114,18 @@ def main():
             for mine, theirs in zip(table(folder / "one" / name), table(folder / "two" / name)):
                 for key, value in mine.items():
                     assert abs(float(value) - float(theirs[key])) < 1e-6, (name, key, value, theirs[key])
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "scene.xml").write_text(GAUGED)
+        for ranks in (1, 2):
+            run(folder, ranks, "--output", str(folder / str(ranks)))
+            standing, slanting = (table(folder / str(ranks) / f"{gauge}.csv") for gauge in ("standing", "slanting"))
+            assert len(standing) == 5, len(standing)
+            for row in standing:
+                assert abs(float(row["wet_length"]) - 1.63) < 1e-6 and row["top"] == row["wet_length"], row
+            for row in slanting:  # half of it, and its head is wet
+                assert abs(float(row["wet_length"]) - 5.44**.5 / 2) < 1e-6, row
+                assert abs(float(row["top"]) - 5.44**.5) < 1e-12, row
     print("observers: pressures, restart and ranks agree")
 
 

@@ -87,6 +87,7 @@ ParameterList domain_parameters() {
                        "Time during which \"Velocity\" grows linearly from 0 [s].");
       declare_optional<double>(side, "End Time", "After it \"Velocity\" is 0 [s].");
       declare_inflow_shape<dim>(side);
+      declare_inflow_wave(side);
       declare(side, "Smoke", 0.0, "Smoke density that an inflow carries [1].");
       declare(side, "Temperature", 0.0, "Temperature that an inflow carries [K].");
     }
@@ -144,6 +145,20 @@ DomainDescription<dim> read_domain(const ParameterList& list) {
   return result;
 }
 
+template <int dim>
+void read_waves(const ParameterList& fluid, const ParameterList& domain,
+                DomainDescription<dim>& description) {
+  const Box<dim> box(point_value<dim>(domain, "Lower"), point_value<dim>(domain, "Upper"));
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end) {
+      const std::string name = side_name(axis, end);
+      description.boundary.sides[axis][end].wave = read_inflow_wave<dim>(
+          domain.sublist("Sides").sublist(name), fluid, box, axis, end, "Domain/Sides/" + name);
+    }
+}
+
+template void read_waves<2>(const ParameterList&, const ParameterList&, DomainDescription<2>&);
+template void read_waves<3>(const ParameterList&, const ParameterList&, DomainDescription<3>&);
 template ParameterList domain_parameters<2>();
 template ParameterList domain_parameters<3>();
 template DomainDescription<2> read_domain<2>(const ParameterList&);

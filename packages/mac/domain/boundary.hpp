@@ -7,6 +7,7 @@
 #include "base/types.hpp"
 #include "grid/tile_lattice.hpp"
 #include "mac/domain/inflow_shape.hpp"
+#include "mac/domain/inflow_wave.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -27,10 +28,13 @@ struct BoundarySide {
   double ramp_time = 0;     ///< the velocity grows linearly from 0 during this time [s]; 0: at once
   double end_time = 1e300;  ///< after it the velocity is 0 [s]
   InflowShape<dim> shape;
-  double smoke = 0;        ///< carried by the inflow [1]
-  double temperature = 0;  ///< carried by the inflow [K]
+  std::optional<InflowWave<dim>> wave;  ///< instead of `velocity`
+  double smoke = 0;                     ///< carried by the inflow [1]
+  double temperature = 0;               ///< carried by the inflow [K]
 
   bool closed() const { return type == SideType::wall || type == SideType::slip_wall; }
+  /// Whether fluid may come in or leave at a given velocity, or a wall move.
+  bool moves() const { return wave || velocity != Point<dim>::Zero(); }
   bool prescribed() const { return closed() || type == SideType::inflow; }
   /// The part of `velocity` at a time.
   double ramp(double time) const {
@@ -46,10 +50,14 @@ struct BoundarySide {
   }
   /// At `x` on this side, which is normal to `axis`.
   Point<dim> velocity_at(int axis, const Point<dim>& x, double time) const {
+    if (wave)
+      return wave->velocity_at(x, time, ramp(time));
     return velocity * (ramp(time) * (type == SideType::inflow ? shape.factor(axis, x) : 1));
   }
   /// The mean over a face of this side.
   Point<dim> mean_velocity(int axis, const Box<dim>& face, double time) const {
+    if (wave)
+      return wave->mean_velocity(face, time, ramp(time));
     return velocity * (ramp(time) * (type == SideType::inflow ? shape.mean_factor(axis, face) : 1));
   }
 };
@@ -72,6 +80,12 @@ struct DomainDescription {
   GridDescription<dim> grid;
   Boundary<dim> boundary;
 };
+
+/// Adds the waves of a validated list "Domain" to its boundary; `fluid` is the list "Fluid". Throws
+/// InputError.
+template <int dim>
+void read_waves(const ParameterList& fluid, const ParameterList& domain,
+                DomainDescription<dim>& description);
 
 /// Schema of the "Domain" list.
 template <int dim>

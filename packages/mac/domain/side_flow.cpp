@@ -1,4 +1,6 @@
 // What the sides of the domain let in.
+#include <cmath>
+
 #include "base/errors.hpp"
 #include "mac/mac_fluid.hpp"
 
@@ -12,7 +14,7 @@ void for_each_inflow(const Boundary<dim>& boundary, const Function& f) {
   for (int axis = 0; axis < dim; ++axis) {
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = boundary.side(axis, end);
-      if (side.type == SideType::inflow && side.velocity[axis] != 0)
+      if (side.type == SideType::inflow && (side.wave || side.velocity[axis] != 0))
         f(axis, end, side);
     }
   }
@@ -61,6 +63,13 @@ std::vector<std::pair<std::string, std::string>> MacFluid<dim>::notes() const {
                        fmt::format("{} of {} at the start", owners_.tiles.size(), n_tiles));
   }
   for_each_inflow(domain_.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
+    if (side.wave) {
+      const double length = 2 * M_PI / side.wave->number;
+      notes.emplace_back("inflow " + side_name(axis, end),
+                         fmt::format("waves {:.6g} m long ({:.3g} cells), {:.6g} m/s fast", length,
+                                     length / domain_.spacing(), side.wave->speed()));
+      return;
+    }
     double sums[3] = {0, 0, 0};  // open area, faces, faces in part
     InflowShape<dim> opening = side.shape;
     opening.parabolic = false;

@@ -101,7 +101,7 @@ void MovingTiles<dim>::ask_for_sides(const DomainDescription<dim>& domain) {
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = domain.boundary.side(axis, end);
-      if (side.velocity == Point<dim>::Zero())
+      if (!side.moves())
         continue;
       const double upper = grid.lower[axis] + grid.n_cells[axis] * grid.spacing;
       Point<dim> far = Point<dim>::Constant(1e300);
@@ -227,9 +227,12 @@ void MovingTiles<dim>::check_room(const SurfaceSnapshot<dim>& surface, const Til
 template <int dim>
 MacDomain<dim> make_domain(const ParameterList& fluid, const ParameterList& domain,
                            const Communicator& comm) {
-  if (!fluid.isSublist("Moving Tiles"))
-    return {fitting_domain<dim>(domain, comm), comm};
-  const DomainDescription<dim> description = read_domain<dim>(domain);
+  const bool tiles_move = fluid.isSublist("Moving Tiles");
+  DomainDescription<dim> description =
+      tiles_move ? read_domain<dim>(domain) : fitting_domain<dim>(domain, comm);
+  read_waves(fluid, domain, description);
+  if (!tiles_move)
+    return {description, comm};
   return {description, MovingTiles<dim>(fluid, description).first(comm), comm};
 }
 

@@ -5,12 +5,16 @@
 
 #include "base/errors.hpp"
 #include "conformance/fake_fluid.hpp"
+#include "interfaces/liquid.hpp"
+#include "interfaces/surface_sampler.hpp"
 #include "observers/flow.hpp"
+#include "observers/gauge.hpp"
 #include "observers/probes.hpp"
 
 namespace lockstep::test {
 namespace {
 
+using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
 /// Fluid right of x = 1 with the pressure 10 x and the velocity (y, 2).
@@ -24,6 +28,28 @@ class HalfPlane : public FakeFluid<2>, public FieldSampler<2> {
         samples[p] = {true, 10 * points[p][0], Point<2>(points[p][1], 2)};
     return samples;
   }
+};
+
+/// Liquid below y = 1 + x / 4, and from y = 3 to y = 3.3.
+class Pool : public FakeFluid<2>, public SurfaceSampler<2>, public LiquidFluid<2> {
+ public:
+  explicit Pool(bool has_surface = true)
+      : FakeFluid<2>({{4, 4}, 0.5}, Tpetra::getDefaultComm()), has_surface_(has_surface) {}
+  std::vector<double> surface_distances(const std::vector<Point<2>>& points) const override {
+    std::vector<double> distances;
+    for (const Point<2>& x : points)
+      distances.push_back(surface_distance(x));
+    return distances;
+  }
+  double surface_distance(const Point<2>& x) const override {
+    return std::min(x[1] - 1 - x[0] / 4, std::abs(x[1] - 3.15) - 0.15);
+  }
+  bool has_surface() const override { return has_surface_; }
+  std::vector<WetBody<2>> wet_bodies() const override { return {}; }
+  LiquidReport liquid() const override { return {}; }
+
+ private:
+  bool has_surface_;
 };
 
 ParameterList box(double x0, double y0, double x1, double y1) {
@@ -95,6 +121,38 @@ TEST(Flow, TooManySquaresAreRefused) {
   EXPECT_THAT(Flow<2>(box(1.5, 0, 1.5, 4)).observe({1, 0.1, fluid, no_solids}),
               ElementsAre(ElementsAre(8, 4, 15)));
   EXPECT_THROW(Flow<2>(box(1.5, 0, 1.5, 1e12)).observe({1, 0.1, fluid, no_solids}), InputError);
+}
+
+ParameterList line(double x0, double y0, double x1, double y1) {
+  ParameterList list;
+  list.set("Foot", make_array<double>({x0, y0}));
+  list.set("Head", make_array<double>({x1, y1}));
+  return list;
+}
+
+TEST(Gauge, MeasuresWhatIsWet) {
+  const Pool pool;
+  const auto reading = [&](const ParameterList& list) {
+    return Gauge<2>(list).observe({1, 0.1, pool, no_solids}).at(0);
+  };
+  EXPECT_EQ(Gauge<2>(line(0, 0, 0, 1)).columns().size(), 2u);
+  EXPECT_THAT(reading(line(1, 0, 1, 2)),
+              ElementsAre(DoubleNear(1.25, 1e-12), DoubleNear(1.25, 1e-12)));
+  EXPECT_THAT(reading(line(1, 2, 1, 0)),
+              ElementsAre(DoubleNear(1.25, 1e-12), DoubleNear(2, 1e-12)));
+  EXPECT_THAT(reading(line(0, 0, 0, 4)), ElementsAre(DoubleNear(1.3, 0.2), DoubleNear(3.3, 0.1)));
+  EXPECT_THAT(reading(line(0, 0.5, 4, 0.5)), ElementsAre(4, 4));
+  EXPECT_THAT(reading(line(0, 2, 0, 2.5)), ElementsAre(0, 0));
+}
+
+TEST(Gauge, WhatHasNoSurfaceOrNoLengthIsRefused) {
+  const Pool full(false);
+  const HalfPlane other;
+  Gauge<2> gauge(line(0, 0, 0, 1));
+  EXPECT_THROW(gauge.observe({1, 0.1, full, no_solids}), InputError);
+  EXPECT_THROW(gauge.observe({1, 0.1, other, no_solids}), InputError);
+  EXPECT_THROW(Gauge<2>(line(1, 1, 1, 1)), InputError);
+  EXPECT_THROW(Gauge<2>(line(0, 0, 1e9, 0)).observe({1, 0.1, Pool(), no_solids}), InputError);
 }
 
 }  // namespace

@@ -67,6 +67,7 @@ TEST(Cases, FormulasAreCheckedBeforeAnythingRuns) {
   const std::string scene = "studies-test-scene.xml";
   std::ofstream(scene) << R"xml(<ParameterList name="Scene">
   <ParameterList name="Solids"><ParameterList name="Ball 1"/></ParameterList>
+  <ParameterList name="Observers"><ParameterList name="Wire 1"/></ParameterList>
 </ParameterList>)xml";
   Study study = two_series();
   for (Series& series : study.series)
@@ -86,6 +87,9 @@ TEST(Cases, FormulasAreCheckedBeforeAnythingRuns) {
   };
   EXPECT_EQ(complaint("2.5e-3*Ball_1.vx / max(density, viscosity) + time*summary.wall_seconds"),
             "");
+  EXPECT_EQ(complaint("Wire_1.height + Wire_1.12.pressure"), "");
+  for (const char* wrong : {"Wire.height", "Wire_1.a.height", "Wire_1..height", "Wire_1."})
+    EXPECT_THAT(complaint(wrong), testing::HasSubstr("cannot evaluate")) << wrong;
   EXPECT_THAT(complaint("Ball.vx"), testing::HasSubstr("Did you mean \"Ball_1.vx\"?"));
   EXPECT_THAT(complaint("Ball_1.vx +"), testing::HasSubstr("Quantity \"speed\""));
   EXPECT_THAT(complaint("tim"), testing::HasSubstr("cannot evaluate"));

@@ -38,6 +38,8 @@ h = 1 / cells[0]
     "# a comment\nstep,time,dt\n1,0.1,0.1\n2,0.2,0.1\n3,0.4,0.2\n")
 (folder / "bodies.csv").write_text(
     "step,time,name,vx\n" + "".join(f"{k},0,Ball 1,{k * (2 + h * h + offset)}\n" for k in (1, 2, 3)))
+(folder / "Wire 1.csv").write_text("step,time,height\n0,0,5\n2,0.2,7\n")
+(folder / "Probes.csv").write_text("step,time,point,p\n" + "".join(f"{k},0,{i},{10 * k + i}\n" for k in range(4) for i in (1, 2)))
 (folder / "summary.json").write_text(json.dumps({
     "cells": cells[0] * cells[1], "smallest_length": h, "wall_seconds": 2.0, "ranks": ranks, "peak_memory_mb": 10 * ranks,
     "iterations": {"s1": {"median": 4, "max": 9}, "s2": {"median": 6, "max": 7}}}))
@@ -47,6 +49,7 @@ h = 1 / cells[0]
     <Parameter name="Upper" type="Array(double)" value="{{1, 1}}"/>
     <Parameter name="Cells" type="Array(int)" value="{{{cells[0]}, {cells[1]}}}"/>
   </ParameterList>
+  <ParameterList name="Observers"> <ParameterList name="Wire 1"/> <ParameterList name="Probes"/> </ParameterList>
 </ParameterList>
 """)
 (folder / "frames").mkdir()

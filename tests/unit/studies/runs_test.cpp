@@ -86,6 +86,25 @@ TEST_F(Runs, SelfConvergenceAndReductions) {
   EXPECT_NEAR(rows[3].value, 0.15, 1e-15);
 }
 
+/// A wire is looked at in steps 0 and 2, two probes in every step.
+TEST_F(Runs, TablesOfObservers) {
+  study_.ladder_values = {4};
+  Quantity& height = study_.quantities[0];
+  height.expression = "Wire_1.height";
+  height.reference = "";
+  height.over = Quantity::Over::mean;
+  Quantity pressure = height;
+  pressure.expression = "Probes.2.p - Probes.1.p + 100*Probes.2.p";
+  pressure.over = Quantity::Over::last;
+  study_.quantities.push_back(pressure);
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_NEAR(rows[0].value, (5. + 7 + 7) / 3, 1e-14);
+  EXPECT_EQ(rows[1].value, 3201);
+  study_.quantities[1].expression = "Probes.3.p";
+  EXPECT_THROW(table(), InputError);
+}
+
 TEST_F(Runs, SurfacesInTheFrames) {
   study_.ladder_values = {4};
   Quantity corner = study_.quantities[0];

@@ -1,0 +1,85 @@
+#include "observers/gauge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "interfaces/liquid.hpp"
+#include "interfaces/surface_sampler.hpp"
+
+namespace lockstep {
+
+namespace {
+/// More samples than this are no gauge's.
+constexpr double most_samples = 1e6;
+
+template <int dim>
+const SurfaceSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid) {
+  const auto* sampler = dynamic_cast<const SurfaceSampler<dim>*>(&fluid);
+  check_input(sampler != nullptr,
+              "The fluid \"{}\" cannot be asked where its surface is, which the observer \"gauge\" "
+              "wants; leave that observer out.",
+              fluid.name());
+  check_input(liquid_of<dim>(fluid) != nullptr,
+              "The observer \"gauge\" measures the height of a liquid, but the fluid fills the "
+              "domain; leave it out, or give \"Fluid\" the list \"Free Surface\".");
+  return *sampler;
+}
+}  // namespace
+
+template <int dim>
+ParameterList gauge_parameters() {
+  ParameterList list;
+  declare_required_vector<double>(list, "Foot", dim, "The end that lengths are measured from [m].");
+  declare_required_vector<double>(list, "Head", dim, "The other end [m].");
+  return list;
+}
+
+template <int dim>
+Gauge<dim>::Gauge(const ParameterList& list) {
+  for (int a = 0; a < dim; ++a) {
+    foot_[a] = list.get<ParameterArray<double>>("Foot")[a];
+    head_[a] = list.get<ParameterArray<double>>("Head")[a];
+  }
+  check_input(foot_ != head_,
+              "In \"Observers\", \"Foot\" and \"Head\" of a gauge are one point; it needs a line.");
+}
+
+template <int dim>
+std::vector<ObservedColumn> Gauge<dim>::columns() const {
+  return {{"wet_length", "m", "of the line, in the liquid"},
+          {"top", "m", "from its foot to the farthest place on it that is wet; 0 if none is"}};
+}
+
+template <int dim>
+std::vector<std::vector<double>> Gauge<dim>::observe(const RunView<dim>& run) {
+  const SurfaceSampler<dim>& sampler = sampler_of<dim>(run.fluid);
+  const double length = (head_ - foot_).norm();
+  const double wanted = std::ceil(2 * length / run.fluid.smallest_length());
+  check_input(wanted < most_samples,
+              "A \"gauge\" of {:g} m is {:g} cells long, more than a gauge can be; bring \"Foot\" "
+              "and \"Head\" nearer to each other.",
+              length, wanted / 2);
+  const int n = std::max(1, static_cast<int>(wanted));
+  std::vector<Point<dim>> points;
+  for (int i = 0; i <= n; ++i)
+    points.push_back(foot_ + (head_ - foot_) * i / n);
+  const std::vector<double> distance = sampler.surface_distances(points);
+  double wet = 0, top = 0;
+  for (int i = 0; i < n; ++i) {
+    const double begin = distance[i], end = distance[i + 1];
+    if (begin >= 0 && end >= 0)
+      continue;
+    const double crossing = (begin < 0) != (end < 0) ? begin / (begin - end) : 1;
+    wet += begin < 0 ? crossing : 1 - crossing;
+    top = i + (end < 0 ? 1 : crossing);
+  }
+  return {{wet * length / n, top * length / n}};
+}
+
+template ParameterList gauge_parameters<2>();
+template ParameterList gauge_parameters<3>();
+template class Gauge<2>;
+template class Gauge<3>;
+
+}  // namespace lockstep
