@@ -15,7 +15,7 @@ constexpr double most_samples = 1e6;
 
 template <int dim>
 const SurfaceSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid) {
-  const auto* sampler = dynamic_cast<const SurfaceSampler<dim>*>(&fluid);
+  const auto* sampler = side_of<SurfaceSampler<dim>>(fluid);
   check_input(sampler != nullptr,
               "The fluid \"{}\" cannot be asked where its surface is, which the observer \"gauge\" "
               "wants; leave that observer out.",
