@@ -103,11 +103,10 @@ function(lockstep_driver name)
   install(TARGETS ${name} DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# Open MPI refuses root, and more ranks than cores, unless told; a daemon for each process that runs
-# alone, and a look at all networks, would take longer than most tests.
+# Open MPI refuses root, and more ranks than cores, unless told; a look at all networks takes longer
+# than many a test.
 set(LOCKSTEP_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-    OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_pml=ob1
-    OMP_NUM_THREADS=1)
+    OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_pml=ob1 OMP_NUM_THREADS=1)
 
 # lockstep_test(NAME SOURCES ... DEPENDS ... [RANKS 1 2 4] [LABELS ...] [TIMEOUT s]): a googletest
 # executable with the MPI-aware main of tests/support, run once per rank count.

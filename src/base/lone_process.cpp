@@ -12,7 +12,8 @@ void expect_no_other_ranks() {
   if (std::any_of(of_launchers.begin(), of_launchers.end(),
                   [](const char* name) { return std::getenv(name) != nullptr; }))
     return;
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  // Not ess_singleton_isolated too, which would spare a daemon: several at a time would share one
+  // session folder, and one would take it away from the others.
   setenv("OMPI_MCA_pml", "ob1", 0);
 }
 
