@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """How a half-submerged disc swings that is let go off its draft, by linear theory of deep water: prints the numbers that
 the study heave-decay refers to, and fails if that file has others.
 
@@ -62,7 +62,7 @@ def main():
     # What is known of A: logarithmic at low frequencies, pi/2 at high ones.
     assert abs(added_mass_and_damping(9.0)[0] - ADDED_MASS_AT_ONCE) < 0.01
     times, x = swing()
-    numbers = {"first trough": x.min(), "first crest": x[times > 4].max(), 
+    numbers = {"first trough": x.min(), "first crest": x[times > 4].max(),
                "height at 5 sqrt(R/g)": np.interp(5, times, x)}
     text = open(sys.argv[1]).read()
     wrong = False
@@ -71,7 +71,7 @@ def main():
         stated = float(reference)
         print(f"{name}: {number:.5f}; the study has {stated:.5f}")
         wrong = wrong or abs(stated / number - 1) > 0.003
-    sys.exit(wrong)
+    sys.exit(1 if wrong else 0)
 
 
 if __name__ == "__main__":
