@@ -148,6 +148,8 @@ SolveInPlace factor_components(const CrsMatrix& gathered, const Vector& componen
       Eigen::VectorXd solution(part->rows.size());
       for (std::size_t i = 0; i < part->rows.size(); ++i)
         solution[i] = values[part->rows[i]];
+      if (solution.isZero(0))
+        continue;  // an impulse on one of many bodies
       part->factors.solve(solution);
       for (std::size_t i = 0; i < part->rows.size(); ++i)
         result[part->rows[i]] = solution[i];
