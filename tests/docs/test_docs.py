@@ -3,18 +3,22 @@
 - links between pages lead to files, and to headings that exist; pictures are there
 - code quoted from a file stands in it literally; a quotation begins with a comment line that names
   the file: <!-- from: template/driver.cpp -->
-- every page of docs/results stands in their list
+- every page of docs/results stands in their list, holds every series of its study, and names a commit of this history
 - formulas are such as GitHub sets, too, whose Markdown reads them first
 - paths of the tree in backticks exist, and in `file.cpp: function` the file has that word; names of
   code files without a path are those of files
 """
+import csv
 import re
+import subprocess
 import sys
 import unittest
+import xml.etree.ElementTree
 from pathlib import Path
 
 ROOT = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path(__file__).resolve().parents[2]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+COMMIT = re.compile(r"\b(?:from|commit|build of) ([0-9a-f]{7,40})\b(-dirty)?")
 PICTURE = re.compile(r'<img src="([^"]+)"')
 QUOTE = re.compile(r"<!-- from: (\S+) -->\n```\w*\n(.*?)```", re.DOTALL)
 CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
@@ -111,6 +115,33 @@ class Docs(unittest.TestCase):
             if page.name != "README.md":
                 with self.subTest(page=page.name):
                     self.assertIn(f"`{page.stem}`", index)
+
+    def test_pages_hold_every_series(self):
+        for page in sorted((ROOT / "docs" / "results").glob("*.csv")):
+            study = ROOT / "xml-params" / "studies" / f"{page.stem}.xml"
+            if not study.exists():
+                continue
+            series = xml.etree.ElementTree.parse(study).getroot().find("ParameterList[@name='Series']")
+            rows = csv.reader(line for line in page.read_text().splitlines() if not line.startswith("#"))
+            shown = {row[0] for row in rows}
+            for one in series if series is not None else ():
+                with self.subTest(page=page.name, series=one.get("name")):
+                    self.assertIn(one.get("name").replace(",", ";"), shown)
+
+    def test_pages_can_be_made_again(self):
+        if git("rev-parse", "--is-shallow-repository") != "false":
+            self.skipTest("needs the whole history")
+        for page in sorted((ROOT / "docs" / "results").glob("*.md")):
+            for commit, is_dirty in COMMIT.findall(page.read_text()):
+                with self.subTest(page=page.name, commit=commit):
+                    self.assertFalse(is_dirty)
+                    self.assertEqual(git("merge-base", commit, "HEAD")[: len(commit)], commit)
+
+
+def git(*arguments):
+    """What it says, or nothing where there is no repository."""
+    found = subprocess.run(["git", "-C", str(ROOT), *arguments], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    return found.stdout.strip()
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ class Drops(unittest.TestCase):
                 "Interface": {"Type": "particle level set", "Drops": "ballistic"}, "Liquid": {"Pool": {"Type": "level", "Height": .34}}}},
             "Solver": {"Tolerance": 1e-12}, "Output": {"Checkpoint Interval": .01},
             "Time": {"End": 10., "Fixed Step": .01}})
-        volume = 1e-9
+        volume = 3e-5
         for ranks in 1, 2:
             with self.subTest(ranks=ranks), tempfile.TemporaryDirectory() as folder:
                 file, output = Path(folder) / "scene.xml", Path(folder) / "output"
@@ -130,9 +130,12 @@ class Drops(unittest.TestCase):
                 checkpoint = sorted(output.glob("checkpoint-*.h5"))[-1]
                 put_drop(checkpoint, [ranks, 0, .5, .36, 1, 0, volume])
                 history, _ = run(file, output, 12, ranks, ("--restart", checkpoint))
-                self.assertEqual((column(history, "drops")[1], column(history, "drops")[-1]), (1, 0))
-                for momentum in column(history, "fluid_momentum_x")[1:]:
-                    self.assertLess(abs(momentum - 1000 * volume), 1e-6 * 1000 * volume)
+                drops = column(history, "drops")
+                self.assertEqual((drops[1], drops[-1]), (1, 0))
+                # To the step that takes it in; what is water then is advected, which does not conserve.
+                taken = drops.index(0, 1)
+                for momentum in column(history, "fluid_momentum_x")[1 : taken + 1]:
+                    self.assertLess(abs(momentum - 1000 * volume), 1e-12 * 1000 * volume)
 
     def test_without_drops_nothing_is_told_of_them(self):
         with tempfile.TemporaryDirectory() as folder:
