@@ -2,9 +2,9 @@
 #include <memory>
 #include <vector>
 
-#include "articulated/closing.hpp"
+#include "articulated/flight.hpp"
 #include "articulated/mechanism.hpp"
-#include "interfaces/constraint.hpp"
+#include "interfaces/free_flight.hpp"
 #include "interfaces/limited_torques.hpp"
 #include "interfaces/steering.hpp"
 
@@ -74,13 +74,18 @@ class Articulation {
 
 /// The ties between the bodies of an articulation.
 template <int dim>
-class JointConstraints : public ConstraintModel, public SteeredJoints, public LimitedTorques {
+class JointConstraints : public ConstraintModel,
+                         public FreeFlight,
+                         public SteeredJoints,
+                         public LimitedTorques {
  public:
   JointConstraints(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm);
 
   std::string name() const override { return "joints"; }
   std::vector<Combination> combinations() const override;
   ClosedMotion close(double time, double dt, Vector& velocity) override;
+  ClosedFlight close_flight(double time, double dt, const Vector& correction, bool touched,
+                            Vector& velocity) override;
   std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const override;
   std::vector<GivenMotion> given_motions() const override;
   std::string limited() const override;
@@ -97,8 +102,15 @@ class JointConstraints : public ConstraintModel, public SteeredJoints, public Li
   std::vector<TwistVector<dim>> gather_twists(const Vector& velocity) const;
   Eigen::VectorXd gather_rates(const Vector& velocity) const;
   void set_twists(const std::vector<TwistVector<dim>>& twists, Vector& velocity) const;
-  bool close_mechanism(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
-                       std::vector<TwistVector<dim>>& twists) const;
+  void set_rates(const Mechanism& mechanism, const std::vector<Eigen::VectorXd>& coordinates,
+                 double dt, Vector& velocity) const;
+  std::optional<FlightSteps> flight_steps(const Mechanism& mechanism, double turn,
+                                          bool touched) const;
+  std::optional<Flight<dim>> flight(const ClosingProblem<dim>& problem,
+                                    const std::vector<BodyMotion<dim>>& motions,
+                                    bool touched) const;
+  void follow(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
+              std::vector<BodyMotion<dim>>& motions) const;
   RCP<Vector> drift(const std::vector<TwistVector<dim>>& change, const RCP<const Map>& map) const;
 
   std::shared_ptr<Articulation<dim>> articulation_;

@@ -1,9 +1,10 @@
 #include "articulated/closing.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <cmath>
 
-#include "motion/rotation.hpp"
+#include "motion/free_rotation.hpp"
 
 namespace lockstep {
 
@@ -106,74 +107,143 @@ class Rows {
   double unit_ = 1;
 };
 
+/// J M^-1 J^T with each row scaled by how easily it is closed: bodies may be light and heavy.
 template <int dim>
-std::vector<BodyPose<dim>> poses_after(const ClosingProblem<dim>& problem,
-                                       const std::vector<TwistVector<dim>>& twists) {
-  std::vector<BodyPose<dim>> poses = problem.ends;
-  for (const int body : problem.mechanism.bodies)
-    poses[body] = moved(problem.poses[body], twists[body], problem.dt);
-  return poses;
+class Impulses {
+ public:
+  Impulses(const ClosingProblem<dim>& problem, const Rows<dim>& all, const Eigen::MatrixXd& rows)
+      : problem_(problem), all_(all), impulses_(rows.transpose()), response_(impulses_) {
+    for (const int body : problem.mechanism.bodies)
+      response_.middleRows(all.column(body), n_twist<dim>) =
+          problem.masses[body].inverse *
+          rows.middleCols(all.column(body), n_twist<dim>).transpose();
+    const Eigen::VectorXd ease = (rows * response_).diagonal();
+    scale_ = (ease.array() > 0)
+                 .select(ease.array().max(1e-300).rsqrt(), Eigen::ArrayXd::Zero(ease.size()));
+    response_ *= scale_.asDiagonal();
+    impulses_ *= scale_.asDiagonal();
+  }
+
+  /// Of all bodies, those that change what `rows` read by `values`; the smallest ones.
+  Eigen::VectorXd that_change(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values) const {
+    constexpr double dependent = 1e-9;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(scale_.asDiagonal() * rows *
+                                                                   response_);
+    solver.setThreshold(dependent);
+    return impulses_ * solver.solve(scale_.cwiseProduct(values));
+  }
+
+  void give(const Eigen::VectorXd& impulses, double factor,
+            std::vector<BodyMotion<dim>>& motions) const {
+    for (const int body : problem_.mechanism.bodies)
+      motions[body].momentum += factor * impulses.template segment<n_twist<dim>>(all_.column(body));
+  }
+
+ private:
+  const ClosingProblem<dim>& problem_;
+  const Rows<dim>& all_;
+  Eigen::MatrixXd impulses_, response_;  ///< J^T, M^-1 J^T
+  Eigen::VectorXd scale_;
+};
+
+/// Of momenta that `before` had not.
+template <int dim>
+void find_twists(const ClosingProblem<dim>& problem, Answer answer,
+                 const std::vector<BodyMotion<dim>>& before,
+                 std::vector<BodyMotion<dim>>& motions) {
+  for (const int body : problem.mechanism.bodies) {
+    BodyMotion<dim>& one = motions[body];
+    const BodyMass<dim>& mass = problem.masses[body];
+    if (answer == Answer::free)
+      one.twist = free_twist(mass, one.momentum, problem.dt);
+    else
+      one.twist = before[body].twist + mass.inverse * (one.momentum - before[body].momentum);
+  }
 }
 
 }  // namespace
 
 template <int dim>
-bool close_joints(const ClosingProblem<dim>& problem, std::vector<TwistVector<dim>>& twists) {
+BodyMass<dim> mass_of(const typename BodyMass<dim>::Matrix& matrix) {
+  return {matrix, matrix.llt().solve(BodyMass<dim>::Matrix::Identity())};
+}
+
+template <int dim>
+TwistVector<dim> free_twist(const BodyMass<dim>& mass, const TwistVector<dim>& momentum,
+                            double dt) {
+  constexpr int n_turns = n_rotations<dim>;
+  const InertiaTensor<dim> inertia = mass.matrix.template bottomRightCorner<n_turns, n_turns>();
+  TwistVector<dim> twist;
+  twist << momentum.template head<dim>() / mass.matrix(0, 0),
+      free_turn<dim>(inertia, momentum.template tail<n_turns>(), dt) / dt;
+  return twist;
+}
+
+template <int dim>
+std::vector<BodyPose<dim>> poses_after(const ClosingProblem<dim>& problem,
+                                       const std::vector<BodyMotion<dim>>& motions) {
+  std::vector<BodyPose<dim>> poses = problem.ends;
+  for (const int body : problem.mechanism.bodies)
+    poses[body] = moved(problem.poses[body], motions[body].twist, problem.dt);
+  return poses;
+}
+
+template <int dim>
+bool close_joints(const ClosingProblem<dim>& problem, Answer answer,
+                  std::vector<BodyMotion<dim>>& motions) {
   constexpr int most_iterations = 30;
-  constexpr double closed = 1e-13, good_enough = 1e-10, dependent = 1e-9;
+  constexpr double closed = 1e-13, good_enough = 1e-10;
   const Rows<dim> all(problem);
   Eigen::MatrixXd rows;
   Eigen::VectorXd gaps;
   all.evaluate(problem.poses, rows, gaps);
-  Eigen::MatrixXd response(all.n_columns(), rows.rows());  // M^-1 J^T
-  for (const int body : problem.mechanism.bodies)
-    response.middleRows(all.column(body), n_twist<dim>) =
-        problem.inverse_masses[body] * rows.middleCols(all.column(body), n_twist<dim>).transpose();
-  if (rows.rows() == 0)
-    return true;
-  // Each row scaled by how easily it is closed: bodies may be light and heavy.
-  const Eigen::VectorXd ease = (rows * response).diagonal();
-  const Eigen::VectorXd scale =
-      (ease.array() > 0)
-          .select(ease.array().max(1e-300).rsqrt(), Eigen::ArrayXd::Zero(ease.size()));
-  response *= scale.asDiagonal();
-  std::vector<TwistVector<dim>> trial = twists;
+  const Impulses<dim> impulses(problem, all, rows);
+  std::vector<BodyMotion<dim>> trial = motions;
   double before = 1e300;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const std::vector<BodyPose<dim>> poses = poses_after(problem, trial);
-    all.evaluate(poses, rows, gaps);
-    const double size = gaps.template lpNorm<Eigen::Infinity>();
+    find_twists(problem, answer, motions, trial);
+    all.evaluate(poses_after(problem, trial), rows, gaps);
+    const double size = gaps.size() > 0 ? gaps.template lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size))
       return false;
     if (size <= closed || (size <= good_enough && size > 0.5 * before)) {
-      twists = trial;
+      motions = trial;
       return true;
     }
     before = size;
     for (const int body : problem.mechanism.bodies) {
       auto turns = rows.middleCols(all.column(body) + dim, n_rotations<dim>);
-      const AngularVector<dim> turn = problem.dt * trial[body].template tail<n_rotations<dim>>();
+      const AngularVector<dim> turn =
+          problem.dt * trial[body].twist.template tail<n_rotations<dim>>();
       turns = (turns * change_of_rotation(turn)).eval();
     }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(scale.asDiagonal() * rows *
-                                                                   response);
-    solver.setThreshold(dependent);
-    const Eigen::VectorXd change = response * solver.solve(scale.cwiseProduct(gaps));
-    for (const int body : problem.mechanism.bodies)
-      trial[body] -= change.template segment<n_twist<dim>>(all.column(body)) / problem.dt;
+    impulses.give(impulses.that_change(rows, gaps), -1 / problem.dt, trial);
   }
   return false;
 }
 
 template <int dim>
+void let_joints_hold(const ClosingProblem<dim>& problem, std::vector<BodyMotion<dim>>& motions) {
+  const Rows<dim> all(problem);
+  Eigen::MatrixXd rows;
+  Eigen::VectorXd gaps, velocity(all.n_columns());
+  all.evaluate(problem.poses, rows, gaps);
+  for (const int body : problem.mechanism.bodies)
+    velocity.template segment<n_twist<dim>>(all.column(body)) =
+        problem.masses[body].inverse * motions[body].momentum;
+  const Impulses<dim> impulses(problem, all, rows);
+  impulses.give(impulses.that_change(rows, rows * velocity), -1, motions);
+}
+
+template <int dim>
 void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
-                  std::vector<TwistVector<dim>>& twists) {
+                  std::vector<BodyMotion<dim>>& motions) {
   std::vector<BodyPose<dim>> poses = problem.ends;
   const Mechanism& mechanism = problem.mechanism;
   for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
     const int body = mechanism.bodies[b];
     if (mechanism.carriers[b] < 0) {
-      poses[body] = moved(problem.poses[body], twists[body], problem.dt);
+      poses[body] = moved(problem.poses[body], motions[body].twist, problem.dt);
       continue;
     }
     const Joint<dim>& joint = problem.joints[mechanism.carriers[b]];
@@ -193,7 +263,7 @@ void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& cha
         side == 1 ? Point<dim>(known * goal.offset) : Point<dim>(-(axes * goal.offset));
     poses[body].rotation = axes * own.axes.transpose();
     poses[body].position = anchor + offset - poses[body].rotation * own.point;
-    twists[body] = twist_to(problem.poses[body], poses[body], problem.dt);
+    motions[body].twist = twist_to(problem.poses[body], poses[body], problem.dt);
   }
 }
 
@@ -224,12 +294,22 @@ template BodyPose<2> moved(const BodyPose<2>&, const TwistVector<2>&, double);
 template BodyPose<3> moved(const BodyPose<3>&, const TwistVector<3>&, double);
 template TwistVector<2> twist_to(const BodyPose<2>&, const BodyPose<2>&, double);
 template TwistVector<3> twist_to(const BodyPose<3>&, const BodyPose<3>&, double);
-template bool close_joints(const ClosingProblem<2>&, std::vector<TwistVector<2>>&);
-template bool close_joints(const ClosingProblem<3>&, std::vector<TwistVector<3>>&);
+template BodyMass<2> mass_of<2>(const BodyMass<2>::Matrix&);
+template TwistVector<2> free_twist(const BodyMass<2>&, const TwistVector<2>&, double);
+template std::vector<BodyPose<2>> poses_after(const ClosingProblem<2>&,
+                                              const std::vector<BodyMotion<2>>&);
+template bool close_joints(const ClosingProblem<2>&, Answer, std::vector<BodyMotion<2>>&);
+template void let_joints_hold(const ClosingProblem<2>&, std::vector<BodyMotion<2>>&);
 template void follow_rates(const ClosingProblem<2>&, const Eigen::VectorXd&,
-                           std::vector<TwistVector<2>>&);
+                           std::vector<BodyMotion<2>>&);
+template BodyMass<3> mass_of<3>(const BodyMass<3>::Matrix&);
+template TwistVector<3> free_twist(const BodyMass<3>&, const TwistVector<3>&, double);
+template std::vector<BodyPose<3>> poses_after(const ClosingProblem<3>&,
+                                              const std::vector<BodyMotion<3>>&);
+template bool close_joints(const ClosingProblem<3>&, Answer, std::vector<BodyMotion<3>>&);
+template void let_joints_hold(const ClosingProblem<3>&, std::vector<BodyMotion<3>>&);
 template void follow_rates(const ClosingProblem<3>&, const Eigen::VectorXd&,
-                           std::vector<TwistVector<3>>&);
+                           std::vector<BodyMotion<3>>&);
 template double reach(const Mechanism&, const std::vector<Joint<2>>&);
 template double reach(const Mechanism&, const std::vector<Joint<3>>&);
 template double largest_gap(const Joint<2>&, const std::vector<BodyPose<2>>&, double);

@@ -5,30 +5,62 @@
 
 namespace lockstep {
 
-/// Bodies of a mechanism that are about to move by constant twists.
+/// Of a dynamic body, at its present pose. Its reference point is its centre of mass.
+template <int dim>
+struct BodyMass {
+  using Matrix = Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>;
+  Matrix matrix = Matrix::Zero(), inverse = Matrix::Zero();
+};
+template <int dim>
+BodyMass<dim> mass_of(const typename BodyMass<dim>::Matrix& matrix);
+
+/// How a body moves in a step.
+template <int dim>
+struct BodyMotion {
+  TwistVector<dim> momentum = TwistVector<dim>::Zero();  ///< with which it sets out
+  TwistVector<dim> twist = TwistVector<dim>::Zero();     ///< the mean of the step
+};
+
+/// Bodies of a mechanism that are about to move.
 template <int dim>
 struct ClosingProblem {
   const Mechanism& mechanism;
   const std::vector<Joint<dim>>& joints;
-  const std::vector<BodyPose<dim>>& poses;  ///< of all bodies, at present
-  const std::vector<BodyPose<dim>>& ends;   ///< of prescribed ones, after the step
-  /// Inverse masses of the dynamic ones.
-  const std::vector<Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>>& inverse_masses;
+  const std::vector<BodyPose<dim>>& poses;   ///< of all bodies, at present
+  const std::vector<BodyPose<dim>>& ends;    ///< of prescribed ones, after the step
+  const std::vector<BodyMass<dim>>& masses;  ///< of dynamic ones
   double dt = 0;
 };
 
-/// Adds M^-1 J^T lambda, with the joints' rows J at the present poses, so that all joints fit after
-/// the move: Newton's method, the smallest correction where joints are redundant. False, and
-/// nothing changed, if there is no solution in reach. `twists`: by body. Local.
+/// Whether bodies answer impulses as free ones, whose mean twist is that of their momentum
+/// (`free_twist`), or each twist just changes by M^-1 times the impulse.
+enum class Answer { free, straight };
+
+/// Adds impulses J^T lambda, with the joints' rows J at the present poses, so that all joints fit
+/// after the move: Newton's method, the smallest impulse where joints are redundant. False, and
+/// nothing changed, if there is no solution in reach. `motions`: by body. Local.
 template <int dim>
-bool close_joints(const ClosingProblem<dim>& problem, std::vector<TwistVector<dim>>& twists);
+bool close_joints(const ClosingProblem<dim>& problem, Answer answer,
+                  std::vector<BodyMotion<dim>>& motions);
+
+/// Takes from momenta what joints at the present poses do not let, by impulses J^T mu.
+template <int dim>
+void let_joints_hold(const ClosingProblem<dim>& problem, std::vector<BodyMotion<dim>>& motions);
+
+/// Mean twist over dt of a body that nothing acts on.
+template <int dim>
+TwistVector<dim> free_twist(const BodyMass<dim>& mass, const TwistVector<dim>& momentum, double dt);
 
 /// The twists that take the bodies to where the root's twist and the rates of the tree's joints
 /// take them. `change`: rates times dt, of all joints. Local.
 template <int dim>
 void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
-                  std::vector<TwistVector<dim>>& twists);
+                  std::vector<BodyMotion<dim>>& motions);
 
+/// Where the bodies of a mechanism are after the step, and prescribed ones.
+template <int dim>
+std::vector<BodyPose<dim>> poses_after(const ClosingProblem<dim>& problem,
+                                       const std::vector<BodyMotion<dim>>& motions);
 /// Where a body is after dt.
 template <int dim>
 BodyPose<dim> moved(const BodyPose<dim>& pose, const TwistVector<dim>& twist, double dt);

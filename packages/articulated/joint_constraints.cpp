@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
@@ -85,101 +84,6 @@ void JointConstraints<dim>::set_twists(const std::vector<TwistVector<dim>>& twis
         values[row] = twists[b][k];
     }
   }
-}
-
-/// Throws SolveError if motors and prescribed bodies lead a loop where it cannot be closed: of
-/// short steps they alone do.
-template <int dim>
-void check_closed(const ClosingProblem<dim>& problem, const std::vector<TwistVector<dim>>& twists) {
-  constexpr double open = 1e-3;  // rad, of the mechanism's reach
-  const Mechanism& mechanism = problem.mechanism;
-  const auto is_given = [&](int j) { return problem.joints[j].control.any_given(); };
-  if (mechanism.grounds.empty() &&
-      std::none_of(mechanism.joints.begin(), mechanism.joints.end(), is_given))
-    return;
-  std::vector<BodyPose<dim>> poses = problem.ends;
-  for (const int body : mechanism.bodies)
-    poses[body] = moved(problem.poses[body], twists[body], problem.dt);
-  const double unit = reach(mechanism, problem.joints);
-  for (const int j : mechanism.loops) {
-    const double gap = largest_gap(problem.joints[j], poses, unit);
-    std::vector<std::string> names;
-    for (const int k : loop_of(mechanism, problem.joints, j))
-      names.push_back("\"" + problem.joints[k].name + "\"");
-    check_solve(gap <= open,
-                "The joints {} form a loop that cannot close: a gap of {:.2g} m is left, or of an "
-                "angle as many rad; check where their motors and prescribed solids lead.",
-                fmt::join(names, ", "), largest_gap(problem.joints[j], poses));
-  }
-}
-
-/// True if the joints were closed about the motion as it was found. If that turns a body so far
-/// that closing along straight twists may fail, bodies follow the rates of their joints.
-template <int dim>
-bool JointConstraints<dim>::close_mechanism(const ClosingProblem<dim>& problem,
-                                            const Eigen::VectorXd& change,
-                                            std::vector<TwistVector<dim>>& twists) const {
-  constexpr double farthest_turn = 0.5;  // rad
-  double turn = 0;
-  for (const int body : problem.mechanism.bodies)
-    turn = std::max(turn, problem.dt * twists[body].template tail<n_rotations<dim>>().norm());
-  if (articulation_->options().two_halves && turn <= farthest_turn && close_joints(problem, twists))
-    return true;
-  follow_rates(problem, change, twists);
-  if (!problem.mechanism.loops.empty() && !close_joints(problem, twists) && turn <= farthest_turn)
-    check_closed(problem, twists);
-  return false;
-}
-
-/// Those of the bodies that are combinations, less what the root's part of them carries along.
-template <int dim>
-RCP<Vector> JointConstraints<dim>::drift(const std::vector<TwistVector<dim>>& change,
-                                         const RCP<const Map>& map) const {
-  const RCP<Vector> result = make_vector(map);
-  std::vector<TwistVector<dim>> own = change;
-  const std::vector<MotionBasis<dim>> bases = articulation_->motion_bases();
-  for (std::size_t m = 0; m < bases.size(); ++m) {
-    const Mechanism& mechanism = articulation_->mechanisms()[m];
-    if (mechanism.root == space)
-      continue;
-    for (std::size_t b = 0; b < mechanism.bodies.size(); ++b)
-      own[mechanism.bodies[b]] -=
-          bases[m].twists[b].leftCols(n_twist<dim>) * change[mechanism.root];
-  }
-  set_twists(own, *result);
-  return result;
-}
-
-template <int dim>
-ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& velocity) {
-  const auto& bodies = articulation_->bodies();
-  const std::vector<TwistVector<dim>> before = gather_twists(velocity);
-  std::vector<TwistVector<dim>> twists = before;
-  const Eigen::VectorXd change = dt * gather_rates(velocity);
-  const std::vector<BodyPose<dim>> poses = articulation_->poses();
-  const std::vector<BodyPose<dim>> ends = articulation_->prescribed_poses(time + dt);
-  std::vector<Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>> inverse_masses(bodies.size());
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (!bodies[b].prescribed())
-      inverse_masses[b] = bodies[b]
-                              .model->rigid_frame(bodies[b].solid)
-                              .mass.llt()
-                              .solve(Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>::Identity());
-  }
-  bool closed = true;
-  for (const Mechanism& mechanism : articulation_->mechanisms()) {
-    const ClosingProblem<dim> problem{mechanism, articulation_->joints(), poses,
-                                      ends,      inverse_masses,          dt};
-    closed = close_mechanism(problem, change, twists) && closed;
-  }
-  set_twists(twists, velocity);
-  ClosedMotion motion;
-  if (closed) {
-    for (std::size_t b = 0; b < twists.size(); ++b)
-      twists[b] -= before[b];
-    motion.drift = drift(twists, velocity.getMap());
-  }
-  return motion;
 }
 
 template <int dim>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/rotation.hpp"
+#include "motion/free_rotation.hpp"
 
 namespace lockstep {
 
@@ -31,17 +31,6 @@ double angle_about_first(const Axes<3>& rotation) {
 
 double nearest_angle(double angle, double near) {
   return near + std::remainder(angle - near, full_turn);
-}
-
-/// Of the rotation vectors that turn alike.
-template <int dim>
-AngularVector<dim> nearest_vector(const AngularVector<dim>& vector,
-                                  const AngularVector<dim>& near) {
-  const double angle = vector.norm();
-  if (angle == 0)
-    return vector;
-  const AngularVector<dim> axis = vector / angle;
-  return nearest_angle(angle, axis.dot(near)) * axis;
 }
 
 template <int dim>
@@ -125,7 +114,7 @@ Eigen::VectorXd angles_of(const JointKind& kind, const Axes<dim>& rotation,
           nearest_angle(angle_about_first(rotation), near[0]),
           nearest_angle(std::atan2(rotation(0, dim - 1), rotation(0, 0)), near[1]));
     case JointTurn::any:
-      return nearest_vector<dim>(rotation_vector_of<dim>(rotation), AngularVector<dim>(near));
+      return nearest_turn<dim>(rotation_vector_of<dim>(rotation), AngularVector<dim>(near));
   }
   return {};
 }
@@ -251,7 +240,7 @@ Eigen::VectorXd advanced(const JointKind& kind, const Eigen::VectorXd& q,
     return q + change;
   const Orientation<dim> before = rotation_of<dim>(AngularVector<dim>(q));
   const Orientation<dim> after = turned<dim>(AngularVector<dim>(change), before);
-  return nearest_vector<dim>(rotation_vector<dim>(after), AngularVector<dim>(q + change));
+  return nearest_turn<dim>(rotation_vector<dim>(after), AngularVector<dim>(q + change));
 }
 
 template <int dim>

@@ -13,6 +13,15 @@ namespace {
 
 const std::string name_of_space = "space";
 
+/// Of the box about a solid's surface; 0 if it has none [m^dim].
+template <int dim>
+double volume_about(const SurfaceMesh<dim>& surface, const SolidDescription& solid) {
+  Box<dim> box;
+  for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
+    box.extend(surface.vertices[v]);
+  return box.isEmpty() ? 0 : box.volume();
+}
+
 /// Solids that joints name, found among all.
 template <int dim>
 class BodyFinder {
@@ -34,6 +43,21 @@ class BodyFinder {
     return place_[name] = static_cast<int>(bodies_.size()) - 1;
   }
   const std::vector<JointedBody<dim>>& bodies() const { return bodies_; }
+
+  /// Of the bodies found so far. Collective.
+  void find_carriers() {
+    std::vector<double> carries(bodies_.size(), 0);
+    for (const auto& model : setting_.models) {
+      for (const NodeAttachment<dim>& node : model->attachments()) {
+        const auto place = place_.find(node.solid);
+        if (place != place_.end())
+          carries[place->second] = 1;
+      }
+    }
+    sum_all(setting_.comm, carries.data(), static_cast<int>(carries.size()));
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      bodies_[b].carries_nodes = carries[b] > 0;
+  }
 
  private:
   JointedBody<dim> body_of(const std::string& joint, const std::string& name) const {
@@ -58,7 +82,7 @@ class BodyFinder {
                 number,
                 own == no_index ? no_index : first + own,
                 jointable->rigid_frame(number).mass(0, 0),
-                solids[s].simplex_end > solids[s].simplex_begin};
+                setting_.fluid_density * volume_about(model->surface(), solids[s])};
       }
       first += static_cast<GlobalIndex>(model->dof_map()->getGlobalNumElements());
     }
@@ -143,9 +167,11 @@ ParameterList parameters_of(const JointKind& kind) {
     const bool slides = k < static_cast<int>(kind.slides.size());
     ParameterList& own = declare_optional_list(
         list, coordinate_list(k),
-        fmt::format("Control of this {} alone, in place of the joint's; limits, where it has them, "
-                    "likewise.",
-                    slides ? "displacement" : "angle"));
+        fmt::format(
+            "Of this {} alone. With a \"Control\" here nothing of the joint's own control acts on "
+            "it; a limit here takes the place of the joint's for it. What this list does not say "
+            "is as the joint has it.",
+            slides ? "displacement" : "angle"));
     declare_control(own, 1);
     declare_limit_pair(own, 1);
   }
@@ -247,6 +273,7 @@ std::shared_ptr<Articulation<dim>> read_joints(const ParameterList& shared,
   std::vector<Joint<dim>> all;
   for (const auto& [name, list] : joints)
     all.push_back(read_joint<dim>(name, list, finder));
+  finder.find_carriers();
   GlobalIndex n_dofs = 0;
   for (const auto& model : setting.models)
     n_dofs += static_cast<GlobalIndex>(model->dof_map()->getGlobalNumElements());

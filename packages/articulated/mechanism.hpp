@@ -24,8 +24,11 @@ struct JointedBody {
   int solid = -1;                    ///< its number there
   GlobalIndex first_dof = no_index;  ///< in the stack of all solids; no_index: prescribed
   double mass = 0;                   ///< [kg]
-  bool in_fluid = false;             ///< which adds to its mass
+  double fluid_mass = 0;             ///< in the box about it; 0 if no fluid sees it [kg]
+  bool carries_nodes = false;        ///< of deformable solids
   bool prescribed() const { return first_dof == no_index; }
+  /// About what resists its motion [kg].
+  double weight() const { return mass + fluid_mass; }
 };
 
 template <int dim>
@@ -78,8 +81,9 @@ struct Mechanism {
 };
 
 /// Spanning trees: rooted in space and in prescribed bodies if a joint leads there, else in the
-/// body that its first joint names first, or, if no fluid sees that, a much heavier one. Joints
-/// that want rates are in the tree before others; the tree's joints get the numbers of their rates.
+/// body of the most weight, of equal ones the first of the scene: whichever body a joint names
+/// first. Joints that want rates are in the tree before others; the tree's joints get the numbers
+/// of their rates.
 template <int dim>
 std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodies,
                                        std::vector<Joint<dim>>& joints);

@@ -71,31 +71,42 @@ Mechanism grown_from(int start, int carrier, const std::vector<JointedBody<dim>>
   return mechanism;
 }
 
+/// The heaviest: where it is the root no rate moves it, and what light ones have of inertia is not
+/// lost in its. Of bodies alike the first of the scene, so that it matters to nothing which solid a
+/// joint names first.
+template <int dim>
+int best_root(const std::vector<int>& members, const std::vector<JointedBody<dim>>& bodies) {
+  constexpr double alike = 1e-6;
+  double most = 0;
+  for (const int body : members)
+    most = std::max(most, bodies[body].weight());
+  int best = -1;
+  for (const int body : members) {
+    if (bodies[body].weight() >= (1 - alike) * most &&
+        (best < 0 || bodies[body].first_dof < bodies[best].first_dof))
+      best = body;
+  }
+  return best;
+}
+
 /// Trees that hang on the ground by this joint (other joints to the ground close loops), or free
-/// ones. Where a body much heavier than the others is the root, no rate moves it, and what the
-/// light ones have of inertia is not lost in its. What fluid sees is heavier than it looks and
-/// stays the root.
+/// ones.
 template <int dim>
 Mechanism tree_with(int joint, const std::vector<JointedBody<dim>>& bodies,
                     const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
                     std::vector<char>& reached) {
-  constexpr double much = 10;
   const auto& sides = joints[joint].sides;
   const bool first_is_ground = is_ground(bodies, sides[0].body);
   const int start = sides[first_is_ground ? 1 : 0].body;
   if (first_is_ground || is_ground(bodies, sides[1].body))
     return grown_from(start, joint, bodies, joints, in_tree, reached);
-  Mechanism mechanism = grown_from(start, -1, bodies, joints, in_tree, reached);
-  if (bodies[start].in_fluid)
-    return mechanism;
-  const int heaviest = *std::max_element(
-      mechanism.bodies.begin(), mechanism.bodies.end(),
-      [&bodies](int one, int other) { return bodies[one].mass < bodies[other].mass; });
-  if (bodies[heaviest].mass <= much * bodies[start].mass)
+  const Mechanism mechanism = grown_from(start, -1, bodies, joints, in_tree, reached);
+  const int root = best_root(mechanism.bodies, bodies);
+  if (root == start)
     return mechanism;
   for (const int body : mechanism.bodies)
     reached[body] = 0;
-  return grown_from(heaviest, -1, bodies, joints, in_tree, reached);
+  return grown_from(root, -1, bodies, joints, in_tree, reached);
 }
 
 }  // namespace

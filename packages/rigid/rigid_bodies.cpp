@@ -176,7 +176,8 @@ template <int dim>
 void RigidBodies<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
   const auto values = momentum.getDataNonConst();
   for_each_own([&](const RigidBody<dim>& body, int first_row) {
-    const RigidVector<dim> correction = midpoint_correction(body, dt);
+    const RigidVector<dim> correction =
+        midpoint_correction<dim>(body, body.momentum + load_impulse(body, dt), dt);
     for (int k = 0; k < n_rigid_dofs<dim>; ++k)
       values[first_row + k] += correction[k];
   });

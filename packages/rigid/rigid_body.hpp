@@ -91,16 +91,19 @@ RigidVector<dim> velocity_of(const RigidBody<dim>& body, const Orientation<dim>&
 /// locked, angular momentum about the pivot. d L / dt = c' x m V_reference, whose right-hand side
 /// is zero without a pivot.
 template <int dim>
-RigidVector<dim> carried_momentum(const RigidBody<dim>& body, const Orientation<dim>& before,
-                                  const Orientation<dim>& after, double dt);
+RigidVector<dim> carried_momentum(const RigidBody<dim>& body, RigidVector<dim> momentum,
+                                  const Orientation<dim>& before, const Orientation<dim>& after,
+                                  double dt);
 
-/// M(x^n) U - momentum on the free dofs, U the velocity at the middle of a free motion of 2
-/// half_step: U = M(x^{n+1/2})^-1 (carried momentum), the orientation of x^{n+1/2} being
-/// exp(half_step omega) times the present one. Exactly zero for bodies whose mass matrix does not
-/// turn with them, and if the implicit equation has no solution in reach (turns of the order of a
-/// radian a step): then the step is of first order.
+/// M(x^n) U - momentum on the free dofs, U the mean velocity over a free motion of 2 half_step that
+/// sets out with `momentum`: that of Euler's equations (motion/free_rotation.hpp), so that a body
+/// that nothing acts on keeps its energy at any turn. Where a body is held otherwise than at its
+/// pivot U is the velocity at the middle, of second order. Exactly zero for bodies whose mass
+/// matrix does not turn with them, and if a held body turns by the order of a radian: then the step
+/// is of first order.
 template <int dim>
-RigidVector<dim> midpoint_correction(const RigidBody<dim>& body, double half_step);
+RigidVector<dim> midpoint_correction(const RigidBody<dim>& body, const RigidVector<dim>& momentum,
+                                     double half_step);
 
 /// Moves a dynamic body with constant generalized velocity, or a prescribed one to its script.
 template <int dim>

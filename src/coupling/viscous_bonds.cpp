@@ -92,6 +92,18 @@ void ViscousBonds<dim>::pull_on_solids(double alpha, const Vector& pull, double 
 }
 
 template <int dim>
+double ViscousBonds<dim>::dissipation(const Vector& u, const Vector& end_velocity,
+                                      const Vector& couple_pull) const {
+  double power = 0;
+  const auto velocity = u.getData(), end = end_velocity.getData(), couples = couple_pull.getData();
+  for (std::size_t l = 0; l < list_.size(); ++l) {
+    const double v = end[l];
+    power += list_[l].coefficient * v * (v - 2 * velocity[list_[l].row]) - v * couples[l];
+  }
+  return power;
+}
+
+template <int dim>
 RCP<Vector> ViscousBonds<dim>::strength_on_solids() const {
   Vector strength(map_);
   for (std::size_t l = 0; l < list_.size(); ++l)

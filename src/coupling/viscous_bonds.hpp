@@ -30,6 +30,9 @@ class ViscousBonds {
   void take_from_fluid(double dt, const Vector& values, bool weighted, Vector& fluid) const;
   /// drag = alpha L^T pull + beta drag on the solid map. Only with unknowns. Collective.
   void pull_on_solids(double alpha, const Vector& pull, double beta, Vector& drag) const;
+  /// Beside what the diagonal of K_ff has of it: sum c (v^2 - 2 u v) over the ends' velocities v,
+  /// and that of the couples [W]. This rank's part.
+  double dissipation(const Vector& u, const Vector& end_velocity, const Vector& couple_pull) const;
   /// What the links add to the diagonal of the solids' rows, sum c L^2 [kg/s]. Collective.
   RCP<Vector> strength_on_solids() const;
 

@@ -207,6 +207,17 @@ int solve_by_name(const ViscousOperator<dim>& op, const ViscousPreconditioner& p
   return iterations;
 }
 
+/// The quadratic form of K with all velocities, but for those of sides. `ends`: of links.
+template <int dim>
+double dissipation(const ViscousSystem<dim>& system, const ViscousBonds<dim>& links,
+                   const Vector& velocity, const Vector& ends, const Vector& couple_pull,
+                   const Communicator& comm) {
+  Vector pull(system.map);
+  system.stiffness->apply(velocity, pull);
+  pull.update(-1, *system.wall_force, 1);
+  return dot(velocity, pull) + sum_all(comm, links.dissipation(velocity, ends, couple_pull));
+}
+
 }  // namespace
 
 template <int dim>
@@ -266,6 +277,8 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
     links.pull_on_solids(dt, *pull, 0, *result.solid_impulse);
     links.pull_on_solids(dt, *couple_pull, 1, *result.solid_impulse);
   }
+  result.dissipation =
+      dissipation<dim>(system, links, *fluid_velocity, *ends, *couple_pull, solids.comm());
   // u = u* + M^-1 (impulses of the solution): momentum is exact, the residual of CG shows in u
   // alone.
   Vector residual(op.rows.all);

@@ -15,6 +15,9 @@ struct ViscousResult {
   /// Of each solid that is prescribed on the fluid, part of `boundary_impulse`; zero for dynamic
   /// solids. Where several share a face, one of them has it all. Global.
   std::vector<Momentum<dim>> prescribed_impulses;
+  /// What friction turns into heat at the velocities of the solution, less what moving sides and
+  /// inflows give it [W].
+  double dissipation = 0;
   int iterations = 0;
 };
 

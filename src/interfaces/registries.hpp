@@ -48,6 +48,7 @@ struct JointSetting {
   double start_time = 0;                                        ///< [s]
   double largest_turn = 0;                                      ///< of a body in a step [rad]
   Communicator comm;
+  double fluid_density = 0;  ///< [kg/m^dim]
 };
 
 /// The joints of a scene: ties between solids, and a model of their own unknowns, to follow the

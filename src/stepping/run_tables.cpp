@@ -70,8 +70,8 @@ std::vector<HistoryValue> history_row(long long step, const StepReport<dim>& rep
   };
   append_each(row, report.momentum_error, report.angular_momentum_error,
               report.fluid_kinetic_energy, report.solid_kinetic_energy, report.elastic_energy,
-              residual(report.s1), residual(report.f2), residual(report.s2),
-              report.incompatibility_s2, report.incompatibility_f2,
+              report.viscous_dissipation, residual(report.s1), residual(report.f2),
+              residual(report.s2), report.incompatibility_s2, report.incompatibility_f2,
               static_cast<long long>(report.contact_position.n_contacts),
               report.contact_position.deepest_overlap,
               static_cast<long long>(report.n_clamped_elements), wall_seconds);

@@ -32,8 +32,8 @@ void declare_time(ParameterList& scene, bool has_joints) {
     declare_positive(
         time, "Largest Turn", 0.2,
         "Bound of the step, of a fixed one also: how far a jointed body may turn in it [rad]. "
-        "Larger "
-        "turns cost energy; above 0.5 joints give all of their impulse at the end of the step.");
+        "Larger turns cost energy; above 0.5 joints of bodies that fluid, flesh or motors act on "
+        "give all of their impulse at the end of the step.");
   declare_choice(
       time, "Pressure Correction", "rotational", {"rotational", "incremental", "non-incremental"},
       "Whether the viscous solve of a step reads the pressure of the last one. rotational: with "
@@ -154,9 +154,9 @@ std::unique_ptr<SolidSystem<dim>> jointed_solids(
   const ParameterList& shared = scene.sublist("Articulation");
   const double start = setting.start_time;
   const double turn = scene.sublist("Time").get<double>("Largest Turn");
-  const auto system =
-      registries.articulations.create(shared.get<std::string>("Type"), shared, joints,
-                                      JointSetting<dim>{models, start, turn, setting.comm});
+  const auto system = registries.articulations.create(
+      shared.get<std::string>("Type"), shared, joints,
+      JointSetting<dim>{models, start, turn, setting.comm, setting.fluid_density});
   models.push_back(std::move(system->rates));
   auto solids = std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm,
                                                    std::move(system->constraints));

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <map>
 #include <new>
 
 #include "base/errors.hpp"
@@ -26,6 +27,31 @@ std::string named_solver_file(const Document& document) {
   return solver.isType<std::string>("File") ? solver.get<std::string>("File") : "";
 }
 
+/// Kinds of joints that there are in space alone, and what the plane has in their place.
+const std::map<std::string, std::string> spatial_joints = {
+    {"ball", "in the plane a ball is a hinge, so write \"hinge\""},
+    {"universal", "in the plane what turns is a hinge, so write \"hinge\""},
+    {"cylinder",
+     "in the plane nothing turns about the axis that it slides along, so write "
+     "\"slider\""},
+    {"planar", "in the plane solids slide and turn like that without a joint, so leave it out"}};
+
+/// Scenes are copied from space into the plane: what their joints are there.
+void check_flat_joints(const Document& document) {
+  if (!document.list.isSublist("Joints"))
+    return;
+  const ParameterList& joints = document.list.sublist("Joints");
+  for (const auto& entry : joints) {
+    const std::string& name = entry.first;
+    if (!joints.isSublist(name) || !joints.sublist(name).isType<std::string>("Type"))
+      continue;
+    const auto kind = spatial_joints.find(joints.sublist(name).get<std::string>("Type"));
+    check_input(kind == spatial_joints.end(),
+                "{}: the joint \"{}\" is a \"{}\", which needs three dimensions; {}.",
+                document.source.place("Joints/" + name + "/Type"), name, kind->first, kind->second);
+  }
+}
+
 }  // namespace
 
 void complete_scene(Document& document, const std::vector<std::string>& settings,
@@ -44,6 +70,8 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
     if (setting.rfind(solver_file_setting, 0) != 0)
       set_from_command_line(document, setting, valid);
   }
+  if (dimension == 2)
+    check_flat_joints(document);
   validate(document, valid);
   check_input(
       document.list.get<int>("Dimension") == dimension,

@@ -16,8 +16,9 @@ struct StepReport {
   double cfl = 0;           ///< of u^n over dt
   SolveReport s1, f2, s2;
   int viscous_iterations = 0;
-  double viscous_number = 0;  ///< nu dt / h^2 of the step; 0 without viscosity
-  double max_divergence = 0;  ///< after F4, per cell [1/s]
+  double viscous_dissipation = 0;  ///< see ViscousResult [W]
+  double viscous_number = 0;       ///< nu dt / h^2 of the step; 0 without viscosity
+  double max_divergence = 0;       ///< after F4, per cell [1/s]
   double incompatibility_s1 = 0, incompatibility_f2 = 0,
          incompatibility_s2 = 0;  ///< removed, relative
   MomentumLedger<dim> ledger;

@@ -110,8 +110,13 @@ RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
   auto& solids = *components_.solids;
   const double dt = context.dt;
   const RCP<Vector> momentum = explicit_momentum(context);
-  if (context.moves_positions())
-    solids.add_midpoint_correction(dt, resolved_part(dt), *momentum);
+  if (context.moves_positions()) {
+    midpoint_correction_ = make_vector(solids.map());
+    solids.add_midpoint_correction(dt, resolved_part(dt), *midpoint_correction_);
+    if (!correction_change_.is_null())
+      midpoint_correction_->update(1, *correction_change_, 1);
+    momentum->update(1, *midpoint_correction_, 1);
+  }
   const RCP<const Vector> buoyancy = unseen_buoyancy(dt, report);
   momentum->update(1, *buoyancy, 1);
   if (context.ledger) {

@@ -136,6 +136,8 @@ class Stepper {
   /// all of them acts at its end.
   RCP<Vector> start_impulse_;
   RCP<const Vector> held_at_start_;  ///< of it, what holds given dofs
+  RCP<Vector> midpoint_correction_;  ///< of S1
+  RCP<Vector> correction_change_;    ///< of it, once the impulses of joints are known; null: none
 };
 
 }  // namespace lockstep

@@ -3,6 +3,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "coupling/swept_volumes.hpp"
+#include "interfaces/free_flight.hpp"
 #include "stepping/stepper.hpp"
 
 namespace lockstep {
@@ -61,34 +62,45 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
 
 /// Velocities that joints let take bodies off them by O(dt^2) all the same. Closing finds what
 /// brings them back, by the bodies' own masses; the solve about that knows the mass of the fluid,
-/// and what is still left to close is of higher order.
+/// and what is still left to close is of higher order. How bodies turn on the way depends on the
+/// impulses at its begin, so that the correction of S1 is found with them.
 template <int dim>
 void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
                                 BlockVector& solution, RCP<Vector>& velocity,
                                 StepReport<dim>& report) {
   auto& solids = *components_.solids;
   const double end = context.time + context.step_dt;
-  const auto close = [&] {
-    return solids.joints()->close(context.time, context.step_dt, *velocity).drift;
-  };
-  // Solutions may share it.
-  velocity = rcp(new Vector(*velocity, Teuchos::Copy));
-  RCP<const Vector> drift = close();
-  if (!drift.is_null()) {
-    const SolveReport earlier = report.s1;
-    context.constraints = solids.constraints(context.time, end, drift);
-    velocity = find_motion(context, prediction, solution, report);
+  auto* const flights = dynamic_cast<FreeFlight*>(solids.joints());
+  const auto close = [&]() -> ClosedFlight {
+    // Solutions may share it.
     velocity = rcp(new Vector(*velocity, Teuchos::Copy));
+    if (flights)
+      return flights->close_flight(context.time, context.step_dt, *midpoint_correction_,
+                                   report.contact_position.n_contacts > 0, *velocity);
+    return {solids.joints()->close(context.time, context.step_dt, *velocity), Teuchos::null,
+            Teuchos::null};
+  };
+  ClosedFlight motion = close();
+  if (!motion.drift.is_null()) {
+    const SolveReport earlier = report.s1;
+    context.constraints = solids.constraints(context.time, end, motion.drift);
+    if (!motion.correction.is_null()) {
+      correction_change_ = motion.correction;
+      correction_change_->update(-1, *midpoint_correction_, 1);
+    }
+    velocity = find_motion(context, prediction, solution, report);
     report.s1.add_work(earlier);
-    drift = close();
+    motion = close();
   }
   held_at_start_ = Teuchos::null;
-  if (drift.is_null()) {
+  if (motion.drift.is_null()) {
     start_impulse_ = Teuchos::null;
     return;
   }
   held_at_start_ = solids.reduction().on_given(*start_impulse_);
   solids.reduction().drop_given(*start_impulse_);
+  if (!motion.later_impulse.is_null())
+    start_impulse_->update(1, *motion.later_impulse, 1);
 }
 
 /// All solids go to their positions at t^{n+1}.
@@ -97,10 +109,12 @@ void Stepper<dim>::move_solids(const StepContext<dim>& context, const Prediction
                                StepReport<dim>& report) {
   auto& solids = *components_.solids;
   start_impulse_ = Teuchos::null;
+  correction_change_ = Teuchos::null;
   BlockVector solution;
   RCP<Vector> velocity = find_motion(context, prediction, solution, report);
   if (coupled() && solids.joints())
     close_joints(context, prediction, solution, velocity, report);
+  correction_change_ = Teuchos::null;
   ScopedPhase phase(timers_, "solid motion");
   solids.move(*velocity, context.time, context.step_dt);
 }

@@ -126,6 +126,7 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
                                           *sides_.viscous_coupling, block, soft_nodes, row, dt,
                                           context.constraints, options_.viscous);
   report.viscous_iterations += prediction.viscous.iterations;
+  report.viscous_dissipation = prediction.viscous.dissipation;  // that of F3 comes last
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)
     report.viscous_number =

@@ -55,6 +55,15 @@ class Messages(unittest.TestCase):
         for part in ("\"S\"", "make it a weld"):
             self.assertIn(part, text)
 
+    def test_kinds_that_need_three_dimensions(self):
+        solids = {"A": unseen_box((0., 0.), 1.), "B": unseen_box((1., 0.), 1.)}
+        for kind, instead in (("ball", "in the plane a ball is a hinge"), ("universal", "\"hinge\""), ("cylinder", "\"slider\""),
+                              ("planar", "leave it out")):
+            code, text = message(vacuum(solids, {"Neck": joint(kind, ("A", "B"), (.5, 0.))}, .02, 1.))
+            self.assertEqual(code, 2, text)
+            for part in ("scene.xml", "\"Neck\"", f"\"{kind}\", which needs three dimensions", instead):
+                self.assertIn(part, text)
+
     def test_a_motor_that_shrinks_closed_fluid(self):
         """A piston across a closed tank."""
         piston = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.1, 1.2)}, "Density": 1000., "Position": (.4, .5)}

@@ -40,7 +40,7 @@ std::unique_ptr<RigidBodies<dim>> model(const std::vector<std::string>& contents
 /// A step without fluid: S1 to t + dt/2, move, S2.
 template <int dim>
 void free_step(RigidBody<dim>& body, double time, double dt) {
-  const RigidVector<dim> half = body.momentum + midpoint_correction(body, dt / 2);
+  const RigidVector<dim> half = body.momentum + midpoint_correction(body, body.momentum, dt / 2);
   move(body, velocity_of(body, body.pose.orientation, half), time, dt);
   set_velocity(body, velocity_of(body, body.pose.orientation, body.momentum));
 }

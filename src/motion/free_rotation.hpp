@@ -1,0 +1,24 @@
+#pragma once
+#include "motion/rotation.hpp"
+
+namespace lockstep {
+
+/// Inertia of a body about a point [kg m^2].
+template <int dim>
+using InertiaTensor = Eigen::Matrix<double, n_rotations<dim>, n_rotations<dim>>;
+
+/// The rotation vector [rad] by which a body turns in dt that no torque acts on: Euler's equations.
+/// `inertia` and `angular_momentum` about the same point, in the axes of space at the begin. Exact
+/// to some 1e-10 of the turn at any turn; energy is kept to round-off. Of the vectors that turn
+/// alike it is the one that counts the whole turns.
+/// Source: the midpoint rule on the body's momentum with the Cayley transform, which conserves
+/// energy and momentum (Austin, Krishnaprasad & Wang 1993), composed to order 6 (Yoshida 1990).
+template <int dim>
+AngularVector<dim> free_turn(const InertiaTensor<dim>& inertia,
+                             const AngularVector<dim>& angular_momentum, double dt);
+
+/// Of the rotation vectors that turn alike the one nearest to another.
+template <int dim>
+AngularVector<dim> nearest_turn(const AngularVector<dim>& turn, const AngularVector<dim>& near);
+
+}  // namespace lockstep
