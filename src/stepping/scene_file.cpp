@@ -29,12 +29,10 @@ std::string named_solver_file(const Document& document) {
 
 /// Kinds of joints that there are in space alone, and what the plane has in their place.
 const std::map<std::string, std::string> spatial_joints = {
-    {"ball", "in the plane a ball is a hinge, so write \"hinge\""},
-    {"universal", "in the plane what turns is a hinge, so write \"hinge\""},
-    {"cylinder",
-     "in the plane nothing turns about the axis that it slides along, so write "
-     "\"slider\""},
-    {"planar", "in the plane solids slide and turn like that without a joint, so leave it out"}};
+    {"ball", "a ball is a hinge, so write \"hinge\""},
+    {"universal", "what turns is a hinge, so write \"hinge\""},
+    {"cylinder", "nothing turns about the axis that it slides along, so write \"slider\""},
+    {"planar", "solids slide and turn like that without a joint, so leave it out"}};
 
 /// Scenes are copied from space into the plane: what their joints are there.
 void check_flat_joints(const Document& document) {
@@ -47,7 +45,8 @@ void check_flat_joints(const Document& document) {
       continue;
     const auto kind = spatial_joints.find(joints.sublist(name).get<std::string>("Type"));
     check_input(kind == spatial_joints.end(),
-                "{}: the joint \"{}\" is a \"{}\", which needs three dimensions; {}.",
+                "{}: the joint \"{}\" is a \"{}\", which needs three dimensions; in 2D there are "
+                "\"hinge\", \"slider\" and \"weld\": {}.",
                 document.source.place("Joints/" + name + "/Type"), name, kind->first, kind->second);
   }
 }

@@ -57,7 +57,7 @@ class Messages(unittest.TestCase):
 
     def test_kinds_that_need_three_dimensions(self):
         solids = {"A": unseen_box((0., 0.), 1.), "B": unseen_box((1., 0.), 1.)}
-        for kind, instead in (("ball", "in the plane a ball is a hinge"), ("universal", "\"hinge\""), ("cylinder", "\"slider\""),
+        for kind, instead in (("ball", "a ball is a hinge"), ("universal", "\"hinge\""), ("cylinder", "\"slider\""),
                               ("planar", "leave it out")):
             code, text = message(vacuum(solids, {"Neck": joint(kind, ("A", "B"), (.5, 0.))}, .02, 1.))
             self.assertEqual(code, 2, text)

@@ -1,5 +1,5 @@
 """Steps that turn bodies much too far gain no energy: free, at limits, in contact, with heavy and light partners, with joints
-that say nothing new. docs/results/joints.md has the figures that these bounds are half as large again as."""
+that say nothing new. docs/results/joints.md has the figures, of more turns and steps."""
 import unittest
 
 from stability_cases import CONDITIONS, MECHANISMS, thrown
