@@ -84,7 +84,7 @@ class JointConstraints : public ConstraintModel,
   std::string name() const override { return "joints"; }
   std::vector<Combination> combinations() const override;
   ClosedMotion close(double time, double dt, Vector& velocity) override;
-  ClosedFlight close_flight(double time, double dt, const Vector& correction, bool touched,
+  ClosedFlight close_flight(double time, double dt, const Vector& correction, const Vector& solved,
                             Vector& velocity) override;
   std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const override;
   std::vector<GivenMotion> given_motions() const override;
@@ -99,6 +99,15 @@ class JointConstraints : public ConstraintModel,
                   const std::vector<double>& rate) override;
 
  private:
+  /// All bodies in S1, by body.
+  struct StepMotions {
+    std::vector<BodyMass<dim>> masses;
+    std::vector<BodyMotion<dim>> solved, motions;  ///< before contact; after it, then as they go
+    std::vector<TwistVector<dim>> corrections, later, drift;  ///< see ClosedFlight
+  };
+  struct FoundFlights {
+    Flight<dim> free, pushed;  ///< without contact; with what it did
+  };
   std::vector<TwistVector<dim>> gather_twists(const Vector& velocity) const;
   Eigen::VectorXd gather_rates(const Vector& velocity) const;
   void set_twists(const std::vector<TwistVector<dim>>& twists, Vector& velocity) const;
@@ -106,9 +115,12 @@ class JointConstraints : public ConstraintModel,
                  double dt, Vector& velocity) const;
   std::optional<FlightSteps> flight_steps(const Mechanism& mechanism, double turn,
                                           bool touched) const;
-  std::optional<Flight<dim>> flight(const ClosingProblem<dim>& problem,
-                                    const std::vector<BodyMotion<dim>>& motions,
-                                    bool touched) const;
+  std::optional<FoundFlights> flights(const ClosingProblem<dim>& problem,
+                                      const StepMotions& step) const;
+  StepMotions motions_of(const Vector& correction, const Vector& solved,
+                         const Vector& velocity) const;
+  void take(const Mechanism& mechanism, const FoundFlights& found, StepMotions& step) const;
+  RCP<Vector> marks_at_end(const RCP<const Map>& map) const;
   void follow(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
               std::vector<BodyMotion<dim>>& motions) const;
   RCP<Vector> drift(const std::vector<TwistVector<dim>>& change, const RCP<const Map>& map) const;
@@ -118,7 +130,7 @@ class JointConstraints : public ConstraintModel,
   Eigen::VectorXd torque_, limit_torque_;  ///< by rate, of the last step
   std::vector<char> limited_;              ///< likewise: by the largest torque
   double dt_ = 0;                          ///< of the last step [s]; 0: there was none
-  bool two_halves_ = false;
+  std::vector<char> two_halves_;           ///< by joint, likewise
 };
 
 }  // namespace lockstep

@@ -26,6 +26,8 @@ void JointConstraints<dim>::set_rates(const Mechanism& mechanism,
   }
 }
 
+namespace {
+
 /// Throws SolveError if motors and prescribed bodies lead a loop where it cannot be closed: of
 /// short steps they alone do.
 template <int dim>
@@ -60,6 +62,22 @@ double largest_turn(const ClosingProblem<dim>& problem,
   return turn;
 }
 
+/// Whether the twists of a mechanism's bodies take them elsewhere.
+template <int dim>
+bool differ(const ClosingProblem<dim>& problem, const std::vector<BodyMotion<dim>>& motions,
+            const std::vector<BodyMotion<dim>>& others) {
+  constexpr double negligible = 1e-9;  // of the mechanism's reach, rad
+  const double unit = reach(problem.mechanism, problem.joints);
+  return std::any_of(
+      problem.mechanism.bodies.begin(), problem.mechanism.bodies.end(), [&](int body) {
+        const TwistVector<dim> way = problem.dt * (motions[body].twist - others[body].twist);
+        return way.template head<dim>().norm() > negligible * unit ||
+               way.template tail<n_rotations<dim>>().norm() > negligible;
+      });
+}
+
+}  // namespace
+
 /// Nothing: bodies had better follow the rates of their joints.
 template <int dim>
 std::optional<FlightSteps> JointConstraints<dim>::flight_steps(const Mechanism& mechanism,
@@ -88,16 +106,23 @@ std::optional<FlightSteps> JointConstraints<dim>::flight_steps(const Mechanism& 
   return std::nullopt;
 }
 
-/// Empty: joints could not be closed about the motion as it was found.
+/// Empty: joints could not be closed about the motions as they were found.
 template <int dim>
-std::optional<Flight<dim>> JointConstraints<dim>::flight(
-    const ClosingProblem<dim>& problem, const std::vector<BodyMotion<dim>>& motions,
-    bool touched) const {
+std::optional<typename JointConstraints<dim>::FoundFlights> JointConstraints<dim>::flights(
+    const ClosingProblem<dim>& problem, const StepMotions& step) const {
   if (!articulation_->options().two_halves)
     return std::nullopt;
-  const std::optional<FlightSteps> steps =
-      flight_steps(problem.mechanism, largest_turn(problem, motions), touched);
-  return steps ? fly(problem, *steps, motions) : std::nullopt;
+  const bool touched = differ(problem, step.solved, step.motions);
+  const double turn =
+      std::max(largest_turn(problem, step.solved), largest_turn(problem, step.motions));
+  const std::optional<FlightSteps> steps = flight_steps(problem.mechanism, turn, touched);
+  if (!steps)
+    return std::nullopt;
+  std::optional<Flight<dim>> free = fly(problem, *steps, step.solved);
+  if (!free || !touched)
+    return free ? std::make_optional(FoundFlights{*free, *free}) : std::nullopt;
+  std::optional<Flight<dim>> pushed = fly(problem, *steps, step.motions);
+  return pushed ? std::make_optional(FoundFlights{*free, *pushed}) : std::nullopt;
 }
 
 /// Bodies follow the rates of their joints; loops are closed if they can be.
@@ -133,66 +158,122 @@ RCP<Vector> JointConstraints<dim>::drift(const std::vector<TwistVector<dim>>& ch
 }
 
 template <int dim>
+typename JointConstraints<dim>::StepMotions JointConstraints<dim>::motions_of(
+    const Vector& correction, const Vector& solved, const Vector& velocity) const {
+  const auto& bodies = articulation_->bodies();
+  const std::size_t n = bodies.size();
+  StepMotions step;
+  step.corrections = gather_twists(correction);
+  step.masses.resize(n);
+  step.solved.resize(n);
+  step.motions.resize(n);
+  step.later.assign(n, TwistVector<dim>::Zero());
+  step.drift.assign(n, TwistVector<dim>::Zero());
+  const std::vector<TwistVector<dim>> before = gather_twists(solved), now = gather_twists(velocity);
+  for (std::size_t b = 0; b < n; ++b) {
+    if (bodies[b].prescribed())
+      continue;
+    step.masses[b] = mass_of<dim>(bodies[b].model->rigid_frame(bodies[b].solid).mass);
+    const auto momentum = [&](const TwistVector<dim>& twist) -> TwistVector<dim> {
+      return step.masses[b].matrix * twist - step.corrections[b];
+    };
+    step.solved[b] = {momentum(before[b]), before[b]};
+    step.motions[b] = {momentum(now[b]), now[b]};
+  }
+  return step;
+}
+
+/// Impulses are those of the flight without contact, which S2 is to know nothing of.
+template <int dim>
+void JointConstraints<dim>::take(const Mechanism& mechanism, const FoundFlights& found,
+                                 StepMotions& step) const {
+  for (const int body : mechanism.bodies) {
+    const BodyMotion<dim>& free = found.free.motions[body];
+    step.later[body] = found.free.given[body];
+    step.corrections[body] = step.masses[body].matrix * free.twist - free.momentum;
+    step.drift[body] = free.twist - step.solved[body].twist;
+    step.motions[body] = found.pushed.motions[body];
+  }
+}
+
+/// 1 at the dofs of mechanisms whose joints were not closed. Null: there are none.
+template <int dim>
+RCP<Vector> JointConstraints<dim>::marks_at_end(const RCP<const Map>& map) const {
+  const auto& joints = articulation_->joints();
+  if (std::all_of(two_halves_.begin(), two_halves_.end(), [](char is) { return is != 0; }))
+    return Teuchos::null;
+  const RCP<Vector> marks = make_vector(map);
+  const auto values = marks->getDataNonConst();
+  const auto mark = [&](GlobalIndex first, Eigen::Index n) {
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const int row = map->getLocalElement(first + k);
+      if (row >= 0)
+        values[row] = 1;
+    }
+  };
+  for (const Mechanism& mechanism : articulation_->mechanisms()) {
+    if (two_halves_[mechanism.joints.front()] != 0)
+      continue;
+    for (const int body : mechanism.bodies)
+      mark(articulation_->bodies()[body].first_dof, n_twist<dim>);
+    for (const int j : mechanism.joints) {
+      if (joints[j].first_rate >= 0)
+        mark(articulation_->dofs().first_rate + joints[j].first_rate, joints[j].q.size());
+    }
+  }
+  return marks;
+}
+
+template <int dim>
 ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& velocity) {
-  return close_flight(time, dt, *make_vector(velocity.getMap()), false, velocity);
+  const Vector solved(velocity, Teuchos::Copy);
+  return close_flight(time, dt, *make_vector(velocity.getMap()), solved, velocity);
 }
 
 template <int dim>
 ClosedFlight JointConstraints<dim>::close_flight(double time, double dt, const Vector& correction,
-                                                 bool touched, Vector& velocity) {
-  const auto& bodies = articulation_->bodies();
-  const std::vector<TwistVector<dim>> before = gather_twists(velocity);
-  std::vector<TwistVector<dim>> corrections = gather_twists(correction);
-  std::vector<TwistVector<dim>> later(bodies.size(), TwistVector<dim>::Zero());
+                                                 const Vector& solved, Vector& velocity) {
   const Eigen::VectorXd change = dt * gather_rates(velocity);
   const std::vector<BodyPose<dim>> poses = articulation_->poses();
   const std::vector<BodyPose<dim>> ends = articulation_->prescribed_poses(time + dt);
-  std::vector<BodyMass<dim>> masses(bodies.size());
-  std::vector<BodyMotion<dim>> motions(bodies.size());
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (bodies[b].prescribed())
-      continue;
-    masses[b] = mass_of<dim>(bodies[b].model->rigid_frame(bodies[b].solid).mass);
-    motions[b] = {masses[b].matrix * before[b] - corrections[b], before[b]};
-  }
-  bool closed = true;
+  StepMotions step = motions_of(correction, solved, velocity);
+  two_halves_.assign(articulation_->joints().size(), 0);
+  bool any_closed = false;
   for (const Mechanism& mechanism : articulation_->mechanisms()) {
-    const ClosingProblem<dim> problem{mechanism, articulation_->joints(), poses, ends, masses, dt};
-    const std::optional<Flight<dim>> own = flight(problem, motions, touched);
-    if (own) {
-      set_rates(mechanism, own->coordinates, dt, velocity);
-      for (const int body : mechanism.bodies) {
-        motions[body] = own->motions[body];
-        later[body] = own->given[body];
-        corrections[body] = masses[body].matrix * motions[body].twist - motions[body].momentum;
-      }
-    } else {
-      follow(problem, change, motions);
-      closed = false;
+    const ClosingProblem<dim> problem{mechanism, articulation_->joints(), poses, ends, step.masses,
+                                      dt};
+    const std::optional<FoundFlights> found = flights(problem, step);
+    if (!found) {
+      follow(problem, change, step.motions);
+      continue;
     }
+    take(mechanism, *found, step);
+    set_rates(mechanism, found->pushed.coordinates, dt, velocity);
+    for (const int j : mechanism.joints)
+      two_halves_[j] = 1;
+    any_closed = true;
   }
-  std::vector<TwistVector<dim>> twists(bodies.size());
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    twists[b] = motions[b].twist;
+  std::vector<TwistVector<dim>> twists;
+  for (const BodyMotion<dim>& motion : step.motions)
+    twists.push_back(motion.twist);
   set_twists(twists, velocity);
   ClosedFlight motion;
-  if (closed) {
-    for (std::size_t b = 0; b < twists.size(); ++b)
-      twists[b] -= before[b];
-    motion.drift = drift(twists, velocity.getMap());
+  if (any_closed) {
+    motion.drift = drift(step.drift, velocity.getMap());
     motion.correction = rcp(new Vector(correction, Teuchos::Copy));
-    set_twists(corrections, *motion.correction);
+    set_twists(step.corrections, *motion.correction);
     motion.later_impulse = make_vector(velocity.getMap());
-    set_twists(later, *motion.later_impulse);
+    set_twists(step.later, *motion.later_impulse);
+    motion.at_end = marks_at_end(velocity.getMap());
   }
   return motion;
 }
 
 template ClosedMotion JointConstraints<2>::close(double, double, Vector&);
-template ClosedFlight JointConstraints<2>::close_flight(double, double, const Vector&, bool,
-                                                        Vector&);
+template ClosedFlight JointConstraints<2>::close_flight(double, double, const Vector&,
+                                                        const Vector&, Vector&);
 template ClosedMotion JointConstraints<3>::close(double, double, Vector&);
-template ClosedFlight JointConstraints<3>::close_flight(double, double, const Vector&, bool,
-                                                        Vector&);
+template ClosedFlight JointConstraints<3>::close_flight(double, double, const Vector&,
+                                                        const Vector&, Vector&);
 
 }  // namespace lockstep

@@ -13,7 +13,9 @@ namespace lockstep {
 template <int dim>
 JointConstraints<dim>::JointConstraints(std::shared_ptr<Articulation<dim>> articulation,
                                         const Communicator& comm)
-    : articulation_(std::move(articulation)), comm_(comm) {}
+    : articulation_(std::move(articulation)),
+      comm_(comm),
+      two_halves_(articulation_->joints().size(), 0) {}
 
 template <int dim>
 std::vector<Combination> JointConstraints<dim>::combinations() const {
@@ -161,10 +163,9 @@ int JointConstraints<dim>::largest_block() const {
 
 template <int dim>
 void JointConstraints<dim>::take_note(const JointImpulses& impulses, double time, double dt) {
-  two_halves_ = !impulses.at_start.is_null();
   dt_ = dt;
   torque_ = gather_rates(*impulses.at_end) / dt;
-  if (two_halves_)
+  if (!impulses.at_start.is_null())
     torque_ += gather_rates(*impulses.at_start) / dt;
   // S1 takes none of the springs' impulses away from S2.
   const ControlLaw springs = articulation_->control(time, dt, true);
@@ -179,11 +180,12 @@ template <int dim>
 std::vector<JointState> JointConstraints<dim>::states(double time) const {
   const std::vector<BodyPose<dim>> poses = articulation_->poses();
   std::vector<JointState> states;
-  for (const Joint<dim>& joint : articulation_->joints()) {
+  for (std::size_t j = 0; j < articulation_->joints().size(); ++j) {
+    const Joint<dim>& joint = articulation_->joints()[j];
     JointState state;
     state.name = joint.name;
     state.gap = largest_gap(joint, poses);
-    state.two_halves = two_halves_;
+    state.two_halves = two_halves_[j] != 0;
     const Eigen::VectorXd rates = articulation_->rates_of(joint);
     const auto n = static_cast<int>(joint.q.size());
     Eigen::VectorXd target = joint.q;

@@ -11,16 +11,21 @@ struct ClosedFlight : ClosedMotion {
   /// With `drift`: what joints gave beside the reactions that S1 found, at the begin and on the
   /// way; for the momentum of S2.
   RCP<Vector> later_impulse;
+  /// With `drift`: 1 at the dofs of bodies and joints of which what is said of a null `drift` is
+  /// true, while others were closed; 0 elsewhere. Their part of `drift` is zero. Null: there are
+  /// none.
+  RCP<Vector> at_end;
 };
 
 /// A side of a ConstraintModel whose bodies have midpoint corrections.
 class FreeFlight {
  public:
   virtual ~FreeFlight() = default;
-  /// As `ConstraintModel::close`, of velocities that were found with `correction`, and then changed
-  /// by contact if that is `touched`. Collective.
-  virtual ClosedFlight close_flight(double time, double dt, const Vector& correction, bool touched,
-                                    Vector& velocity) = 0;
+  /// As `ConstraintModel::close`, of velocities that were found with `correction`. `solved`: what
+  /// they were before contact changed them. Impulses are those of the motion without it, since S1
+  /// throws away what pushes solids out of one another. Collective.
+  virtual ClosedFlight close_flight(double time, double dt, const Vector& correction,
+                                    const Vector& solved, Vector& velocity) = 0;
 };
 
 }  // namespace lockstep

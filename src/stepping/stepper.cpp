@@ -102,21 +102,17 @@ RCP<Vector> Stepper<dim>::explicit_momentum(const StepContext<dim>& context) con
   return momentum;
 }
 
-/// M_S V_S*: explicit forces, buoyancy the grid does not see, contact, viscous drag.
+/// M_S V_S*: explicit forces, buoyancy the grid does not see, contact, viscous drag. `correction`:
+/// where positions are moved, in the place of the solids' own; null: that.
 template <int dim>
 RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
-                                         const Prediction<dim>& prediction,
-                                         StepReport<dim>& report) {
+                                         const Prediction<dim>& prediction, StepReport<dim>& report,
+                                         const RCP<const Vector>& correction) {
   auto& solids = *components_.solids;
   const double dt = context.dt;
   const RCP<Vector> momentum = explicit_momentum(context);
-  if (context.moves_positions()) {
-    midpoint_correction_ = make_vector(solids.map());
-    solids.add_midpoint_correction(dt, resolved_part(dt), *midpoint_correction_);
-    if (!correction_change_.is_null())
-      midpoint_correction_->update(1, *correction_change_, 1);
-    momentum->update(1, *midpoint_correction_, 1);
-  }
+  if (context.moves_positions())
+    momentum->update(1, correction.is_null() ? *midpoint_correction(dt) : *correction, 1);
   const RCP<const Vector> buoyancy = unseen_buoyancy(dt, report);
   momentum->update(1, *buoyancy, 1);
   if (context.ledger) {

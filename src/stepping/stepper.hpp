@@ -61,6 +61,11 @@ class Stepper {
     Prediction<dim> prediction;
     CoupledSolution solution;
   };
+  /// V^{n+1/2}.
+  struct FoundMotion {
+    RCP<Vector> velocity;
+    RCP<const Vector> solved;  ///< before contact; null without joints
+  };
   void freeze();
   void freeze(const std::shared_ptr<const SurfaceSnapshot<dim>>& surface);
   bool solids_rest() const;
@@ -84,8 +89,9 @@ class Stepper {
   void add_drops(const StepContext<dim>& context, Vector& momentum, StepReport<dim>& report) const;
   double resolved_part(double dt) const;
   RCP<Vector> explicit_momentum(const StepContext<dim>& context) const;
+  RCP<Vector> midpoint_correction(double dt) const;
   RCP<Vector> solid_momentum(const StepContext<dim>& context, const Prediction<dim>& prediction,
-                             StepReport<dim>& report);
+                             StepReport<dim>& report, const RCP<const Vector>& correction = {});
   CoupledSolution solve(const StepContext<dim>& context, const RCP<Vector>& momentum,
                         const std::string& name, SolveReport& report, double& incompatibility,
                         const BlockVector* nearby = nullptr);
@@ -97,10 +103,12 @@ class Stepper {
   ContactResponse contact_response(double dt) const;
   ContactReport<dim> contact_momentum(const StepContext<dim>& context, Vector& momentum);
   ContactReport<dim> settled_momentum(const StepContext<dim>& context, Vector& momentum);
-  RCP<Vector> find_motion(const StepContext<dim>& context, const Prediction<dim>& prediction,
-                          BlockVector& solution, StepReport<dim>& report);
+  FoundMotion find_motion(const StepContext<dim>& context, const Prediction<dim>& prediction,
+                          const RCP<const Vector>& correction, BlockVector& solution,
+                          StepReport<dim>& report);
   void close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
-                    BlockVector& solution, RCP<Vector>& velocity, StepReport<dim>& report);
+                    const RCP<const Vector>& correction, BlockVector& solution, FoundMotion& motion,
+                    StepReport<dim>& report);
   void move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
                    StepReport<dim>& report);
   // Pockets of gas.
@@ -136,8 +144,6 @@ class Stepper {
   /// all of them acts at its end.
   RCP<Vector> start_impulse_;
   RCP<const Vector> held_at_start_;  ///< of it, what holds given dofs
-  RCP<Vector> midpoint_correction_;  ///< of S1
-  RCP<Vector> correction_change_;    ///< of it, once the impulses of joints are known; null: none
 };
 
 }  // namespace lockstep

@@ -24,6 +24,14 @@ double Stepper<dim>::resolved_part(double dt) const {
   return 1 / ((1 + ratio) * (1 + ratio));
 }
 
+/// That of the solids themselves.
+template <int dim>
+RCP<Vector> Stepper<dim>::midpoint_correction(double dt) const {
+  const RCP<Vector> correction = make_vector(components_.solids->map());
+  components_.solids->add_midpoint_correction(dt, resolved_part(dt), *correction);
+  return correction;
+}
+
 /// Newton's method on the elastic forces at the positions that the solution reaches: every
 /// iteration is a coupled solve, whose explicit momentum differs from the last one's by theirs.
 template <int dim>
@@ -91,10 +99,12 @@ template CoupledSolution Stepper<2>::solve_newton(const StepContext<2>&, const R
 template CoupledSolution Stepper<3>::solve_newton(const StepContext<3>&, const RCP<Vector>&,
                                                   SolveReport&, double&, const BlockVector*);
 template double Stepper<2>::resolved_part(double) const;
+template RCP<Vector> Stepper<2>::midpoint_correction(double) const;
 template ContactReport<2> Stepper<2>::settled_momentum(const StepContext<2>&, Vector&);
 template CoupledSolution Stepper<2>::solve_settled(const StepContext<2>&, const RCP<Vector>&,
                                                    StepReport<2>&);
 template double Stepper<3>::resolved_part(double) const;
+template RCP<Vector> Stepper<3>::midpoint_correction(double) const;
 template ContactReport<3> Stepper<3>::settled_momentum(const StepContext<3>&, Vector&);
 template CoupledSolution Stepper<3>::solve_settled(const StepContext<3>&, const RCP<Vector>&,
                                                    StepReport<3>&);

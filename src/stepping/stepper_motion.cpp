@@ -4,17 +4,46 @@
 
 #include "coupling/swept_volumes.hpp"
 #include "interfaces/free_flight.hpp"
+#include "linear/matrix_rows.hpp"
+#include "linear/overlap.hpp"
 #include "stepping/stepper.hpp"
 
 namespace lockstep {
 
+namespace {
+
+/// q := q without what acts on marked dofs, and on combinations of them.
+void drop_with_followers(const Reduction& reduction, const Vector& marks, Vector& momentum) {
+  Vector dropped(marks, Teuchos::Copy);
+  if (reduction.has_combinations()) {
+    const CrsMatrix& combinations = *reduction.combinations();
+    const RCP<const Vector> terms = on_columns(combinations, marks);
+    const auto is_marked = terms->getData();
+    const auto values = dropped.getDataNonConst();
+    for_each_entry(combinations, [&](int row, GlobalIndex column, double) {
+      if (is_marked[combinations.getColMap()->getLocalElement(column)] != 0)
+        values[row] = 1;
+    });
+  }
+  const auto drop = dropped.getData();
+  const auto values = momentum.getDataNonConst();
+  for (int row = 0; row < drop.size(); ++row) {
+    if (drop[row] != 0)
+      values[row] = 0;
+  }
+}
+
+}  // namespace
+
 /// V^{n+1/2}: soft solids keep the volumes of closed regions, contact acts. With joints also the
-/// impulses that these give. `solution`: where the solve begins, empty at the last step's, and what
-/// it finds.
+/// impulses that these give. `correction`: see `solid_momentum`. `solution`: where the solve
+/// begins, empty at the last step's, and what it finds.
 template <int dim>
-RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
-                                      const Prediction<dim>& prediction, BlockVector& solution,
-                                      StepReport<dim>& report) {
+typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<dim>& context,
+                                                             const Prediction<dim>& prediction,
+                                                             const RCP<const Vector>& correction,
+                                                             BlockVector& solution,
+                                                             StepReport<dim>& report) {
   auto& solids = *components_.solids;
   const double dt = context.step_dt;
   RCP<Vector> half_velocity = make_vector(solids.map());
@@ -22,7 +51,7 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
   RCP<Vector> momentum;
   if (coupled()) {
     ScopedPhase phase(timers_, "S1");
-    momentum = solid_momentum(context, prediction, report);
+    momentum = solid_momentum(context, prediction, report, correction);
     const CoupledSolution found =
         solve_newton(context, momentum, report.s1, report.incompatibility_s1,
                      solution.pressure.is_null() ? nullptr : &solution);
@@ -45,6 +74,9 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
   sweep_volumes(rates_of_kind(swept, solids, true), solids, dt, *half_velocity);
   if (coupled() && solids.has_implicit_forces())
     bound_sweep<dim>(solids, context.dt, as_solved, *half_velocity);
+  RCP<const Vector> before_contact;
+  if (solids.joints())
+    before_contact = rcp(new Vector(*half_velocity, Teuchos::Copy));
   if (coupled() && solids.has_implicit_forces()) {
     const SettledMotion<dim> settled =
         settle_motion<dim>(solids, components_.contact.get(), context, sweep_shells, as_solved,
@@ -57,7 +89,7 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
     report.contact_position = components_.contact->resolve(
         solids, ContactPhase::position, dt, *half_velocity, contact_response(context.dt));
   }
-  return half_velocity;
+  return {half_velocity, before_contact};
 }
 
 /// Velocities that joints let take bodies off them by O(dt^2) all the same. Closing finds what
@@ -66,37 +98,37 @@ RCP<Vector> Stepper<dim>::find_motion(const StepContext<dim>& context,
 /// impulses at its begin, so that the correction of S1 is found with them.
 template <int dim>
 void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
-                                BlockVector& solution, RCP<Vector>& velocity,
-                                StepReport<dim>& report) {
+                                const RCP<const Vector>& correction, BlockVector& solution,
+                                FoundMotion& found, StepReport<dim>& report) {
   auto& solids = *components_.solids;
   const double end = context.time + context.step_dt;
-  auto* const flights = dynamic_cast<FreeFlight*>(solids.joints());
-  const auto close = [&]() -> ClosedFlight {
+  auto* const flights = side_of<FreeFlight>(*solids.joints());
+  const auto close = [&](const Vector& with) -> ClosedFlight {
     // Solutions may share it.
-    velocity = rcp(new Vector(*velocity, Teuchos::Copy));
+    found.velocity = rcp(new Vector(*found.velocity, Teuchos::Copy));
     if (flights)
-      return flights->close_flight(context.time, context.step_dt, *midpoint_correction_,
-                                   report.contact_position.n_contacts > 0, *velocity);
-    return {solids.joints()->close(context.time, context.step_dt, *velocity), Teuchos::null,
-            Teuchos::null};
+      return flights->close_flight(context.time, context.step_dt, with, *found.solved,
+                                   *found.velocity);
+    ClosedFlight motion;
+    motion.drift = solids.joints()->close(context.time, context.step_dt, *found.velocity).drift;
+    return motion;
   };
-  ClosedFlight motion = close();
+  ClosedFlight motion = close(*correction);
   if (!motion.drift.is_null()) {
     const SolveReport earlier = report.s1;
     context.constraints = solids.constraints(context.time, end, motion.drift);
-    if (!motion.correction.is_null()) {
-      correction_change_ = motion.correction;
-      correction_change_->update(-1, *midpoint_correction_, 1);
-    }
-    velocity = find_motion(context, prediction, solution, report);
+    const RCP<const Vector> next = motion.correction.is_null() ? correction : motion.correction;
+    found = find_motion(context, prediction, next, solution, report);
     report.s1.add_work(earlier);
-    motion = close();
+    motion = close(*next);
   }
   held_at_start_ = Teuchos::null;
   if (motion.drift.is_null()) {
     start_impulse_ = Teuchos::null;
     return;
   }
+  if (!motion.at_end.is_null())
+    drop_with_followers(solids.reduction(), *motion.at_end, *start_impulse_);
   held_at_start_ = solids.reduction().on_given(*start_impulse_);
   solids.reduction().drop_given(*start_impulse_);
   if (!motion.later_impulse.is_null())
@@ -108,15 +140,15 @@ template <int dim>
 void Stepper<dim>::move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
                                StepReport<dim>& report) {
   auto& solids = *components_.solids;
+  const bool jointed = coupled() && solids.joints();
   start_impulse_ = Teuchos::null;
-  correction_change_ = Teuchos::null;
+  const RCP<const Vector> correction = jointed ? midpoint_correction(context.dt) : Teuchos::null;
   BlockVector solution;
-  RCP<Vector> velocity = find_motion(context, prediction, solution, report);
-  if (coupled() && solids.joints())
-    close_joints(context, prediction, solution, velocity, report);
-  correction_change_ = Teuchos::null;
+  FoundMotion found = find_motion(context, prediction, correction, solution, report);
+  if (jointed)
+    close_joints(context, prediction, correction, solution, found, report);
   ScopedPhase phase(timers_, "solid motion");
-  solids.move(*velocity, context.time, context.step_dt);
+  solids.move(*found.velocity, context.time, context.step_dt);
 }
 
 template void Stepper<2>::move_solids(const StepContext<2>&, const Prediction<2>&, StepReport<2>&);

@@ -1,7 +1,9 @@
-"""Solids that no joint touches move as they do without joints."""
+"""Solids that no joint touches move as they do without joints, and mechanisms as they do without one another."""
 import unittest
 
-from jointed_scene import joint, run, tank, unseen_box
+import free_chain
+from joint_cases import CHAIN, CHAIN_JOINTS
+from jointed_scene import joint, joints_of, run, tank, unseen_box, vacuum
 
 CURTAIN = {"Type": "cloth", "Geometry": {"Shape": "sheet", "Size": (0., .4), "Normal": "x"}, "Young's Modulus": 1e3, "Thickness": .001,
            "Surface Density": 2., "Stretch Limit": .1, "Position": (.75, .65), "Time Integration": "fully-implicit",
@@ -18,6 +20,24 @@ class Beside(unittest.TestCase):
         for one, other in zip(without, joined):
             for name in ("x", "y", "vx", "vy"):
                 self.assertAlmostEqual(one[name], other[name], delta=1e-7, msg=f"{name} at {one['time']} s")
+
+    def test_a_mechanism_that_flies(self):
+        """A chain that a step turns by up to 1 and 4 rad, beside a pendulum whose joint gives all of its impulse at the end of the
+        step, since a spring or a limit is there: it flies all the same, and keeps its energy."""
+        inertia, start = free_chain.MASSES[2, 2], free_chain.energy(free_chain.start()[1])
+        for name, more in (("spring", {"Control": "proportional derivative", "Stiffness": 1e-9}), ("limit", {"Upper Limit": 1e4})):
+            for step in (.5, 2.):
+                with self.subTest(beside=name, step=step):
+                    solids = {**CHAIN, "P": unseen_box((0., 3.5), 20.)}
+                    scene = vacuum(solids, {**CHAIN_JOINTS, "H": joint("hinge", ("space", "P"), (-.5, 3.5), **more)}, step, 20 * step)
+                    scene["Contact"] = {"Type": "gauss seidel"}
+                    _, bodies = run(scene)
+                    for rows in zip(*(bodies[name] for name in "ABC")):
+                        energy = sum(row["vx"] ** 2 + row["vy"] ** 2 + inertia * row["wz"] ** 2 for row in rows) / 2
+                        self.assertAlmostEqual(energy / start, 1, delta=.012)
+                    halves = joints_of(scene)
+                    self.assertEqual({row["two_halves"] for name in ("AB", "BC") for row in halves[name]}, {1})
+                    self.assertEqual({row["two_halves"] for row in halves["H"][1:]}, {0})
 
 
 if __name__ == "__main__":
