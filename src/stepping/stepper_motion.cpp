@@ -117,7 +117,9 @@ void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>&
   if (!motion.drift.is_null()) {
     const SolveReport earlier = report.s1;
     context.constraints = solids.constraints(context.time, end, motion.drift);
-    const RCP<const Vector> next = motion.correction.is_null() ? correction : motion.correction;
+    RCP<const Vector> next = correction;
+    if (!motion.correction.is_null())
+      next = motion.correction;
     found = find_motion(context, prediction, next, solution, report);
     report.s1.add_work(earlier);
     motion = close(*next);
@@ -142,7 +144,9 @@ void Stepper<dim>::move_solids(const StepContext<dim>& context, const Prediction
   auto& solids = *components_.solids;
   const bool jointed = coupled() && solids.joints();
   start_impulse_ = Teuchos::null;
-  const RCP<const Vector> correction = jointed ? midpoint_correction(context.dt) : Teuchos::null;
+  RCP<const Vector> correction;
+  if (jointed)
+    correction = midpoint_correction(context.dt);
   BlockVector solution;
   FoundMotion found = find_motion(context, prediction, correction, solution, report);
   if (jointed)

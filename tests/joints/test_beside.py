@@ -28,7 +28,7 @@ class Beside(unittest.TestCase):
         for name, more in (("spring", {"Control": "proportional derivative", "Stiffness": 1e-9}), ("limit", {"Upper Limit": 1e4})):
             for step in (.5, 2.):
                 with self.subTest(beside=name, step=step):
-                    solids = {**CHAIN, "P": unseen_box((0., 3.5), 20.)}
+                    solids = {**CHAIN, "P": {**unseen_box((0., 3.5), 20.), "Torque": 20.}}
                     scene = vacuum(solids, {**CHAIN_JOINTS, "H": joint("hinge", ("space", "P"), (-.5, 3.5), **more)}, step, 20 * step)
                     scene["Contact"] = {"Type": "gauss seidel"}
                     _, bodies = run(scene)
