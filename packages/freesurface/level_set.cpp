@@ -174,7 +174,8 @@ void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<ch
 template <int dim>
 void LevelSet<dim>::fill_voids() {
   const std::vector<int> filled = close_voids(domain_, solids_, parameters_.smallest_void, phi_);
-  if (!parameters_.particles || filled.empty())
+  if (!parameters_.particles ||
+      sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(filled.size())) == 0)
     return;
   std::vector<char> cells(domain_.grid.n_stored_cells(), 0);
   for (const int cell : filled) {
@@ -185,6 +186,7 @@ void LevelSet<dim>::fill_voids() {
         cells[other] = 1;
     }
   }
+  domain_.halo.sum_to_owner(cells);  // what is left beside a void at a rank's border reopens it
   remove_particles(1, cells, particles_);
 }
 

@@ -105,6 +105,34 @@ TEST(Particles, AreTheSameOnAnyNumberOfRanks) {
   expect_same_on_any_ranks<3>();
 }
 
+/// Small voids in the lower corners of all tiles, so that some touch a border, wherever ranks meet:
+/// their particles go with them, those beyond the border too.
+template <int dim>
+void expect_small_voids_go_on_any_ranks() {
+  constexpr int width = tile_width<dim>, n = 4 * width;
+  const double h = 1.0 / n;
+  Bath<dim> bath(closed_cube<dim>(n)), alone(bath.description, self());
+  const SignedDistance<dim> distance = [&](const Point<dim>& x) {
+    Point<dim> middle;  // of the nearest
+    for (int a = 0; a < dim; ++a)
+      middle[a] = h * (1 + width * std::clamp<long>(std::lround(x[a] / (width * h)), 1, 3));
+    return std::max(x[dim - 1] - (n - 3) * h, 1.5 * h - (x - middle).norm());
+  };
+  const auto model = bath.make(name), model_alone = alone.make(name);
+  for (auto* m : {model.get(), model_alone.get()})
+    m->initialise(distance, nullptr);
+  for (auto* b : {&bath, &alone})
+    b->set_velocity([](const Point<dim>&) { return Point<dim>(0.1 * Point<dim>::Unit(0)); });
+  bath.step(*model, 0, h);
+  alone.step(*model_alone, 0, h);
+  EXPECT_EQ(census(bath, *model).size(), census(alone, *model_alone).size());
+}
+
+TEST(Particles, OfFilledVoidsGoOnAnyNumberOfRanks) {
+  expect_small_voids_go_on_any_ranks<2>();
+  expect_small_voids_go_on_any_ranks<3>();
+}
+
 template <int dim>
 void expect_restart() {
   const std::string folder = (std::filesystem::temp_directory_path() /
