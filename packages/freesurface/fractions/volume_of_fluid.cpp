@@ -190,7 +190,10 @@ bool VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
   const bool takes_along = sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(taken.size())) > 0;
   if (takes_along) {
     const auto after = step.kept.of(solids_.state.surface, domain_.grid, 2);
-    lost_ += take_along(domain_, solids_, step.surface, *after, step.dt, taken, fractions_);
+    const double gone =
+        take_along(domain_, solids_, step.surface, *after, step.dt, taken, fractions_);
+    target_ -= gone;
+    lost_ += gone;
   }
   bring_out_of_solids(domain_, solids_, fractions_);
   return takes_along;

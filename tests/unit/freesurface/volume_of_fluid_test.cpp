@@ -196,6 +196,29 @@ TEST(VolumeOfFluid, AShellTakesItsLiquidAlong) {
   }
 }
 
+/// A full shell is taken out of the domain at once: what it held is lost, and the target knows.
+template <int dim>
+void expect_lost_liquid_is_off_target() {
+  const int n = dim == 2 ? 40 : 20;
+  Bath<dim> bath(closed_cube<dim>(n));
+  auto model = bath.make(model_name);
+  const auto mesh = ball_surface<dim>(0.15, 0.5 / n);
+  const Point<dim> center = Point<dim>::Constant(0.503);
+  const auto before = snapshot<dim>(mesh, center, false),
+             after = snapshot<dim>(mesh, center + Point<dim>::Unit(0), false);
+  model->initialise(ball<dim>(center, 0.15), before);
+  const double start = model->ledger().volume;
+  bath.move(before, after, 0.1);
+  bath.step(*model, 0, 0.1);
+  EXPECT_GT(model->ledger().lost, 0.5 * start);  // the rest is owed to cells around
+  EXPECT_NEAR(model->ledger().target + model->ledger().lost, start, 1e-13);
+}
+
+TEST(VolumeOfFluid, LostLiquidIsTakenOffTheTarget) {
+  expect_lost_liquid_is_off_target<2>();
+  expect_lost_liquid_is_off_target<3>();
+}
+
 TEST(VolumeOfFluid, ASolidThatDipsDisplacesLiquid) {
   expect_solid_dips<2>();
   expect_solid_dips<3>();
