@@ -100,8 +100,9 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
       largest_displacement<dim>(domain_, geometry.state, advection_velocity, step.dt);
   const double band = interface_->band(displacement) * domain_.spacing();
   const auto solids = step.kept.of(geometry.state.surface, domain_.grid, 2);
-  const VelocityExtension<dim> extension(domain_, interface_->distance(), band, geometry.near,
-                                         *solids, geometry.state);
+  const double known = interface_->band(0) * domain_.spacing();
+  const VelocityExtension<dim> extension(domain_, interface_->distance(), known, band,
+                                         geometry.near, *solids, geometry.state);
   extension.extend(step.time, step.surface.velocity, advection_velocity);
   stop_beyond<dim>(geometry.state, advection_velocity);
   if (&velocity != &advection_velocity) {

@@ -14,14 +14,62 @@ constexpr double same_distance = 1e-9;
 
 template <int dim>
 VelocityExtension<dim>::VelocityExtension(const MacDomain<dim>& domain, const CellField& distance,
-                                          double band, const std::vector<char>& near,
+                                          double known, double band, const std::vector<char>& near,
                                           const NearbySurface<dim>& surface, MacState<dim>& state)
     : domain_(domain), distance_(distance), near_(near), surface_(surface) {
+  if (band > known)
+    go_on(known, band, state);
   find_faces(band, state);
   for (int axis = 0; axis < dim; ++axis) {
     sort_faces(axis, state);
     find_sources(axis, state);
   }
+}
+
+/// On a plateau no face would be nearer to the fluid than another. Across a cell's corner a
+/// distance of h leads over as many cells as there are axes; so no cell within the band is left
+/// out.
+template <int dim>
+void VelocityExtension<dim>::go_on(double known, double band, const MacState<dim>& state) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const double h = grid.spacing(), layer = h / std::sqrt(dim), unknown = band + 2 * h;
+  std::vector<int> waiting, reached;
+  grid.for_each_stored_cell([&](int cell) {
+    if (state.cells[cell] != CellState::empty || distance_[cell] < (1 - 1e-6) * known)
+      return;
+    distance_[cell] = unknown;
+    if (grid.owned(cell))
+      waiting.push_back(cell);
+  });
+  domain_.full_halo.fill(distance_);
+  const auto is_next = [&](int cell) {
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int other = grid.neighbor(cell, i / 2, i % 2);
+      if (other >= 0 && grid.in_domain(other) && state.cells[other] != CellState::solid &&
+          distance_[other] < unknown && !is_hidden(cell, i / 2, i % 2))
+        return true;
+    }
+    return false;
+  };
+  for (double value = known; value < band + h; value += layer) {
+    const auto rest = std::stable_partition(waiting.begin(), waiting.end(), is_next);
+    reached.assign(waiting.begin(), rest);
+    waiting.erase(waiting.begin(), rest);
+    for (const int cell : reached)
+      distance_[cell] = value;
+    domain_.full_halo.fill(distance_);
+  }
+}
+
+/// Whether a surface comes between the centres of a cell and its neighbour.
+template <int dim>
+bool VelocityExtension<dim>::is_hidden(int cell, int axis, int side) const {
+  const int other = domain_.grid.neighbor(cell, axis, side);
+  if (near_.empty() || !(near_[cell] || near_[other]))
+    return false;
+  const Point<dim> x = domain_.grid.center(cell);
+  const double h = domain_.spacing();
+  return surface_.first_hit(x, x + (side == 0 ? -h : h) * Point<dim>::Unit(axis)).has_value();
 }
 
 template <int dim>

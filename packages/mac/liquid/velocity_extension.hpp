@@ -20,10 +20,11 @@ template <int dim>
 class VelocityExtension {
  public:
   /// Finds the faces and marks them `extended` in `state`: those without fluid on either side and
-  /// with a void cell that has a distance below `band` [m] on one. `near` as in MacGeometry, the
-  /// surface at the same instant. References must outlive this object. Collective.
-  VelocityExtension(const MacDomain<dim>& domain, const CellField& distance, double band,
-                    const std::vector<char>& near, const NearbySurface<dim>& surface,
+  /// with a void cell that has a distance below `band` [m] on one. Where `distance` is cut off at
+  /// `known` [m] it goes on from cell to cell, by no more than it may grow. `near` as in
+  /// MacGeometry, the surface at the same instant. References must outlive this object. Collective.
+  VelocityExtension(const MacDomain<dim>& domain, const CellField& distance, double known,
+                    double band, const std::vector<char>& near, const NearbySurface<dim>& surface,
                     MacState<dim>& state);
 
   /// Sets the velocity of those faces, ghosts included. `on_surface`: of a surface point; `time`:
@@ -45,6 +46,9 @@ class VelocityExtension {
     std::vector<Face> all;  ///< owned, each behind its sources on this rank
     std::vector<Source> sources;
   };
+  /// The distance where it is cut off at `known`.
+  void go_on(double known, double band, const MacState<dim>& state);
+  bool is_hidden(int cell, int axis, int side) const;
   void find_faces(double band, MacState<dim>& state);
   void sort_faces(int axis, const MacState<dim>& state);
   void find_sources(int axis, const MacState<dim>& state);
@@ -65,7 +69,7 @@ class VelocityExtension {
                const std::function<Point<dim>(const SurfacePoint<dim>&)>& on_surface) const;
 
   const MacDomain<dim>& domain_;
-  const CellField& distance_;
+  CellField distance_;
   const std::vector<char>& near_;
   const NearbySurface<dim>& surface_;
   std::array<Faces, dim> faces_;

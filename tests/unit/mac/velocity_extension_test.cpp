@@ -19,7 +19,8 @@ struct Extended {
 };
 template <int dim>
 Extended<dim> extended(const MacFluid<dim>& fluid, const CellField& distance, double band,
-                       const std::function<Point<dim>(const Point<dim>&)>& inside) {
+                       const std::function<Point<dim>(const Point<dim>&)>& inside,
+                       double known = 1e300) {
   const MacDomain<dim>& domain = fluid.domain();
   Extended<dim> result{{}, fluid.geometry().state};
   for (int axis = 0; axis < dim; ++axis) {
@@ -32,8 +33,8 @@ Extended<dim> extended(const MacFluid<dim>& fluid, const CellField& distance, do
   domain.halo.fill(result.velocity);
   KeptSurface<dim> kept;
   const auto nearby = kept.of(result.state.surface, domain.grid, 2);
-  const VelocityExtension<dim> extension(domain, distance, band, fluid.geometry().near, *nearby,
-                                         result.state);
+  const VelocityExtension<dim> extension(domain, distance, known, band, fluid.geometry().near,
+                                         *nearby, result.state);
   extension.extend(
       0, [](const SurfacePoint<dim>&) { return Point<dim>(Point<dim>::Constant(7)); },
       result.velocity);
@@ -66,6 +67,45 @@ void expect_constants_go_on() {
 TEST(VelocityExtension, ConstantVelocitiesAreCarriedOnExactly) {
   expect_constants_go_on<2>();
   expect_constants_go_on<3>();
+}
+
+/// In long steps, which need them far beyond where the distance is known: on all sides of a ball.
+template <int dim>
+void expect_constants_go_far() {
+  constexpr int n = dim == 2 ? 40 : 28;
+  const double h = 1.0 / n, radius = (dim == 2 ? 7 : 3) * h;
+  const Point<dim> center = Point<dim>::Constant(0.5);
+  Case<dim> scene(cube<dim>(n), h);
+  add_ball<dim>(scene, center, radius);
+  const auto fluid = make_liquid<dim>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<dim>());
+  const TiledGrid<dim>& grid = fluid->domain().grid;
+  const auto distance_at = [&](const Point<dim>& x) { return (x - center).norm() - radius; };
+  CellField distance(grid.n_stored_cells());
+  grid.for_each_stored_cell(
+      [&](int cell) { distance[cell] = std::min(distance_at(grid.center(cell)), 4 * h); });
+  const Point<dim> constant = Point<dim>::Constant(-2.5);
+  const auto result = extended<dim>(
+      *fluid, distance, 11 * h, [&](const auto&) { return constant; }, 4 * h);
+  GlobalIndex n_far = 0;
+  for (int axis = 0; axis < dim; ++axis)
+    grid.for_each_owned_face(axis, [&](int cell) {
+      const FaceState state = result.state.faces[axis][cell];
+      const double far = distance_at(grid.face_center(axis, cell));
+      if (cells_of_face(grid, result.state.cells, axis, cell).at_side())
+        return;
+      if (is_wet(state) || state == FaceState::extended) {
+        ASSERT_EQ(result.velocity[axis][cell], -2.5) << far / h;
+        n_far += far > 5 * h;
+      } else {
+        EXPECT_GT(far, 10 * h);
+      }
+    });
+  EXPECT_GT(sum_all(world(), n_far), dim == 2 ? 1000 : 10000);
+}
+TEST(VelocityExtension, ConstantVelocitiesAreCarriedOnBeyondTheKnownDistance) {
+  expect_constants_go_far<2>();
+  expect_constants_go_far<3>();
 }
 
 /// Above level water, what varies along the surface alone goes straight up, whatever is beside it.
