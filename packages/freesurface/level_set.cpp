@@ -280,7 +280,7 @@ void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
     volume_.restore(solids_, phi_, *loaded_);
     loaded_.reset();
   }
-  volume_.flow_out(solids_, phi_, step.advection_velocity, step.dt);
+  volume_.flow_out(solids_, phi_, step);
   if (drops_)
     volume_.lose(drops_->fly(step.surface, step.gravity, step.dt));
   const double displacement = carry(step);

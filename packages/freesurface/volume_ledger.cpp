@@ -75,12 +75,14 @@ void VolumeLedger<dim>::restore(const SolidCells<dim>& solids, const CellField& 
   targets_ = targets;
 }
 
-/// The body that a fluid cell or one beside it belongs to, -1: none.
+/// The body that a cell or one beside it belongs to, -1: none. A cell whose centre a solid holds
+/// has its fluid from those beside it.
 template <int dim>
 int VolumeLedger<dim>::body_at(const SolidCells<dim>& solids, int cell) const {
   int body = groups_.of_cell[cell];
   for (int i = 0; body < 0 && i < 2 * dim; ++i) {
-    const int other = solids.seen_neighbor(domain_.grid, cell, i / 2, i % 2);
+    const int other = solids.is_fluid(cell) ? solids.seen_neighbor(domain_.grid, cell, i / 2, i % 2)
+                                            : domain_.grid.neighbor(cell, i / 2, i % 2);
     if (other >= 0)
       body = groups_.of_cell[other];
   }
@@ -89,9 +91,9 @@ int VolumeLedger<dim>::body_at(const SolidCells<dim>& solids, int cell) const {
 
 template <int dim>
 void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField& phi,
-                                 const FaceField<dim>& velocity, double dt) {
+                                 const InterfaceStep<dim>& step) {
   const TiledGrid<dim>& grid = domain_.grid;
-  const double per_speed = dt * domain_.face_area(), h = domain_.spacing();
+  const double per_speed = step.dt * domain_.face_area(), h = domain_.spacing();
   std::vector<double> out(groups_.n, 0.0);
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
@@ -101,14 +103,15 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
       for_each_cell_at_side(grid, axis, end, [&](int cell) {
         // Also of cells that the surface is below the centre of: else the flow leaps as it passes.
         const double wet = std::clamp(0.5 - phi[cell] / h, 0.0, 1.0);
-        const int body = wet > 0 && solids.is_fluid(cell) ? body_at(solids, cell) : -1;
+        const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
+        const double open = wet > 0 ? step.open_part(axis, face) : 0;
+        const int body = open > 0 ? body_at(solids, cell) : -1;
         if (body < 0)
           return;
-        const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
-        double speed = (end == 0 ? -1 : 1) * velocity[axis][face];
+        double speed = (end == 0 ? -1 : 1) * step.advection_velocity[axis][face];
         if (type == SideType::open)
           speed = std::max(speed, 0.0);
-        out[body] += speed * per_speed * wet;
+        out[body] += speed * per_speed * wet * open;
       });
     }
   sum_all(grid.comm(), out.data(), groups_.n);

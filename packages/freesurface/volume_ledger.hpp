@@ -42,11 +42,10 @@ class VolumeLedger {
 
   /// Takes the present volumes as targets. Collective.
   void begin(const SolidCells<dim>& solids, const CellField& phi);
-  /// Takes off what flows out through the sides of the domain in dt; through open sides no liquid
-  /// comes in. Before phi is carried.
-  /// Collective.
-  void flow_out(const SolidCells<dim>& solids, const CellField& phi, const FaceField<dim>& velocity,
-                double dt);
+  /// Takes off what flows out through the sides of the domain in a step; through open sides no
+  /// liquid comes in. Before phi is carried. Collective.
+  void flow_out(const SolidCells<dim>& solids, const CellField& phi,
+                const InterfaceStep<dim>& step);
   /// Hands the targets on to the bodies of the carried phi. `swept` (may be empty): cells that have
   /// changed sides of a surface since `before`; `reach`: farther than any cell's content has come
   /// from [cells]. Collective.

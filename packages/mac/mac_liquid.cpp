@@ -12,6 +12,11 @@ namespace lockstep {
 template <int dim>
 void MacFluid<dim>::move_liquid(double time, double dt, const MovingSurface<dim>& surface,
                                 FaceField<dim>& advection) {
+  const auto open = [this](int axis, int cell) {
+    return geometry_.state.faces[axis][cell] == FaceState::coupled
+               ? 0
+               : geometry_.face_table(axis, cell).open;
+  };
   const InterfaceStep<dim> step{advection,
                                 surface,
                                 ray_halo_,
@@ -20,7 +25,8 @@ void MacFluid<dim>::move_liquid(double time, double dt, const MovingSurface<dim>
                                 dt,
                                 scalars_.liquid_sources(time),
                                 liquid_->sinks(),
-                                parameters_.forces.gravity};
+                                parameters_.forces.gravity,
+                                open};
   liquid_->advance(step, geometry_, advection, velocity_);
 }
 

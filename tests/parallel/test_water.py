@@ -35,6 +35,24 @@ def scene(dimension, interface, coupling, tension):
         "Time": {"End": 10., "Fixed Step": .01}, "Output": {"Checkpoint Interval": .1, "Keep Checkpoints": 9}})
 
 
+def duct(interface):
+    """Full of water that flows in on one side and out on the other, half of which posts cover, in cells with centres on both
+    sides of their faces."""
+    def post(y, height):
+        return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.37, height)}, "Position": (1., y),
+                "Motion": {"Type": "static"}}
+
+    return xml("Scene", {
+        "Dimension": 2,
+        "Domain": {"Lower": (0., 0.), "Upper": (1., .5), "Cells": (32, 16), "Sides": {
+            "x lower": {"Type": "inflow", "Velocity": (.2, 0.)}, "x upper": {"Type": "open"}}},
+        "Fluid": {"Density": 1000., "Free Surface": {
+            "Interface": {"Type": interface},
+            "Liquid": {"All": {"Type": "box", "Lower": (-1., -1.), "Upper": (2., 2.)}}}},
+        "Solids": {"Low": post(0., .394), "High": post(.5, .3)}, "Coupling": {"Type": "flux"},
+        "Solver": {"Tolerance": 1e-12}, "Time": {"End": 10., "Fixed Step": .01}})
+
+
 def run(file, output, steps, ranks=1, restart=()):
     simulate(file, output, "--steps", steps, *restart, ranks=ranks)
     return without_times(table(output / "history.csv")), table(output / "bodies.csv")
@@ -65,6 +83,16 @@ class Water(unittest.TestCase):
         at = int(checkpoint.split("-")[1].split(".")[0])
         run(file, idle, at, 2, ("--restart", idle / checkpoint))
         self.assertEqual(run(file, idle, len(whole[0]), 2, ("--restart", idle / checkpoint)), whole)
+
+    def test_openings(self):
+        """What flows in flows out."""
+        for interface in ("level set", "volume of fluid"):
+            with tempfile.TemporaryDirectory() as folder:
+                file = Path(folder) / "scene.xml"
+                file.write_text(duct(interface))
+                for ranks in (1, 2):
+                    targets = [float(row["liquid_volume_target"]) for row in run(file, Path(folder) / str(ranks), 10, ranks)[0]]
+                    self.assertLess(max(targets) - min(targets), 1e-9, interface)
 
     def test_particles(self):
         self.check(2, "particle level set", "mixed face", 20)

@@ -97,10 +97,11 @@ void FractionTransport<dim>::sweep(const SolidCells<dim>& solids, const std::vec
       const Inflow inflow = through(solids, liquid, cell, axis, side, passed);
       change += inflow.liquid;
       growth -= passed;
+      const double real = inflow.is_at_side ? open_part(axis, face) * inflow.liquid : inflow.liquid;
       if (inflow.is_real)
-        arrived_[cell] += inflow.liquid;
+        arrived_[cell] += real;
       if (inflow.is_at_side)
-        left_ -= inflow.liquid;
+        left_ -= real;
     }
     swept_[cell] = liquid[cell] + (change + (grows_[cell] ? growth : 0));
   });
@@ -109,16 +110,44 @@ void FractionTransport<dim>::sweep(const SolidCells<dim>& solids, const std::vec
 }
 
 template <int dim>
+void FractionTransport<dim>::leave_covered_cells(const SolidCells<dim>& solids,
+                                                 const std::vector<char>& tiles,
+                                                 const FaceField<dim>& velocity, double dt,
+                                                 Fractions& fractions) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  for_each_owned_cell_of(grid, tiles, [&](int cell) {
+    if (solids.is_fluid(cell) || !grid.in_domain(cell) || fractions.liquid[cell] == 0)
+      return;
+    const Index<dim> place = grid.coordinates(cell);
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int axis = i / 2, side = i % 2, face = face_of(grid, cell, axis, side);
+      if (face < 0 || place[axis] != (side == 0 ? 0 : grid.n_cells()[axis] - 1))
+        continue;
+      double inwards = (side == 0 ? 1 : -1) * velocity[axis][face] * dt / grid.spacing();
+      if (domain_.boundary.side(axis, side).type == SideType::open)
+        inwards = std::min(inwards, 0.0);
+      const double real = open_part(axis, face) * inwards * fractions.liquid[cell];
+      fractions.owed[cell] += real;
+      left_ -= real;
+    }
+  });
+}
+
+template <int dim>
 double FractionTransport<dim>::advance(const SolidCells<dim>& solids,
                                        const std::vector<char>& tiles,
                                        const std::vector<char>& is_solved,
                                        const FaceField<dim>& velocity, double dt, int first_axis,
+                                       const std::function<double(int axis, int cell)>& open,
                                        Fractions& fractions) {
+  open_ = open;
   before_ = fractions.liquid;
   swept_.resize(before_.size());
   arrived_.assign(before_.size(), 0);
   grows_.assign(before_.size(), 0);
   left_ = 0;
+  if (open_ && solids.state.surface)
+    leave_covered_cells(solids, tiles, velocity, dt, fractions);
   for_each_fluid_cell(domain_.grid, solids, tiles,
                       [&](int cell) { grows_[cell] = is_solved[cell] && before_[cell] > 0.5; });
   for (int i = 0; i < dim; ++i)

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "freesurface/fractions/fraction_planes.hpp"
 
 namespace lockstep {
@@ -35,11 +37,12 @@ class FractionTransport {
                         double dt) const;
   /// One step with a Courant number of at most 1/2 on the flagged owned tiles, `first_axis` first.
   /// `is_solved`: cells in which the velocity has no divergence. Sets the halo of width 1 of the
-  /// fractions, which must be set. Returns what has left the domain less what has come in [cells],
-  /// on this rank. Collective.
+  /// fractions, which must be set. `open`: as in InterfaceStep. Returns what has left the domain
+  /// less what has come in [cells], on this rank. Collective.
   double advance(const SolidCells<dim>& solids, const std::vector<char>& tiles,
                  const std::vector<char>& is_solved, const FaceField<dim>& velocity, double dt,
-                 int first_axis, Fractions& fractions);
+                 int first_axis, const std::function<double(int axis, int cell)>& open,
+                 Fractions& fractions);
 
  private:
   /// What passes one face of a cell into it, and whether it has come from other liquid.
@@ -52,11 +55,17 @@ class FractionTransport {
   double in_slab(const CellField& liquid, int cell, int axis, int side, double width) const;
   void sweep(const SolidCells<dim>& solids, const std::vector<char>& tiles,
              const FaceField<dim>& velocity, double dt, int axis, CellField& liquid);
+  /// What flows out of cells whose centres a solid holds, where it leaves their faces open in part:
+  /// they owe it.
+  void leave_covered_cells(const SolidCells<dim>& solids, const std::vector<char>& tiles,
+                           const FaceField<dim>& velocity, double dt, Fractions& fractions);
+  double open_part(int axis, int face) const { return open_ ? open_(axis, face) : 1; }
 
   const MacDomain<dim>& domain_;
   FractionPlanes<dim> planes_;
   std::vector<char> grows_;  ///< cells that swell where the velocity does, along one axis
   CellField before_, swept_, arrived_;  ///< at the start; after an axis; real inflow so far
+  std::function<double(int axis, int cell)> open_;  ///< of faces at sides; null: all of them
   double left_ = 0;
 };
 

@@ -137,7 +137,7 @@ std::vector<char> VolumeOfFluid<dim>::carry(const InterfaceStep<dim>& step) {
   double left = 0;
   for (int i = 0; i < n; ++i)
     left += transport_.advance(solids_, tiles, is_solved, velocity, step.dt / n,
-                               static_cast<int>(n_sweeps_++ % dim), fractions_);
+                               static_cast<int>(n_sweeps_++ % dim), step.open, fractions_);
   target_ -= sum_all(domain_.grid.comm(), left);
   return tiles;
 }

@@ -49,6 +49,10 @@ struct InterfaceStep {
   /// Liquid is created inside these and removed inside those, at the end of the step.
   std::vector<SignedDistance<dim>> sources, sinks;
   Point<dim> gravity = Point<dim>::Zero();  ///< [m/s^2]; drops fall with it
+  /// The part of a face at a side of the domain, the lower one of this cell normal to an axis,
+  /// through which fluid flows; null: all of it. Local.
+  std::function<double(int axis, int cell)> open = nullptr;
+  double open_part(int axis, int cell) const { return open ? open(axis, cell) : 1; }
 };
 
 /// The surface of a liquid: where it is, how it moves. A plug-in kind; a model knows no pressure.

@@ -75,7 +75,8 @@ struct Bath {
     };
   }
   void step(InterfaceModel<dim>& model, double time, double dt) {
-    model.advance({velocity, surface, ray_halo, kept, time, dt, sources, sinks});
+    model.advance(
+        {velocity, surface, ray_halo, kept, time, dt, sources, sinks, Point<dim>::Zero(), open});
   }
   /// phi at a point of the interior that this rank owns: multilinear.
   double at(const CellField& phi, const Point<dim>& x) const {
@@ -131,6 +132,7 @@ struct Bath {
   MovingSurface<dim> surface;
   FaceField<dim> velocity;
   std::vector<SignedDistance<dim>> sources, sinks;
+  std::function<double(int axis, int cell)> open;  ///< parts of faces
 };
 
 /// One solid, its mesh moved to a place.

@@ -364,6 +364,20 @@ TEST(VolumeLedger, KnowsWhatSourcesSinksAndSidesDo) {
   expect_known_fluxes("volume of fluid");
 }
 
+/// Of faces at a side that are open in part so much flows out.
+TEST(VolumeLedger, LosesWhatOpenPartsOfFacesLetThrough) {
+  for (const char* const name : {"level set", "volume of fluid"}) {
+    Bath<2> bath(open_cube<2>(40));
+    auto model = bath.make(name);
+    model->initialise([](const Point<2>& x) { return x[1] - 0.3; }, nullptr);
+    bath.set_velocity([](const Point<2>&) { return Point<2>(0, -0.1); });
+    bath.open = [&](int, int cell) { return bath.domain.grid.center(cell)[0] < 0.5 ? 0.25 : 1; };
+    for (int i = 0; i < 5; ++i)
+      bath.step(*model, 0.1 * i, 0.1);
+    EXPECT_NEAR(model->ledger().target, 0.3 - 0.05 * 0.625, 1e-12) << name;
+  }
+}
+
 /// Liquid goes out through a side and does not come back in.
 TEST(VolumeLedger, NothingWetComesInThroughAnOpenSide) {
   for (const char* const name : {"level set", "particle level set", "volume of fluid"}) {
