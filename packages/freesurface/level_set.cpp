@@ -102,7 +102,7 @@ void LevelSet<dim>::initialise(const SignedDistance<dim>& distance, const Surfac
   const std::vector<char> all(grid.n_owned_tiles(), 1);
   redistance(domain_, solids_, all, cut_off(), phi_);
   moved_ = 0;
-  finish();
+  settle();
   volume_.begin(solids_, phi_);
   particles_.assign(grid.n_owned_tiles(), {});
   n_restored_ = 0;
@@ -145,6 +145,7 @@ double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
   domain_.halo.fill(phi_);
   if (moved_ >= negligible_motion)
     restore(step, tiles);
+  settle();
   volume_.inherit(replaced ? *replaced : solids_, solids_, phi_, transport.invalid().cells,
                   static_cast<int>(std::ceil(displacement)) + 1);
   if (drops_)
@@ -223,6 +224,7 @@ void LevelSet<dim>::add_sources(const InterfaceStep<dim>& step) {
     const CellField sink = distance_from(step.sinks);
     for (std::size_t cell = 0; cell < phi_.size(); ++cell)
       phi_[cell] = std::max(phi_[cell], -sink[cell]);
+    settle();
     volume_.remove(solids_, phi_);
     take_out(-1, sink);
   }
@@ -230,6 +232,7 @@ void LevelSet<dim>::add_sources(const InterfaceStep<dim>& step) {
     const CellField source = distance_from(step.sources), before = phi_;
     for (std::size_t cell = 0; cell < phi_.size(); ++cell)
       phi_[cell] = std::min(phi_[cell], source[cell]);
+    settle();
     volume_.create(solids_, before, phi_);
     take_out(1, source);
   }
@@ -287,10 +290,10 @@ void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
   add_sources(step);
   if (drops_)
     collect_drops(step);
-  const VolumeShift shift = volume_.correct(solids_, displacement, phi_);
+  const VolumeShift shift = volume_.correct(
+      solids_, displacement, [this] { settle(); }, phi_);
   if (parameters_.particles)
     shift_particles(domain_, solids_, step.kept, shift, phi_, particles_);
-  finish();
 }
 
 template <int dim>
@@ -305,7 +308,7 @@ LiquidCells LevelSet<dim>::cells_with_liquid(const Surface& surface, KeptSurface
 }
 
 template <int dim>
-void LevelSet<dim>::finish() {
+void LevelSet<dim>::settle() {
   domain_.full_halo.fill(phi_);
   continue_into_solids(domain_, solids_, depth_in_solids, cut_off(), phi_);
 }

@@ -75,7 +75,8 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   /// Of particles that no cell shows.
   void release_drops(const InterfaceStep<dim>& step, const TransportFrame<dim>& frame);
   void collect_drops(const InterfaceStep<dim>& step);
-  void finish();
+  /// Sets all ghosts of phi, and what it is in solids from what it is around them.
+  void settle();
 
   const MacDomain<dim>& domain_;
   LevelSetParameters parameters_;

@@ -84,7 +84,8 @@ std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& sol
 }
 
 template <int dim>
-VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl, CellField& phi) {
+VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl,
+                                       const std::function<void()>& settle, CellField& phi) {
   if (parameters_.correction == VolumeCorrection::none || groups_.n == 0)
     return {};
   const double most = parameters_.largest_shift * domain_.spacing() * std::max(1.0, cfl);
@@ -121,7 +122,7 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
       done[cell] += shift[body];
       n_changed += was_wet != (phi[cell] < 0);
     });
-    domain_.halo.fill(phi);
+    settle();
     if (most > 0.5 * domain_.spacing())
       measure_.prepare(solids, phi);
     has_regrouped = sum_all(domain_.grid.comm(), n_changed) > 0;
@@ -144,7 +145,9 @@ template std::vector<double> VolumeLedger<2>::limited_shifts(const SolidCells<2>
                                                              const std::vector<double>&) const;
 template std::vector<double> VolumeLedger<3>::limited_shifts(const SolidCells<3>&,
                                                              const std::vector<double>&) const;
-template VolumeShift VolumeLedger<2>::correct(const SolidCells<2>&, double, CellField&);
-template VolumeShift VolumeLedger<3>::correct(const SolidCells<3>&, double, CellField&);
+template VolumeShift VolumeLedger<2>::correct(const SolidCells<2>&, double,
+                                              const std::function<void()>&, CellField&);
+template VolumeShift VolumeLedger<3>::correct(const SolidCells<3>&, double,
+                                              const std::function<void()>&, CellField&);
 
 }  // namespace lockstep

@@ -378,6 +378,46 @@ TEST(VolumeLedger, LosesWhatOpenPartsOfFacesLetThrough) {
   }
 }
 
+/// A box and the level that it stands in rise together: what the ledger tells is the volume of the
+/// phi that is there after the step, the part of it in the box included.
+template <int dim>
+void expect_ledger_of_final_distance(const std::string& correction) {
+  const int n = dim == 2 ? 32 : 16;
+  const double h = 1.0 / n, dt = 0.1, rise = 0.5 * h;
+  Bath<dim> bath(closed_cube<dim>(n));
+  ParameterList list;
+  list.set("Volume Correction", correction);
+  auto model = bath.make("level set", list);
+  const SurfaceMesh<dim> box = box_surface<dim>(Point<dim>::Constant(0.33), h);
+  const auto at = [&](int i) {
+    return snapshot<dim>(box, Point<dim>::Constant(0.47) + i * rise * Point<dim>::Unit(dim - 1),
+                         true);
+  };
+  model->initialise([&](const Point<dim>& x) { return x[dim - 1] - 0.45; }, at(0));
+  bath.set_velocity(
+      [&](const Point<dim>&) { return Point<dim>(rise / dt * Point<dim>::Unit(dim - 1)); });
+  for (int i = 0; i < 6; ++i) {
+    bath.move(at(i), at(i + 1), dt);
+    bath.step(*model, i * dt, dt);
+    const CellField& phi = model->distance();
+    const auto solids = find_solid_cells<dim>(bath.domain, bath.surface.after);
+    std::vector<char> wet(phi.size());
+    for (std::size_t cell = 0; cell < phi.size(); ++cell)
+      wet[cell] = phi[cell] < 0;
+    LiquidVolume<dim> measure(bath.domain);
+    measure.prepare(solids, phi);
+    const double found = measure.measure(phi, find_groups(bath.domain, solids, wet)).total();
+    EXPECT_NEAR(model->ledger().volume, found, 1e-12) << correction << " " << i;
+  }
+}
+
+TEST(VolumeLedger, TellsTheVolumeBesideSolidsThatRise) {
+  for (const std::string correction : {"component", "none"}) {
+    expect_ledger_of_final_distance<2>(correction);
+    expect_ledger_of_final_distance<3>(correction);
+  }
+}
+
 /// Liquid goes out through a side and does not come back in.
 TEST(VolumeLedger, NothingWetComesInThroughAnOpenSide) {
   for (const char* const name : {"level set", "particle level set", "volume of fluid"}) {
