@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mac/domain/cell_at_side.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -27,9 +29,31 @@ bool may_be_kept_apart(const TiledGrid<dim>& grid, const SolidCells<dim>& solids
   return false;
 }
 
+/// True if liquid of the cell may leave through a side at which void comes in.
 template <int dim>
-CellBox<dim> box_of_band(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+bool is_liquid_at_open_side(const MacDomain<dim>& domain, const CellField& phi, int cell) {
+  return phi[cell] < 0 && at_side(domain, cell, [](const BoundarySide<dim>& side) {
+           return side.type == SideType::open;
+         });
+}
+
+template <int dim>
+bool touches_open_side(const MacDomain<dim>& domain, int tile) {
+  const TiledGrid<dim>& grid = domain.grid;
+  for (int a = 0; a < dim; ++a) {
+    const int begin = grid.tile_begin(tile)[a], end = begin + grid.tile_domain_extent(tile)[a];
+    if ((begin == 0 && domain.boundary.side(a, 0).type == SideType::open) ||
+        (end == grid.n_cells()[a] && domain.boundary.side(a, 1).type == SideType::open))
+      return true;
+  }
+  return false;
+}
+
+template <int dim>
+CellBox<dim> box_of_band(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                          const CellField& phi, double cut_off, int tile) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const bool at_open_side = touches_open_side(domain, tile);
   constexpr int width = tile_width<dim>;
   CellBox<dim> box;
   box.low.fill(width);
@@ -46,7 +70,8 @@ CellBox<dim> box_of_band(const TiledGrid<dim>& grid, const SolidCells<dim>& soli
       continue;
     for (int x = 0; x < extent[0]; ++x) {
       const int cell = tile * tile_volume<dim> + first + x;
-      if (std::abs(phi[cell]) >= cut_off && !may_be_kept_apart(grid, solids, phi, cell))
+      if (std::abs(phi[cell]) >= cut_off && !may_be_kept_apart(grid, solids, phi, cell) &&
+          !(at_open_side && is_liquid_at_open_side(domain, phi, cell)))
         continue;
       row[0] = x;
       for (int a = 0; a < dim; ++a) {
@@ -85,11 +110,12 @@ void flag_tiles(const TiledGrid<dim>& grid, const CellBox<dim>& box, std::vector
 }  // namespace
 
 template <int dim>
-std::vector<char> tiles_near_band(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+std::vector<char> tiles_near_band(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                                   const CellField& phi, double cut_off, int reach) {
+  const TiledGrid<dim>& grid = domain.grid;
   std::vector<char> flags(grid.n_owned_tiles(), 0);
   for (int tile = 0; tile < grid.n_tiles(); ++tile) {
-    CellBox<dim> box = box_of_band(grid, solids, phi, cut_off, tile);
+    CellBox<dim> box = box_of_band(domain, solids, phi, cut_off, tile);
     if (box.empty())
       continue;
     for (int a = 0; a < dim; ++a) {
@@ -105,9 +131,9 @@ std::vector<char> tiles_near_band(const TiledGrid<dim>& grid, const SolidCells<d
   return flags;
 }
 
-template std::vector<char> tiles_near_band<2>(const TiledGrid<2>&, const SolidCells<2>&,
+template std::vector<char> tiles_near_band<2>(const MacDomain<2>&, const SolidCells<2>&,
                                               const CellField&, double, int);
-template std::vector<char> tiles_near_band<3>(const TiledGrid<3>&, const SolidCells<3>&,
+template std::vector<char> tiles_near_band<3>(const MacDomain<3>&, const SolidCells<3>&,
                                               const CellField&, double, int);
 
 }  // namespace lockstep

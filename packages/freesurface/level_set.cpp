@@ -117,23 +117,20 @@ double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
   const TiledGrid<dim>& grid = domain_.grid;
   TransportSetting<dim> setting{grid,          solids_.state, step.surface, step.advection_velocity,
                                 step.ray_halo, step.kept,     {},           step.dt};
-  SideValues<dim> beyond_sides{};
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
       // Through an open side comes what is no liquid.
       setting.sides[axis][end].inflow = side.type == SideType::open;
       setting.sides[axis][end].closed = side.closed();
-      beyond_sides[axis][end] = cut_off();
     }
   Transport<dim> transport(setting);
   const double displacement = transport.largest_displacement();
   moved_ += displacement;
-  const std::vector<char> tiles = tiles_near_band(grid, solids_, phi_, cut_off(),
+  const std::vector<char> tiles = tiles_near_band(domain_, solids_, phi_, cut_off(),
                                                   static_cast<int>(std::ceil(displacement)) + 1);
   CellField carried = phi_;
-  transport.advect_scalar(AdvectionScheme::semi_lagrangian, phi_, beyond_sides, carried, &tiles,
-                          cut_off());
+  transport.advect_distance(phi_, cut_off(), tiles, carried);
   phi_.swap(carried);
   if (parameters_.particles)
     n_lost_ += move_particles(domain_, transport.frame(), step.ray_halo, particles_);

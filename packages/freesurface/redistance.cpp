@@ -5,6 +5,7 @@
 
 #include "grid/flagged_tiles.hpp"
 #include "grid/tile_field.hpp"
+#include "mac/domain/cell_at_side.hpp"
 
 namespace lockstep {
 
@@ -122,12 +123,21 @@ class March {
           other >= 0 && !is_other_side && distance_.has(other) ? distance_.place(other) : 0;
     }
     stays_[place] = !grid.owned(cell);
-    if (!is_near || !grid.owned(cell) || std::abs(phi_[cell]) >= cut_off_)
+    if (!grid.owned(cell) || std::abs(phi_[cell]) >= cut_off_ ||
+        !(is_near || is_beside_void_that_enters(cell)))
       return;
-    distance_.at_place(place) =
-        near_cells == NearCells::scale ? scaled(grid, solids_, phi_, cell) : std::abs(phi_[cell]);
+    distance_.at_place(place) = is_near && near_cells == NearCells::scale
+                                    ? scaled(grid, solids_, phi_, cell)
+                                    : std::abs(phi_[cell]);
     stays_[place] = 1;
     wait(place);
+  }
+
+  /// The interface lies between the cell and an open side, so that no neighbour shows it.
+  bool is_beside_void_that_enters(int cell) const {
+    return phi_[cell] < 0 && phi_[cell] > -0.5 * domain_.spacing() &&
+           at_side(domain_, cell,
+                   [](const BoundarySide<dim>& side) { return side.type == SideType::open; });
   }
 
   /// The smallest distance that the neighbours allow.

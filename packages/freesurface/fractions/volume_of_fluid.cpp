@@ -120,7 +120,7 @@ std::vector<char> VolumeOfFluid<dim>::tiles_within(int reach, bool arrived) cons
         (arrived && (fractions_.liquid[cell] > 0.5) != (phi_[cell] < 0)))
       marks[cell] = 0;
   domain_.full_halo.fill(marks);
-  return tiles_near_band(domain_.grid, solids_, marks, cut_off(), reach);
+  return tiles_near_band(domain_, solids_, marks, cut_off(), reach);
 }
 
 template <int dim>

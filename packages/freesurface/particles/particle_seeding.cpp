@@ -153,10 +153,21 @@ class Seeder {
       }
       phi = value_at(x);
     }
-    if (side * phi < least_radius || side * phi > parameters_.band || lookup_.hidden(center, x))
+    const Point<dim> place = lookup_.place(x);
+    if (side * phi < least_radius || side * phi > parameters_.band || lookup_.hidden(center, x) ||
+        !knows_phi(place))
       return;
     const double radius = std::clamp(side * phi, least_radius, most_radius);
-    post_.put(lookup_.place(x), static_cast<float>(side * radius));
+    post_.put(place, static_cast<float>(side * radius));
+  }
+  /// Not between an open side and the first centres: there may be void that is on its way in.
+  bool knows_phi(const Point<dim>& place) const {
+    for (int a = 0; a < dim; ++a)
+      for (int end = 0; end < 2; ++end)
+        if (domain_.boundary.side(a, end).type == SideType::open &&
+            (end == 0 ? place[a] : domain_.grid.n_cells()[a] - place[a]) < 0.5)
+          return false;
+    return true;
   }
 
   const MacDomain<dim>& domain_;

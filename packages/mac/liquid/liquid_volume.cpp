@@ -115,6 +115,8 @@ void LiquidVolume<dim>::list_boxes(const SolidCells<dim>& solids, const CellFiel
       const bool is_below = below >> a & 1;
       exists = exists && (!is_below || (!wraps && place[a] == 0));
       flat[a] = is_below || (!wraps && place[a] + 1 == grid.n_cells()[a]);
+      if (flat[a] && domain_.boundary.side(a, is_below ? 0 : 1).type == SideType::open)
+        box.open_sides |= 1 << (2 * a + (is_below ? 0 : 1));
       (is_below ? low : high)[a] += (is_below ? -1 : 1) * (flat[a] ? 0.5 * h : h);
       box.volume *= flat[a] ? 0.5 * h : h;
     }
@@ -251,6 +253,23 @@ void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& 
   list_divided_cells(solids);
 }
 
+/// Void that comes in through an open side shows by phi rising towards it, before it is at a
+/// centre.
+template <int dim>
+double LiquidVolume<dim>::at_corner(const CutBox& box, int corner, const CellField& phi) const {
+  const int cell = box.corners[corner];
+  double value = phi[cell];
+  for (int a = 0; box.open_sides != 0 && a < dim; ++a) {
+    const int side = corner >> a & 1;
+    if ((box.open_sides >> (2 * a + side) & 1) == 0)
+      continue;
+    const int inside = domain_.grid.neighbor(cell, a, 1 - side);
+    if (inside >= 0 && domain_.grid.in_domain(inside))
+      value += 0.5 * std::clamp(phi[cell] - phi[inside], 0.0, domain_.spacing());
+  }
+  return value;
+}
+
 template <int dim>
 void LiquidVolume<dim>::add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
                                 std::vector<double>& sums) const {
@@ -258,7 +277,7 @@ void LiquidVolume<dim>::add_cut(const CutBox& box, const CellField& phi, const C
   std::array<double, n_corners> values, lower;
   int n_wet = 0, n_credited = 0;
   for (int k = 0; k < n_corners; ++k) {
-    values[k] = phi[box.corners[k]];
+    values[k] = at_corner(box, k, phi);
     lower[k] = values[k] - shift;
     n_wet += values[k] < 0;
     n_credited += values[k] < 0 && groups.of_cell[box.corners[k]] >= 0;

@@ -16,7 +16,8 @@ struct GroupVolumes {
 };
 
 /// The volume of {phi < 0} outside solids: exact for phi linear on the simplices of the boxes
-/// between cell centres (to the sides of the domain phi is constant); in boxes that closed solids
+/// between cell centres (to the sides of the domain phi is constant, to open ones it goes on where
+/// it rises); in boxes that closed solids
 /// reach into the solids' volume is taken off in proportion; in those that a surface divides, each
 /// corner has its share, and what of a cell lies beyond a shell counts with the cell there. Of such
 /// a share 1/2 - phi/h is liquid; that of a dry cell belongs to the deepest wet one that it sees
@@ -37,6 +38,9 @@ class LiquidVolume {
   struct CutBox {
     std::array<int, n_corners> corners;
     double volume = 0;  ///< outside closed solids [m^dim]
+    /// Bit 2 axis + side: half a box at that side, which is open. Its outer corners are those of
+    /// the cells beside it.
+    int open_sides = 0;
   };
   /// An owned cell that has shares of boxes that a surface divides.
   struct DividedCell {
@@ -55,6 +59,8 @@ class LiquidVolume {
   /// Neither it nor a cell around it will have liquid before the list is made anew.
   bool stays_dry(const CellField& phi, int cell) const;
   void list_divided_cells(const SolidCells<dim>& solids);
+  /// phi at a corner of a box.
+  double at_corner(const CutBox& box, int corner, const CellField& phi) const;
   void add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
                std::vector<double>& sums) const;
   void add_divided(const DividedCell& of, const CellField& phi, const CellGroups& groups,

@@ -178,8 +178,8 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
   passenger.forbid_correction(id);
   Ray<dim> ray = frame_.tracer->trace(x, -1, wide);
   if (ray.complete)
-    frame_.tracer->mix_inflow(kind, ray);
-  if (ray.complete && ray.inflow_share == 1) {
+    frame_.tracer->mix_inflow(kind, ray, passenger.field.inflow_depth);
+  if (ray.complete && ray.inflow_share == 1 && !passenger.field.enters) {
     passenger.carried()[id] = passenger.field.inflow(ray);
     return;
   }
@@ -198,8 +198,10 @@ void FieldCarrier<dim>::carry_single(Passenger<dim>& passenger, int id, const Po
     }
   }
   carried = interpolate<dim>(stencil, values);
-  if (ray.inflow_share > 0)
-    carried += ray.inflow_share * (passenger.field.inflow(ray) - carried);
+  if (ray.inflow_axis >= 0)
+    carried = passenger.field.enters
+                  ? passenger.field.enters(ray, carried)
+                  : carried + ray.inflow_share * (passenger.field.inflow(ray) - carried);
   if (!passenger.corrects() || ray.clipped || ray.inflow_share > 0)
     return;
   passenger.low[id] = std::numeric_limits<double>::infinity();

@@ -17,6 +17,7 @@ struct Ray {
   int inflow_axis = -1;  ///< it left through the inflow side of this axis, or ends beside it
   int inflow_side = 0;
   double inflow_share = 0;  ///< what the inflow contributes at its end: 1 if it left
+  double past = -1e300;     ///< how far beyond that side it would have ended; < 0: inside
 };
 
 /// Follows the advection velocity over one step with the midpoint rule, away from surfaces.
@@ -40,14 +41,17 @@ class RayTracer {
 
   /// Rays may end between an inflow side and the first samples, which lie half a cell inside: what
   /// is found there is so much of the inflow, where fluid does enter. Samples of `kind` that lie on
-  /// the side itself have its values already.
-  void mix_inflow(SampleKind kind, Ray<dim>& ray) const;
+  /// the side itself have its values already. `depth`: how near rays must come to be told so, of
+  /// which the first half cell has a share.
+  void mix_inflow(SampleKind kind, Ray<dim>& ray, double depth = first_sample) const;
 
   bool flows_in(int axis, int side) const { return inflow_[axis][side]; }
   const std::array<const double*, dim>& velocity() const { return velocity_; }
   double cells_per_velocity() const { return cells_per_velocity_; }
 
  private:
+  static constexpr double first_sample = 0.5;  ///< inside of a side [cells]
+
   bool displacement(const Point<dim>& x, bool cubic, Point<dim>& d) const;
   /// Moves x into the domain along the axes that are not periodic; true if it was outside.
   bool clamp(Point<dim>& x) const;
@@ -120,6 +124,7 @@ void RayTracer<dim>::clip(const Point<dim>& x, Ray<dim>& ray) const {
     fraction = leaves;
     ray.inflow_axis = a;
     ray.inflow_side = side;
+    ray.past = side == 0 ? -ray.end[a] : ray.end[a] - n;
   }
   if (ray.inflow_axis >= 0) {
     ray.end = x + fraction * (ray.end - x);
@@ -129,13 +134,12 @@ void RayTracer<dim>::clip(const Point<dim>& x, Ray<dim>& ray) const {
 }
 
 template <int dim>
-void RayTracer<dim>::mix_inflow(SampleKind kind, Ray<dim>& ray) const {
-  constexpr double depth = 0.5;
+void RayTracer<dim>::mix_inflow(SampleKind kind, Ray<dim>& ray, double depth) const {
   for (int a = 0; a < dim && ray.inflow_share == 0; ++a) {
     for (int side = 0; side < 2 && a != kind; ++side) {
       const double n = lattice_.n_cells()[a];
       const double gap = side == 0 ? ray.end[a] : n - ray.end[a];
-      if (!inflow_[a][side] || gap >= depth)
+      if (!inflow_[a][side] || gap >= depth || -gap <= ray.past)
         continue;
       Point<dim> place = ray.end;
       place[a] = side * n;
@@ -147,7 +151,8 @@ void RayTracer<dim>::mix_inflow(SampleKind kind, Ray<dim>& ray) const {
         continue;
       ray.inflow_axis = a;
       ray.inflow_side = side;
-      ray.inflow_share = 1 - gap / depth;
+      ray.inflow_share = std::max(0.0, 1 - gap / first_sample);
+      ray.past = -gap;
     }
   }
 }

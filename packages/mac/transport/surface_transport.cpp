@@ -182,18 +182,21 @@ std::optional<double> SurfaceTransport<dim>::fetch(const CarriedField<dim>& fiel
                                                    const Point<dim>& x, Ray<dim> ray,
                                                    const std::optional<SurfacePoint<dim>>& hit) {
   if (!hit)
-    tracer_.mix_inflow(field.kind, ray);
-  if (ray.inflow_share > 0 && ray.inflow_share < 1) {
+    tracer_.mix_inflow(field.kind, ray, field.inflow_depth);
+  if (ray.inflow_axis >= 0 && ray.inflow_share < 1) {
     Point<dim> entry = ray.end;
     entry[ray.inflow_axis] = ray.inflow_side * lattice_.n_cells()[ray.inflow_axis];
-    if (hit_on_way(ray.end, entry))
+    if (hit_on_way(ray.end, entry)) {
+      ray.inflow_axis = -1;
       ray.inflow_share = 0;
+    }
   }
-  if (ray.inflow_share == 1)
+  if (ray.inflow_share == 1 && !field.enters)
     return field.inflow(ray);
   auto value = look_up(field, ray.end);
-  if (value && ray.inflow_share > 0)
-    *value += ray.inflow_share * (field.inflow(ray) - *value);
+  if (value && ray.inflow_axis >= 0)
+    value = field.enters ? field.enters(ray, *value)
+                         : *value + ray.inflow_share * (field.inflow(ray) - *value);
   if (value)
     return value;
   value = look_up(field, x);

@@ -18,6 +18,9 @@ struct CarriedField {
   std::array<const double*, dim> velocity{};
   /// Its value where a ray leaves through an inflow side.
   std::function<double(const Ray<dim>&)> inflow;
+  /// Instead, where it is what the side's distance makes of the value `inside`, at the ray's end.
+  std::function<double(const Ray<dim>&, double inside)> enters = nullptr;
+  double inflow_depth = 0.5;  ///< how near to an inflow side rays may end that it concerns [cells]
 };
 
 /// Transport of single samples near surfaces. Points and boxes are in lattice units.

@@ -10,6 +10,9 @@ namespace lockstep {
 namespace {
 
 constexpr double largest_sensible_displacement = 1e6;  // [cells]
+/// How near to an inflow side a ray may end for the side to bound a distance: beyond the samples
+/// beside which the surface comes to lie [cells].
+constexpr double bounded_depth = 3;
 /// Of a cell and its slip: up to this one the fluid comes to rest at a surface within the cell.
 constexpr double resolved_reynolds_number = 4;
 
@@ -159,6 +162,34 @@ void Transport<dim>::advect_scalar(AdvectionScheme scheme, const CellField& s,
     return inflow_values[ray.inflow_axis][ray.inflow_side];
   };
   FieldCarrier<dim>(implementation_->frame).carry(passengers, tiles);
+}
+
+template <int dim>
+void Transport<dim>::advect_distance(const CellField& distance, double cut_off,
+                                     const std::vector<char>& tiles, CellField& result) {
+  TransportFrame<dim>& frame = implementation_->frame;
+  std::vector<Passenger<dim>> passengers(1);
+  Passenger<dim>& passenger = passengers[0];
+  passenger.beyond = cut_off;
+  passenger.start = &distance;
+  passenger.result = &result;
+  passenger.invalid = &frame.invalid.cells;
+  passenger.field.kind = cell_centers;
+  passenger.field.inflow_depth = bounded_depth;
+  // The void beyond the side has its true distance. A surface along the side goes on to it from the
+  // first two samples; one at right angles to it must not be pushed.
+  passenger.field.enters = [&frame, &passenger](const Ray<dim>& ray, double inside) {
+    const double h = frame.setting.grid.spacing(), past = ray.past;
+    Point<dim> place = ray.end;
+    place[ray.inflow_axis] =
+        ray.inflow_side == 0 ? 1.5 : frame.lattice->n_cells()[ray.inflow_axis] - 1.5;
+    const Stencil<dim> stencil = frame.lattice->locate(cell_centers, place);
+    const double deeper =
+        stencil.complete() ? interpolate<dim>(stencil, passenger.field.values) : inside;
+    const double slope = std::clamp((inside - deeper) / h, 0.0, 1.0);
+    return std::max(inside + slope * std::max(0.0, 0.5 + past) * h, past * h);
+  };
+  FieldCarrier<dim>(frame).carry(passengers, &tiles);
 }
 
 template <int dim>

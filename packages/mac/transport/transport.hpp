@@ -86,6 +86,11 @@ class Transport {
                      const SideValues<dim>& inflow_values, CellField& result,
                      const std::vector<char>* tiles = nullptr, double beyond = 0);
 
+  /// Collective: the same for the distance to the surface of a liquid [m], semi-Lagrangian, cut off
+  /// at `cut_off`, on all tiles with a flag. Beyond inflow sides is no liquid.
+  void advect_distance(const CellField& distance, double cut_off, const std::vector<char>& tiles,
+                       CellField& result);
+
   /// What the calls so far could not give a value. Faces after `advect_faces`, cells after
   /// `advect_scalar` (the same for every scalar).
   const InvalidSamples<dim>& invalid() const;

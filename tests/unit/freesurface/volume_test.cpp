@@ -418,6 +418,58 @@ TEST(VolumeLedger, TellsTheVolumeBesideSolidsThatRise) {
   }
 }
 
+/// Void comes in through an open side as fast as the flow, from the first step on.
+template <int dim>
+void expect_void_comes_in(const std::string& name, double per_step, int axis, int side) {
+  const int n = dim == 2 ? 40 : 20, n_steps = 10;
+  const double h = 1.0 / n, dt = 0.1;
+  Bath<dim> bath(open_cube<dim>(n));
+  ParameterList list;
+  list.set("Volume Correction", "none");
+  auto model = bath.make(name, list);
+  model->initialise([](const Point<dim>&) { return -1; }, nullptr);
+  const double inward = side == 0 ? 1 : -1;
+  bath.set_velocity([&](const Point<dim>&) {
+    return Point<dim>(inward * per_step * h / dt * Point<dim>::Unit(axis));
+  });
+  double error = 0;
+  for (int i = 1; i <= n_steps; ++i) {
+    bath.step(*model, i * dt, dt);
+    const double front = i * per_step * h;
+    bath.domain.grid.for_each_owned_cell([&](int cell) {
+      const Point<dim> x = bath.domain.grid.center(cell);
+      const double exact = front - (side == 0 ? x[axis] : 1 - x[axis]);
+      if (std::abs(exact) < 1.01 * h)
+        error = std::max(error, std::abs(model->distance()[cell] - exact));
+    });
+  }
+  EXPECT_LT(max_all(world(), error), 0.1 * h) << name << " " << per_step;
+}
+
+TEST(VolumeLedger, VoidComesInThroughAnOpenSideWithTheFlow) {
+  for (const char* const name : {"level set", "particle level set"})
+    for (const double per_step : {0.05, 0.2, 0.3, 0.7}) {
+      expect_void_comes_in<2>(name, per_step, 0, 0);
+      expect_void_comes_in<2>(name, per_step, 1, 1);
+      expect_void_comes_in<3>(name, per_step, 2, 1);
+    }
+}
+
+/// A domain that liquid fills drains below, and void comes in above.
+TEST(VolumeLedger, AFullDomainDrains) {
+  for (const char* const name : {"level set", "particle level set", "volume of fluid"}) {
+    Bath<2> bath(open_cube<2>(40));
+    auto model = bath.make(name);
+    model->initialise([](const Point<2>&) { return -1; }, nullptr);
+    EXPECT_NEAR(model->ledger().volume, 1, 1e-12);
+    bath.set_velocity([](const Point<2>&) { return Point<2>(0, -0.1); });
+    for (int i = 0; i < 10; ++i)
+      bath.step(*model, 0.1 * i, 0.1);
+    EXPECT_NEAR(model->ledger().target, 0.9, 1e-12) << name;
+    EXPECT_NEAR(model->ledger().volume, 0.9, 1e-3) << name;
+  }
+}
+
 /// Liquid goes out through a side and does not come back in.
 TEST(VolumeLedger, NothingWetComesInThroughAnOpenSide) {
   for (const char* const name : {"level set", "particle level set", "volume of fluid"}) {
