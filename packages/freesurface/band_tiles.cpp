@@ -29,12 +29,15 @@ bool may_be_kept_apart(const TiledGrid<dim>& grid, const SolidCells<dim>& solids
   return false;
 }
 
-/// True if liquid of the cell may leave through a side at which void comes in.
+/// Liquid may leave through the side, and void or liquid come in.
+template <int dim>
+bool lets_through(const BoundarySide<dim>& side) {
+  return side.type == SideType::open || side.type == SideType::inflow;
+}
+
 template <int dim>
 bool is_liquid_at_open_side(const MacDomain<dim>& domain, const CellField& phi, int cell) {
-  return phi[cell] < 0 && at_side(domain, cell, [](const BoundarySide<dim>& side) {
-           return side.type == SideType::open;
-         });
+  return phi[cell] < 0 && at_side(domain, cell, lets_through<dim>);
 }
 
 template <int dim>
@@ -42,8 +45,8 @@ bool touches_open_side(const MacDomain<dim>& domain, int tile) {
   const TiledGrid<dim>& grid = domain.grid;
   for (int a = 0; a < dim; ++a) {
     const int begin = grid.tile_begin(tile)[a], end = begin + grid.tile_domain_extent(tile)[a];
-    if ((begin == 0 && domain.boundary.side(a, 0).type == SideType::open) ||
-        (end == grid.n_cells()[a] && domain.boundary.side(a, 1).type == SideType::open))
+    if ((begin == 0 && lets_through(domain.boundary.side(a, 0))) ||
+        (end == grid.n_cells()[a] && lets_through(domain.boundary.side(a, 1))))
       return true;
   }
   return false;

@@ -7,7 +7,7 @@ namespace lockstep {
 
 /// A flag for each owned tile: some cell within `reach` cells of it, ghosts included, has |phi|
 /// below `cut_off` [m], or a surface of solids passes it that may keep liquid from what is not, or
-/// it is of liquid at an open side, where void may come in.
+/// it is of liquid at a side through which something flows.
 /// Elsewhere phi is +-cut_off and no cell changes sides. Local; ghost values must be set.
 template <int dim>
 std::vector<char> tiles_near_band(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
