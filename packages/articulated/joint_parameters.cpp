@@ -1,6 +1,7 @@
 #include "articulated/joint_parameters.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "base/errors.hpp"
@@ -13,13 +14,19 @@ namespace {
 
 const std::string name_of_space = "space";
 
-/// Of the box about a solid's surface; 0 if it has none [m^dim].
+/// Of the ball with as much surface as a solid, 0 if it has none: about what it has to push,
+/// shells too, and the same however it lies [m^dim].
 template <int dim>
-double volume_about(const SurfaceMesh<dim>& surface, const SolidDescription& solid) {
-  Box<dim> box;
-  for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
-    box.extend(surface.vertices[v]);
-  return box.isEmpty() ? 0 : box.volume();
+double volume_pushed(const SurfaceMesh<dim>& surface, const SolidDescription& solid) {
+  constexpr double pi = 3.14159265358979323846;
+  double area = 0;
+  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+    std::array<Point<dim>, dim> corners;
+    for (int k = 0; k < dim; ++k)
+      corners[k] = surface.vertices[surface.simplices[s][k]];
+    area += area_vector<dim>(corners).norm();
+  }
+  return dim == 2 ? area * area / (4 * pi) : std::sqrt(area * area * area / (36 * pi));
 }
 
 /// Solids that joints name, found among all.
@@ -82,7 +89,7 @@ class BodyFinder {
                 number,
                 own == no_index ? no_index : first + own,
                 jointable->rigid_frame(number).mass(0, 0),
-                setting_.fluid_density * volume_about(model->surface(), solids[s])};
+                setting_.fluid_density * volume_pushed(model->surface(), solids[s])};
       }
       first += static_cast<GlobalIndex>(model->dof_map()->getGlobalNumElements());
     }

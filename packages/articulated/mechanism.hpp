@@ -24,7 +24,7 @@ struct JointedBody {
   int solid = -1;                    ///< its number there
   GlobalIndex first_dof = no_index;  ///< in the stack of all solids; no_index: prescribed
   double mass = 0;                   ///< [kg]
-  double fluid_mass = 0;             ///< in the box about it; 0 if no fluid sees it [kg]
+  double fluid_mass = 0;             ///< that it has to push, about; 0 if none sees it [kg]
   bool carries_nodes = false;        ///< of deformable solids
   bool prescribed() const { return first_dof == no_index; }
   /// About what resists its motion [kg].

@@ -111,6 +111,17 @@ def largest_difference(bodies, others):
 
 
 class InWater(unittest.TestCase):
+    def test_plates_have_water_to_push_however_they_lie(self):
+        """Two thin ones on a hinge, turned by more than half a radian: along the axes too, what joints give acts at the end of
+        the step, since they are not by themselves."""
+        for turn in (0., .3):
+            along = np.array([math.cos(turn), math.sin(turn)])
+            plate = {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (.2, 0.), "Normal": "y"}, "Surface Density": 500., "Orientation": turn}
+            plates = {name: {**plate, "Position": tuple(np.array((.5, .5)) + .12 * side * along), "Angular Velocity": 40. * side}
+                      for name, side in (("A", -1), ("B", 1))}
+            scene = tank(plates, {"AB": joint("hinge", ("A", "B"), (.5, .5))}, "flux", step=.05, end=.05)
+            self.assertEqual([row["two_halves"] for row in joints_of(scene)["AB"]], [0], turn)
+
     def test_whichever_solid_a_joint_names_first(self):
         """A hull of no weight, with heavy bodies inside."""
         runs = [run(tank(parts(.3), joints, "flux"))[1] for joints in (WELDS, swapped(WELDS))]
