@@ -176,8 +176,11 @@ template <int dim>
 void RigidBodies<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
   const auto values = momentum.getDataNonConst();
   for_each_own([&](const RigidBody<dim>& body, int first_row) {
-    const RigidVector<dim> correction =
-        midpoint_correction<dim>(body, body.momentum + load_impulse(body, dt), dt);
+    // What fluid sees does not answer its load alone: light, it would turn as often as it likes.
+    RigidVector<dim> start = body.momentum;
+    if (!body.seen_by_fluid)
+      start += load_impulse(body, dt);
+    const RigidVector<dim> correction = midpoint_correction<dim>(body, start, dt);
     for (int k = 0; k < n_rigid_dofs<dim>; ++k)
       values[first_row + k] += correction[k];
   });

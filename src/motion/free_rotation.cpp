@@ -71,6 +71,8 @@ Point<3> turn_in_steps(const Eigen::Matrix3d& inverse_inertia, const Point<3>& a
   const Point<3> omega = inverse_inertia * angular_momentum;
   // With its energy it turns nowhere faster than about the axis of the least inertia.
   const double fastest = std::sqrt(omega.dot(angular_momentum) * inverse_inertia.norm());
+  if (!std::isfinite(fastest))
+    return dt * omega;
   const double n = std::clamp(std::ceil(std::abs(dt) * fastest / longest), 1.0, double(most));
   Top top{inverse_inertia, angular_momentum, Eigen::Quaterniond::Identity(), Point<3>::Zero()};
   for (int step = 0; step < static_cast<int>(n); ++step) {

@@ -9,10 +9,11 @@ using InertiaTensor = Eigen::Matrix<double, n_rotations<dim>, n_rotations<dim>>;
 
 /// The rotation vector [rad] by which a body turns in dt that no torque acts on: Euler's equations.
 /// `inertia` and `angular_momentum` about the same point, in the axes of space at the begin. Exact
-/// to some 1e-10 of the turn at any turn; energy is kept to round-off. Of the vectors that turn
-/// alike it is the one that counts the whole turns.
-/// Source: the midpoint rule on the body's momentum with the Cayley transform, which conserves
-/// energy and momentum (Austin, Krishnaprasad & Wang 1993), composed to order 6 (Yoshida 1990).
+/// to some 1e-10 of the turn up to 400 rad, beyond which its steps grow; energy is kept to
+/// round-off. Of the vectors that turn alike it is the one that counts the whole turns. What is not
+/// finite stays so. Source: the midpoint rule on the body's momentum with the Cayley transform,
+/// which conserves energy and momentum (Austin, Krishnaprasad & Wang 1993), composed to order 6
+/// (Yoshida 1990).
 template <int dim>
 AngularVector<dim> free_turn(const InertiaTensor<dim>& inertia,
                              const AngularVector<dim>& angular_momentum, double dt);

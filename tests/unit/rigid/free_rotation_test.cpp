@@ -109,6 +109,32 @@ TEST(FreeRotation, WholeTurnsCount) {
   EXPECT_EQ(free_turn<2>(Inertia<2>(2.), AngularVector<2>(3.), 4)(0), 6);
 }
 
+TEST(FreeRotation, WhatIsNotFiniteStaysSo) {
+  const Inertia<3> inertia = Point<3>(1, 2, 3).asDiagonal();
+  for (const double bad : {std::nan(""), 1. / 0.})
+    EXPECT_FALSE(free_turn<3>(inertia, Point<3>(1, bad, 1), 0.1).allFinite());
+}
+
+/// The fluid about a light body takes most of a torque. Were it the body's alone to answer, the
+/// motion that it sets out on would be one of ten turns a step.
+TEST(FreeRotation, OnlyUnseenBodiesSetOutWithTheirLoad) {
+  const auto correction = [](const std::string& more) {
+    const auto bodies =
+        model<3>({geometry("box", numbers("Size", "1, 2, 3")) + number("Mass", "0.01") +
+                  numbers("Angular Velocity", "1, 2, -0.5") + more});
+    Vector result(bodies->dof_map());
+    bodies->add_midpoint_correction(0.05, result);
+    return result.norm2();
+  };
+  const std::string torque = numbers("Torque", "4, -6, 9"),
+                    unseen = "<Parameter name=\"Seen by Fluid\" type=\"bool\" value=\"false\"/>";
+  const double free = correction("");
+  EXPECT_GT(free, 1e-4);
+  EXPECT_EQ(correction(torque), free);
+  EXPECT_EQ(correction(unseen), free);
+  EXPECT_GT(correction(torque + unseen), 10 * free);
+}
+
 /// With a torque along axes of space, against steps so small that they are exact.
 TEST(FreeRotation, StepsUnderATorqueAreOfSecondOrder) {
   const auto spun_up = [](int n_steps) {
