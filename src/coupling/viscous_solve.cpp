@@ -221,13 +221,11 @@ double dissipation(const ViscousSystem<dim>& system, const ViscousBonds<dim>& li
 }  // namespace
 
 template <int dim>
-ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid,
-                                 const SolidSystem<dim>& solids,
-                                 const ViscousCoupling<dim>& coupling,
-                                 const RCP<const LinearOperator>& solid_block,
-                                 const SoftNodes& soft_nodes,
-                                 const RCP<const Vector>& lumped_momentum, double dt,
-                                 const Reduction& constraints, const ViscousOptions& options) {
+ViscousResult<dim> solve_viscous(
+    const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid, const SolidSystem<dim>& solids,
+    const ViscousCoupling<dim>& coupling, const RCP<const LinearOperator>& solid_block,
+    const SoftNodes& soft_nodes, const RCP<const Vector>& lumped_momentum, double dt,
+    const Reduction& constraints, const ViscousOptions& options, bool with_dissipation) {
   // Where the solve is for surface tension alone, nothing ties solids to it.
   const bool with_solids =
       solids.has_unknowns() &&
@@ -277,8 +275,9 @@ ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<
     links.pull_on_solids(dt, *pull, 0, *result.solid_impulse);
     links.pull_on_solids(dt, *couple_pull, 1, *result.solid_impulse);
   }
-  result.dissipation =
-      dissipation<dim>(system, links, *fluid_velocity, *ends, *couple_pull, solids.comm());
+  if (with_dissipation)
+    result.dissipation =
+        dissipation<dim>(system, links, *fluid_velocity, *ends, *couple_pull, solids.comm());
   // u = u* + M^-1 (impulses of the solution): momentum is exact, the residual of CG shows in u
   // alone.
   Vector residual(op.rows.all);
@@ -301,11 +300,11 @@ template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, ViscousFluid
                                            const SolidSystem<2>&, const ViscousCoupling<2>&,
                                            const RCP<const LinearOperator>&, const SoftNodes&,
                                            const RCP<const Vector>&, double, const Reduction&,
-                                           const ViscousOptions&);
+                                           const ViscousOptions&, bool);
 template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, ViscousFluid<3>&,
                                            const SolidSystem<3>&, const ViscousCoupling<3>&,
                                            const RCP<const LinearOperator>&, const SoftNodes&,
                                            const RCP<const Vector>&, double, const Reduction&,
-                                           const ViscousOptions&);
+                                           const ViscousOptions&, bool);
 
 }  // namespace lockstep

@@ -16,7 +16,7 @@ struct ViscousResult {
   /// solids. Where several share a face, one of them has it all. Global.
   std::vector<Momentum<dim>> prescribed_impulses;
   /// What friction turns into heat at the velocities of the solution, less what moving sides and
-  /// inflows give it [W].
+  /// inflows give it [W]; 0 if it was not asked for.
   double dissipation = 0;
   int iterations = 0;
 };
@@ -29,12 +29,10 @@ struct ViscousResult {
 /// reduced C; both null without unknowns. Throws SolveError with the numbers if the options'
 /// tolerance is not reached. Collective.
 template <int dim>
-ViscousResult<dim> solve_viscous(const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid,
-                                 const SolidSystem<dim>& solids,
-                                 const ViscousCoupling<dim>& coupling,
-                                 const RCP<const LinearOperator>& solid_block,
-                                 const SoftNodes& soft_nodes,
-                                 const RCP<const Vector>& lumped_momentum, double dt,
-                                 const Reduction& constraints, const ViscousOptions& options);
+ViscousResult<dim> solve_viscous(
+    const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid, const SolidSystem<dim>& solids,
+    const ViscousCoupling<dim>& coupling, const RCP<const LinearOperator>& solid_block,
+    const SoftNodes& soft_nodes, const RCP<const Vector>& lumped_momentum, double dt,
+    const Reduction& constraints, const ViscousOptions& options, bool with_dissipation = false);
 
 }  // namespace lockstep

@@ -122,11 +122,11 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
   const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
   Prediction<dim> prediction;
   prediction.pressure_work = expected.work;
-  prediction.viscous = solve_viscous<dim>(*viscous, *sides_.viscous_fluid, *components_.solids,
-                                          *sides_.viscous_coupling, block, soft_nodes, row, dt,
-                                          context.constraints, options_.viscous);
+  prediction.viscous = solve_viscous<dim>(
+      *viscous, *sides_.viscous_fluid, *components_.solids, *sides_.viscous_coupling, block,
+      soft_nodes, row, dt, context.constraints, options_.viscous, !context.moves_positions());
   report.viscous_iterations += prediction.viscous.iterations;
-  report.viscous_dissipation = prediction.viscous.dissipation;  // that of F3 comes last
+  report.viscous_dissipation = prediction.viscous.dissipation;  // of F3, which alone asks for it
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)
     report.viscous_number =
