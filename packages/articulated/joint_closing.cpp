@@ -9,7 +9,7 @@
 
 namespace lockstep {
 
-/// So that q goes to the end of a flight. Those of balls are no rates of q.
+/// So that q goes to the end of a flight (see `advanced`).
 template <int dim>
 void JointConstraints<dim>::set_rates(const Mechanism& mechanism,
                                       const std::vector<Eigen::VectorXd>& coordinates, double dt,
@@ -17,11 +17,12 @@ void JointConstraints<dim>::set_rates(const Mechanism& mechanism,
   const auto values = velocity.getDataNonConst();
   for (const int j : mechanism.joints) {
     const Joint<dim>& joint = articulation_->joints()[j];
+    const Eigen::VectorXd rates = change_to<dim>(joint.kind, joint.q, coordinates[j]) / dt;
     for (int k = 0; k < joint.q.size() && joint.first_rate >= 0; ++k) {
       const int row = velocity.getMap()->getLocalElement(articulation_->dofs().first_rate +
                                                          joint.first_rate + k);
-      if (row >= 0 && joint.kind.turn != JointTurn::any)
-        values[row] = (coordinates[j][k] - joint.q[k]) / dt;
+      if (row >= 0)
+        values[row] = rates[k];
     }
   }
 }

@@ -244,6 +244,16 @@ Eigen::VectorXd advanced(const JointKind& kind, const Eigen::VectorXd& q,
 }
 
 template <int dim>
+Eigen::VectorXd change_to(const JointKind& kind, const Eigen::VectorXd& q,
+                          const Eigen::VectorXd& goal) {
+  if (kind.turn != JointTurn::any || dim == 2)
+    return goal - q;
+  const Orientation<dim> turn = rotation_of<dim>(AngularVector<dim>(goal)) *
+                                rotation_of<dim>(AngularVector<dim>(q)).inverse();
+  return nearest_turn<dim>(rotation_vector<dim>(turn), AngularVector<dim>(goal - q));
+}
+
+template <int dim>
 Eigen::VectorXd distance_to(const JointKind& kind, const RelativePose<dim>& pose,
                             const Eigen::VectorXd& q) {
   if (kind.turn != JointTurn::any || dim == 2)
@@ -276,6 +286,10 @@ template Eigen::VectorXd advanced<2>(const JointKind&, const Eigen::VectorXd&,
                                      const Eigen::VectorXd&);
 template Eigen::VectorXd advanced<3>(const JointKind&, const Eigen::VectorXd&,
                                      const Eigen::VectorXd&);
+template Eigen::VectorXd change_to<2>(const JointKind&, const Eigen::VectorXd&,
+                                      const Eigen::VectorXd&);
+template Eigen::VectorXd change_to<3>(const JointKind&, const Eigen::VectorXd&,
+                                      const Eigen::VectorXd&);
 template Eigen::VectorXd distance_to(const JointKind&, const RelativePose<2>&,
                                      const Eigen::VectorXd&);
 template Eigen::VectorXd distance_to(const JointKind&, const RelativePose<3>&,

@@ -75,6 +75,11 @@ RelativePose<dim> pose_of(const JointKind& kind, const Eigen::VectorXd& q);
 template <int dim>
 Eigen::VectorXd advanced(const JointKind& kind, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& change);
+/// The change that `advanced` makes `goal` of q with; of balls along the way of as many whole
+/// turns.
+template <int dim>
+Eigen::VectorXd change_to(const JointKind& kind, const Eigen::VectorXd& q,
+                          const Eigen::VectorXd& goal);
 /// What is left to go from a pose to q: the coordinates of `change` that does, to first order.
 template <int dim>
 Eigen::VectorXd distance_to(const JointKind& kind, const RelativePose<dim>& pose,

@@ -116,4 +116,18 @@ TEST(JointKind, ABallAdvancesByItsSpin) {
   EXPECT_LT((pose_of<3>(ball, advanced<3>(ball, q, spin)).rotation - expected).norm(), 1e-14);
 }
 
+/// However often the ball went round, rates take it there by as many turns.
+TEST(JointKind, WaysLeadToTheirGoal) {
+  const JointKind ball{"ball", {}, JointTurn::any};
+  Eigen::VectorXd q(3);
+  q << 0.4, -0.3, 0.2;
+  const Point<3> axis = Point<3>(1, -0.6, 0.5).normalized();
+  for (const double angle : {0.6, 3., 5., 9., 15.}) {
+    const Eigen::VectorXd goal = angle * axis;
+    const Eigen::VectorXd way = change_to<3>(ball, q, goal);
+    EXPECT_LT((advanced<3>(ball, q, way) - goal).norm(), 1e-12) << angle;
+    EXPECT_NEAR(way.norm(), (goal - q).norm(), 0.3) << angle;
+  }
+}
+
 }  // namespace lockstep::test
