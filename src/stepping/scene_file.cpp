@@ -34,14 +34,18 @@ const std::map<std::string, std::string> spatial_joints = {
     {"cylinder", "nothing turns about the axis that it slides along, so write \"slider\""},
     {"planar", "solids slide and turn like that without a joint, so leave it out"}};
 
-/// Scenes are copied from space into the plane: what their joints are there.
-void check_flat_joints(const Document& document) {
-  if (!document.list.isSublist("Joints"))
+/// Scenes are copied from space into the plane: what their joints are there, unless a plug-in has
+/// such joints there too.
+void check_flat_joints(const Document& document, const ParameterList& valid) {
+  if (!document.list.isSublist("Joints") || !valid.isSublist("Joints"))
     return;
+  const ListRule& offered = list_rule(valid.getEntry("Joints"));
   const ParameterList& joints = document.list.sublist("Joints");
   for (const auto& entry : joints) {
     const std::string& name = entry.first;
     if (!joints.isSublist(name) || !joints.sublist(name).isType<std::string>("Type"))
+      continue;
+    if (offered.schema_for(joints.sublist(name)))
       continue;
     const auto kind = spatial_joints.find(joints.sublist(name).get<std::string>("Type"));
     check_input(kind == spatial_joints.end(),
@@ -70,7 +74,7 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
       set_from_command_line(document, setting, valid);
   }
   if (dimension == 2)
-    check_flat_joints(document);
+    check_flat_joints(document, valid);
   validate(document, valid);
   check_input(
       document.list.get<int>("Dimension") == dimension,
