@@ -32,8 +32,9 @@ void declare_time(ParameterList& scene, bool has_joints) {
     declare_positive(
         time, "Largest Turn", 0.2,
         "Bound of the step, of a fixed one also: how far a jointed body may turn in it [rad]. "
-        "Larger turns cost energy; above 0.5 joints of bodies that fluid, flesh or motors act on "
-        "give all of their impulse at the end of the step.");
+        "Larger turns cost energy; above 0.5 joints give all of their impulse at the end of the "
+        "step, but those of a mechanism that is by itself: without fluid, flesh, control, limits, "
+        "contact in that step, or prescribed solids.");
   declare_choice(
       time, "Pressure Correction", "rotational", {"rotational", "incremental", "non-incremental"},
       "Whether the viscous solve of a step reads the pressure of the last one. rotational: with "
