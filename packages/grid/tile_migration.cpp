@@ -47,8 +47,9 @@ TileMigration<dim>::TileMigration(const TiledGrid<dim>& from, const TiledGrid<di
   const std::map<GlobalIndex, int> old_ranks = ranks_by_number(comm_, old_numbers);
   const std::map<GlobalIndex, int> new_ranks =
       ranks_by_number(comm_, {numbers.begin(), numbers.begin() + n_owned_tiles_});
-  for (const GlobalIndex number : old_numbers)
-    n_gone_ += new_ranks.count(number) == 0;
+  for (std::size_t tile = 0; tile < old_numbers.size(); ++tile)
+    if (new_ranks.count(old_numbers[tile]) == 0)
+      gone_.push_back(static_cast<int>(tile));
 
   // What this rank wants of each, in the order of its tiles: owned ones come first.
   const int n_ranks = comm_->getSize();

@@ -34,8 +34,10 @@ class TileMigration {
   template <typename Item>
   void move_lists(std::vector<std::vector<Item>>& of_tile) const;
 
+  /// Owned tiles of the old grid that are gone on all ranks, by their local numbers there.
+  const std::vector<int>& gone() const { return gone_; }
   /// Owned tiles that are gone, and those that are new, on this rank.
-  int n_gone() const { return n_gone_; }
+  int n_gone() const { return static_cast<int>(gone_.size()); }
   int n_new() const { return n_new_; }
 
  private:
@@ -55,7 +57,8 @@ class TileMigration {
 
   Communicator comm_;
   int n_old_tiles_ = 0, n_tiles_ = 0, n_owned_tiles_ = 0;
-  int n_gone_ = 0, n_new_ = 0;
+  int n_new_ = 0;
+  std::vector<int> gone_;
   std::vector<Peer> peers_;
 };
 

@@ -252,6 +252,50 @@ Repayment pay_back(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   return Books<dim>(domain, solids, phi, fractions).settle(largest_shift);
 }
 
+template <int dim>
+double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                   const std::vector<int>& tiles, Fractions& fractions) {
+  const TiledGrid<dim>& grid = domain.grid;
+  std::vector<char> goes(grid.n_owned_tiles(), 0);
+  for (const int tile : tiles)
+    goes[tile] = 1;
+  const auto is_going = [&](int cell) { return goes[TiledGrid<dim>::tile_of(cell)] != 0; };
+  const auto liquid_in = [&](int cell) {
+    return fractions.liquid[cell] * fractions.open_part(cell);
+  };
+  GlobalIndex n_leaving = 0;
+  grid.for_each_owned_cell([&](int cell) {
+    n_leaving += is_going(cell) && (liquid_in(cell) != 0 || fractions.owed[cell] != 0);
+  });
+  if (sum_all(grid.comm(), n_leaving) == 0)
+    return 0;
+  const CellGroups spaces = find_closed_spaces(domain, solids);
+  // What each space is to take, and the liquid there; the last: of no space.
+  std::vector<double> sums(2 * (spaces.n + 1), 0.0);
+  const auto takes = [&](int cell) {
+    return !is_going(cell) && spaces.of_cell[cell] >= 0 && fractions.liquid[cell] > 0.5;
+  };
+  grid.for_each_owned_cell([&](int cell) {
+    const int space = spaces.of_cell[cell] < 0 ? spaces.n : spaces.of_cell[cell];
+    if (is_going(cell))
+      sums[2 * space] += liquid_in(cell) + fractions.owed[cell];
+    else if (takes(cell))
+      sums[2 * space + 1] += liquid_in(cell);
+  });
+  sum_all(grid.comm(), sums.data(), static_cast<int>(sums.size()));
+  grid.for_each_owned_cell([&](int cell) {
+    if (!takes(cell))
+      return;
+    const int space = spaces.of_cell[cell];
+    fractions.owed[cell] += sums[2 * space] * liquid_in(cell) / sums[2 * space + 1];
+  });
+  double lost = 0;
+  for (int space = 0; space <= spaces.n; ++space)
+    if (sums[2 * space + 1] == 0)
+      lost += sums[2 * space];
+  return lost;
+}
+
 template void remove_crumbs<2>(const MacDomain<2>&, const SolidCells<2>&, const std::vector<char>&,
                                Fractions&);
 template void remove_crumbs<3>(const MacDomain<3>&, const SolidCells<3>&, const std::vector<char>&,
@@ -259,6 +303,10 @@ template void remove_crumbs<3>(const MacDomain<3>&, const SolidCells<3>&, const 
 template Repayment pay_back<2>(const MacDomain<2>&, const SolidCells<2>&, const CellField&, double,
                                Fractions&);
 template Repayment pay_back<3>(const MacDomain<3>&, const SolidCells<3>&, const CellField&, double,
+                               Fractions&);
+template double leave_tiles<2>(const MacDomain<2>&, const SolidCells<2>&, const std::vector<int>&,
+                               Fractions&);
+template double leave_tiles<3>(const MacDomain<3>&, const SolidCells<3>&, const std::vector<int>&,
                                Fractions&);
 
 }  // namespace lockstep

@@ -26,4 +26,11 @@ template <int dim>
 Repayment pay_back(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                    const CellField& phi, double largest_shift, Fractions& fractions);
 
+/// What is in cells of owned tiles that are about to go, and owed to them, is owed to the bodies in
+/// the same closed space, on the tiles that stay, in proportion to their liquid. Returns what finds
+/// none [cells], over all ranks. Collective.
+template <int dim>
+double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                   const std::vector<int>& tiles, Fractions& fractions);
+
 }  // namespace lockstep

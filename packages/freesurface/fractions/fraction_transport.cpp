@@ -75,7 +75,9 @@ typename FractionTransport<dim>::Inflow FractionTransport<dim>::through(
     return {like_here, false, false};  // as the surface moves, so does what is beside it
   const Index<dim> place = grid.coordinates(cell);
   const bool at_side = place[axis] == (side == 0 ? 0 : grid.n_cells()[axis] - 1);
-  const bool is_open = !at_side || domain_.boundary.side(axis, side).type == SideType::open;
+  if (!at_side)
+    return {0, false, false};  // at the rim of the stored tiles liquid waits for others
+  const bool is_open = domain_.boundary.side(axis, side).type == SideType::open;
   // What comes in from outside is void, unless it is made to flow in.
   return {is_open && passed > 0 ? 0 : like_here, true, true};
 }

@@ -19,8 +19,6 @@ namespace {
 constexpr int depth_in_solids = 4;
 /// Boxes along each axis into which a cell is cut where a shape is measured.
 constexpr int n_cuts = 4;
-/// Round-off of what is owed to all cells together [cells].
-constexpr double negligible = 1e-9;
 }  // namespace
 
 ParameterList volume_of_fluid_parameters() {
@@ -350,21 +348,13 @@ std::function<void()> VolumeOfFluid<dim>::undo() {
 
 template <int dim>
 std::function<void()> VolumeOfFluid<dim>::migrate(const TileMigration<dim>& migration) {
-  const auto owed = [this] {
-    double sum = 0;
-    domain_.grid.for_each_owned_cell([&](int cell) { sum += fractions_.owed[cell]; });
-    return sum_all(domain_.grid.comm(), sum);
-  };
-  const double owed_before = owed();
+  const double lost = leave_tiles(domain_, solids_, migration.gone(), fractions_);
+  target_ -= lost;
+  lost_ += lost;
   migration.move(phi_, cut_off());
   migration.move(fractions_.liquid);
   migration.move(fractions_.owed);
-  return [this, owed, owed_before] {
-    // On tiles far from all liquid.
-    if (const double gone = owed_before - owed(); std::abs(gone) > negligible) {
-      target_ -= gone;
-      lost_ += gone;
-    }
+  return [this] {
     solids_ = find_solid_cells(domain_, solids_.state.surface);
     fractions_.open = open_parts(domain_, solids_);
   };

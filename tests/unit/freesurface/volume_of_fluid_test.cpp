@@ -219,6 +219,57 @@ TEST(VolumeOfFluid, LostLiquidIsTakenOffTheTarget) {
   expect_lost_liquid_is_off_target<3>();
 }
 
+/// A crumb in the air over a pool, on a tile that goes: the pool is owed it, or, where none is
+/// left, the target knows that it is lost.
+template <int dim>
+void expect_crumbs_of_gone_tiles_return(const std::string& crumbs, bool has_pool) {
+  constexpr int n = 3 * tile_width<dim>;
+  const double h = 1.0 / n, height = has_pool ? 4.3 * h : -1;
+  Bath<dim> bath(closed_cube<dim>(n));
+  ParameterList list;
+  list.set("Crumbs", crumbs);
+  auto model = bath.make(model_name, list);
+  Point<dim> place = Point<dim>::Constant(0.5 * h);
+  place[dim - 1] = 1 - 4.5 * h;
+  model->initialise(
+      [&](const Point<dim>& x) {
+        return std::min(x[dim - 1] - height, (x - place).norm() - 0.6 * h);
+      },
+      nullptr);
+  const double start = model->ledger().target;
+  const auto& vof = dynamic_cast<VolumeOfFluid<dim>&>(*model);
+  const auto all = [&] {
+    double sum = 0;
+    bath.domain.grid.for_each_owned_cell(
+        [&](int c) { sum += vof.fractions().liquid[c] + vof.fractions().owed[c]; });
+    return sum_all(world(), sum) * bath.domain.cell_volume();
+  };
+  ASSERT_NEAR(all(), start, 1e-14);
+  TiledGrid<dim> grid(bath.description.grid, world(),
+                      [](const Index<dim>& first, const Index<dim>&) {
+                        return first[dim - 1] < 2 * tile_width<dim>;
+                      });
+  const auto finish = dynamic_cast<MigratingInterface<dim>&>(*model).migrate(
+      TileMigration<dim>(bath.domain.grid, grid));
+  bath.domain.set_grid(std::move(grid));
+  finish();
+  EXPECT_NEAR(model->ledger().target + model->ledger().lost, start, 1e-14);
+  EXPECT_NEAR(model->ledger().target, all(), 1e-14);
+  if (has_pool) {
+    EXPECT_NEAR(model->ledger().lost, 0, 1e-16);
+  } else {
+    EXPECT_NEAR(model->ledger().lost, start, 1e-14);
+  }
+}
+
+TEST(VolumeOfFluid, CrumbsOfTilesThatGoAreNotForgotten) {
+  for (const std::string crumbs : {"keep", "return"})
+    for (const bool has_pool : {true, false}) {
+      expect_crumbs_of_gone_tiles_return<2>(crumbs, has_pool);
+      expect_crumbs_of_gone_tiles_return<3>(crumbs, has_pool);
+    }
+}
+
 TEST(VolumeOfFluid, ASolidThatDipsDisplacesLiquid) {
   expect_solid_dips<2>();
   expect_solid_dips<3>();
