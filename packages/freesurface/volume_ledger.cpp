@@ -75,16 +75,25 @@ void VolumeLedger<dim>::restore(const SolidCells<dim>& solids, const CellField& 
   targets_ = targets;
 }
 
-/// The body that a cell or one beside it belongs to, -1: none. A cell whose centre a solid holds
-/// has its fluid from those beside it.
+/// The body that a cell or, of those beside it, the one nearest to the surface belongs to, -1:
+/// none. A cell whose centre a solid holds has its fluid from those beside it.
 template <int dim>
-int VolumeLedger<dim>::body_at(const SolidCells<dim>& solids, int cell) const {
+int VolumeLedger<dim>::body_at(const SolidCells<dim>& solids, const CellField& phi,
+                               int cell) const {
   int body = groups_.of_cell[cell];
-  for (int i = 0; body < 0 && i < 2 * dim; ++i) {
+  if (body >= 0)
+    return body;
+  double nearest = 0;
+  for (int i = 0; i < 2 * dim; ++i) {
     const int other = solids.is_fluid(cell) ? solids.seen_neighbor(domain_.grid, cell, i / 2, i % 2)
                                             : domain_.grid.neighbor(cell, i / 2, i % 2);
-    if (other >= 0)
+    if (other < 0 || groups_.of_cell[other] < 0)
+      continue;
+    const double distance = std::abs(phi[other]);
+    if (body < 0 || distance < nearest || (distance == nearest && groups_.of_cell[other] < body)) {
       body = groups_.of_cell[other];
+      nearest = distance;
+    }
   }
   return body;
 }
@@ -105,7 +114,7 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
         const double wet = std::clamp(0.5 - phi[cell] / h, 0.0, 1.0);
         const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
         const double open = wet > 0 ? step.open_part(axis, face) : 0;
-        const int body = open > 0 ? body_at(solids, cell) : -1;
+        const int body = open > 0 ? body_at(solids, phi, cell) : -1;
         if (body < 0)
           return;
         double speed = (end == 0 ? -1 : 1) * step.advection_velocity[axis][face];

@@ -81,7 +81,7 @@ class VolumeLedger {
 
  private:
   CellGroups find(const SolidCells<dim>& solids, const CellField& phi) const;
-  int body_at(const SolidCells<dim>& solids, int cell) const;
+  int body_at(const SolidCells<dim>& solids, const CellField& phi, int cell) const;
   /// `inherit` where the list of boxes is still good.
   void regroup(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
                const std::vector<char>& swept, int reach);

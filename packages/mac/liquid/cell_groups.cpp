@@ -242,12 +242,19 @@ void spread_labels(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
       waiting.push_back(cell);
   });
   const auto neighbor_label = [&](int cell) {
+    int found = -1;
+    double nearest = 0;
     for (int i = 0; i < 2 * dim; ++i) {
       const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
-      if (other >= 0 && label[other] >= 0)
-        return label[other];
+      if (other < 0 || label[other] < 0)
+        continue;
+      const double distance = std::abs(phi[other]);
+      if (found < 0 || distance < nearest || (distance == nearest && label[other] < found)) {
+        found = label[other];
+        nearest = distance;
+      }
     }
-    return -1;
+    return found;
   };
   std::vector<int> still_waiting;
   std::vector<std::pair<int, int>> found;

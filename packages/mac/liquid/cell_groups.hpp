@@ -24,7 +24,8 @@ template <int dim>
 CellGroups find_closed_spaces(const MacDomain<dim>& domain, const SolidCells<dim>& solids);
 
 /// Spreads labels >= 0 from seen neighbours over `layers` of fluid cells that have none, as far as
-/// |phi| is not much more than these are deep. Collective.
+/// |phi| is not much more than these are deep; of several neighbours from that which is nearest to
+/// the surface, whatever the axes' order. `phi` on the halo of width 1. Collective.
 template <int dim>
 void spread_labels(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                    const CellField& phi, int layers, std::vector<int>& label);

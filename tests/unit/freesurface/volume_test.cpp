@@ -240,6 +240,37 @@ TEST(CellGroups, HangTogetherByOpenFaces) {
   }
 }
 
+/// A dry cell between two bodies goes to the nearer one, wherever it lies.
+TEST(CellGroups, LabelsSpreadFromTheNearestBody) {
+  Bath<2> bath(open_cube<2>(20, 20));
+  const auto solids = find_solid_cells<2>(bath.domain, nullptr);
+  const auto& grid = bath.domain.grid;
+  const Index<2> middle{9, 9};
+  for (int nearer = 0; nearer < 4; ++nearer) {
+    CellField phi(grid.n_stored_cells(), 0.5);
+    std::vector<int> label(grid.n_stored_cells(), -1);
+    const auto at = [&](int side) {
+      Index<2> place = middle;
+      place[side / 2] += side % 2 == 0 ? -1 : 1;
+      return place;
+    };
+    grid.for_each_stored_cell([&](int cell) {
+      for (int side = 0; side < 4; ++side)
+        if (grid.coordinates(cell) == at(side)) {
+          label[cell] = side;
+          phi[cell] = side == nearer ? -0.2 : -0.4;
+        }
+    });
+    bath.domain.halo.fill(label);
+    bath.domain.halo.fill(phi);
+    spread_labels(bath.domain, solids, phi, 1, label);
+    const int cell = grid.cell(middle);
+    if (cell >= 0 && grid.owned(cell)) {
+      EXPECT_EQ(label[cell], nearer);
+    }
+  }
+}
+
 TEST(Voids, SmallOnesUnderWaterAreFilled) {
   Bath<2> bath(open_cube<2>(32, 32));
   const auto solids = find_solid_cells<2>(bath.domain, nullptr);
