@@ -62,8 +62,9 @@ bool Drops<dim>::stop_at_sides(Point<dim>& place, Point<dim>& velocity) const {
 }
 
 template <int dim>
-bool Drops<dim>::stop_at_solids(const MovingSurface<dim>& surface, double reach, Drop<dim>& drop,
-                                Point<dim>& to) {
+typename Drops<dim>::Fate Drops<dim>::stop_at_solids(const MovingSurface<dim>& surface,
+                                                     double reach, Fate fate, Drop<dim>& drop,
+                                                     Point<dim>& to) {
   const SurfaceSnapshot<dim>&before = *surface.before, &after = *surface.after;
   const double h = domain_.spacing();
   std::vector<int> candidates;
@@ -73,11 +74,11 @@ bool Drops<dim>::stop_at_solids(const MovingSurface<dim>& surface, double reach,
     const Point<dim> margin = Point<dim>::Constant(reach + 1e-6 * h);
     before.touching({way.min() - margin, way.max() + margin}, candidates);
     if (candidates.empty())
-      return true;
+      return fate;
     std::optional<SurfacePoint<dim>> hit =
         swept_over<dim>(before, after, drop.position, to, candidates);
     if (!hit)
-      return true;
+      return fate;
     const auto corners = before.corners(hit->simplex), moved = after.corners(hit->simplex);
     Point<dim> start = Point<dim>::Zero(), end = Point<dim>::Zero();
     for (int k = 0; k < dim; ++k) {
@@ -96,10 +97,9 @@ bool Drops<dim>::stop_at_solids(const MovingSurface<dim>& surface, double reach,
       drop.next -= approach * normal;
       state_.pushes.push_back({*hit, end, drop.volume * approach * normal});
     }
-    if (!stop_at_sides(to, drop.next))
-      return false;
+    fate = stop_at_sides(to, drop.next) ? Fate::stays : Fate::leaves;
   }
-  return false;
+  return Fate::has_no_room;
 }
 
 template <int dim>
@@ -116,10 +116,11 @@ double Drops<dim>::fly(const MovingSurface<dim>& surface, const Point<dim>& grav
     drop.next = drop.velocity + state_.by_gravity;
     Point<dim> to = drop.position + 0.5 * dt * (drop.velocity + drop.next);
     const std::size_t n_pushes = state_.pushes.size();
-    if (!stop_at_sides(to, drop.next))
-      continue;
-    if (has_solids && !stop_at_solids(surface, reach, drop, to)) {
-      without_room += drop.volume;
+    Fate fate = stop_at_sides(to, drop.next) ? Fate::stays : Fate::leaves;
+    if (has_solids)
+      fate = stop_at_solids(surface, reach, fate, drop, to);
+    if (fate != Fate::stays) {
+      without_room += fate == Fate::has_no_room ? drop.volume : 0;
       state_.pushes.resize(n_pushes);
       continue;
     }

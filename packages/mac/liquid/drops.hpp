@@ -75,8 +75,10 @@ class Drops {
   /// Puts a place to closed sides that it is beyond, and takes the velocity there; false if it has
   /// left through another side.
   bool stop_at_sides(Point<dim>& place, Point<dim>& velocity) const;
-  /// The same with solids; `candidates` that may be in the way. False: there is no room.
-  bool stop_at_solids(const MovingSurface<dim>& surface, double reach, Drop<dim>& drop,
+  enum class Fate { stays, leaves, has_no_room };
+  /// The same with solids that stand on the way `to` a place, maybe before a side; `fate` where
+  /// none does.
+  Fate stop_at_solids(const MovingSurface<dim>& surface, double reach, Fate fate, Drop<dim>& drop,
                       Point<dim>& to);
   /// Keeps those of `drops` that are on this rank's tiles, or on no one's and `holder` says this.
   void hand_out(const std::vector<Drop<dim>>& drops, const std::vector<int>& holder);

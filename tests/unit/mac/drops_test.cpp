@@ -166,6 +166,29 @@ TEST(Drops, GiveSolidsWhatTheyLose) {
   }
 }
 
+/// What stands before an open side stops a drop whose step would end beyond it; a drop that a solid
+/// pushes out through the side has left, as any other.
+TEST(Drops, MeetSolidsBeforeOpenSides) {
+  const MacDomain<2> domain(box_of_drops<2>(16, SideType::open), world());
+  Drops<2> drops(domain);
+  const auto mesh = box_surface<2>({0.05, 0.8}, 0.1);
+  const auto wall = placed<2>(mesh, {0.95, 0.5}), beyond = placed<2>(mesh, {1.1, 0.5});
+  add<2>(domain, drops, {{0.8, 0.5}, {6, 0}, {}, 1e-4});
+  const MovingSurface<2> at_rest{wall, wall, [](const SurfacePoint<2>&) { return Point<2>(0, 0); }};
+  EXPECT_EQ(sum_all(world(), drops.fly(at_rest, Point<2>::Zero(), 0.05)), 0);
+  drops.count();
+  ASSERT_EQ(drops.report().n, 1);
+  EXPECT_NEAR(numbers_of(domain, drops)[0], 0.925 - 0.1 / 16, 1e-12);
+  drops.clear();
+  add<2>(domain, drops, {{0.99, 0.5}, {0, 0}, {}, 1e-4});
+  const MovingSurface<2> pushed{wall, beyond,
+                                [](const SurfacePoint<2>&) { return Point<2>(3, 0); }};
+  EXPECT_EQ(sum_all(world(), drops.fly(pushed, Point<2>::Zero(), 0.05)), 0);
+  EXPECT_TRUE(drops.pushes().empty());
+  drops.count();
+  EXPECT_EQ(drops.report().n, 0);
+}
+
 /// A drop between a wedge that closes and the floor has no room in the end; its volume is told.
 TEST(Drops, ThatSolidsCloseInAreTold) {
   const MacDomain<2> domain(box_of_drops<2>(16, SideType::open), world());
