@@ -67,8 +67,8 @@ class ConstraintModel : public PlugIn {
  public:
   /// At the present positions. Local, the same on all ranks.
   virtual std::vector<Combination> combinations() const = 0;
-  /// S1: changes V (stacked, of all dofs), which is about to move all solids from `time` by dt.
-  /// Collective.
+  /// S1: changes V (stacked, of all dofs), which is about to move all solids from `time` by dt, as
+  /// if they had no midpoint corrections: who adds these asks for a `FreeFlight`. Collective.
   virtual ClosedMotion close(double time, double dt, Vector& velocity) = 0;
   /// At the present positions, for motions with about the velocity V (by dof, of all solids).
   /// Local, the same on all ranks.

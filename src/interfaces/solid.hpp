@@ -77,10 +77,11 @@ class SolidModel : public PlugIn {
   virtual RCP<const LinearOperator> implicit_force(double dt) const;
   /// momentum = M_S V_S* = M_S V^n + dt (explicit forces, gravity included) [kg m/s]. Collective.
   virtual void explicit_momentum(double time, double dt, Vector& momentum) const = 0;
-  /// S1 only, dt the half step: added to `explicit_momentum` so that its V_S* is the velocity at
-  /// the midpoint of the free motion, where the inertia is that of the turned body; then the
-  /// positions are second order in time. Never part of S2: momentum stays exact. Default: nothing.
-  /// Collective.
+  /// S1 only, dt the half step: added to `explicit_momentum` so that its V_S* is the mean velocity
+  /// of the whole step's motion, on whose way the inertia turns with the body; then the positions
+  /// are second order in time. That motion sets out with the momentum at the begin, and with what
+  /// else acts there if nothing takes it up. Never part of S2: momentum stays exact. Default:
+  /// nothing. Collective.
   virtual void add_midpoint_correction(double, Vector&) const {}
   /// A step from `time` to time + dt begins: from here on `locked_dofs` are its own. Collective.
   virtual void begin_step(double, double) {}
