@@ -105,6 +105,7 @@ class JointConstraints : public ConstraintModel,
     std::vector<BodyMotion<dim>> solved, motions;  ///< before contact; after it, then as they go
     std::vector<TwistVector<dim>> corrections, later, drift;  ///< see ClosedFlight
   };
+  /// By the mechanism's own numbers (LoneMechanism).
   struct FoundFlights {
     Flight<dim> free, pushed;  ///< without contact; with what it did
   };
@@ -115,8 +116,10 @@ class JointConstraints : public ConstraintModel,
                  double dt, Vector& velocity) const;
   std::optional<FlightSteps> flight_steps(const Mechanism& mechanism, double turn,
                                           bool touched) const;
-  std::optional<FoundFlights> flights(const ClosingProblem<dim>& problem,
-                                      const StepMotions& step) const;
+  std::optional<FoundFlights> flights(const Mechanism& mechanism,
+                                      const ClosingProblem<dim>& problem,
+                                      const std::vector<BodyMotion<dim>>& solved,
+                                      const std::vector<BodyMotion<dim>>& motions) const;
   StepMotions motions_of(const Vector& correction, const Vector& solved,
                          const Vector& velocity) const;
   void take(const Mechanism& mechanism, const FoundFlights& found, StepMotions& step) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "articulated/articulation.hpp"
+#include "articulated/lone_mechanism.hpp"
 #include "base/errors.hpp"
 
 namespace lockstep {
@@ -15,8 +16,8 @@ void JointConstraints<dim>::set_rates(const Mechanism& mechanism,
                                       const std::vector<Eigen::VectorXd>& coordinates, double dt,
                                       Vector& velocity) const {
   const auto values = velocity.getDataNonConst();
-  for (const int j : mechanism.joints) {
-    const Joint<dim>& joint = articulation_->joints()[j];
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+    const Joint<dim>& joint = articulation_->joints()[mechanism.joints[j]];
     const Eigen::VectorXd rates = change_to<dim>(joint.kind, joint.q, coordinates[j]) / dt;
     for (int k = 0; k < joint.q.size() && joint.first_rate >= 0; ++k) {
       const int row = velocity.getMap()->getLocalElement(articulation_->dofs().first_rate +
@@ -107,22 +108,23 @@ std::optional<FlightSteps> JointConstraints<dim>::flight_steps(const Mechanism& 
   return std::nullopt;
 }
 
-/// Empty: joints could not be closed about the motions as they were found.
+/// Empty: joints could not be closed about the motions as they were found, before contact and
+/// after it. `problem`: that of the mechanism alone.
 template <int dim>
 std::optional<typename JointConstraints<dim>::FoundFlights> JointConstraints<dim>::flights(
-    const ClosingProblem<dim>& problem, const StepMotions& step) const {
+    const Mechanism& mechanism, const ClosingProblem<dim>& problem,
+    const std::vector<BodyMotion<dim>>& solved, const std::vector<BodyMotion<dim>>& motions) const {
   if (!articulation_->options().two_halves)
     return std::nullopt;
-  const bool touched = differ(problem, step.solved, step.motions);
-  const double turn =
-      std::max(largest_turn(problem, step.solved), largest_turn(problem, step.motions));
-  const std::optional<FlightSteps> steps = flight_steps(problem.mechanism, turn, touched);
+  const bool touched = differ(problem, solved, motions);
+  const double turn = std::max(largest_turn(problem, solved), largest_turn(problem, motions));
+  const std::optional<FlightSteps> steps = flight_steps(mechanism, turn, touched);
   if (!steps)
     return std::nullopt;
-  std::optional<Flight<dim>> free = fly(problem, *steps, step.solved);
+  std::optional<Flight<dim>> free = fly(problem, *steps, solved);
   if (!free || !touched)
     return free ? std::make_optional(FoundFlights{*free, *free}) : std::nullopt;
-  std::optional<Flight<dim>> pushed = fly(problem, *steps, step.motions);
+  std::optional<Flight<dim>> pushed = fly(problem, *steps, motions);
   return pushed ? std::make_optional(FoundFlights{*free, *pushed}) : std::nullopt;
 }
 
@@ -188,12 +190,13 @@ typename JointConstraints<dim>::StepMotions JointConstraints<dim>::motions_of(
 template <int dim>
 void JointConstraints<dim>::take(const Mechanism& mechanism, const FoundFlights& found,
                                  StepMotions& step) const {
-  for (const int body : mechanism.bodies) {
-    const BodyMotion<dim>& free = found.free.motions[body];
-    step.later[body] = found.free.given[body];
+  for (std::size_t own = 0; own < mechanism.bodies.size(); ++own) {
+    const int body = mechanism.bodies[own];
+    const BodyMotion<dim>& free = found.free.motions[own];
+    step.later[body] = found.free.given[own];
     step.corrections[body] = step.masses[body].matrix * free.twist - free.momentum;
     step.drift[body] = free.twist - step.solved[body].twist;
-    step.motions[body] = found.pushed.motions[body];
+    step.motions[body] = found.pushed.motions[own];
   }
 }
 
@@ -241,11 +244,17 @@ ClosedFlight JointConstraints<dim>::close_flight(double time, double dt, const V
   two_halves_.assign(articulation_->joints().size(), 0);
   bool any_closed = false;
   for (const Mechanism& mechanism : articulation_->mechanisms()) {
-    const ClosingProblem<dim> problem{mechanism, articulation_->joints(), poses, ends, step.masses,
-                                      dt};
-    const std::optional<FoundFlights> found = flights(problem, step);
+    const LoneMechanism<dim> lone = alone(mechanism, articulation_->joints());
+    const std::vector<BodyPose<dim>> begins = lone.of_bodies(poses), goals = lone.of_bodies(ends);
+    const std::vector<BodyMass<dim>> masses = lone.of_bodies(step.masses);
+    const ClosingProblem<dim> problem{lone.mechanism, lone.joints, begins, goals, masses, dt};
+    std::vector<BodyMotion<dim>> motions = lone.of_bodies(step.motions);
+    const std::optional<FoundFlights> found =
+        flights(mechanism, problem, lone.of_bodies(step.solved), motions);
     if (!found) {
-      follow(problem, change, step.motions);
+      follow(problem, change, motions);
+      for (std::size_t own = 0; own < mechanism.bodies.size(); ++own)
+        step.motions[mechanism.bodies[own]] = motions[own];
       continue;
     }
     take(mechanism, *found, step);

@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 
 #include "articulated/closing.hpp"
+#include "articulated/lone_mechanism.hpp"
 #include "articulated/mechanism.hpp"
 #include "motion/rotation.hpp"
 
@@ -229,6 +230,46 @@ TEST(Closing, FitsAllJointsAndKeepsMomentum) {
     for (const Joint<2>& joint : linkage.joints)
       EXPECT_LT(largest_gap(joint, poses_after(problem, motions)), 1e-12);
     EXPECT_LT((total() - momentum).norm(), 1e-12);
+  }
+}
+
+/// Of two mechanisms whose bodies and joints alternate, a loop and a chain on a prescribed body,
+/// each under its own numbers goes where it goes among all.
+TEST(Closing, AMechanismAloneIsTheSameBitForBit) {
+  Linkage<2> linkage;
+  const Point<2> corners[] = {{0, 0}, {2, 0}, {2.5, 1}, {0.5, 1}};
+  for (int k = 0; k < 4; ++k) {
+    linkage.add_body({3. + k, 0}, AngularVector<2>(0.2), k > 0);
+    linkage.add_body(0.5 * (corners[k] + corners[(k + 1) % 4]), AngularVector<2>(0.3 * k));
+  }
+  for (int k = 0; k < 4; ++k) {
+    if (k > 0)
+      linkage.add_joint(kind("hinge"), 2 * k - 2, 2 * k, {2.5 + k, 0});
+    linkage.add_joint(kind("hinge"), 2 * k + 1, 2 * ((k + 1) % 4) + 1, corners[(k + 1) % 4]);
+  }
+  const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
+  ASSERT_EQ(mechanisms.size(), 2u);
+  std::vector<BodyMass<2>> masses;
+  std::vector<BodyMotion<2>> among_all(8);
+  for (int b = 0; b < 8; ++b) {
+    masses.push_back(mass_of<2>(Eigen::Vector3d(b + 1, b + 1, 0.1).asDiagonal()));
+    among_all[b].twist << 0.1 * b, 1 - 0.2 * b, 1.5 - 0.3 * b;
+    among_all[b].momentum = masses[b].matrix * among_all[b].twist;
+  }
+  for (const Mechanism& mechanism : mechanisms) {
+    const LoneMechanism<2> lone = alone(mechanism, linkage.joints);
+    EXPECT_EQ(lone.bodies.size(), 4u);
+    const auto poses = lone.of_bodies(linkage.poses);
+    const auto own_masses = lone.of_bodies(masses);
+    auto by_itself = lone.of_bodies(among_all);
+    ASSERT_TRUE(close_joints({mechanism, linkage.joints, linkage.poses, linkage.poses, masses, 0.1},
+                             Answer::free, among_all));
+    ASSERT_TRUE(close_joints({lone.mechanism, lone.joints, poses, poses, own_masses, 0.1},
+                             Answer::free, by_itself));
+    for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+      EXPECT_EQ(by_itself[b].twist, among_all[mechanism.bodies[b]].twist);
+      EXPECT_EQ(by_itself[b].momentum, among_all[mechanism.bodies[b]].momentum);
+    }
   }
 }
 
