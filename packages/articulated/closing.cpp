@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "motion/free_rotation.hpp"
 
@@ -61,6 +63,13 @@ class Rows {
   }
 
   int n_columns() const { return n_columns_; }
+  /// Of gaps, with bodies as far away as they are; a slider may let go of a body without end.
+  double round_off() const {
+    double farthest = 0;
+    for (const int body : problem_.mechanism.bodies)
+      farthest = std::max(farthest, problem_.poses[body].position.norm());
+    return 32 * std::numeric_limits<double>::epsilon() * farthest / unit_;
+  }
   int column(int body) const { return column_[body]; }
 
   /// Rows and gaps; lengths count in `unit_`.
@@ -194,6 +203,7 @@ bool close_joints(const ClosingProblem<dim>& problem, Answer answer,
   constexpr int most_iterations = 30;
   constexpr double closed = 1e-13, good_enough = 1e-10;
   const Rows<dim> all(problem);
+  const double fits = std::max(good_enough, all.round_off());
   Eigen::MatrixXd rows;
   Eigen::VectorXd gaps;
   all.evaluate(problem.poses, rows, gaps);
@@ -206,7 +216,7 @@ bool close_joints(const ClosingProblem<dim>& problem, Answer answer,
     const double size = gaps.size() > 0 ? gaps.template lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size))
       return false;
-    if (size <= closed || (size <= good_enough && size > 0.5 * before)) {
+    if (size <= closed || (size <= fits && size > 0.5 * before)) {
       motions = trial;
       return true;
     }
