@@ -9,8 +9,10 @@ from stability_cases import CONDITIONS, MECHANISMS, chain_of_cubes, driven_in, f
 
 N_STEPS = 20
 BY_ITSELF = ("free", "heavy", "light", "each joint twice")
-# A part of 1e-6 kg that slides far off, or closes a loop: some of its steps cannot be closed, and lose.
-UNEVEN = (("universal and cylinder", "light"), ("square of hinges", "light"))
+# With a part of 1e-6 kg: what it slides on turns over in a wink, as if it were alone, and swings by more; a loop that folds flat
+# in the farthest steps cannot be closed there.
+SWINGS = {("universal and cylinder", "light"): .02}
+FOLDS = {("square of hinges", "light"): 4.}
 
 
 class Stability(unittest.TestCase):
@@ -19,8 +21,8 @@ class Stability(unittest.TestCase):
             with self.subTest(mechanism=mechanism, condition=condition, turn=turn):
                 self.assertLess(result["gain"], bounds[turn])
                 self.assertLess(result["momentum"], 1e-9)
-                if condition in BY_ITSELF and (mechanism, condition) not in UNEVEN:
-                    self.assertLess(result["loss"], bounds[turn])
+                if condition in BY_ITSELF and turn != FOLDS.get((mechanism, condition)):
+                    self.assertLess(result["loss"], SWINGS.get((mechanism, condition), bounds[turn]))
                     self.assertEqual(result["at_end"], 0)
 
     def test_mechanisms_and_a_body_alone(self):
