@@ -46,7 +46,8 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
     n_attached[node.model] += 1;
   if (!n_attached.empty())
     sum_all(comm_, n_attached.data(), n_models());
-  carried_.assign(n_attached.begin(), n_attached.end());
+  for (const double n : n_attached)
+    carried_.push_back(n > 0 ? 1 : 0);
   find_reduction();
 }
 

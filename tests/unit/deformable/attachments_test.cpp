@@ -17,11 +17,14 @@ ParameterList rigid_list(const std::string& content) {
   return scene_list(content, rigid_body_parameters<3>());
 }
 
-/// A beam of 1 x 0.25 x 0.25 whose left end is glued into a turning rigid box.
+/// A beam, cells of 1/8, whose left end is glued into a turning rigid box.
 struct Glued {
-  explicit Glued(const std::string& carrier = "hub")
-      : system(models(carrier, rigid, beam), world()) {}
+  explicit Glued(const std::string& carrier = "hub", const std::string& size = "1, 0.25, 0.25",
+                 const std::string& glued_to = "-0.25")
+      : system(models(carrier, size, glued_to, rigid, beam), world()) {}
   static std::vector<std::unique_ptr<SolidModel<3>>> models(const std::string& carrier,
+                                                            const std::string& size,
+                                                            const std::string& glued_to,
                                                             RigidBodies<3>*& rigid,
                                                             DeformableSolids<3>*& beam) {
     auto hub = make_rigid_bodies<3>(
@@ -32,12 +35,12 @@ struct Glued {
         0.25, Point<3>::Zero(), world(), 0);
     std::vector<DeformableBody<3>> bodies;
     bodies.push_back(body<3>(
-        box("1, 0.25, 0.25", "0.125") + material("corotated", "2000") + number("Density", "2") +
+        box(size, "0.125") + material("corotated", "2000") + number("Density", "2") +
             number("Viscosity", "0.5") + text("Mass", "consistent") +
             text("Time Integration", "fully-implicit") + numbers("Position", "0.5, 0, 0") +
             list("Attachments",
-                 list("root", numbers("Lower", "-0.5, -1, -1") + numbers("Upper", "-0.25, 1, 1") +
-                                  text("Solid", carrier))),
+                 list("root", numbers("Lower", "-0.5, -1, -1") +
+                                  numbers("Upper", glued_to + ", 1, 1") + text("Solid", carrier))),
         "beam"));
     auto soft = std::make_unique<DeformableSolids<3>>("deformable body", std::move(bodies),
                                                       Point<3>::Zero(), world());
@@ -136,6 +139,15 @@ TEST(Attachments, BlockIsSymmetricAndNodesAreNoUnknowns) {
   const auto expanded = distributed(unknowns, glued.system.map());
   reduction.expand(*expanded);
   EXPECT_LE((dense(*expanded) - shift).norm(), 1e-13);
+}
+
+/// Four layers of 8 x 8 nodes: as many as a byte cannot count.
+TEST(Attachments, AreKeptHoweverManyNodesThereAre) {
+  const Glued glued("hub", "1, 0.875, 0.875", "-0.125");
+  const auto n_attached = static_cast<GlobalIndex>(glued.beam->attachments().size());
+  EXPECT_EQ(sum_all(world(), n_attached), 256);
+  ASSERT_TRUE(glued.system.reduction().has_combinations());
+  EXPECT_EQ(dense(*glued.system.reduction().unknowns()).sum(), 6 + 3 * (9 * 8 * 8 - 256));
 }
 
 TEST(Attachments, WantADynamicRigidBody) {
