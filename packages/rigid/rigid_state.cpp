@@ -45,8 +45,8 @@ std::string joined_names(const std::vector<RigidBody<dim>>& bodies) {
 template <int dim>
 std::vector<double> RigidBodies<dim>::state() const {
   std::vector<double> values{time_};
-  for (RigidBody<dim> body : bodies_)
-    for_each_value(body, [&](double& value) { values.push_back(value); });
+  for (const RigidBody<dim>& body : bodies_)
+    for_each_value(body, [&](double value) { values.push_back(value); });
   return values;
 }
 

@@ -149,6 +149,23 @@ TEST(RigidBodies, UndoPutsBackWhatAStepChanges) {
   }
 }
 
+/// A script tells when its body is copied, with its mesh.
+TEST(RigidBodies, UndoCopiesNoBody) {
+  struct Script {
+    explicit Script(int& counter) : n_copies(counter) {}
+    Script(const Script& other) : n_copies(other.n_copies) { ++n_copies; }
+    ScriptedMotion<3> operator()(double) const { return {}; }
+    int& n_copies;
+  };
+  int n_copies = 0;
+  RigidBody<3> scripted = body<3>(small_ball + number("Density", "2"));
+  scripted.script = Script(n_copies);
+  RigidBodies<3> bodies({scripted}, Point<3>::Zero(), world());
+  n_copies = 0;
+  bodies.undo()();
+  EXPECT_EQ(n_copies, 0);
+}
+
 TEST(RigidBodies, LocksAreTheNamedDofs) {
   const auto bodies = model<3>(zoo());
   const auto mine = bodies->locked_dofs();
