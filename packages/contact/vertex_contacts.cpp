@@ -36,7 +36,8 @@ VertexContacts<dim>::VertexContacts(const ContactShapes<dim>& shapes,
       solid_closed_(shapes.solids()[solid].closed),
       other_closed_(shapes.solids()[other].closed),
       thickness_(reach.half_thickness[solid] + reach.half_thickness[other]),
-      near_(reach.near + thickness_) {
+      near_(reach.near + thickness_),
+      farthest_(other_closed_ ? std::max(near_, reach.depth) : near_) {
   collect_simplices();
 }
 
@@ -47,7 +48,7 @@ void VertexContacts<dim>::collect_simplices() {
     const Box<dim> moved = relative_displacement(motion_, solid_, other_, reach_.dt);
     region = Box<dim>(region.min() + moved.min(), region.max() + moved.max());
   }
-  region = inflated(region, std::max(near_, reach_.depth));
+  region = inflated(region, farthest_);
   const SolidDescription& other = shapes_.solids()[other_];
   for (int s = other.simplex_begin; s < other.simplex_end; ++s) {
     if (region.intersects(shapes_.bounds(s))) {
@@ -61,7 +62,7 @@ template <int dim>
 void VertexContacts<dim>::find(std::vector<Contact<dim>>& contacts) {
   if (simplices_.empty())
     return;
-  Box<dim> region = inflated(simplices_box_, near_);
+  Box<dim> region = inflated(simplices_box_, farthest_);
   if (reach_.swept) {
     const Box<dim> moved = relative_displacement(motion_, solid_, other_, reach_.dt);
     region = Box<dim>(region.min() - moved.max(), region.max() - moved.min());
@@ -124,7 +125,7 @@ template <int dim>
 std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
     const Point<dim>& x, const Point<dim>& normal) {
   const double tie = 1e-7 * reach_.near;
-  double nearest = std::max(near_, other_closed_ ? reach_.depth : near_);
+  double nearest = farthest_;
   double best = -2;
   std::optional<Hit> hit;
   for (int s : simplices_) {

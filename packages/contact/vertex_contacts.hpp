@@ -39,6 +39,7 @@ class VertexContacts {
   bool solid_closed_, other_closed_;
   double thickness_;  ///< half thicknesses of both
   double near_;       ///< including the thickness
+  double farthest_;   ///< that a simplex may be, on either side of it
   std::vector<int> simplices_;
   Box<dim> simplices_box_;
   std::vector<Hit> inner_;

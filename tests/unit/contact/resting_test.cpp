@@ -1,0 +1,35 @@
+// Bodies at rest on others: how far a load goes, how deep an overlap is seen.
+#include <gtest/gtest.h>
+
+#include "contact_world.hpp"
+
+namespace lockstep::test {
+namespace {
+
+template <typename T>
+class Resting : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (world_communicator()->getSize() > 1)
+      GTEST_SKIP();
+  }
+};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(Resting, Dimensions);
+
+/// The floor is one face far larger than the box, whose lower side is in it by more than is watched
+/// of gaps, and by less than is recognised of overlaps.
+TYPED_TEST(Resting, AnOverlapWithACoarseFloorIsSeenAndPushedOut) {
+  constexpr int dim = TypeParam::value;
+  const double depth = 0.3 * h;
+  World<dim> world({fixed(box<dim>(40 * h, up<dim>(-20 * h), 100 * h)),
+                    box<dim>(4 * h, up<dim>(2 * h - depth), 2 * h)},
+                   up<dim>(-g));
+  EXPECT_NEAR(world.overlap(), depth, 1e-12);
+  world.run(1, 0.01);
+  EXPECT_LT(world.overlap(), 0.06 * h);
+  EXPECT_NEAR(world.state(1).center_of_mass[dim - 1], 2 * h, 0.06 * h);
+}
+
+}  // namespace
+}  // namespace lockstep::test
