@@ -7,7 +7,9 @@
 namespace lockstep {
 
 namespace {
-constexpr int most_rounds = 12;
+/// The load of a pile goes up by a solid a round, which may ask for more where it has been: so many
+/// rounds beside one for each solid.
+constexpr int further_rounds = 12;
 constexpr int most_searches = 3;
 constexpr int most_impact_rounds = 20;
 /// Contacts of a pair that become active at once: enough to hold a face.
@@ -129,7 +131,7 @@ int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
     leave_out_immovable(solver);
   if (scale_ == 0)
     return 0;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < shapes_.n_solids() + further_rounds; ++round) {
     poll_interruption(system_.comm());
     const SolidMotion<dim> motion(system_, shapes_, solver.velocity());
     const double tolerance = (round == 0 ? 0 : 10) * options_.tolerance * scale_;

@@ -17,6 +17,26 @@ class Resting : public ::testing::Test {
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Resting, Dimensions);
 
+/// From rest all of a column falls at once, and the floor is to stop it in the same step, given
+/// sweeps enough: every face is held at its ends.
+TYPED_TEST(Resting, TheFloorCarriesAllOfAColumn) {
+  constexpr int dim = TypeParam::value;
+  const int n = 20, n_at_a_face = dim == 2 ? 2 : 4;
+  const double dt = 0.01;
+  std::vector<RigidBody<dim>> bodies;
+  for (int i = 0; i < n; ++i)
+    bodies.push_back(rough(box<dim>(4 * h, up<dim>((2 + 4 * i) * h), 4 * h), 0.5));
+  World<dim> world(bodies, up<dim>(-g));
+  GaussSeidelOptions options;
+  options.sweeps = 5000;
+  options.tolerance = 1e-6;
+  world.contact = GaussSeidelContact<dim>(options, cube_walls<dim>(), h);
+  world.step(dt);
+  EXPECT_GE(world.velocity_report.n_contacts, n * n_at_a_face);
+  for (int i = 0; i < n; ++i)
+    EXPECT_LT(world.state(i).velocity.norm(), 0.01 * g * dt) << i;
+}
+
 /// The floor is one face far larger than the box, whose lower side is in it by more than is watched
 /// of gaps, and by less than is recognised of overlaps.
 TYPED_TEST(Resting, AnOverlapWithACoarseFloorIsSeenAndPushedOut) {
