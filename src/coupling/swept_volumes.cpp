@@ -228,6 +228,8 @@ bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
                              std::make_pair(m, static_cast<int>(s))))
         continue;
       const SolidDescription& solid = solids.model(m).solids()[s];
+      if (solid.simplex_begin == solid.simplex_end)
+        continue;  // the fluid sees nothing of it
       if (!solid.closed || !(solid.rigid || solid.prescribed))
         return false;
       for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
