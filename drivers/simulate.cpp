@@ -16,7 +16,7 @@
 #include "base/lone_process.hpp"
 #include "base/memory.hpp"
 #include "base/shortened.hpp"
-#include "output/build_information.hpp"
+#include "output/provenance/build_information.hpp"
 #include "parameters/command_line.hpp"
 #include "parameters/reference.hpp"
 #include "parameters/strict_xml.hpp"

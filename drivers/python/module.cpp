@@ -11,7 +11,7 @@
 #include "base/errors.hpp"
 #include "base/lone_process.hpp"
 #include "base/memory.hpp"
-#include "output/build_information.hpp"
+#include "output/provenance/build_information.hpp"
 
 namespace py = pybind11;
 using namespace lockstep;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <ctime>
 
-#include "output/build_information.hpp"
-#include "output/machine.hpp"
+#include "output/provenance/build_information.hpp"
+#include "output/provenance/machine.hpp"
 
 namespace lockstep {
 

@@ -32,6 +32,7 @@ FORBIDDEN = {
 }
 CLASS = re.compile(r"^class (\w+)([^;{]*)\{(.*?)^\};", re.MULTILINE | re.DOTALL)
 MOST_PURE = 12  # functions that a new plug-in must write, its name among them
+MOST_FILES = 39  # of a folder of src, so that its room can be seen at a glance
 CONSOLE = re.compile(r"\bstd::(cout|cerr)\b")
 
 
@@ -98,6 +99,13 @@ def interface_violations(path, root):
     return found
 
 
+def folder_violations(root):
+    for folder in sorted(path for path in (root / "src").rglob("*") if path.is_dir() and path.name != "__pycache__"):
+        n_files = sum(path.is_file() for path in folder.iterdir())
+        if n_files > MOST_FILES:
+            yield f"{folder.relative_to(root)}: {n_files} files, more than {MOST_FILES}: a room of its own for some of them"
+
+
 def violations(root):
     root = Path(root)
     packages = rooms(root, "packages")
@@ -105,6 +113,7 @@ def violations(root):
         yield from code_violations(path, root, packages)
     for path in sorted((root / "src" / "interfaces").glob("*.hpp")):
         yield from interface_violations(path, root)
+    yield from folder_violations(root)
     # In a worktree .git is a file that holds a path.
     top = [path for path in sorted(root.iterdir())
            if path.is_file() and path.suffix in TEXT_SUFFIXES and path.name != ".git"]

@@ -40,6 +40,11 @@ class Rules(unittest.TestCase):
             with self.subTest(text=text):
                 self.assertEqual(len(self.found({"src/base/a.cpp": f"// {text}\n"})), 1)
 
+    def test_full_folders(self):
+        files = {f"src/base/a{i}.cpp": "" for i in range(39)}
+        self.assertEqual(self.found(files), [])
+        self.assertEqual(len(self.found({**files, "src/base/b.cpp": ""})), 1)
+
 
 if __name__ == "__main__":
     unittest.main()

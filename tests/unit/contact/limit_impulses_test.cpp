@@ -10,7 +10,7 @@
 
 #include "base/errors.hpp"
 
-namespace lockstep {
+namespace lockstep::test {
 namespace {
 
 /// Tries which rows push.
@@ -137,4 +137,4 @@ TEST(LimitImpulses, BothLimitsOfOneVelocity) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test

@@ -10,8 +10,8 @@
 
 #include "base/errors.hpp"
 #include "base/interruption.hpp"
-#include "output/build_information.hpp"
 #include "output/progress.hpp"
+#include "output/provenance/build_information.hpp"
 #include "output/run_record.hpp"
 #include "output/signals.hpp"
 #include "output/timers.hpp"

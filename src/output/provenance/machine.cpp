@@ -1,4 +1,4 @@
-#include "output/machine.hpp"
+#include "output/provenance/machine.hpp"
 
 #include <sys/utsname.h>
 

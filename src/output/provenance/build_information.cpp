@@ -1,4 +1,4 @@
-#include "output/build_information.hpp"
+#include "output/provenance/build_information.hpp"
 
 #include <Trilinos_version.h>
 #include <fmt/chrono.h>
@@ -8,7 +8,7 @@
 
 #include <ctime>
 
-#include "output/git_hash.hpp"
+#include "output/provenance/git_hash.hpp"
 
 namespace lockstep {
 
