@@ -34,9 +34,12 @@ TargetCost cost_of_target(const std::vector<StudyRow>& rung_rows, double target)
   cost.target = target;
   if (!rung_rows.empty())
     cost.series = rung_rows.front().series;
+  // The finest rung has no error where it is what the others are compared with.
+  const auto finest = std::find_if(rung_rows.rbegin(), rung_rows.rend(),
+                                   [](const StudyRow& row) { return row.error.has_value(); });
   const auto misses = [target](const StudyRow& row) { return !row.error || *row.error > target; };
-  const auto last_miss = std::find_if(rung_rows.rbegin(), rung_rows.rend(), misses);
-  if (last_miss == rung_rows.rbegin())
+  const auto last_miss = std::find_if(finest, rung_rows.rend(), misses);
+  if (last_miss == finest)
     return cost;
   const auto first_hit = last_miss.base();
   set_cost(cost, *first_hit);

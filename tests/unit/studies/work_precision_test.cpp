@@ -62,6 +62,16 @@ TEST(WorkPrecision, ARungCountsOnlyIfAllFinerOnesKeepTheTarget) {
   EXPECT_EQ(early.core_seconds, 1);
 }
 
+TEST(WorkPrecision, TheFinestRungMayBeWhatTheOthersAreComparedWith) {
+  std::vector<StudyRow> rows{row_of("a", 10, 0.1), row_of("a", 100, 0.01), row_of("a", 1000, 0)};
+  rows.back().error.reset();
+  EXPECT_NEAR(cost_of_target(rows, 0.05).core_seconds, 20, 1e-12);
+  EXPECT_EQ(cost_of_target(rows, 0.001).found, TargetCost::Found::not_reached);
+  rows.front().error.reset();
+  rows[1].error.reset();
+  EXPECT_EQ(cost_of_target(rows, 0.05).found, TargetCost::Found::not_reached);
+}
+
 TEST(WorkPrecision, NoErrorAtAllCostsItsRung) {
   EXPECT_EQ(cost_of_target({row_of("a", 1, 0.1), row_of("a", 9, 0)}, 0.05).core_seconds, 9);
 }
