@@ -32,91 +32,88 @@ class Neighbors {
   bool has_shells_ = false;
 };
 
-/// Owned solid cells that have a fluid neighbour.
-template <int dim>
-std::vector<int> first_front(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                             const Neighbors<dim>& neighbor) {
-  std::vector<int> front;
-  domain.grid.for_each_owned_cell([&](int cell) {
-    if (solids.state.cells[cell] != CellState::solid)
-      return;
-    for (int i = 0; i < 2 * dim; ++i) {
-      const int other = neighbor(cell, i / 2, i % 2);
-      if (other >= 0 && solids.is_fluid(other)) {
-        front.push_back(cell);
-        return;
-      }
-    }
-  });
-  return front;
-}
-
-/// What a set neighbour leads to, along the axis from it to the cell.
-template <int dim>
-double led_to(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-              const std::vector<char>& is_set, const CellField& phi, int other, int axis,
-              int side) {
-  const int beyond = domain.grid.neighbor(other, axis, side);
-  if (beyond < 0 || !is_set[beyond])
-    return phi[other];
-  if (solids.is_fluid(other) && solids.seen_neighbor(domain.grid, other, axis, side) < 0)
-    return phi[other];
-  const double h = domain.spacing();
-  return phi[other] + std::clamp(phi[other] - phi[beyond], -h, h);
-}
+constexpr char no_layer = 127;
 }  // namespace
 
 template <int dim>
-void continue_into_solids(const MacDomain<dim>& domain, const SolidCells<dim>& solids, int depth,
-                          double cut_off, CellField& phi) {
+void Continuation<dim>::find_layers(const MacDomain<dim>& domain, const SolidCells<dim>& solids) {
   const TiledGrid<dim>& grid = domain.grid;
-  if (!solids.state.surface)
-    return;
-  std::vector<char> is_set(grid.n_stored_cells());
-  for (std::size_t cell = 0; cell < is_set.size(); ++cell)
-    is_set[cell] = solids.is_fluid(static_cast<int>(cell));
+  surface_ = solids.state.surface;
+  layers_.assign(n_layers_, {});
+  layer_of_.resize(grid.n_stored_cells());
+  for (std::size_t cell = 0; cell < layer_of_.size(); ++cell)
+    layer_of_[cell] = solids.is_fluid(static_cast<int>(cell)) ? 0 : no_layer;
+  std::vector<int> left;
+  grid.for_each_owned_cell([&](int cell) {
+    if (solids.state.cells[cell] == CellState::solid)
+      left.push_back(cell);
+  });
   const Neighbors<dim> neighbor(domain, solids);
-  std::vector<int> front = first_front(domain, solids, neighbor);
-  std::vector<double> values;
-  for (int layer = 0; layer < depth; ++layer) {
-    values.clear();
-    for (const int cell : front) {
-      double sum = 0;
-      int n = 0;
+  for (int layer = 1; layer <= n_layers_; ++layer) {
+    std::vector<int> beyond;
+    for (const int cell : left) {
+      unsigned char from = 0;
       for (int i = 0; i < 2 * dim; ++i) {
         const int other = neighbor(cell, i / 2, i % 2);
-        if (other < 0 || !is_set[other])
-          continue;
-        sum += led_to(domain, solids, is_set, phi, other, i / 2, i % 2);
-        ++n;
+        if (other >= 0 && layer_of_[other] < layer)
+          from |= 1 << i;
       }
-      values.push_back(std::clamp(sum / n, -cut_off, cut_off));
+      if (from)
+        layers_[layer - 1].push_back({cell, from});
+      else
+        beyond.push_back(cell);
     }
-    for (std::size_t i = 0; i < front.size(); ++i) {
-      phi[front[i]] = values[i];
-      is_set[front[i]] = 1;
-    }
-    domain.full_halo.fill(phi);
-    domain.full_halo.fill(is_set);
-    std::vector<int> next;
-    grid.for_each_owned_cell([&](int cell) {
-      if (is_set[cell] || solids.state.cells[cell] != CellState::solid)
-        return;
-      for (int i = 0; i < 2 * dim; ++i) {
-        const int other = neighbor(cell, i / 2, i % 2);
-        if (other >= 0 && is_set[other]) {
-          next.push_back(cell);
-          return;
-        }
-      }
-    });
-    front.swap(next);
+    for (const LayerCell& found : layers_[layer - 1])
+      layer_of_[found.cell] = static_cast<char>(layer);
+    domain.full_halo.fill(layer_of_);
+    left.swap(beyond);
   }
 }
 
-template void continue_into_solids<2>(const MacDomain<2>&, const SolidCells<2>&, int, double,
-                                      CellField&);
-template void continue_into_solids<3>(const MacDomain<3>&, const SolidCells<3>&, int, double,
-                                      CellField&);
+/// What a neighbour leads to, along the axis from it to the cell.
+template <int dim>
+double Continuation<dim>::led_to(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                                 const CellField& phi, int other, int axis, int side,
+                                 int layer) const {
+  const int beyond = grid.neighbor(other, axis, side);
+  if (beyond < 0 || layer_of_[beyond] >= layer)
+    return phi[other];
+  if (solids.is_fluid(other) && solids.seen_neighbor(grid, other, axis, side) < 0)
+    return phi[other];
+  const double h = grid.spacing();
+  return phi[other] + std::clamp(phi[other] - phi[beyond], -h, h);
+}
+
+template <int dim>
+void Continuation<dim>::into_solids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                                    double cut_off, CellField& phi) {
+  if (!solids.state.surface)
+    return;
+  if (surface_ != solids.state.surface)
+    find_layers(domain, solids);
+  const TiledGrid<dim>& grid = domain.grid;
+  std::vector<double> values;
+  for (int layer = 1; layer <= n_layers_; ++layer) {
+    const std::vector<LayerCell>& cells = layers_[layer - 1];
+    values.clear();
+    for (const LayerCell& at : cells) {
+      double sum = 0;
+      int n = 0;
+      for (int i = 0; i < 2 * dim; ++i)
+        if (at.from >> i & 1) {
+          const int other = grid.neighbor(at.cell, i / 2, i % 2);
+          sum += led_to(grid, solids, phi, other, i / 2, i % 2, layer);
+          ++n;
+        }
+      values.push_back(std::clamp(sum / n, -cut_off, cut_off));
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      phi[cells[i].cell] = values[i];
+    domain.full_halo.fill(phi);
+  }
+}
+
+template class Continuation<2>;
+template class Continuation<3>;
 
 }  // namespace lockstep

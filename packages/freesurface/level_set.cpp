@@ -5,7 +5,6 @@
 
 #include "base/errors.hpp"
 #include "freesurface/band_tiles.hpp"
-#include "freesurface/continuation.hpp"
 #include "freesurface/particles/drop_births.hpp"
 #include "freesurface/particles/particle_correction.hpp"
 #include "freesurface/particles/particle_motion.hpp"
@@ -54,6 +53,11 @@ LevelSetParameters read_level_set_parameters(const ParameterList& list) {
   parameters.volume = read_volume_correction(list);
   if (list.isParameter("Particles per Cell"))
     parameters.particles = read_particles(list);
+  check_input(!parameters.particles || parameters.band >= parameters.particles->band + 2,
+              "{}: \"Band\" is {} and \"Particle Band\" {}: where particles are, and two cells "
+              "beyond, the distance to the surface must be known. Take a \"Band\" of {} or more.",
+              list.name(), parameters.band, parameters.particles ? parameters.particles->band : 0,
+              parameters.particles ? parameters.particles->band + 2 : 0);
   check_input(!parameters.particles || !parameters.particles->drops ||
                   parameters.volume.correction != VolumeCorrection::none,
               "{}: \"Drops\" take their volume from the liquid and give it back, which \"Volume "
@@ -68,6 +72,7 @@ LevelSet<dim>::LevelSet(const MacDomain<dim>& domain, const LevelSetParameters& 
       parameters_(parameters),
       phi_(domain.grid.n_stored_cells(), parameters.band * domain.spacing()),
       solids_(find_solid_cells<dim>(domain, nullptr)),
+      continuation_(depth_in_solids),
       volume_(domain, parameters.volume),
       particles_(domain.grid.n_owned_tiles()),
       in_band_(domain.grid.n_owned_cells(), 0) {
@@ -307,7 +312,7 @@ LiquidCells LevelSet<dim>::cells_with_liquid(const Surface& surface, KeptSurface
 template <int dim>
 void LevelSet<dim>::settle() {
   domain_.full_halo.fill(phi_);
-  continue_into_solids(domain_, solids_, depth_in_solids, cut_off(), phi_);
+  continuation_.into_solids(domain_, solids_, cut_off(), phi_);
 }
 
 template <int dim>
@@ -368,6 +373,7 @@ std::function<void()> LevelSet<dim>::migrate(const TileMigration<dim>& migration
   return [this] {
     in_band_.resize(domain_.grid.n_owned_cells());
     solids_ = find_solid_cells(domain_, solids_.state.surface);
+    continuation_.forget_layers();
     if (!loaded_)
       volume_.restore(solids_, phi_, VolumeTargets(volume_.targets()));
     if (drops_)

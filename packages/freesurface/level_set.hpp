@@ -1,10 +1,10 @@
 #pragma once
 #include <optional>
 
+#include "freesurface/continuation.hpp"
 #include "freesurface/particles/particles.hpp"
 #include "freesurface/volume_ledger.hpp"
 #include "mac/liquid/interface_model.hpp"
-#include "mac/liquid/solid_cells.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -82,7 +82,8 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   LevelSetParameters parameters_;
   CellField phi_;
   SolidCells<dim> solids_;  ///< at the present time
-  double moved_ = 0;        ///< since phi was made a distance, at most [cells]
+  Continuation<dim> continuation_;
+  double moved_ = 0;  ///< since phi was made a distance, at most [cells]
   VolumeLedger<dim> volume_;
   ParticleTiles<dim> particles_;
   std::vector<char> in_band_;          ///< owned cells that have been given particles

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "freesurface/band_tiles.hpp"
-#include "freesurface/continuation.hpp"
 #include "freesurface/fractions/fraction_balance.hpp"
 #include "freesurface/fractions/fraction_solids.hpp"
 #include "mac/liquid/wet_fraction.hpp"
@@ -51,6 +50,7 @@ VolumeOfFluid<dim>::VolumeOfFluid(const MacDomain<dim>& domain,
       parameters_(parameters),
       phi_(domain.grid.n_stored_cells(), parameters.band * domain.spacing()),
       solids_(find_solid_cells<dim>(domain, nullptr)),
+      continuation_(depth_in_solids),
       transport_(domain),
       planes_(domain) {
   fractions_.liquid.assign(phi_.size(), 0);
@@ -230,7 +230,7 @@ void VolumeOfFluid<dim>::make_distance(const std::vector<char>& tiles) {
   domain_.full_halo.fill(phi_);
   if (!solids_.state.surface)
     return;
-  continue_into_solids(domain_, solids_, depth_in_solids, cut_off(), phi_);
+  continuation_.into_solids(domain_, solids_, cut_off(), phi_);
   domain_.grid.for_each_owned_cell([&](int cell) {
     if (!solids_.is_fluid(cell))
       fractions_.set(cell, std::clamp(0.5 - phi_[cell] / h, 0.0, 1.0));
@@ -356,6 +356,7 @@ std::function<void()> VolumeOfFluid<dim>::migrate(const TileMigration<dim>& migr
   migration.move(fractions_.owed);
   return [this] {
     solids_ = find_solid_cells(domain_, solids_.state.surface);
+    continuation_.forget_layers();
     fractions_.open = open_parts(domain_, solids_);
   };
 }

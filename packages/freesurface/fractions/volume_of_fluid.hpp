@@ -1,4 +1,5 @@
 #pragma once
+#include "freesurface/continuation.hpp"
 #include "freesurface/fractions/fraction_transport.hpp"
 #include "freesurface/redistance.hpp"
 #include "mac/liquid/interface_model.hpp"
@@ -68,6 +69,7 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   CellField phi_;
   Fractions fractions_;
   SolidCells<dim> solids_;  ///< at the present time
+  Continuation<dim> continuation_;
   FractionTransport<dim> transport_;
   FractionPlanes<dim> planes_;
   double courant_ = 0;      ///< of the last step
