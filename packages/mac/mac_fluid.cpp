@@ -77,7 +77,7 @@ const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
   geometry_.regions = find_regions(domain_, geometry_);
   geometry_.volume =
       static_cast<double>(geometry_.pressure_map->getGlobalNumElements()) * domain_.cell_volume();
-  check_input(!liquid_ || has_begun_ || geometry_.volume > 0,
+  check_input(!liquid_ || has_begun_ || geometry_.volume > 0 || liquid_->starts_empty(),
               "Of what is in \"Liquid\", nothing is in the domain and outside of solids.");
   has_begun_ = true;
   if (parameters_.viscosity.viscosity > 0 && !tension_is_implicit())

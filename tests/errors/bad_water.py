@@ -64,6 +64,11 @@ CASES = [
     Case("drops of nothing", ["\"Drops\"", "\"Volume Correction\"", "no drops"],
          **water('<ParameterList name="Interface">' + value("Type", "string", "particle level set") +
                  value("Drops", "string", "ballistic") + value("Volume Correction", "string", "none") + "</ParameterList>")),
+    Case("particles beyond what is known", ["\"Particle Band\" 3", "\"Band\" of 5 or more"],
+         **water('<ParameterList name="Interface">' + value("Type", "string", "particle level set") + value("Band", "int", "4") +
+                 "</ParameterList>")),
+    Case("a dry point in a solid", ["dry point 0.5, 0.5", "inside a solid"], **water(value("Dry Points", "Array(double)", "{0.5, 0.5}"))),
+    Case("a dry point outside", ["dry point 0.5, 9", "outside of the domain"], **water(value("Dry Points", "Array(double)", "{0.5, 9}"))),
     Case("a wave on a wall", ["x lower", "\"Wave\" is for inflows", "\"wall\""], **wave("Type=wall")),
     Case("a wave in a full tank", ["x lower", "no surface"], **wave(scene=SCENE)),
     Case("a wave and a stream", ["x lower", "leave \"Velocity\""], **wave("Velocity={1, 0}")),

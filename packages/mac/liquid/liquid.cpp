@@ -45,7 +45,8 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
   check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
   const ParameterList& list = fluid.sublist("Free Surface");
   parameters_ = read_free_surface(list);
-  initial_distance_ = read_liquid<dim>(list, gravity);
+  initial_distance_ = read_liquid<dim>(fluid, gravity);
+  starts_empty_ = list.sublist("Liquid").numParams() == 0;
   sinks_ = read_sinks<dim>(list);
   dry_points_ = read_dry_points<dim>(list);
   auto watches = read_watches<dim>(list);

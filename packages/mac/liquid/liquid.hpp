@@ -40,6 +40,8 @@ class Liquid {
   const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
   /// By how much the pressure's phi is ahead of the interface's [m], from the last step.
   CellField& lead() { return lead_; }
+  /// No liquid is given: sources are to bring it.
+  bool starts_empty() const { return starts_empty_; }
   GasPockets<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
   const GasPockets<dim>* gas() const { return gas_.get(); }
   Drops<dim>* drops() const { return interface_->drops(); }  ///< null: there are never any
@@ -56,6 +58,7 @@ class Liquid {
   const MacDomain<dim>& domain_;
   FreeSurfaceParameters parameters_;
   double gravity_ = 0;  ///< [m/s^2]
+  bool starts_empty_ = false;
   CellField lead_;
   std::optional<SampleLattice<dim>> lattice_;  ///< of the tiles since the last `begin`
   std::vector<SignedDistance<dim>> sinks_;

@@ -14,6 +14,8 @@
 namespace lockstep {
 
 namespace {
+constexpr double very_far = 1e9;  ///< [m], from the liquid of a tank that is empty
+
 /// A level with waves a cos(k (x - x0)) along the first axis across gravity.
 template <int dim>
 SignedDistance<dim> level(const std::string& name, const ParameterList& list,
@@ -178,8 +180,8 @@ FreeSurfaceParameters read_free_surface(const ParameterList& list) {
 }
 
 template <int dim>
-SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gravity) {
-  const ParameterList& liquids = list.sublist("Liquid");
+SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gravity) {
+  const ParameterList& liquids = fluid.sublist("Free Surface").sublist("Liquid");
   std::vector<SignedDistance<dim>> parts;
   for (auto it = liquids.begin(); it != liquids.end(); ++it) {
     const std::string& name = liquids.name(it);
@@ -190,10 +192,16 @@ SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gra
                     : type == "mesh" ? mesh<dim>(name, liquid)
                                      : ball<dim>(liquid));
   }
-  check_input(!parts.empty(),
-              "\"Free Surface\" has no liquid; say where it is in the list \"Liquid\".");
+  const ParameterList& sources = fluid.sublist("Sources");
+  bool has_source = false;
+  for (auto it = sources.begin(); it != sources.end(); ++it)
+    has_source = has_source || sources.sublist(sources.name(it)).get<bool>("Liquid");
+  check_input(
+      !parts.empty() || has_source,
+      "\"Free Surface\" has no liquid; say where it is in the list \"Liquid\", or have one of "
+      "\"Fluid/Sources\" bring it.");
   return [parts = std::move(parts)](const Point<dim>& x) {
-    double nearest = parts.front()(x);
+    double nearest = very_far;
     for (const SignedDistance<dim>& part : parts)
       nearest = std::min(nearest, part(x));
     return nearest;

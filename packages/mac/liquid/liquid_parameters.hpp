@@ -18,10 +18,11 @@ template <int dim>
 void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterList& fluid);
 /// Validated list "Free Surface".
 FreeSurfaceParameters read_free_surface(const ParameterList& list);
-/// Of the liquids of a validated list "Free Surface", united. Throws InputError if there is none,
-/// or a level without gravity.
+/// Of the liquids of a validated list "Fluid" with a "Free Surface", united; of a tank that sources
+/// are to fill, far away. Throws InputError if there is neither liquid nor a source of it, or a
+/// level without gravity.
 template <int dim>
-SignedDistance<dim> read_liquid(const ParameterList& list, const Point<dim>& gravity);
+SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gravity);
 /// What trapped air does, of a validated list "Fluid". Throws InputError if numbers are missing, or
 /// tiles move.
 template <int dim>

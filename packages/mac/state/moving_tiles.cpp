@@ -84,7 +84,7 @@ MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescriptio
   }
   ask_for_sides(domain);
   if (fluid.isSublist("Free Surface"))
-    liquid_ = read_liquid<dim>(fluid.sublist("Free Surface"), point_value<dim>(fluid, "Gravity"));
+    liquid_ = read_liquid<dim>(fluid, point_value<dim>(fluid, "Gravity"));
 }
 
 template <int dim>

@@ -195,9 +195,40 @@ TEST(FreeSurface, TheInsideOfAHullIsDry) {
   fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
   // 48 x 30 cells are below the surface, 30 x 14 of them in the hull.
   EXPECT_NEAR(fluid->fluid_volume(), 0.01 * (48 * 30 - 30 * 14), 1e-12);
-  scene.fluid.sublist("Free Surface").set("Dry Points", numbers({1.6, 20.0}));
-  EXPECT_THROW(make_liquid<2>(scene)->set_geometry(solids.snapshot(), BlockedFaces<2>()),
-               InputError);
+  const auto volume_around = [&](const ParameterArray<double>& point) {
+    scene.fluid.sublist("Free Surface").set("Dry Points", point);
+    const auto same = make_liquid<2>(scene);
+    same->set_geometry(solids.snapshot(), BlockedFaces<2>());
+    return same->fluid_volume();
+  };
+  // Above the bottom, at 1.586, of the hull, in a cell whose centre is in the sea below.
+  EXPECT_NEAR(volume_around(numbers({1.6, 1.59})), 0.01 * (48 * 30 - 30 * 14), 1e-12);
+  // Below the bottom: the sea is dried, the hull is not.
+  EXPECT_NEAR(volume_around(numbers({1.6, 1.58})), 0.01 * (30 * 14), 1e-12);
+  EXPECT_THROW(volume_around(numbers({1.6, 20.0})), InputError);
+}
+
+TEST(FreeSurface, DryPointsAndLiquidInSolidsAreRefused) {
+  Solids<2> solids;
+  solids.add(ball_surface<2>(0.4, 0.1), Point<2>(0.8, 0.8), true);
+  const auto message = [&](const auto& add_liquid, const ParameterArray<double>& dry_point) {
+    Case<2> scene({16, 16}, 0.1);
+    scene.fluid.set("Gravity", numbers({0.0, -1.0}));
+    add_liquid(scene);
+    scene.fluid.sublist("Free Surface").set("Dry Points", dry_point);
+    try {
+      make_liquid<2>(scene)->set_geometry(solids.snapshot(), BlockedFaces<2>());
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto pool = [](Case<2>& scene) { add_level<2>(scene, 0.6); };
+  EXPECT_EQ(message(pool, {}), "");
+  EXPECT_NE(message(pool, numbers({0.8, 0.7})).find("lies inside a solid"), std::string::npos);
+  const auto in_the_ball = [](Case<2>& scene) { add_ball<2>(scene, {0.8, 0.8}, 0.2); };
+  EXPECT_NE(message(in_the_ball, {}).find("nothing is in the domain and outside of solids"),
+            std::string::npos);
 }
 
 /// On the bottom of a dry hull, below the level of the sea around.
