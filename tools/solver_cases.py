@@ -57,26 +57,16 @@ def row_of_balls(density):
     return solids, joints + ["</ParameterList>"]
 
 
-PLATE = body("Plate", [parameter("Shape", "string", "plate"), parameter("Size", "Array(double)", "{0.62, 0, 0.58}"),
-                       parameter("Normal", "string", "y")], (0.47, 0.43, 0.52), surface_density=20)
-CASES = {
-    "free top, ball 1e-3": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1)),
-    "free top, ball 1": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1000)),
-    "free top, ball 1e3": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1e6)),
-    "closed, ball 0.5": (False, ball("Ball", 0.15, (0.47, 0.41, 0.53), 500)),
-    "free top, 30 balls 2": (True, thirty_balls(2000)),
-    "free top, 30 balls 1e-3": (True, thirty_balls(1)),
-    "free top, thin plate": (True, PLATE),
-}
-
-
-def scene(case, cells):
-    return scene_of(*CASES[case], cells)
+def pool(level, amplitude):
+    """Of the list `Fluid`: water up to about that height, with a standing wave, and void above."""
+    return ['<ParameterList name="Free Surface"><ParameterList name="Liquid"><ParameterList name="Pool">',
+            parameter("Type", "string", "level"), parameter("Height", "double", level), parameter("Amplitude", "double", amplitude),
+            parameter("Wavelength", "double", 2), "</ParameterList></ParameterList></ParameterList>"]
 
 
 def scene_of(is_open, solids, cells, step=0.005, fluid=(), joints=()):
     """The text of a scene file: a unit cube of water, gravity, n^3 cells; `fluid` adds to the list of that name, `joints`
-    is one."""
+    is one. Without a step it is as long as CFL lets it be."""
     lines = ['<ParameterList name="Scene">', parameter("Dimension", "int", 3), '<ParameterList name="Domain">',
              parameter("Upper", "Array(double)", "{1, 1, 1}"),
              parameter("Cells", "Array(int)", "{" + ", ".join([str(cells)] * 3) + "}")]
@@ -87,9 +77,30 @@ def scene_of(is_open, solids, cells, step=0.005, fluid=(), joints=()):
               parameter("Density", "double", "1000.0"), parameter("Gravity", "Array(double)", "{0, -9.8, 0}"),
               *fluid, "</ParameterList>", '<ParameterList name="Solids">', *solids, "</ParameterList>", *joints,
               '<ParameterList name="Time">', parameter("End", "double", "1.0"),
-              parameter("Fixed Step", "double", repr(step)), "</ParameterList>", '<ParameterList name="Output">',
+              *([parameter("Fixed Step", "double", repr(step))] if step else []), "</ParameterList>", '<ParameterList name="Output">',
               parameter("Frames", "bool", "false"), "</ParameterList>", "</ParameterList>"]
     return "\n".join(lines) + "\n"
+
+
+PLATE = body("Plate", [parameter("Shape", "string", "plate"), parameter("Size", "Array(double)", "{0.62, 0, 0.58}"),
+                       parameter("Normal", "string", "y")], (0.47, 0.43, 0.52), surface_density=20)
+CASES = {
+    "free top, ball 1e-3": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1)),
+    "free top, ball 1": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1000)),
+    "free top, ball 1e3": (True, ball("Ball", 0.15, (0.47, 0.41, 0.53), 1e6)),
+    "closed, ball 0.5": (False, ball("Ball", 0.15, (0.47, 0.41, 0.53), 500)),
+    "free top, 30 balls 2": (True, thirty_balls(2000)),
+    "free top, 30 balls 1e-3": (True, thirty_balls(1)),
+    "free top, thin plate": (True, PLATE),
+    "in waves, ball 0.5": (True, ball("Ball", 0.15, (0.47, 0.52, 0.53), 500), pool(0.5, 0.04)),
+    "in waves, ball 1e-3": (True, ball("Ball", 0.15, (0.47, 0.52, 0.53), 1), pool(0.5, 0.04)),
+}
+
+
+def scene(case, cells):
+    """`CASES`: whether the tank is open above, its solids and, of some, what is in the list of the fluid."""
+    is_open, solids, *fluid = CASES[case]
+    return scene_of(is_open, solids, cells, fluid=fluid[0] if fluid else ())
 
 
 def largest_cache_megabytes():

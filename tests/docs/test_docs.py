@@ -128,11 +128,19 @@ class Docs(unittest.TestCase):
                 with self.subTest(page=page.name, series=one.get("name")):
                     self.assertIn(one.get("name").replace(",", ";"), shown)
 
+    def test_pictures_are_small(self):
+        for picture in sorted([*(ROOT / "docs").rglob("*.png"), *(ROOT / "docs").rglob("*.jpg")]):
+            with self.subTest(picture=picture.name):
+                self.assertLessEqual(picture.stat().st_size, 300_000)
+
     def test_pages_can_be_made_again(self):
         if git("rev-parse", "--is-shallow-repository") != "false":
             self.skipTest("needs the whole history")
         for page in sorted((ROOT / "docs" / "results").glob("*.md")):
-            for commit, is_dirty in COMMIT.findall(page.read_text()):
+            commits = COMMIT.findall(page.read_text())
+            with self.subTest(page=page.name):
+                self.assertTrue(commits or page.name == "README.md", "the page names no commit")
+            for commit, is_dirty in commits:
                 with self.subTest(page=page.name, commit=commit):
                     self.assertFalse(is_dirty)
                     self.assertEqual(git("merge-base", commit, "HEAD")[: len(commit)], commit)

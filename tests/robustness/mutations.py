@@ -70,7 +70,7 @@ def soft_ball(**lists):
 
 
 def scene_case(rng):
-    scene = random_scene(rng.randrange(200))
+    scene = random_scene(1000 * rng.randrange(6) + rng.randrange(200))  # of each kind: full tanks, water, joints, gas...
     return Case(scene_files(scene), "scene.xml", [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML)
 
 
