@@ -162,7 +162,12 @@ std::vector<char> LeakAudit<dim>::find_place(std::size_t watch, const Look& now,
 
 template <int dim>
 void LeakAudit<dim>::open(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface) {
-  before_ = look(step.surface.before, interface, step.kept, [](int) { return true; });
+  const Surface& present = step.surface.before;
+  if (last_ && last_->surface == (present && !present->empty() ? present : nullptr))
+    before_ = std::move(*last_);
+  else
+    before_ = look(present, interface, step.kept, [](int) { return true; });
+  last_.reset();
   motion_ = largest_move(step.surface);
   const double reach = motion_ / domain_.spacing() + 2;
   near_before_ = step.kept.of(before_.surface, domain_.grid,
@@ -173,7 +178,10 @@ void LeakAudit<dim>::open(const InterfaceStep<dim>& step, InterfaceModel<dim>& i
 
 template <int dim>
 std::function<void()> LeakAudit<dim>::undo() {
-  return [this, places = places_] { places_ = places; };
+  return [this, places = places_] {
+    places_ = places;
+    forget();
+  };
 }
 
 template <int dim>
@@ -195,7 +203,7 @@ template <int dim>
 void LeakAudit<dim>::close(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface,
                            double displacement) {
   const TiledGrid<dim>& grid = domain_.grid;
-  const Look now =
+  Look now =
       look(step.surface.after, interface, step.kept, [&](int cell) { return !swept(step, cell); });
   const std::vector<int> leaked = find_from_nowhere(step, now, displacement);
   if (sum_all(grid.comm(), static_cast<GlobalIndex>(leaked.size())) > 0)
@@ -217,6 +225,7 @@ void LeakAudit<dim>::close(const InterfaceStep<dim>& step, InterfaceModel<dim>& 
     report_[w] = liquid;
   }
   has_report_ = true;
+  last_ = std::move(now);
   near_before_.reset();
 }
 

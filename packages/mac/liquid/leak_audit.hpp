@@ -35,6 +35,9 @@ class LeakAudit {
   /// After it has moved over no more than so many cells. Throws SolveError for a leak. Collective.
   void close(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface, double displacement);
 
+  /// Tiles or the liquid are others than after the last step. Local.
+  void forget() { last_ = {}; }
+
   const std::vector<Watch<dim>>& watches() const { return watches_; }
   /// All is nan of a place that is not watched.
   const std::vector<WatchedLiquid>& report() const { return report_; }
@@ -44,7 +47,7 @@ class LeakAudit {
  private:
   /// Liquid and solids at one instant, on stored cells.
   struct Look {
-    Surface surface;               ///< null: none
+    Surface surface;               ///< null: none; the same is not looked at twice
     std::vector<CellState> cells;  ///< `fluid` outside solids
     std::vector<char> blocked;     ///< as in SurfaceMarks; empty without a surface
     std::vector<char> liquid;      ///< holds liquid or sees some
@@ -102,8 +105,9 @@ class LeakAudit {
   std::vector<Anchor<dim>> anchors_;
   std::vector<char> rimless_;  ///< by solid
   Look before_;
-  CellField places_;  ///< the bits of `Look::watched` as they were last found
-  double lost_ = 0;   ///< of the ledger before the step [m^dim]
+  std::optional<Look> last_;  ///< after the last step
+  CellField places_;          ///< the bits of `Look::watched` as they were last found
+  double lost_ = 0;           ///< of the ledger before the step [m^dim]
   bool has_drops_ = false;
   std::shared_ptr<const Near> near_before_;  ///< the surface before the step; null between steps
   double motion_ = 0;                        ///< of surfaces in this step, at most [m]

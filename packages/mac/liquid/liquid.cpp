@@ -170,6 +170,18 @@ std::vector<StoredField> Liquid<dim>::fields() {
 }
 
 template <int dim>
+void Liquid<dim>::load(const CheckpointReader& checkpoint) {
+  interface_->load(checkpoint);
+  forget();
+}
+
+template <int dim>
+void Liquid<dim>::forget() {
+  if (audit_)
+    audit_->forget();
+}
+
+template <int dim>
 std::function<void()> Liquid<dim>::undo() {
   const auto undo_gas = gas_ ? gas_->undo() : [] {};
   const auto undo_audit = audit_ ? audit_->undo() : [] {};

@@ -40,6 +40,10 @@ class Liquid {
   const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
   /// All but the interface's.
   std::vector<StoredField> fields();
+  /// The interface's; the fields are set. Collective.
+  void load(const CheckpointReader& checkpoint);
+  /// What was found out about the liquid on other tiles, or of another instant. Local.
+  void forget();
   /// No liquid is given: sources are to bring it.
   bool starts_empty() const { return starts_empty_; }
   GasPockets<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
