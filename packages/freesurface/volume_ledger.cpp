@@ -136,6 +136,10 @@ void VolumeLedger<dim>::inherit(const SolidCells<dim>& before, const SolidCells<
                                 const CellField& phi, const std::vector<char>& swept, int reach) {
   measure_.prepare(solids, phi);
   regroup(before, solids, phi, swept, reach);
+  // What no cell showed at the start follows no flow: it belongs to no body that could have it.
+  const double gone = std::max(targets_.loose - volumes_.loose, 0.0);
+  targets_.loose -= gone;
+  targets_.lost += gone;
 }
 
 template <int dim>
@@ -303,6 +307,7 @@ void VolumeLedger<dim>::remove(const SolidCells<dim>& solids, const CellField& p
   const GroupVolumes left = measure_.measure(phi, groups_);
   for (int group = 0; group < groups_.n; ++group)
     targets_.of_group[group] += left.volume[group] - volumes_.volume[group];
+  targets_.loose = std::min(targets_.loose, left.loose);
   inherit(solids, solids, phi, {}, 1);
 }
 

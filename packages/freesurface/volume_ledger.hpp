@@ -26,7 +26,8 @@ VolumeParameters read_volume_correction(const ParameterList& list);
 /// What the ledger must keep from step to step.
 struct VolumeTargets {
   std::vector<double> of_group;  ///< what each body of liquid should have [m^dim]
-  double loose = 0, lost = 0, shift = 0;
+  double loose = 0;  ///< what is left of the start's liquid that is beside no liquid cell [m^dim]
+  double lost = 0, shift = 0;  ///< [m^dim]
 };
 
 /// By how much phi has been lowered in owned cells on and beside bodies [m]; empty: nowhere.

@@ -36,9 +36,7 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
     liquid_ =
         std::make_unique<Liquid<dim>>(fluid, parameters_.forces.gravity, *interfaces, domain_);
   if (liquid_)
-    fields_.push_back({"surface_lead", {&liquid_->lead()}});
-  if (holds_gas())
-    for (StoredField& field : liquid_->gas()->fields())
+    for (StoredField& field : liquid_->fields())
       fields_.push_back(std::move(field));
   if (fluid.isSublist("Moving Tiles")) {
     check_input(!liquid_ || migrating_interface(),

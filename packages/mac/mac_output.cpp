@@ -142,7 +142,7 @@ void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
   last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
   accepted_step_ = last_step_;
   if (liquid_)
-    liquid_->interface().load(checkpoint);
+    liquid_->load(checkpoint);
   largest_speed_.reset();
 }
 

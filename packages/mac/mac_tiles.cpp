@@ -155,6 +155,8 @@ void MacFluid<dim>::regrid(const TileOwners& owners) {
   domain_.set_grid(std::move(grid));
   if (finish_liquid)
     finish_liquid();
+  if (liquid_)
+    liquid_->forget();
   lattice_blocks_ = lattice_blocks(domain_.grid);
   owners_ = owners;
   has_room_ = true;

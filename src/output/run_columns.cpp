@@ -86,7 +86,9 @@ std::vector<HistoryColumn> history_columns(bool with_liquid,
     }
     for (const std::string& name : watches) {
       const std::string watch = "watch_" + name;
-      columns.push_back({watch + "_volume", unit, "of liquid in this watched place"});
+      columns.push_back(
+          {watch + "_volume", unit,
+           "of liquid in this watched place; nan, as the next two, while it is not watched"});
       columns.push_back({watch + "_volume_target", unit, "what it should be"});
       columns.push_back(
           {watch + "_leak", unit, "of it what came through solids: 0, or the run ends"});

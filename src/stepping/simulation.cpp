@@ -224,37 +224,6 @@ bool Simulation<dim>::take_step(double dt) {
 }
 
 template <int dim>
-void Simulation<dim>::warn() {
-  const StepReport<dim>& report = *report_;
-  if (report.contact_position.n_crossings > 0) {
-    log_.warning(
-        "Step {}: prescribed solids or pinned nodes press surfaces through each other at {} "
-        "places, which contact cannot prevent; let them move less, or less far in a step.",
-        step_, report.contact_position.n_crossings);
-  }
-  constexpr double most_stretch = 0.01;
-  if (report.stretch_beyond_limit > most_stretch && !warned_of_stretch_) {
-    warned_of_stretch_ = true;
-    log_.warning(
-        "Step {}: where cloth is to move next, it is {:.2g} times as long as its \"Stretch Limit\" "
-        "allows; no more than that was reached by the sweeps over its edges. Shorter steps help, "
-        "unless what holds it pulls it apart. Later steps like this one are not told.",
-        step_, 1 + report.stretch_beyond_limit);
-  }
-  // Up to here the drag of a disc two cells above a wall is right to 0.1 %.
-  constexpr double most = 10;
-  if (warned_of_viscous_step_ || report.viscous_number <= most * (1 + 1e-9) ||
-      components_.solids->largest_surface_speed() == 0)
-    return;
-  warned_of_viscous_step_ = true;
-  log_.warning(
-      "Step {}: nu dt/h^2 is {:.3g}. In gaps of a few cells around moving solids, pressure and "
-      "drag then lag behind the motion by tens of steps (steady ones are right); with steps "
-      "of at most {:.2g} s, where it is {:g}, they follow.",
-      step_, report.viscous_number, report.dt * most / report.viscous_number, most);
-}
-
-template <int dim>
 template <typename Function>
 void Simulation<dim>::recorded(const Function& f) {
   check_input(!failed_, "This run has failed; open it again, from a checkpoint if there is one.");

@@ -88,6 +88,7 @@ class Simulation {
   void load_checkpoint();
   double fraction_done() const;
   void warn();
+  void warn_of_watches();
 
   ParameterList scene_;
   RunOptions options_;
@@ -103,6 +104,7 @@ class Simulation {
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
   bool warned_of_viscous_step_ = false, warned_of_stretch_ = false;
+  std::vector<char> warned_of_watch_;
   double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
   std::optional<StepReport<dim>> report_;  ///< of the last step
   double step_seconds_ = 0;                ///< it took so long

@@ -128,7 +128,12 @@ std::vector<char> VolumeOfFluid<dim>::carry(const InterfaceStep<dim>& step) {
   courant_ =
       transport_.courant_number(solids_, tiles_within(1), phi_, cut_off(), velocity, step.dt);
   const int n = std::max(1, static_cast<int>(std::ceil(2 * courant_)));
-  const std::vector<char> tiles = tiles_within(n + 1);
+  std::vector<char> tiles = tiles_within(n + 1);
+  // Far below the surface, too, cells that solids cut must have in their books what passes by.
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    if (!solids_.near.empty() && solids_.near[cell] && fractions_.liquid[cell] > 0)
+      tiles[TiledGrid<dim>::tile_of(cell)] = 1;
+  });
   std::vector<char> is_solved(phi_.size());
   for (std::size_t cell = 0; cell < phi_.size(); ++cell)
     is_solved[cell] = phi_[cell] < 0;

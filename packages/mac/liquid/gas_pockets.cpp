@@ -138,7 +138,7 @@ void GasPockets<dim>::pass_over(const MovingSurface<dim>& surface) {
     for (bool more = true; more;) {
       const int cell = grid.cell(at);
       if (cell >= 0 && grid.owned(cell) && number_[cell] != 0 &&
-          swept_over<dim>(before, after, grid.center(cell), {simplex}))
+          swept_over<dim>(before, after, grid.lattice().center(at), {simplex}))
         number_[cell] = 0;
       more = false;
       for (int a = 0; a < dim && !more; ++a) {

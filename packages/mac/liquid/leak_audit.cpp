@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/errors.hpp"
 #include "mac/liquid/flood.hpp"
@@ -12,13 +13,32 @@ namespace lockstep {
 
 namespace {
 constexpr int most_watches = 30;
+/// What is told of a place that no cell is left of.
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr WatchedLiquid not_watched{unknown, unknown, unknown};
+
+bool is_watched(const WatchedLiquid& liquid) {
+  return !std::isnan(liquid.volume);
+}
 }  // namespace
 
 template <int dim>
 LeakAudit<dim>::LeakAudit(const MacDomain<dim>& domain, std::vector<Watch<dim>> watches)
-    : domain_(domain), watches_(std::move(watches)) {
+    : domain_(domain), watches_(std::move(watches)), places_(domain.grid.n_stored_cells(), 0.0) {
   check_input(watches_.size() <= most_watches, "\"Watch\" has {} places; it takes {}.",
               watches_.size(), most_watches);
+}
+
+template <int dim>
+Point<dim> LeakAudit<dim>::way(const Point<dim>& from, const Point<dim>& to) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  Point<dim> result = to - from;
+  for (int a = 0; a < dim; ++a) {
+    const double period = grid.n_cells()[a] * grid.spacing();
+    if (domain_.boundary.periodic(a))
+      result[a] -= period * std::round(result[a] / period);
+  }
+  return result;
 }
 
 /// Cells whose centres the point sees, of those around it.
@@ -35,7 +55,7 @@ std::vector<int> LeakAudit<dim>::seeds(const Point<dim>& point, const std::vecto
     const int cell = grid.cell_containing(corner);
     if (cell < 0 || !grid.owned(cell) || !grid.in_domain(cell) || cells[cell] != CellState::fluid)
       continue;
-    if (near.empty() || !near.first_hit(point, grid.center(cell)))
+    if (near.empty() || !near.first_hit(point, point + way(point, grid.center(cell))))
       found.push_back(cell);
   }
   return found;
@@ -88,10 +108,12 @@ bool LeakAudit<dim>::sees(const Look& look, int cell, int axis, int side) const 
 template <int dim>
 typename LeakAudit<dim>::Look LeakAudit<dim>::look(const Surface& surface,
                                                    InterfaceModel<dim>& interface,
-                                                   KeptSurface<dim>& kept) {
+                                                   KeptSurface<dim>& kept,
+                                                   const StaysInPlace& stays) {
   const TiledGrid<dim>& grid = domain_.grid;
   const Surface present = surface && !surface->empty() ? surface : nullptr;
   Look result;
+  result.surface = present;
   result.cells.assign(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { result.cells[cell] = CellState::fluid; });
   if (present)
@@ -102,31 +124,64 @@ typename LeakAudit<dim>::Look LeakAudit<dim>::look(const Surface& surface,
   result.watched.assign(grid.n_stored_cells(), 0);
   const auto near = kept.of(present, grid, 2);
   for (std::size_t w = 0; w < watches_.size(); ++w) {
-    const Point<dim> point = anchors_[w].place(present);
-    std::vector<char> region(grid.n_stored_cells(), 0);
-    std::vector<int> front = seeds(point, result.cells, *near);
-    for (const int cell : front)
-      region[cell] = 1;
-    const auto may_pass = [&](int cell, int other) {
-      for (int side = 0; side < 2 * dim; ++side)
-        if (grid.neighbor(cell, side / 2, side % 2) == other)
-          return sees(result, cell, side / 2, side % 2) &&
-                 (grid.center(other) - point).norm() < watches_[w].radius;
-      return false;
-    };
-    flood(domain_, std::move(front), may_pass, region);
-    for (std::size_t cell = 0; cell < region.size(); ++cell)
-      result.watched[cell] |= region[cell] << w;
+    const std::vector<char> place = find_place(w, result, *near, stays);
+    for (std::size_t cell = 0; cell < place.size(); ++cell)
+      result.watched[cell] |= place[cell] << w;
   }
+  places_.assign(result.watched.begin(), result.watched.end());
   return result;
 }
 
 template <int dim>
+std::vector<char> LeakAudit<dim>::find_place(std::size_t watch, const Look& now, const Near& near,
+                                             const StaysInPlace& stays) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const Point<dim> point = anchors_[watch].place(now.surface);
+  const auto is_within = [&](int cell) {
+    return way(point, grid.center(cell)).norm() < watches_[watch].radius;
+  };
+  std::vector<int> front = seeds(point, now.cells, near);
+  if (sum_all(grid.comm(), static_cast<GlobalIndex>(front.size())) == 0)
+    grid.for_each_owned_cell([&](int cell) {
+      const bool was_there = static_cast<int>(places_[cell]) >> watch & 1;
+      if (was_there && now.cells[cell] == CellState::fluid && is_within(cell) && stays(cell))
+        front.push_back(cell);
+    });
+  std::vector<char> place(grid.n_stored_cells(), 0);
+  for (const int cell : front)
+    place[cell] = 1;
+  const auto may_pass = [&](int cell, int other) {
+    for (int side = 0; side < 2 * dim; ++side)
+      if (grid.neighbor(cell, side / 2, side % 2) == other)
+        return sees(now, cell, side / 2, side % 2) && is_within(other);
+    return false;
+  };
+  flood(domain_, std::move(front), may_pass, place);
+  return place;
+}
+
+template <int dim>
 void LeakAudit<dim>::open(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface) {
-  before_ = look(step.surface.before, interface, step.kept);
+  const Surface& present = step.surface.before;
+  if (last_ && last_->surface == (present && !present->empty() ? present : nullptr))
+    before_ = std::move(*last_);
+  else
+    before_ = look(present, interface, step.kept, [](int) { return true; });
+  last_.reset();
   motion_ = largest_move(step.surface);
+  const double reach = motion_ / domain_.spacing() + 2;
+  near_before_ = step.kept.of(before_.surface, domain_.grid,
+                              static_cast<int>(std::min<double>(reach, Near::longest_reach)));
   lost_ = interface.ledger().lost;
   has_drops_ = interface.drops();
+}
+
+template <int dim>
+std::function<void()> LeakAudit<dim>::undo() {
+  return [this, places = places_] {
+    places_ = places;
+    forget();
+  };
 }
 
 template <int dim>
@@ -148,7 +203,8 @@ template <int dim>
 void LeakAudit<dim>::close(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface,
                            double displacement) {
   const TiledGrid<dim>& grid = domain_.grid;
-  const Look now = look(step.surface.after, interface, step.kept);
+  Look now =
+      look(step.surface.after, interface, step.kept, [&](int cell) { return !swept(step, cell); });
   const std::vector<int> leaked = find_from_nowhere(step, now, displacement);
   if (sum_all(grid.comm(), static_cast<GlobalIndex>(leaked.size())) > 0)
     complain(step, now, leaked);
@@ -159,18 +215,25 @@ void LeakAudit<dim>::close(const InterfaceStep<dim>& step, InterfaceModel<dim>& 
       cells[cell] = now.watched[cell] >> w & 1;
     const bool held_solids = holds_solids_[w];
     holds_solids_[w] = holds_solids(now, cells);
-    const WatchedLiquid liquid = interface.liquid_in(cells);
-    if (has_report_ && !held_solids && !holds_solids_[w] && stayed_closed(step, now, w))
+    const auto n_watched = static_cast<GlobalIndex>(
+        std::count(cells.begin(), cells.begin() + grid.n_owned_cells(), 1));
+    const WatchedLiquid liquid =
+        sum_all(grid.comm(), n_watched) > 0 ? interface.liquid_in(cells) : not_watched;
+    if (has_report_ && is_watched(report_[w]) && is_watched(liquid) && !held_solids &&
+        !holds_solids_[w] && stayed_closed(step, now, w))
       check_target(step, w, liquid.target, interface.ledger().lost - lost_);
     report_[w] = liquid;
   }
   has_report_ = true;
+  last_ = std::move(now);
+  near_before_.reset();
 }
 
 template <int dim>
 std::optional<SurfacePoint<dim>> LeakAudit<dim>::swept(const InterfaceStep<dim>& step,
-                                                       const Near& near, int cell) const {
+                                                       int cell) const {
   const TiledGrid<dim>& grid = domain_.grid;
+  const Near& near = *near_before_;
   if (near.empty() ||
       near.cells_to(grid.coordinates(cell)) * grid.spacing() > motion_ + grid.spacing())
     return {};
@@ -193,15 +256,12 @@ std::vector<int> LeakAudit<dim>::find_from_nowhere(const InterfaceStep<dim>& ste
                                                    double displacement) {
   const TiledGrid<dim>& grid = domain_.grid;
   const double h = grid.spacing();
-  const auto near = step.kept.of(
-      step.surface.before && !step.surface.before->empty() ? step.surface.before : nullptr, grid,
-      std::min(static_cast<int>(motion_ / h) + 2, Near::longest_reach));
   std::vector<char> marked(grid.n_stored_cells(), 0);
   std::vector<int> passed_over;
   grid.for_each_owned_cell([&](int cell) {
     if (!before_.liquid[cell])
       return;
-    if (swept(step, *near, cell))
+    if (swept(step, cell))
       passed_over.push_back(cell);
     else
       marked[cell] = 1;
@@ -221,7 +281,7 @@ std::vector<int> LeakAudit<dim>::find_from_nowhere(const InterfaceStep<dim>& ste
     add_pushed(step, passed_over, now, marked);
     const std::vector<char> pushed = marked;
     explain(now, reach, marked, cells);
-    explain_swept(step, *near, now, marked, cells);
+    explain_swept(step, now, marked, cells);
     if (sum_all(grid.comm(), static_cast<GlobalIndex>(cells.size())) > 0)
       explain_by_gaps(step, pushed, reach / dim + 1, cells);
   }
@@ -257,13 +317,12 @@ void LeakAudit<dim>::explain(const Look& now, int reach, std::vector<char>& mark
 }
 
 template <int dim>
-void LeakAudit<dim>::explain_swept(const InterfaceStep<dim>& step, const Near& near,
-                                   const Look& now, std::vector<char>& marked,
-                                   std::vector<int>& cells) const {
+void LeakAudit<dim>::explain_swept(const InterfaceStep<dim>& step, const Look& now,
+                                   std::vector<char>& marked, std::vector<int>& cells) const {
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<int> waiting;
   grid.for_each_owned_cell([&](int cell) {
-    if (!marked[cell] && now.cells[cell] == CellState::fluid && swept(step, near, cell))
+    if (!marked[cell] && now.cells[cell] == CellState::fluid && swept(step, cell))
       waiting.push_back(cell);
   });
   const auto sees_marked = [&](int cell) {
@@ -317,10 +376,9 @@ void LeakAudit<dim>::add_pushed(const InterfaceStep<dim>& step, const std::vecto
   const Surface after = step.surface.after ? step.surface.after : step.surface.before;
   if (!after || after->empty())
     return;
-  const auto near_before = step.kept.of(step.surface.before, grid, 2);
   std::vector<double> mine;
   for (const int cell : passed_over) {
-    const auto passage = swept(step, *near_before, cell);
+    const auto passage = swept(step, cell);
     if (!passage)
       continue;
     const auto from = step.surface.before->corners(passage->simplex);

@@ -1,9 +1,11 @@
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "interfaces/liquid.hpp"
 #include "mac/liquid/interface_model.hpp"
 #include "mac/liquid/watch.hpp"
+#include "mac/state/stored_fields.hpp"
 
 namespace lockstep {
 
@@ -15,6 +17,8 @@ namespace lockstep {
 /// - no two neighbours that a surface without rim parted may see each other after the step, unless
 ///   the surface passed over one of them.
 /// It uses nothing that moves the liquid but phi and particles as they are before and after.
+/// A place whose point sees the centre of no cell, as in a solid or in a gap, is what is left of it
+/// as it was; once nothing is, it is not watched until its point sees a cell again.
 template <int dim>
 class LeakAudit {
  public:
@@ -31,12 +35,19 @@ class LeakAudit {
   /// After it has moved over no more than so many cells. Throws SolveError for a leak. Collective.
   void close(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface, double displacement);
 
+  /// Tiles or the liquid are others than after the last step. Local.
+  void forget() { last_ = {}; }
+
   const std::vector<Watch<dim>>& watches() const { return watches_; }
+  /// All is nan of a place that is not watched.
   const std::vector<WatchedLiquid>& report() const { return report_; }
+  std::vector<StoredField> fields() { return {{"watched_places", {&places_}}}; }
+  std::function<void()> undo();
 
  private:
   /// Liquid and solids at one instant, on stored cells.
   struct Look {
+    Surface surface;               ///< null: none; the same is not looked at twice
     std::vector<CellState> cells;  ///< `fluid` outside solids
     std::vector<char> blocked;     ///< as in SurfaceMarks; empty without a surface
     std::vector<char> liquid;      ///< holds liquid or sees some
@@ -44,8 +55,16 @@ class LeakAudit {
     std::vector<int> watched;      ///< a bit for each watch
   };
   using Near = NearbySurface<dim>;
+  using StaysInPlace = std::function<bool(int cell)>;
 
-  Look look(const Surface& surface, InterfaceModel<dim>& interface, KeptSurface<dim>& kept);
+  /// `stays`: whether an owned cell is still on its side of surfaces since the places were found.
+  Look look(const Surface& surface, InterfaceModel<dim>& interface, KeptSurface<dim>& kept,
+            const StaysInPlace& stays);
+  /// Marks the cells of a place (1). Collective.
+  std::vector<char> find_place(std::size_t watch, const Look& now, const Near& near,
+                               const StaysInPlace& stays) const;
+  /// The shortest way between two points, across periodic sides too [m].
+  Point<dim> way(const Point<dim>& from, const Point<dim>& to) const;
   bool sees(const Look& look, int cell, int axis, int side) const;
   std::vector<int> seeds(const Point<dim>& point, const std::vector<CellState>& cells,
                          const Near& near) const;
@@ -56,8 +75,8 @@ class LeakAudit {
   void explain(const Look& now, int reach, std::vector<char>& marked,
                std::vector<int>& cells) const;
   /// Spreads on over cells that surfaces have passed over, which take what they see there.
-  void explain_swept(const InterfaceStep<dim>& step, const Near& near, const Look& now,
-                     std::vector<char>& marked, std::vector<int>& cells) const;
+  void explain_swept(const InterfaceStep<dim>& step, const Look& now, std::vector<char>& marked,
+                     std::vector<int>& cells) const;
   /// Takes off those that a way leads to which is narrower than cells: from a marked centre, or a
   /// hidden drop of before.
   void explain_by_gaps(const InterfaceStep<dim>& step, std::vector<char> marked, int reach,
@@ -67,8 +86,7 @@ class LeakAudit {
   /// Where surfaces have pushed the liquid of cells that they passed over.
   void add_pushed(const InterfaceStep<dim>& step, const std::vector<int>& swept, const Look& now,
                   std::vector<char>& marked) const;
-  std::optional<SurfacePoint<dim>> swept(const InterfaceStep<dim>& step, const Near& near,
-                                         int cell) const;
+  std::optional<SurfacePoint<dim>> swept(const InterfaceStep<dim>& step, int cell) const;
   void check_sides(const InterfaceStep<dim>& step, const Look& now) const;
   /// Whether the place reaches to volumes of solids: the liquid of cells that these cut, and what
   /// is owed to it, is told of no place, so that targets change a little. Collective.
@@ -87,9 +105,12 @@ class LeakAudit {
   std::vector<Anchor<dim>> anchors_;
   std::vector<char> rimless_;  ///< by solid
   Look before_;
-  double lost_ = 0;  ///< of the ledger before the step [m^dim]
+  std::optional<Look> last_;  ///< after the last step
+  CellField places_;          ///< the bits of `Look::watched` as they were last found
+  double lost_ = 0;           ///< of the ledger before the step [m^dim]
   bool has_drops_ = false;
-  double motion_ = 0;  ///< of surfaces in this step, at most [m]
+  std::shared_ptr<const Near> near_before_;  ///< the surface before the step; null between steps
+  double motion_ = 0;                        ///< of surfaces in this step, at most [m]
   std::vector<WatchedLiquid> report_;
   std::vector<char> holds_solids_;  ///< by watch, after the last step
   bool has_report_ = false;         ///< of the step before; not at the start or after a restart

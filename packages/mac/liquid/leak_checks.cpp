@@ -102,7 +102,6 @@ void LeakAudit<dim>::check_sides(const InterfaceStep<dim>& step, const Look& now
   if (is_empty(step.surface.before) || is_empty(step.surface.after))
     return;  // the same on all ranks, also on those without cells
   const TiledGrid<dim>& grid = domain_.grid;
-  const auto near = step.kept.of(step.surface.before, grid, 2);
   std::vector<int> leaked;
   grid.for_each_owned_cell([&](int cell) {
     const char freed = static_cast<char>(before_.blocked[cell] & ~now.blocked[cell]);
@@ -117,7 +116,7 @@ void LeakAudit<dim>::check_sides(const InterfaceStep<dim>& step, const Look& now
         continue;
       const int solid = parting_solid(*step.surface.before, axis, cell);
       if (solid >= 0 && parting_solid(*step.surface.after, axis, cell) != solid &&
-          !swept(step, *near, cell) && !swept(step, *near, other))
+          !swept(step, cell) && !swept(step, other))
         leaked.push_back(cell);
     }
   });
@@ -139,12 +138,11 @@ bool LeakAudit<dim>::stayed_closed(const InterfaceStep<dim>& step, const Look& n
     }
   if (open)
     return false;
-  const auto near = step.kept.of(step.surface.before, grid, 2);
   GlobalIndex n_passed = 0;
   grid.for_each_owned_cell([&](int cell) {
     const bool changed = (before_.watched[cell] ^ now.watched[cell]) >> watch & 1;
     n_passed += changed && before_.cells[cell] == CellState::fluid &&
-                now.cells[cell] == CellState::fluid && !swept(step, *near, cell);
+                now.cells[cell] == CellState::fluid && !swept(step, cell);
   });
   return sum_all(grid.comm(), n_passed) == 0;
 }

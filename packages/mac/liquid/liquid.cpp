@@ -157,11 +157,38 @@ std::vector<std::string> Liquid<dim>::watch_names() const {
 }
 
 template <int dim>
+std::vector<StoredField> Liquid<dim>::fields() {
+  std::vector<StoredField> fields = {{"surface_lead", {&lead_}}};
+  const auto add = [&](std::vector<StoredField> more) {
+    fields.insert(fields.end(), more.begin(), more.end());
+  };
+  if (gas_)
+    add(gas_->fields());
+  if (audit_)
+    add(audit_->fields());
+  return fields;
+}
+
+template <int dim>
+void Liquid<dim>::load(const CheckpointReader& checkpoint) {
+  interface_->load(checkpoint);
+  forget();
+}
+
+template <int dim>
+void Liquid<dim>::forget() {
+  if (audit_)
+    audit_->forget();
+}
+
+template <int dim>
 std::function<void()> Liquid<dim>::undo() {
   const auto undo_gas = gas_ ? gas_->undo() : [] {};
-  return [this, undo_interface = interface_->undo(), undo_gas, lead = lead_] {
+  const auto undo_audit = audit_ ? audit_->undo() : [] {};
+  return [this, undo_interface = interface_->undo(), undo_gas, undo_audit, lead = lead_] {
     undo_interface();
     undo_gas();
+    undo_audit();
     lead_ = lead;
   };
 }

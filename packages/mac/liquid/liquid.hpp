@@ -38,8 +38,12 @@ class Liquid {
     return parameters_.tension > 0 && parameters_.tension_is_implicit;
   }
   const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
-  /// By how much the pressure's phi is ahead of the interface's [m], from the last step.
-  CellField& lead() { return lead_; }
+  /// All but the interface's.
+  std::vector<StoredField> fields();
+  /// The interface's; the fields are set. Collective.
+  void load(const CheckpointReader& checkpoint);
+  /// What was found out about the liquid on other tiles, or of another instant. Local.
+  void forget();
   /// No liquid is given: sources are to bring it.
   bool starts_empty() const { return starts_empty_; }
   GasPockets<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
@@ -59,7 +63,7 @@ class Liquid {
   FreeSurfaceParameters parameters_;
   double gravity_ = 0;  ///< [m/s^2]
   bool starts_empty_ = false;
-  CellField lead_;
+  CellField lead_;  ///< by how much the pressure's phi is ahead of the interface's [m]
   std::optional<SampleLattice<dim>> lattice_;  ///< of the tiles since the last `begin`
   std::vector<SignedDistance<dim>> sinks_;
   std::vector<Point<dim>> dry_points_;

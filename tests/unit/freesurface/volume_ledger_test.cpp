@@ -148,6 +148,54 @@ TEST(VolumeLedger, TellsTheVolumeBesideSolidsThatRise) {
   }
 }
 
+/// A film 0.3 h thick on a plate 0.1 h above the lower faces of cells, across all 8 of the domain:
+/// it does not reach to their centres, so that it is of no body. Of each cell 1/2 - 0.1 is beside
+/// the plate and above it, and 1/2 - phi/h = 0.4 of that is liquid.
+struct Film {
+  static constexpr int n = 8;
+  static constexpr double h = 1.0 / n;
+  Film() : bath(closed_cube<2>(n)), ledger(bath.domain, VolumeParameters()) {
+    const auto plate =
+        snapshot<2>(plate_surface<2>(Point<2>(3, 3), 1, h), Point<2>(0.5, 4.1 * h), false);
+    solids = find_solid_cells<2>(bath.domain, plate);
+    ledger.begin(
+        solids, field([](const Point<2>& x) { return x[1] < 4.1 * h ? 0.6 * h : x[1] - 4.4 * h; }));
+  }
+  CellField field(const SignedDistance<2>& distance) const {
+    const TiledGrid<2>& grid = bath.domain.grid;
+    CellField phi(grid.n_stored_cells(), 1);
+    grid.for_each_stored_cell([&](int cell) { phi[cell] = distance(grid.center(cell)); });
+    return phi;
+  }
+  CellField nothing() const {
+    return field([](const Point<2>&) { return h; });
+  }
+
+  static constexpr double volume = 8 * 0.4 * 0.4 * h * h;
+  Bath<2> bath;
+  SolidCells<2> solids;
+  VolumeLedger<2> ledger;
+};
+
+TEST(VolumeLedger, WhatNoCellShowsIsLostWhenItGoes) {
+  Film film;
+  EXPECT_EQ(film.ledger.state().n_components, 0);
+  EXPECT_NEAR(film.ledger.state().volume, Film::volume, 1e-12);
+  EXPECT_NEAR(film.ledger.state().target, Film::volume, 1e-12);
+  film.ledger.inherit(film.solids, film.solids, film.nothing(), {}, 1);
+  EXPECT_EQ(film.ledger.state().volume, 0);
+  EXPECT_EQ(film.ledger.state().target, 0);
+  EXPECT_NEAR(film.ledger.state().lost, Film::volume, 1e-12);
+}
+
+TEST(VolumeLedger, ASinkTakesWhatNoCellShows) {
+  Film film;
+  film.ledger.remove(film.solids, film.nothing());
+  EXPECT_EQ(film.ledger.state().volume, 0);
+  EXPECT_EQ(film.ledger.state().target, 0);
+  EXPECT_EQ(film.ledger.state().lost, 0);
+}
+
 /// Void comes in through an open side as fast as the flow, from the first step on.
 template <int dim>
 void expect_void_comes_in(const std::string& name, double per_step, int axis, int side) {

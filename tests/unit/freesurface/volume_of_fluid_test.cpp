@@ -71,6 +71,41 @@ TEST(VolumeOfFluid, ShowsTheDistanceToAPlane) {
   expect_plane_is_found<3>();
 }
 
+/// A box sinks from beside the surface to where there is liquid alone, over several tiles: what it
+/// displaces flows around it, and the volume stays, but for what it displaces in a step: its walls
+/// pass centres of cells one after the other. The flow is the box's own within a cell of it and
+/// ends three cells farther, free of divergence on the grid.
+TEST(VolumeOfFluid, ABodySinksFromItsSurfaceIntoTheDeep) {
+  constexpr int n = 64, n_steps = 60;
+  constexpr double h = 1.0 / n, dt = 0.1, size = 0.101, start = 0.79, end = 0.4;
+  Bath<2> bath(closed_cube<2>(n));
+  auto model = bath.make(model_name);
+  const SurfaceMesh<2> box = box_surface<2>(Point<2>::Constant(size), h);
+  const auto height = [&](double step) { return start + (end - start) * step / n_steps; };
+  const auto at = [&](int step) { return snapshot<2>(box, Point<2>(0.503, height(step)), true); };
+  model->initialise([](const Point<2>& x) { return x[1] - 0.913; }, at(0));
+  const double before = model->ledger().volume;
+  for (int i = 0; i < n_steps; ++i) {
+    const Point<2> middle(0.503, height(i + 0.5));
+    const double speed = (end - start) / (n_steps * dt);
+    const auto streamfunction = [&](double x, double y) {
+      double result = -speed * (x - middle[0]);
+      for (const double off : {x - middle[0], y - middle[1]})
+        result *= 1 - std::clamp((std::abs(off) - 0.5 * size - h) / (3 * h), 0.0, 1.0);
+      return result;
+    };
+    bath.set_velocity([&](const Point<2>& x) {
+      const double r = 0.5 * h;
+      return Point<2>((streamfunction(x[0], x[1] + r) - streamfunction(x[0], x[1] - r)) / h,
+                      -(streamfunction(x[0] + r, x[1]) - streamfunction(x[0] - r, x[1])) / h);
+    });
+    bath.move(at(i), at(i + 1), dt);
+    bath.step(*model, i * dt, dt);
+  }
+  EXPECT_NEAR(model->ledger().target, before, 1e-12);
+  EXPECT_NEAR(model->ledger().volume, before, size * (start - end) / n_steps);
+}
+
 /// Two balls in a flow that tears them up: the volume is that of the start, whatever the step. In
 /// one that is not free of divergence too, with what waits for a body that has room.
 template <int dim>
