@@ -71,8 +71,9 @@ template <int dim>
 double ContactProblem<dim>::normal_velocity(const SolidMotion<dim>& motion,
                                             const Contact<dim>& contact) const {
   Point<dim> velocity = motion.at(contact.solid, contact.point, contact.place());
-  if (contact.other >= 0)
-    velocity -= motion.at(contact.other, contact.other_point, contact.other_place());
+  velocity -= contact.other >= 0
+                  ? motion.at(contact.other, contact.other_point, contact.other_place())
+                  : contact.wall_velocity;
   return contact.normal.dot(velocity);
 }
 

@@ -49,6 +49,7 @@ void add_wall_contacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>&
     contact.x = x;
     contact.normal = wall.sign * Point<dim>::Unit(wall.axis);
     contact.gap = gap;
+    contact.wall_velocity = wall.velocity.head<dim>();
     contacts.push_back(contact);
   }
 }

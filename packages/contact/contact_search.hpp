@@ -15,8 +15,9 @@ struct Contact {
   Point<dim> x = Point<dim>::Zero();  ///< where the impulse acts on both [m]
   /// The points meet later: each side is pushed at its own point, not at x.
   bool impact = false;
-  Point<dim> normal = Point<dim>::Zero();  ///< unit, out of `other`
-  double gap = 0;                          ///< along the normal, negative in an overlap [m]
+  Point<dim> normal = Point<dim>::Zero();         ///< unit, out of `other`
+  double gap = 0;                                 ///< along the normal, negative in an overlap [m]
+  Point<dim> wall_velocity = Point<dim>::Zero();  ///< if `other` is a wall [m/s]
 
   const Point<dim>& place() const { return impact ? point.position : x; }
   const Point<dim>& other_place() const { return impact ? other_point.position : x; }
@@ -27,6 +28,7 @@ struct HalfSpace {
   int side = 0;  ///< 2 axis + (0 lower, 1 upper)
   int axis = 0;
   double sign = 1, coordinate = 0;
+  Point<3> velocity = Point<3>::Zero();  ///< along itself, in the first dim components [m/s]
 };
 
 /// How far the search for contacts looks.

@@ -37,8 +37,22 @@ RCP<Vector> drift_of(const SolidSystem<dim>& solids, const Vector& velocity) {
 
 template <int dim>
 GaussSeidelContact<dim>::GaussSeidelContact(const GaussSeidelOptions& options,
-                                            std::vector<HalfSpace> walls, double grid_spacing)
-    : options_(options), walls_(std::move(walls)), spacing_(grid_spacing) {}
+                                            std::vector<HalfSpace> walls, double grid_spacing,
+                                            WallVelocity<dim> wall_velocity)
+    : options_(options),
+      walls_(std::move(walls)),
+      spacing_(grid_spacing),
+      wall_velocity_(std::move(wall_velocity)) {}
+
+/// Positions go by velocities in the middle of the step, velocities are those at its end.
+template <int dim>
+void GaussSeidelContact<dim>::move_walls(ContactPhase phase, double dt) {
+  if (!wall_velocity_)
+    return;
+  const double time = time_ + (phase == ContactPhase::position ? 0.5 * dt : dt);
+  for (HalfSpace& wall : walls_)
+    wall.velocity.head<dim>() = wall_velocity_(wall.axis, wall.side % 2, time);
+}
 
 template <int dim>
 const InverseMass& GaussSeidelContact<dim>::inverse_mass_of(const SolidSystem<dim>& solids) {
@@ -82,6 +96,7 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   ContactReport<dim> report;
   if (!solids.has_unknowns())
     return report;
+  move_walls(phase, dt);
   ContactShapes<dim> shapes(solids, topology_);
   if (solids.joints())
     shapes.set_drift(replicated(solids, *drift_of(solids, velocity)));

@@ -55,22 +55,26 @@ struct GaussSeidelOptions {
 template <int dim>
 class GaussSeidelContact : public ContactModel<dim> {
  public:
-  /// Walls: see `walls_of`. `grid_spacing` h [m].
+  /// Walls: see `walls_of`; they are at rest if `wall_velocity` is empty. `grid_spacing` h [m].
   GaussSeidelContact(const GaussSeidelOptions& options, std::vector<HalfSpace> walls,
-                     double grid_spacing);
+                     double grid_spacing, WallVelocity<dim> wall_velocity = {});
 
   std::string name() const override { return "gauss seidel"; }
+  void begin_step(double time) override { time_ = time; }
   using ContactModel<dim>::resolve;
   ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
                              Vector& velocity, const ContactResponse& response) override;
 
  private:
+  void move_walls(ContactPhase phase, double dt);
   const InverseMass& inverse_mass_of(const SolidSystem<dim>& solids);
   const SolidPairs& apart_among(const std::vector<SolidDescription>& solids);
 
   GaussSeidelOptions options_;
   std::vector<HalfSpace> walls_;
   double spacing_;
+  WallVelocity<dim> wall_velocity_;
+  double time_ = 0;  ///< at the beginning of the step [s]
   ContactTopology<dim> topology_;
   SolidPairs apart_;                  ///< `GaussSeidelOptions::apart` by number, in both orders
   std::vector<std::string> numbers_;  ///< of solids with these names

@@ -138,6 +138,8 @@ typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& 
   add_side(row, contact.solid, contact.point, contact.place(), 1);
   if (contact.other >= 0)
     add_side(row, contact.other, contact.other_point, contact.other_place(), -1);
+  else
+    row.prescribed -= contact.wall_velocity;
   row.end = static_cast<int>(jacobian_.size());
   row.response_begin = row.response_end = static_cast<int>(response_.size());
   add_response(row);

@@ -91,18 +91,19 @@ void check_names(const std::map<std::string, double>& by_name,
 
 template <int dim>
 void register_contact(ContactRegistry<dim>& contacts) {
-  contacts.add(
-      "gauss seidel",
-      "Collisions, resting contact and Coulomb friction between solids and with walls, by "
-      "projected Gauss-Seidel on velocities.",
-      contact_parameters, [](const ParameterList& list, const ContactSetting<dim>& setting) {
-        GaussSeidelOptions options = options_from(list);
-        check_names(options.thickness_of, setting.solids);
-        if (!list.get<bool>("Between Jointed Solids"))
-          options.apart = setting.jointed;
-        return std::make_unique<GaussSeidelContact<dim>>(
-            options, walls_of<dim>(setting.domain, setting.closed_sides), setting.smallest_length);
-      });
+  contacts.add("gauss seidel",
+               "Collisions, resting contact and Coulomb friction between solids and with walls, by "
+               "projected Gauss-Seidel on velocities.",
+               contact_parameters,
+               [](const ParameterList& list, const ContactSetting<dim>& setting) {
+                 GaussSeidelOptions options = options_from(list);
+                 check_names(options.thickness_of, setting.solids);
+                 if (!list.get<bool>("Between Jointed Solids"))
+                   options.apart = setting.jointed;
+                 return std::make_unique<GaussSeidelContact<dim>>(
+                     options, walls_of<dim>(setting.domain, setting.closed_sides),
+                     setting.smallest_length, setting.wall_velocity);
+               });
 }
 
 template void register_contact<2>(ContactRegistry<2>&);

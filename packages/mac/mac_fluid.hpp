@@ -107,6 +107,7 @@ class MacFluid : public FluidDiscretization<dim>,
   std::vector<std::string> watch_names() const override { return liquid_->watch_names(); }
   Box<dim> bounds() const override;
   std::array<std::array<bool, 2>, dim> closed_sides() const override;
+  Point<dim> wall_velocity(int axis, int end, double time) const override;
   bool is_periodic() const override;
   double density(const Point<dim>&) const override { return parameters_.density; }
   RCP<Vector> last_scaled_pressure() const override;

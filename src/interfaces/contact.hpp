@@ -33,6 +33,11 @@ struct ContactReport {
 /// a contact acts only. Collective.
 using ContactResponse = std::function<RCP<const LinearOperator>()>;
 
+/// Of the wall of the domain at an end (0 lower, 1 upper) of an axis, along itself, at a time
+/// [m/s]. Local, the same on all ranks.
+template <int dim>
+using WallVelocity = std::function<Point<dim>(int axis, int end, double time)>;
+
 /// In which part of the step contacts are resolved.
 enum class ContactPhase {
   position,  ///< S1: V^{n+1/2} moves the positions; existing overlap is pushed out
@@ -43,6 +48,9 @@ enum class ContactPhase {
 template <int dim>
 class ContactModel : public PlugIn {
  public:
+  /// A step begins at `time` [s]; what is resolved until the next call is of it. Default: nothing.
+  /// Local.
+  virtual void begin_step(double) {}
   /// Changes the stacked generalized velocities by contact impulses (equal and opposite between
   /// dynamic solids, through the solids' own mass M_S or the given response) so that moving by dt
   /// from the present positions leaves no overlap. Collective.

@@ -56,6 +56,8 @@ class BoundedFluid {
   virtual Box<dim> bounds() const = 0;  ///< [m]; the same on every rank. Local.
   /// [axis][lower, upper]: a wall, which solids cannot pass either. Local.
   virtual std::array<std::array<bool, 2>, dim> closed_sides() const { return {}; }
+  /// Of the wall at an end (0 lower, 1 upper) of an axis, along itself [m/s]. Local.
+  virtual Point<dim> wall_velocity(int, int, double) const { return Point<dim>::Zero(); }
   /// True if what leaves at one side comes in at another: then torques have no common origin.
   /// Local.
   virtual bool is_periodic() const { return false; }

@@ -33,8 +33,9 @@ template <int dim>
 struct ContactSetting {
   Box<dim> domain;  ///< [m]
   std::array<std::array<bool, 2>, dim>
-      closed_sides{};          ///< [axis][lower, upper] is a wall for solids
-  double smallest_length = 1;  ///< that the fluid resolves, h [m]
+      closed_sides{};               ///< [axis][lower, upper] is a wall for solids
+  WallVelocity<dim> wall_velocity;  ///< of these; empty: they are at rest
+  double smallest_length = 1;       ///< that the fluid resolves, h [m]
   Communicator comm;
   std::vector<std::string> solids;  ///< their names
   /// Pairs of solids that joints connect, by name.

@@ -309,8 +309,12 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
     for (const SolidDescription& solid : components.solids->solids())
       setting.solids.push_back(solid.name);
     setting.jointed = jointed_pairs(scene);
-    if (const auto* bounded = side_of<BoundedFluid<dim>>(fluid))
+    if (const auto* bounded = side_of<BoundedFluid<dim>>(fluid)) {
       setting.closed_sides = bounded->closed_sides();
+      setting.wall_velocity = [bounded](int axis, int end, double time) {
+        return bounded->wall_velocity(axis, end, time);
+      };
+    }
     components.contact =
         registries.contacts.create(type_of("Contact"), scene.sublist("Contact"), setting);
   }

@@ -355,7 +355,9 @@ typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim
   report.time = time_ + dt;
   report.cfl = dt * fluid.largest_speed() / fluid.smallest_length();
   if (solids.begin_step(time_, dt))
-    freeze();                    // other dofs are unknowns now
+    freeze();  // other dofs are unknowns now
+  if (components_.contact)
+    components_.contact->begin_step(time_);
   system_.forget_solid_block();  // what is implicit is other in S1 than in S2
 
   StepContext<dim> context = context_of_positions(dt);

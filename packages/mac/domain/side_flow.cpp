@@ -107,6 +107,12 @@ std::array<std::array<bool, 2>, dim> MacFluid<dim>::closed_sides() const {
 }
 
 template <int dim>
+Point<dim> MacFluid<dim>::wall_velocity(int axis, int end, double time) const {
+  const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
+  return side.closed() ? side.velocity_at(axis, bounds().min(), time) : Point<dim>::Zero();
+}
+
+template <int dim>
 bool MacFluid<dim>::is_periodic() const {
   bool any = false;
   for (int axis = 0; axis < dim; ++axis)
@@ -118,6 +124,8 @@ template Box<2> MacFluid<2>::bounds() const;
 template Box<3> MacFluid<3>::bounds() const;
 template std::array<std::array<bool, 2>, 2> MacFluid<2>::closed_sides() const;
 template std::array<std::array<bool, 2>, 3> MacFluid<3>::closed_sides() const;
+template Point<2> MacFluid<2>::wall_velocity(int, int, double) const;
+template Point<3> MacFluid<3>::wall_velocity(int, int, double) const;
 template bool MacFluid<2>::is_periodic() const;
 template bool MacFluid<3>::is_periodic() const;
 template void MacFluid<2>::set_prescribed(double, FaceField<2>&) const;

@@ -90,6 +90,7 @@ class World {
   }
 
   void step(double dt) {
+    contact.begin_step(time);
     const auto half = solids->velocity_of(*solids->explicit_momentum(time, dt / 2));
     position_report = contact.resolve(*solids, ContactPhase::position, dt, *half);
     solids->move(*half, time, dt);

@@ -51,5 +51,26 @@ TYPED_TEST(Resting, AnOverlapWithACoarseFloorIsSeenAndPushedOut) {
   EXPECT_NEAR(world.state(1).center_of_mass[dim - 1], 2 * h, 0.06 * h);
 }
 
+/// Friction takes a box along until it is as fast as the belt, and brakes it when the belt stops.
+TYPED_TEST(Resting, AMovingFloorCarriesWhatLiesOnIt) {
+  constexpr int dim = TypeParam::value;
+  const double friction = 0.5, speed = 1, stop = 0.495;
+  World<dim> world({rough(box<dim>(4 * h, up<dim>(2 * h), 2 * h), friction)}, up<dim>(-g));
+  world.contact = GaussSeidelContact<dim>(
+      {}, cube_walls<dim>(), h, [&](int axis, int end, double time) -> Point<dim> {
+        EXPECT_EQ(axis, dim - 1);
+        EXPECT_EQ(end, 0);
+        return time < stop ? Point<dim>(speed * Point<dim>::Unit(0)) : Point<dim>::Zero();
+      });
+  const double round_off = 1e-3 * speed;
+  world.run(0.1, 0.01);
+  EXPECT_NEAR(world.state(0).velocity[0], friction * g * 0.1, round_off);
+  world.run(0.3, 0.01);
+  EXPECT_NEAR(world.state(0).velocity[0], speed, round_off);
+  world.run(0.2, 0.01);  // eleven steps end after the stop
+  EXPECT_NEAR(world.state(0).velocity[0], speed - friction * g * 0.11, round_off);
+  EXPECT_NEAR(world.state(0).angular_velocity.norm(), 0, round_off / h);
+}
+
 }  // namespace
 }  // namespace lockstep::test

@@ -224,6 +224,19 @@ TEST(Fluid, SidesRampUpFromTimeZeroIfAtAll) {
   EXPECT_EQ(side.velocity_at(1, x, 2), side.velocity);
 }
 
+TEST(Fluid, TellsHowFastItsWallsAre) {
+  Case<2> scene({16, 8}, 0.125);
+  scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
+  scene.side("y lower", "wall", Point<2>(3, 0)).side("y upper", "slip wall");
+  scene.domain.sublist("Sides").sublist("y lower").set("Ramp Time", 2.0).set("End Time", 4.0);
+  const auto fluid = scene.make();
+  EXPECT_EQ(fluid->wall_velocity(1, 0, 1), Point<2>(1.5, 0));
+  EXPECT_EQ(fluid->wall_velocity(1, 0, 4), Point<2>(3, 0));
+  EXPECT_EQ(fluid->wall_velocity(1, 0, 5), Point<2>(0, 0));
+  EXPECT_EQ(fluid->wall_velocity(1, 1, 1), Point<2>(0, 0));
+  EXPECT_EQ(fluid->wall_velocity(0, 0, 1), Point<2>(0, 0));  // no wall
+}
+
 TEST(Fluid, AnOpeningThatEndsWithinFacesLetsInWhatWasAskedFor) {
   for (const char* const profile : {"uniform", "parabolic"}) {
     for (const double upper : {0.45, 0.375, 0.3}) {  // of faces 0.125 m wide; the last within one

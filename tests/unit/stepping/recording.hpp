@@ -134,6 +134,9 @@ class RecordingContact : public ContactModel<2> {
  public:
   explicit RecordingContact(Calls& calls) : calls_(calls) {}
   std::string name() const override { return "recording"; }
+  void begin_step(double time) override {
+    calls_.push_back(fmt::format("contact: step from {}", time));
+  }
   ContactReport<2> resolve(const SolidSystem<2>&, ContactPhase phase, double dt, Vector&,
                            const ContactResponse&) override {
     const char* what = phase == ContactPhase::position ? "positions" : "velocities";
