@@ -116,6 +116,7 @@ ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopolog
     }
   }
   find_combinations();
+  find_carriers();
   find_held();
 }
 
@@ -136,10 +137,69 @@ void ContactShapes<dim>::find_combinations() {
         static_cast<GlobalIndex>(all[k + 1]), all[k + 2]);
 }
 
+/// Which vertices the attached nodes are, all ranks know, too.
+template <int dim>
+void ContactShapes<dim>::find_carriers() {
+  if (!system_.reduction().has_combinations())
+    return;
+  std::vector<double> mine;
+  for (const AttachedNode<dim>& node : system_.attached())
+    mine.insert(mine.end(), {double(node.dofs[0]), double(node.solid)});
+  const std::vector<double> all = gather_all(system_.comm(), mine);
+  if (all.empty())
+    return;
+  std::unordered_map<GlobalIndex, int> carrier_of;
+  for (std::size_t k = 0; k + 1 < all.size(); k += 2)
+    carrier_of.emplace(static_cast<GlobalIndex>(all[k]), static_cast<int>(all[k + 1]));
+  carriers_.assign(mesh_.vertices.size(), -1);
+  VelocityRow<dim> row;
+  for (const SolidDescription& solid : solids_) {
+    if (solid.rigid || solid.prescribed)
+      continue;
+    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
+      const SurfacePoint<dim> point = at_vertex(v);
+      if (point.simplex < 0)
+        continue;
+      system_.velocity_row(point, point.position, row);
+      for (std::size_t k = 0; k < row.dofs.size(); ++k) {
+        const auto found = carrier_of.find(row.dofs[k]);
+        if (found != carrier_of.end() && !row.coefficients[k].isZero(0))
+          carriers_[v] = found->second;
+      }
+    }
+  }
+}
+
 template <int dim>
 void ContactShapes<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                                       VelocityRow<dim>& row) const {
   system_.velocity_row(point, x, row);
+  resolve(row);
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::rigid_velocity(int solid, const Point<dim>& x,
+                                              const std::vector<double>& velocity) const {
+  VelocityRow<dim> row;
+  system_.rigid_row(solid, x, row);
+  Point<dim> sum = drift_of(row);
+  resolve(row);
+  for (std::size_t k = 0; k < row.dofs.size(); ++k)
+    sum += velocity[row.dofs[k]] * row.coefficients[k];
+  return sum;
+}
+
+template <int dim>
+std::vector<GlobalIndex> ContactShapes<dim>::rigid_dofs(int solid) const {
+  VelocityRow<dim> row;
+  system_.rigid_row(solid, Point<dim>::Zero(), row);
+  resolve(row);
+  return row.dofs;
+}
+
+/// Dofs that are combinations are replaced by what they are made of.
+template <int dim>
+void ContactShapes<dim>::resolve(VelocityRow<dim>& row) const {
   if (combinations_.empty())
     return;
   VelocityRow<dim> reduced;
@@ -185,12 +245,17 @@ std::vector<GlobalIndex> ContactShapes<dim>::leading_dofs() const {
 
 template <int dim>
 Point<dim> ContactShapes<dim>::drift(const SurfacePoint<dim>& point, const Point<dim>& x) const {
-  Point<dim> sum = Point<dim>::Zero();
   if (drift_.empty())
-    return sum;
+    return Point<dim>::Zero();
   VelocityRow<dim> row;
   system_.velocity_row(point, x, row);
-  for (std::size_t k = 0; k < row.dofs.size(); ++k)
+  return drift_of(row);
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::drift_of(const VelocityRow<dim>& row) const {
+  Point<dim> sum = Point<dim>::Zero();
+  for (std::size_t k = 0; k < row.dofs.size() && !drift_.empty(); ++k)
     sum += drift_[row.dofs[k]] * row.coefficients[k];
   return sum;
 }

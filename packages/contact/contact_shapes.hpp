@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -65,6 +66,17 @@ class ContactShapes {
   /// replaced by the ones that they are made of.
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                     VelocityRow<dim>& row) const;
+  /// The velocity of a point of a rigid solid that is not prescribed, with a surface or without.
+  Point<dim> rigid_velocity(int solid, const Point<dim>& x,
+                            const std::vector<double>& velocity) const;
+  /// The dofs that move it.
+  std::vector<GlobalIndex> rigid_dofs(int solid) const;
+  /// The rigid solid that this vertex is attached to; -1: none.
+  int carrier(int vertex) const { return carriers_.empty() ? -1 : carriers_[vertex]; }
+  /// True if any vertex is attached to this solid.
+  bool carries(int solid) const {
+    return std::find(carriers_.begin(), carriers_.end(), solid) != carriers_.end();
+  }
   /// The same for a combination of dofs.
   std::vector<std::pair<GlobalIndex, double>> resolved(
       const std::vector<std::pair<GlobalIndex, double>>& terms) const;
@@ -90,6 +102,9 @@ class ContactShapes {
 
  private:
   void find_combinations();
+  void find_carriers();
+  void resolve(VelocityRow<dim>& row) const;
+  Point<dim> drift_of(const VelocityRow<dim>& row) const;
   void find_held();
 
   const SolidSystem<dim>& system_;
@@ -99,6 +114,7 @@ class ContactShapes {
   std::vector<Box<dim>> bounds_, solid_bounds_;
   std::unordered_map<GlobalIndex, std::vector<std::pair<GlobalIndex, double>>> combinations_;
   std::vector<double> drift_;  ///< empty: none
+  std::vector<int> carriers_;  ///< of each vertex; empty: no node is attached
   std::vector<bool> held_;
 };
 

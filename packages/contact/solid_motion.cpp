@@ -38,15 +38,36 @@ Point<dim> point_velocity(const ContactShapes<dim>& shapes, bool prescribed,
   return sum;
 }
 
+/// What rigid solids turn about when they move. Of others, zero.
+template <int dim>
+std::vector<Point<dim>> centers_of(const SolidSystem<dim>& system) {
+  std::vector<Point<dim>> centers(system.solids().size(), Point<dim>::Zero());
+  std::vector<SolidState<dim>> states;
+  for (std::size_t i = 0; i < centers.size(); ++i) {
+    const SolidDescription& solid = system.solids()[i];
+    if (!solid.rigid)
+      continue;
+    if (const auto* framed = side_of<JointableSolids<dim>>(system.model(solid.model))) {
+      centers[i] = framed->rigid_frame(solid.index_in_model).position;
+      continue;
+    }
+    if (states.empty())
+      states = system.states();
+    centers[i] = states[i].center_of_mass;
+  }
+  return centers;
+}
+
 template <int dim>
 SolidMotion<dim>::SolidMotion(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
                               const std::vector<double>& velocity)
     : shapes_(shapes), motions_(shapes.n_solids()) {
-  const std::vector<SolidState<dim>> states = system.states();
+  const std::vector<Point<dim>> centers = centers_of(system);
   for (int i = 0; i < shapes.n_solids(); ++i) {
     const SolidDescription& solid = shapes.solids()[i];
     Motion& motion = motions_[i];
-    if (solid.simplex_begin == solid.simplex_end)
+    const bool has_surface = solid.simplex_begin < solid.simplex_end;
+    if (!has_surface && !shapes.carries(i))
       continue;
     const Box<dim>& box = shapes.bounds_of_solid(i);
     motion.rigid = solid.rigid;
@@ -65,17 +86,18 @@ SolidMotion<dim>::SolidMotion(const SolidSystem<dim>& system, const ContactShape
     SurfacePoint<dim> point;
     point.simplex = solid.simplex_begin;
     point.barycentric.fill(1.0 / dim);
-    motion.center = states[i].center_of_mass;
+    motion.center = centers[i];
     const auto field = [&](const Point<dim>& x) {
-      return point_velocity(shapes, solid.prescribed, point, x, velocity);
+      return solid.prescribed ? shapes.prescribed_velocity(point, x)
+                              : shapes.rigid_velocity(i, x, velocity);
     };
     motion.velocity = field(motion.center);
-    const double arm = box.diagonal().norm();
+    const double arm = has_surface ? box.diagonal().norm() : 1;
     for (int a = 0; a < dim; ++a) {
       motion.gradient.col(a) =
           (field(motion.center + arm * Point<dim>::Unit(a)) - motion.velocity) / arm;
     }
-    for (int corner = 0; corner < (1 << dim); ++corner) {
+    for (int corner = 0; has_surface && corner < (1 << dim); ++corner) {
       const Point<dim> x = box.corner(static_cast<typename Box<dim>::CornerType>(corner));
       motion.range.extend(Point<dim>(motion.velocity + motion.gradient * (x - motion.center)));
     }
@@ -113,8 +135,8 @@ Point<dim> SolidMotion<dim>::end_of_point(int rigid_solid, const Point<dim>& x, 
 template <int dim>
 Point<dim> SolidMotion<dim>::end_of_vertex(int solid, int vertex, double dt) const {
   const Point<dim>& x = shapes_.mesh().vertices[vertex];
-  return motions_[solid].rigid ? end_of_point(solid, x, dt)
-                               : Point<dim>(x + dt * vertex_velocities_[vertex]);
+  const int rigid = motions_[solid].rigid ? solid : shapes_.carrier(vertex);
+  return rigid >= 0 ? end_of_point(rigid, x, dt) : Point<dim>(x + dt * vertex_velocities_[vertex]);
 }
 
 template class SolidMotion<2>;

@@ -10,7 +10,8 @@ namespace lockstep {
 template <int dim>
 class SolidMotion {
  public:
-  /// `velocity`: V_S by id of `SolidSystem::map`, without padding.
+  /// Solids without surface, but for those that carry nodes, have no motion. `velocity`: V_S by id
+  /// of `SolidSystem::map`, without padding.
   SolidMotion(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
               const std::vector<double>& velocity);
 
@@ -19,8 +20,9 @@ class SolidMotion {
   Point<dim> at(int solid, const SurfacePoint<dim>& point, const Point<dim>& x) const;
   /// Of a vertex [m/s].
   Point<dim> of_vertex(int solid, int vertex) const;
-  /// Where a vertex, or a point fixed to a rigid solid, is after dt: straight on, but about the
-  /// centre of mass of a rigid solid [m].
+  /// Where a vertex, or a point fixed to a rigid solid, is after dt: straight on, but with a rigid
+  /// solid that turns about its reference point if it has one, else about its centre of mass; with
+  /// such a one that carries it, too [m].
   Point<dim> end_of_vertex(int solid, int vertex, double dt) const;
   Point<dim> end_of_point(int rigid_solid, const Point<dim>& x, double dt) const;
   /// Componentwise bounds of the velocity over the solid [m/s].
@@ -29,7 +31,7 @@ class SolidMotion {
  private:
   struct Motion {
     bool rigid = true;
-    Point<dim> center, velocity;  ///< of mass
+    Point<dim> center, velocity;  ///< that it turns about
     Eigen::Matrix<double, dim, dim> gradient;
     Box<dim> range;
   };

@@ -68,6 +68,23 @@ std::vector<AttachedNode<dim>> find_attached_nodes(
 }
 
 template <int dim>
+void rigid_row(const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
+               const std::vector<ModelBegin>& begin, const SolidDescription& solid,
+               const Point<dim>& x, VelocityRow<dim>& row) {
+  const SolidModel<dim>& model = *models[solid.model];
+  const auto* jointable = side_of<JointableSolids<dim>>(model);
+  if (jointable && solid.simplex_begin == solid.simplex_end) {
+    unseen_row(*jointable, solid.index_in_model, x, row);
+  } else {
+    SurfacePoint<dim> point;
+    point.simplex = solid.simplex_begin - begin[solid.model].simplex;
+    model.velocity_row(point, x, row);
+  }
+  for (GlobalIndex& id : row.dofs)
+    id += begin[solid.model].id;
+}
+
+template <int dim>
 std::vector<Combination> combinations_of(
     const std::vector<AttachedNode<dim>>& nodes,
     const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
@@ -75,22 +92,12 @@ std::vector<Combination> combinations_of(
   std::vector<Combination> combinations;
   VelocityRow<dim> row;
   for (const AttachedNode<dim>& node : nodes) {
-    const SolidDescription& carrier = solids[node.solid];
-    const SolidModel<dim>& model = *models[carrier.model];
-    const auto* jointable = side_of<JointableSolids<dim>>(model);
-    if (jointable && carrier.simplex_begin == carrier.simplex_end) {
-      unseen_row(*jointable, carrier.index_in_model, node.position, row);
-    } else {
-      SurfacePoint<dim> point;
-      point.simplex = carrier.simplex_begin - begin[carrier.model].simplex;
-      model.velocity_row(point, node.position, row);
-    }
+    rigid_row(models, begin, solids[node.solid], node.position, row);
     for (int a = 0; a < dim; ++a) {
       Combination combination{node.dofs[a], {}};
       for (std::size_t k = 0; k < row.dofs.size(); ++k) {
         if (row.coefficients[k][a] != 0)
-          combination.terms.emplace_back(begin[carrier.model].id + row.dofs[k],
-                                         row.coefficients[k][a]);
+          combination.terms.emplace_back(row.dofs[k], row.coefficients[k][a]);
       }
       combinations.push_back(std::move(combination));
     }
@@ -104,6 +111,12 @@ template std::vector<AttachedNode<2>> find_attached_nodes(
 template std::vector<AttachedNode<3>> find_attached_nodes(
     const std::vector<std::unique_ptr<SolidModel<3>>>&, const std::vector<ModelBegin>&,
     const std::vector<SolidDescription>&, std::string&);
+template void rigid_row(const std::vector<std::unique_ptr<SolidModel<2>>>&,
+                        const std::vector<ModelBegin>&, const SolidDescription&, const Point<2>&,
+                        VelocityRow<2>&);
+template void rigid_row(const std::vector<std::unique_ptr<SolidModel<3>>>&,
+                        const std::vector<ModelBegin>&, const SolidDescription&, const Point<3>&,
+                        VelocityRow<3>&);
 template std::vector<Combination> combinations_of(
     const std::vector<AttachedNode<2>>&, const std::vector<std::unique_ptr<SolidModel<2>>>&,
     const std::vector<ModelBegin>&, const std::vector<SolidDescription>&);

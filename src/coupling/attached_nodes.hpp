@@ -33,6 +33,13 @@ std::vector<AttachedNode<dim>> find_attached_nodes(
     const std::vector<ModelBegin>& begin, const std::vector<SolidDescription>& solids,
     std::string& failure);
 
+/// What moves a point of a rigid solid that is not prescribed, whether it has a surface or not, in
+/// ids of the stacked map. Replaces `row`. Local.
+template <int dim>
+void rigid_row(const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
+               const std::vector<ModelBegin>& begin, const SolidDescription& solid,
+               const Point<dim>& x, VelocityRow<dim>& row);
+
 /// The velocities of nodes as those of their solids where they are. Local.
 template <int dim>
 std::vector<Combination> combinations_of(

@@ -45,6 +45,12 @@ class SolidSystem {
   /// Rows of a surface point of a snapshot, with ids of `map`. Local.
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                     VelocityRow<dim>& row) const;
+  /// The same of a point of a rigid solid that is not prescribed, with a surface or without. Local.
+  void rigid_row(int solid, const Point<dim>& x, VelocityRow<dim>& row) const {
+    lockstep::rigid_row(models_, begin_, solids_[solid], x, row);
+  }
+  /// This rank's nodes that rigid solids carry, at the present positions.
+  const std::vector<AttachedNode<dim>>& attached() const { return attached_; }
   Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const;
   Point<dim> effective_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const;
 

@@ -1,0 +1,65 @@
+// Surfaces that rigid bodies carry, and those that turn about a pivot.
+#include <gtest/gtest.h>
+
+#include "cloth_world.hpp"
+#include "contact/impact_zones.hpp"
+
+namespace lockstep::test {
+namespace {
+
+template <typename T>
+class Carried : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (world_communicator()->getSize() > 1)
+      GTEST_SKIP();
+  }
+};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(Carried, Dimensions);
+
+/// With its reference point moved by `shift`: it turns about that.
+template <int dim>
+RigidBody<dim> pivoted(RigidBody<dim> body, const Point<dim>& shift) {
+  for (auto& vertex : body.surface.vertices)
+    vertex -= shift;
+  body.center_of_mass -= shift;
+  body.pose.position += shift;
+  body.initial_pose = body.pose;
+  return body;
+}
+
+/// A step of a radian: of a body about its pivot, of a scripted one, and of a sheet that the first
+/// of them carries, twice as far from the pivot as the body.
+TYPED_TEST(Carried, PathsEndWhereAStepMovesTheSurfaces) {
+  constexpr int dim = TypeParam::value;
+  const double dt = 0.5;
+  const Point<dim> along = Point<dim>::Unit(0);
+  const AngularVector<dim> spin = 2 * AngularVector<dim>::Unit(n_rotations<dim> - 1);
+  std::vector<RigidBody<dim>> bodies{
+      moving<dim>(pivoted<dim>(box<dim>(2 * h, Point<dim>::Zero()), -3 * h * along), h * along,
+                  spin),
+      pivoted<dim>(box<dim>(2 * h, up<dim>(20 * h)), 3 * h * along)};
+  bodies[0].name = "carrier";
+  bodies[1].script = uniform_motion<dim>(-h * along, spin);
+  std::vector<DeformableBody<dim>> cloths;
+  cloths.push_back(sheet<dim>(2 * h, 3 * h * along, h));
+  for (int n = 0; n < cloths[0].n_nodes(); ++n)
+    cloths[0].attached.emplace_back(n, "carrier");
+  ClothWorld<dim> world(std::move(cloths), bodies, Point<dim>::Zero());
+  ContactTopology<dim> topology;
+  const ContactShapes<dim> shapes(*world.solids, topology);
+  const auto velocity = world.solids->velocity();
+  const SolidMotion<dim> motion(*world.solids, shapes, replicated(*world.solids, *velocity));
+  const SurfacePath<dim> path(shapes, motion, dt);
+  world.solids->move(*velocity, 0, dt);
+  const auto moved = world.solids->snapshot();
+  ASSERT_EQ(path.after.size(), moved->mesh().vertices.size());
+  for (std::size_t v = 0; v < path.after.size(); ++v) {
+    EXPECT_LT((path.after[v] - moved->mesh().vertices[v]).norm(), 1e-12 * h) << v;
+    EXPECT_GT((path.after[v] - path.before[v]).norm(), 0.1 * h) << v;
+  }
+}
+
+}  // namespace
+}  // namespace lockstep::test
