@@ -70,10 +70,6 @@ class ImpactZones {
         if (solid.rigid)
           sets_.join(v, solid.vertex_begin);
       }
-      if (solid.rigid && !solid.prescribed && solid.simplex_begin < solid.simplex_end) {
-        for (const GlobalIndex dof : row_of(solid.simplex_begin).dofs)
-          rigid_of_dof_[dof] = i;
-      }
     }
   }
 
@@ -95,18 +91,11 @@ class ImpactZones {
  private:
   const Point<dim>& x(int vertex) const { return shapes_.mesh().vertices[vertex]; }
 
-  VelocityRow<dim> row_of(int simplex) const {
-    SurfacePoint<dim> point;
-    point.simplex = simplex;
-    VelocityRow<dim> row;
-    shapes_.velocity_row(point, Point<dim>::Zero(), row);
-    return row;
-  }
-
   void add_to(Zone<dim>& zone, int vertex) const {
     const int solid = solid_of_[vertex];
-    if (shapes_.solids()[solid].rigid) {
-      zone.rigid.insert(solid);
+    const int rigid = shapes_.solids()[solid].rigid ? solid : shapes_.carrier(vertex);
+    if (rigid >= 0) {
+      zone.rigid.insert(rigid);
       return;
     }
     Node<dim> node;
@@ -116,10 +105,6 @@ class ImpactZones {
     shapes_.velocity_row(point, point.position, node.row);
     for (std::size_t k = 0; k < node.row.dofs.size(); ++k) {
       const GlobalIndex dof = node.row.dofs[k];
-      if (const auto carrier = rigid_of_dof_.find(dof); carrier != rigid_of_dof_.end()) {
-        zone.rigid.insert(carrier->second);  // an attached node: it has no dofs of its own
-        return;
-      }
       int axis = 0;
       node.row.coefficients[k].cwiseAbs().maxCoeff(&axis);
       const auto& inverse = inverse_mass_.rows[dof];
@@ -204,7 +189,7 @@ class ImpactZones {
     for (const int solid : zone.rigid) {
       if (shapes_.solids()[solid].prescribed)
         continue;
-      for (const GlobalIndex dof : row_of(shapes_.solids()[solid].simplex_begin).dofs)
+      for (const GlobalIndex dof : shapes_.rigid_dofs(solid))
         velocity_[dof] = 0;
     }
   }
@@ -216,7 +201,6 @@ class ImpactZones {
   std::vector<double>& velocity_;
   DisjointSets sets_;  ///< of vertices that move together
   std::vector<int> solid_of_;
-  std::map<GlobalIndex, int> rigid_of_dof_;
   std::set<int> members_;
 };
 

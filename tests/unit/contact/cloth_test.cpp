@@ -205,13 +205,16 @@ TYPED_TEST(ClothContacts, ImpactZonesGoWithNodesThatAreMoved) {
   constexpr int dim = TypeParam::value;
   const double dt = 0.01;
   const Point<dim> lift = up<dim>(2 * h / dt);
-  for (const bool by_a_body : {false, true}) {
+  for (const auto& [by_a_body, is_seen] :
+       {std::pair(false, false), std::pair(true, true), std::pair(true, false)}) {
     std::vector<DeformableBody<dim>> cloths;
     for (int i = 0; i < 2; ++i)
       cloths.push_back(sheet<dim>((5 - i) * h, up<dim>(0.5 * i * h), h));
     std::vector<RigidBody<dim>> bodies;
-    if (by_a_body)
+    if (by_a_body) {
       bodies.push_back(ball<dim>(2 * h, up<dim>(-10 * h)));
+      bodies.back().seen_by_fluid = is_seen;
+    }
     for (int n = 0; n < cloths[0].n_nodes(); ++n) {
       if (by_a_body)
         cloths[0].attached.emplace_back(n, bodies[0].name);
@@ -221,21 +224,27 @@ TYPED_TEST(ClothContacts, ImpactZonesGoWithNodesThatAreMoved) {
     ContactTopology<dim> topology;
     const ContactShapes<dim> shapes(*world.solids, topology);
     std::vector<double> velocity = replicated(*world.solids, *world.solids->velocity());
-    const auto set = [&](const SurfacePoint<dim>& point, const Point<dim>& x) {
-      VelocityRow<dim> row;
-      world.solids->velocity_row(point, x, row);
+    VelocityRow<dim> row;
+    const auto set = [&] {
       for (std::size_t k = 0; k < row.dofs.size(); ++k)
         velocity[row.dofs[k]] = row.coefficients[k].dot(lift);
     };
-    const SolidDescription& lifting = shapes.solids()[by_a_body ? 2 : 0];
-    for (int v = lifting.vertex_begin; v < lifting.vertex_end; ++v)
-      set(shapes.at_vertex(v), by_a_body ? up<dim>(-10 * h) : shapes.mesh().vertices[v]);
+    if (by_a_body) {
+      world.solids->rigid_row(2, up<dim>(-10 * h), row);
+      set();
+    }
+    const SolidDescription& pinned = shapes.solids()[0];
+    for (int v = pinned.vertex_begin; v < pinned.vertex_end && !by_a_body; ++v) {
+      world.solids->velocity_row(shapes.at_vertex(v), shapes.mesh().vertices[v], row);
+      set();
+    }
     EXPECT_EQ(join_impact_zones(*world.solids, shapes, replicated_inverse_mass(*world.solids),
                                 false, dt, velocity),
               0);
     const SolidMotion<dim> motion(*world.solids, shapes, velocity);
     for (int v = shapes.solids()[1].vertex_begin; v < shapes.solids()[1].vertex_end; ++v)
-      EXPECT_LT((motion.of_vertex(1, v) - lift).norm(), 1e-12 * lift.norm()) << v << by_a_body;
+      EXPECT_LT((motion.of_vertex(1, v) - lift).norm(), 1e-12 * lift.norm())
+          << v << by_a_body << is_seen;
   }
 }
 
