@@ -108,10 +108,12 @@ class ImpactZones {
       int axis = 0;
       node.row.coefficients[k].cwiseAbs().maxCoeff(&axis);
       const auto& inverse = inverse_mass_.rows[dof];
-      if (inverse.empty())
+      const auto own = std::find_if(inverse.begin(), inverse.end(),
+                                    [dof](const auto& entry) { return entry.first == dof; });
+      if (own == inverse.end())
         zone.hold(axis, velocity_[dof]);
       else
-        node.mass = 1 / inverse.front().second;
+        node.mass = 1 / own->second;
     }
     zone.nodes.push_back(node);
   }

@@ -61,5 +61,30 @@ TYPED_TEST(Carried, PathsEndWhereAStepMovesTheSurfaces) {
   }
 }
 
+/// A node falls on the middle of a segment twice as heavy, whose mass is consistent: all three go
+/// on with the mean velocity of nodes of equal mass.
+TEST(ImpactZones, NodesOfConsistentMassWeighWhatTheyDo) {
+  if (world_communicator()->getSize() > 1)
+    GTEST_SKIP();
+  SurfaceMesh<2> upright;
+  upright.vertices = {{0, h}, {0, 3 * h}};
+  upright.simplices = {{0, 1}};
+  std::vector<DeformableBody<2>> cloths;
+  cloths.push_back(cloth<2>(upright));
+  cloths.push_back(sheet<2>(4 * h, Point<2>::Zero(), 9 * h));
+  cloths[1].consistent_mass = true;
+  ClothWorld<2> world(std::move(cloths), {}, Point<2>::Zero());
+  ContactTopology<2> topology;
+  const ContactShapes<2> shapes(*world.solids, topology);
+  const double dt = 0.01, fall = -2 * h / dt;
+  std::vector<double> velocity{0, fall, 0, fall, 0, 0, 0, 0};
+  EXPECT_EQ(join_impact_zones(*world.solids, shapes, replicated_inverse_mass(*world.solids), false,
+                              dt, velocity),
+            0);
+  const std::vector<double> expected{0, fall / 3, 0, fall, 0, fall / 3, 0, fall / 3};
+  for (int k = 0; k < 8; ++k)
+    EXPECT_NEAR(velocity[k], expected[k], 1e-12 * -fall) << k;
+}
+
 }  // namespace
 }  // namespace lockstep::test
