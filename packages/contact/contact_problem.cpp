@@ -128,6 +128,15 @@ double ContactProblem<dim>::target(const Contact<dim>& contact, double normal_ve
 }
 
 template <int dim>
+bool ContactProblem<dim>::is_apart(const Contact<dim>& contact) const {
+  if (contact.other < 0)
+    return false;
+  return apart_.count({contact.solid, contact.other}) > 0 ||
+         shapes_.hangs_on(contact.point, contact.other) ||
+         shapes_.hangs_on(contact.other_point, contact.solid);
+}
+
+template <int dim>
 bool ContactProblem<dim>::is_known(const Contact<dim>& contact) const {
   const auto found = by_place_.find(hash_of<dim>(contact.point.position));
   if (found == by_place_.end())
@@ -147,7 +156,7 @@ double ContactProblem<dim>::worst_violation(const SolidMotion<dim>& motion,
   look.violated_only = true;
   double worst = 0;
   for (const Contact<dim>& contact : find_contacts(shapes_, motion, walls_, look)) {
-    if (apart_.count({contact.solid, contact.other}) > 0)
+    if (is_apart(contact))
       continue;
     const double now = normal_velocity(motion, contact);
     worst = std::max(worst, target(contact, now, normal_velocity(before, contact)) - now);
@@ -160,7 +169,7 @@ template <int dim>
 void ContactProblem<dim>::add_candidates(const SolidMotion<dim>& motion,
                                          const SolidMotion<dim>& before) {
   for (Contact<dim>& contact : find_contacts(shapes_, motion, walls_, reach(motion))) {
-    if (apart_.count({contact.solid, contact.other}) > 0 || is_known(contact))
+    if (is_apart(contact) || is_known(contact))
       continue;
     Candidate candidate;
     candidate.target =

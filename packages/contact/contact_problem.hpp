@@ -59,6 +59,8 @@ class ContactProblem {
   ContactReach reach(const SolidMotion<dim>& motion) const;
   /// The largest violation, not less than 0 [m/s]. Keeps no candidates.
   double worst_violation(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
+  /// True for what does not touch: pairs that are kept so, and where one is glued to the other.
+  bool is_apart(const Contact<dim>& contact) const;
   bool is_known(const Contact<dim>& contact) const;
   void add_candidates(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
   double target(const Contact<dim>& contact, double normal_velocity, double before) const;

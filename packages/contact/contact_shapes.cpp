@@ -171,6 +171,26 @@ void ContactShapes<dim>::find_carriers() {
 }
 
 template <int dim>
+bool ContactShapes<dim>::hangs_on(int vertex, int solid) const {
+  if (carriers_.empty())
+    return false;
+  return std::any_of(topology_->begin(vertex), topology_->end(vertex), [&](int s) {
+    const auto& corners = mesh_.simplices[s];
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](int corner) { return carriers_[corner] == solid; });
+  });
+}
+
+template <int dim>
+bool ContactShapes<dim>::hangs_on(const SurfacePoint<dim>& point, int solid) const {
+  for (int k = 0; k < dim && !carriers_.empty(); ++k) {
+    if (point.barycentric[k] != 0 && hangs_on(mesh_.simplices[point.simplex][k], solid))
+      return true;
+  }
+  return false;
+}
+
+template <int dim>
 void ContactShapes<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                                       VelocityRow<dim>& row) const {
   system_.velocity_row(point, x, row);

@@ -77,6 +77,10 @@ class ContactShapes {
   bool carries(int solid) const {
     return std::find(carriers_.begin(), carriers_.end(), solid) != carriers_.end();
   }
+  /// True if a vertex is attached to this solid, or shares a simplex with one that is; likewise of
+  /// a point, if that is so of a vertex that moves it.
+  bool hangs_on(int vertex, int solid) const;
+  bool hangs_on(const SurfacePoint<dim>& point, int solid) const;
   /// The same for a combination of dofs.
   std::vector<std::pair<GlobalIndex, double>> resolved(
       const std::vector<std::pair<GlobalIndex, double>>& terms) const;

@@ -32,6 +32,17 @@ std::vector<std::array<int, 2>> pairs_to_follow(const ContactShapes<dim>& shapes
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
+
+/// True where one solid is glued to the other.
+template <int dim>
+bool hang_together(const ContactShapes<dim>& shapes, const PrimitivePair<dim>& pair) {
+  const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
+  for (int k = 0; k <= dim; ++k) {
+    if (shapes.hangs_on(pair.vertices[k], k < n_first ? pair.other : pair.solid))
+      return true;
+  }
+  return false;
+}
 }  // namespace
 
 template <int dim>
@@ -52,7 +63,7 @@ std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
     for (const PrimitivePair<dim>& pair : pairs) {
       const auto impact =
           first_impact<dim>(pair.kind, points_of(pair, path.before), points_of(pair, path.after));
-      if (impact)
+      if (impact && !hang_together(shapes, pair))
         found.push_back({pair, *impact});
     }
   };

@@ -21,7 +21,8 @@ struct SurfacePath {
 };
 
 /// First impacts of all pairs of primitives of which at least one is of a solid that is not rigid;
-/// also of a solid with itself if `self`. Local; the same on all ranks.
+/// also of a solid with itself if `self`; not where one is glued to the other (`hangs_on`). Local;
+/// the same on all ranks.
 template <int dim>
 std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
                                            const SurfacePath<dim>& path, bool self);

@@ -61,6 +61,29 @@ TYPED_TEST(Carried, PathsEndWhereAStepMovesTheSurfaces) {
   }
 }
 
+/// A line that is glued into a box goes out of it, round a corner and with its end into it again:
+/// only there they touch.
+TEST(CarriedLine, TouchesItsCarrierWhereItIsNotGlued) {
+  if (world_communicator()->getSize() > 1)
+    GTEST_SKIP();
+  SurfaceMesh<2> line;
+  line.vertices = {{-0.3 * h, h}, {-0.1 * h, h}, {h, h}, {h, 0}, {-0.1 * h, 0}};
+  line.simplices = {{0, 1}, {1, 2}, {2, 3}, {3, 4}};
+  std::vector<DeformableBody<2>> cloths;
+  cloths.push_back(cloth<2>(line));
+  cloths[0].attached.emplace_back(0, "body");
+  ClothWorld<2> world(std::move(cloths), {box<2>(4 * h, {-2 * h, 0}, 4 * h)}, Point<2>::Zero());
+  const double dt = 0.01;
+  const auto velocity = rcp(new Vector(*world.solids->velocity(), Teuchos::Copy));
+  const auto report = world.contact.resolve(*world.solids, ContactPhase::position, dt, *velocity);
+  EXPECT_EQ(report.n_contacts, 1);
+  EXPECT_NEAR(report.deepest_overlap, (0.1 + 0.05) * h, 1e-12);  // with half of the skin
+  // The neighbour of the glued node is as deep, and goes nowhere.
+  const std::vector<double> resolved = replicated(*world.solids, *velocity);
+  EXPECT_EQ(resolved[2], 0);
+  EXPECT_GT(resolved[8], 0.01 * h / dt);
+}
+
 /// A node falls on the middle of a segment twice as heavy, whose mass is consistent: all three go
 /// on with the mean velocity of nodes of equal mass.
 TEST(ImpactZones, NodesOfConsistentMassWeighWhatTheyDo) {
