@@ -2,8 +2,8 @@
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
-#include "base/errors.hpp"
 #include "linear/block_diagonal.hpp"
 
 namespace lockstep {
@@ -26,49 +26,6 @@ std::vector<double> triplets_of(const CrsMatrix& matrix) {
   return triplets;
 }
 
-/// Sums of the rows of M_S. Collective.
-RCP<Vector> row_sums(const LinearOperator& mass, const RCP<const Map>& map) {
-  Vector ones(map);
-  ones.putScalar(1);
-  const RCP<Vector> sums = make_vector(map);
-  apply(mass, ones, *sums);
-  return sums;
-}
-
-/// Replaces the inverse diagonal of blocks that were too large; a single entry in a row is either
-/// one of those or a block of its own, whose sum it is. Collective.
-void lump_large_blocks(const LinearOperator& mass, const CrsMatrix& inverse,
-                       std::vector<double>& triplets) {
-  const RCP<Vector> sums = row_sums(mass, inverse.getRowMap());
-  const auto values = sums->getData();
-  std::size_t k = 2;
-  for (int row = 0; row < values.size(); ++row) {
-    const std::size_t n = inverse.getNumEntriesInLocalRow(row);
-    if (n == 1 && values[row] > 0)
-      triplets[k] = 1 / values[row];
-    k += 3 * n;
-  }
-}
-
-/// Row, column, value of the inverse sums of rows. Collective.
-std::vector<double> lumped_triplets(const LinearOperator& mass, const RCP<const Map>& map) {
-  const RCP<Vector> sums = row_sums(mass, map);
-  std::vector<double> triplets;
-  const auto values = sums->getData();
-  std::string failure;
-  for (int row = 0; row < values.size(); ++row) {
-    const GlobalIndex id = map->getGlobalElement(row);
-    if (!(values[row] > 0))
-      failure = fmt::format(
-          "Contact needs lumped masses, but row {} of the mass of the solids sums to {}; let the "
-          "solid model lump its mass.",
-          id, values[row]);
-    triplets.insert(triplets.end(), {double(id), double(id), 1 / values[row]});
-  }
-  throw_on_all(map->getComm(), failure, static_cast<int>(ExitCode::solve_failed));
-  return triplets;
-}
-
 /// Row, column, value of this rank's part of the inverse. Collective.
 template <int dim>
 std::vector<double> own_triplets(const SolidSystem<dim>& system, bool& exact) {
@@ -76,20 +33,16 @@ std::vector<double> own_triplets(const SolidSystem<dim>& system, bool& exact) {
   // All blocks are small: solves have it already.
   if (const auto inverse = assembled(system.mass_inverse()); !inverse.is_null())
     return triplets_of(*inverse);
-  const RCP<const LinearOperator> mass = system.solid_block(Teuchos::null, 0);
-  const auto matrix = assembled(mass);
-  if (matrix.is_null()) {
-    exact = false;
-    return lumped_triplets(*mass, system.map());
+  const int of_joints = system.joints() ? system.joints()->largest_block() : 0;
+  const int largest = std::max(of_joints, largest_dense_block);
+  if (const auto mass = assembled(system.solid_block(Teuchos::null, 0)); !mass.is_null()) {
+    const auto blocks = block_diagonal_inverse(mass, largest, "mass of the solids");
+    if (blocks.exact)
+      return triplets_of(*blocks.inverse);
   }
-  const int largest = system.joints() ? system.joints()->largest_block() : 0;
-  const auto blocks =
-      block_diagonal_inverse(matrix, std::max(largest, largest_dense_block), "mass of the solids");
-  exact = blocks.exact;
-  std::vector<double> triplets = triplets_of(*blocks.inverse);
-  if (!exact)
-    lump_large_blocks(*mass, *blocks.inverse, triplets);
-  return triplets;
+  exact = false;
+  const auto blocks = block_diagonal_inverse(system.lumped_block(), largest, "mass of the solids");
+  return triplets_of(*blocks.inverse);
 }
 
 }  // namespace

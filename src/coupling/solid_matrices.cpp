@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "coupling/solid_system.hpp"
 #include "coupling/stacked_matrix.hpp"
+#include "linear/block_diagonal.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "solve/soft/exact_inverse.hpp"
 
@@ -44,6 +45,39 @@ template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::full_block(const RCP<const CrsMatrix>& added,
                                                        double dt) const {
   return as_thyra(rcp(new StackedOperator(parts(dt), dt, added, map_)));
+}
+
+namespace {
+/// Whether no block is larger than those of rigid bodies. Collective.
+bool has_small_blocks(const RCP<const LinearOperator>& mass) {
+  const auto matrix = assembled(mass);
+  return !matrix.is_null() &&
+         block_diagonal_inverse(matrix, largest_dense_block, "mass of the solids").exact;
+}
+
+/// The sums of the rows. Collective.
+RCP<const LinearOperator> lumped(const LinearOperator& mass, const RCP<const Map>& map) {
+  Vector ones(map), sums(map);
+  ones.putScalar(1);
+  apply(mass, ones, sums);
+  const auto values = sums.getData();
+  std::vector<Triplet> triplets;
+  for (int row = 0; row < values.size(); ++row) {
+    const GlobalIndex id = map->getGlobalElement(row);
+    triplets.push_back({id, id, values[row]});
+  }
+  return as_operator(assemble_triplets(std::move(triplets), map, map));
+}
+}  // namespace
+
+template <int dim>
+RCP<const CrsMatrix> SolidSystem<dim>::lumped_block() const {
+  std::vector<StackedPart> parts = this->parts(0);
+  for (StackedPart& part : parts) {
+    if (!has_small_blocks(part.mass))
+      part.mass = lumped(*part.mass, part.map);
+  }
+  return reduction_.reduce(stacked_matrix(parts, 0, Teuchos::null, map_, padding_rows()));
 }
 
 template <int dim>
@@ -120,6 +154,7 @@ template RCP<const LinearOperator> SolidSystem<2>::solid_block(const RCP<const C
                                                                double) const;
 template RCP<const LinearOperator> SolidSystem<2>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
+template RCP<const CrsMatrix> SolidSystem<2>::lumped_block() const;
 template SoftNodes SolidSystem<2>::soft_nodes(const RCP<const CrsMatrix>&) const;
 template RCP<const LinearOperator> SolidSystem<2>::mass_inverse() const;
 template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&,
@@ -129,6 +164,7 @@ template RCP<const LinearOperator> SolidSystem<3>::solid_block(const RCP<const C
                                                                double) const;
 template RCP<const LinearOperator> SolidSystem<3>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
+template RCP<const CrsMatrix> SolidSystem<3>::lumped_block() const;
 template SoftNodes SolidSystem<3>::soft_nodes(const RCP<const CrsMatrix>&) const;
 template RCP<const LinearOperator> SolidSystem<3>::mass_inverse() const;
 template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&,

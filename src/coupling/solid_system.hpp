@@ -59,6 +59,9 @@ class SolidSystem {
   RCP<const LinearOperator> solid_block(const RCP<const CrsMatrix>& added, double dt) const;
   /// M_S + added - dt D of all dofs; padding rows are zero. Applied part by part.
   RCP<const LinearOperator> full_block(const RCP<const CrsMatrix>& added, double dt) const;
+  /// P^T M P where M is M_S, but of models whose masses do not fall apart into small blocks (those
+  /// of consistent mass matrices) the sums of its rows. Collective.
+  RCP<const CrsMatrix> lumped_block() const;
   /// The inverse of P^T M_S P, kept until a model has another mass or other dofs are unknowns: then
   /// it is another object. Collective, and so is every application.
   RCP<const LinearOperator> mass_inverse() const;

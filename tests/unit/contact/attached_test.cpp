@@ -1,6 +1,8 @@
 // Surfaces that rigid bodies carry, and those that turn about a pivot.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "cloth_world.hpp"
 #include "contact/impact_zones.hpp"
 
@@ -58,6 +60,36 @@ TYPED_TEST(Carried, PathsEndWhereAStepMovesTheSurfaces) {
   for (std::size_t v = 0; v < path.after.size(); ++v) {
     EXPECT_LT((path.after[v] - moved->mesh().vertices[v]).norm(), 1e-12 * h) << v;
     EXPECT_GT((path.after[v] - path.before[v]).norm(), 0.1 * h) << v;
+  }
+}
+
+/// Lumped masses stand in for consistent ones, with what a body gets of the nodes that it carries.
+TYPED_TEST(Carried, ConsistentMassesAreLumpedBeforeABodyTakesThemUp) {
+  constexpr int dim = TypeParam::value;
+  std::vector<InverseMass> inverse;
+  for (const bool is_consistent : {true, false}) {
+    std::vector<DeformableBody<dim>> cloths;
+    cloths.push_back(sheet<dim>((dim == 2 ? 60 : 6) * h, Point<dim>::Zero(), h));
+    cloths[0].consistent_mass = is_consistent;
+    for (int n = 0; n < cloths[0].n_nodes(); ++n) {
+      if (cloths[0].position[n][0] < -2.5 * h)
+        cloths[0].attached.emplace_back(n, "body");
+    }
+    const Point<dim> place = -3 * h * Point<dim>::Unit(0);
+    ClothWorld<dim> world(std::move(cloths), {ball<dim>(h, place)}, Point<dim>::Zero());
+    inverse.push_back(replicated_inverse_mass(*world.solids));
+    EXPECT_EQ(inverse.back().exact, !is_consistent);
+  }
+  ASSERT_EQ(inverse[0].rows.size(), inverse[1].rows.size());
+  for (std::size_t row = 0; row < inverse[0].rows.size(); ++row) {
+    const double size = inverse[1].rows[row].empty() ? 0 : inverse[1].rows[row].front().second;
+    std::map<int, double> difference;
+    for (const auto& [dof, value] : inverse[0].rows[row])
+      difference[dof] += value;
+    for (const auto& [dof, value] : inverse[1].rows[row])
+      difference[dof] -= value;
+    for (const auto& [dof, value] : difference)
+      EXPECT_NEAR(value, 0, 1e-12 * std::abs(size)) << row << ", " << dof;
   }
 }
 
