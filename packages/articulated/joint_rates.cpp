@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "base/errors.hpp"
+#include "linear/vector_sums.hpp"
 #include "output/checkpoint.hpp"
 
 namespace lockstep {
@@ -58,6 +59,19 @@ void JointRates<dim>::explicit_momentum(double, double dt, Vector& momentum) con
     return;
   const Eigen::VectorXd impulse = dt * articulation_->control(begin_, step_dt_, moved_).constant;
   std::copy_n(impulse.data(), impulse.size(), momentum.getDataNonConst().begin());
+}
+
+template <int dim>
+SolidWork JointRates<dim>::solid_work(double time, double dt, const Vector& velocity,
+                                      const Vector& mean) const {
+  SolidWork work;
+  if (!articulation_->any_acts())
+    return work;
+  Vector impulse(map_);
+  explicit_momentum(time, dt, impulse);
+  apply(*implicit_force(dt), velocity, impulse, dt, 1);
+  work.control = dot(impulse, mean);
+  return work;
 }
 
 template <int dim>

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "articulated/articulation.hpp"
+#include "interfaces/energy.hpp"
 
 namespace lockstep {
 
@@ -10,7 +11,7 @@ namespace lockstep {
 /// bodies lend them (P^T M P). Behind them stand the twists of prescribed bodies that joints tie
 /// others to, as given dofs. All live on rank 0; values are replicated.
 template <int dim>
-class JointRates : public SolidModel<dim>, public AuditedSolids<dim> {
+class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public WorkingSolids<dim> {
  public:
   JointRates(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm,
              double start_time);
@@ -31,6 +32,8 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim> {
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
   void begin_step(double time, double dt) override;
   Momentum<dim> external_impulse(double, double) const override { return {}; }
+  SolidWork solid_work(double time, double dt, const Vector& velocity,
+                       const Vector& mean) const override;
   std::vector<Momentum<dim>> momentum_of_each(const Vector&) const override { return {}; }
   std::vector<GlobalIndex> locked_dofs() const override;
   std::vector<double> locked_velocities(double begin, double end) const override;

@@ -46,6 +46,34 @@ ComputedEnergy DeformableSolids<dim>::unlinear_energy(double dt, const Vector& v
   return {sums[0], 4 * std::numeric_limits<double>::epsilon() * sums[1]};
 }
 
+/// Of what `explicit_momentum` and D give; what limits stretch is elastic.
+template <int dim>
+SolidWork DeformableSolids<dim>::solid_work(double, double dt, const Vector& velocity,
+                                            const Vector& mean) const {
+  const Nodes found = space_.with_ghosts(velocity), before = space_.with_ghosts(*velocity_),
+              rate = space_.owned(mean);
+  const Nodes& elastic = averaged_forces();
+  double sums[3] = {0, 0, 0};
+  for (int i = 0; i < space_.n_owned(); ++i) {
+    const Body& body = bodies_[body_of_node_[i]];
+    Point<dim> impulse = dt * elastic[i];
+    if (const double share = elastic_share(body); share > 0)
+      impulse -= share * dt * dt * stiffness_.row_times(i, found);
+    if (!limiting_impulse_.empty())
+      impulse += limiting_impulse_[i];
+    const bool is_explicit = body.integration == TimeIntegration::explicit_forces;
+    sums[0] += rate[i].dot(impulse);
+    sums[1] -= dt * rate[i].dot(damping_.row_times(i, is_explicit ? before : found));
+    sums[2] += dt * rate[i].dot(node_force_[i] + node_mass_[i] * gravity_);
+  }
+  sum_all(comm_, sums, 3);
+  SolidWork work;
+  work.elastic = sums[0];
+  work.damping = sums[1];
+  work.loads = sums[2];
+  return work;
+}
+
 /// By Gershgorin's circles of M^-1 K, with the mass of fluid that moves along.
 template <int dim>
 void DeformableSolids<dim>::bound_frequencies() {
@@ -112,6 +140,10 @@ void DeformableSolids<dim>::add_midpoint_correction(double dt, Vector& momentum)
   }
 }
 
+template SolidWork DeformableSolids<2>::solid_work(double, double, const Vector&,
+                                                   const Vector&) const;
+template SolidWork DeformableSolids<3>::solid_work(double, double, const Vector&,
+                                                   const Vector&) const;
 template void DeformableSolids<2>::bound_frequencies();
 template void DeformableSolids<3>::bound_frequencies();
 template void DeformableSolids<2>::soften(double);

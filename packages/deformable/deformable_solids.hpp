@@ -8,6 +8,7 @@
 #include "deformable/deformable_body.hpp"
 #include "deformable/node_space.hpp"
 #include "deformable/strain_limit.hpp"
+#include "interfaces/energy.hpp"
 #include "interfaces/solid_sides.hpp"
 #include "interfaces/volume_sweeper.hpp"
 #include "parameters/parameter_list.hpp"
@@ -32,7 +33,8 @@ class DeformableSolids : public SolidModel<dim>,
                          public UnlinearSolids<dim>,
                          public NearNullSpaces<dim>,
                          public SolidOutput<dim>,
-                         public VolumeSweeper<dim> {
+                         public VolumeSweeper<dim>,
+                         public WorkingSolids<dim> {
  public:
   /// `type` is the name of the model, gravity [m/s^2], the start of the run [s]. Collective.
   DeformableSolids(const std::string& type, std::vector<DeformableBody<dim>> bodies,
@@ -70,6 +72,8 @@ class DeformableSolids : public SolidModel<dim>,
   bool has_implicit_forces() const override;
   RCP<const Vector> linearisation() const override { return linearisation_; }
   ComputedEnergy unlinear_energy(double dt, const Vector& velocity) const override;
+  SolidWork solid_work(double time, double dt, const Vector& velocity,
+                       const Vector& mean) const override;
   void limit_motion(double dt, Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return states_; }

@@ -67,6 +67,22 @@ double MacFluid<dim>::kinetic_energy() const {
 }
 
 template <int dim>
+std::vector<double> MacFluid<dim>::works() {
+  std::vector<double> all(stages_.size() - 1, 0.0);
+  const FaceField<dim>&first = stages_.front(), &last = stages_.back();
+  for (int axis = 0; axis < dim; ++axis)
+    domain_.grid.for_each_owned_face(axis, [&](int face) {
+      const double momentum =
+          0.5 * geometry_.mass(axis, face) * (first[axis][face] + last[axis][face]);
+      for (std::size_t k = 0; k < all.size(); ++k)
+        all[k] += momentum * (stages_[k + 1][axis][face] - stages_[k][axis][face]);
+    });
+  sum_all(domain_.grid.comm(), all.data(), static_cast<int>(all.size()));
+  stages_.clear();
+  return all;
+}
+
+template <int dim>
 double MacFluid<dim>::largest_speed() const {
   if (largest_speed_)
     return *largest_speed_;
@@ -109,10 +125,12 @@ double MacFluid<dim>::largest_speed() const {
 template AngularVector<2> MacFluid<2>::moment_of_shifts(const FaceFunction&) const;
 template Momentum<2> MacFluid<2>::momentum() const;
 template double MacFluid<2>::kinetic_energy() const;
+template std::vector<double> MacFluid<2>::works();
 template double MacFluid<2>::largest_speed() const;
 template AngularVector<3> MacFluid<3>::moment_of_shifts(const FaceFunction&) const;
 template Momentum<3> MacFluid<3>::momentum() const;
 template double MacFluid<3>::kinetic_energy() const;
+template std::vector<double> MacFluid<3>::works();
 template double MacFluid<3>::largest_speed() const;
 
 }  // namespace lockstep

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "interfaces/energy.hpp"
 #include "interfaces/field_sampler.hpp"
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/gas.hpp"
@@ -51,6 +52,7 @@ template <int dim>
 class MacFluid : public FluidDiscretization<dim>,
                  public AuditedFluid<dim>,
                  public BoundedFluid<dim>,
+                 public EnergyFluid<dim>,
                  public FieldSampler<dim>,
                  public FluidOutput<dim>,
                  public GasFluid<dim>,
@@ -124,6 +126,9 @@ class MacFluid : public FluidDiscretization<dim>,
   Momentum<dim> gas_side_impulse() const override;
   Momentum<dim> momentum() const override;
   double kinetic_energy() const override;
+  void begin_works() override { stages_ = {prediction_}; }
+  void end_work() override { stages_.push_back(prediction_); }
+  std::vector<double> works() override;
   Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const override;
   void add_frame(std::vector<BoxFrame>& boxes) const override;
   std::vector<std::string> surface_names() const override {
@@ -214,6 +219,7 @@ class MacFluid : public FluidDiscretization<dim>,
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
   FaceField<dim> velocity_, prediction_;         ///< u^n, u*
+  std::vector<FaceField<dim>> stages_;           ///< u* between what acts on it; of `works` only
   mutable std::optional<double> largest_speed_;  ///< of this velocity and geometry, once asked for
   std::optional<VelocityHistory<dim>> history_;  ///< none: first order in time
   CellField scaled_pressure_;                    ///< of the last projection

@@ -1,5 +1,6 @@
 #include "observers/register_observers.hpp"
 
+#include "observers/energy.hpp"
 #include "observers/flow.hpp"
 #include "observers/gauge.hpp"
 #include "observers/probes.hpp"
@@ -23,6 +24,9 @@ void register_observers(ObserverRegistry<dim>& observers) {
                 "How much of a line is in the liquid, as a wire that is held into it tells.",
                 gauge_parameters<dim>,
                 [](const ParameterList& list) { return std::make_unique<Gauge<dim>>(list); });
+  observers.add(
+      "energy", "Where the energy of a run comes from and where it goes, from its start on.",
+      energy_parameters<dim>, [](const ParameterList&) { return std::make_unique<Energy<dim>>(); });
 }
 
 template void register_observers<2>(ObserverRegistry<2>&);

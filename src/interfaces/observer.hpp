@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "interfaces/energy.hpp"
 #include "interfaces/fluid.hpp"
 #include "interfaces/solid.hpp"
 
@@ -13,6 +14,7 @@ struct RunView {
   double time = 0, dt = 0;  ///< [s]; the end of the step, and its length (0 at the start of a run)
   const FluidDiscretization<dim>& fluid;
   const std::vector<SolidState<dim>>& solids;  ///< in the order of bodies.csv
+  const EnergyBook* energy = nullptr;  ///< of the step; null: there was none, or nobody wanted it
 };
 
 /// A column of an observer's table.
@@ -32,6 +34,10 @@ class Observer : public PlugIn {
   /// Any number of rows, each as long as `columns`; those of rank 0 count. Throws InputError, at
   /// the start of the run, if the fluid cannot answer. Collective.
   virtual std::vector<std::vector<double>> observe(const RunView<dim>& run) = 0;
+  /// After every step, before `observe` if that is due: for what adds up. Collective.
+  virtual void follow(const RunView<dim>&) {}
+  /// Whether runs are to keep `RunView::energy`, which costs some percent of a step. Local.
+  virtual bool wants_energy() const { return false; }
 };
 
 }  // namespace lockstep

@@ -60,6 +60,12 @@ ObserverTables<dim>::ObserverTables(const ObserverRegistry<dim>& registry,
 }
 
 template <int dim>
+bool ObserverTables<dim>::want_energy() const {
+  return std::any_of(watches_.begin(), watches_.end(),
+                     [](const Watch& watch) { return watch.observer->wants_energy(); });
+}
+
+template <int dim>
 void ObserverTables<dim>::try_out(const ObserverRegistry<dim>& registry,
                                   const ParameterList& observers, const RunView<dim>& run) {
   for (const auto& [name, entry] : entries(observers)) {
@@ -100,6 +106,7 @@ void ObserverTables<dim>::resume(long long step) {
 template <int dim>
 void ObserverTables<dim>::observe(long long step, const RunView<dim>& run) {
   for (Watch& watch : watches_) {
+    watch.observer->follow(run);
     const double slack = 1e-9 * std::max(run.dt, watch.interval);
     if (run.time >= watch.last_time + watch.interval - slack)
       look(watch, step, run);

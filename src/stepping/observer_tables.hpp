@@ -18,6 +18,7 @@ class ObserverTables {
                  const Communicator& comm, const std::string& directory);
 
   bool empty() const { return watches_.empty(); }
+  bool want_energy() const;  ///< any of them. Local.
   /// Begins the tables with what is seen before the first step. Collective, like all below.
   void start(long long step, const RunView<dim>& run);
   /// Continues them after `step`.

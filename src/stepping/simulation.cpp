@@ -70,6 +70,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
         std::make_unique<DumpingStrategy>(std::move(components_.strategy), *options.dump_system);
   }
   ScopedPhase phase(timers_, "start");
+  scene_options_.stepper.energy_book = observers_.want_energy();
   stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
                                             scene_options_.time.start, timers_);
   check_names();
@@ -161,7 +162,9 @@ void Simulation<dim>::begin_tables() {
 
 template <int dim>
 RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) const {
-  return {stepper_->time(), last_dt_, *components_.fluid, states};
+  const bool has_energy = report_ && report_->energy;
+  return {stepper_->time(), last_dt_, *components_.fluid, states,
+          has_energy ? &*report_->energy : nullptr};
 }
 
 template <int dim>

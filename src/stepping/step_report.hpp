@@ -4,6 +4,7 @@
 
 #include "coupling/momentum_ledger.hpp"
 #include "interfaces/contact.hpp"
+#include "interfaces/energy.hpp"
 #include "interfaces/liquid.hpp"
 #include "interfaces/strategy.hpp"
 
@@ -32,6 +33,7 @@ struct StepReport {
   AngularVector<dim> lever_impulse = AngularVector<dim>::Zero();
   AngularVector<dim> linearisation_impulse = AngularVector<dim>::Zero();
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]
+  std::optional<EnergyBook> energy;  ///< if it was asked for
   double fluid_volume = 0;
   std::optional<LiquidReport> liquid;               ///< if it has a free surface
   GlobalIndex n_clamped_elements = 0;               ///< see SolidOutput

@@ -35,6 +35,8 @@ Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options
   const std::string impossible =
       system_.impossible_flow(time_, components_.solids->constraints(time_, time_), negligible);
   check_input(impossible.empty(), "At the start: {}", impossible);
+  if (options.energy_book)
+    energy_.emplace(components, system_);
 }
 
 template <int dim>
@@ -284,6 +286,9 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
     sides_.pressure_memory->correct_pressure(*prediction.pressure);
   const std::vector<double> coupled_after = components_.coupling->velocity(*solution.velocity);
   fluid.set_coupled_velocity(coupled_after);
+  if (energy_)
+    energy_->end_solve(context, solution, prediction.viscous.solid_impulse, start_impulse_,
+                       report.reactions);
   fluid.accept();
 
   const Momentum<dim> of_fluid = fluid_momentum();
@@ -312,6 +317,8 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
     report.solid_kinetic_energy += state.kinetic_energy;
     report.elastic_energy += state.elastic_energy;
   }
+  if (energy_)
+    report.energy = energy_->end(report.time, report.dt);
 }
 
 template <int dim>
@@ -359,6 +366,8 @@ typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim
   if (components_.contact)
     components_.contact->begin_step(time_);
   system_.forget_solid_block();  // what is implicit is other in S1 than in S2
+  if (energy_)
+    energy_->begin();
 
   StepContext<dim> context = context_of_positions(dt);
   Prediction<dim> prediction;
@@ -377,6 +386,8 @@ typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim
     ScopedPhase phase(timers_, "F3 forces");
     prediction = predict_forces(context, report);
   }
+  if (energy_)
+    energy_->end_friction();
   ScopedPhase phase(timers_, "S2");
   context.phase = Phase::S2;
   RCP<Vector> momentum = make_vector(solids.map());

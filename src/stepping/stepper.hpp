@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "coupling/coupled_system.hpp"
 #include "coupling/viscous_solve.hpp"
@@ -9,6 +10,7 @@
 #include "stepping/implicit_motion.hpp"
 #include "stepping/solve_audit.hpp"
 #include "stepping/step_context.hpp"
+#include "stepping/step_energy.hpp"
 #include "stepping/step_report.hpp"
 
 namespace lockstep {
@@ -19,6 +21,7 @@ struct StepperOptions {
   int newton_iterations = 1;         ///< coupled solves each of S1 and S2 takes
   bool incremental_pressure = true;  ///< the viscous solve reads the last step's pressure
   bool rotational_pressure = true;   ///< and corrects it by the divergence that it leaves
+  bool energy_book = false;          ///< steps keep it
 };
 
 /// What F1 or the forces of F3 find beside the velocity of the fluid.
@@ -143,7 +146,8 @@ class Stepper {
   /// Of joints, from S1 to S2: the half of their impulses that acts where the step begins; null:
   /// all of them acts at its end.
   RCP<Vector> start_impulse_;
-  RCP<const Vector> held_at_start_;  ///< of it, what holds given dofs
+  RCP<const Vector> held_at_start_;        ///< of it, what holds given dofs
+  std::optional<StepEnergy<dim>> energy_;  ///< none: nobody wants it
 };
 
 }  // namespace lockstep

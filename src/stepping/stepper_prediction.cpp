@@ -46,6 +46,8 @@ Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
         context.ledger->add("surface tension", tension);
     }
   }
+  if (energy_ && context.ledger)
+    energy_->end_forces();
   if (!sides_.viscous_fluid)
     return {};
   Prediction<dim> prediction = predict_viscosity(context, report);
@@ -212,6 +214,8 @@ void Stepper<dim>::advect(double dt, StepReport<dim>& report) {
   reset_unseen_faces();
   report.ledger.open(total_momentum(fluid_momentum()));
   report.transport_change = report.ledger.before() - last_momentum_;
+  if (energy_)
+    energy_->end_transport();
 }
 
 template void Stepper<2>::reset_unseen_faces();

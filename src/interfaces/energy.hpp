@@ -1,0 +1,84 @@
+#pragma once
+#include <vector>
+
+#include "linear/types.hpp"
+
+namespace lockstep {
+
+// Who can tell what the parts of a step do to the energy, and what comes of it. Asked for only
+// where an observer wants it. An impulse works on the mean of the velocities before and after: so
+// the works of all impulses of a step are, to round-off, the change of the kinetic energy.
+
+/// Side interface of fluids: the works of what acts on u* one after another, on free faces.
+template <int dim>
+class EnergyFluid {
+ public:
+  virtual ~EnergyFluid() = default;
+  /// The present u* is that on which the forces of a step begin to act. Local.
+  virtual void begin_works() = 0;
+  /// What has acted since the last call, or since the begin, is one of them. Local.
+  virtual void end_work() = 0;
+  /// Each of them, at the mean of the first u* and the last [J]; forgets them. Global, collective.
+  virtual std::vector<double> works() = 0;
+};
+
+/// What their own forces give to the motion of solids [J].
+struct SolidWork {
+  double elastic = 0;
+  double damping = 0;  ///< hardly ever above 0
+  double control = 0;  ///< of springs and dampers of joints
+  double loads = 0;    ///< of gravity and loads
+};
+
+/// Side interface of solids with other forces than loads.
+template <int dim>
+class WorkingSolids {
+ public:
+  virtual ~WorkingSolids() = default;
+  /// The works of their forces in S2, over dt from `time`, which found `velocity`, on bodies that
+  /// move at `mean`; before `set_velocity`. Global, collective.
+  virtual SolidWork solid_work(double time, double dt, const Vector& velocity,
+                               const Vector& mean) const = 0;
+};
+
+/// Where the energy of a step comes from and where it goes [J]. Each is measured where it arises,
+/// none is the rest of the others; what they leave open is `left`.
+struct EnergyBook {
+  // What comes in.
+  double joints = 0;  ///< work of their control, as joints.csv has it
+  double loads = 0;   ///< work of gravity, loads, contact and drops
+  // What there is.
+  double kinetic_change = 0;  ///< of fluid and solids
+  double elastic_change = 0;
+  // What is taken, friction first.
+  double fluid_friction = 0;  ///< by viscosity, from fluid and solids
+  double solid_friction = 0;  ///< by the damping of soft solids
+  double transport = 0;   ///< kinetic energy of the fluid, by advection and all that goes with it
+  double pressure = 0;    ///< where u* has a divergence; less what moving sides give
+  double lumping = 0;     ///< where fluid takes the velocity of the solid it is lumped on
+  double elasticity = 0;  ///< elastic forces' work is not the change of the elastic energy
+  double ties = 0;        ///< joints and attachments hold velocities that they did not let before
+
+  double left() const {
+    return joints + loads - kinetic_change - elastic_change - fluid_friction - solid_friction -
+           transport - pressure - lumping - elasticity - ties;
+  }
+  EnergyBook& operator+=(const EnergyBook& other);
+};
+
+inline EnergyBook& EnergyBook::operator+=(const EnergyBook& other) {
+  joints += other.joints;
+  loads += other.loads;
+  kinetic_change += other.kinetic_change;
+  elastic_change += other.elastic_change;
+  fluid_friction += other.fluid_friction;
+  solid_friction += other.solid_friction;
+  transport += other.transport;
+  pressure += other.pressure;
+  lumping += other.lumping;
+  elasticity += other.elasticity;
+  ties += other.ties;
+  return *this;
+}
+
+}  // namespace lockstep
