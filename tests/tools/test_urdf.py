@@ -142,6 +142,21 @@ class Robots(unittest.TestCase):
         weld = root.find("ParameterList[@name='Joints']/ParameterList[@name='base to space']")
         self.assertIsNotNone(weld)
 
+    def test_what_runs_on_a_rail_without_mass(self):
+        """As files of others have it, whose rail has no more than a shape to be drawn."""
+        rail = '<link name="rail"><visual><geometry><box size="3 0.05 0.05"/></geometry></visual></link>'
+        cart_and_pole = (link("cart", '<box size="0.5 0.5 0.2"/>', 100., 0, (100 / 12 * (.25 + .04), 100 / 12 * .5)), link("pole", mass=20.))
+        root, _ = self.scene(robot(rail, *cart_and_pole, joint("slide", "prismatic", "rail", "cart", axis="1 0 0"),
+                                   joint("swing", "continuous", "cart", "pole", rpy="0 0.3 0")))
+        slide = root.find("ParameterList[@name='Joints']/ParameterList[@name='slide']")
+        self.assertEqual(slide.find("Parameter[@name='Solids']").get("value"), "{space, cart}")
+        history, bodies = self.run_steps(3)
+        self.assertLess(float(history[-1]["momentum_error"]), 1e-10)
+        cart = [row for row in bodies if row["name"] == "cart"][-1]
+        self.assertGreater(abs(float(cart["x"])), 1e-6)  # the pole falls, and pushes it
+        for axis in "yz":
+            self.assertAlmostEqual(float(cart[axis]), 0, delta=1e-9)
+
     def test_what_even_masses_cannot_be_is_told(self):
         _, notes = self.scene(robot(link("base", inertia=(1., .1))))
         self.assertIn("off the file's", notes)
