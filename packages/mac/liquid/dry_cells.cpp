@@ -21,7 +21,7 @@ std::vector<char> find_dry_cells(const MacDomain<dim>& domain, const SignedDista
                 "The dry point {} in \"Free Surface\" lies outside of the domain.", x);
     check_input(surface.empty() || surface.snapshot().inside(point) < 0,
                 "The dry point {} in \"Free Surface\" lies inside a solid.", x);
-    const std::vector<int> seen = cells_seen_from(point, grid, surface);
+    const std::vector<int> seen = cells_seen_from<dim>(point, domain, surface);
     check_input(sum_all(grid.comm(), static_cast<GlobalIndex>(seen.size())) > 0,
                 "The dry point {} in \"Free Surface\" sees no centre of a cell; move it away from "
                 "the solids, or take smaller cells.",

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "mac/liquid/flood.hpp"
+#include "mac/liquid/seen_cells.hpp"
 #include "mac/state/surface_marks.hpp"
 #include "mac/transport/largest_move.hpp"
 
@@ -29,35 +30,13 @@ LeakAudit<dim>::LeakAudit(const MacDomain<dim>& domain, std::vector<Watch<dim>> 
               watches_.size(), most_watches);
 }
 
-template <int dim>
-Point<dim> LeakAudit<dim>::way(const Point<dim>& from, const Point<dim>& to) const {
-  const TiledGrid<dim>& grid = domain_.grid;
-  Point<dim> result = to - from;
-  for (int a = 0; a < dim; ++a) {
-    const double period = grid.n_cells()[a] * grid.spacing();
-    if (domain_.boundary.periodic(a))
-      result[a] -= period * std::round(result[a] / period);
-  }
-  return result;
-}
-
-/// Cells whose centres the point sees, of those around it.
+/// Cells of the fluid whose centres the point sees, of those around it.
 template <int dim>
 std::vector<int> LeakAudit<dim>::seeds(const Point<dim>& point, const std::vector<CellState>& cells,
                                        const Near& near) const {
-  const TiledGrid<dim>& grid = domain_.grid;
-  const double h = grid.spacing();
-  std::vector<int> found;
-  for (int k = 0; k < 1 << dim; ++k) {
-    Point<dim> corner = point;
-    for (int a = 0; a < dim; ++a)
-      corner[a] += (k >> a & 1 ? 0.5 : -0.5) * h;
-    const int cell = grid.cell_containing(corner);
-    if (cell < 0 || !grid.owned(cell) || !grid.in_domain(cell) || cells[cell] != CellState::fluid)
-      continue;
-    if (near.empty() || !near.first_hit(point, point + way(point, grid.center(cell))))
-      found.push_back(cell);
-  }
+  std::vector<int> found = cells_seen_from<dim>(point, domain_, near);
+  const auto holds_no_fluid = [&](int cell) { return cells[cell] != CellState::fluid; };
+  found.erase(std::remove_if(found.begin(), found.end(), holds_no_fluid), found.end());
   return found;
 }
 
@@ -138,7 +117,7 @@ std::vector<char> LeakAudit<dim>::find_place(std::size_t watch, const Look& now,
   const TiledGrid<dim>& grid = domain_.grid;
   const Point<dim> point = anchors_[watch].place(now.surface);
   const auto is_within = [&](int cell) {
-    return way(point, grid.center(cell)).norm() < watches_[watch].radius;
+    return way_between<dim>(domain_, point, grid.center(cell)).norm() < watches_[watch].radius;
   };
   std::vector<int> front = seeds(point, now.cells, near);
   if (sum_all(grid.comm(), static_cast<GlobalIndex>(front.size())) == 0)

@@ -63,8 +63,6 @@ class LeakAudit {
   /// Marks the cells of a place (1). Collective.
   std::vector<char> find_place(std::size_t watch, const Look& now, const Near& near,
                                const StaysInPlace& stays) const;
-  /// The shortest way between two points, across periodic sides too [m].
-  Point<dim> way(const Point<dim>& from, const Point<dim>& to) const;
   bool sees(const Look& look, int cell, int axis, int side) const;
   std::vector<int> seeds(const Point<dim>& point, const std::vector<CellState>& cells,
                          const Near& near) const;
