@@ -1,4 +1,5 @@
 """plot-frame and render on the folder of make_frames.py: smoke = x + t, velocity = (0, t, 0), one body."""
+import argparse
 import importlib.machinery
 import importlib.util
 import subprocess
@@ -103,6 +104,28 @@ class PlotFrame(Pictures):
             fluid[2:4, 2:4] = value                              # the cells within the square
             box.fields["fluid"] = (FixedArray(fluid), *box.fields["smoke"][1:])
             self.assertEqual(plot_frame.without_fluid(box, polygon, 2, 0.0), value == 0)
+
+    def test_a_thin_body_in_the_oblique_is_a_body(self):
+        """Of its cells all but the two that lie all in it are cut, and hold fluid; a shell there has fluid in those as well."""
+        box = self.make(2)[0].boxes[0]                           # cells of 0.125 m from (1, 0) on
+        polygon = numpy.array([(1.06, 0.21), (1.21, 0.06), (1.68, 0.53), (1.53, 0.68)])
+        fluid = numpy.ones((6, 8))
+        box.fields["fluid"] = (FixedArray(fluid), *box.fields["smoke"][1:])
+        self.assertFalse(plot_frame.without_fluid(box, polygon, 2, 0.0))
+        fluid[2, 2] = fluid[3, 3] = 0
+        self.assertTrue(plot_frame.without_fluid(box, polygon, 2, 0.0))
+
+    def test_colours_of_a_movie(self):
+        """One scale for all frames, which a single cell does not widen."""
+        frames = self.make(2)
+        options = argparse.Namespace(position=None, axis=2, field="velocity")
+        self.assertEqual(plot_frame.colours_of(frames, options), [0, 0.5])
+        calm, one_cell = numpy.linspace(-1, 2, 2001), numpy.linspace(-1, 2, 2001)
+        one_cell[-1], calm[0] = 90, numpy.nan
+        low, high = plot_frame.range_of_colours([calm, one_cell], False)
+        self.assertAlmostEqual(low, -1, delta=0.01)
+        self.assertAlmostEqual(high, 2, delta=0.01)
+        self.assertEqual(plot_frame.range_of_colours([one_cell], True, 1.0), [0, 90])
 
     def test_elements_are_no_surfaces(self):
         for dim in (2, 3):
@@ -272,6 +295,19 @@ class Render(Pictures):
         result = self.run_tool("render", "--movie", "--size", "320x240")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertGreater((Path(self.folder.name) / "render.mp4").stat().st_size, 1000)
+
+    def test_movie_by_matplotlib(self):
+        """The frames have one size and one place, and differ in their colours."""
+        self.make(2)
+        result = self.run_tool("plot-frame", "--field", "velocity", "--movie")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        folder = Path(self.folder.name)
+        subprocess.run(["ffmpeg", "-loglevel", "error", "-i", folder / "frame.mp4", folder / "%d.png"], check=True)
+        first, last = (imread(folder / f"{number}.png")[..., :3] for number in (1, 2))
+        self.assertFalse((folder / "3.png").exists())
+        below = first.shape[0] - 60                                        # the numbers of the axis
+        self.assertLess(numpy.abs(first - last)[below:].mean(), 0.01)
+        self.assertGreater(numpy.abs(first - last).mean(), 0.2)
 
     def test_parts_of_a_movie_show_the_same(self):
         """Of a run with many bodies ParaView is given a few frames at a time: in the same colours, from the same place."""
