@@ -1,6 +1,6 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2154  # root comes from the script that sources this
-# Sourced by run and check: the environment of builds and runs, and one build step. Wants $root.
+# Sourced by run, check and tools/set-up: the environment of builds and runs, one build step, how far it and apt-get are. Wants $root.
 
 # Objects are found again after the tree moved or was cloned anew.
 export CCACHE_BASEDIR=$root
@@ -48,6 +48,37 @@ show_progress() {
     fi
   done
   if ((seconds >= 10)); then printf '  the build took %d:%02d min\n' $((seconds / 60)) $((seconds % 60)); fi
+}
+
+# Passes lines on with the seconds since the first of them before each.
+with_seconds() {
+  local line began=''
+  while IFS= read -r line; do
+    began=${began:-$SECONDS}
+    printf '%d %s\n' $((SECONDS - began)) "$line"
+  done
+}
+
+# Says every ten seconds how far apt-get is and how long it will take, from the lines of its status descriptor with seconds before
+# each: dlstatus:...:PERCENT:WORDS, of the bytes, and pmstatus:..., of the packages' steps. Each stage is as fast as it was until
+# now; how fast packages are unpacked nobody knows before the first.
+show_packages() {
+  local seconds line stage='' done_tenths began=0 said=0 first=0 left words
+  while read -r seconds line; do
+    [[ $line =~ ^(dl|pm)status:[^:]*:([0-9]+)(\.([0-9]))?[0-9]*: ]] || continue
+    done_tenths=$((10 * BASH_REMATCH[2] + ${BASH_REMATCH[4]:-0}))
+    if [[ ${BASH_REMATCH[1]} != "$stage" ]]; then
+      stage=${BASH_REMATCH[1]} began=$seconds first=$done_tenths
+    fi
+    ((seconds >= said + 10)) || continue
+    said=$seconds left='' words=installed
+    if ((done_tenths > first)); then
+      left=$(((seconds - began) * (1000 - done_tenths) / (done_tenths - first)))
+      left=$(printf ', about %d:%02d to go' $((left / 60)) $((left % 60)))
+    fi
+    if [[ $stage == dl ]]; then words=fetched left+=', then they are installed'; fi
+    printf '  %s %d %%%s\n' "$words" $((done_tenths / 10)) "$left"
+  done
 }
 
 # build PRESET TARGET...: configures build/PRESET where needed and builds; silent when all is current.

@@ -115,6 +115,33 @@ class SetUp(unittest.TestCase):
         (self.folder / "tree/build/release/.ninja_log").write_text("")
         self.assertNotIn("first build", self.set_up("--plan").stdout)
 
+    def test_says_how_far_apt_is_and_how_long_it_will_take(self):
+        """The time that is left is that of the stage, as fast as until now: 30 s for half of it, 30 s to go."""
+        said = subprocess.run(["bash", "-c", f"root={self.folder}; source {TOOLS / 'build-functions.sh'}; show_packages"], text=True,
+                              stdout=subprocess.PIPE, check=True, input="""0 dlstatus:1:0.0000:Retrieving file 1 of 9
+5 dlstatus:2:20.0000:Retrieving file 2 of 9
+12 dlstatus:2:25.0000:Retrieving file 2 of 9
+20 pmstatus:dpkg-exec:0.0000:Running dpkg
+23 pmstatus:cmake:0.0000:Preparing cmake
+50 pmstatus:cmake:50.0000:Unpacking cmake
+55 pmerror:cmake:51.0000:a word
+70 pmstatus:cmake:83.3333:Configuring cmake
+71 pmstatus:cmake:99.0000:Configuring cmake
+""").stdout
+        self.assertEqual(said.splitlines(), ["  fetched 25 %, about 0:36 to go, then they are installed",
+                                             "  installed 0 %",
+                                             "  installed 50 %, about 0:30 to go",
+                                             "  installed 83 %, about 0:10 to go"])
+
+    def test_lines_bear_their_seconds(self):
+        said = subprocess.run(["bash", "-c", f"root={self.folder}; source {TOOLS / 'build-functions.sh'}; "
+                               "{ echo one; sleep 1.1; echo two; } | with_seconds"], text=True, stdout=subprocess.PIPE, check=True).stdout
+        self.assertRegex(said, r"^0 one\n[1-9]\d* two\n$")
+
+    def test_no_package_is_named_twice(self):
+        names = self.set_up("--list", "--paraview", "--browser", "--manual").stdout.split()
+        self.assertEqual(sorted(names), sorted(set(names)))
+
     def test_apt_fails(self):
         self.write("fails", "")
         result = self.set_up()
