@@ -27,12 +27,24 @@ if(LOCKSTEP_SANITIZE)
                          -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
   target_link_options(lockstep_flags INTERFACE -fsanitize=address,undefined)
 endif()
-set(LOCKSTEP_WARNINGS -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
+set(LOCKSTEP_WARNINGS -Wall -Wextra -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
+if(LOCKSTEP_UNITY)
+  # Files that are compiled at once are told nothing of one another's names: a local variable may be
+  # called like a helper of its neighbour, and classes with members from an unnamed namespace are
+  # in files, not in headers. Without LOCKSTEP_UNITY these warnings see what is meant.
+  list(APPEND LOCKSTEP_WARNINGS -Wshadow=local -Wno-subobject-linkage)
+else()
+  list(APPEND LOCKSTEP_WARNINGS -Wshadow)
+endif()
 # GCC 12 takes its own AVX-512 intrinsics, which Eigen's products use, for mistakes of ours; in which
 # files depends on the processor. It also sees uninitialized values in what the sanitizers insert.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   list(APPEND LOCKSTEP_WARNINGS -Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
        -Wno-stringop-overread)
+endif()
+# Rather memory than time: the compiler looks for what it can forget when it holds a gigabyte.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(--param=ggc-min-heapsize=1000000)
 endif()
 install(TARGETS lockstep_flags EXPORT LockstepTargets)
 add_library(Lockstep::lockstep_flags ALIAS lockstep_flags)
@@ -61,6 +73,13 @@ function(lockstep_precompile target)
   endif()
 endfunction()
 
+# Two thirds of what a typical file takes to compile are headers, which its neighbours parse, too.
+set(LOCKSTEP_UNITY_FILES 8 CACHE STRING "Files that are compiled at once with LOCKSTEP_UNITY")
+function(lockstep_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${LOCKSTEP_UNITY}
+                        UNITY_BUILD_BATCH_SIZE ${LOCKSTEP_UNITY_FILES})
+endfunction()
+
 # lockstep_library(NAME SOURCES a.cpp... DEPENDS targets...): one static library per room. Headers
 # (*.hpp beside the CMakeLists.txt) are installed under include/lockstep/ROOM.
 function(lockstep_library name)
@@ -72,6 +91,7 @@ function(lockstep_library name)
     target_compile_options(${target} PRIVATE ${LOCKSTEP_WARNINGS})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     lockstep_precompile(${target})
+    lockstep_unity(${target})
   else()
     add_library(${target} INTERFACE)
     target_link_libraries(${target} INTERFACE lockstep_flags ${ARG_DEPENDS})
@@ -99,6 +119,7 @@ function(lockstep_driver name)
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE Lockstep::lockstep_all)
   target_compile_options(${name} PRIVATE ${LOCKSTEP_WARNINGS})
+  lockstep_precompile(${name})
   add_dependencies(lockstep_drivers ${name})
   install(TARGETS ${name} DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
@@ -125,6 +146,7 @@ function(lockstep_test name)
   target_link_libraries(test_${name} PRIVATE lockstep_test_main ${ARG_DEPENDS})
   target_compile_options(test_${name} PRIVATE ${LOCKSTEP_WARNINGS})
   lockstep_precompile(test_${name})
+  lockstep_unity(test_${name})
   foreach(ranks IN LISTS ARG_RANKS)
     if(ranks EQUAL 1)
       add_test(NAME ${name} COMMAND test_${name})

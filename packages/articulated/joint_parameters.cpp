@@ -18,7 +18,6 @@ const std::string name_of_space = "space";
 /// shells too, and the same however it lies [m^dim].
 template <int dim>
 double volume_pushed(const SurfaceMesh<dim>& surface, const SolidDescription& solid) {
-  constexpr double pi = 3.14159265358979323846;
   double area = 0;
   for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
     std::array<Point<dim>, dim> corners;

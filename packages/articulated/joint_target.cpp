@@ -9,8 +9,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Grows from 0 to 1 without a jump of its rate.
 struct Ramp {
   double part = 1, rate = 0;

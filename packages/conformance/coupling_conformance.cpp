@@ -4,13 +4,12 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "conformance/bounds.hpp"
 #include "linear/symmetry_check.hpp"
 
 namespace lockstep {
 
 namespace {
-
-constexpr double round_off = 1e-11;
 
 /// Some value for each id, the same on any number of ranks.
 double some(GlobalIndex id) {

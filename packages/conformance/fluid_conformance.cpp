@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "conformance/bounds.hpp"
 #include "conformance/through_checkpoint.hpp"
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/viscosity.hpp"
@@ -12,9 +13,6 @@
 namespace lockstep {
 
 namespace {
-
-constexpr double round_off = 1e-11;
-constexpr double dt = 1e-2;  // [s], of the impulses below
 
 template <int dim>
 double size(const Momentum<dim>& momentum) {

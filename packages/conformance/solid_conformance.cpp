@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "conformance/bounds.hpp"
 #include "conformance/through_checkpoint.hpp"
 #include "interfaces/solid_sides.hpp"
 #include "linear/symmetry_check.hpp"
@@ -13,8 +14,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr double round_off = 1e-11;
-constexpr double dt = 1e-2;     // [s], of impulses
 constexpr double brief = 1e-7;  // [s], of motions that are taken to be straight
 
 /// A vector by global id on every rank.

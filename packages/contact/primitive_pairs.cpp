@@ -13,11 +13,6 @@ struct Primitive {
   int simplex = -1;
 };
 
-template <int dim>
-Box<dim> inflated(const Box<dim>& box, double margin) {
-  return Box<dim>(box.min().array() - margin, box.max().array() + margin);
-}
-
 /// The pairs of two solids, in boxes that are near both.
 template <int dim>
 class PairFinder {

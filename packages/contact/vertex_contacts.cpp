@@ -17,11 +17,6 @@ Box<dim> relative_displacement(const SolidMotion<dim>& motion, int solid, int ot
   const Point<dim> upper = dt * (motion.range(solid).max() - motion.range(other).min());
   return Box<dim>(lower.cwiseMin(0.0), upper.cwiseMax(0.0));
 }
-
-template <int dim>
-Box<dim> inflated(const Box<dim>& box, double by) {
-  return Box<dim>(box.min().array() - by, box.max().array() + by);
-}
 }  // namespace
 
 template <int dim>
@@ -48,7 +43,7 @@ void VertexContacts<dim>::collect_simplices() {
     const Box<dim> moved = relative_displacement(motion_, solid_, other_, reach_.dt);
     region = Box<dim>(region.min() + moved.min(), region.max() + moved.max());
   }
-  region = inflated(region, farthest_);
+  region = inflated<dim>(region, farthest_);
   const SolidDescription& other = shapes_.solids()[other_];
   for (int s = other.simplex_begin; s < other.simplex_end; ++s) {
     if (region.intersects(shapes_.bounds(s))) {
@@ -62,7 +57,7 @@ template <int dim>
 void VertexContacts<dim>::find(std::vector<Contact<dim>>& contacts) {
   if (simplices_.empty())
     return;
-  Box<dim> region = inflated(simplices_box_, farthest_);
+  Box<dim> region = inflated<dim>(simplices_box_, farthest_);
   if (reach_.swept) {
     const Box<dim> moved = relative_displacement(motion_, solid_, other_, reach_.dt);
     region = Box<dim>(region.min() - moved.max(), region.max() - moved.min());
@@ -197,7 +192,7 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::swept(
   Box<dim> path(x);
   const Point<dim> end = x + displacement;
   path.extend(end);
-  path = inflated(path, 1e-6 * reach_.near);
+  path = inflated<dim>(path, 1e-6 * reach_.near);
   std::optional<Hit> first;
   double fraction = 2;
   for (int s : simplices_) {

@@ -12,7 +12,7 @@ namespace lockstep {
 
 namespace {
 
-const std::vector<ShapeSizes>& shapes() {
+const std::vector<ShapeSizes>& volume_shapes() {
   static const std::vector<ShapeSizes> all{
       {"ball", {"Radius"}},
       {"box", {"Size"}},
@@ -60,7 +60,7 @@ void declare_deformable_geometry(ParameterList& body) {
       declare_list(body, "Geometry",
                    "The volume at rest, in coordinates of the body: shapes are centred at their "
                    "origin.");
-  declare_required_choice(list, "Shape", shape_names(shapes(), dim),
+  declare_required_choice(list, "Shape", shape_names(volume_shapes(), dim),
                           "ball, box, cylinder, torus; hollow ball: a ball with a thick wall (2D: "
                           "a ring); tube: a pipe; spindle: along x, as high and wide as told; "
                           "file: a mesh of triangles (2D) or "
@@ -101,7 +101,7 @@ template <int dim>
 VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacing,
                                const std::string& name, MeshNames& names) {
   const auto& shape = geometry.get<std::string>("Shape");
-  check_shape_sizes(geometry, shapes(), name);
+  check_shape_sizes(geometry, volume_shapes(), name);
   VolumeMesh<dim> mesh;
   if (shape == "file") {
     mesh = read_volume_mesh<dim>(geometry.get<std::string>("File"), names);

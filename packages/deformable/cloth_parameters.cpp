@@ -17,7 +17,7 @@ namespace lockstep {
 
 namespace {
 
-const std::vector<ShapeSizes>& shapes() {
+const std::vector<ShapeSizes>& cloth_shapes() {
   static const std::vector<ShapeSizes> all{
       {"sheet", {"Size", "Normal"}},  {"bag", {"Size"}},
       {"ball", {"Radius"}},           {"open ball", {"Radius", "Opening Radius"}},
@@ -33,7 +33,7 @@ void declare_cloth_geometry(ParameterList& body) {
   std::vector<std::string> axes{"x", "y", "z"};
   axes.resize(dim);
   declare_required_choice(
-      list, "Shape", shape_names(shapes(), dim),
+      list, "Shape", shape_names(cloth_shapes(), dim),
       "sheet: flat. bag: a box without its lid (y is up). ball: a closed sphere "
       "(2D: ring). open ball: a sphere with a round hole at its top (y is up). tube: without "
       "ends, about z (2D: two walls along y). file: what the file holds.");
@@ -60,7 +60,7 @@ template <int dim>
 SurfaceMesh<dim> make_cloth_mesh(const ParameterList& list, double grid_spacing,
                                  const std::string& name) {
   const auto& shape = list.get<std::string>("Shape");
-  check_shape_sizes(list, shapes(), name);
+  check_shape_sizes(list, cloth_shapes(), name);
   const double spacing =
       list.isParameter("Mesh Spacing") ? list.get<double>("Mesh Spacing") : grid_spacing;
   check_mesh_size(list, spacing, dim - 1, name);

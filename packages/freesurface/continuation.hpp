@@ -6,6 +6,9 @@
 
 namespace lockstep {
 
+/// Cells into solids over which phi is continued.
+inline constexpr int depth_in_solids = 4;
+
 /// Continues phi into solids over some cells, as a plane: layer by layer, a cell takes what its
 /// neighbours along the axes, seen from the fluid, lead to, in the mean.
 template <int dim>

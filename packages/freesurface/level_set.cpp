@@ -23,8 +23,6 @@ namespace {
 /// While the liquid has moved over less than this, phi remains as good a distance as it was
 /// [cells].
 constexpr double negligible_motion = 0.05;
-/// Cells into solids over which phi is continued.
-constexpr int depth_in_solids = 4;
 }  // namespace
 
 template <int dim>

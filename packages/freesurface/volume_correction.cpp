@@ -11,7 +11,7 @@ namespace {
 /// Layers of dry cells beside the liquid that are shifted with it.
 constexpr int shifted_layers = 3;
 /// What bodies may be off their targets together before others stand in for them [1].
-constexpr double negligible_debt = 1e-6;
+constexpr double negligible_share_owed = 1e-6;
 }  // namespace
 
 void declare_volume_correction(ParameterList& list) {
@@ -66,7 +66,7 @@ std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& sol
     target += targets_.of_group[body];
   }
   if (parameters_.correction != VolumeCorrection::component ||
-      !(debt > negligible_debt * std::abs(target)))
+      !(debt > negligible_share_owed * std::abs(target)))
     return shift;
   const CellGroups spaces = find_closed_spaces(domain_, solids);
   const std::vector<int> space = places_among(spaces, groups_);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "grid/message_tag.hpp"
+
 namespace lockstep {
 namespace {
-
-constexpr int message_tag = 7301;
 
 /// Sets the flags of the cells [begin, end) of a tile.
 template <int dim>
@@ -107,8 +107,8 @@ void HaloExchange<dim>::agree_on_sources(const TiledGrid<dim>& grid) {
   for (std::size_t i = 0; i < n; ++i) {
     const Neighbor& neighbor = neighbors_[i];
     n_wanted[i] = neighbor.ghost_end - neighbor.ghost_begin;
-    MPI_Irecv(&n_asked[i], 1, MPI_INT, neighbor.rank, message_tag, mpi, &requests[2 * i]);
-    MPI_Isend(&n_wanted[i], 1, MPI_INT, neighbor.rank, message_tag, mpi, &requests[2 * i + 1]);
+    MPI_Irecv(&n_asked[i], 1, MPI_INT, neighbor.rank, MessageTag::halo, mpi, &requests[2 * i]);
+    MPI_Isend(&n_wanted[i], 1, MPI_INT, neighbor.rank, MessageTag::halo, mpi, &requests[2 * i + 1]);
   }
   MPI_Waitall(static_cast<int>(2 * n), requests.data(), MPI_STATUSES_IGNORE);
 
@@ -123,9 +123,9 @@ void HaloExchange<dim>::agree_on_sources(const TiledGrid<dim>& grid) {
   for (std::size_t i = 0; i < n; ++i) {
     const Neighbor& neighbor = neighbors_[i];
     MPI_Irecv(asked.data() + neighbor.source_begin, n_asked[i], MPI_LONG_LONG, neighbor.rank,
-              message_tag, mpi, &requests[2 * i]);
+              MessageTag::halo, mpi, &requests[2 * i]);
     MPI_Isend(wanted.data() + neighbor.ghost_begin, n_wanted[i], MPI_LONG_LONG, neighbor.rank,
-              message_tag, mpi, &requests[2 * i + 1]);
+              MessageTag::halo, mpi, &requests[2 * i + 1]);
   }
   MPI_Waitall(static_cast<int>(2 * n), requests.data(), MPI_STATUSES_IGNORE);
   source_cells_.resize(asked.size());
@@ -153,11 +153,11 @@ void HaloExchange<dim>::transfer(const std::vector<char>& outgoing, std::vector<
     }
     if (in_end > in_begin) {
       MPI_Irecv(incoming.data() + in_begin * bytes_per_cell, in_end - in_begin, cell_type,
-                neighbor.rank, message_tag, mpi, &requests.emplace_back());
+                neighbor.rank, MessageTag::halo, mpi, &requests.emplace_back());
     }
     if (out_end > out_begin) {
       MPI_Isend(outgoing.data() + out_begin * bytes_per_cell, out_end - out_begin, cell_type,
-                neighbor.rank, message_tag, mpi, &requests.emplace_back());
+                neighbor.rank, MessageTag::halo, mpi, &requests.emplace_back());
       ++statistics_.messages;
       statistics_.bytes += static_cast<long long>((out_end - out_begin) * bytes_per_cell);
     }

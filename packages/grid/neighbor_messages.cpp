@@ -1,10 +1,8 @@
 #include "grid/neighbor_messages.hpp"
 
-namespace lockstep {
+#include "grid/message_tag.hpp"
 
-namespace {
-constexpr int message_tag = 7302;
-}
+namespace lockstep {
 
 template <int dim>
 NeighborMessages<dim>::NeighborMessages(const TiledGrid<dim>& grid) : comm_(grid.comm()) {
@@ -18,17 +16,18 @@ std::vector<double> NeighborMessages<dim>::exchange() {
   const MPI_Comm mpi = raw_communicator(comm_);
   std::vector<MPI_Request> requests;
   for (auto& [rank, values] : outgoing_)
-    MPI_Isend(values.data(), static_cast<int>(values.size()), MPI_DOUBLE, rank, message_tag, mpi,
-              &requests.emplace_back());
+    MPI_Isend(values.data(), static_cast<int>(values.size()), MPI_DOUBLE, rank,
+              MessageTag::neighbors, mpi, &requests.emplace_back());
   std::vector<double> arrived;
   for (const auto& [rank, values] : outgoing_) {
     MPI_Status status;
-    MPI_Probe(rank, message_tag, mpi, &status);
+    MPI_Probe(rank, MessageTag::neighbors, mpi, &status);
     int n = 0;
     MPI_Get_count(&status, MPI_DOUBLE, &n);
     const std::size_t begin = arrived.size();
     arrived.resize(begin + n);
-    MPI_Recv(arrived.data() + begin, n, MPI_DOUBLE, rank, message_tag, mpi, MPI_STATUS_IGNORE);
+    MPI_Recv(arrived.data() + begin, n, MPI_DOUBLE, rank, MessageTag::neighbors, mpi,
+             MPI_STATUS_IGNORE);
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   for (auto& [rank, values] : outgoing_)

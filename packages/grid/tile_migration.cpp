@@ -2,11 +2,11 @@
 
 #include <map>
 
+#include "grid/message_tag.hpp"
+
 namespace lockstep {
 
 namespace {
-
-constexpr int message_tag = 7302;
 
 /// Numbers of the stored tiles, by local tile.
 template <int dim>
@@ -110,11 +110,11 @@ void TileMigration<dim>::transfer(const Bytes& outgoing, Bytes& incoming) const 
     for (std::size_t begin = 0; begin < incoming[p].size(); begin += most)
       MPI_Irecv(incoming[p].data() + begin,
                 static_cast<int>(std::min(most, incoming[p].size() - begin)), MPI_BYTE, rank,
-                message_tag, mpi, &requests.emplace_back());
+                MessageTag::migration, mpi, &requests.emplace_back());
     for (std::size_t begin = 0; begin < outgoing[p].size(); begin += most)
       MPI_Isend(outgoing[p].data() + begin,
                 static_cast<int>(std::min(most, outgoing[p].size() - begin)), MPI_BYTE, rank,
-                message_tag, mpi, &requests.emplace_back());
+                MessageTag::migration, mpi, &requests.emplace_back());
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }

@@ -11,7 +11,6 @@
 namespace lockstep {
 
 namespace {
-const char* const axis_names[] = {"x", "y", "z"};
 /// 2000 by 2000; every rank asks for all of them.
 constexpr double most_squares = 4e6;
 }  // namespace

@@ -5,7 +5,6 @@
 namespace lockstep {
 namespace {
 
-const char* const axis_names[] = {"x", "y", "z"};
 /// More points than this are a frame, not a probe.
 constexpr double most_points = 1e6;
 

@@ -6,6 +6,8 @@
 
 namespace lockstep {
 
+inline constexpr double pi = 3.14159265358979323846;
+
 /// A point or vector of physical space [m, m/s, N, ... by context].
 template <int dim>
 using Point = Eigen::Matrix<double, dim, 1>;
@@ -29,6 +31,14 @@ using Barycentric = Eigen::Matrix<double, dim, 1>;
 /// Axis-parallel box.
 template <int dim>
 using Box = Eigen::AlignedBox<double, dim>;
+
+/// The box and what is within `margin` of it along each axis.
+template <int dim>
+Box<dim> inflated(const Box<dim>& box, double margin) {
+  return Box<dim>(box.min().array() - margin, box.max().array() + margin);
+}
+
+inline constexpr const char* axis_names[] = {"x", "y", "z"};
 
 /// Identifier that is unique over all ranks (pressure unknowns, cells, solid dofs).
 using GlobalIndex = long long;

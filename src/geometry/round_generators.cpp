@@ -8,8 +8,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Radius of the regular polygon with n corners that has the area of a disc.
 double polygon_radius(double radius, int n) {
   return radius * std::sqrt(2 * pi / (n * std::sin(2 * pi / n)));

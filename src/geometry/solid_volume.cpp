@@ -147,16 +147,16 @@ namespace {
 
 /// Volume and first moments, about `origin`.
 template <int dim>
-struct Moments {
+struct VolumeMoments {
   double volume = 0;
   Point<dim> first = Point<dim>::Zero();
 };
 
 /// The integrals over x_0, from the side at `root` to x but at most to `exit`, of 1 and of x.
 template <int dim>
-Moments<dim> below(const Point<dim>& x, double root, double exit) {
+VolumeMoments<dim> below(const Point<dim>& x, double root, double exit) {
   const double top = std::min(x[0], exit);
-  Moments<dim> below;
+  VolumeMoments<dim> below;
   below.volume = top - root;
   below.first = below.volume * x;
   below.first[0] = 0.5 * (top * top - root * root);
@@ -166,9 +166,10 @@ Moments<dim> below(const Point<dim>& x, double root, double exit) {
 /// Adds n_0 times those over a part on one side of `exit`: quadratic, so that the middles of the
 /// edges (2D: Simpson's points) make it exact.
 template <int dim>
-void add_below(const ConvexPart<dim, false>& part, double root, double exit, Moments<dim>& sum) {
+void add_below(const ConvexPart<dim, false>& part, double root, double exit,
+               VolumeMoments<dim>& sum) {
   const auto add = [&](double weight, const Point<dim>& x) {
-    const Moments<dim> at_x = below<dim>(x, root, exit);
+    const VolumeMoments<dim> at_x = below<dim>(x, root, exit);
     sum.volume += weight * at_x.volume;
     sum.first += weight * at_x.first;
   };
@@ -193,7 +194,7 @@ template <int dim>
 PartOfSolid<dim> whole_solid(const SurfaceSnapshot<dim>& surface, int solid) {
   const Point<dim> origin = surface.bounds_of_solid(solid).center();  // less round-off
   const SolidDescription& description = surface.solids()[solid];
-  Moments<dim> sum;
+  VolumeMoments<dim> sum;
   for (int s = description.simplex_begin; s < description.simplex_end; ++s) {
     auto corners = surface.corners(s);
     Point<dim> of_corners = Point<dim>::Zero();
@@ -223,7 +224,7 @@ PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
     return part;
   const Point<dim> origin = whole.centroid;  // less round-off
   const Point<dim> lower = box.min() - origin, upper = box.max() - origin;
-  Moments<dim> sum;
+  VolumeMoments<dim> sum;
   const SolidDescription& description = surface.solids()[solid];
   for (int s = description.simplex_begin; s < description.simplex_end; ++s) {
     auto corners = surface.corners(s);

@@ -11,8 +11,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 template <int dim>
 ParameterList sinusoid_schema() {
   ParameterList sinusoid;

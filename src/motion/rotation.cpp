@@ -5,8 +5,6 @@
 namespace lockstep {
 
 namespace {
-constexpr double pi = 3.14159265358979323846;
-
 /// (1 - (t/2) cot(t/2)) / t^2 for the angle t in [0, pi].
 double inverse_jacobian_factor(double angle) {
   if (angle < 1e-2)

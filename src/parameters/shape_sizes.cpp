@@ -4,14 +4,9 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "parameters/suggestion.hpp"
 
 namespace lockstep {
-
-namespace {
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-}  // namespace
 
 std::vector<std::string> shape_names(const std::vector<ShapeSizes>& shapes, int dimension) {
   std::vector<std::string> names;

@@ -41,4 +41,8 @@ std::string nearest_name(const std::string& word, const std::vector<std::string>
   return nearest;
 }
 
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 }  // namespace lockstep

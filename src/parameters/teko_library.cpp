@@ -49,10 +49,6 @@ const std::vector<std::string>& unchecked_types() {
 /// What "Explicit Velocity Inverse Type" may name besides an inverse.
 const std::vector<std::string> diagonal_types = {"Diagonal", "Lumped", "AbsRowSum", "BlkDiag"};
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// "Inverse Type 3" -> "Inverse Type #".
 std::string without_number(const std::string& name) {
   const std::size_t digits = name.find_last_not_of("0123456789");

@@ -4,11 +4,11 @@
 #include "parameters/formula.hpp"
 #include "parameters/validate.hpp"
 #include "scenes/random_positions.hpp"
+#include "scenes/solids_path.hpp"
 
 namespace lockstep {
 namespace {
 
-const std::string solids_path = "Solids";
 constexpr int most_copies = 100000;
 
 using Places = std::vector<std::vector<double>>;

@@ -2,11 +2,11 @@
 
 #include "base/errors.hpp"
 #include "parameters/parameter_rule.hpp"
+#include "scenes/solids_path.hpp"
 
 namespace lockstep {
 namespace {
 
-const std::string solids_path = "Solids";
 const std::string defaults_path = "Defaults";
 
 bool says_otherwise(const ParameterList& given, const ParameterList& defaults, const char* key) {

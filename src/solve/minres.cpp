@@ -66,7 +66,7 @@ double total(const Communicator& comm, const Lanes& lanes) {
 
 /// The scalars of the QLP factorisation of the Lanczos matrix: T_k is made lower triangular by a
 /// reflection from the left a step (as in MINRES) and two from the right.
-struct Factors {
+struct LanczosFactors {
   Reflection left{-1, 0, 0}, right_1{-1, 0, 0}, right_2{-1, 0, 0};
   double delta_next = 0, epsilon_next = 0;  // of the next column of R
   double gamma = 0, gamma_1 = 0, gamma_2 = 0,
@@ -83,7 +83,7 @@ struct Factors {
   void advance(int k, double alpha, double beta_next);
 };
 
-void Factors::advance(int k, double alpha, double beta_next) {
+void LanczosFactors::advance(int k, double alpha, double beta_next) {
   const double delta_bar = delta_next;
   delta = left.c * delta_bar + left.s * alpha;
   epsilon = epsilon_next;
@@ -166,7 +166,7 @@ class Minres {
   Communicator comm_;
   MinresReport report_;
 
-  Factors f_;
+  LanczosFactors f_;
   // Lanczos: r_old_, r_ are beta times the dual vectors, z_ = M r_, v_ = z_ / beta.
   Blocks r_old_, r_, z_, v_, product_;
   double beta_old_ = 0, beta_ = 0, beta_next_ = 0;

@@ -39,8 +39,8 @@ std::string curves_csv(const Study& study, const std::vector<StudyCase>& cases,
       if (!outcomes[i].done || cases[i].sample != 0)
         continue;
       const RunResults run = read_run(outcomes[i].directory);
-      const std::string prefix = fmt::format("{},{},{}", csv_field(curve.name),
-                                             csv_field(study.series[cases[i].series].name),
+      const std::string prefix = fmt::format("{},{},{}", without_separators(curve.name),
+                                             without_separators(study.series[cases[i].series].name),
                                              number_text(cases[i].constants.at(study.ladder_name)));
       csv += curve_lines(curve, prefix, run, run_variables(study, cases[i], run));
     }

@@ -118,7 +118,7 @@ std::string target_lines(const Study& study) {
   std::string lines;
   for (const Quantity& quantity : study.quantities) {
     if (!quantity.targets.empty())
-      lines += fmt::format("# targets of {}: {}\n", csv_field(quantity.name),
+      lines += fmt::format("# targets of {}: {}\n", without_separators(quantity.name),
                            fmt::join(quantity.targets, " "));
   }
   return lines;
@@ -126,7 +126,7 @@ std::string target_lines(const Study& study) {
 
 }  // namespace
 
-std::string csv_field(std::string name) {
+std::string without_separators(std::string name) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == ',' || c == '\n' || c == '"'; }, ';');
   return name;
@@ -160,8 +160,8 @@ std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
       study.title, study.abscissa, study.ladder_name, target_lines(study));
   for (const StudyRow& row : rows) {
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                       csv_field(row.series), row.cells, number_text(row.spacing),
-                       number_text(row.mean_step), row.ranks, csv_field(row.quantity),
+                       without_separators(row.series), row.cells, number_text(row.spacing),
+                       number_text(row.mean_step), row.ranks, without_separators(row.quantity),
                        number_text(row.value), text(row.reference), text(row.error),
                        text(row.order), row.wall_seconds, row.core_seconds, row.iterations_median,
                        row.iterations_max, row.peak_memory_mb, number_text(row.spread),

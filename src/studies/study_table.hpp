@@ -29,7 +29,7 @@ std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCas
                                   const std::vector<CaseOutcome>& outcomes);
 
 /// A name inside a CSV field: no commas, quotes or line breaks.
-std::string csv_field(std::string name);
+std::string without_separators(std::string name);
 
 /// With a commented header that tools/plot-study reads. Numbers that do not exist are left empty.
 std::string table_csv(const Study& study, const std::vector<StudyRow>& rows);

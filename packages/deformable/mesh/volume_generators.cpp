@@ -12,8 +12,6 @@ namespace lockstep {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// The paths from (0, ..) to (1, ..) of a unit cube along its edges: the corners of its Kuhn
 /// simplices.
 template <int dim>

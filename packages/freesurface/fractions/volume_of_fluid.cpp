@@ -14,8 +14,6 @@
 namespace lockstep {
 
 namespace {
-/// Cells into solids over which phi is continued.
-constexpr int depth_in_solids = 4;
 /// Boxes along each axis into which a cell is cut where a shape is measured.
 constexpr int n_cuts = 4;
 }  // namespace

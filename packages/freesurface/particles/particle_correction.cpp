@@ -13,9 +13,6 @@ struct Wish {
   double phi = 0;
 };
 
-/// Farther than this from a cell's centre phi cannot have another sign in the cell [cells].
-constexpr double farthest_in_cell = 0.9;
-
 template <int dim>
 class Wishes {
  public:

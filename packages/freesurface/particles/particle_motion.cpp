@@ -9,7 +9,7 @@ namespace lockstep {
 namespace {
 /// How near to a closed side a particle may come; nearer to another it has left: rays end on sides
 /// but for round-off [cells].
-constexpr double at_side = 1e-3;
+constexpr double nearest_to_side = 1e-3;
 /// Cells farther from the surface have no particle that a shift would make escape [cells].
 constexpr double shifted_band = 2;
 /// The part of a shift that particles follow: what they know of the shape is worth more than a
@@ -119,10 +119,10 @@ class Mover {
       if (domain_.boundary.periodic(a))
         continue;
       const double n = domain_.grid.n_cells()[a];
-      if ((x[a] <= at_side && !domain_.boundary.side(a, 0).closed()) ||
-          (x[a] >= n - at_side && !domain_.boundary.side(a, 1).closed()))
+      if ((x[a] <= nearest_to_side && !domain_.boundary.side(a, 0).closed()) ||
+          (x[a] >= n - nearest_to_side && !domain_.boundary.side(a, 1).closed()))
         return false;
-      x[a] = std::clamp(x[a], at_side, n - at_side);
+      x[a] = std::clamp(x[a], nearest_to_side, n - nearest_to_side);
     }
     return true;
   }
@@ -160,7 +160,7 @@ void shift_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids
   const auto is_inside = [&](const Point<dim>& place) {
     for (int a = 0; a < dim; ++a)
       if (!domain.boundary.periodic(a) &&
-          !(place[a] > at_side && place[a] < domain.grid.n_cells()[a] - at_side))
+          !(place[a] > nearest_to_side && place[a] < domain.grid.n_cells()[a] - nearest_to_side))
         return false;
     return true;
   };

@@ -8,8 +8,6 @@ namespace lockstep {
 
 namespace {
 constexpr double least_radius = 0.1, most_radius = 0.5;  // [cells]
-/// Farther than this from a cell's centre no place in the cell is [cells].
-constexpr double farthest_in_cell = 0.9;
 /// Attempts to bring a particle to its distance.
 constexpr int n_attempts = 4;
 

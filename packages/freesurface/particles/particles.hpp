@@ -20,6 +20,10 @@ struct ParticleParameters {
 void declare_particles(ParameterList& list);
 ParticleParameters read_particles(const ParameterList& list);
 
+/// Farther than this from a cell's centre no place in the cell is: phi beyond has one sign in it
+/// [cells].
+inline constexpr double farthest_in_cell = 0.9;
+
 /// A ball that belongs to one side of the surface.
 template <int dim>
 struct Particle {

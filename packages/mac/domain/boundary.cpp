@@ -9,10 +9,6 @@
 
 namespace lockstep {
 
-namespace {
-const char* const axis_names[] = {"x", "y", "z"};
-}  // namespace
-
 std::string side_name(int axis, int end) {
   return std::string(axis_names[axis]) + (end == 0 ? " lower" : " upper");
 }

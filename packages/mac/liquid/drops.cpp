@@ -9,9 +9,9 @@ namespace lockstep {
 
 namespace {
 /// How near to a closed side a drop may come [cells].
-constexpr double at_side = 1e-3;
+constexpr double nearest_to_side = 1e-3;
 /// How far from solids drops stay [cells]; in corners, half of it after each attempt.
-constexpr double clearance = 0.1;
+constexpr double clearance_of_drops = 0.1;
 constexpr int attempts = 8;
 const char* const file_name = "fluid/drops";
 
@@ -50,11 +50,11 @@ bool Drops<dim>::stop_at_sides(Point<dim>& place, Point<dim>& velocity) const {
     for (int end = 0; end < 2; ++end) {
       const double inside = end == 0 ? place[a] - lower : upper - place[a];
       const bool is_closed = domain_.boundary.side(a, end).prescribed();
-      if (inside >= (is_closed ? at_side * h : 0))
+      if (inside >= (is_closed ? nearest_to_side * h : 0))
         continue;
       if (!is_closed)
         return false;
-      place[a] = end == 0 ? lower + at_side * h : upper - at_side * h;
+      place[a] = end == 0 ? lower + nearest_to_side * h : upper - nearest_to_side * h;
       velocity[a] = end == 0 ? std::max(velocity[a], 0.0) : std::min(velocity[a], 0.0);
     }
   }
@@ -92,7 +92,7 @@ typename Drops<dim>::Fate Drops<dim>::stop_at_solids(const MovingSurface<dim>& s
       normal = -normal;
     const double approach = normal.dot(drop.next - of_surface);
     hit->position = end;
-    to = end + std::pow(0.5, attempt) * clearance * h * normal;
+    to = end + std::pow(0.5, attempt) * clearance_of_drops * h * normal;
     if (approach < 0) {
       drop.next -= approach * normal;
       state_.pushes.push_back({*hit, end, drop.volume * approach * normal});

@@ -15,8 +15,8 @@ namespace lockstep {
 namespace {
 constexpr int most_watches = 30;
 /// What is told of a place that no cell is left of.
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr WatchedLiquid not_watched{unknown, unknown, unknown};
+constexpr double not_told = std::numeric_limits<double>::quiet_NaN();
+constexpr WatchedLiquid not_watched{not_told, not_told, not_told};
 
 bool is_watched(const WatchedLiquid& liquid) {
   return !std::isnan(liquid.volume);

@@ -13,7 +13,7 @@ namespace {
 /// How far before a surface a ray stops [cells].
 constexpr double stand_off = 1e-3;
 /// How far from a surface what is followed stays [cells].
-constexpr double clearance = 0.1;
+constexpr double clearance_of_rays = 0.1;
 
 }  // namespace
 
@@ -245,7 +245,7 @@ std::optional<Point<dim>> SurfaceTransport<dim>::follow(const Point<dim>& x) {
   tracer_.clip(x, ray);
   const SurfaceSnapshot<dim>& before = *surface_.before;
   const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
-  const double gap = clearance * interpolation_.spacing();
+  const double gap = clearance_of_rays * interpolation_.spacing();
   Point<dim> end = interpolation_.physical(ray.end);
   if (const auto met = passage(x, ray.end)) {
     const auto from = before.corners(met->simplex), to = after.corners(met->simplex);

@@ -22,7 +22,7 @@ namespace lockstep {
 namespace {
 
 /// Belos' explicit residual test cannot be met far below this in one go.
-constexpr double strongest_reduction = 1e-10;
+constexpr double strongest_gmres_reduction = 1e-10;
 
 RCP<Teuchos::ParameterList> gmres_list(double tolerance, int maximum_iterations, int restart) {
   const auto list = Teuchos::parameterList();
@@ -65,7 +65,7 @@ int solve_by_flexible_gmres(const ScaledSystem& system, const Vector& rhs,
   b[0]->update(system.s, rhs, 0);
   b[1]->putScalar(0);
   Thyra::assign<double>(solution.ptr(), 0.0);
-  const double tolerance = std::clamp(request.target / rhs.norm2(), strongest_reduction, 0.1);
+  const double tolerance = std::clamp(request.target / rhs.norm2(), strongest_gmres_reduction, 0.1);
   try {
     const auto problem =
         rcp(new Belos::LinearProblem<double, Vectors, LinearOperator>(system.op, solution, right));

@@ -22,7 +22,7 @@ const std::string parameter = "Krylov Method";
 const std::string lockstep_name = "Lockstep MINRES", belos_name = "Belos MINRES";
 
 /// Belos' explicit residual test cannot be met far below this in one go.
-constexpr double strongest_reduction = 1e-9;
+constexpr double strongest_minres_reduction = 1e-9;
 
 Teuchos::RCP<Teuchos::ParameterList> belos_list(double tolerance, int maximum_iterations) {
   const auto list = Teuchos::parameterList();
@@ -62,7 +62,7 @@ int belos_minres(const BlockSystem& system, const Vector& rhs, const BlockKrylov
   BlockVector b{make_vector(rhs.getMap()), make_vector(system.coupling_transposed->getRangeMap())};
   b.pressure->update(s, rhs, 0);
   const BlockVector x{make_vector(b.pressure->getMap()), make_vector(b.solid->getMap())};
-  const double tolerance = std::clamp(request.target / norm(rhs), strongest_reduction, 0.1);
+  const double tolerance = std::clamp(request.target / norm(rhs), strongest_minres_reduction, 0.1);
   try {
     Thyra::BelosLinearOpWithSolveFactory<double> factory;
     factory.setParameterList(belos_list(tolerance, request.maximum_iterations));

@@ -12,15 +12,12 @@
 #include "linear/triplet_matrix.hpp"
 #include "support/coupled_case.hpp"
 #include "support/dense.hpp"
+#include "support/world.hpp"
 
 namespace lockstep::test {
 namespace {
 
 constexpr double round_off = 1e-14;
-
-Communicator world() {
-  return Tpetra::getDefaultComm();
-}
 
 /// n dofs in equal shares.
 RCP<const Map> map_of(GlobalIndex n) {

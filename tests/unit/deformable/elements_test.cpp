@@ -1,27 +1,13 @@
 // Finite elements of volumes: forces from the energy, stiffness from the forces, momentum.
 #include <Eigen/Dense>
-#include <random>
 
 #include "deformable/elements/volume_elements.hpp"
 #include "deformable/mesh/volume_generators.hpp"
+#include "nodes.hpp"
 #include "support.hpp"
 
 namespace lockstep::test {
 namespace {
-
-template <int dim>
-using Nodes = std::vector<Point<dim>>;
-
-template <int dim>
-Nodes<dim> shaken(Nodes<dim> x, double amplitude) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> number(-amplitude, amplitude);
-  for (auto& point : x) {
-    for (int a = 0; a < dim; ++a)
-      point[a] = 1.1 * point[a] + number(random);
-  }
-  return x;
-}
 
 template <int dim>
 struct Elements {
@@ -44,21 +30,11 @@ struct Elements {
 };
 
 template <int dim>
-Eigen::MatrixXd dense(const NodeMatrix<dim>& matrix) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(dim * matrix.n_rows(), dim * matrix.n_rows());
-  for (int row = 0; row < matrix.n_rows(); ++row) {
-    for (int k = matrix.row_begin(row); k < matrix.row_end(row); ++k)
-      result.block<dim, dim>(dim * row, dim * matrix.column(k)) = matrix.block(k);
-  }
-  return result;
-}
-
-template <int dim>
-void check_forces() {
+void check_volume_forces() {
   for (const auto& material : material_kinds<dim>()) {
     SCOPED_TRACE(material.name);
     const Elements<dim> elements(material.name);
-    Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 0.1);
+    Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 1.1, 0.1, 7);
     const Nodes<dim> force = elements.force(x);
     Point<dim> sum = Point<dim>::Zero();
     AngularVector<dim> torque = AngularVector<dim>::Zero();
@@ -82,8 +58,8 @@ void check_forces() {
   }
 }
 TEST(VolumeElements, ForcesAreThoseOfTheEnergyAndHaveNoMomentum) {
-  check_forces<2>();
-  check_forces<3>();
+  check_volume_forces<2>();
+  check_volume_forces<3>();
 }
 
 template <int dim>
@@ -92,10 +68,10 @@ void check_stiffness() {
     SCOPED_TRACE(material.name);
     const Elements<dim> elements(material.name);
     // Stretched a little, so that nothing has to be clamped.
-    const Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 0.002);
+    const Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 1.1, 0.002, 7);
     auto matrix = elements.empty_matrix();
     EXPECT_EQ(elements.group->add_stiffness(x, matrix), 0);
-    const Eigen::MatrixXd stiffness = dense(matrix);
+    const Eigen::MatrixXd stiffness = dense_blocks(matrix);
     EXPECT_LE((stiffness - stiffness.transpose()).norm(), 1e-13 * stiffness.norm());
     const double step = 1e-5;
     for (int n = 0; n < elements.n; n += 3) {
@@ -122,14 +98,14 @@ void check_clamping() {
   for (const char* law : {"corotated", "neo-hookean", "st venant-kirchhoff"}) {
     SCOPED_TRACE(law);
     const Elements<dim> elements(law);
-    Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 0.05);
+    Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 1.1, 0.05, 7);
     for (auto& point : x)
       point[0] *= -0.4;  // compressed and inverted
     auto matrix = elements.empty_matrix();
     const int n_clamped = elements.group->add_stiffness(x, matrix);
     EXPECT_GT(n_clamped, 0);
     EXPECT_LE(n_clamped, static_cast<int>(elements.mesh.elements.size()));
-    const Eigen::MatrixXd stiffness = dense(matrix);
+    const Eigen::MatrixXd stiffness = dense_blocks(matrix);
     const Eigen::VectorXd eigenvalues = stiffness.selfadjointView<Eigen::Lower>().eigenvalues();
     EXPECT_GE(eigenvalues.minCoeff(), -1e-12 * eigenvalues.maxCoeff());
     // Translations cost nothing.
@@ -145,10 +121,10 @@ TEST(VolumeElements, StiffnessIsMadeDefinite) {
 template <int dim>
 void check_damping() {
   const Elements<dim> elements("corotated");
-  const Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 0.15);
+  const Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 1.1, 0.15, 7);
   auto matrix = elements.empty_matrix();
   elements.group->add_damping(x, matrix);
-  const Eigen::MatrixXd damping = dense(matrix);
+  const Eigen::MatrixXd damping = dense_blocks(matrix);
   EXPECT_LE((damping - damping.transpose()).norm(), 1e-13 * damping.norm());
   const Eigen::VectorXd eigenvalues = damping.selfadjointView<Eigen::Lower>().eigenvalues();
   EXPECT_GE(eigenvalues.minCoeff(), -1e-12 * eigenvalues.maxCoeff());
@@ -163,7 +139,8 @@ void check_damping() {
   Eigen::VectorXd stretch(dim * elements.n);
   for (int n = 0; n < elements.n; ++n)
     stretch.segment<dim>(dim * n) = 2 * elements.mesh.vertices[n];
-  EXPECT_NEAR(stretch.dot(dense(at_rest) * stretch), 4 * (0.6 * dim + 0.2 * dim * dim), 1e-12);
+  EXPECT_NEAR(stretch.dot(dense_blocks(at_rest) * stretch), 4 * (0.6 * dim + 0.2 * dim * dim),
+              1e-12);
 }
 TEST(VolumeElements, DampingIsDissipativeAndLeavesRigidMotionsAlone) {
   check_damping<2>();

@@ -15,7 +15,6 @@ namespace lockstep::test {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double pi = 3.14159265358979323846;
 
 template <int dim>
 double worst_quality(const VolumeMesh<dim>& mesh) {

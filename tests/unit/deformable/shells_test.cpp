@@ -1,20 +1,17 @@
 // Membranes, springs, bending and surface tension: derivatives, momentum, exact figures.
 #include <Eigen/Dense>
 #include <cmath>
-#include <random>
 
 #include "deformable/elements/shell_elements.hpp"
 #include "geometry/generators.hpp"
+#include "nodes.hpp"
 #include "support.hpp"
 
 namespace lockstep::test {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-const SheetMaterial sheet{100, 0.3, 0.02, 0.1};
+const SheetMaterial sheet_material{100, 0.3, 0.02, 0.1};
 
-template <int dim>
-using Nodes = std::vector<Point<dim>>;
 template <int dim>
 using Group = std::unique_ptr<ElementGroup<dim>>;
 
@@ -27,24 +24,13 @@ SurfaceMesh<dim> round_shell() {
 template <int dim>
 std::vector<std::pair<std::string, Group<dim>>> kinds(const SurfaceMesh<dim>& mesh) {
   std::vector<std::pair<std::string, Group<dim>>> all;
-  all.emplace_back("membrane", membrane_elements<dim>(mesh, sheet, 1.1));
-  all.emplace_back("springs", membrane_springs<dim>(mesh, sheet, 1.1, 0.5));
-  SheetMaterial stiff = sheet;
+  all.emplace_back("membrane", membrane_elements<dim>(mesh, sheet_material, 1.1));
+  all.emplace_back("springs", membrane_springs<dim>(mesh, sheet_material, 1.1, 0.5));
+  SheetMaterial stiff = sheet_material;
   stiff.thickness = 0.3;
   all.emplace_back("bending", bending_elements<dim>(mesh, stiff, true));
   all.emplace_back("surface tension", surface_tension_elements<dim>(mesh, 2));
   return all;
-}
-
-template <int dim>
-Nodes<dim> shaken(Nodes<dim> x, double stretch) {
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> number(-0.02, 0.02);
-  for (auto& point : x) {
-    for (int a = 0; a < dim; ++a)
-      point[a] = stretch * point[a] + number(random);
-  }
-  return x;
 }
 
 template <int dim>
@@ -54,21 +40,11 @@ double energy_of(const ElementGroup<dim>& group, const Nodes<dim>& x, Nodes<dim>
 }
 
 template <int dim>
-Eigen::MatrixXd dense(const NodeMatrix<dim>& matrix) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(dim * matrix.n_rows(), dim * matrix.n_rows());
-  for (int row = 0; row < matrix.n_rows(); ++row) {
-    for (int k = matrix.row_begin(row); k < matrix.row_end(row); ++k)
-      result.block<dim, dim>(dim * row, dim * matrix.column(k)) = matrix.block(k);
-  }
-  return result;
-}
-
-template <int dim>
-void check_forces() {
+void check_shell_forces() {
   const SurfaceMesh<dim> mesh = round_shell<dim>();
   for (const auto& [name, group] : kinds<dim>(mesh)) {
     SCOPED_TRACE(name);
-    const Nodes<dim> x = shaken<dim>(mesh.vertices, 1.1);
+    const Nodes<dim> x = shaken<dim>(mesh.vertices, 1.1, 0.02, 3);
     Nodes<dim> force, ignored;
     energy_of<dim>(*group, x, force);
     Point<dim> sum = Point<dim>::Zero();
@@ -92,8 +68,8 @@ void check_forces() {
   }
 }
 TEST(ShellElements, ForcesAreThoseOfTheEnergyAndHaveNoMomentum) {
-  check_forces<2>();
-  check_forces<3>();
+  check_shell_forces<2>();
+  check_shell_forces<3>();
 }
 
 template <int dim>
@@ -103,7 +79,7 @@ void check_matrices() {
   for (const auto& [name, group] : kinds<dim>(mesh)) {
     SCOPED_TRACE(name);
     for (const double stretch : {0.6, 1.2}) {
-      const Nodes<dim> x = shaken<dim>(mesh.vertices, stretch);
+      const Nodes<dim> x = shaken<dim>(mesh.vertices, stretch, 0.02, 3);
       NodeMatrix<dim> stiffness(n, {group->corners()}), damping = stiffness;
       const int n_clamped = group->add_stiffness(x, stiffness);
       if (name == "membrane" || name == "springs") {
@@ -114,9 +90,9 @@ void check_matrices() {
       const AngularVector<dim> turn = AngularVector<dim>::LinSpaced(1, 2);
       for (int v = 0; v < n; ++v)
         rigid.segment<dim>(dim * v) += rotate<dim>(turn, x[v]);
-      EXPECT_LE((dense(damping) * rigid).norm(), 1e-12);
-      EXPECT_LE((dense(stiffness) * shift).norm(), 1e-12);
-      for (const Eigen::MatrixXd& matrix : {dense(stiffness), dense(damping)}) {
+      EXPECT_LE((dense_blocks(damping) * rigid).norm(), 1e-12);
+      EXPECT_LE((dense_blocks(stiffness) * shift).norm(), 1e-12);
+      for (const Eigen::MatrixXd& matrix : {dense_blocks(stiffness), dense_blocks(damping)}) {
         EXPECT_LE((matrix - matrix.transpose()).norm(), 1e-13 * (1 + matrix.norm()));
         const Eigen::VectorXd eigenvalues = matrix.selfadjointView<Eigen::Lower>().eigenvalues();
         EXPECT_GE(eigenvalues.minCoeff(), -1e-12 * (1 + eigenvalues.maxCoeff()));
@@ -130,7 +106,7 @@ void check_matrices() {
       down[1][0] -= step;
       energy_of<dim>(*group, up, f_up);
       energy_of<dim>(*group, down, f_down);
-      const Eigen::MatrixXd k = dense(stiffness);
+      const Eigen::MatrixXd k = dense_blocks(stiffness);
       for (int v = 0; v < n; ++v) {
         const Point<dim> column = -(f_up[v] - f_down[v]) / (2 * step);
         EXPECT_LE((column - k.block<dim, 1>(dim * v, dim)).norm(), 1e-7);
@@ -221,10 +197,10 @@ template <int dim>
 void check_collapsed_hinges() {
   // Half of a shell is squeezed to nothing: what is left must stay finite, and balanced.
   const SurfaceMesh<dim> mesh = round_shell<dim>();
-  const auto group = bending_elements<dim>(mesh, sheet, true);
+  const auto group = bending_elements<dim>(mesh, sheet_material, true);
   for (const double squeeze : {0., 1e-12, 1e-5}) {
     SCOPED_TRACE(squeeze);
-    Nodes<dim> x = shaken<dim>(mesh.vertices, 1), force;
+    Nodes<dim> x = shaken<dim>(mesh.vertices, 1, 0.02, 3), force;
     for (auto& point : x)
       point[0] *= point[0] > 0 ? squeeze : 1;
     energy_of<dim>(*group, x, force);
@@ -240,7 +216,7 @@ void check_collapsed_hinges() {
     EXPECT_LT(sum.norm(), 1e-12 * largest);
     EXPECT_LT(torque.norm(), 1e-12 * largest);
     // Angles turn by pi within a thousandth of an edge at most.
-    EXPECT_LT(largest, 1e4 * pi * 100 * std::pow(sheet.thickness, 3));
+    EXPECT_LT(largest, 1e4 * pi * 100 * std::pow(sheet_material.thickness, 3));
   }
 }
 

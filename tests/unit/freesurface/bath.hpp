@@ -14,8 +14,6 @@ inline Communicator self() {
   return Teuchos::rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
 }
 
-inline constexpr double pi = 3.14159265358979323846;
-
 /// n cells along each side of a cube with open sides, from 0 to `length`.
 template <int dim>
 DomainDescription<dim> open_cube(int n, double length = 1) {

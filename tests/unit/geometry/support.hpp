@@ -9,8 +9,6 @@
 
 namespace lockstep::test {
 
-constexpr double pi = 3.14159265358979323846;
-
 template <int dim>
 SurfaceMesh<dim> moved(SurfaceMesh<dim> mesh, const Point<dim>& shift, double angle = 0) {
   Eigen::Matrix<double, dim, dim> rotation;

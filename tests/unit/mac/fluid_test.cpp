@@ -12,7 +12,7 @@ namespace lockstep::test {
 namespace {
 
 template <int dim>
-void project(MacFluid<dim>& fluid) {
+void make_divergence_free(MacFluid<dim>& fluid) {
   Vector rhs(fluid.pressure_map()), solution(fluid.pressure_map());
   fluid.divergence(rhs);
   if (!fluid.regions().has_dirichlet[0]) {
@@ -125,10 +125,10 @@ TEST(Fluid, AVortexAtRestInTheMeanStaysOneInAStep) {
   for (int step = 0; step < 4; ++step) {
     const double dt = 0.5 * fluid->smallest_length() / fluid->largest_speed();
     fluid->begin_prediction();
-    project(*fluid);
+    make_divergence_free(*fluid);
     fluid->advect(0, dt, no_surface<2>());
     fluid->add_forces(0, dt);
-    project(*fluid);
+    make_divergence_free(*fluid);
     Vector rhs(fluid->pressure_map());
     fluid->divergence(rhs);
     EXPECT_LT(rhs.normInf() * 32 * 32, 1e-9);
@@ -149,7 +149,7 @@ TEST(Fluid, AChannelFillsFromTheInflow) {
   for (const double end : {0.5, 2.0}) {
     fluid->begin_prediction();
     fluid->add_forces(end - 0.1, 0.1);
-    project(*fluid);
+    make_divergence_free(*fluid);
     fluid->accept();
     const double speed = std::min(end, 1.0);
     EXPECT_NEAR(fluid->largest_speed(), speed, 1e-8);
@@ -171,7 +171,7 @@ TEST(Fluid, AJetEntersThroughItsOpeningUntilItEnds) {
   for (const double end : {0.5, 2.0}) {
     fluid->begin_prediction();
     fluid->add_forces(end - 0.1, 0.1);
-    project(*fluid);
+    make_divergence_free(*fluid);
     fluid->accept();
     EXPECT_NEAR(fluid->momentum().linear[0], end < 1 ? 1000 * flux * (2 - 0.0625) : 0, 1e-5);
   }
@@ -205,7 +205,7 @@ TEST(Fluid, TheFlowThatCarriesFollowsRampsAndNoJumps) {
     fluid->advect(time, dt, no_surface<2>());
     fluid->revalidate(no_surface<2>());
     fluid->add_forces(time, dt);
-    project(*fluid);
+    make_divergence_free(*fluid);
     fluid->accept();
   }
 }

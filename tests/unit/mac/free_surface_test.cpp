@@ -81,7 +81,7 @@ TEST(FreeSurface, FacesOfAColumnByHand) {
 
 /// What the free faces gain is what the walls give: p = 0 at the surface gives nothing.
 template <int dim>
-void expect_impulses_telescope() {
+void expect_surface_impulses_telescope() {
   Case<dim> scene(cube<dim>(20), 0.05);
   scene.fluid.set("Density", 3.0);
   add_ball<dim>(scene, Point<dim>::Constant(0.3), 0.38);
@@ -98,8 +98,8 @@ void expect_impulses_telescope() {
   EXPECT_GT(given.linear.norm(), 0.01);
 }
 TEST(FreeSurface, ImpulsesTelescope) {
-  expect_impulses_telescope<2>();
-  expect_impulses_telescope<3>();
+  expect_surface_impulses_telescope<2>();
+  expect_surface_impulses_telescope<3>();
 }
 
 template <int dim>

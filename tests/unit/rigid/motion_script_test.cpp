@@ -6,7 +6,7 @@ namespace {
 
 using namespace test;
 
-constexpr const char* disc = "ball";
+constexpr const char* round_shape = "ball";
 const std::string radius = number("Radius", "0.2");
 
 template <int dim>
@@ -18,7 +18,7 @@ void expect_derivative(const MotionScript<dim>& script, double time) {
 }
 
 TEST(Script, ConstantVelocity) {
-  const auto b = body<3>(geometry(disc, radius) + motion("constant velocity") +
+  const auto b = body<3>(geometry(round_shape, radius) + motion("constant velocity") +
                          numbers("Velocity", "1, 2, 3") + numbers("Angular Velocity", "0, 0, 0.5"));
   EXPECT_FALSE(b.dynamic());
   EXPECT_EQ(b.mass, 0);
@@ -29,7 +29,7 @@ TEST(Script, ConstantVelocity) {
 
 TEST(Script, Sinusoid) {
   const auto b = body<2>(
-      geometry(disc, radius) +
+      geometry(round_shape, radius) +
       motion("sinusoid", numbers("Amplitude", "0.5, 0") + number("Angular Amplitude", "0.25") +
                              number("Frequency", "0.5") + number("Phase", "0.2")));
   // At 0.5 - 0.2/pi seconds the phase is a quarter period.
@@ -44,7 +44,7 @@ TEST(Script, TableHitsItsPointsWithoutOvershootAndRestsOutside) {
   const std::string rows = numbers("Times", "1, 2, 4, 5") +
                            numbers("Displacements", "0,0,0, 0,1,0, 0,1,0, 3,1,0") +
                            numbers("Angles", "0, 0.5, 0.5, -1") + numbers("Axis", "0, 2, 0");
-  const auto script = body<3>(geometry(disc, radius) + motion("table", rows)).script;
+  const auto script = body<3>(geometry(round_shape, radius) + motion("table", rows)).script;
   EXPECT_EQ(script(2).displacement, Point<3>(0, 1, 0));
   EXPECT_LE((script(3).displacement - Point<3>(0, 1, 0)).norm(), 1e-14);
   EXPECT_LE((script(5).turn - AngularVector<3>(0, -1, 0)).norm(), 1e-14);

@@ -5,7 +5,6 @@ namespace lockstep::test {
 namespace {
 
 using test::followed;
-using test::pi;
 
 TEST(Rotation, LogUndoesExp) {
   const Point<3> axis = Point<3>(1, -2, 0.5).normalized();

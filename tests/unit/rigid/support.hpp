@@ -10,7 +10,6 @@
 
 namespace lockstep::test {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double grid_spacing = 0.1;
 
 inline std::string motion(const std::string& type, const std::string& content = "") {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Thyra_VectorStdOps.hpp>
-#include <Tpetra_Core.hpp>
 
 #include "base/errors.hpp"
 #include "conformance/saddle_problem.hpp"
@@ -14,14 +13,11 @@
 #include "solve/merge.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "solve/thyra_vectors.hpp"
+#include "support/world.hpp"
 
 namespace lockstep::test {
 
 namespace {
-
-Communicator world() {
-  return Tpetra::getDefaultComm();
-}
 
 BlockVector random_vector(const SaddleProblem& problem, int seed) {
   BlockVector x = problem.zero();

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Tpetra_Core.hpp>
 #include <algorithm>
 #include <limits>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "conformance/saddle_problem.hpp"
 #include "linear/matrix_rows.hpp"
 #include "strategies/register_strategies.hpp"
+#include "support/world.hpp"
 #include "unit/strategies/steepest_descent.hpp"
 
 namespace lockstep::test {
@@ -18,10 +18,6 @@ namespace lockstep::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-Communicator world() {
-  return Tpetra::getDefaultComm();
-}
 
 std::unique_ptr<SolverStrategy> make(const std::string& name,
                                      const ParameterList& list = ParameterList()) {
