@@ -33,6 +33,10 @@ FORBIDDEN = {
 CLASS = re.compile(r"^class (\w+)([^;{]*)\{(.*?)^\};", re.MULTILINE | re.DOTALL)
 MOST_PURE = 12  # functions that a new plug-in must write, its name among them
 MOST_FILES = 39  # of a folder of src, so that its room can be seen at a glance
+UNNAMED = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
+# Of what such a namespace defines at the start of a line: constants and types by name, functions by what they take, too.
+CONSTANT_OR_TYPE = re.compile(r"^(?:(?:struct|class|enum class|enum)\s+(\w+)[^;{]*\{|(?:const|constexpr)\b[^=({\n]*?(\w+)(?:\[\w*\])?\s*[={])", re.MULTILINE)
+FUNCTION = re.compile(r"^(?!const\b[^(]*=)[A-Za-z][^;={}()#]*?\b(\w+)\(([^;{}]*?)\)(?: const)? \{", re.MULTILINE)
 CONSOLE = re.compile(r"\bstd::(cout|cerr)\b")
 
 
@@ -106,6 +110,29 @@ def folder_violations(root):
             yield f"{folder.relative_to(root)}: {n_files} files, more than {MOST_FILES}: a room of its own for some of them"
 
 
+def unnamed(text):
+    """What the unnamed namespaces of a file define."""
+    for part in UNNAMED.findall(text):
+        for match in CONSTANT_OR_TYPE.finditer(part):
+            yield match.group(1) or match.group(2)
+        for name, parameters in FUNCTION.findall(part):
+            types = [re.sub(r"\s*\w+$", "", parameter.strip()) for parameter in parameters.split(",")]
+            yield f"{name}({', '.join(types)})"
+
+
+def clashes(root):
+    """A room may be compiled as one (LOCKSTEP_UNITY), so that no two of its files may define the same."""
+    homes = {}
+    for path in source_files(root, {".cpp"}, ["src", "packages", "tests/unit"]):
+        parts = path.relative_to(root).parts
+        room = parts[:3] if parts[0] == "tests" else parts[:2]
+        for name in set(unnamed(path.read_text())):
+            homes.setdefault((room, name), []).append("/".join(parts))
+    for (_, name), files in homes.items():
+        if len(files) > 1:
+            yield f"{' and '.join(files)}: both define {name}: share it, or call one of them something else"
+
+
 def violations(root):
     root = Path(root)
     packages = rooms(root, "packages")
@@ -114,6 +141,7 @@ def violations(root):
     for path in sorted((root / "src" / "interfaces").glob("*.hpp")):
         yield from interface_violations(path, root)
     yield from folder_violations(root)
+    yield from clashes(root)
     # In a worktree .git is a file that holds a path.
     top = [path for path in sorted(root.iterdir())
            if path.is_file() and path.suffix in TEXT_SUFFIXES and path.name != ".git"]

@@ -40,6 +40,18 @@ class Rules(unittest.TestCase):
             with self.subTest(text=text):
                 self.assertEqual(len(self.found({"src/base/a.cpp": f"// {text}\n"})), 1)
 
+    def test_clashes(self):
+        def in_unnamed(text):
+            return f"namespace lockstep {{\nnamespace {{\n{text}\n}}  // namespace\n}}\n"
+
+        one = in_unnamed("constexpr int reach = 3;\n\nint twice(int i) {\n  return 2 * i;\n}")
+        for text, n_clashes in [("constexpr double reach = 1e-3;", 1), ("struct reach {\n  int i;\n};", 1),
+                                ("int twice(int number) {\n  return number + number;\n}", 1),
+                                ("double twice(double x) {\n  return 2 * x;\n}", 0), ("  reach = 3;", 0)]:
+            with self.subTest(text=text):
+                self.assertEqual(len(self.found({"src/base/a.cpp": one, "src/base/b.cpp": in_unnamed(text)})), n_clashes)
+                self.assertEqual(self.found({"src/base/a.cpp": one, "src/linear/b.cpp": in_unnamed(text)}), [])
+
     def test_full_folders(self):
         files = {f"src/base/a{i}.cpp": "" for i in range(39)}
         self.assertEqual(self.found(files), [])

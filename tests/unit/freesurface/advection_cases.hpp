@@ -5,6 +5,12 @@
 
 namespace lockstep::test {
 
+inline ParameterList uncorrected() {
+  ParameterList list;
+  list.set("Volume Correction", "none");
+  return list;
+}
+
 /// What a body of liquid has come to in a flow that should bring it back: parts of its volume.
 struct Return {
   double loss = 0;    ///< of volume

@@ -7,12 +7,6 @@
 namespace lockstep::test {
 namespace {
 
-ParameterList uncorrected() {
-  ParameterList list;
-  list.set("Volume Correction", "none");
-  return list;
-}
-
 TEST(Advection, ZalesaksDiscKeepsItsSlot) {
   const Return plain = zalesak("particle level set", uncorrected());
   EXPECT_LT(std::abs(plain.loss), 0.036);

@@ -6,12 +6,6 @@
 namespace lockstep::test {
 namespace {
 
-ParameterList uncorrected() {
-  ParameterList list;
-  list.set("Volume Correction", "none");
-  return list;
-}
-
 TEST(LargeAdvection, TheVortexGivesTheDiscBack) {
   const Return plain = vortex("particle level set", uncorrected(), 128);
   EXPECT_LT(std::abs(plain.loss), 0.017);
