@@ -72,6 +72,8 @@ def show_fluid(job, view):
     bar.Title, bar.ComponentTitle = job["field"], "magnitude" if job["is_vector"] else ""
     bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.9, 0.35], 0.3
     bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.2g", "%.2g"
+    # Words are as large as in a picture of the usual size, so that none is cut off.
+    bar.TitleFontSize = bar.LabelFontSize = bar.ScalarBarThickness = max(round(16 * job["size"][1] / 960), 6)
     bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
     display.SetScalarBarVisibility(view, not is_smoke(job))
 
