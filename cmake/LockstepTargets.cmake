@@ -42,6 +42,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   list(APPEND LOCKSTEP_WARNINGS -Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
        -Wno-stringop-overread)
 endif()
+# Open MPI's C++ classes, which nothing here uses, would be compiled into every object.
+target_compile_definitions(lockstep_flags INTERFACE "$<BUILD_INTERFACE:OMPI_SKIP_MPICXX>")
 # Rather memory than time: the compiler looks for what it can forget when it holds a gigabyte.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(--param=ggc-min-heapsize=1000000)
