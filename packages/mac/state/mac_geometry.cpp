@@ -147,17 +147,27 @@ void open_cut_cells(const MacDomain<dim>& domain, const OpenFractions<dim>& frac
 }
 
 /// The centroid of the open part of a face; or, where that lies in a solid (its tip is in the
-/// face), a place beside an edge of the face.
+/// face), a place beside the edge of the face from which one sees farthest towards its centre. That
+/// names no axis and no end, so that a scene and its mirror image choose alike.
 template <int dim>
 Point<dim> place_in_fluid(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
   Point<dim> place = volume.open_center;
-  for (int k = 1; k < dim && surface.inside(place) >= 0; ++k) {
+  if (surface.inside(place) < 0)
+    return place;
+  double farthest = 0;
+  for (int k = 1; k < dim; ++k) {
     const int across = (volume.direction + k) % dim;
     for (const double end : {0.49, -0.49}) {
       const Point<dim> edge =
           volume.center + end * volume.box.sizes()[across] * Point<dim>::Unit(across);
-      if (surface.inside(edge) < 0)
+      if (surface.inside(edge) >= 0)
+        continue;
+      const auto hit = surface.first_hit(edge, volume.center);
+      const double sight = ((hit ? hit->position : volume.center) - edge).norm();
+      if (sight > farthest) {
+        farthest = sight;
         place = edge;
+      }
     }
   }
   return place;
