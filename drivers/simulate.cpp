@@ -146,6 +146,9 @@ int run(int argc, char** argv, const Communicator& comm) {
     arguments.run.dump_system =
         parse_dump_request(arguments.dump_system[0], arguments.dump_system[1]);
   }
+  check_input(
+      arguments.run.restart_file.empty() || (!arguments.validate && !arguments.explain),
+      "--validate and --explain look at a scene before its first step: leave out --restart.");
   if (!steps.empty())
     arguments.run.steps = parse_count("--steps", steps);
   if (arguments.run.output_directory.empty())

@@ -182,8 +182,8 @@ int run(int argc, char** argv, const Communicator& comm) {
   app.add_option("solvers", arguments.solver_files, "solver files (xml-params/solvers)")
       ->required();
   app.add_option("--output", arguments.output_directory, "folder for solvers.csv; default: none");
-  app.add_option("--tolerance", arguments.tolerance,
-                 "residual to reach; default: that of each solver file");
+  const auto* tolerance = app.add_option("--tolerance", arguments.tolerance,
+                                         "residual to reach; default: that of each solver file");
   app.add_option("--direct-limit", arguments.most_direct_unknowns,
                  "no error is computed for systems with more pressure unknowns");
   try {
@@ -193,6 +193,11 @@ int run(int argc, char** argv, const Communicator& comm) {
       return is_root(comm) ? app.exit(error) : 0;
     throw InputError(shortened(error.what(), 200) + " (see solve --help).");
   }
+
+  check_input(tolerance->count() == 0 || (arguments.tolerance > 0 && arguments.tolerance < 1),
+              "--tolerance {} must lie between 0 and 1.", arguments.tolerance);
+  check_input(arguments.most_direct_unknowns >= 0, "--direct-limit {} must not be negative.",
+              arguments.most_direct_unknowns);
 
   // 2. The strategies to try, the system, its exact solution.
   StrategyRegistry strategies("solver strategy");

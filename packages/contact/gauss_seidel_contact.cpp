@@ -106,9 +106,9 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   bool& acted = acted_[phase == ContactPhase::position ? 0 : 1];
   const bool acts = problem.prepare(replicated(solids, *solids.velocity()), given, acted);
   acted = acts;
-  report.deepest_overlap = problem.deepest_overlap();
   if (!acts)
     return report;
+  report.deepest_overlap = problem.deepest_overlap();
   const InverseMass& inverse_mass = inverse_mass_of(solids);
   Mobility<dim> mobility =
       response ? Mobility<dim>(inverse_mass, solids, response()) : Mobility<dim>(inverse_mass);

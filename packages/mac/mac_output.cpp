@@ -94,9 +94,7 @@ void MacFluid<dim>::add_surfaces(std::vector<SurfaceFrame>& surfaces) const {
   for (const Point<dim>& vertex : mine.vertices)
     vertices.insert(vertices.end(), vertex.data(), vertex.data() + dim);
   const Communicator& comm = domain_.grid.comm();
-  const auto n_mine = static_cast<GlobalIndex>(mine.vertices.size());
-  GlobalIndex n_before = 0;
-  MPI_Exscan(&n_mine, &n_before, 1, MPI_LONG_LONG, MPI_SUM, raw_communicator(comm));
+  const GlobalIndex n_before = exclusive_sum(comm, static_cast<GlobalIndex>(mine.vertices.size()));
   std::vector<GlobalIndex> simplices;
   for (const auto& simplex : mine.simplices)
     for (const int vertex : simplex)

@@ -121,7 +121,7 @@ std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strate
   for (int i = 0; i < m; ++i) {
     const int k = answers[i].pocket;
     const GasPocket& pocket = gas.pockets[k];
-    wanted[i] = (pocket.keeps_volume ? pocket.missing / dt : 0) - rates[k] -
+    wanted[i] = (pocket.keeps_volume ? pocket.missing / gas.step_dt : 0) - rates[k] -
                 gas.conductance[k] * pressure[k];
     for (int j = 0; j < m; ++j)
       matrix(i, j) = answers[j].rates[k] + (i == j ? compliance[i] : 0);

@@ -11,7 +11,8 @@ namespace lockstep {
 struct GasProblem {
   std::vector<GasPocket> pockets;
   std::vector<double> conductance;  ///< GasFluid::gas_conductance
-  double dt = 0;                    ///< [s]
+  double dt = 0;                    ///< of p̂ [s]
+  double step_dt = 0;               ///< over which the solution moves the pockets' sides [s]
   /// False: only pockets that keep their volume have a pressure (F2).
   bool with_springs = true;
   /// rhs += what these p̂ of the pockets push. Collective.

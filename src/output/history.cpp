@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
@@ -51,6 +52,24 @@ void HistoryTable::start() {
   });
 }
 
+void HistoryTable::check_names(const std::string& line) const {
+  check_input(line == names_of(columns_),
+              "'{}' has other columns than this run would write: choose another --output.", path_);
+}
+
+void HistoryTable::check_columns() const {
+  on_root(comm_, [&] {
+    std::ifstream file(path_);
+    for (std::string line; std::getline(file, line);) {
+      if (line.empty() || line.front() == '#')
+        continue;
+      if (!file.eof())  // a line without an end is one that was torn
+        check_names(line);
+      return;
+    }
+  });
+}
+
 void HistoryTable::resume(long long step) {
   on_root(comm_, [&] {
     const bool exists = std::filesystem::exists(path_);
@@ -81,9 +100,7 @@ std::string HistoryTable::kept_rows(const std::string& text, long long step) con
     if (line.empty() || line.front() == '#')
       continue;
     if (!names_seen) {
-      check_input(line == names_of(columns_),
-                  "'{}' has other columns than this run would write: choose another --output.",
-                  path_);
+      check_names(line);
       names_seen = true;
       continue;
     }

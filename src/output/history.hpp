@@ -33,8 +33,10 @@ class HistoryTable {
 
   /// Begins an empty table.
   void start();
+  /// Throws InputError if there is a file with other columns; writes nothing.
+  void check_columns() const;
   /// Continues a table: drops the rows later than `step`, and a last row that was torn. A missing
-  /// file is begun. Throws InputError if the file has other columns.
+  /// file is begun. Throws InputError as `check_columns`.
   void resume(long long step);
 
   const std::vector<HistoryColumn>& columns() const { return columns_; }
@@ -47,6 +49,7 @@ class HistoryTable {
  private:
   std::string header() const;
   std::string format_row(const std::vector<HistoryValue>& values) const;
+  void check_names(const std::string& line) const;
   std::string kept_rows(const std::string& text, long long step) const;
   void append_text(const std::string& text);
   void open_for_appending();

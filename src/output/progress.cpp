@@ -51,10 +51,12 @@ std::string format_duration(double seconds) {
   return fmt::format("{}d{:02}h", days, hours % 24);
 }
 
-double remaining_seconds(double wall_seconds_so_far, double fraction_done) {
-  if (fraction_done <= 0.0)
+double remaining_seconds(double wall_seconds_so_far, double fraction_at_begin,
+                         double fraction_done) {
+  const double done = fraction_done - fraction_at_begin;
+  if (done <= 0.0)
     return -1.0;
-  return wall_seconds_so_far * std::max(0.0, 1.0 - fraction_done) / fraction_done;
+  return wall_seconds_so_far * std::max(0.0, 1.0 - fraction_done) / done;
 }
 
 std::string progress_line(const StepProgress& p) {

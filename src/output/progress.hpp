@@ -65,8 +65,10 @@ struct StepProgress {
 std::string progress_line(const StepProgress& progress);
 
 /// Wall time still needed if it goes on like this; negative (unknown) before anything is done.
-/// fraction_done: 0 to 1, of the simulated time or of the steps, whichever ends the run first.
-double remaining_seconds(double wall_seconds_so_far, double fraction_done);
+/// fraction_done: 0 to 1, of the simulated time or of the steps, whichever ends the run first; at
+/// the begin above 0 after a restart.
+double remaining_seconds(double wall_seconds_so_far, double fraction_at_begin,
+                         double fraction_done);
 
 /// 4 significant digits with s, ms, us or ns.
 std::string format_seconds(double seconds);

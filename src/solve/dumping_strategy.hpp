@@ -21,6 +21,8 @@ DumpRequest parse_dump_request(const std::string& which, const std::string& file
 class DumpingStrategy : public SolverStrategy {
  public:
   DumpingStrategy(std::unique_ptr<SolverStrategy> strategy, const DumpRequest& request);
+  /// True from the solve that was asked for on.
+  bool has_written() const { return has_written_; }
   std::string name() const override { return strategy_->name(); }
   void save(CheckpointWriter& checkpoint) const override { strategy_->save(checkpoint); }
   void load(const CheckpointReader& checkpoint) override { strategy_->load(checkpoint); }

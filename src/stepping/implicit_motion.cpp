@@ -128,6 +128,7 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
     at = descent.at(tolerable_part(descent));
     if (k == most_iterations) {
       settled.velocity = at;
+      settled.is_settled = false;
       return settled;
     }
     const RCP<const Vector> before = solids.explicit_momentum(context.time, dt);

@@ -12,6 +12,8 @@ struct SettledMotion {
   RCP<Vector> velocity;          ///< with contact
   ContactReport<dim> contact;    ///< of the last linearisation; without contact empty
   bool linearised_anew = false;  ///< D is another one than before
+  bool is_settled =
+      true;  ///< false: the forces are not yet those of this velocity, nor the contact
 };
 
 /// (M_S - dt D)^-1 with locked rows of the identity. Collective.

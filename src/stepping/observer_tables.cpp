@@ -31,13 +31,16 @@ std::vector<HistoryColumn> table_columns(const std::vector<ObservedColumn>& obse
   return columns;
 }
 
-std::string attribute_of(const std::string& name) {
-  return "last look of " + name;
+/// Of a checkpoint what belongs to one observer: two of one type would take the same names, and
+/// one of another type is another one.
+std::string key_of(const std::string& name, const std::string& type) {
+  return type + " " + name;
 }
-
-/// Of a checkpoint what belongs to one observer: two of one type would take the same names.
-std::string group_of(const std::string& name) {
-  return "observers/" + name;
+std::string attribute_of(const std::string& key) {
+  return "last look of " + key;
+}
+std::string group_of(const std::string& key) {
+  return "observers/" + key;
 }
 
 }  // namespace
@@ -52,7 +55,8 @@ ObserverTables<dim>::ObserverTables(const ObserverRegistry<dim>& registry,
     Watch watch;
     watch.name = name;
     watch.interval = list.get<double>("Interval");
-    watch.observer = registry.create(list.get<std::string>("Type"), list);
+    watch.type = list.get<std::string>("Type");
+    watch.observer = registry.create(watch.type, list);
     watch.table = std::make_unique<HistoryTable>(comm, directory + "/" + name + ".csv",
                                                  table_columns(watch.observer->columns()));
     watches_.push_back(std::move(watch));
@@ -98,6 +102,12 @@ void ObserverTables<dim>::start(long long step, const RunView<dim>& run) {
 }
 
 template <int dim>
+void ObserverTables<dim>::check_columns() const {
+  for (const Watch& watch : watches_)
+    watch.table->check_columns();
+}
+
+template <int dim>
 void ObserverTables<dim>::resume(long long step) {
   for (Watch& watch : watches_)
     watch.table->resume(step);
@@ -116,24 +126,26 @@ void ObserverTables<dim>::observe(long long step, const RunView<dim>& run) {
 template <int dim>
 void ObserverTables<dim>::save(CheckpointWriter& checkpoint) const {
   for (const Watch& watch : watches_) {
-    checkpoint.file().create_group(group_of(watch.name));
-    checkpoint.file().enter(group_of(watch.name));
+    const std::string key = key_of(watch.name, watch.type);
+    checkpoint.file().create_group(group_of(key));
+    checkpoint.file().enter(group_of(key));
     watch.observer->save(checkpoint);
     checkpoint.file().enter("");
-    checkpoint.file().write_attribute("/", attribute_of(watch.name), watch.last_time);
+    checkpoint.file().write_attribute("/", attribute_of(key), watch.last_time);
   }
 }
 
 template <int dim>
 void ObserverTables<dim>::load(CheckpointReader& checkpoint) {
   for (Watch& watch : watches_) {
+    const std::string key = key_of(watch.name, watch.type);
     // One that is new looks after the next step.
-    if (!checkpoint.file().has_attribute("/", attribute_of(watch.name)))
+    if (!checkpoint.file().has_attribute("/", attribute_of(key)))
       continue;
-    checkpoint.file().enter(group_of(watch.name));
+    checkpoint.file().enter(group_of(key));
     watch.observer->load(checkpoint);
     checkpoint.file().enter("");
-    watch.last_time = checkpoint.file().read_attribute<double>("/", attribute_of(watch.name));
+    watch.last_time = checkpoint.file().read_attribute<double>("/", attribute_of(key));
   }
 }
 

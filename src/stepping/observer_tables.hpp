@@ -21,6 +21,8 @@ class ObserverTables {
   bool want_energy() const;  ///< any of them. Local.
   /// Begins the tables with what is seen before the first step. Collective, like all below.
   void start(long long step, const RunView<dim>& run);
+  /// Throws InputError if tables that are there have other columns.
+  void check_columns() const;
   /// Continues them after `step`.
   void resume(long long step);
   /// After a step; observers whose interval has not passed yet look away.
@@ -34,7 +36,7 @@ class ObserverTables {
 
  private:
   struct Watch {
-    std::string name;
+    std::string name, type;
     double interval = 0;        ///< [s]
     double last_time = -1e300;  ///< of its last look [s]
     std::unique_ptr<Observer<dim>> observer;

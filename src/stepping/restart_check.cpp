@@ -16,13 +16,14 @@ namespace lockstep {
 namespace {
 
 const char* const help =
-    "Restart with the scene and the --set of the run that wrote it; only \"Title\", \"Time\", "
-    "\"Solver\", \"Output\", \"Observers\" and \"View\" may differ.";
+    "Restart with the scene and the --set of the run that wrote it; only \"Title\", \"Time\" (but "
+    "for its \"Start\"), \"Solver\", \"Output\", \"Observers\" and \"View\" may differ.";
 
-/// A run may go on to another end, with other steps, solvers and outputs.
+/// A run may go on to another end, with other steps, solvers and outputs. But bodies stand, joints
+/// are anchored and pinned nodes begin to turn where their scripts have them at the start.
 bool may_differ(const std::string& path) {
-  return path == "Title" || path == "Time" || path == "Solver" || path == "Output" ||
-         path == "Observers" || path == "View";
+  return path == "Title" || (path.rfind("Time/", 0) == 0 && path != "Time/Start") ||
+         path == "Solver" || path == "Output" || path == "Observers" || path == "View";
 }
 
 /// How two entries differ, as the end of a sentence; "" if they do not.

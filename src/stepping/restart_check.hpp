@@ -13,9 +13,9 @@ std::string checksums_of_files(const ParameterList& scene, const std::string& sc
                                const Communicator& comm);
 
 /// Holds a scene against that of the checkpoint that it is to be continued from. Throws InputError
-/// with the name of the first parameter or file that differs; what stands in "Title", "Time",
-/// "Solver", "Output", "Observers" and "View" may. `files` is what checksums_of_files gives for the
-/// scene.
+/// with the name of the first parameter or file that differs; what stands in "Title", "Time" (but
+/// for its "Start"), "Solver", "Output", "Observers" and "View" may. `files` is what
+/// checksums_of_files gives for the scene.
 void check_same_scene(const ParameterList& scene, const std::string& files,
                       const CheckpointHeader& header, const std::string& checkpoint);
 

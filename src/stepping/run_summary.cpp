@@ -12,17 +12,21 @@ namespace lockstep {
 
 namespace {
 
-double median(std::vector<int> values) {
-  if (values.empty())
-    return 0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// The upper one if there are two.
+int median(const std::map<int, long>& counts) {
+  long n = 0, passed = 0;
+  for (const auto& [value, count] : counts)
+    n += count;
+  for (const auto& [value, count] : counts) {
+    passed += count;
+    if (2 * passed > n)
+      return value;
+  }
+  return 0;
 }
 
-nlohmann::ordered_json iteration_summary(const std::vector<int>& values) {
-  return {{"median", median(values)},
-          {"max", values.empty() ? 0 : *std::max_element(values.begin(), values.end())}};
+nlohmann::ordered_json iteration_summary(const std::map<int, long>& counts) {
+  return {{"median", median(counts)}, {"max", counts.empty() ? 0 : counts.rbegin()->first}};
 }
 
 }  // namespace
@@ -59,9 +63,9 @@ nlohmann::ordered_json unfinished_summary(const std::string& status, const std::
 }
 
 void RunSummary::count(const SolveReport& s1, const SolveReport& f2, const SolveReport& s2) {
-  s1_iterations_.push_back(s1.iterations);
-  f2_iterations_.push_back(f2.iterations);
-  s2_iterations_.push_back(s2.iterations);
+  ++s1_iterations_[s1.iterations];
+  ++f2_iterations_[f2.iterations];
+  ++s2_iterations_[s2.iterations];
   for (const SolveReport* solve : {&s1, &f2, &s2}) {
     worst_residual_ = std::max({worst_residual_, solve->pressure_residual, solve->solid_residual});
     preconditioner_builds_ += solve->preconditioner_builds;

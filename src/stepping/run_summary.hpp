@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -50,7 +51,8 @@ class RunSummary {
   /// nan, of what is not audited, stays.
   static double larger(double value, double largest) { return value <= largest ? largest : value; }
 
-  std::vector<int> s1_iterations_, f2_iterations_, s2_iterations_;
+  using Counts = std::map<int, long>;  ///< by their number of iterations: solves
+  Counts s1_iterations_, f2_iterations_, s2_iterations_;
   double largest_momentum_error_ = 0, largest_angular_error_ = 0, worst_residual_ = 0;
   int preconditioner_builds_ = 0, preconditioner_reuses_ = 0;
   long stored_nonzeros_ = 0;

@@ -42,6 +42,14 @@ void RunTables<dim>::start() {
 }
 
 template <int dim>
+void RunTables<dim>::check_columns() const {
+  history_.check_columns();
+  bodies_.check_columns();
+  if (joints_)
+    joints_->check_columns();
+}
+
+template <int dim>
 void RunTables<dim>::resume(long long step) {
   history_.resume(step);
   bodies_.resume(step);

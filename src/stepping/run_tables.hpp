@@ -18,6 +18,8 @@ class RunTables {
   RunTables(const Communicator& comm, const std::string& directory, const LiquidFluid<dim>* liquid,
             bool with_joints);
   void start();
+  /// Throws InputError if tables that are there have other columns.
+  void check_columns() const;
   void resume(long long step);
   /// Collective. `names` and states as the SolidSystem gives them.
   void append(long long step, const StepReport<dim>& report,

@@ -66,8 +66,10 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
   scene_options_.time.fixed_step = even_step(scene_options_.time);
   check_time_resolution(scene_options_.time);
   if (options.dump_system) {
-    components_.strategy =
+    auto dumping =
         std::make_unique<DumpingStrategy>(std::move(components_.strategy), *options.dump_system);
+    dumping_ = dumping.get();
+    components_.strategy = std::move(dumping);
   }
   ScopedPhase phase(timers_, "start");
   scene_options_.stepper.energy_book = observers_.want_energy();
@@ -129,9 +131,13 @@ double Simulation<dim>::fraction_done() const {
 template <int dim>
 void Simulation<dim>::begin_outputs() {
   files_ = checksums_of_files(scene_, options_.scene_file, comm_);
-  // A checkpoint that does not fit must not leave anything behind.
-  if (!options_.restart_file.empty())
+  // What does not fit must not leave anything behind, nor take anything away.
+  if (!options_.restart_file.empty()) {
     load_checkpoint();
+    tables_.check_columns();
+    observers_.check_columns();
+  }
+  fraction_at_begin_ = fraction_done();
   create_output_directory(comm_, options_.output_directory);
   record_input(comm_, options_.output_directory, options_.scene_file, to_xml(scene_));
   header_ = run_header(comm_, options_.command_line);
@@ -304,7 +310,8 @@ void Simulation<dim>::write_rows() {
     observers_.observe(step_, view(states));
   }
   StepProgress progress = progress_of<dim>(step_, *report_, step_seconds_);
-  progress.remaining_seconds = remaining_seconds(seconds_since(start_), fraction_done());
+  progress.remaining_seconds =
+      remaining_seconds(seconds_since(start_), fraction_at_begin_, fraction_done());
   log_.normal("{}", progress_line(progress));
 }
 
@@ -367,6 +374,10 @@ void Simulation<dim>::end_outputs(double wall_seconds) {
   write_summary(comm_, options_.output_directory,
                 summary_.json(header_, facts, timers_.report(comm_), comm_));
   log_.normal("{}", timing_table(timers_.report(comm_)));
+  if (dumping_ && !dumping_->has_written())
+    log_.warning("--dump-system: no step solved {}:{}, and '{}' is not written.",
+                 options_.dump_system->step, options_.dump_system->solve,
+                 options_.dump_system->file);
   if (signal_ != 0) {
     log_.normal("Stopped by signal {} after step {}; the checkpoint in {} continues the run.",
                 signal_, step_, options_.output_directory);

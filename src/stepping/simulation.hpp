@@ -103,13 +103,15 @@ class Simulation {
   FrameWriter frames_;
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
-  bool warned_of_viscous_step_ = false, warned_of_stretch_ = false;
+  bool warned_of_viscous_step_ = false, warned_of_stretch_ = false, warned_of_unsettled_ = false;
   std::vector<char> warned_of_watch_;
   double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
-  std::optional<StepReport<dim>> report_;  ///< of the last step
-  double step_seconds_ = 0;                ///< it took so long
-  int signal_ = 0;                         ///< that ended the run
-  bool failed_ = false;                    ///< what is in memory is of no use
+  double fraction_at_begin_ = 0;              ///< of the run, done before this program
+  const DumpingStrategy* dumping_ = nullptr;  ///< of --dump-system; `components_` owns it
+  std::optional<StepReport<dim>> report_;     ///< of the last step
+  double step_seconds_ = 0;                   ///< it took so long
+  int signal_ = 0;                            ///< that ended the run
+  bool failed_ = false;                       ///< what is in memory is of no use
   std::chrono::steady_clock::time_point start_;
   RunSummary summary_;
   nlohmann::ordered_json header_;

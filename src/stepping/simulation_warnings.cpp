@@ -43,6 +43,14 @@ void Simulation<dim>::warn() {
         "unless what holds it pulls it apart. Later steps like this one are not told.",
         step_, 1 + report.stretch_beyond_limit);
   }
+  if (!report.is_settled && !warned_of_unsettled_) {
+    warned_of_unsettled_ = true;
+    log_.warning(
+        "Step {}: soft solids move so far that the search for where their implicit forces hold "
+        "them ended before they agreed; momentum is kept, the shape is not that of these forces. "
+        "Shorter steps help. Later steps like this one are not told.",
+        step_);
+  }
   // Up to here the drag of a disc two cells above a wall is right to 0.1 %.
   constexpr double most = 10;
   if (warned_of_viscous_step_ || report.viscous_number <= most * (1 + 1e-9) ||

@@ -35,7 +35,8 @@ struct StepReport {
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]
   std::optional<EnergyBook> energy;  ///< if it was asked for
   double fluid_volume = 0;
-  std::optional<LiquidReport> liquid;               ///< if it has a free surface
+  std::optional<LiquidReport> liquid;  ///< if it has a free surface
+  bool is_settled = true;  ///< implicit forces of solids are those of where they move to
   GlobalIndex n_clamped_elements = 0;               ///< see SolidOutput
   double stretch_beyond_limit = 0;                  ///< the same
   std::vector<Momentum<dim>> hydrodynamic_impulse;  ///< per solid over dt, angular about the origin

@@ -19,10 +19,11 @@ double wanted_step(const TimeOptions& time, double suggested) {
 }
 
 double step_to_end(const TimeOptions& time, double now, double wanted) {
+  constexpr double drift = 1e-6;  // of a step: what times added up 1e5 times and more are off by
   const double left = time.end - now;
-  if (wanted >= left * (1 - 1e-9))
+  if (left <= wanted * (1 + drift))
     return left;
-  return left < 2 * wanted * (1 - 1e-9) ? left / 2 : wanted;
+  return left < 2 * wanted * (1 - drift) ? left / 2 : wanted;
 }
 
 }  // namespace lockstep

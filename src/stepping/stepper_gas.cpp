@@ -45,7 +45,8 @@ void Stepper<dim>::solve_coupled(const StepContext<dim>& context, const BlockSys
   const Reduction& constraints = context.constraints;
   const auto& solids = *components_.solids;
   const int n = static_cast<int>(fluid.gas_pockets().size());
-  GasProblem gas{fluid.gas_pockets(), fluid.gas_conductance(), context.dt, true, {}, {}};
+  GasProblem gas{
+      fluid.gas_pockets(), fluid.gas_conductance(), context.dt, context.step_dt, true, {}, {}};
   gas.push = [&](const std::vector<double>& pressure, BlockVector& rhs) {
     fluid.add_gas_push(pressure, *rhs.pressure);
     if (rhs.solid.is_null())
@@ -93,7 +94,7 @@ void Stepper<dim>::solve_advection(double dt, const std::vector<double>& effecti
   GasFluid<dim>& fluid = *sides_.gas_fluid;
   GasCoupling<dim>& coupling = *sides_.gas_coupling;
   const int n = static_cast<int>(fluid.gas_pockets().size());
-  GasProblem gas{fluid.gas_pockets(), fluid.gas_conductance(), dt, false, {}, {}};
+  GasProblem gas{fluid.gas_pockets(), fluid.gas_conductance(), dt, dt, false, {}, {}};
   for (GasPocket& pocket : gas.pockets)
     pocket.pressure = 0;  // u^n has felt it
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {

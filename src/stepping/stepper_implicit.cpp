@@ -82,7 +82,8 @@ CoupledSolution Stepper<dim>::solve_settled(const StepContext<dim>& context,
   CoupledSolution solution = solve_newton(context, momentum, report.s2, report.incompatibility_s2);
   if (!coupled() || !solids.has_implicit_forces())
     return solution;
-  for (int k = 0; k < most_repeats && !is_settled(solids, context.dt, *solution.velocity); ++k) {
+  int k = 0;
+  for (; k < most_repeats && !is_settled(solids, context.dt, *solution.velocity); ++k) {
     settle_motion<dim>(solids, nullptr, context, {}, *solution.velocity, *solution.velocity,
                        *momentum);
     system_.forget_solid_block();
@@ -91,6 +92,8 @@ CoupledSolution Stepper<dim>::solve_settled(const StepContext<dim>& context,
                      report.incompatibility_s2, &solution.unknowns);
     report.s2.add_work(earlier);
   }
+  if (k == most_repeats)
+    report.is_settled = report.is_settled && is_settled(solids, context.dt, *solution.velocity);
   return solution;
 }
 

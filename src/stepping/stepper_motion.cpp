@@ -57,9 +57,13 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
                      solution.pressure.is_null() ? nullptr : &solution);
     solution = found.unknowns;
     half_velocity = found.velocity;
-    if (solids.joints())
-      start_impulse_ = system_.reactions(context.dt, context.constraints, *momentum,
+    if (solids.joints()) {
+      Vector given(*momentum, Teuchos::Copy);
+      if (!found.gas_momentum.is_null())
+        given.update(1, *found.gas_momentum, 1);
+      start_impulse_ = system_.reactions(context.dt, context.constraints, given,
                                          {solution.pressure, half_velocity});
+    }
     swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
   }
   ScopedPhase phase(timers_, "solid motion");
@@ -84,6 +88,7 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
     if (settled.linearised_anew)
       system_.forget_solid_block();
     half_velocity = settled.velocity;
+    report.is_settled = report.is_settled && settled.is_settled;
     report.contact_position = settled.contact;
   } else if (components_.contact && coupled()) {
     report.contact_position = components_.contact->resolve(

@@ -214,7 +214,8 @@ class Faults(unittest.TestCase):
                                       ("Domain/Upper={2, 4}", ["Domain/Upper", "was {1, 2} and is {2, 4} now"]),
                                       ("Solids/Ball/Density=400", ["Solids/Ball/Density"]),
                                       ("Fluid/Viscosity=0", ["Fluid/Viscosity"]),
-                                      ("Domain/Sides/x upper/Type=open", ["Domain/Sides/x upper/Type"])]:
+                                      ("Domain/Sides/x upper/Type=open", ["Domain/Sides/x upper/Type"]),
+                                      ("Time/Start=0.001", ["Time/Start", "was 0 and is 0.001 now"])]:
                 with self.subTest(setting=setting):
                     result = simulate(folder, "--restart", newest_checkpoint(folder), "--set", setting)
                     self.assertEqual(result.returncode, 2, result.stderr)
@@ -251,6 +252,27 @@ class Faults(unittest.TestCase):
                     self.assertIn("outside of the fluid", result.stderr)
                     after = {path: path.read_bytes() for path in (Path(folder) / "output").rglob("*") if path.is_file()}
                     self.assertEqual(after, before)
+
+    def test_an_observer_of_another_kind_leaves_an_earlier_run_alone(self):
+        """Its table cannot go on; elsewhere it is a new one."""
+        other = with_gauges("old").replace('value="points"', 'value="flow"').replace(
+            '<Parameter name="Points" type="Array(double)" value="{.5, 1.5}"/>',
+            '<Parameter name="Lower" type="Array(double)" value="{0, 1.5}"/><Parameter name="Upper" type="Array(double)" value="{1, 1.5}"/>')
+        often = ("--set", "Output/Checkpoint Interval=1e-9", "--set", "Output/Keep Checkpoints=10")
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(simulate(folder, "--steps", 4, *often, scene=with_gauges("old")).returncode, 0)
+            output = Path(folder) / "output"
+            before = {path: path.read_bytes() for path in output.rglob("*") if path.is_file()}
+            second = output / "checkpoint-000002.h5"
+            self.assertIn(second, before)
+            result = simulate(folder, "--restart", second, "--steps", 4, *often, scene=other)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("other columns", result.stderr)
+            self.assertEqual({path: path.read_bytes() for path in output.rglob("*") if path.is_file()}, before)
+            (output / "old.csv").unlink()
+            result = simulate(folder, "--restart", second, "--steps", 4, *often, scene=other)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual([row["step"] for row in read_table(output / "old.csv")], ["3", "4"])
 
     def test_checkpoint_of_another_mesh(self):
         square = "v 0.3 0.3 0\nv 0.7 0.3 0\nv 0.7 0.7 0\nv 0.3 0.7 0\nl 1 2 3 4 1\n"

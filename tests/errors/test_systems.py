@@ -113,6 +113,20 @@ class Systems(unittest.TestCase):
         path.write_bytes(with_checksum(path.read_bytes()))
         return path
 
+    def test_a_system_that_is_never_solved(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = simulate(folder, "--steps", 1, "--dump-system", "2:S2", Path(folder) / "none.h5")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("--dump-system: no step solved 2:S2", result.stdout)
+            self.assertFalse((Path(folder) / "none.h5").exists())
+
+    def test_numbers_of_solve(self):
+        for words in (("--tolerance", "-1"), ("--tolerance", "nan"), ("--tolerance", "0"), ("--direct-limit", "-1")):
+            with self.subTest(words=words):
+                result = self.solve(self.system, *words)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn(words[0], result.stderr)
+
     def test_good_systems(self):
         plain = self.folder / "plain.h5"
         plain.write_bytes(without_checksum(self.system.read_bytes()))

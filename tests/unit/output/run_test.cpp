@@ -40,8 +40,9 @@ TEST(Progress, IsOneLineAStep) {
 }
 
 TEST(Progress, EstimatesTheRemainingTime) {
-  EXPECT_DOUBLE_EQ(remaining_seconds(30, 0.25), 90);
-  EXPECT_LT(remaining_seconds(1, 0), 0);
+  EXPECT_DOUBLE_EQ(remaining_seconds(30, 0, 0.25), 90);
+  EXPECT_LT(remaining_seconds(1, 0, 0), 0);
+  EXPECT_NEAR(remaining_seconds(10, 0.9, 0.901), 990, 1e-9) << "of a run continued at 90 %";
   EXPECT_EQ(format_duration(59.4), "59s");
   EXPECT_EQ(format_duration(7500), "2h05m");
   EXPECT_EQ(format_duration(100 * 3600), "4d04h");

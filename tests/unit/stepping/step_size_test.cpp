@@ -74,4 +74,17 @@ TEST(StepSize, TheLastStepsEndAtTheEnd) {
   EXPECT_EQ(step_to_end(time, 0.95, 0.1), 1 - 0.95);
 }
 
+TEST(StepSize, ManyFixedStepsAddedUpTakeNoStepMore) {
+  TimeOptions time = until(12);
+  time.fixed_step = 1e-3;
+  int n_steps = 0;
+  double now = 0, dt = 0;
+  for (; now < time.end; ++n_steps) {
+    dt = step_to_end(time, now, time.fixed_step);
+    now += dt;
+  }
+  EXPECT_EQ(n_steps, 12000);
+  EXPECT_NEAR(dt, 1e-3, 1e-9);
+}
+
 }  // namespace lockstep::test

@@ -33,7 +33,7 @@ TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
   pocket.pressure = 3;
   pocket.keeps_volume = true;
   pocket.missing = 0.1;
-  GasProblem gas{{pocket}, {0.}, 0.5, true, {}, {}};
+  GasProblem gas{{pocket}, {0.}, 0.5, 0.5, true, {}, {}};
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
     to.solid->update(pressure[0], area, 1);
   };
@@ -54,6 +54,40 @@ TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
     EXPECT_LT(unknowns.pressure->normInf(), 1e-6) << name;
     EXPECT_LT(unknowns.solid->normInf(), 1e-9) << name;
   }
+}
+
+/// S1 finds the velocity at half a step, by which solids move over the whole of it.
+TEST(GasSolve, WhatAPocketLacksIsMadeGoodInTheStep) {
+  SaddleOptions options;
+  options.open_top = true;
+  const SaddleProblem problem(world(), options);
+  const BlockSystem& blocks = problem.system;
+  BlockVector rhs = problem.zero(), unknowns = problem.zero();
+  Vector beside(rhs.pressure->getMap());  // of one cell, a unit of area
+  if (beside.getMap()->getMinAllGlobalIndex() == beside.getMap()->getMinGlobalIndex())
+    beside.replaceLocalValue(0, 1.0);
+
+  GasPocket pocket;
+  pocket.volume = 1;
+  pocket.keeps_volume = true;
+  pocket.missing = 0.1;
+  const double conductance = 1e6, step_dt = 0.5;
+  GasProblem gas{{pocket}, {conductance}, step_dt / 2, step_dt, true, {}, {}};
+  gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
+    to.pressure->update(pressure[0], beside, 1);
+  };
+  gas.rates = [&](const BlockVector& found, bool) {
+    return std::vector<double>{-beside.dot(*found.pressure)};
+  };
+  StrategyRegistry registry("solver strategy");
+  register_strategies(registry);
+  const auto strategy = registry.create("direct", ParameterList());
+  strategy->prepare(blocks);
+  SolveReport report;
+  const std::vector<double> pressure =
+      solve_with_gas(gas, *strategy, blocks, {"S1", 1e-10, 1e-12}, rhs, unknowns, report);
+  EXPECT_NEAR(conductance * pressure[0] + gas.rates(unknowns, false)[0], pocket.missing / step_dt,
+              1e-9);
 }
 
 }  // namespace
