@@ -24,17 +24,17 @@ double mean_of(const SampleLattice<dim>& lattice, SampleKind kind, const Point<d
 
 /// Where a point is: its cell, and in cells from the lower corner.
 template <int dim>
-struct Place {
+struct GridPlace {
   int cell = -1;
   Point<dim> x;
 };
 
 /// Sides belong to the cells beside them, upper ones too; round-off may put a point beyond.
 template <int dim>
-Place<dim> place_of(const TiledGrid<dim>& grid, const Point<dim>& point) {
+GridPlace<dim> place_of(const TiledGrid<dim>& grid, const Point<dim>& point) {
   Point<dim> inner = grid.wrap(point);
   const double h = grid.spacing();
-  Place<dim> place;
+  GridPlace<dim> place;
   place.x = (inner - grid.lower()) / h;
   for (int a = 0; a < dim; ++a) {
     const int n = grid.n_cells()[a];
