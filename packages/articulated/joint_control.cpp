@@ -51,12 +51,46 @@ void oscillate(double frequency, double ratio, double dt, double& x, double& v) 
   v = (even - decay * odd) * v - frequency * frequency * odd * before;
 }
 
+/// Whether a target was written that is not the default one, as for a joint of `n` coordinates.
+bool has_target(const ParameterList& list) {
+  const ParameterList& target = list.sublist("Target");
+  if (target.get<std::string>("Type") != "constant")
+    return true;
+  if (target.isType<double>("Value"))
+    return target.get<double>("Value") != 0;
+  const auto& values = target.get<ParameterArray<double>>("Value");
+  return std::any_of(values.begin(), values.end(), [](double value) { return value != 0; });
+}
+
+/// What control of this type would not read must not seem to act.
+void check_used(const ParameterList& list, const std::string& type, const std::string& name) {
+  const bool has_springs = type == "proportional derivative";
+  const bool oscillates = has_springs || type == "prescribed rate";
+  const bool by_frequency = list.isParameter("Natural Frequency");
+  const auto check = [&](bool used, const char* parameter, const std::string& beside = "") {
+    const bool is_list = list.isSublist(parameter);
+    check_input(used || !(is_list ? has_target(list) : list.isParameter(parameter)),
+                "The joint \"{}\" has \"{}\", which \"{}\" control{} does not use; leave it out, "
+                "or change \"Control\".",
+                name, parameter, type, beside);
+  };
+  check(oscillates, "Natural Frequency");
+  check(oscillates && by_frequency, "Damping Ratio",
+        oscillates ? " without \"Natural Frequency\"" : "");
+  check(has_springs, "Stiffness");
+  check(has_springs && !by_frequency, "Damping", has_springs ? " with \"Natural Frequency\"" : "");
+  check(has_springs, "Largest Torque");
+  check(type != "free", "Target");
+}
+
 /// `name`: as messages have it.
 CoordinateControl read_one_control(const ParameterList& list, const std::string& name) {
   CoordinateControl control;
   const auto& type = list.get<std::string>("Control");
-  if (type == "free")
+  if (type == "free") {
+    check_used(list, type, name);
     return control;
+  }
   control.type = type == "prescribed"        ? ControlType::prescribed
                  : type == "prescribed rate" ? ControlType::prescribed_rate
                                              : ControlType::proportional_derivative;
@@ -69,12 +103,15 @@ CoordinateControl read_one_control(const ParameterList& list, const std::string&
       control.type == ControlType::prescribed || by_frequency || (by_stiffness && control.acts()),
       "The joint \"{}\" is under \"{}\" control, but has no \"Natural Frequency\"; give one{}.",
       name, type, control.acts() ? ", or \"Stiffness\" and \"Damping\"" : "");
-  control.damping_ratio = list.get<double>("Damping Ratio");
+  check_used(list, type, name);
+  if (list.isParameter("Damping Ratio"))
+    control.damping_ratio = list.get<double>("Damping Ratio");
   if (by_frequency)
     control.natural_frequency = list.get<double>("Natural Frequency");
   if (by_stiffness)
     control.stiffness = list.get<double>("Stiffness");
-  control.damping = list.get<double>("Damping");
+  if (list.isParameter("Damping"))
+    control.damping = list.get<double>("Damping");
   if (list.isParameter("Largest Torque"))
     control.largest_torque = list.get<double>("Largest Torque");
   return control;
@@ -123,16 +160,19 @@ void declare_control(ParameterList& list, int n) {
       list, "Natural Frequency",
       "Of the oscillator that control makes of the joint, undamped [rad/s]. Springs are that "
       "squared times the inertia that the joint has at the start without fluid.");
-  declare_at_least(list, "Damping Ratio", 1.0, 0.0,
-                   "1 is critical, with \"Natural Frequency\" [1].");
+  declare_optional<double>(list, "Damping Ratio",
+                           "1 is critical, with \"Natural Frequency\" [1]; default 1.");
   declare_optional<double>(list, "Stiffness",
                            "Of the spring, instead of a frequency [N m/rad, N/m].");
-  declare_at_least(list, "Damping", 0.0, 0.0, "Of the damper beside \"Stiffness\" [N m s, N s/m].");
+  declare_optional<double>(
+      list, "Damping", "Of the damper beside \"Stiffness\" [N m s, N s/m]; default: no damper.");
   declare_optional<double>(list, "Largest Torque",
-                           "Of spring and damper together [N m, N]. Absent: none.");
+                           "Of spring and damper together [N m, N]. Absent: none. What control "
+                           "does not use is refused.");
   for (const char* parameter : {"Natural Frequency", "Largest Torque"})
     set_positive(list, parameter);
-  set_at_least(list, "Stiffness", 0);
+  for (const char* parameter : {"Damping Ratio", "Stiffness", "Damping"})
+    set_at_least(list, parameter, 0);
   declare_target(list, n);
 }
 
@@ -149,9 +189,11 @@ JointControl read_control(const ParameterList& joint, const std::string& name,
     if (!joint.isSublist(coordinate_list(k)))
       continue;
     const ParameterList& list = joint.sublist(coordinate_list(k));
-    if (list.getEntry("Control").isDefault())
-      continue;  // limits alone leave it what the joint has
     const std::string own_name = name + "/" + coordinate_list(k);
+    if (list.getEntry("Control").isDefault()) {
+      check_used(list, "free", own_name);
+      continue;  // limits alone leave it what the joint has
+    }
     control.coordinates[k] = read_one_control(list, own_name);
     if (!control.coordinates[k].free())
       control.coordinates[k].own_target = read_target(list, 1, place, own_name);

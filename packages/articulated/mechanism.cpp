@@ -3,6 +3,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <unordered_map>
 
 namespace lockstep {
 
@@ -63,7 +64,7 @@ class TreeMotion {
   TreeMotion(const Mechanism& mechanism, const std::vector<JointedBody<dim>>& bodies,
              const std::vector<Joint<dim>>& joints, const std::vector<BodyPose<dim>>& poses,
              const RateDofs& dofs)
-      : bodies_(bodies), joints_(joints), poses_(poses), place_of_body_(bodies.size(), -1) {
+      : joints_(joints), poses_(poses) {
     const auto add_columns = [this](GlobalIndex first, int n) {
       const int column = static_cast<int>(basis_.columns.size());
       for (int k = 0; k < n; ++k)
@@ -74,7 +75,6 @@ class TreeMotion {
       add_columns(bodies[mechanism.root].first_dof, n_twist<dim>);
     for (const int ground : mechanism.grounds)
       ground_columns_.emplace_back(ground, add_columns(dofs.first_of_body[ground], n_twist<dim>));
-    rate_columns_.assign(joints.size(), -1);
     for (const int j : mechanism.joints) {
       if (joints[j].first_rate >= 0)
         rate_columns_[j] =
@@ -88,8 +88,8 @@ class TreeMotion {
 
   /// Of a body of the tree, a prescribed one, or space.
   Twists<dim> twists(int body) const {
-    if (body != space && place_of_body_[body] >= 0)
-      return basis_.twists[place_of_body_[body]];
+    if (const auto place = place_of_body_.find(body); place != place_of_body_.end())
+      return basis_.twists[place->second];
     Twists<dim> result = none();
     for (const auto& [ground, column] : ground_columns_) {
       if (ground == body)
@@ -120,18 +120,17 @@ class TreeMotion {
     for (std::size_t k = 0; k < free.size(); ++k) {
       TwistVector<dim> motion;
       motion << place.axes * free[k].linear, turned_axes(place.axes, free[k].angular);
-      twists.col(rate_columns_[carrier] + static_cast<Eigen::Index>(k)) +=
+      twists.col(rate_columns_.at(carrier) + static_cast<Eigen::Index>(k)) +=
           (side == 1 ? 1 : -1) * motion;
     }
     return carried_to<dim>(twists, pose_of(poses_, body).position - place.point);
   }
 
-  const std::vector<JointedBody<dim>>& bodies_;
   const std::vector<Joint<dim>>& joints_;
   const std::vector<BodyPose<dim>>& poses_;
-  std::vector<int> place_of_body_;
+  // Of this mechanism alone: there may be as many as bodies.
+  std::unordered_map<int, int> place_of_body_, rate_columns_;
   std::vector<std::pair<int, int>> ground_columns_;
-  std::vector<int> rate_columns_;
   MotionBasis<dim> basis_;
 };
 

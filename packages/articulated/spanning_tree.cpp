@@ -36,38 +36,50 @@ std::vector<char> tree_joints(const std::vector<JointedBody<dim>>& bodies,
   return in_tree;
 }
 
+/// The joints of the tree, by body.
+template <int dim>
+std::vector<std::vector<int>> joints_by_body(const std::vector<JointedBody<dim>>& bodies,
+                                             const std::vector<Joint<dim>>& joints,
+                                             const std::vector<char>& in_tree) {
+  std::vector<std::vector<int>> all(bodies.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    for (const JointSide<dim>& side : joints[j].sides) {
+      if (in_tree[j] && side.body != space)
+        all[side.body].push_back(static_cast<int>(j));
+    }
+  }
+  return all;
+}
+
 /// Follows the tree's joints outward from the bodies that the mechanism has.
 template <int dim>
 void grow(Mechanism& mechanism, const std::vector<JointedBody<dim>>& bodies,
-          const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
+          const std::vector<Joint<dim>>& joints, const std::vector<std::vector<int>>& of_body,
           std::vector<char>& reached) {
   for (std::size_t next = 0; next < mechanism.bodies.size(); ++next) {
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      if (!in_tree[j])
+    const int body = mechanism.bodies[next];
+    for (const int j : of_body[body]) {
+      const auto& sides = joints[j].sides;
+      const int child = sides[sides[0].body == body ? 1 : 0].body;
+      if (is_ground(bodies, child) || reached[child])
         continue;
-      for (int side = 0; side < 2; ++side) {
-        const int child = joints[j].sides[side].body;
-        if (joints[j].sides[1 - side].body != mechanism.bodies[next] || is_ground(bodies, child) ||
-            reached[child])
-          continue;
-        reached[child] = 1;
-        mechanism.bodies.push_back(child);
-        mechanism.carriers.push_back(static_cast<int>(j));
-      }
+      reached[child] = 1;
+      mechanism.bodies.push_back(child);
+      mechanism.carriers.push_back(j);
     }
   }
 }
 
 template <int dim>
 Mechanism grown_from(int start, int carrier, const std::vector<JointedBody<dim>>& bodies,
-                     const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
-                     std::vector<char>& reached) {
+                     const std::vector<Joint<dim>>& joints,
+                     const std::vector<std::vector<int>>& of_body, std::vector<char>& reached) {
   Mechanism mechanism;
   mechanism.root = carrier >= 0 ? space : start;
   mechanism.bodies.push_back(start);
   mechanism.carriers.push_back(carrier);
   reached[start] = 1;
-  grow(mechanism, bodies, joints, in_tree, reached);
+  grow(mechanism, bodies, joints, of_body, reached);
   return mechanism;
 }
 
@@ -93,20 +105,20 @@ int best_root(const std::vector<int>& members, const std::vector<JointedBody<dim
 /// ones.
 template <int dim>
 Mechanism tree_with(int joint, const std::vector<JointedBody<dim>>& bodies,
-                    const std::vector<Joint<dim>>& joints, const std::vector<char>& in_tree,
-                    std::vector<char>& reached) {
+                    const std::vector<Joint<dim>>& joints,
+                    const std::vector<std::vector<int>>& of_body, std::vector<char>& reached) {
   const auto& sides = joints[joint].sides;
   const bool first_is_ground = is_ground(bodies, sides[0].body);
   const int start = sides[first_is_ground ? 1 : 0].body;
   if (first_is_ground || is_ground(bodies, sides[1].body))
-    return grown_from(start, joint, bodies, joints, in_tree, reached);
-  const Mechanism mechanism = grown_from(start, -1, bodies, joints, in_tree, reached);
+    return grown_from(start, joint, bodies, joints, of_body, reached);
+  const Mechanism mechanism = grown_from(start, -1, bodies, joints, of_body, reached);
   const int root = best_root(mechanism.bodies, bodies);
   if (root == start)
     return mechanism;
   for (const int body : mechanism.bodies)
     reached[body] = 0;
-  return grown_from(root, -1, bodies, joints, in_tree, reached);
+  return grown_from(root, -1, bodies, joints, of_body, reached);
 }
 
 }  // namespace
@@ -115,6 +127,7 @@ template <int dim>
 std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodies,
                                        std::vector<Joint<dim>>& joints) {
   const std::vector<char> in_tree = tree_joints(bodies, joints);
+  const std::vector<std::vector<int>> of_body = joints_by_body(bodies, joints, in_tree);
   std::vector<char> reached(bodies.size(), 0);
   std::vector<Mechanism> mechanisms;
   // Those on the ground first: what hangs on it is not free.
@@ -124,7 +137,7 @@ std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodi
       const bool touches = is_ground(bodies, first) || is_ground(bodies, second);
       const int start = is_ground(bodies, first) ? second : first;
       if (in_tree[j] && touches == on_ground && !reached[start])
-        mechanisms.push_back(tree_with(static_cast<int>(j), bodies, joints, in_tree, reached));
+        mechanisms.push_back(tree_with(static_cast<int>(j), bodies, joints, of_body, reached));
     }
   }
   int n_all = 0;

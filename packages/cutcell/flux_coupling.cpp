@@ -101,13 +101,7 @@ template <int dim>
 std::vector<Momentum<dim>> FluxCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity,
                                                                   double dt, Vector& rhs) const {
   add_forces<dim>(excess_, gravity, dt, rhs);
-  std::vector<Momentum<dim>> on_prescribed(surface_->solids().size());
-  for (const DisplacedExcess<dim>& excess : held_excess_) {
-    const Point<dim> impulse = Point<dim>::Unit(excess.axis) * (gravity[excess.axis] * dt);
-    on_prescribed[excess.solid].add(excess.center, excess.mass * impulse);
-    on_prescribed[excess.solid].angular += cross<dim>(excess.moment, impulse);
-  }
-  return on_prescribed;
+  return impulses_on<dim>(surface_->solids().size(), held_excess_, gravity, dt);
 }
 
 template <int dim>

@@ -102,6 +102,8 @@ VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacin
                                const std::string& name, MeshNames& names) {
   const auto& shape = geometry.get<std::string>("Shape");
   check_shape_sizes(geometry, volume_shapes(), name);
+  check_input(dim == 3 || !geometry.isParameter("Half Widths"),
+              "In \"{}/Geometry\", a spindle in 2D has no \"Half Widths\"; leave them out.", name);
   VolumeMesh<dim> mesh;
   if (shape == "file") {
     mesh = read_volume_mesh<dim>(geometry.get<std::string>("File"), names);

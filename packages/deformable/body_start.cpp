@@ -14,9 +14,6 @@ namespace lockstep {
 namespace {
 
 template <int dim>
-using Rotation = Eigen::Matrix<double, dim, dim>;
-
-template <int dim>
 void declare_start(ParameterList& body) {
   declare_vector(body, "Position", ParameterArray<double>(dim, 0.0), dim,
                  "Where the origin of the body's coordinates lies at the start [m].");
@@ -56,18 +53,6 @@ void add_vortices(const ParameterList& list, DeformableBody<dim>& body) {
 }
 
 template <int dim>
-Rotation<dim> read_rotation(const ParameterList& list) {
-  if constexpr (dim == 2) {
-    return Eigen::Rotation2Dd(list.get<double>("Rotation")).toRotationMatrix();
-  } else {
-    const Point<3> turn = vector_value<3>(list, "Rotation");
-    const double angle = turn.norm();
-    return angle == 0 ? Rotation<3>(Rotation<3>::Identity())
-                      : Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-  }
-}
-
-template <int dim>
 AngularVector<dim> read_angular_velocity(const ParameterList& list) {
   if constexpr (dim == 2) {
     return AngularVector<2>(list.get<double>("Angular Velocity"));
@@ -84,7 +69,7 @@ void place(const ParameterList& list, const std::vector<Point<dim>>& rest,
   const Point<dim> velocity = vector_value<dim>(list, "Velocity");
   const Point<dim> stretch = vector_value<dim>(list, "Stretch");
   const AngularVector<dim> angular_velocity = read_angular_velocity<dim>(list);
-  const Rotation<dim> rotation = read_rotation<dim>(list);
+  const Eigen::Matrix<double, dim, dim> rotation = start_rotation<dim>(list);
   for (const Point<dim>& x : rest) {
     const Point<dim> arm = rotation * x.cwiseProduct(stretch);
     body.position.push_back(origin + arm);
@@ -121,6 +106,18 @@ void add_tethers(const std::vector<Tether<dim>>& tethers, DeformableBody<dim>& b
 }
 
 }  // namespace
+
+template <int dim>
+Eigen::Matrix<double, dim, dim> start_rotation(const ParameterList& list) {
+  if constexpr (dim == 2) {
+    return Eigen::Rotation2Dd(list.get<double>("Rotation")).toRotationMatrix();
+  } else {
+    const Point<3> turn = vector_value<3>(list, "Rotation");
+    const double angle = turn.norm();
+    return angle == 0 ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+                      : Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  }
+}
 
 template <int dim>
 void declare_body_start(ParameterList& list) {
@@ -175,6 +172,8 @@ void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& r
   add_tethers(read_tethers<dim>(list, rest, node_measure, body.name), body);
 }
 
+template Eigen::Matrix2d start_rotation<2>(const ParameterList&);
+template Eigen::Matrix3d start_rotation<3>(const ParameterList&);
 template void declare_body_start<2>(ParameterList&);
 template void declare_body_start<3>(ParameterList&);
 template void read_body_start<2>(const ParameterList&, const std::vector<Point<2>>&,

@@ -16,4 +16,8 @@ template <int dim>
 void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& rest,
                      DeformableBody<dim>& body);
 
+/// By which the body is turned at the start.
+template <int dim>
+Eigen::Matrix<double, dim, dim> start_rotation(const ParameterList& list);
+
 }  // namespace lockstep

@@ -115,7 +115,7 @@ ParameterList cloth_parameters() {
   declare_cloth_geometry<dim>(list);
   declare_required_positive(list, "Young's Modulus", "Of the material [Pa].");
   declare_between(list, "Poisson's Ratio", 0.3, -0.99, 0.5,
-                  "Of the material [1]. Springs behave like 1/3, whatever is given.");
+                  "Of the material [1]. Springs in 3D behave like 1/3, whatever is given.");
   declare_required_positive(list, "Thickness",
                             "Of the sheet [m]: membrane stiffness goes with it, bending stiffness "
                             "with its cube.");
@@ -143,7 +143,7 @@ ParameterList cloth_parameters() {
   declare_at_least(
       list, "Stretch Limit", 0.0, 0.0,
       "Most that an edge may be longer than at rest [1]: impulses along the edges keep "
-      "the step from stretching it further. 0: no limit.");
+      "the step from stretching it further, which takes a \"Surface Density\". 0: no limit.");
   declare_body_start<dim>(list);
   return list;
 }
@@ -176,6 +176,10 @@ DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& lis
       "The cloth \"{}\" has no mass (\"Surface Density\" is 0), so that no explicit force may "
       "act on it. Set its \"Time Integration\" to fully-implicit.",
       name);
+  check_input(body.density > 0 || body.limited_edges.empty(),
+              "The cloth \"{}\" has no mass (\"Surface Density\" is 0) that the impulses of a "
+              "\"Stretch Limit\" could act on; leave the limit out, or give it a mass.",
+              name);
   return body;
 }
 

@@ -111,9 +111,10 @@ void DeformableSolids<dim>::distribute(std::vector<DeformableBody<dim>>& bodies,
   x_.resize(space_.n_local());
   for (int i = 0; i < space_.n_local(); ++i) {
     const int original = space_.original(i);
-    std::size_t b = 0;
-    while (bodies_[b].node_end <= original)
-      ++b;
+    const auto body =
+        std::upper_bound(bodies_.begin(), bodies_.end(), original,
+                         [](int node, const auto& other) { return node < other.node_end; });
+    const auto b = static_cast<std::size_t>(body - bodies_.begin());
     const int n = original - bodies_[b].node_begin;
     x_[i] = bodies[b].position[n];
     body_of_node_.push_back(static_cast<int>(b));

@@ -71,6 +71,25 @@ void add_forces(const std::vector<AxisForce>& forces, const Point<dim>& accelera
   }
 }
 
+template <int dim>
+std::vector<Momentum<dim>> impulses_on(std::size_t n_solids,
+                                       const std::vector<DisplacedExcess<dim>>& excesses,
+                                       const Point<dim>& acceleration, double dt) {
+  std::vector<Momentum<dim>> impulses(n_solids);
+  for (const DisplacedExcess<dim>& excess : excesses) {
+    const Point<dim> speed = Point<dim>::Unit(excess.axis) * (acceleration[excess.axis] * dt);
+    impulses[excess.solid].add(excess.center, excess.mass * speed);
+    impulses[excess.solid].angular += cross<dim>(excess.moment, speed);
+  }
+  return impulses;
+}
+
+template std::vector<Momentum<2>> impulses_on<2>(std::size_t,
+                                                 const std::vector<DisplacedExcess<2>>&,
+                                                 const Point<2>&, double);
+template std::vector<Momentum<3>> impulses_on<3>(std::size_t,
+                                                 const std::vector<DisplacedExcess<3>>&,
+                                                 const Point<3>&, double);
 template AxisForce force_of<2>(const DisplacedExcess<2>&, const SolidSystem<2>&,
                                const SurfaceSnapshot<2>&);
 template AxisForce force_of<3>(const DisplacedExcess<3>&, const SolidSystem<3>&,

@@ -35,4 +35,10 @@ template <int dim>
 void add_forces(const std::vector<AxisForce>& forces, const Point<dim>& acceleration, double dt,
                 Vector& momentum);
 
+/// What these give prescribed solids in dt, one per solid of the snapshot. Local.
+template <int dim>
+std::vector<Momentum<dim>> impulses_on(std::size_t n_solids,
+                                       const std::vector<DisplacedExcess<dim>>& excesses,
+                                       const Point<dim>& acceleration, double dt);
+
 }  // namespace lockstep

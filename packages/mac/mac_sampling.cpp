@@ -1,3 +1,6 @@
+#include <cmath>
+#include <limits>
+
 #include "mac/mac_fluid.hpp"
 #include "mac/transport/sample_lattice.hpp"
 
@@ -19,6 +22,35 @@ double mean_of(const SampleLattice<dim>& lattice, SampleKind kind, const Point<d
   return weight > 0 ? sum / weight : 0;
 }
 
+/// Where a point is: its cell, and in cells from the lower corner.
+template <int dim>
+struct GridPlace {
+  int cell = -1;
+  Point<dim> x;
+};
+
+/// Sides belong to the cells beside them, upper ones too; round-off may put a point beyond.
+template <int dim>
+GridPlace<dim> place_of(const TiledGrid<dim>& grid, const Point<dim>& point) {
+  Point<dim> inner = grid.wrap(point);
+  const double h = grid.spacing();
+  GridPlace<dim> place;
+  place.x = (inner - grid.lower()) / h;
+  for (int a = 0; a < dim; ++a) {
+    const int n = grid.n_cells()[a];
+    const double round_off =
+        8 * std::numeric_limits<double>::epsilon() * (std::abs(grid.lower()[a]) / h + n);
+    for (const int side : {0, n}) {
+      if (grid.description().periodic[a] || std::abs(place.x[a] - side) > round_off)
+        continue;
+      place.x[a] = side;
+      inner[a] = grid.lower()[a] + (side == 0 ? 0.5 : n - 0.5) * h;
+    }
+  }
+  place.cell = grid.cell_containing(inner);
+  return place;
+}
+
 }  // namespace
 
 template <int dim>
@@ -31,11 +63,11 @@ std::vector<FluidSample<dim>> MacFluid<dim>::sample(const std::vector<Point<dim>
   // Each rank answers for its own cells; the sum is everybody's answer.
   std::vector<double> values(points.size() * n_values, 0.);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const int cell = grid.cell_containing(points[p]);
-    if (cell < 0 || !grid.owned(cell) || state.cells[cell] != CellState::fluid)
+    const auto [cell, x] = place_of<dim>(grid, points[p]);
+    if (cell < 0 || !grid.owned(cell) || state.cells[cell] != CellState::fluid ||
+        (state.surface && state.surface->inside(grid.wrap(points[p])) >= 0))
       continue;
     double* value = &values[p * n_values];
-    const Point<dim> x = (grid.wrap(points[p]) - grid.lower()) / grid.spacing();
     *value++ = 1;
     if (has_pressure)
       *value = mean_of<dim>(lattice, cell_centers, x, scaled_pressure_,
@@ -67,10 +99,9 @@ std::vector<double> MacFluid<dim>::surface_distances(const std::vector<Point<dim
   const std::size_t n = points.size();
   std::vector<double> values(2 * n, 0.0);  // distances; how many ranks know
   for (std::size_t p = 0; p < n; ++p) {
-    const int cell = grid.cell_containing(points[p]);
+    const auto [cell, x] = place_of<dim>(grid, points[p]);
     if (cell < 0 || !grid.owned(cell))
       continue;
-    const Point<dim> x = (grid.wrap(points[p]) - grid.lower()) / grid.spacing();
     const auto stencil = lattice.locate(cell_centers, x);
     values[p] = stencil.complete() ? interpolate<dim>(stencil, phi.data()) : phi[cell];
     values[n + p] = 1;

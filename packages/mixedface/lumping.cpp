@@ -171,7 +171,8 @@ Eigen::Matrix<double, dim, 1> displaced_by(const WetBody<dim>& body, const Point
   return displaced;
 }
 
-/// What would balance each closed solid, along every axis on which its columns close.
+/// What would balance each closed solid, along every axis on which its columns close. The masses of
+/// prescribed ones need no factor: they only want to know what is missing.
 template <int dim>
 std::vector<MassFactor<dim>> corrections_of(const std::vector<SolidDescription>& solids,
                                             const std::vector<SolidBalance<dim>>& balances,
@@ -180,7 +181,7 @@ std::vector<MassFactor<dim>> corrections_of(const std::vector<SolidDescription>&
                                             const std::vector<WetBody<dim>>& wet, double density) {
   std::vector<MassFactor<dim>> corrections;
   for (int s = 0; s < static_cast<int>(solids.size()); ++s) {
-    for (int a = 0; a < dim && solids[s].closed && !solids[s].prescribed; ++a) {
+    for (int a = 0; a < dim && solids[s].closed; ++a) {
       const AxisBalance<dim>& balance = balances[s][a];
       const bool partly_wet = !wet.empty() && wet[s].partly;
       // A column that ends at a wall has no lift of its own to balance.
@@ -192,9 +193,11 @@ std::vector<MassFactor<dim>> corrections_of(const std::vector<SolidDescription>&
           balance.normal.col(0) -
           density * (partly_wet ? displaced_by<dim>(wet[s], centers[s], a) : balance.displaced);
       one.excess[0] += density * solid_volumes[s];
-      one.factor = balance.normal.completeOrthogonalDecomposition().solve(-one.excess);
-      const double unsolved = (balance.normal * one.factor + one.excess).norm();
-      one.solvable = unsolved <= 1e-9 * (one.excess.norm() + 1e-300);
+      if (!solids[s].prescribed) {
+        one.factor = balance.normal.completeOrthogonalDecomposition().solve(-one.excess);
+        const double unsolved = (balance.normal * one.factor + one.excess).norm();
+        one.solvable = unsolved <= 1e-9 * (one.excess.norm() + 1e-300);
+      }
       corrections.push_back(one);
     }
   }
@@ -213,7 +216,7 @@ std::vector<DisplacedExcess<dim>> balance_masses(
   std::vector<Point<dim>> centers(solids.size(), Point<dim>::Zero());
   std::vector<double> solid_volumes(solids.size(), 0);
   for (std::size_t s = 0; s < solids.size(); ++s) {
-    if (!solids[s].closed || solids[s].prescribed)
+    if (!solids[s].closed)
       continue;
     if (!wet.empty() && wet[s].partly) {
       centers[s] = wet[s].centroid;
@@ -229,13 +232,13 @@ std::vector<DisplacedExcess<dim>> balance_masses(
       corrections_of<dim>(solids, balances, centers, solid_volumes, wet, density);
   CorrectionTable<dim> correction(solids.size() * dim, nullptr);
   for (const MassFactor<dim>& one : corrections)
-    correction[one.solid * dim + one.axis] = &one;
+    correction[one.solid * dim + one.axis] = one.solvable ? &one : nullptr;
   const std::vector<double> smallest =
       smallest_factors<dim>(volumes, shares, correction, masses, comm);
   std::vector<DisplacedExcess<dim>> unseen;
   for (const MassFactor<dim>& one : corrections) {
     const std::size_t place = one.solid * dim + one.axis;
-    if (one.solvable && smallest[place] > 0)
+    if (correction[place] && smallest[place] > 0)
       continue;
     correction[place] = nullptr;
     DisplacedExcess<dim> left{one.solid, one.axis, one.center, -one.excess[0], Point<dim>::Zero()};

@@ -21,7 +21,8 @@ std::vector<double> fluid_masses(const std::vector<ControlVolume<dim>>& volumes,
 /// neutrally buoyant body rests (A1) and drifts (A9) exactly. V_solid is that of the part in
 /// `domain`, where the fluid can be; of a body that is partly in a liquid (`wet`, by solid; empty
 /// without one) all of that is of its wet part. Returns what is left of solids and axes where a
-/// mass would have turned negative or that the grid does not see; their masses are left alone.
+/// mass would have turned negative or that the grid does not see, and of prescribed solids; their
+/// masses are left alone.
 /// Collective.
 template <int dim>
 std::vector<DisplacedExcess<dim>> balance_masses(

@@ -50,16 +50,9 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid);
   masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass, liquid);
   find_prescribed(solids);
-  unseen_.clear();
+  balance(fluid, solids);
   if (!solids.has_unknowns())
     return;
-  if (options_.balance) {
-    const double density = this->density_around(fluid, solids.comm());
-    for (const auto& left : balance_masses<dim>(
-             volumes_, shares_, surface, density, bounds_of(fluid),
-             liquid ? liquid->wet_bodies() : std::vector<WetBody<dim>>(), solids.comm(), masses_))
-      unseen_.push_back(force_of<dim>(left, solids, surface));
-  }
   assemble_weights(solids);
   this->assemble_coupling(solids);
   added_mass_ = assemble_triplets(
@@ -67,6 +60,25 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
           ? consistent_mass_triplets(weights_, masses_)
           : added_mass_triplets<dim>(volumes_, shares_, solids, masses_, options_.lumping),
       solids.map(), solids.map());
+}
+
+template <int dim>
+void MixedFaceCoupling<dim>::balance(const FluidDiscretization<dim>& fluid,
+                                     const SolidSystem<dim>& solids) {
+  unseen_.clear();
+  held_unseen_.clear();
+  if (!options_.balance || surface_->empty())
+    return;
+  const double density = this->density_around(fluid, solids.comm());
+  const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid);
+  for (const auto& left : balance_masses<dim>(
+           volumes_, shares_, *surface_, density, bounds_of(fluid),
+           liquid ? liquid->wet_bodies() : std::vector<WetBody<dim>>(), solids.comm(), masses_)) {
+    if (surface_->solids()[left.solid].prescribed)
+      held_unseen_.push_back(left);
+    else
+      unseen_.push_back(force_of<dim>(left, solids, *surface_));
+  }
 }
 
 template <int dim>
@@ -89,7 +101,7 @@ std::vector<Momentum<dim>> MixedFaceCoupling<dim>::add_unseen_buoyancy(const Poi
                                                                        double dt,
                                                                        Vector& rhs) const {
   add_forces<dim>(unseen_, gravity, dt, rhs);
-  return std::vector<Momentum<dim>>(surface_->solids().size());
+  return impulses_on<dim>(surface_->solids().size(), held_unseen_, gravity, dt);
 }
 
 template <int dim>

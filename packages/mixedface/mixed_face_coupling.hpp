@@ -65,6 +65,7 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   const CouplingWeights& mass_weights() const {
     return masses_are_plain() ? plain_weights_ : weights_;
   }
+  void balance(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids);
   void find_prescribed(const SolidSystem<dim>& solids);
   void assemble_weights(const SolidSystem<dim>& solids);
 
@@ -82,7 +83,8 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   std::vector<std::vector<SurfaceShare<dim>>> shares_;
   CouplingWeights plain_weights_;  ///< without rotations, if `masses_are_plain`; the same columns
   std::vector<double> prescribed_share_;
-  std::vector<AxisForce> unseen_;
+  std::vector<AxisForce> unseen_;                  ///< on dynamic solids
+  std::vector<DisplacedExcess<dim>> held_unseen_;  ///< on prescribed ones
 };
 
 }  // namespace lockstep

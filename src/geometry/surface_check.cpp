@@ -84,8 +84,10 @@ class SurfaceChecker {
     check_input(!mesh_.simplices.empty(), "{} has no {}.", heading_, words_);
     check_vertices();
     check_shapes();
-    if (!demand_.closed)
+    if (!demand_.closed) {
+      check_orientation();
       return;
+    }
     check_closure();
     if (from_file())
       check_crossing();
@@ -186,6 +188,14 @@ class SurfaceChecker {
     }
     throw InputError(fmt::format("{} should enclose a volume, but has {}. {}.", heading_,
                                  fmt::join(clauses(open), "; "), fmt::join(remedies, ", or ")));
+  }
+
+  /// The bending stiffness of a shell, its area and what it sweeps go by its sides.
+  void check_orientation() const {
+    OpenRims open = find_open_rims(mesh_);
+    open.lone = open.crowded = {};
+    check_input(open.none(), "{} is a shell of two sides, but has {}. \"Orient\" turns them.",
+                heading_, fmt::join(clauses(open), "; "));
   }
 
   void check_volume() const {

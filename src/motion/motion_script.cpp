@@ -149,8 +149,9 @@ std::vector<TypedSchema> timed_motion_schemas() {
   return {{"sinusoid", "Swings about the position and orientation of the start.",
            sinusoid_schema<dim>()},
           {"table",
-           "Follows a table through a monotone cubic interpolation with continuous velocity; at "
-           "rest before and after it.",
+           "Follows a table through a monotone cubic interpolation, whose velocity is continuous "
+           "from its first time to its last. At rest before and after: there it jumps, unless the "
+           "first two rows are alike, and the last two.",
            table_schema<dim>()}};
 }
 

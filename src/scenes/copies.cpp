@@ -111,12 +111,20 @@ class Copier {
     const ParameterList overrides = take_overrides(solid);
     const ParameterList copies = validated_copies(solid, path);
     solid.remove("Copies");
-    const Places places = places_of(copies, evaluated(solid, path, 1), where);
+    const Written written{solid, overrides, path};
+    const Places places = places_of(copies, written, where);
     for (const auto& [number, entry] : entries(overrides))
       check_override(number, entry, places.size(), where);
     for (std::size_t i = 0; i < places.size(); ++i)
-      add_copy(name, solid, overrides, static_cast<int>(i) + 1, places[i]);
+      add_copy(name, written, static_cast<int>(i) + 1, places[i]);
   }
+
+  /// Of a solid of which copies are made.
+  struct Written {
+    const ParameterList& solid;
+    const ParameterList& overrides;
+    std::string path;
+  };
 
   static ParameterList take_overrides(ParameterList& solid) {
     ParameterList& copies = solid.sublist("Copies");
@@ -150,27 +158,49 @@ class Copier {
                 where, number, n_copies);
   }
 
-  Places places_of(const ParameterList& copies, const ParameterList& first,
+  Places places_of(const ParameterList& copies, const Written& written,
                    const std::string& where) const {
     const std::string type = copies.get<std::string>("Type");
     if (type == "positions")
       return given_positions(copies, dimension_, where);
     if (type == "lattice")
-      return lattice(copies, position_of(first, dimension_), where);
-    return random_places(copies, first, where);
+      return lattice(copies, position_of(evaluated(written.solid, written.path, 1), dimension_),
+                     where);
+    return random_places(copies, written, where);
   }
 
-  Places random_places(const ParameterList& copies, const ParameterList& first,
+  Places random_places(const ParameterList& copies, const Written& written,
                        const std::string& where) const {
-    const bool given = copies.isParameter("Smallest Distance");
-    const double radius = given ? copies.get<double>("Smallest Distance") / 2 : ball_radius(first);
-    check_input(radius > 0,
-                "{}: \"Smallest Distance\" [m] between the places is required for solids that are "
-                "no balls.",
-                where);
-    return random_positions(copies.get<int>("Number"), reals(copies, "Lower"),
-                            reals(copies, "Upper"), radius, occupied_, copies.get<int>("Seed"),
-                            where);
+    std::vector<double> radii;
+    for (int number = 1; number <= copies.get<int>("Number"); ++number) {
+      const bool given = copies.isParameter("Smallest Distance");
+      radii.push_back(
+          given ? copies.get<double>("Smallest Distance") / 2
+                : ball_radius(evaluated(own_list(written, number).list, written.path, number)));
+      check_input(radii.back() > 0,
+                  "{}: \"Smallest Distance\" [m] between the places is required for solids that "
+                  "are no balls.",
+                  where);
+    }
+    return random_positions(radii, reals(copies, "Lower"), reals(copies, "Upper"), occupied_,
+                            copies.get<int>("Seed"), where);
+  }
+
+  /// What is written of a copy: its own overrides before all else; `place` where they have none.
+  Document own_list(const Written& written, int number,
+                    const std::vector<double>& place = {}) const {
+    const std::string key = std::to_string(number);
+    Document copy{ParameterList(), {source_.file, {}}};
+    if (written.overrides.isSublist(key)) {
+      copy.list = written.overrides.sublist(key);
+      for (const auto& [name_there, entry] : entries(copy.list))
+        copy.source.places[name_there] =
+            source_.place(join_path(written.path, "Copies/Overrides/" + key + "/" + name_there));
+    }
+    if (!place.empty() && !copy.list.isParameter("Position"))
+      copy.list.set("Position", ParameterArray<double>(place));
+    merge(copy, "", part_of(written.solid, written.path));
+    return copy;
   }
 
   ParameterList evaluated(ParameterList solid, const std::string& path, int number) const {
@@ -180,27 +210,17 @@ class Copier {
     return solid;
   }
 
-  void add_copy(const std::string& name, const ParameterList& solid, const ParameterList& overrides,
-                int number, const std::vector<double>& place) {
-    const std::string key = std::to_string(number), copy_name = name + " " + key;
-    const std::string path = join_path(solids_path, name);
+  void add_copy(const std::string& name, const Written& written, int number,
+                const std::vector<double>& place) {
+    const std::string copy_name = fmt::format("{} {}", name, number);
     ParameterList& solids = document_.list.sublist(solids_path);
     check_input(!solids.isParameter(copy_name),
                 "{}: copy {} of \"{}\" has the name of another solid; rename one of the two.",
-                source_.place(join_path(path, "Copies")), number, name);
-    Document copy{ParameterList(), {source_.file, {}}};
-    if (overrides.isSublist(key)) {
-      copy.list = overrides.sublist(key);
-      for (const auto& [name_there, entry] : entries(copy.list))
-        copy.source.places[name_there] =
-            source_.place(join_path(path, "Copies/Overrides/" + key + "/" + name_there));
-    }
-    if (!copy.list.isParameter("Position"))
-      copy.list.set("Position", ParameterArray<double>(place));
-    merge(copy, "", part_of(solid, path));
+                source_.place(join_path(written.path, "Copies")), number, name);
+    const Document copy = own_list(written, number, place);
     for (const auto& [path_there, line] : copy.source.places)
       source_.places[join_path(join_path(solids_path, copy_name), path_there)] = line;
-    source_.places[join_path(solids_path, copy_name)] = source_.place(path);
+    source_.places[join_path(solids_path, copy_name)] = source_.place(written.path);
     ParameterList& added = solids.sublist(copy_name);
     added = evaluated(copy.list, join_path(solids_path, copy_name), number);
     added.setName(solids.name() + "->" + copy_name);

@@ -1,5 +1,5 @@
 """Bad input: surfaces and volumes from files."""
-from bad_input import GEOMETRY, RADIUS, SCENE_3D, SOFT_SCENE_3D, Case, value
+from bad_input import DENSITY, GEOMETRY, RADIUS, SCENE_3D, SOFT_SCENE_3D, Case, value
 from program import SCENE
 
 TETRAHEDRON = """v 0 0 0
@@ -16,6 +16,15 @@ v 1 0 0
 v 0 1 0
 f 1 2 3
 f 1 3 2
+"""
+
+# The edge from 1 to 2 goes the same way in both.
+CREASED = """v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 -1 1
+f 1 2 3
+f 1 2 4
 """
 
 INNER_TETRAHEDRON = """v .1 .1 .1
@@ -53,6 +62,10 @@ CASES = [
     Case("an open mesh", ["'Ball'", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
     Case("a triangle turned against its neighbours", "oriented against each other",
          **mesh(TETRAHEDRON.replace("f 2 3 4", "f 2 4 3"))),
+    Case("a shell of two sides", ["'Ball' is a shell", "1 edge whose two triangles are oriented against each other", "\"Orient\""],
+         scene=SCENE_3D, files=[("body.obj", CREASED)],
+         change=[(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.obj") + value("Thin Shell", "bool", "true")),
+                 (DENSITY, value("Surface Density", "double", "500"))]),
     Case("a coordinate nan", ["body.obj, line 2", "'nan'", "finite"], **mesh(TETRAHEDRON.replace("v 1 0 0", "v nan 0 0"))),
     Case("a coordinate inf", ["body.obj, line 2", "'-inf'"], **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1 -inf 0"))),
     Case("a coordinate beyond doubles", ["body.obj, line 2", "'1e999'"],

@@ -48,6 +48,16 @@ WINDOW = """  <ParameterList name="Observers">
   </ParameterList>
   <ParameterList name="Time">"""
 
+SPINDLE = (value("Shape", "string", "spindle") + value("Stations", "Array(double)", "{-0.2, 0, 0.2}") +
+           value("Half Heights", "Array(double)", "{0.1, 0.2, 0.1}") + value("Half Widths", "Array(double)", "{0.1, 0.2, 0.1}"))
+
+
+def source(shape, sizes):
+    """A scene with a source of momentum."""
+    return {"change": (FLUID_DENSITY, f'''{FLUID_DENSITY}<ParameterList name="Sources"><ParameterList name="Jet">
+      {value("Shape", "string", shape)} {sizes} {value("Velocity", "Array(double)", "{1, 0}")}</ParameterList></ParameterList>''')}
+
+
 CASES = [
     # The command line.
     Case("no such option", "--ouput", arguments=["--ouput", "here"]),
@@ -68,6 +78,16 @@ CASES = [
                  value("Natural Frequency", "double", 3) + value("Stiffness", "double", 3))),
     Case("a spring without gain", ["\"Neck\"", "has no \"Natural Frequency\"", "\"Stiffness\""],
          **joint("hinge", "space, Ball", value("Control", "string", "proportional derivative"))),
+    *[Case(f"{parameter} that nothing uses", ["\"Neck\" has", f"\"{parameter}\"", f"\"{control}\" control", "does not use"],
+           **joint("hinge", "space, Ball", value("Control", "string", control) + value(parameter, "double", 3) + more))
+      for parameter, control, more in (
+          ("Stiffness", "free", ""), ("Natural Frequency", "free", ""), ("Damping", "free", ""),
+          ("Largest Torque", "prescribed", ""), ("Damping Ratio", "prescribed", ""),
+          ("Largest Torque", "prescribed rate", value("Natural Frequency", "double", 3)),
+          ("Damping", "proportional derivative", value("Natural Frequency", "double", 3)),
+          ("Damping Ratio", "proportional derivative", value("Stiffness", "double", 3)))],
+    Case("a target of a free joint", ["\"Neck\" has \"Target\"", "\"Control\""],
+         **joint("hinge", "space, Ball", '<ParameterList name="Target">' + value("Value", "double", 1) + "</ParameterList>")),
     Case("a limit above another", ["\"Neck\"", "lower limit 0.5 above its upper limit -0.5"],
          **joint("hinge", "space, Ball", value("Lower Limit", "double", .5) + value("Upper Limit", "double", -.5))),
     Case("a limit beyond the start", ["\"Neck\" starts at 0", "above its upper limit -0.5"],
@@ -152,13 +172,27 @@ CASES = [
          change=(SIDE, SIDE + value("Velocity", "Array(double)", "{1, 0}"))),
     Case("an inward-blowing open side", "has no meaning on a side of type \"open\"",
          change=(SIDE, value("Type", "string", "open") + value("Velocity", "Array(double)", "{1, 0}"))),
+    *[Case(f"{parameter} of an open side", f"\"{parameter}\" has no meaning on a side of type \"open\"",
+           change=(SIDE, value("Type", "string", "open") + value(parameter, "double", "1")))
+      for parameter in ("Ramp Time", "End Time", "Smoke", "Temperature")],
+    Case("a warm inflow of a fluid without temperature", ["x lower", "the fluid carries none", "\"Fluid/Temperature\""],
+         change=(SIDE, INFLOW + value("Temperature", "double", "300"))),
     Case("an end before the start of the file", "must be later", change=(END, value("End", "double", "-1"))),
 
     # The fluid.
     Case("warm fluid without temperature", "has no temperature", sets=["Fluid/Thermal Expansion=0.1"]),
     Case("heavy smoke without smoke", "carries no smoke", sets=["Fluid/Smoke Weight=0.1"]),
 
+    Case("a source in a box the wrong way round", ["\"Sources/Jet\"", "\"Upper\" must not be below \"Lower\""],
+         **source("box", value("Lower", "Array(double)", "{0.6, 0}") + value("Upper", "Array(double)", "{0.4, 1}"))),
+    Case("a ball with corners", ["\"Sources/Jet\"", "the shape \"ball\" has no \"Lower\""],
+         **source("ball", value("Lower", "Array(double)", "{0.2, 0}") + value("Upper", "Array(double)", "{0.4, 1}"))),
+    Case("a box with a radius", "the shape \"box\" has no \"Radius\"", **source("box", value("Radius", "double", 1))),
+
     # The bodies.
+    Case("a flat spindle with widths", ["Ball/Geometry", "no \"Half Widths\""],
+         change=[(BODY_TYPE, value("Type", "string", "deformable body")), (GEOMETRY, SPINDLE),
+                 (DENSITY, DENSITY + '<ParameterList name="Material">' + value("Young's Modulus", "double", "1e4") + "</ParameterList>")]),
     Case("a body without mass", ["\"Ball\"", "no mass"], change=(DENSITY, "")),
     Case("a body with two masses", "leave out one", change=(DENSITY, DENSITY + value("Mass", "double", "1"))),
     Case("a volume with a surface density", "has no \"Surface Density\"",

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
+#include "mac/domain/inflow_scalars.hpp"
 #include "mac/domain/parameter_values.hpp"
 
 namespace lockstep {
@@ -32,18 +33,20 @@ BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, i
   if (list.isParameter("End Time"))
     side.end_time = list.get<double>("End Time");
   side.shape = read_inflow_shape<dim>(list, domain, axis, "Domain/Sides/" + side_name(axis, end));
-  side.smoke = list.get<double>("Smoke");
-  side.temperature = list.get<double>("Temperature");
   check_input(
       !side.closed() || side.velocity[axis] == 0,
       "In \"Domain/Sides/{}\", a wall cannot move along {} (velocity {} m/s): it would leave "
       "the domain. Make it an inflow, or set that component to 0.",
       side_name(axis, end), axis_names[axis], side.velocity[axis]);
-  check_input(side.type == SideType::wall || side.type == SideType::inflow ||
-                  side.velocity == Point<dim>::Zero(),
-              "In \"Domain/Sides/{}\", \"Velocity\" has no meaning on a side of type \"{}\"; it is "
-              "for walls and inflows.",
-              side_name(axis, end), list.get<std::string>("Type"));
+  const auto check_meaning = [&](const char* parameter, bool given) {
+    check_input(!given || side.type == SideType::wall || side.type == SideType::inflow,
+                "In \"Domain/Sides/{}\", \"{}\" has no meaning on a side of type \"{}\"; it is "
+                "for walls and inflows.",
+                side_name(axis, end), parameter, list.get<std::string>("Type"));
+  };
+  check_meaning("Velocity", side.velocity != Point<dim>::Zero());
+  check_meaning("Ramp Time", side.ramp_time > 0);
+  check_meaning("End Time", list.isParameter("End Time"));
   return side;
 }
 
@@ -84,8 +87,7 @@ ParameterList domain_parameters() {
       declare_optional<double>(side, "End Time", "After it \"Velocity\" is 0 [s].");
       declare_inflow_shape<dim>(side);
       declare_inflow_wave(side);
-      declare(side, "Smoke", 0.0, "Smoke density that an inflow carries [1].");
-      declare(side, "Temperature", 0.0, "Temperature that an inflow carries [K].");
+      declare_inflow_scalars(side);
     }
   return list;
 }

@@ -29,7 +29,7 @@ struct RegionShape {
   }
 };
 
-/// Declares "Shape" and the sizes of box and ball in `list`.
+/// "Shape" and the sizes of box and ball in `list`; reading throws InputError if they do not fit.
 template <int dim>
 void declare_shape(ParameterList& list);
 template <int dim>

@@ -192,13 +192,13 @@ void take_fraction(const OpenFractionRule<dim>& rule, int axis, int cell, Contro
   geometry.coupled_volumes.push_back(volume);
 }
 
-/// Faces in the plane where a periodic axis closes lie at its lower end, unless a solid sticks out
-/// at the upper one: it is not repeated, so that only there the face meets it.
+/// Faces in the plane where a periodic axis closes lie at its lower end, unless a solid is in their
+/// half of the last cell alone: it is not repeated, so that only there the face meets it.
 template <int dim>
 Point<dim> center_of_face(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry, int axis,
                           int cell) {
   const TiledGrid<dim>& grid = domain.grid;
-  Point<dim> center = grid.face_center(axis, cell);
+  const Point<dim> center = grid.face_center(axis, cell);
   if (!geometry.state.surface || !grid.description().periodic[axis] ||
       grid.coordinates(cell)[axis] != 0)
     return center;
@@ -206,9 +206,10 @@ Point<dim> center_of_face(const MacDomain<dim>& domain, const MacGeometry<dim>& 
   const Point<dim> at_upper_end =
       center + Point<dim>::Unit(axis) * (grid.n_cells()[axis] * grid.spacing());
   const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
-  if (surface.inside(at_upper_end - half) >= 0 && surface.inside(center + half) < 0)
-    center = at_upper_end;
-  return center;
+  const bool is_above = surface.inside(at_upper_end - half) >= 0 ||
+                        (surface.first_hit(at_upper_end - half, at_upper_end) &&
+                         !surface.first_hit(center, center + half));
+  return is_above && surface.inside(center + half) < 0 ? at_upper_end : center;
 }
 
 /// Owned tiles all of whose cells are fluid, with no surface near.

@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "mac/domain/fitting_domain.hpp"
+#include "mac/domain/inflow_scalars.hpp"
 #include "mac/domain/parameter_values.hpp"
 
 namespace lockstep {
@@ -231,6 +232,7 @@ MacDomain<dim> make_domain(const ParameterList& fluid, const ParameterList& doma
   DomainDescription<dim> description =
       tiles_move ? read_domain<dim>(domain) : fitting_domain<dim>(domain, comm);
   read_waves(fluid, domain, description);
+  read_inflow_scalars(fluid, domain, description.boundary);
   if (!tiles_move)
     return {description, comm};
   return {description, MovingTiles<dim>(fluid, description).first(comm), comm};

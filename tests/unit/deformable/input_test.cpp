@@ -87,6 +87,21 @@ TEST(Input, Cloth) {
   EXPECT_FALSE(made.closed);
 }
 
+// Linear elasticity takes a rotation for strain: it counts from how the body lies at the start.
+TEST(Input, ALinearBodyIsAtRestHoweverItIsTurned) {
+  const auto energy = [](const DeformableBody<3>& made) {
+    std::vector<Point<3>> force(made.n_nodes(), Point<3>::Zero());
+    return made.elements.front()->add_elastic_forces(made.position, made.n_nodes(), force);
+  };
+  const std::string block = box("1, 0.5, 0.5", "0.5") + number("Density", "1") +
+                            material("linear") + numbers("Rotation", "0.3, -1, 0.5");
+  EXPECT_LT(energy(body<3>(block)), 1e-25);
+  // Stretched along its own axis by a tenth: (lambda + 2 mu) / 2 times 0.01 a volume.
+  const LameConstants lame = lame_constants(100, 0.3);
+  EXPECT_NEAR(energy(body<3>(block + numbers("Stretch", "1.1, 1, 1"))),
+              0.25 * 0.005 * (lame.lambda + 2 * lame.mu), 1e-12);
+}
+
 TEST(Input, ClothOfAFileIsScaledWeldedAndOriented) {
   const std::string file =
       ::testing::TempDir() + "cloth" + std::to_string(world()->getRank()) + ".obj";
@@ -110,6 +125,12 @@ TEST(Input, MasslessCloth) {
                                number("Surface Density", "0") + text("Bending", "none");
   const std::string refused = error([&] { cloth<3>(massless); });
   EXPECT_THAT(refused, HasSubstr("fully-implicit"));
+  // Impulses along edges have nothing to act on.
+  const std::string limited = error([&] {
+    cloth<3>(massless + text("Time Integration", "fully-implicit") +
+             number("Stretch Limit", "0.1"));
+  });
+  EXPECT_THAT(limited, AllOf(HasSubstr("Flag"), HasSubstr("\"Stretch Limit\"")));
   std::vector<DeformableBody<3>> bodies;
   bodies.push_back(cloth<3>(massless + text("Time Integration", "fully-implicit") +
                             numbers("Velocity", "1, 2, 3")));

@@ -69,6 +69,53 @@ TEST(Fluid, SamplesOfALinearVelocityAreExactOnAnyRank) {
   EXPECT_FALSE(samples[3].in_fluid);
 }
 
+TEST(Fluid, InflowsCarryWhatIsAmbientUnlessTheySayElse) {
+  Case<2> scene({4, 4}, 0.5);
+  scene.side("x lower", "inflow", {1, 0}).side("x upper", "open");
+  scene.fluid.sublist("Temperature").set("Ambient", 300.0);
+  scene.fluid.sublist("Smoke").set("Ambient", 0.5);
+  scene.domain.sublist("Sides").sublist("x lower").set("Smoke", 0.0);
+  const auto fluid = scene.make();
+  EXPECT_EQ(fluid->scalars().find("temperature")->inflow[0][0], 300);
+  EXPECT_EQ(fluid->scalars().find("smoke")->inflow[0][0], 0);
+}
+
+// Upper sides as well as lower ones, wherever round-off puts them: 0.1 has no exact binary.
+TEST(Fluid, SidesBelongToTheCellsBesideThem) {
+  Case<2> scene({12, 7}, 0.1);
+  scene.domain.set("Lower", numbers({-0.3, 0.0})).set("Upper", numbers({0.9, 0.7}));
+  scene.side("y upper", "open");
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  fluid->set_prediction([](const Point<2>&) { return Point<2>(0, 3); });
+  const double left = -0.3, right = 0.9, top = 0.7;
+  const auto samples = fluid->sample({{left, 0.35},
+                                      {right, 0.35},
+                                      {left, 0},
+                                      {right, top},
+                                      {0.3, top},
+                                      {right + 1e-6, 0.35},
+                                      {0.3, top + 1e-6}});
+  for (int p = 0; p < 5; ++p)
+    EXPECT_TRUE(samples[p].in_fluid) << p;
+  EXPECT_FALSE(samples[5].in_fluid);
+  EXPECT_FALSE(samples[6].in_fluid);
+  EXPECT_DOUBLE_EQ(samples[4].velocity[1], 3);
+}
+
+TEST(Fluid, PointsInSolidsAreNotInTheFluid) {
+  Case<2> scene({8, 8}, 1);
+  const auto fluid = scene.make();
+  Solids<2> solids;  // its sides beside the centres of cells, which are fluid
+  solids.add(box_surface<2>(Point<2>(2.8, 2.8), 1), Point<2>(4, 4), true);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  const auto samples = fluid->sample({{2.7, 4.2}, {2.55, 4.2}, {2.8, 4.2}});
+  EXPECT_FALSE(samples[0].in_fluid);
+  EXPECT_TRUE(samples[1].in_fluid);
+  EXPECT_FALSE(samples[2].in_fluid);
+}
+
 TEST(Fluid, HistoryByHand) {
   Case<2> scene({4, 4}, 0.5);
   const auto fluid = scene.make();

@@ -97,6 +97,21 @@ TEST(Geometry, PeriodicSidesJoin) {
   EXPECT_EQ(global_count(fluid->coupled_volumes().size()), 20);
 }
 
+// It is not repeated: faces of the seam lie where it is.
+TEST(Geometry, AShellBesideASeamMeetsItsFaces) {
+  for (const double x : {0.99, 1.0, 0.0, 0.01}) {
+    Case<2> scene({20, 20}, 0.05);
+    scene.side("x lower", "periodic").side("x upper", "periodic");
+    const auto fluid = scene.make();
+    Solids<2> solids;
+    solids.add(plate_surface<2>(Point<2>(0, 2), 0, 0.05), Point<2>(x, 0.5), false);
+    fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+    EXPECT_EQ(global_count(fluid->coupled_volumes().size()), 20);
+    for (const ControlVolume<2>& volume : fluid->coupled_volumes())
+      EXPECT_NEAR(volume.center[0], x > 0.5 ? 1 : 0, 1e-14);
+  }
+}
+
 TEST(Geometry, AnOpenSideThatAPlateCovers) {
   Case<2> scene({4, 4}, 1.0);
   scene.side("y upper", "open");

@@ -185,6 +185,40 @@ TEST(Balance, CountsWhatIsInTheDomain) {
   EXPECT_NEAR(lift_of({-0.3, 0.46}, {0.02, 0.54}), tank.density * 9.8 * 0.02 * 0.08, 1e-14);
 }
 
+// In resting fluid a held body reports the buoyancy of all of its volume, not of what the grid
+// makes of it.
+TEST(Balance, AHeldBodyReportsItsExactBuoyancy) {
+  const FakeBox<2> tank = unit_tank<2>(12);
+  const Point<2> gravity(0.3, -9.8);
+  const double dt = 0.1;
+  for (const double radius : {0.03, 0.26})
+    for (int k = 0; k < 4; ++k) {
+      const FakeBody<2> body =
+          ball<2>(radius, shifted_center<2>(k, tank.spacing), FakeBody<2>::Kind::prescribed);
+      CoupledCase<2> c(tank, fake_solids<2>({{body}}));
+      const auto properties = volume_properties<2>(body.surface);
+      const auto none = make_vector(c.solids.map());
+      Momentum<2> impulse = c.coupling.add_unseen_buoyancy(gravity, dt, *none).at(0);
+      const auto pressure = make_vector(c.fluid.pressure_map());
+      for (const auto& face : c.fluid.faces())
+        for (const auto& side : face.volume.sides)
+          if (side.unknown != no_index && c.fluid.pressure_map()->isNodeGlobalElement(side.unknown))
+            pressure->replaceGlobalValue(side.unknown,
+                                         dt * tank.density * gravity.dot(side.center));
+      std::vector<double> falling, rest;
+      for (const auto& volume : c.fluid.coupled_volumes()) {
+        falling.push_back(dt * gravity[volume.direction]);
+        rest.push_back(0);
+      }
+      const Momentum<2> given = c.coupling.prescribed_impulses(falling, rest, *pressure).at(0);
+      const Point<2> lift = -dt * tank.density * properties.measure * gravity;
+      EXPECT_LT((impulse.linear - given.linear - lift).norm(), 1e-13) << radius << ' ' << k;
+      EXPECT_NEAR(impulse.angular[0] - given.angular[0], cross<2>(properties.centroid, lift)[0],
+                  1e-13)
+          << radius << ' ' << k;
+    }
+}
+
 // A body the grid hardly sees gets its lift as an impulse. In resting fluid, p̂ = dt rho g . x and
 // u* = dt g, what the discrete pressure, the lumped fluid and the impulse give it is -rho V dt g.
 TEST(Balance, TinyBodyGetsItsExactBuoyantImpulse) {

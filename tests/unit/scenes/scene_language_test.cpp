@@ -168,6 +168,26 @@ TEST(SceneLanguage, RandomCopiesKeepApartFromEachOtherAndFromOtherBalls) {
   EXPECT_NE(position(scene("2"), "Ball 30"), places[30]);
 }
 
+// Each by its own radius, by a formula or an override.
+TEST(SceneLanguage, RandomCopiesOfManySizesKeepApart) {
+  const std::string larger = list("3", list("Geometry", parameter("Radius", "double", "0.3")));
+  const std::string copies =
+      list("Copies", parameter("Type", "string", "random") + parameter("Number", "int", "20") +
+                         parameter("Lower", "Array(double)", "{0, 0}") +
+                         parameter("Upper", "Array(double)", "{2, 2}") + list("Overrides", larger));
+  const std::string growing = list("Geometry", parameter("Shape", "string", "ball") +
+                                                   parameter("Radius", "double", "[0.01*copy]"));
+  const Document document = expanded(list("Solids", list("Ball", growing + copies)));
+  const auto radius = [](int copy) { return copy == 3 ? 0.3 : 0.01 * copy; };
+  for (int i = 1; i <= 20; ++i) {
+    const auto one = position(document, "Ball " + std::to_string(i));
+    for (int j = 1; j < i; ++j) {
+      const auto other = position(document, "Ball " + std::to_string(j));
+      EXPECT_GE(std::hypot(one[0] - other[0], one[1] - other[1]), radius(i) + radius(j));
+    }
+  }
+}
+
 TEST(SceneLanguage, CopiesThatCannotBeAreRefused) {
   const auto copies = [](const std::string& body) {
     return refusal(list("Solids", list("Ball", ball(list("Copies", body)))));
