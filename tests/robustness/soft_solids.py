@@ -173,6 +173,7 @@ def cloth(world, center, reach, geometry=None):
         body["Stretch Limit"] = rng.uniform(0.12, 0.3)
     if body["Time Integration"] == "fully-implicit" and rng.random() < 0.1:
         body["Surface Density"] = 0.0  # the fluid lumped on it is all its mass
+        body.pop("Stretch Limit", None)  # shares what it does by mass
         world.facts.massless = True
     world.facts.soft = True
     return body

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "deformable/materials/material.hpp"
 #include "support.hpp"
 
 namespace lockstep::test {
