@@ -129,7 +129,7 @@ class World {
   /// Deepest overlap at the present positions [m].
   double overlap() {
     const auto velocity = solids->velocity();
-    return contact.resolve(*solids, ContactPhase::velocity, 1e-6, *velocity).deepest_overlap;
+    return contact.resolve(*solids, ContactPhase::position, 1e-6, *velocity).deepest_overlap;
   }
 
   std::unique_ptr<SolidSystem<dim>> solids;
