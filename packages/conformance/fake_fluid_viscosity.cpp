@@ -69,6 +69,7 @@ std::unique_ptr<ViscousSystem<dim>> FakeFluid<dim>::viscous_system() const {
         link.coefficient = bond();
         link.position = face.volume.center;
         link.end = other.volume.center;
+        link.reach = link.end - link.position;
         if (other.kind == FaceKind::coupled && owned(other)) {
           for (std::size_t c = 0; c < frozen_.coupled_volumes.size(); ++c) {
             if (frozen_.coupled_volumes[c].id == other.volume.id)

@@ -141,6 +141,9 @@ class MacFluid : public FluidDiscretization<dim>,
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell
   /// included.
   std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const override;
+  /// Of faces, multilinear between them.
+  std::vector<FlowSample> flow_across(int axis,
+                                      const std::vector<Point<dim>>& points) const override;
   std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const override;
   std::vector<PrescribedFlux> side_fluxes(double time) const override;
   std::function<void()> undo() override;

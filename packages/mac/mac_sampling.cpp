@@ -91,6 +91,50 @@ std::vector<FluidSample<dim>> MacFluid<dim>::sample(const std::vector<Point<dim>
 }
 
 template <int dim>
+std::vector<FlowSample> MacFluid<dim>::flow_across(int axis,
+                                                   const std::vector<Point<dim>>& points) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const SampleLattice<dim> lattice(grid);
+  const auto& cells = geometry_.state.cells;
+  const auto is_fluid = [&cells](int cell) { return cells[cell] == CellState::fluid; };
+  const auto in_domain = [&](int face) {
+    if (face < 0)
+      return false;
+    const FaceCells beside = cells_of_face(grid, cells, axis, face);
+    return beside.lower >= 0 || beside.upper >= 0;
+  };
+  constexpr int n_values = 3;
+  std::vector<double> values(points.size() * n_values, 0.);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto [cell, x] = place_of<dim>(grid, points[p]);
+    if (cell < 0 || !grid.owned(cell))
+      continue;
+    double weight = 0, open = 0, rate = 0;
+    for (const StencilCorner<dim>& corner : lattice.corners(axis, x)) {
+      const bool at_wall = corner.id == Stencil<dim>::wall_sample;
+      if (corner.weight == 0 || (!at_wall && !in_domain(corner.id)))
+        continue;
+      weight += corner.weight;
+      const double part = at_wall ? is_fluid(cell) : geometry_.flux_fraction(axis, corner.id);
+      open += corner.weight * part;
+      rate += at_wall ? 0 : corner.weight * part * prediction_[axis][corner.id];
+    }
+    if (open == 0)
+      continue;
+    double* value = &values[p * n_values];
+    value[0] = open / weight;
+    value[1] = rate / weight;
+    if (last_step_ > 0)
+      value[2] = mean_of<dim>(lattice, cell_centers, x, scaled_pressure_, is_fluid) / last_step_;
+  }
+  sum_all(grid.comm(), values.data(), static_cast<int>(values.size()));
+  std::vector<FlowSample> samples;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    samples.push_back({values[3 * p], values[3 * p + 1], values[3 * p + 2]});
+  return samples;
+}
+
+template <int dim>
 std::vector<double> MacFluid<dim>::surface_distances(const std::vector<Point<dim>>& points) const {
   const TiledGrid<dim>& grid = domain_.grid;
   const SampleLattice<dim> lattice(grid);
@@ -114,6 +158,8 @@ std::vector<double> MacFluid<dim>::surface_distances(const std::vector<Point<dim
   return values;
 }
 
+template std::vector<FlowSample> MacFluid<2>::flow_across(int, const std::vector<Point<2>>&) const;
+template std::vector<FlowSample> MacFluid<3>::flow_across(int, const std::vector<Point<3>>&) const;
 template std::vector<double> MacFluid<2>::surface_distances(const std::vector<Point<2>>&) const;
 template std::vector<double> MacFluid<3>::surface_distances(const std::vector<Point<3>>&) const;
 template std::vector<FluidSample<2>> MacFluid<2>::sample(const std::vector<Point<2>>&) const;

@@ -48,7 +48,7 @@ Flow<dim>::Flow(const ParameterList& list) {
 template <int dim>
 std::vector<ObservedColumn> Flow<dim>::columns() const {
   return {{"volume_rate", dim == 2 ? "m^2/s" : "m^3/s", "along the positive axis"},
-          {"open_area", dim == 2 ? "m" : "m^2", "part of the window that is in the fluid"},
+          {"open_area", dim == 2 ? "m" : "m^2", "part of the window that no solid covers"},
           {"mean_pressure", "Pa", "over that part; 0 if there is none"}};
 }
 
@@ -95,13 +95,11 @@ std::vector<std::vector<double>> Flow<dim>::observe(const RunView<dim>& run) {
     middles.max()[a] -= edge / 2;
   }
   double rate = 0, open = 0, pressure = 0;
-  for (const auto& sample :
-       sample_fluid(run.fluid, lattice_points<dim>(middles, count), this->name())) {
-    if (!sample.in_fluid)
-      continue;
-    rate += area * sample.velocity[axis_];
-    open += area;
-    pressure += area * sample.pressure;
+  for (const FlowSample& sample : sampler_of(run.fluid, this->name())
+                                      .flow_across(axis_, lattice_points<dim>(middles, count))) {
+    rate += area * sample.rate;
+    open += area * sample.open;
+    pressure += area * sample.open * sample.pressure;
   }
   return {{rate, open, open > 0 ? pressure / open : 0}};
 }

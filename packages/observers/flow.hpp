@@ -9,7 +9,8 @@ template <int dim>
 ParameterList flow_parameters();
 
 /// Volume that flows through a window at right angles to an axis, by the midpoint rule over squares
-/// of at most the fluid's h; what lies in solids lets nothing through.
+/// of at most the fluid's h; what solids cover lets nothing through, and a face that they cover in
+/// part the open part.
 template <int dim>
 class Flow : public Observer<dim> {
  public:

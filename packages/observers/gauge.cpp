@@ -47,7 +47,7 @@ Gauge<dim>::Gauge(const ParameterList& list) {
 
 template <int dim>
 std::vector<ObservedColumn> Gauge<dim>::columns() const {
-  return {{"wet_length", "m", "of the line, in the liquid"},
+  return {{"wet_length", "m", "of the line, in the liquid or in solids below its surface"},
           {"top", "m", "from its foot to the farthest place on it that is wet; 0 if none is"}};
 }
 

@@ -20,15 +20,14 @@ Point<dim> point(const ParameterList& list, const std::string& name) {
 }  // namespace
 
 template <int dim>
-std::vector<FluidSample<dim>> sample_fluid(const FluidDiscretization<dim>& fluid,
-                                           const std::vector<Point<dim>>& points,
-                                           const std::string& observer) {
+const FieldSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid,
+                                    const std::string& observer) {
   const auto* sampler = dynamic_cast<const FieldSampler<dim>*>(&fluid);
   check_input(sampler != nullptr,
               "The fluid \"{}\" cannot be asked at single points, which the observer \"{}\" wants; "
               "leave that observer out.",
               fluid.name(), observer);
-  return sampler->sample(points);
+  return *sampler;
 }
 
 template <int dim>
@@ -102,7 +101,7 @@ std::vector<ObservedColumn> Probes<dim>::columns() const {
   std::vector<ObservedColumn> columns = {{"point", "1", "its number, from 1"}};
   for (int a = 0; a < dim; ++a)
     columns.push_back({axis_names[a], "m", "where"});
-  columns.push_back({"in_fluid", "1", "1: in the fluid; 0: in a solid or outside"});
+  columns.push_back({"in_fluid", "1", "1: in a cell with fluid and in no solid; 0: else"});
   columns.push_back({"pressure", "Pa", "0 where there is no fluid"});
   for (int a = 0; a < dim; ++a)
     columns.push_back({std::string("v") + axis_names[a], "m/s", "velocity of the fluid"});
@@ -111,7 +110,7 @@ std::vector<ObservedColumn> Probes<dim>::columns() const {
 
 template <int dim>
 std::vector<std::vector<double>> Probes<dim>::observe(const RunView<dim>& run) {
-  const std::vector<FluidSample<dim>> samples = sample_fluid(run.fluid, points_, name_);
+  const std::vector<FluidSample<dim>> samples = sampler_of(run.fluid, name_).sample(points_);
   std::vector<std::vector<double>> rows;
   for (std::size_t p = 0; p < points_.size(); ++p) {
     std::vector<double> row{static_cast<double>(p + 1)};
@@ -126,10 +125,8 @@ std::vector<std::vector<double>> Probes<dim>::observe(const RunView<dim>& run) {
   return rows;
 }
 
-template std::vector<FluidSample<2>> sample_fluid(const FluidDiscretization<2>&,
-                                                  const std::vector<Point<2>>&, const std::string&);
-template std::vector<FluidSample<3>> sample_fluid(const FluidDiscretization<3>&,
-                                                  const std::vector<Point<3>>&, const std::string&);
+template const FieldSampler<2>& sampler_of(const FluidDiscretization<2>&, const std::string&);
+template const FieldSampler<3>& sampler_of(const FluidDiscretization<3>&, const std::string&);
 template std::vector<Point<2>> lattice_points<2>(const Box<2>&, const Index<2>&);
 template std::vector<Point<3>> lattice_points<3>(const Box<3>&, const Index<3>&);
 template ParameterList points_parameters<2>();

@@ -11,9 +11,8 @@ namespace lockstep {
 /// What the fluid is like at the points [m]. Throws InputError, naming `observer`, if it cannot be
 /// asked. Collective.
 template <int dim>
-std::vector<FluidSample<dim>> sample_fluid(const FluidDiscretization<dim>& fluid,
-                                           const std::vector<Point<dim>>& points,
-                                           const std::string& observer);
+const FieldSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid,
+                                    const std::string& observer);
 
 /// Evenly spaced points of the box between two corners [m], `count` along each axis, ends included;
 /// one alone lies in the middle. x runs fastest.

@@ -27,7 +27,7 @@ Motions<dim> motions_at(const Point<dim>& arm, int direction, double length) {
 /// mu area [kg m/s] of the bond: the weight of its end, as of a patch of surface.
 template <int dim>
 double weight_of(const ViscousLink<dim>& link) {
-  return link.coefficient * (link.end - link.position).norm();
+  return link.coefficient * link.reach.norm();
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ std::vector<typename SpinCouples<dim>::Fit> SpinCouples<dim>::fit(
     const Motions<dim> motions = motions_at<dim>(arm, direction, 1);
     Eigen::Map<decltype(Fit::normal)>(sum) +=
         weight_of<dim>(links[l]) * motions * motions.transpose();
-    const Point<dim> reach = links[l].coefficient * (links[l].end - links[l].position);
+    const Point<dim> reach = links[l].coefficient * links[l].reach;
     for (int across = 0; across < dim; ++across)
       if (across != direction)  // the axis about which they turn
         sum[n_normal + (dim == 2 ? 0 : 3 - across - direction)] -= reach[across] * arm[across];

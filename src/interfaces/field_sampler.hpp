@@ -13,6 +13,13 @@ struct FluidSample {
   Point<dim> velocity = Point<dim>::Zero();  ///< [m/s]
 };
 
+/// How a fluid goes through a plane at one place.
+struct FlowSample {
+  double open = 0;  ///< part of the plane there that fluid can go through [1]; 0: all else is zero
+  double rate = 0;  ///< volume by area, open or not, and time, along the axis [m/s]
+  double pressure = 0;  ///< [Pa]
+};
+
 /// A side interface of fluids that can be asked at any place. Observers want it; a fluid without it
 /// runs all the same.
 template <int dim>
@@ -22,6 +29,15 @@ class FieldSampler {
   /// The state at the end of the last step, one sample a point [m], the same on all ranks.
   /// Collective; all ranks ask for the same points.
   virtual std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const = 0;
+  /// The same of planes at right angles to an axis: what the fluid's own balance of volume says
+  /// goes through. Without a better answer all or nothing, as `sample` has it. Collective.
+  virtual std::vector<FlowSample> flow_across(int axis,
+                                              const std::vector<Point<dim>>& points) const {
+    std::vector<FlowSample> flows;
+    for (const FluidSample<dim>& one : sample(points))
+      flows.push_back({one.in_fluid ? 1. : 0., one.velocity[axis], one.pressure});
+    return flows;
+  }
 };
 
 }  // namespace lockstep

@@ -23,8 +23,10 @@ struct ViscousLink {
   Point<dim> position =
       Point<dim>::Zero();  ///< of the free velocity: where the link pulls on the fluid [m]
   /// The other end [m]: a rigid solid is taken to move there as it does everywhere, even if its
-  /// surface is a little nearer or farther.
+  /// surface is a little nearer or farther. Across periodic sides where the solid is, not beside
+  /// the velocity.
   Point<dim> end = Point<dim>::Zero();
+  Point<dim> reach = Point<dim>::Zero();  ///< from the velocity to the other end [m]
 };
 
 /// Implicit viscosity in variational form: (M + dt K) u = M u* over the free velocities, SPD.

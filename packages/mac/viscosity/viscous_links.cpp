@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "linear/row_builder.hpp"
@@ -24,13 +25,26 @@ std::optional<SurfacePoint<dim>> surface_on_link(const MacDomain<dim>& domain,
   if (across == face.axis || !geometry.near_surface(lower_cell))
     return std::nullopt;
   const SurfaceSnapshot<dim>& surface = *geometry.state.surface;
-  const Point<dim> lower = domain.grid.face_center(face.axis, lower_cell);
-  const Point<dim> upper = lower + Point<dim>::Unit(across) * domain.spacing();
-  auto hit = surface.first_hit(lower, upper);
-  if (hit && end == 0) {
-    if (const auto reverse = surface.first_hit(upper, lower))
-      return reverse;
-    hit->fraction = 1 - hit->fraction;
+  Point<dim> lower = domain.grid.face_center(face.axis, lower_cell);
+  const Point<dim> step = Point<dim>::Unit(across) * domain.spacing();
+  const auto find_hit = [&] {
+    auto hit = surface.first_hit(lower, lower + step);
+    if (hit && end == 0) {
+      if (const auto reverse = surface.first_hit(lower + step, lower))
+        return reverse;
+      hit->fraction = 1 - hit->fraction;
+    }
+    return hit;
+  };
+  auto hit = find_hit();
+  const int n = domain.grid.n_cells()[across];
+  if (domain.grid.description().periodic[across] &&
+      domain.grid.coordinates(lower_cell)[across] == n - 1) {
+    // A link across the seam meets solids at both ends of the axis.
+    lower[across] -= n * domain.spacing();
+    const auto at_lower_end = find_hit();
+    if (at_lower_end && (!hit || at_lower_end->fraction < hit->fraction))
+      hit = at_lower_end;
   }
   return hit;
 }
@@ -217,8 +231,8 @@ class Builder {
     link.position = grid_.face_center(face.axis, face.cell);
     link.direction = face.axis;
     link.coefficient = coefficient;
-    link.end = link.position;
-    link.end[across] += (end == 0 ? -fraction : fraction) * grid_.spacing();
+    link.reach[across] = (end == 0 ? -fraction : fraction) * grid_.spacing();
+    link.end = link.position + link.reach;
     return link;
   }
 
@@ -227,6 +241,7 @@ class Builder {
     const double fraction = std::max(point.fraction, parameters_.smallest_link_fraction);
     ViscousLink<dim> link = new_link(face, across, end, coefficient, fraction);
     link.point = point;
+    link.end = image_near(point.position, link.end);
     result_.links.push_back(link);
   }
 
@@ -255,11 +270,22 @@ class Builder {
       return;
     Point<dim> x = grid_.face_center(face.axis, face.cell);
     x[across] += end == 0 ? -grid_.spacing() : grid_.spacing();
+    x = image_near(grid_.center(solid(cells.lower) ? cells.lower : cells.upper), x);
     auto point = geometry_.state.surface->closest(x, 2 * grid_.spacing());
     if (!point)
       return;
     point->fraction = 1;
     add_surface_link(face, across, end, *point, coefficient);
+  }
+
+  /// Solids are not repeated beyond periodic sides: of all images of x that nearest to a place.
+  Point<dim> image_near(const Point<dim>& place, Point<dim> x) const {
+    for (int a = 0; a < dim; ++a) {
+      const double period = grid_.n_cells()[a] * grid_.spacing();
+      if (grid_.description().periodic[a])
+        x[a] += period * std::round((place[a] - x[a]) / period);
+    }
+    return x;
   }
 
   const MacDomain<dim>& domain_;

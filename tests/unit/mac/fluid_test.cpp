@@ -102,6 +102,10 @@ TEST(Fluid, SidesBelongToTheCellsBesideThem) {
   EXPECT_FALSE(samples[5].in_fluid);
   EXPECT_FALSE(samples[6].in_fluid);
   EXPECT_DOUBLE_EQ(samples[4].velocity[1], 3);
+  const auto flows = fluid->flow_across(1, {{0.3, top}, {0.3, 0}});
+  EXPECT_DOUBLE_EQ(flows[0].open, 1);
+  EXPECT_DOUBLE_EQ(flows[0].rate, 3);
+  EXPECT_DOUBLE_EQ(flows[1].rate, 0);  // a wall
 }
 
 TEST(Fluid, PointsInSolidsAreNotInTheFluid) {

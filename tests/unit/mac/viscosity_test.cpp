@@ -211,6 +211,51 @@ TEST(Viscosity, LinksEndOnAPlate) {
   EXPECT_EQ(sum_all(world(), GlobalIndex(coupled)), 16);
 }
 
+// Solids are not repeated beyond periodic sides: a body that turns has its velocity where it is.
+TEST(Viscosity, LinksAcrossASeamEndWhereTheSolidIs) {
+  for (const double plate : {7.8, 0.2}) {
+    Case<2> scene({8, 4}, 1.0);
+    scene.all_periodic();
+    scene.fluid.set("Viscosity", 3.0);
+    const auto fluid = scene.make();
+    Solids<2> solids;
+    solids.add(plate_surface<2>(Point<2>(0, 20), 0, 1.0), Point<2>(plate, 2), false);
+    fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+    const auto system = fluid->viscous_system();
+    int left = 0, right = 0;
+    for (const ViscousLink<2>& link : system->links) {
+      if (link.direction == 0)
+        continue;  // beside the coupled faces of the seam
+      const double distance =
+          link.position[0] > 4 ? plate == 0.2 ? 0.7 : 0.3 : (plate == 0.2 ? 0.3 : 0.7);
+      EXPECT_NEAR(link.point.position[0], plate, 1e-12);
+      EXPECT_NEAR((link.end - link.point.position).norm(), 0, 1e-12);
+      EXPECT_NEAR(std::abs(link.reach[0]), distance, 1e-12);
+      EXPECT_NEAR(link.coefficient, 3.0 / distance, 1e-12);
+      ++(link.position[0] > 4 ? left : right);
+    }
+    EXPECT_EQ(sum_all(world(), GlobalIndex(left)), 4) << plate;
+    EXPECT_EQ(sum_all(world(), GlobalIndex(right)), 4) << plate;
+  }
+}
+
+// The face between two cells that solids fill, in the gap between those, across the seam.
+TEST(Viscosity, HiddenSolidsAcrossASeamPull) {
+  Case<2> scene({8, 8}, 1.0);
+  scene.all_periodic();
+  scene.fluid.set("Viscosity", 3.0);
+  const auto fluid = scene.make();
+  Solids<2> solids;
+  for (const double y : {1.5, 2.5})
+    solids.add(box_surface<2>(Point<2>(0.4, 0.4), 1.0), Point<2>(0.5, y), true);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  GlobalIndex found = 0;
+  for (const ViscousLink<2>& link : fluid->viscous_system()->links)
+    found += link.direction == 1 && (link.position - Point<2>(7.5, 2)).norm() < 1e-12 &&
+             (link.end - Point<2>(0.5, 2)).norm() < 1e-12;
+  EXPECT_EQ(sum_all(world(), found), 1);
+}
+
 TEST(Viscosity, CouetteFlowIsLinear) {
   // The lid moves; after a step many diffusion times long the flow is u = y.
   Case<2> scene({4, 8}, 0.125);
