@@ -107,7 +107,7 @@ std::vector<FlowSample> MacFluid<dim>::flow_across(int axis,
   std::vector<double> values(points.size() * n_values, 0.);
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto [cell, x] = place_of<dim>(grid, points[p]);
-    if (cell < 0 || !grid.owned(cell))
+    if (cell < 0 || !grid.owned(cell) || !is_fluid(cell))
       continue;
     double weight = 0, open = 0, rate = 0;
     for (const StencilCorner<dim>& corner : lattice.corners(axis, x)) {
@@ -115,7 +115,7 @@ std::vector<FlowSample> MacFluid<dim>::flow_across(int axis,
       if (corner.weight == 0 || (!at_wall && !in_domain(corner.id)))
         continue;
       weight += corner.weight;
-      const double part = at_wall ? is_fluid(cell) : geometry_.flux_fraction(axis, corner.id);
+      const double part = at_wall ? 1 : geometry_.flux_fraction(axis, corner.id);
       open += corner.weight * part;
       rate += at_wall ? 0 : corner.weight * part * prediction_[axis][corner.id];
     }

@@ -48,7 +48,7 @@ Flow<dim>::Flow(const ParameterList& list) {
 template <int dim>
 std::vector<ObservedColumn> Flow<dim>::columns() const {
   return {{"volume_rate", dim == 2 ? "m^2/s" : "m^3/s", "along the positive axis"},
-          {"open_area", dim == 2 ? "m" : "m^2", "part of the window that no solid covers"},
+          {"open_area", dim == 2 ? "m" : "m^2", "part of the window that is in the fluid"},
           {"mean_pressure", "Pa", "over that part; 0 if there is none"}};
 }
 
