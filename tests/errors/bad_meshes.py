@@ -62,7 +62,7 @@ CASES = [
     Case("an open mesh", ["'Ball'", "should enclose a volume"], **mesh(TETRAHEDRON.replace("f 2 3 4\n", ""))),
     Case("a triangle turned against its neighbours", "oriented against each other",
          **mesh(TETRAHEDRON.replace("f 2 3 4", "f 2 4 3"))),
-    Case("a shell of two sides", ["'Ball' is a shell", "1 edge whose two triangles are oriented against each other", "\"Orient\""],
+    Case("a shell of two sides", ["'Ball'", "is a shell of two sides", "1 edge whose two triangles are oriented against each other", "\"Orient\""],
          scene=SCENE_3D, files=[("body.obj", CREASED)],
          change=[(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.obj") + value("Thin Shell", "bool", "true")),
                  (DENSITY, value("Surface Density", "double", "500"))]),
