@@ -90,6 +90,15 @@ CellBox<dim> box_of_band(const MacDomain<dim>& domain, const SolidCells<dim>& so
   return box;
 }
 
+/// From a lattice coordinate to the first one of the next tile; the last tile of an axis may be
+/// short, and after it a periodic axis begins anew.
+template <int dim>
+int to_next_tile(const TiledGrid<dim>& grid, int axis, int place) {
+  const int n = grid.n_cells()[axis];
+  const int wrapped = ((place % n) + n) % n;
+  return std::min(tile_width<dim> - wrapped % tile_width<dim>, n - wrapped);
+}
+
 /// Flags the owned tiles that a box of lattice coordinates touches; periodic axes wrap.
 template <int dim>
 void flag_tiles(const TiledGrid<dim>& grid, const CellBox<dim>& box, std::vector<char>& flags) {
@@ -100,10 +109,9 @@ void flag_tiles(const TiledGrid<dim>& grid, const CellBox<dim>& box, std::vector
       flags[TiledGrid<dim>::tile_of(cell)] = 1;
     int a = 0;
     for (; a < dim; ++a) {
-      if (place[a] < box.high[a]) {
-        place[a] = std::min(place[a] + tile_width<dim>, box.high[a]);
+      place[a] += to_next_tile(grid, a, place[a]);
+      if (place[a] <= box.high[a])
         break;
-      }
       place[a] = box.low[a];
     }
     if (a == dim)
