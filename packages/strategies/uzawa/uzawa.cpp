@@ -48,13 +48,15 @@ int Uzawa::correct(const BlockSystem& system, const CorrectionRequest& request,
     return pressure_cg(system, request, correction);
   const CrsMatrix& coupling = *system.coupling_transposed;
   Vector residual(*request.residual, Teuchos::Copy), step(correction.getMap());
+  Vector inner_residual(residual.getMap());  // the inner solve uses it up
   Vector force(coupling.getRangeMap()), velocity(coupling.getRangeMap());
   correction.putScalar(0);
   double norm = request.residual_norm, smallest = norm, growth = 1;
   int n_iterations = 0;
   while (norm > request.target && n_iterations < request.maximum_iterations) {
     CorrectionRequest inner = request;
-    inner.residual = &residual;
+    inner_residual.assign(residual);
+    inner.residual = &inner_residual;
     inner.target = inner_tolerance_ * norm;
     inner.update_target = nullptr;
     pressure_cg(system, inner, step);
