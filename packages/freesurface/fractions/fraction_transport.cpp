@@ -123,7 +123,8 @@ void FractionTransport<dim>::leave_covered_cells(const SolidCells<dim>& solids,
     const Index<dim> place = grid.coordinates(cell);
     for (int i = 0; i < 2 * dim; ++i) {
       const int axis = i / 2, side = i % 2, face = face_of(grid, cell, axis, side);
-      if (face < 0 || place[axis] != (side == 0 ? 0 : grid.n_cells()[axis] - 1))
+      if (face < 0 || domain_.boundary.periodic(axis) ||
+          place[axis] != (side == 0 ? 0 : grid.n_cells()[axis] - 1))
         continue;
       double inwards = (side == 0 ? 1 : -1) * velocity[axis][face] * dt / grid.spacing();
       if (domain_.boundary.side(axis, side).type == SideType::open)

@@ -249,7 +249,7 @@ std::vector<char> find_rim(const MacDomain<dim>& domain) {
       for (int side = 0; side < 2; ++side) {
         if (!grid.ends_at(tile, axis, side))
           continue;
-        const int layer = side == 0 ? 0 : tile_width<dim> - 1;
+        const int layer = side == 0 ? 0 : grid.tile_domain_extent(tile)[axis] - 1;
         for (int cell = tile * tile_volume<dim>; cell < (tile + 1) * tile_volume<dim>; ++cell)
           if ((cell >> (axis * log_tile_width<dim>)&(tile_width<dim> - 1)) == layer)
             rim[cell] = 1;

@@ -10,8 +10,8 @@ namespace lockstep::test {
 namespace {
 
 /// A tall tank in which only the tiles around a box are stored.
-Case<2> tall_tank(const Point<2>& lower, const Point<2>& upper) {
-  Case<2> scene({64, 160}, 0.125);
+Case<2> tall_tank(const Point<2>& lower, const Point<2>& upper, int n_across = 64) {
+  Case<2> scene({n_across, 160}, 0.125);
   ParameterList& tiles = scene.fluid.sublist("Moving Tiles");
   tiles.set("Tile Margin", 4);
   ParameterList& region = tiles.sublist("Keep").sublist("Here");
@@ -61,6 +61,15 @@ TEST(MovingTiles, StoreOnlyWhatWasAskedFor) {
   EXPECT_EQ(fluid->pressure_map()->getGlobalNumElements(), 30U * 30U);
   ASSERT_EQ(fluid->regions().n_regions, 1);
   EXPECT_TRUE(fluid->regions().has_dirichlet[0]);
+}
+
+/// The last tile along a periodic axis is half as wide, and the first one is not there.
+TEST(MovingTiles, ShortTilesAtPeriodicSidesHaveARim) {
+  Case<2> scene = tall_tank({7.9, 9}, {8.4, 11}, 72);
+  scene.side("x lower", "periodic").side("x upper", "periodic");
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  EXPECT_EQ(fluid->pressure_map()->getGlobalNumElements(), (16U + 8 - 2) * 30);
 }
 
 /// Hydrostatics hold without any motion, whatever the ambient scalars weigh.
