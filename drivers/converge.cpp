@@ -10,8 +10,8 @@
 // if neither scene, case nor program changed. Runs serially and starts `simulate`, which lies
 // beside it, through mpirun where a case asks for ranks.
 //
-// Exit codes: 0 done, 2 bad input, 4 output failed; that of the first failed run otherwise, after
-// the table of the others has been written.
+// Exit codes: 0 done, 2 bad input (a quantity that cannot be measured among it), 4 output failed;
+// that of the first failed run otherwise; in both cases after the table of the rest is written.
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -123,7 +123,12 @@ int run_study(const Study& study, const Arguments& arguments) {
   const std::vector<CaseOutcome> outcomes = run_cases_and_tell(cases, arguments.runner);
 
   // 5. Measure what is there.
-  const std::vector<StudyRow> table = study_table(study, cases, outcomes);
+  bool all_measured = true;
+  const std::vector<StudyRow> table =
+      study_table(study, cases, outcomes, [&all_measured](const std::string& sentence) {
+        std::cerr << "converge: " << sentence << "\n";
+        all_measured = false;
+      });
   write_file_atomically(directory + "/table.csv", table_csv(study, table));
   write_file_atomically(directory + "/table.md", table_markdown(study, table) +
                                                      targets_markdown(study, table) +
@@ -143,7 +148,9 @@ int run_study(const Study& study, const Arguments& arguments) {
     if (outcome.exit_code != 0)
       return outcome.exit_code;
   }
-  return forwarded_signal() == 0 ? 0 : 128 + forwarded_signal();
+  if (forwarded_signal() != 0)
+    return 128 + forwarded_signal();
+  return all_measured ? 0 : static_cast<int>(ExitCode::bad_input);
 }
 
 int run(int argc, char** argv) {

@@ -106,7 +106,7 @@ double field_value(const Quantity& quantity, const RunResults& run, const Variab
   }
   const auto n = static_cast<double>(field.values.size() / field.n_components);
   if (quantity.norm == Quantity::Norm::max)
-    return largest;
+    return std::isnan(sum) ? sum : largest;
   return quantity.norm == Quantity::Norm::l1 ? sum / n : std::sqrt(squares / n);
 }
 
@@ -142,6 +142,8 @@ double line_maximum(const Quantity& quantity, const FrameField& field, double si
       values[i] += weight == 0 ? 0 : weight * field.values[at];
     }
   }
+  if (const double sum = std::accumulate(values.begin(), values.end(), 0.0); std::isnan(sum))
+    return sum;
   const auto top = std::max_element(values.begin(), values.end());
   if (top == values.begin() || top + 1 == values.end())
     return *top;

@@ -13,9 +13,11 @@ namespace {
 
 void add_constants(Variables& variables, const Formulas& formulas, const Formulas& replacements,
                    const std::string& where) {
+  // Of several the last one counts, as it does for assignments.
   const auto in = [](const Formulas& list, const std::string& name) {
-    return std::find_if(list.begin(), list.end(),
-                        [&](const auto& formula) { return formula.first == name; });
+    const auto last = std::find_if(list.rbegin(), list.rend(),
+                                   [&](const auto& formula) { return formula.first == name; });
+    return last == list.rend() ? list.end() : std::prev(last.base());
   };
   // Those of the series come first, unless they stand for one of the study's in its order.
   for (const auto& [name, formula] : replacements) {

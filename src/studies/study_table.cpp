@@ -58,6 +58,14 @@ void add_cost(StudyRow& row, const Rung& rung) {
   }
 }
 
+/// Samples may differ in what a formula asks for.
+double sample_mean(const Rung& rung, const std::string& formula, const std::string& where) {
+  double sum = 0;
+  for (const Variables& variables : rung.variables)
+    sum += evaluate(formula, variables, where);
+  return sum / static_cast<double>(rung.variables.size());
+}
+
 StudyRow make_row(const Study& study, const Quantity& quantity, const Rung& rung) {
   StudyRow row;
   row.series = study.series[rung.first->series].name;
@@ -67,7 +75,7 @@ StudyRow make_row(const Study& study, const Quantity& quantity, const Rung& rung
   row.mean_step = rung.runs.front().mean_step;
   row.ranks = rung.first->ranks;
   row.ladder = rung.first->constants.at(study.ladder_name);
-  row.abscissa = evaluate(study.abscissa, rung.variables.front(), "\"Ladder/Abscissa\"");
+  row.abscissa = sample_mean(rung, study.abscissa, "\"Ladder/Abscissa\"");
   row.n_samples = static_cast<int>(rung.runs.size());
   row.n_at_a_time = rung.n_at_a_time;
   std::vector<double> values;
@@ -82,18 +90,21 @@ StudyRow make_row(const Study& study, const Quantity& quantity, const Rung& rung
   return row;
 }
 
+/// Of `rows`, one of each of `rungs`. `is_whole`: the last of them is the last of the series.
 void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
-                const std::vector<Rung>& rungs) {
+                const std::vector<const Rung*>& rungs, bool is_whole) {
   if (quantity.reference.empty() || rows.empty())
     return;
   const bool self = trimmed(quantity.reference) == "self";
+  if (self && !is_whole)
+    return;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     StudyRow& row = rows[r];
     if (self && r + 1 == rows.size())
       break;
     row.reference = self ? rows.back().value
-                         : evaluate(quantity.reference, rungs[r].variables.front(),
-                                    fmt::format("Reference of \"{}\"", quantity.name));
+                         : sample_mean(*rungs[r], quantity.reference,
+                                       fmt::format("Reference of \"{}\"", quantity.name));
     const double scale = quantity.relative && *row.reference != 0 ? std::abs(*row.reference) : 1.0;
     row.error = std::abs(row.value - *row.reference) / scale;
     const StudyRow* before = r > 0 ? &rows[r - 1] : nullptr;
@@ -103,6 +114,30 @@ void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
     if (ordered)
       row.order = std::log(*before->error / *row.error) / std::log(before->abscissa / row.abscissa);
   }
+}
+
+/// The rows of one quantity in one series.
+std::vector<StudyRow> rows_of(const Study& study, const Quantity& quantity,
+                              const std::vector<Rung>& rungs, int last_rung,
+                              const std::function<void(const std::string&)>& tell) {
+  std::vector<StudyRow> rows;
+  std::vector<const Rung*> measured;
+  for (const Rung& rung : rungs) {
+    try {
+      rows.push_back(make_row(study, quantity, rung));
+      measured.push_back(&rung);
+    } catch (const InputError& error) {
+      tell(fmt::format("{}: not measured. {}", rung.first->directory, error.what()));
+    }
+  }
+  const bool is_whole = !measured.empty() && measured.back()->first->rung == last_rung;
+  if (!rows.empty() && !is_whole && trimmed(quantity.reference) == "self")
+    tell(
+        fmt::format("\"{}\" of series \"{}\" has no errors: its last rung, which is the "
+                    "reference, is missing.",
+                    quantity.name, rows.front().series));
+  add_errors(rows, quantity, measured, is_whole);
+  return rows;
 }
 
 std::string text(const std::optional<double>& number) {
@@ -133,15 +168,16 @@ std::string without_separators(std::string name) {
 }
 
 std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCase>& cases,
-                                  const std::vector<CaseOutcome>& outcomes) {
+                                  const std::vector<CaseOutcome>& outcomes,
+                                  const std::function<void(const std::string&)>& tell) {
   std::vector<StudyRow> table;
   for (int s = 0; s < static_cast<int>(study.series.size()); ++s) {
     const std::vector<Rung> rungs = read_rungs(study, s, cases, outcomes);
+    int last_rung = 0;  // of those that were asked for
+    for (const StudyCase& one : cases)
+      last_rung = one.series == s ? std::max(last_rung, one.rung) : last_rung;
     for (const Quantity& quantity : study.quantities) {
-      std::vector<StudyRow> rows;
-      for (const Rung& rung : rungs)
-        rows.push_back(make_row(study, quantity, rung));
-      add_errors(rows, quantity, rungs);
+      const std::vector<StudyRow> rows = rows_of(study, quantity, rungs, last_rung, tell);
       table.insert(table.end(), rows.begin(), rows.end());
     }
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,9 +25,12 @@ struct StudyRow {
   int n_at_a_time = 1;  ///< runs of the study while one of these went: more take longer
 };
 
-/// Measures the cases that are done: series by series, quantity by quantity, rung by rung.
+/// Measures the cases that are done: series by series, quantity by quantity, rung by rung. What
+/// cannot be measured has no row, and a series whose last rung is not there has no errors against
+/// itself; each of these is told as a sentence.
 std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCase>& cases,
-                                  const std::vector<CaseOutcome>& outcomes);
+                                  const std::vector<CaseOutcome>& outcomes,
+                                  const std::function<void(const std::string&)>& tell);
 
 /// A name inside a CSV field: no commas, quotes or line breaks.
 std::string without_separators(std::string name);

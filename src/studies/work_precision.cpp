@@ -37,7 +37,10 @@ TargetCost cost_of_target(const std::vector<StudyRow>& rung_rows, double target)
   // The finest rung has no error where it is what the others are compared with.
   const auto finest = std::find_if(rung_rows.rbegin(), rung_rows.rend(),
                                    [](const StudyRow& row) { return row.error.has_value(); });
-  const auto misses = [target](const StudyRow& row) { return !row.error || *row.error > target; };
+  // An error that is not a number reaches nothing.
+  const auto misses = [target](const StudyRow& row) {
+    return !row.error || !(*row.error <= target);
+  };
   const auto last_miss = std::find_if(finest, rung_rows.rend(), misses);
   if (last_miss == finest)
     return cost;

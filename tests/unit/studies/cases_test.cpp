@@ -163,6 +163,16 @@ TEST(Cases, AProductOfFactorsIsOneSeriesForEveryChoice) {
   EXPECT_TRUE(series_product({}, plain).empty());
 }
 
+/// As of assignments and values: the last factor that says something of a constant counts.
+TEST(Cases, OfSeveralReplacementsTheLastCounts) {
+  Study study;
+  study.constants = {{"number", "1"}};
+  study.ladder_name = "n";
+  study.ladder_values = {4};
+  study.series = {{"both", "scene.xml", {{"number", "2"}, {"number", "3"}}, {}, {}, 1}};
+  EXPECT_EQ(study_cases(study, {}).at(0).constants.at("number"), 3);
+}
+
 TEST(Cases, EveryShippedStudyCanBeExpanded) {
   int n_studies = 0;
   for (const auto& file : std::filesystem::directory_iterator(STUDIES_DIRECTORY)) {

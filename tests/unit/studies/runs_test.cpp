@@ -43,9 +43,15 @@ class Runs : public testing::Test {
   }
   std::vector<StudyRow> table() {
     const auto outcomes = run();
-    return study_table(study_, cases_, outcomes);
+    return table_of(outcomes);
+  }
+  std::vector<StudyRow> table_of(const std::vector<CaseOutcome>& outcomes) {
+    told_.clear();
+    return study_table(study_, cases_, outcomes,
+                       [this](const std::string& sentence) { told_.push_back(sentence); });
   }
 
+  std::vector<std::string> told_;
   std::string folder_ = "studies-test-runs";
   Study study_;
   RunnerOptions options_;
@@ -102,7 +108,20 @@ TEST_F(Runs, TablesOfObservers) {
   EXPECT_NEAR(rows[0].value, (5. + 7 + 7) / 3, 1e-14);
   EXPECT_EQ(rows[1].value, 3201);
   study_.quantities[1].expression = "Probes.3.p";
-  EXPECT_THROW(table(), InputError);
+  EXPECT_EQ(table().size(), 1u);  // what can be measured
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_THAT(told_[0], testing::HasSubstr("Probes.3.p"));
+}
+
+/// Without its finest run a series has nothing to be compared with.
+TEST_F(Runs, ASeriesIsItsOwnReferenceByItsLastRungAlone) {
+  study_.quantities[0].reference = "self";
+  study_.assignments.push_back("Fake/Fail=[n == 16 ? 3 : 0]");
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_FALSE(rows[0].error);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_THAT(told_[0], testing::HasSubstr("last rung"));
 }
 
 TEST_F(Runs, SurfacesInTheFrames) {
@@ -151,7 +170,9 @@ TEST_F(Runs, ExtremaAlongLines) {
   const double end = 15. / 16;  // the last cell
   EXPECT_NEAR(rows[1].value, -0.3 * (1 - (end - 0.4) * (end - 0.4)), 1e-14);
   study_.quantities[0].component = 3;
-  EXPECT_THROW(table(), InputError);
+  EXPECT_EQ(table().size(), 1u);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_THAT(told_[0], testing::HasSubstr("has no component 3"));
 }
 
 TEST_F(Runs, MeanAndSpreadOverSamples) {
@@ -164,6 +185,8 @@ TEST_F(Runs, MeanAndSpreadOverSamples) {
   EXPECT_NEAR(*rows[0].error, 0, 1e-14);
   EXPECT_NEAR(rows[0].spread, 1, 1e-14);  // of -1, 0, 1
   EXPECT_EQ(rows[0].n_samples, 3);
+  study_.quantities[0].reference = "1 + h^2 + sample";  // another one for each of them
+  EXPECT_NEAR(*table()[0].error, 0, 1e-14);
 }
 
 TEST_F(Runs, FinishedRunsAreUsedAgainOnlyIfNothingChanged) {
@@ -226,7 +249,7 @@ TEST_F(Runs, AFailureLeavesTheRest) {
   EXPECT_TRUE(outcomes[0].done);
   EXPECT_EQ(outcomes[1].exit_code, 3);
   EXPECT_EQ(outcomes[1].message, "S2 did not converge: residual 1.");
-  EXPECT_EQ(study_table(study_, cases_, outcomes).size(), 2u);
+  EXPECT_EQ(table_of(outcomes).size(), 2u);
   EXPECT_FALSE(run()[1].reused);
 }
 

@@ -72,6 +72,12 @@ TEST(WorkPrecision, TheFinestRungMayBeWhatTheOthersAreComparedWith) {
   EXPECT_EQ(cost_of_target(rows, 0.05).found, TargetCost::Found::not_reached);
 }
 
+TEST(WorkPrecision, AnErrorThatIsNotANumberReachesNothing) {
+  const double nothing = std::nan("");
+  EXPECT_EQ(cost_of_target({row_of("a", 1, 0.1), row_of("a", 9, nothing)}, 0.5).found,
+            TargetCost::Found::not_reached);
+}
+
 TEST(WorkPrecision, NoErrorAtAllCostsItsRung) {
   EXPECT_EQ(cost_of_target({row_of("a", 1, 0.1), row_of("a", 9, 0)}, 0.05).core_seconds, 9);
 }
