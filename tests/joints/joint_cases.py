@@ -156,7 +156,7 @@ def sprung_arm(step, ratio=1., **more):
 SWIMMER_LENGTH = .4
 
 
-def swimmer(viscosity, end):
+def swimmer(viscosity, end, n_cells=32):
     """Two links that a hinge bends to and fro, each second."""
     def link(length, x):
         return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (length, .06)}, "Density": 1000.,
@@ -165,7 +165,7 @@ def swimmer(viscosity, end):
     hinge = {"H": joint("hinge", ("Long", "Short"), (.5, .5), Control="prescribed", Target=stroke)}
     scene = tank({"Long": link(.25, .36), "Short": link(.15, .59)}, hinge, "flux", viscosity, .01, end)
     scene["Fluid"]["Gravity"] = (0., 0.)
-    scene["Domain"]["Cells"] = (32, 32)
+    scene["Domain"]["Cells"] = (n_cells, n_cells)
     scene["Solver"] = {"Tolerance": 1e-9}
     return scene
 
