@@ -43,12 +43,13 @@ void mark_blocked(const MacDomain<dim>& domain, int axis,
       continue;
     Index<dim> coordinates = line.cell;
     coordinates[axis] = cell_above(crossing.coordinate, lower, h);
-    if (!grid.description().periodic[axis]) {
-      // Beyond the last centre, only the half segment to the side is inside the domain.
-      if (coordinates[axis] < 0 || crossing.coordinate < lower ||
-          crossing.coordinate > lower + n * h)
-        continue;
-    }
+    // What lies beyond a periodic side must not wrap round to faces inside the domain.
+    if (coordinates[axis] < 0 || coordinates[axis] > n)
+      continue;
+    // Beyond the last centre, only the half segment to a side is inside the domain.
+    if (!grid.description().periodic[axis] &&
+        (crossing.coordinate < lower || crossing.coordinate > lower + n * h))
+      continue;
     const int cell = grid.cell(coordinates);
     if (cell >= 0)
       blocked[cell] = static_cast<char>(blocked[cell] | (1 << axis));

@@ -52,13 +52,23 @@ void NearbySurface<dim>::list_near() {
     const Box<dim> place(reached_.min() - shift, reached_.max() - shift);
     for (int s = 0; s < snapshot_->n_simplices(); ++s) {
       const Box<dim>& bounds = snapshot_->bounds(s);
-      if (!place.intersects(bounds))
+      if (!place.intersects(bounds) || lies_beyond(bounds, shift))
         continue;
       bounds_.push_back(widened<dim>(bounds.translated(shift), 2 * tolerance_));
       near_.push_back(picture(s, shift));
     }
     return false;
   });
+}
+
+/// What has left through a periodic side is not repeated inside of the other.
+template <int dim>
+bool NearbySurface<dim>::lies_beyond(const Box<dim>& bounds, const Point<dim>& shift) const {
+  for (int a = 0; a < dim; ++a)
+    if ((shift[a] < 0 && bounds.min()[a] >= lower_[a] + period_[a]) ||
+        (shift[a] > 0 && bounds.max()[a] <= lower_[a]))
+      return true;
+  return false;
 }
 
 template <int dim>
@@ -180,8 +190,14 @@ bool NearbySurface<dim>::touches(const Box<dim>& box) const {
     return false;
   const auto any_touches = [&](const Box<dim>& place, double margin) {
     return any_image(place, [&](const Point<dim>& shift) {
-      return snapshot_->touches(
-          widened<dim>(Box<dim>(box.min() - shift, box.max() - shift), margin));
+      const Box<dim> moved =
+          widened<dim>(Box<dim>(box.min() - shift, box.max() - shift), margin);
+      if (shift.isZero())
+        return snapshot_->touches(moved);
+      std::vector<int> found;
+      snapshot_->touching(moved, found);
+      return std::any_of(found.begin(), found.end(),
+                         [&](int s) { return !lies_beyond(snapshot_->bounds(s), shift); });
     });
   };
   if (!reached_.contains(box))
@@ -362,13 +378,18 @@ template <int dim>
 std::shared_ptr<const NearbySurface<dim>> KeptSurface<dim>::of(
     const std::shared_ptr<const SurfaceSnapshot<dim>>& snapshot, const TiledGrid<dim>& grid,
     int reach) {
-  if (!surface_ || snapshot_ != snapshot || reach_ < reach) {
-    snapshot_ = snapshot;
-    reach_ = std::max(reach, last_request_);
-    surface_ = std::make_shared<const NearbySurface<dim>>(snapshot, grid, reach_);
+  if (entries_[0].snapshot != snapshot)
+    std::swap(entries_[0], entries_[1]);
+  Entry& entry = entries_[0];
+  recent_reach_ = std::max(recent_reach_, reach);
+  if (!entry.surface || entry.snapshot != snapshot || entry.reach < reach) {
+    entry.snapshot = snapshot;
+    entry.reach = std::max(recent_reach_, earlier_reach_);
+    entry.surface = std::make_shared<const NearbySurface<dim>>(snapshot, grid, entry.reach);
+    earlier_reach_ = recent_reach_;
+    recent_reach_ = reach;
   }
-  last_request_ = reach;
-  return surface_;
+  return entry.surface;
 }
 
 template class NearbySurface<2>;

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -12,8 +13,8 @@ namespace lockstep {
 
 /// A snapshot asked many times about places near the cells that a rank owns: there its simplices
 /// are listed by bins, so that an answer costs by the bins on the way and not by the mesh. Sight
-/// lines may leave a periodic domain: they then meet what lies at the other end. Touching counts as
-/// meeting, within `tolerance()`, so that nothing is ever seen through a surface by round-off.
+/// lines may leave a periodic domain: they then meet what lies at the other end, but what has left
+/// it is not met again inside. Touching counts as meeting, within `tolerance()`, so that nothing is ever seen through a surface by round-off.
 template <int dim>
 class NearbySurface {
  public:
@@ -80,6 +81,8 @@ class NearbySurface {
     int near = -1;
   };
   void list_near();
+  /// Of the bounds of a simplex and the shift of its image.
+  bool lies_beyond(const Box<dim>& bounds, const Point<dim>& shift) const;
   Near picture(int simplex, const Point<dim>& shift) const;
   std::array<Point<dim>, dim> corners(const Near& near) const;
   void make_bins();
@@ -110,7 +113,8 @@ class NearbySurface {
   mutable unsigned question_ = 0;
 };
 
-/// Keeps what was made of a surface while it is asked for again.
+/// Keeps what was made of the last two surfaces, those before and after a step, while they are
+/// asked for again.
 template <int dim>
 class KeptSurface {
  public:
@@ -120,10 +124,15 @@ class KeptSurface {
       int reach);
 
  private:
-  std::shared_ptr<const SurfaceSnapshot<dim>> snapshot_;
-  std::shared_ptr<const NearbySurface<dim>> surface_;
-  int reach_ = 0;         ///< of `surface_`
-  int last_request_ = 0;  ///< likely to come again
+  struct Entry {
+    std::shared_ptr<const SurfaceSnapshot<dim>> snapshot;
+    std::shared_ptr<const NearbySurface<dim>> surface;  ///< null: none is kept
+    int reach = 0;
+  };
+  std::array<Entry, 2> entries_;  ///< the last one asked for first
+  /// The largest that was asked for since the last surface was made, and since the one before until
+  /// then: likely to come again.
+  int recent_reach_ = 0, earlier_reach_ = 0;
 };
 
 /// The box widened by a distance on all sides.

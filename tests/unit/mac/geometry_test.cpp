@@ -112,6 +112,19 @@ TEST(Geometry, AShellBesideASeamMeetsItsFaces) {
   }
 }
 
+// One that has left by more than half a cell closes no face, neither there nor a period away.
+TEST(Geometry, AShellBeyondASeamMeetsNothing) {
+  for (const double x : {-0.03, -0.08, 1.03, 1.08}) {
+    Case<2> scene({20, 20}, 0.05);
+    scene.side("x lower", "periodic").side("x upper", "periodic");
+    const auto fluid = scene.make();
+    Solids<2> solids;
+    solids.add(plate_surface<2>(Point<2>(0, 2), 0, 0.05), Point<2>(x, 0.5), false);
+    fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+    EXPECT_EQ(global_count(fluid->coupled_volumes().size()), 0) << x;
+  }
+}
+
 TEST(Geometry, AnOpenSideThatAPlateCovers) {
   Case<2> scene({4, 4}, 1.0);
   scene.side("y upper", "open");

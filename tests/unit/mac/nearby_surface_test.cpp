@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <random>
 
 #include "geometry/generators.hpp"
@@ -18,10 +19,21 @@ struct BallInTank {
       x[0] += 0.43;
     }
     SolidDescription solid;
-    solid.simplex_end = static_cast<int>(mesh.simplices.size());
     solid.vertex_end = static_cast<int>(mesh.vertices.size());
-    snapshot = std::make_shared<const SurfaceSnapshot<dim>>(std::move(mesh),
-                                                            std::vector<SolidDescription>{solid});
+    SurfaceMesh<dim> part = mesh;
+    part.simplices.clear();
+    for (const auto& simplex : mesh.simplices)
+      if (std::any_of(simplex.begin(), simplex.end(),
+                      [&](int vertex) { return mesh.vertices[vertex][0] < 1; }))
+        part.simplices.push_back(simplex);
+    EXPECT_LT(part.simplices.size(), mesh.simplices.size());
+    const auto snapshot_of = [](SurfaceMesh<dim> surface, SolidDescription description) {
+      description.simplex_end = static_cast<int>(surface.simplices.size());
+      return std::make_shared<const SurfaceSnapshot<dim>>(
+          std::move(surface), std::vector<SolidDescription>{description});
+    };
+    snapshot = snapshot_of(std::move(mesh), solid);
+    inside = snapshot_of(std::move(part), solid);
     GridDescription<dim> description = cube<dim>(16, false);
     description.periodic[0] = true;
     description.store_upper_face[0] = false;
@@ -35,12 +47,14 @@ struct BallInTank {
       x[a] = place(engine);
     return x;
   }
+  /// What is there in an image: of those below, nothing that lies beyond the upper side.
+  const SurfaceSnapshot<dim>& image_of(int image) const { return image < 0 ? *inside : *snapshot; }
   /// All images that matter, one by one.
   std::optional<SurfacePoint<dim>> expected_hit(const Point<dim>& a, const Point<dim>& b) const {
     std::optional<SurfacePoint<dim>> first;
     for (int image = -2; image <= 2; ++image) {
       const Point<dim> shift = image * Point<dim>::Unit(0);
-      const auto hit = snapshot->first_hit(a - shift, b - shift, surface->tolerance());
+      const auto hit = image_of(image).first_hit(a - shift, b - shift, surface->tolerance());
       if (hit && (!first || hit->fraction < first->fraction))
         first = hit;
     }
@@ -50,13 +64,13 @@ struct BallInTank {
     bool touches = false;
     for (int image = -2; image <= 2; ++image) {
       const Point<dim> shift = image * Point<dim>::Unit(0);
-      touches = touches || snapshot->touches(Box<dim>(box.min() - shift, box.max() - shift));
+      touches = touches || image_of(image).touches(Box<dim>(box.min() - shift, box.max() - shift));
     }
     return touches;
   }
 
   std::mt19937 engine;
-  std::shared_ptr<const SurfaceSnapshot<dim>> snapshot;
+  std::shared_ptr<const SurfaceSnapshot<dim>> snapshot, inside;
   std::optional<TiledGrid<dim>> grid;
   std::optional<NearbySurface<dim>> surface;
 };
