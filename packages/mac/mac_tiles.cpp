@@ -76,6 +76,10 @@ MigratingInterface<dim>* MacFluid<dim>::migrating_interface() {
 
 template <int dim>
 bool MacFluid<dim>::begin_step(double time, double dt, const std::function<double()>& solid_speed) {
+  if (time != time_) {  // a run that does not start at 0
+    time_ = time;
+    set_prescribed(time_, velocity_);
+  }
   if (!moving_tiles_) {
     if (share_work())
       steps_since_regrid_ = 0;
@@ -179,11 +183,19 @@ void MacFluid<dim>::rest_at_rim() {
       scalar.values[cell] = scalar.ambient;
     for (int axis = 0; axis < dim; ++axis) {
       const int lower = grid.neighbor(cell, axis, 0);
-      if (lower < 0 || rim[lower])
-        velocity_[axis][cell] = 0;
+      if (lower >= 0 && !rim[lower])
+        continue;
+      velocity_[axis][cell] = 0;
+      if (history_)
+        for (const StoredField& field : history_->fields())
+          (*field.components[axis])[cell] = 0;
     }
   });
   domain_.full_halo.fill(velocity_);
+  if (history_)
+    for (const StoredField& field : history_->fields())
+      for (CellField* component : field.components)
+        domain_.full_halo.fill(*component);
   for (Scalar& scalar : scalars_.all())
     domain_.full_halo.fill(scalar.values);
 }

@@ -174,6 +174,8 @@ class Builder {
     const int other = grid_.neighbor(face_.cell, across, end);
     const FaceState state =
         other < 0 ? FaceState::inactive : geometry_.state.faces[face_.axis][other];
+    if (other < 0 && grid_.ends_at(grid_.tile_of(face_.cell), across, end))
+      return;  // beyond the rim of moving tiles, where nothing moves as yet
     if (state == FaceState::inactive && beyond_domain(other)) {
       add_side_link(across, end, across == face_.axis ? coefficient : 2 * coefficient);
       return;

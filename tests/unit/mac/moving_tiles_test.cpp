@@ -63,6 +63,26 @@ TEST(MovingTiles, StoreOnlyWhatWasAskedFor) {
   EXPECT_TRUE(fluid->regions().has_dirichlet[0]);
 }
 
+/// Where stored tiles make an inner corner, the sides of the domain are far away: none pulls there.
+TEST(MovingTiles, NoSidePullsAtInnerCorners) {
+  Case<2> scene = tall_tank({3, 9}, {3.3, 11});
+  ParameterList& beside = scene.fluid.sublist("Moving Tiles").sublist("Keep").sublist("Beside");
+  beside.set("Shape", "box");
+  beside.set("Lower", numbers({4.6, 9}));
+  beside.set("Upper", numbers({4.9, 9.3}));
+  scene.fluid.set("Viscosity", 3.0);
+  const auto fluid = scene.make();
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  const TiledGrid<2>& grid = fluid->domain().grid;
+  const auto& [begin, end] = grid.extent();
+  GlobalIndex n_tiles = grid.n_owned_tiles();
+  ASSERT_LT(sum_all(world(), n_tiles) * tile_volume<2>,
+            GlobalIndex{end[0] - begin[0]} * (end[1] - begin[1]));
+  const ViscousLinks<2> links =
+      find_viscous_links<2>(fluid->domain(), fluid->geometry(), {3.0, 0.2, false}, {});
+  EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(links.sides.size())), 0);
+}
+
 /// The last tile along a periodic axis is half as wide, and the first one is not there.
 TEST(MovingTiles, ShortTilesAtPeriodicSidesHaveARim) {
   Case<2> scene = tall_tank({7.9, 9}, {8.4, 11}, 72);
