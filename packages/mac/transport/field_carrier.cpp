@@ -59,6 +59,12 @@ bool FieldCarrier<dim>::is_carried(SampleKind kind, int id, bool& has_value) con
   return lockstep::is_carried(face);
 }
 
+/// Cells whose centres a solid holds are fluid only where surfaces leave faces open in part.
+template <int dim>
+bool FieldCarrier<dim>::may_hold_center(SampleKind kind, int id) const {
+  return kind != cell_centers || state_of_center(frame_.setting.state, id) == CellState::outside;
+}
+
 template <int dim>
 bool FieldCarrier<dim>::all_free(SampleKind kind, int first, int n) const {
   if (kind == cell_centers)
@@ -249,7 +255,8 @@ void FieldCarrier<dim>::carry_with_care(Passenger<dim>& passenger, int id, const
   const Ray<dim> ray = trace(passenger, id, x, -1, false, by_rows);
   Box<dim> points = way(ray);
   if (!ray.complete || !near_surface.clear(points, false)) {
-    if (kind != cell_centers && near_surface.inside(x, state_of_center(frame_.setting.state, id)))
+    if (may_hold_center(kind, id) &&
+        near_surface.inside(x, state_of_center(frame_.setting.state, id)))
       keep(passenger, id, false);
     else if (by_rows && !passenger.cubic() && near_surface.sees_all(kind, x, ray))
       passenger.forbid_correction(id);

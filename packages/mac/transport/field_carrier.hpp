@@ -73,6 +73,8 @@ class FieldCarrier {
 
   /// Whether a sample is moved by transport; if not, whether it has a value nevertheless.
   bool is_carried(SampleKind kind, int id, bool& has_value) const;
+  /// Whether a solid may hold the place of a sample that is carried.
+  bool may_hold_center(SampleKind kind, int id) const;
   /// Whether these are free faces, all carried.
   bool all_free(SampleKind kind, int first, int n) const;
   /// Leaves a sample as it was.

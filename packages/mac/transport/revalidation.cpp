@@ -1,5 +1,7 @@
 #include "mac/transport/revalidation.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "mac/transport/nearby_surface.hpp"
@@ -112,8 +114,22 @@ class Fronts {
       return Point<dim>::Zero();
     const auto& centers = state_.open_centers[kind_];
     const auto found = centers.find(id);
-    return found == centers.end() ? Point<dim>(Point<dim>::Zero())
-                                  : Point<dim>(found->second - position(id));
+    if (found == centers.end())
+      return Point<dim>::Zero();
+    Point<dim> shift = found->second - position(id);
+    for (int a = 0; a < dim; ++a)
+      if (grid_.description().periodic[a]) {  // a face of the seam lies at either side
+        const double period = grid_.n_cells()[a] * grid_.spacing();
+        shift[a] -= period * std::round(shift[a] / period);
+      }
+    return shift;
+  }
+  /// A cell that is cut by a surface and holds fluid, though its centre is in a solid.
+  bool center_is_covered(int id) const {
+    const auto has_open_parts = [](const auto& centers) { return !centers.empty(); };
+    return kind_ == cell_centers && state_.surface &&
+           std::any_of(state_.open_centers.begin(), state_.open_centers.end(), has_open_parts) &&
+           state_.surface->inside(position(id)) >= 0;
   }
 
   void look_around(int id) {
@@ -125,6 +141,7 @@ class Fronts {
     sample.id = id;
     const Point<dim> x = position(id), eye = x + shift(id);
     const double h = grid_.spacing();
+    const bool is_covered = center_is_covered(id);
     for (int a = 0; a < dim; ++a)
       for (int side = 0; side < 2; ++side) {
         const int neighbor = grid_.neighbor(id, a, side);
@@ -133,7 +150,8 @@ class Fronts {
           sample.sees_wall = !nearby_.first_hit(eye, beside);
         if (neighbor < 0 || !in_fluid(neighbor))
           continue;
-        if (!nearby_.first_hit(eye, beside + shift(neighbor)))
+        if (is_covered ? state_.faces[a][side == 0 ? id : neighbor] == FaceState::free
+                       : !nearby_.first_hit(eye, beside + shift(neighbor)))
           sample.visible[sample.n_visible++] = neighbor;
       }
     waiting_.push_back(sample);
