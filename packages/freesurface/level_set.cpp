@@ -291,7 +291,7 @@ void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
   if (drops_)
     collect_drops(step);
   const VolumeShift shift = volume_.correct(
-      solids_, displacement, [this] { settle(); }, phi_);
+      solids_, displacement, cut_off(), [this] { settle(); }, phi_);
   if (parameters_.particles)
     shift_particles(domain_, solids_, step.kept, shift, phi_, particles_);
 }

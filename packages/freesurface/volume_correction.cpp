@@ -84,7 +84,7 @@ std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& sol
 }
 
 template <int dim>
-VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl,
+VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl, double cut_off,
                                        const std::function<void()>& settle, CellField& phi) {
   if (parameters_.correction == VolumeCorrection::none || groups_.n == 0)
     return {};
@@ -115,10 +115,11 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
     double n_changed = 0;
     domain_.grid.for_each_owned_cell([&](int cell) {
       const int body = shifted.of_cell[cell];
-      if (body < 0 || !solids.is_fluid(cell))
+      // What is far from the surface stays so: shifted, all deep water would be near it.
+      if (body < 0 || !solids.is_fluid(cell) || std::abs(phi[cell]) >= cut_off)
         return;
       const bool was_wet = phi[cell] < 0;
-      phi[cell] -= shift[body];
+      phi[cell] = std::clamp(phi[cell] - shift[body], -cut_off, cut_off);
       done[cell] += shift[body];
       n_changed += was_wet != (phi[cell] < 0);
     });
@@ -145,9 +146,9 @@ template std::vector<double> VolumeLedger<2>::limited_shifts(const SolidCells<2>
                                                              const std::vector<double>&) const;
 template std::vector<double> VolumeLedger<3>::limited_shifts(const SolidCells<3>&,
                                                              const std::vector<double>&) const;
-template VolumeShift VolumeLedger<2>::correct(const SolidCells<2>&, double,
+template VolumeShift VolumeLedger<2>::correct(const SolidCells<2>&, double, double,
                                               const std::function<void()>&, CellField&);
-template VolumeShift VolumeLedger<3>::correct(const SolidCells<3>&, double,
+template VolumeShift VolumeLedger<3>::correct(const SolidCells<3>&, double, double,
                                               const std::function<void()>&, CellField&);
 
 }  // namespace lockstep
