@@ -66,9 +66,9 @@ class VolumeLedger {
   /// Volume that is lost for good, on this rank. Collective.
   void lose(double volume) { targets_.lost += sum_all(domain_.grid.comm(), volume); }
   /// Shifts phi until bodies have their targets, over at most `largest_shift` max(1, cfl) cells.
-  /// `phi`, known up to `cut_off`, on the halo of width 1, which is set on return. `settle()` sets its ghosts, and it goes
-  /// on into solids then, as it must before all calls: boxes that solids cut are measured with it.
-  /// Returns what it has done, empty: nothing. Collective.
+  /// `phi`, known up to `cut_off`, on the halo of width 1, which is set on return. `settle()` sets
+  /// its ghosts, and it goes on into solids then, as it must before all calls: boxes that solids
+  /// cut are measured with it. Returns what it has done, empty: nothing. Collective.
   VolumeShift correct(const SolidCells<dim>& solids, double cfl, double cut_off,
                       const std::function<void()>& settle, CellField& phi);
 

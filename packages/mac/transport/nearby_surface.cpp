@@ -190,8 +190,7 @@ bool NearbySurface<dim>::touches(const Box<dim>& box) const {
     return false;
   const auto any_touches = [&](const Box<dim>& place, double margin) {
     return any_image(place, [&](const Point<dim>& shift) {
-      const Box<dim> moved =
-          widened<dim>(Box<dim>(box.min() - shift, box.max() - shift), margin);
+      const Box<dim> moved = widened<dim>(Box<dim>(box.min() - shift, box.max() - shift), margin);
       if (shift.isZero())
         return snapshot_->touches(moved);
       std::vector<int> found;
