@@ -207,7 +207,7 @@ class MacFluid : public FluidDiscretization<dim>,
   TileOwners owners_;                             ///< of the tiles; empty: as at the start
   int steps_since_regrid_ = 2;                    ///< accepted; 2: or more
   int steps_to_sharing_ = 0;                      ///< before work is next compared between ranks
-  std::vector<GlobalIndex> compared_work_;        ///< at surfaces, of this rank's tiles, then
+  TileWork compared_work_;                        ///< of this rank's tiles, then
   bool has_room_ = false;                         ///< for the first surface
   bool has_begun_ = false;                        ///< with a geometry: sinks may empty it later
   MacParameters<dim> parameters_;

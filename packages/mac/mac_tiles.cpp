@@ -21,7 +21,7 @@ Point<dim> origin_of_pressure(const MacDomain<dim>& domain, const Box<dim>& boun
 /// At surfaces that of this rank's tiles alone.
 template <int dim>
 TileWork work_of_tiles(const TiledGrid<dim>& grid, const TileOwners& owners,
-                       const SurfaceSnapshot<dim>& surface) {
+                       const SurfaceSnapshot<dim>* surface) {
   // Measured: advection and geometry near a ball, by the tiles that it touches.
   constexpr int of_surface_tile = 4 * tile_volume<dim>;
   constexpr double reach = 2;  // cells
@@ -41,10 +41,39 @@ TileWork work_of_tiles(const TiledGrid<dim>& grid, const TileOwners& owners,
       box.max()[a] = grid.lower()[a] + (begin + size[a] + reach) * grid.spacing();
     }
     work.everywhere.push_back(n_cells);
-    if (owners.ranks[i] == rank && surface.touches(box))
+    if (surface && owners.ranks[i] == rank && surface->touches(box))
       work.at_surfaces[i] = of_surface_tile;
   }
   return work;
+}
+
+/// Of a liquid, that of this rank's tiles: in the place of the cells those that are wet, and what
+/// its surface adds within so far of it.
+template <int dim>
+void add_liquid(const TiledGrid<dim>& grid, const TileOwners& owners, const CellField& distance,
+                double band, TileWork& work) {
+  // Measured in a tank of 64^3 cells, by what a surface adds to a step.
+  constexpr GlobalIndex of_band_cell = 5, dry_cells_a_wet_one = 8;
+  std::fill(work.everywhere.begin(), work.everywhere.end(), 0);
+  const TileLattice<dim>& lattice = grid.tile_lattice();
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    Index<dim> coordinates;
+    for (int a = 0; a < dim; ++a)
+      coordinates[a] = grid.tile_begin(tile)[a] / tile_width<dim>;
+    const auto place = std::lower_bound(owners.tiles.begin(), owners.tiles.end(),
+                                        lattice.tile_number(coordinates));
+    if (place == owners.tiles.end() || *place != lattice.tile_number(coordinates))
+      continue;  // a layer of faces above the domain
+    const auto i = place - owners.tiles.begin();
+    GlobalIndex n_wet = 0, n_band = 0;
+    for (int k = 0; k < tile_volume<dim>; ++k) {
+      const double phi = distance[tile * tile_volume<dim> + k];
+      n_wet += phi < 0;
+      n_band += std::abs(phi) < band;
+    }
+    work.everywhere[i] = n_wet + (tile_volume<dim> - n_wet) / dry_cells_a_wet_one;
+    work.at_surfaces[i] += of_band_cell * n_band;
+  }
 }
 
 /// On rank 0; the others keep theirs.
@@ -95,24 +124,30 @@ bool MacFluid<dim>::begin_step(double time, double dt, const std::function<doubl
   return steps_since_regrid_ == 0;
 }
 
-/// Gives ranks other tiles where surfaces have made their work uneven. The same work as at the last
-/// time would find the same tiles.
+/// Gives ranks other tiles where surfaces, or liquid that is not everywhere, have made their work
+/// uneven. The same work as at the last time would find the same tiles.
 template <int dim>
 bool MacFluid<dim>::share_work() {
   const Communicator& comm = domain_.grid.comm();
-  if (comm->getSize() == 1 || !geometry_.state.surface || steps_to_sharing_ > 0 ||
+  if (comm->getSize() == 1 || !(geometry_.state.surface || liquid_) || steps_to_sharing_ > 0 ||
       (liquid_ && !migrating_interface()))
     return false;
   constexpr int steps_between = 20;
   steps_to_sharing_ = steps_between;
   if (owners_.tiles.empty())
     owners_ = domain_.grid.tile_owners();
-  TileWork work = work_of_tiles(domain_.grid, owners_, *geometry_.state.surface);
-  const GlobalIndex differs = work.at_surfaces != compared_work_;
+  TileWork work = work_of_tiles(domain_.grid, owners_, geometry_.state.surface.get());
+  if (liquid_)
+    add_liquid(domain_.grid, owners_, liquid_->interface().distance(),
+               liquid_->interface().band(0) * domain_.spacing(), work);
+  const GlobalIndex differs =
+      work.at_surfaces != compared_work_.at_surfaces || work.everywhere != compared_work_.everywhere;
   if (max_all(comm, differs) == 0)
     return false;
-  compared_work_ = work.at_surfaces;
+  compared_work_ = work;
   sum_on_root(comm, work.at_surfaces);
+  if (liquid_)
+    sum_on_root(comm, work.everywhere);
   const auto owners = share_better(domain_.grid.tile_lattice(), comm, owners_, work);
   if (owners)
     regrid(*owners);

@@ -6,6 +6,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import h5py
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
 from simulation import FLUID, STATE, assert_close, simulate, table, without_times  # noqa: E402
@@ -82,6 +84,25 @@ class Faucet(unittest.TestCase):
                         self.assertLessEqual(float(row["momentum_error"]), 1e-10)
                         self.assertAlmostEqual(float(row["liquid_volume"]) / float(row["liquid_volume_target"]), 1, delta=.02)  # a thin jet
                     assert_close(runs[1][1], bodies, STATE, 1e-7)
+
+
+class Shares(unittest.TestCase):
+    def test_each_rank_has_its_part_of_the_water(self):
+        """A high tank with a little on its floor, in 4 by 16 tiles, of which 4 by 4 are wet."""
+        tank = xml("Scene", {
+            "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (1., 4.), "Cells": (64, 256)},
+            "Fluid": {"Density": 1000., "Gravity": (0., -9.8), "Free Surface": {
+                "Liquid": {"Pool": {"Type": "level", "Height": 1.}}}},
+            "Time": {"End": 10., "Fixed Step": .01}})
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "scene.xml"
+            file.write_text(tank)
+            simulate(file, Path(folder) / "run", "--steps", 2, ranks=2)
+            with h5py.File(Path(folder) / "run/checkpoint-000002.h5") as checkpoint:
+                tiles, owners = (checkpoint["fluid/tiles"][name][:] for name in ("ids", "values"))
+        for rank in range(2):
+            n_wet = sum(tile < 16 and owner == rank for tile, owner in zip(tiles, owners))
+            self.assertGreaterEqual(n_wet, 5, f"rank {rank}")  # even if it has no dry ones
 
 
 class Water(unittest.TestCase):
