@@ -140,8 +140,8 @@ bool MacFluid<dim>::share_work() {
   if (liquid_)
     add_liquid(domain_.grid, owners_, liquid_->interface().distance(),
                liquid_->interface().band(0) * domain_.spacing(), work);
-  const GlobalIndex differs =
-      work.at_surfaces != compared_work_.at_surfaces || work.everywhere != compared_work_.everywhere;
+  const GlobalIndex differs = work.at_surfaces != compared_work_.at_surfaces ||
+                              work.everywhere != compared_work_.everywhere;
   if (max_all(comm, differs) == 0)
     return false;
   compared_work_ = work;
