@@ -58,7 +58,7 @@ std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>
   if (std::count(is_small.begin(), is_small.end(), 1) == 0)
     return filled;
 
-  const CellGroups spaces = find_closed_spaces(domain, solids);
+  const CellGroups& spaces = find_closed_spaces(domain, solids);
   const auto is_in_small = [&](int cell) {
     return voids.of_cell[cell] >= 0 && is_small[voids.of_cell[cell]];
   };

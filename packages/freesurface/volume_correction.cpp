@@ -68,7 +68,7 @@ std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& sol
   if (parameters_.correction != VolumeCorrection::component ||
       !(debt > negligible_share_owed * std::abs(target)))
     return shift;
-  const CellGroups spaces = find_closed_spaces(domain_, solids);
+  const CellGroups& spaces = find_closed_spaces(domain_, solids);
   const std::vector<int> space = places_among(spaces, groups_);
   std::vector<double> owed_in(spaces.n, 0.0), area_in(spaces.n, 0.0);
   const auto stands_in = [&](int body) { return std::abs(shift[body]) < left[body]; };

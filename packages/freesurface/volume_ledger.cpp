@@ -269,7 +269,7 @@ template <int dim>
 void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
                                   const std::vector<int>& places, const std::vector<char>& homeless,
                                   std::vector<double>& target) {
-  const CellGroups spaces = find_closed_spaces(domain_, solids);
+  const CellGroups& spaces = find_closed_spaces(domain_, solids);
   Overlaps of_old;
   domain_.grid.for_each_owned_cell([&](int cell) {
     const int old = places[cell];

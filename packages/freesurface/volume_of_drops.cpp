@@ -46,7 +46,7 @@ std::vector<double> VolumeLedger<dim>::take_drops(const SolidCells<dim>& solids,
   if (sum_all(comm, n_far) == 0)
     return parts;
 
-  const CellGroups spaces = find_closed_spaces(domain_, solids);
+  const CellGroups& spaces = find_closed_spaces(domain_, solids);
   const std::vector<int> space = places_among(spaces, groups_);
   std::vector<double> wanted_in(spaces.n, 0), there(spaces.n, 0);
   for (const int cell : cells)

@@ -269,7 +269,7 @@ double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   });
   if (sum_all(grid.comm(), n_leaving) == 0)
     return 0;
-  const CellGroups spaces = find_closed_spaces(domain, solids);
+  const CellGroups& spaces = find_closed_spaces(domain, solids);
   // What each space is to take, and the liquid there; the last: of no space.
   std::vector<double> sums(2 * (spaces.n + 1), 0.0);
   const auto takes = [&](int cell) {

@@ -216,8 +216,9 @@ CellGroups find_groups(const MacDomain<dim>& domain, const SolidCells<dim>& soli
   return groups;
 }
 
+namespace {
 template <int dim>
-CellGroups find_closed_spaces(const MacDomain<dim>& domain, const SolidCells<dim>& solids) {
+CellGroups closed_spaces_of(const MacDomain<dim>& domain, const SolidCells<dim>& solids) {
   const std::size_t n_cells = solids.state.cells.size();
   CellGroups spaces{std::vector<int>(n_cells, -1), 1};
   for (std::size_t cell = 0; cell < n_cells; ++cell)
@@ -229,6 +230,14 @@ CellGroups find_closed_spaces(const MacDomain<dim>& domain, const SolidCells<dim
   if (!domain.grid.is_complete())
     join_at_rim(domain.grid, spaces);
   return spaces;
+}
+}  // namespace
+
+template <int dim>
+const CellGroups& find_closed_spaces(const MacDomain<dim>& domain, const SolidCells<dim>& solids) {
+  if (!solids.closed_spaces)
+    solids.closed_spaces = std::make_shared<const CellGroups>(closed_spaces_of(domain, solids));
+  return *solids.closed_spaces;
 }
 
 template <int dim>
@@ -275,8 +284,8 @@ void spread_labels(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   }
 }
 
-template CellGroups find_closed_spaces<2>(const MacDomain<2>&, const SolidCells<2>&);
-template CellGroups find_closed_spaces<3>(const MacDomain<3>&, const SolidCells<3>&);
+template const CellGroups& find_closed_spaces<2>(const MacDomain<2>&, const SolidCells<2>&);
+template const CellGroups& find_closed_spaces<3>(const MacDomain<3>&, const SolidCells<3>&);
 template void spread_labels<2>(const MacDomain<2>&, const SolidCells<2>&, const CellField&, int,
                                std::vector<int>&);
 template void spread_labels<3>(const MacDomain<3>&, const SolidCells<3>&, const CellField&, int,

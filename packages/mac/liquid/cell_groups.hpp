@@ -19,9 +19,10 @@ CellGroups find_groups(const MacDomain<dim>& domain, const SolidCells<dim>& soli
                        const std::vector<char>& is_member);
 
 /// The spaces that surfaces of solids keep apart: all cells in which there may be liquid. One space
-/// without surfaces; what lies beyond the cells that are stored is open. Collective.
+/// without surfaces; what lies beyond the cells that are stored is open. Kept with the solids, and
+/// found at the first time. Collective.
 template <int dim>
-CellGroups find_closed_spaces(const MacDomain<dim>& domain, const SolidCells<dim>& solids);
+const CellGroups& find_closed_spaces(const MacDomain<dim>& domain, const SolidCells<dim>& solids);
 
 /// Spreads labels >= 0 from seen neighbours over `layers` of fluid cells that have none, as far as
 /// |phi| is not much more than these are deep; of several neighbours from that which is nearest to

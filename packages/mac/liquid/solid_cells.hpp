@@ -7,6 +7,8 @@
 
 namespace lockstep {
 
+struct CellGroups;
+
 /// Where solids are at one instant, as cell centres see it.
 template <int dim>
 struct SolidCells {
@@ -17,6 +19,7 @@ struct SolidCells {
   /// Empty without a surface.
   std::vector<char> blocked;
   std::vector<char> near;  ///< a surface comes within h/2 of the cell; empty without a surface
+  mutable std::shared_ptr<const CellGroups> closed_spaces;  ///< once somebody has looked for them
 
   bool is_fluid(int cell) const { return state.cells[cell] == CellState::fluid; }
   /// The fluid cell beside one of the fluid, if nothing comes between their centres, else -1.
