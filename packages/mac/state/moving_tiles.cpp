@@ -14,13 +14,6 @@ namespace {
 
 constexpr double only_at_start = -1e300, for_ever = 1e300;
 
-template <int dim>
-Box<dim> bounds_of(const RegionShape<dim>& shape) {
-  const Point<dim> radius = Point<dim>::Constant(shape.radius);
-  return shape.ball ? Box<dim>(shape.center - radius, shape.center + radius)
-                    : Box<dim>(shape.lower, shape.upper);
-}
-
 /// Calls f(name, list) for the named sublists.
 template <typename Function>
 void for_each_sublist(const ParameterList& list, const Function& f) {
@@ -76,7 +69,7 @@ MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescriptio
     if (fluid.isSublist(scalar))
       ask_for(fluid.sublist(scalar).sublist("Regions"), only_at_start);
   for_each_sublist(fluid.sublist("Sources"), [&](const ParameterList& source) {
-    asked_.push_back({bounds_of(read_shape<dim>(source)),
+    asked_.push_back({read_shape<dim>(source).bounds(),
                       source.isParameter("End Time") ? source.get<double>("End Time") : for_ever});
   });
   if (fluid.sublist("Initial State").get<std::string>("Type") != "at rest") {
@@ -91,7 +84,7 @@ MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescriptio
 template <int dim>
 void MovingTiles<dim>::ask_for(const ParameterList& regions, double until) {
   for_each_sublist(regions, [&](const ParameterList& region) {
-    asked_.push_back({bounds_of(read_shape<dim>(region)), until});
+    asked_.push_back({read_shape<dim>(region).bounds(), until});
   });
 }
 
