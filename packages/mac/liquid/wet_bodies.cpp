@@ -7,6 +7,9 @@
 namespace lockstep {
 
 namespace {
+/// Of bodies, within which the surface around them is looked for [cells].
+constexpr int reach_of_planes = 2;
+
 /// The part of the way between two cells that is wet, phi being linear there.
 double wet_fraction(double lower, double upper) {
   if ((lower < 0) == (upper < 0))
@@ -121,20 +124,20 @@ class WetBodyFinder {
       }
     }
   }
-  Box<dim> near_solid(int solid) const {
-    const Point<dim> margin = Point<dim>::Constant(grid_.spacing());
+  Box<dim> near_solid(int solid, int n_cells = 1) const {
+    const Point<dim> margin = Point<dim>::Constant(n_cells * grid_.spacing());
     const Box<dim> box = surface_.bounds_of_solid(solid);
     return Box<dim>(box.min() - margin, box.max() + margin);
   }
 
-  /// Those with a cell in or beside them that the free surface comes near.
+  /// Those with void where their planes are looked for: where it meets liquid there, one is found.
+  /// Not asked is phi, which deep in solids is what it was when they were elsewhere.
   void find_partly_wet() {
     std::vector<double> partly(bodies_.size(), 0);
-    const double near = grid_.spacing() * std::sqrt(double(dim));
     for (std::size_t s = 0; s < bodies_.size(); ++s)
       if (surface_.solids()[s].closed)
-        for_each_cell_in(near_solid(static_cast<int>(s)), [&](int cell) {
-          if (distance_[cell] > -near)
+        for_each_cell_in(near_solid(static_cast<int>(s), reach_of_planes), [&](int cell) {
+          if (geometry_.state.cells[cell] == CellState::empty)
             partly[s] = 1;
         });
     sum_all(grid_.comm(), partly.data(), static_cast<int>(partly.size()));
@@ -153,7 +156,7 @@ class WetBodyFinder {
            !parted(solid, place, surface_.closest_on_solid(place, solid).position);
   }
 
-  /// Through where liquid meets void within two cells, in its sight.
+  /// Through where liquid meets void around it, in its sight.
   void find_planes() {
     if (gravity_.isZero(0))
       return;
@@ -170,11 +173,9 @@ class WetBodyFinder {
     for (std::size_t s = 0; s < bodies_.size(); ++s) {
       if (!bodies_[s].partly)
         continue;
-      Box<dim> around = near_solid(static_cast<int>(s));
+      const Box<dim> around = near_solid(static_cast<int>(s), reach_of_planes);
       planes_[s].origin = around.center();
       planes_[s].up = -gravity_.normalized();
-      around =
-          Box<dim>(around.min() - Point<dim>::Constant(h), around.max() + Point<dim>::Constant(h));
       surface_.solids_touching(around, candidates_);
       const bool is_alone = candidates_.size() == 1;
       for_each_cell_in(around, [&](int cell) {
