@@ -68,5 +68,42 @@ TEST(WetBodies, DoNotAskTheirInside) {
   expect_no_void_inside<3>();
 }
 
+/// A box, and a thin plate at one end of the periodic axis or the other, with
+/// no centre of a cell in it: what the plate blocks is the plate's, at its end.
+template <int dim>
+void expect_ends_of_their_own(double place) {
+  const double h = 0.05;
+  const Point<dim> up = Point<dim>::Unit(1);
+  const auto bodies = [&](bool with_plate) {
+    Case<dim> scene = unit_cube_of_water<dim>(-9.81 * up, 0.5 + 0.3 * h);
+    scene.side("x lower", "periodic").side("x upper", "periodic");
+    Solids<dim> solids;
+    solids.add(box_surface<dim>(Point<dim>::Constant(0.41), h), Point<dim>::Constant(0.49), true);
+    Point<dim> size = Point<dim>::Constant(0.41);
+    size[0] = 0.3 * h;
+    Point<dim> center = Point<dim>::Constant(0.49);
+    center[0] = place;
+    if (with_plate)
+      solids.add(box_surface<dim>(size, h), center, true);
+    const auto fluid = make_liquid<dim>(scene);
+    fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
+    return fluid->wet_bodies();
+  };
+  const WetBody<dim> box = bodies(false)[0];
+  const auto both = bodies(true);
+  EXPECT_NEAR(both[0].displaced[0], box.displaced[0], 1e-14);
+  EXPECT_NEAR(both[0].moment[0][0], box.moment[0][0], 1e-14);
+  // The plate blocks one layer of faces, four cells of which are in the water.
+  const double displaced = std::pow(8 * h, dim - 2) * 4 * h * h;
+  EXPECT_NEAR(both[1].displaced[0], displaced, 1e-14);
+  EXPECT_NEAR(both[1].moment[0][0], displaced * (place < 0.5 ? 0 : 1), 1e-14);
+}
+TEST(WetBodies, AtPeriodicSidesAreNotWhatIsInBetween) {
+  for (const double place : {0.25 * 0.05, 1 - 0.25 * 0.05}) {
+    expect_ends_of_their_own<2>(place);
+    expect_ends_of_their_own<3>(place);
+  }
+}
+
 }  // namespace
 }  // namespace lockstep::test
