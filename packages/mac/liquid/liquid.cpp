@@ -39,9 +39,12 @@ void stop_beyond(const MacState<dim>& state, FaceField<dim>& velocity) {
 }  // namespace
 
 template <int dim>
-Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
+Liquid<dim>::Liquid(const ParameterList& fluid, const ForceParameters<dim>& forces,
                     const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain)
-    : domain_(domain), gravity_(gravity.norm()), lead_(domain.grid.n_stored_cells(), 0.0) {
+    : domain_(domain),
+      acceleration_(forces.uniform().norm()),
+      lead_(domain.grid.n_stored_cells(), 0.0) {
+  const Point<dim>& gravity = forces.gravity;
   check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
   const ParameterList& list = fluid.sublist("Free Surface");
   parameters_ = read_free_surface(list);
@@ -110,9 +113,9 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
     extension.extend(step.time, step.surface.velocity, velocity);
     stop_beyond<dim>(geometry.state, velocity);
   }
-  if (gravity_ > 0)
+  if (acceleration_ > 0)
     lead_ = lead_of_short_waves<dim>(domain_, geometry, interface_->distance(), advection_velocity,
-                                     gravity_, step.dt);
+                                     acceleration_, step.dt);
   if (audit_)
     audit_->open(step, *interface_);
   if (gas_)
