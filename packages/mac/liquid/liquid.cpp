@@ -1,5 +1,7 @@
 #include "mac/liquid/liquid.hpp"
 
+#include <numeric>
+
 #include "base/errors.hpp"
 #include "mac/liquid/dry_cells.hpp"
 #include "mac/liquid/wave_damping.hpp"
@@ -102,7 +104,10 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
                           FaceField<dim>& advection_velocity, FaceField<dim>& velocity) {
   const double displacement =
       largest_displacement<dim>(domain_, geometry.state, advection_velocity, step.dt);
-  const double band = interface_->band(displacement) * domain_.spacing();
+  // Beyond the domain nothing is left to extend to, however fast a run is that has become unstable.
+  const auto& n_cells = domain_.grid.n_cells();
+  const double farthest = std::accumulate(n_cells.begin(), n_cells.end(), 1.0);
+  const double band = interface_->band(std::min(displacement, farthest)) * domain_.spacing();
   const auto solids = step.kept.of(geometry.state.surface, domain_.grid, 2);
   const double known = interface_->band(0) * domain_.spacing();
   const VelocityExtension<dim> extension(domain_, interface_->distance(), known, band,

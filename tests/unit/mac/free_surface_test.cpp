@@ -308,6 +308,13 @@ TEST(FreeSurface, ABodyForceIsFeltAsGravityIs) {
     });
 }
 
+/// Before anything goes over as many cells: at 1e8 cells a step that would take hours.
+TEST(FreeSurface, ARunThatBlowsUpEndsSoon) {
+  Listener::Heard heard;
+  EXPECT_THROW(ball_in_a_vortex("Gravity", 3e6, 0.1, heard), SolveError);
+  EXPECT_LE(heard.displacement, 2 * 20 + 4);
+}
+
 TEST(FreeSurface, BadListsSayWhatIsWrong) {
   const auto message = [](const std::function<void(Case<2>&)>& spoil) {
     Case<2> scene({8, 8}, 0.1);
