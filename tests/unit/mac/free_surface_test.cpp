@@ -208,6 +208,21 @@ TEST(FreeSurface, TheInsideOfAHullIsDry) {
   EXPECT_THROW(volume_around(numbers({1.6, 20.0})), InputError);
 }
 
+/// What is on both sides of a wall on a bottom is one room where the axis across it is periodic.
+TEST(FreeSurface, DryRoomsGoOnBeyondPeriodicSides) {
+  Case<2> scene({48, 48}, 0.1);
+  scene.side("x lower", "periodic").side("x upper", "periodic");
+  scene.fluid.set("Gravity", numbers({0.0, -1.0}));
+  add_level<2>(scene, 3.02);
+  scene.fluid.sublist("Free Surface").set("Dry Points", numbers({0.6, 2.5}));
+  Solids<2> solids;
+  solids.add(plate_surface<2>(Point<2>(4.82, 1), 1, 0.1), Point<2>(2.4, 2.001), false);
+  solids.add(plate_surface<2>(Point<2>(1, 2.0), 0, 0.1), Point<2>(1.201, 3.001), false);
+  const auto fluid = make_liquid<2>(scene);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  EXPECT_NEAR(fluid->fluid_volume(), 0.01 * 48 * 20, 1e-12);
+}
+
 TEST(FreeSurface, DryPointsAndLiquidInSolidsAreRefused) {
   Solids<2> solids;
   solids.add(ball_surface<2>(0.4, 0.1), Point<2>(0.8, 0.8), true);
