@@ -33,8 +33,7 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
     fields_.push_back({scalar.name, {&scalar.values}, scalar.ambient});
   fields_.push_back({"scaled_pressure", {&accepted_pressure_}});
   if (fluid.isSublist("Free Surface"))
-    liquid_ =
-        std::make_unique<Liquid<dim>>(fluid, parameters_.forces.gravity, *interfaces, domain_);
+    liquid_ = std::make_unique<Liquid<dim>>(fluid, parameters_.forces, *interfaces, domain_);
   if (liquid_)
     for (StoredField& field : liquid_->fields())
       fields_.push_back(std::move(field));

@@ -25,7 +25,7 @@ void MacFluid<dim>::move_liquid(double time, double dt, const MovingSurface<dim>
                                 dt,
                                 scalars_.liquid_sources(time),
                                 liquid_->sinks(),
-                                parameters_.forces.gravity,
+                                parameters_.forces.uniform(),
                                 open};
   liquid_->advance(step, geometry_, advection, velocity_);
 }
@@ -45,7 +45,7 @@ template <int dim>
 double MacFluid<dim>::largest_stable_step() const {
   if (!liquid_)
     return 1e300;
-  const double g = parameters_.forces.gravity.norm(), h = domain_.spacing();
+  const double g = parameters_.forces.uniform().norm(), h = domain_.spacing();
   const double by_gravity = g > 0 ? std::sqrt(h / g) : 1e300;
   const double tension = liquid_->tension();
   if (tension == 0)

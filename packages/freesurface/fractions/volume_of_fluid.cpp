@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "freesurface/band_tiles.hpp"
 #include "freesurface/fractions/fraction_balance.hpp"
 #include "freesurface/fractions/fraction_solids.hpp"
@@ -16,6 +17,8 @@ namespace lockstep {
 namespace {
 /// Boxes along each axis into which a cell is cut where a shape is measured.
 constexpr int n_cuts = 4;
+/// Of a step, whose sweeps are about twice as many; more no run takes that is as it should be.
+constexpr double largest_courant_number = 100;
 }  // namespace
 
 ParameterList volume_of_fluid_parameters() {
@@ -125,6 +128,10 @@ std::vector<char> VolumeOfFluid<dim>::carry(const InterfaceStep<dim>& step) {
   domain_.halo.fill(velocity);
   courant_ =
       transport_.courant_number(solids_, tiles_within(1), phi_, cut_off(), velocity, step.dt);
+  check_solve(courant_ <= largest_courant_number,
+              "Volume of fluid: the velocity carries the liquid's surface over {:g} cells in one "
+              "step of {} s, more than {}; the run has become unstable: shorten the time step.",
+              courant_, step.dt, largest_courant_number);
   const int n = std::max(1, static_cast<int>(std::ceil(2 * courant_)));
   std::vector<char> tiles = tiles_within(n + 1);
   // Far below the surface, too, cells that solids cut must have in their books what passes by.

@@ -25,8 +25,8 @@ bool keep(const TiledGrid<dim>& grid, const Index<dim>& begin, const Point<dim>&
   for (int a = 0; a < dim; ++a) {
     const double x = end[a] - begin[a];
     moved.x[a] = static_cast<float>(x);
-    // The place as float decides, as it does after the next step.
-    if (!(x >= 0 && moved.x[a] < tile_width<dim>) || end[a] >= grid.n_cells()[a])
+    // The place as float decides, as it does after the next step; the last tile may be short.
+    if (!(x >= 0 && moved.x[a] < std::min(tile_width<dim>, grid.n_cells()[a] - begin[a])))
       return false;
   }
   result = moved;

@@ -33,9 +33,10 @@ std::vector<char> find_dry_cells(const MacDomain<dim>& domain, const SignedDista
       }
   }
   const auto may_pass = [&](int cell, int other) {
-    const Point<dim> x = grid.center(other);
-    return distance(x) < 0 && (surface.empty() || (!surface.first_hit(grid.center(cell), x) &&
-                                                   surface.snapshot().inside(x) < 0));
+    const Point<dim> from = grid.center(cell), x = grid.center(other);
+    return distance(x) < 0 &&
+           (surface.empty() || (!surface.first_hit(from, from + way_between(domain, from, x)) &&
+                                surface.snapshot().inside(x) < 0));
   };
   flood(domain, std::move(front), may_pass, dry);
   domain.full_halo.fill(dry);

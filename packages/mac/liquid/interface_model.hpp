@@ -48,7 +48,7 @@ struct InterfaceStep {
   double dt = 0;    ///< [s]
   /// Liquid is created inside these and removed inside those, at the end of the step.
   std::vector<SignedDistance<dim>> sources, sinks;
-  Point<dim> gravity = Point<dim>::Zero();  ///< [m/s^2]; drops fall with it
+  Point<dim> gravity = Point<dim>::Zero();  ///< with any body force [m/s^2]; drops fall with it
   /// The part of a face at a side of the domain, the lower one of this cell normal to an axis,
   /// through which fluid flows; null: all of it. Local.
   std::function<double(int axis, int cell)> open = nullptr;

@@ -1,5 +1,7 @@
 #include "mac/liquid/liquid.hpp"
 
+#include <numeric>
+
 #include "base/errors.hpp"
 #include "mac/liquid/dry_cells.hpp"
 #include "mac/liquid/wave_damping.hpp"
@@ -39,9 +41,12 @@ void stop_beyond(const MacState<dim>& state, FaceField<dim>& velocity) {
 }  // namespace
 
 template <int dim>
-Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
+Liquid<dim>::Liquid(const ParameterList& fluid, const ForceParameters<dim>& forces,
                     const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain)
-    : domain_(domain), gravity_(gravity.norm()), lead_(domain.grid.n_stored_cells(), 0.0) {
+    : domain_(domain),
+      acceleration_(forces.uniform().norm()),
+      lead_(domain.grid.n_stored_cells(), 0.0) {
+  const Point<dim>& gravity = forces.gravity;
   check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
   const ParameterList& list = fluid.sublist("Free Surface");
   parameters_ = read_free_surface(list);
@@ -99,7 +104,10 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
                           FaceField<dim>& advection_velocity, FaceField<dim>& velocity) {
   const double displacement =
       largest_displacement<dim>(domain_, geometry.state, advection_velocity, step.dt);
-  const double band = interface_->band(displacement) * domain_.spacing();
+  // Beyond the domain nothing is left to extend to, however fast a run is that has become unstable.
+  const auto& n_cells = domain_.grid.n_cells();
+  const double farthest = std::accumulate(n_cells.begin(), n_cells.end(), 1.0);
+  const double band = interface_->band(std::min(displacement, farthest)) * domain_.spacing();
   const auto solids = step.kept.of(geometry.state.surface, domain_.grid, 2);
   const double known = interface_->band(0) * domain_.spacing();
   const VelocityExtension<dim> extension(domain_, interface_->distance(), known, band,
@@ -110,9 +118,9 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
     extension.extend(step.time, step.surface.velocity, velocity);
     stop_beyond<dim>(geometry.state, velocity);
   }
-  if (gravity_ > 0)
+  if (acceleration_ > 0)
     lead_ = lead_of_short_waves<dim>(domain_, geometry, interface_->distance(), advection_velocity,
-                                     gravity_, step.dt);
+                                     acceleration_, step.dt);
   if (audit_)
     audit_->open(step, *interface_);
   if (gas_)

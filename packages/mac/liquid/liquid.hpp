@@ -9,6 +9,7 @@
 #include "mac/liquid/leak_audit.hpp"
 #include "mac/liquid/liquid_parameters.hpp"
 #include "mac/liquid/velocity_extension.hpp"
+#include "mac/pressure/forces.hpp"
 #include "mac/transport/sample_lattice.hpp"
 
 namespace lockstep {
@@ -20,7 +21,7 @@ class Liquid {
   using Surface = std::shared_ptr<const SurfaceSnapshot<dim>>;
 
   /// Validated list "Fluid" with a list "Free Surface". `domain` must outlive this. Collective.
-  Liquid(const ParameterList& fluid, const Point<dim>& gravity,
+  Liquid(const ParameterList& fluid, const ForceParameters<dim>& forces,
          const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain);
 
   /// Before all else on the present tiles. The first call fills the liquid in, outside of the
@@ -61,7 +62,7 @@ class Liquid {
  private:
   const MacDomain<dim>& domain_;
   FreeSurfaceParameters parameters_;
-  double gravity_ = 0;  ///< [m/s^2]
+  double acceleration_ = 0;  ///< by gravity and body force [m/s^2]
   bool starts_empty_ = false;
   CellField lead_;  ///< by how much the pressure's phi is ahead of the interface's [m]
   std::optional<SampleLattice<dim>> lattice_;  ///< of the tiles since the last `begin`

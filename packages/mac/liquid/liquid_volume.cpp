@@ -17,6 +17,28 @@ constexpr double far = 2.5;
 /// The shift of phi that shows the area [cells].
 constexpr double probe = 1e-3;
 
+/// Of closed solids in a box that may reach beyond the upper ends of periodic axes. Solids are not
+/// repeated there: what of them is at the lower end belongs to it, too.
+template <int dim>
+double solid_volume_across_sides(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface,
+                                 const Box<dim>& box) {
+  const Point<dim> upper = domain.bounds().max(), period = upper - domain.grid.lower();
+  double volume = 0;
+  for (int image = 0; image < 1 << dim; ++image) {
+    Point<dim> shift = Point<dim>::Zero();
+    bool reaches = true;
+    for (int a = 0; a < dim; ++a)
+      if (image >> a & 1) {
+        shift[a] = period[a];
+        reaches = reaches && domain.boundary.periodic(a) &&
+                  box.max()[a] > upper[a] + 0.1 * domain.spacing();
+      }
+    if (reaches)
+      volume += solid_volume_in_box<dim>(surface, Box<dim>(box.min() - shift, box.max() - shift));
+  }
+  return volume;
+}
+
 /// What shells are in a cell, taken as a plane.
 template <int dim>
 struct PlaneOfShell {
@@ -136,7 +158,7 @@ void LiquidVolume<dim>::list_boxes(const SolidCells<dim>& solids, const CellFiel
     if (stays_dry)
       continue;
     if (near)
-      box.volume -= solid_volume_in_box<dim>(*solids.state.surface, Box<dim>(low, high));
+      box.volume -= solid_volume_across_sides<dim>(domain_, *solids.state.surface, {low, high});
     if (box.volume <= 0)
       continue;
     if (near && is_divided(solids, box.corners)) {

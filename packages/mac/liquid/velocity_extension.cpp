@@ -57,6 +57,8 @@ void VelocityExtension<dim>::go_on(double known, double band, const MacState<dim
     waiting.erase(waiting.begin(), rest);
     for (const int cell : reached)
       distance_[cell] = value;
+    if (sum_all(grid.comm(), static_cast<GlobalIndex>(reached.size())) == 0)
+      break;
     domain_.full_halo.fill(distance_);
   }
 }

@@ -7,6 +7,9 @@
 namespace lockstep {
 
 namespace {
+/// Of bodies, within which the surface around them is looked for [cells].
+constexpr int reach_of_planes = 2;
+
 /// The part of the way between two cells that is wet, phi being linear there.
 double wet_fraction(double lower, double upper) {
   if ((lower < 0) == (upper < 0))
@@ -121,20 +124,20 @@ class WetBodyFinder {
       }
     }
   }
-  Box<dim> near_solid(int solid) const {
-    const Point<dim> margin = Point<dim>::Constant(grid_.spacing());
+  Box<dim> near_solid(int solid, int n_cells = 1) const {
+    const Point<dim> margin = Point<dim>::Constant(n_cells * grid_.spacing());
     const Box<dim> box = surface_.bounds_of_solid(solid);
     return Box<dim>(box.min() - margin, box.max() + margin);
   }
 
-  /// Those with a cell in or beside them that the free surface comes near.
+  /// Those with void where their planes are looked for: where it meets liquid there, one is found.
+  /// Not asked is phi, which deep in solids is what it was when they were elsewhere.
   void find_partly_wet() {
     std::vector<double> partly(bodies_.size(), 0);
-    const double near = grid_.spacing() * std::sqrt(double(dim));
     for (std::size_t s = 0; s < bodies_.size(); ++s)
       if (surface_.solids()[s].closed)
-        for_each_cell_in(near_solid(static_cast<int>(s)), [&](int cell) {
-          if (distance_[cell] > -near)
+        for_each_cell_in(near_solid(static_cast<int>(s), reach_of_planes), [&](int cell) {
+          if (geometry_.state.cells[cell] == CellState::empty)
             partly[s] = 1;
         });
     sum_all(grid_.comm(), partly.data(), static_cast<int>(partly.size()));
@@ -148,12 +151,13 @@ class WetBodyFinder {
     return hit && surface_.solid_of(hit->simplex) != solid;
   }
   /// The free surface beyond a hull is none to what lies in it, nor is the hull.
-  bool sees_surface(int solid, int cell, int other, const Point<dim>& place) const {
-    return !parted(solid, grid_.center(cell), grid_.center(other)) &&
+  bool sees_surface(int solid, int cell, int axis, const Point<dim>& place) const {
+    const Point<dim> x = grid_.center(cell);
+    return !parted(solid, x, x - grid_.spacing() * Point<dim>::Unit(axis)) &&
            !parted(solid, place, surface_.closest_on_solid(place, solid).position);
   }
 
-  /// Through where liquid meets void within two cells, in its sight.
+  /// Through where liquid meets void around it, in its sight.
   void find_planes() {
     if (gravity_.isZero(0))
       return;
@@ -170,11 +174,9 @@ class WetBodyFinder {
     for (std::size_t s = 0; s < bodies_.size(); ++s) {
       if (!bodies_[s].partly)
         continue;
-      Box<dim> around = near_solid(static_cast<int>(s));
+      const Box<dim> around = near_solid(static_cast<int>(s), reach_of_planes);
       planes_[s].origin = around.center();
       planes_[s].up = -gravity_.normalized();
-      around =
-          Box<dim>(around.min() - Point<dim>::Constant(h), around.max() + Point<dim>::Constant(h));
       surface_.solids_touching(around, candidates_);
       const bool is_alone = candidates_.size() == 1;
       for_each_cell_in(around, [&](int cell) {
@@ -189,7 +191,7 @@ class WetBodyFinder {
             continue;
           const double part = distance_[cell] / (distance_[cell] - distance_[lower]);
           const Point<dim> place = grid_.center(cell) - part * h * Point<dim>::Unit(axis);
-          if (is_alone || sees_surface(static_cast<int>(s), cell, lower, place))
+          if (is_alone || sees_surface(static_cast<int>(s), cell, axis, place))
             planes_[s].add(place);
         }
       });
@@ -234,11 +236,24 @@ class WetBodyFinder {
     }
   }
 
+  /// A face and the centres of the cells beside it.
+  struct Places {
+    Point<dim> lower, face, upper;
+  };
+  /// Where a periodic axis closes, at the one end of the domain or the other: solids are not
+  /// repeated.
+  Places places(int axis, int cell, const FaceCells& cells, bool at_upper_end) const {
+    Places at{grid_.center(cells.lower), grid_.face_center(axis, cell), grid_.center(cells.upper)};
+    if (grid_.coordinates(cell)[axis] > 0)
+      return at;
+    const Point<dim> period = grid_.n_cells()[axis] * grid_.spacing() * Point<dim>::Unit(axis);
+    if (at_upper_end)
+      return {at.lower, at.face + period, at.upper + period};
+    return {at.lower - period, at.face, at.upper};
+  }
   /// The closed solid of which a corner comes between two cells, or -1.
-  int corner_between(int axis, int cell, const FaceCells& cells) const {
-    if (cells.at_side() || geometry_.state.faces[axis][cell] != FaceState::coupled)
-      return -1;
-    const auto hit = surface_.first_hit(grid_.center(cells.lower), grid_.center(cells.upper));
+  int corner_between(const Places& at) const {
+    const auto hit = surface_.first_hit(at.lower, at.upper);
     const int solid = hit ? surface_.solid_of(hit->simplex) : -1;
     return solid >= 0 && surface_.solids()[solid].closed ? solid : -1;
   }
@@ -248,8 +263,14 @@ class WetBodyFinder {
     const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, axis, cell);
     const bool lower = is_solid(cells.lower), upper = is_solid(cells.upper);
     std::array<int, 2> owners{lower ? owner(cells.lower) : -1, upper ? owner(cells.upper) : -1};
+    bool at_upper_end = lower && !upper;
     if (!lower && !upper) {
-      owners[0] = corner_between(axis, cell, cells);
+      if (cells.at_side() || geometry_.state.faces[axis][cell] != FaceState::coupled)
+        return;
+      owners[0] = corner_between(places(axis, cell, cells, false));
+      at_upper_end = owners[0] < 0 && grid_.coordinates(cell)[axis] == 0;
+      if (at_upper_end)
+        owners[0] = corner_between(places(axis, cell, cells, true));
       if (owners[0] < 0)
         return;
     }
@@ -265,11 +286,11 @@ class WetBodyFinder {
         body.at_side[axis] |= distance_[std::max(cells.lower, cells.upper)] < 0;
         continue;
       }
+      const Places at = places(axis, cell, cells, n == 2 ? k == 0 : at_upper_end);
       const double volume =
-          domain_.cell_volume() / n *
-          wet_fraction(plane(grid_.center(cells.lower)), plane(grid_.center(cells.upper)));
+          domain_.cell_volume() / n * wet_fraction(plane(at.lower), plane(at.upper));
       body.displaced[axis] += volume;
-      body.moment[axis] += volume * grid_.face_center(axis, cell);
+      body.moment[axis] += volume * at.face;
     }
     if (!grid_.description().store_upper_face[axis] && upper && owners[n - 1] >= 0 &&
         grid_.neighbor(cell, axis, 1) < 0)

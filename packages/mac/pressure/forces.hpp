@@ -12,6 +12,9 @@ struct ForceParameters {
   double expansion = 0;                     ///< Boussinesq, beta [1/K]
   double reference_temperature = 0;         ///< T0, where buoyancy vanishes [K]
   double smoke_weight = 0;                  ///< relative excess density of smoke of density 1 [1]
+
+  /// What a fluid without scalars feels.
+  Point<dim> uniform() const { return gravity + body; }
 };
 
 /// f = g + f_body + (-beta (T - T0) + w s) g along `axis` at a face, temperature and smoke being

@@ -156,6 +156,35 @@ TEST(LiquidVolume, LeavesOutSolids) {
   expect_solid_is_taken_off<3>();
 }
 
+/// A solid at the lower end of a periodic axis takes its part of the boxes that end there, too.
+template <int dim>
+void expect_solid_at_periodic_sides() {
+  constexpr int n = 16;
+  const double h = 1.0 / n, level = 0.52;
+  DomainDescription<dim> description = closed_cube<dim>(n);
+  for (const int axis : {0, dim - 2}) {
+    for (auto& side : description.boundary.sides[axis])
+      side.type = SideType::periodic;
+    description.grid.periodic[axis] = true;
+  }
+  Bath<dim> bath(description);
+  for (const double gap : {0.0, 0.1, 0.3, 0.45}) {
+    const Point<dim> size = Point<dim>::Constant(0.3);
+    Point<dim> center = 0.5 * size + Point<dim>::Constant(gap * h);
+    center[dim - 1] = 0.25;
+    const auto solids =
+        find_solid_cells<dim>(bath.domain, snapshot<dim>(box_surface<dim>(size, h), center, true));
+    const auto result =
+        volumes<dim>(bath, solids, [&](const Point<dim>& x) { return x[dim - 1] - level; });
+    EXPECT_NEAR(result.total(), level - std::pow(0.3, dim - 1) * 0.3, 1e-13) << gap;
+  }
+}
+
+TEST(LiquidVolume, LeavesOutSolidsAtPeriodicSides) {
+  expect_solid_at_periodic_sides<2>();
+  expect_solid_at_periodic_sides<3>();
+}
+
 /// What a closed shell holds, air around it, wherever its cells' centres are; beside it what whole
 /// cells would hold, which changes as the shell goes over the grid. Mean squares.
 template <int dim>

@@ -5,7 +5,9 @@
 #include "advection_cases.hpp"
 #include "freesurface/level_set.hpp"
 #include "freesurface/particles/particle_correction.hpp"
+#include "freesurface/particles/particle_motion.hpp"
 #include "geometry/generators.hpp"
+#include "mac/transport/transport.hpp"
 #include "output/checkpoint.hpp"
 
 namespace lockstep::test {
@@ -319,6 +321,46 @@ void expect_trapped_air_goes() {
 TEST(Particles, AirThatASolidAndLiquidEncloseGoes) {
   expect_trapped_air_goes<2>();
   expect_trapped_air_goes<3>();
+}
+
+/// In a last tile that is short, float rounds what comes to the end up to it: on a periodic axis it
+/// begins anew there.
+template <int dim>
+void expect_none_beyond_short_tiles() {
+  constexpr int n = 2 * tile_width<dim> + 1;
+  const double h = 1.0 / n;
+  DomainDescription<dim> description = closed_cube<dim>(n);
+  for (auto& side : description.boundary.sides[0])
+    side.type = SideType::periodic;
+  description.grid.periodic[0] = true;
+  Bath<dim> bath(description);
+  const TiledGrid<dim>& grid = bath.domain.grid;
+  bath.set_velocity(
+      [&](const Point<dim>&) { return Point<dim>((0.5 - 1e-8) * h * Point<dim>::Unit(0)); });
+  bath.domain.halo.fill(bath.velocity);
+  ParticleTiles<dim> tiles(grid.n_owned_tiles());
+  for (int t = 0; t < grid.n_owned_tiles(); ++t) {
+    Particle<dim> particle;
+    particle.x.fill(0.5F);
+    particle.radius = 0.2F;
+    tiles[t].push_back(particle);
+  }
+  const SolidCells<dim> solids = find_solid_cells<dim>(bath.domain, nullptr);
+  Transport<dim> transport(
+      {grid, solids.state, bath.surface, bath.velocity, bath.ray_halo, bath.kept, {}, 1.0});
+  move_particles(bath.domain, transport.frame(), bath.ray_halo, tiles);
+  GlobalIndex count = 0;
+  for (int t = 0; t < grid.n_owned_tiles(); ++t)
+    for (const Particle<dim>& particle : tiles[t]) {
+      ++count;
+      EXPECT_TRUE(grid.in_domain(t * tile_volume<dim> + particle.cell_in_tile()));
+    }
+  EXPECT_EQ(sum_all(world(), count), std::lround(std::pow(3, dim)));
+}
+
+TEST(Particles, DoNotLieBeyondShortTiles) {
+  expect_none_beyond_short_tiles<2>();
+  expect_none_beyond_short_tiles<3>();
 }
 
 template <int dim>

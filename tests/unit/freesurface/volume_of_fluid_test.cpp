@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "base/errors.hpp"
 #include "bath.hpp"
 #include "freesurface/fractions/cell_plane.hpp"
 #include "freesurface/fractions/volume_of_fluid.hpp"
@@ -303,6 +304,17 @@ TEST(VolumeOfFluid, CrumbsOfTilesThatGoAreNotForgotten) {
       expect_crumbs_of_gone_tiles_return<2>(crumbs, has_pool);
       expect_crumbs_of_gone_tiles_return<3>(crumbs, has_pool);
     }
+}
+
+/// A run that blows up would take millions of sweeps for a step.
+TEST(VolumeOfFluid, StepsOverAHundredCellsAreRefused) {
+  Bath<2> bath(open_cube<2>(20));
+  bath.set_velocity([](const Point<2>&) { return Point<2>(0.05, 0); });
+  auto model = bath.make(model_name);
+  model->initialise(ball<2>(Point<2>(0.5, 0.5), 0.2), nullptr);
+  EXPECT_NO_THROW(bath.step(*model, 0, 99));
+  model->initialise(ball<2>(Point<2>(0.5, 0.5), 0.2), nullptr);
+  EXPECT_THROW(bath.step(*model, 0, 101), SolveError);
 }
 
 TEST(VolumeOfFluid, ASolidThatDipsDisplacesLiquid) {

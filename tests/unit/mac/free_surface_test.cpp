@@ -208,6 +208,21 @@ TEST(FreeSurface, TheInsideOfAHullIsDry) {
   EXPECT_THROW(volume_around(numbers({1.6, 20.0})), InputError);
 }
 
+/// What is on both sides of a wall on a bottom is one room where the axis across it is periodic.
+TEST(FreeSurface, DryRoomsGoOnBeyondPeriodicSides) {
+  Case<2> scene({48, 48}, 0.1);
+  scene.side("x lower", "periodic").side("x upper", "periodic");
+  scene.fluid.set("Gravity", numbers({0.0, -1.0}));
+  add_level<2>(scene, 3.02);
+  scene.fluid.sublist("Free Surface").set("Dry Points", numbers({0.6, 2.5}));
+  Solids<2> solids;
+  solids.add(plate_surface<2>(Point<2>(4.82, 1), 1, 0.1), Point<2>(2.4, 2.001), false);
+  solids.add(plate_surface<2>(Point<2>(1, 2.0), 0, 0.1), Point<2>(1.201, 3.001), false);
+  const auto fluid = make_liquid<2>(scene);
+  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  EXPECT_NEAR(fluid->fluid_volume(), 0.01 * 48 * 20, 1e-12);
+}
+
 TEST(FreeSurface, DryPointsAndLiquidInSolidsAreRefused) {
   Solids<2> solids;
   solids.add(ball_surface<2>(0.4, 0.1), Point<2>(0.8, 0.8), true);
@@ -249,6 +264,70 @@ TEST(FreeSurface, WhatLiesInADryHullIsDry) {
     for (const double displaced : bodies[ball].displaced)
       EXPECT_EQ(displaced, 0);
   }
+}
+
+/// Its surface stays where it is, and tells what it was asked.
+struct Listener : FixedInterface<2> {
+  struct Heard {
+    Point<2> gravity = Point<2>::Zero();
+    double displacement = 0;  ///< the largest
+  };
+  Listener(const MacDomain<2>& domain, Heard& heard) : FixedInterface<2>(domain), heard_(heard) {}
+  void advance(const InterfaceStep<2>& step) override { heard_.gravity = step.gravity; }
+  int band(double displacement) const override {
+    heard_.displacement = std::max(heard_.displacement, displacement);
+    return std::max(4, static_cast<int>(displacement) + 1);
+  }
+  Heard& heard_;
+};
+
+/// A ball of liquid in a vortex, one step on.
+std::unique_ptr<MacFluid<2>> ball_in_a_vortex(const std::string& force, double speed, double dt,
+                                              Listener::Heard& heard) {
+  InterfaceRegistry<2> interfaces("interface model");
+  interfaces.add(
+      "listener", "", [] { return ParameterList(); },
+      [&](const ParameterList&, const MacDomain<2>& domain) {
+        return std::make_unique<Listener>(domain, heard);
+      });
+  Case<2> scene({20, 20}, 0.05);
+  scene.fluid.set(force, numbers({0.6, -0.8}));
+  scene.fluid.sublist("Free Surface").sublist("Interface").set("Type", "listener");
+  scene.fluid.sublist("Initial State").set("Type", "taylor green").set("Wavelength", 0.25);
+  scene.fluid.sublist("Initial State").set("Amplitude", speed);
+  add_ball<2>(scene, {0.48, 0.52}, 0.3);
+  validate(scene.fluid, mac_parameters<2>(&interfaces), Source{"test", {}}, "Fluid");
+  validate(scene.domain, domain_parameters<2>(), Source{"test", {}}, "Domain");
+  auto fluid = std::make_unique<MacFluid<2>>(scene.fluid, scene.domain, world(), &interfaces);
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  fluid->advect(
+      0, dt, {nullptr, nullptr, [](const SurfacePoint<2>&) { return Point<2>(Point<2>::Zero()); }});
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  return fluid;
+}
+
+/// A liquid alone cannot tell one from the other: they bound its steps alike, drops fall with
+/// either, and both make short waves.
+TEST(FreeSurface, ABodyForceIsFeltAsGravityIs) {
+  Listener::Heard by_gravity, by_body;
+  const auto heavy = ball_in_a_vortex("Gravity", 0.05, 0.1, by_gravity);
+  const auto pushed = ball_in_a_vortex("Body Force", 0.05, 0.1, by_body);
+  EXPECT_NEAR(pushed->largest_stable_step(), std::sqrt(0.05), 1e-14);
+  EXPECT_EQ(heavy->largest_stable_step(), pushed->largest_stable_step());
+  EXPECT_EQ(by_gravity.gravity, Point<2>(0.6, -0.8));
+  EXPECT_EQ(by_body.gravity, by_gravity.gravity);
+  for (int axis = 0; axis < 2; ++axis)
+    heavy->domain().grid.for_each_owned_face(axis, [&](int cell) {
+      EXPECT_EQ(heavy->geometry().mass(axis, cell), pushed->geometry().mass(axis, cell));
+    });
+}
+
+/// Before anything goes over as many cells: at 1e8 cells a step that would take hours.
+TEST(FreeSurface, ARunThatBlowsUpEndsSoon) {
+  Listener::Heard heard;
+  EXPECT_THROW(ball_in_a_vortex("Gravity", 3e6, 0.1, heard), SolveError);
+  EXPECT_LE(heard.displacement, 2 * 20 + 4);
 }
 
 TEST(FreeSurface, BadListsSayWhatIsWrong) {

@@ -108,6 +108,32 @@ TEST(VelocityExtension, ConstantVelocitiesAreCarriedOnBeyondTheKnownDistance) {
   expect_constants_go_far<3>();
 }
 
+/// A band that is wider than anything costs no more than the domain has cells.
+TEST(VelocityExtension, EndsWhereNothingIsLeft) {
+  constexpr int n = 20;
+  const double h = 1.0 / n;
+  Case<2> scene({n, n}, h);
+  add_ball<2>(scene, {0.5, 0.5}, 3 * h);
+  const auto fluid = make_liquid<2>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  const TiledGrid<2>& grid = fluid->domain().grid;
+  CellField start(grid.n_stored_cells());
+  grid.for_each_stored_cell([&](int cell) {
+    start[cell] = std::min((grid.center(cell) - Point<2>(0.5, 0.5)).norm() - 3 * h, 4 * h);
+  });
+  const auto result = [&](double band) {
+    CellField distance = start;
+    return extended<2>(
+        *fluid, distance, band * h, [](const Point<2>& x) { return wavy_velocity<2>(x); }, 4 * h);
+  };
+  const auto wide = result(100), endless = result(1e10);
+  for (int axis = 0; axis < 2; ++axis)
+    grid.for_each_owned_face(axis, [&](int cell) {
+      EXPECT_EQ(wide.velocity[axis][cell], endless.velocity[axis][cell]);
+      EXPECT_NE(endless.state.faces[axis][cell], FaceState::inactive);
+    });
+}
+
 /// Above level water, what varies along the surface alone goes straight up, whatever is beside it.
 template <int dim>
 void expect_columns_go_on() {
