@@ -14,7 +14,8 @@ namespace lockstep {
 /// A snapshot asked many times about places near the cells that a rank owns: there its simplices
 /// are listed by bins, so that an answer costs by the bins on the way and not by the mesh. Sight
 /// lines may leave a periodic domain: they then meet what lies at the other end, but what has left
-/// it is not met again inside. Touching counts as meeting, within `tolerance()`, so that nothing is ever seen through a surface by round-off.
+/// it is not met again inside. Touching counts as meeting, within `tolerance()`, so that nothing is
+/// ever seen through a surface by round-off.
 template <int dim>
 class NearbySurface {
  public:
