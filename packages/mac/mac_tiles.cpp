@@ -120,6 +120,8 @@ bool MacFluid<dim>::begin_step(double time, double dt, const std::function<doubl
   if (const std::optional<TileOwners> owners = moving_tiles_->change(now)) {
     regrid(*owners);
     steps_since_regrid_ = 0;
+  } else if (share_work()) {
+    steps_since_regrid_ = 0;
   }
   return steps_since_regrid_ == 0;
 }
