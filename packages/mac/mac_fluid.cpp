@@ -114,8 +114,7 @@ RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
   const RCP<Vector> result = make_vector(geometry_.pressure_map);
   if (accepted_step_ == 0)
     return result;  // no step yet; ranks without cells have no pressures ever
-  const Point<dim> at_rest =
-      parameters_.density * accepted_step_ * (parameters_.forces.gravity + parameters_.forces.body);
+  const Point<dim> at_rest = parameters_.density * accepted_step_ * parameters_.forces.uniform();
   CellField pressure = extended_pressure<dim>(domain_, geometry_.state.cells, accepted_cells_,
                                               accepted_pressure_, at_rest);
   // Viscosity would hand on what light faces get for a moment, and they give it back a
