@@ -27,10 +27,10 @@ struct BallInTank {
                       [&](int vertex) { return mesh.vertices[vertex][0] < 1; }))
         part.simplices.push_back(simplex);
     EXPECT_LT(part.simplices.size(), mesh.simplices.size());
-    const auto snapshot_of = [](SurfaceMesh<dim> surface, SolidDescription description) {
-      description.simplex_end = static_cast<int>(surface.simplices.size());
-      return std::make_shared<const SurfaceSnapshot<dim>>(
-          std::move(surface), std::vector<SolidDescription>{description});
+    const auto snapshot_of = [](SurfaceMesh<dim> triangles, SolidDescription body) {
+      body.simplex_end = static_cast<int>(triangles.simplices.size());
+      return std::make_shared<const SurfaceSnapshot<dim>>(std::move(triangles),
+                                                          std::vector<SolidDescription>{body});
     };
     snapshot = snapshot_of(std::move(mesh), solid);
     inside = snapshot_of(std::move(part), solid);
