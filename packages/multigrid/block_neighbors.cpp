@@ -45,13 +45,6 @@ std::map<GlobalIndex, int> owners_of(const LatticeBlocks& blocks, std::vector<Gl
   return result;
 }
 
-LevelHalo::Cell local_cell(const LevelGrid& grid, int i, int j, int k) {
-  i -= grid.begin[0];
-  j -= grid.begin[1];
-  k -= grid.begin[2];
-  return {grid.natural(i, j, k), grid.slot_of_cell(i, j, k), LevelGrid::colour(i, j, k)};
-}
-
 struct CellBox {
   Cell begin{}, end{1, 1, 1};
 };
@@ -149,7 +142,7 @@ Wanted find_ghosts(const LatticeBlocks& blocks, const std::vector<NearBlock>& ne
     std::vector<GlobalIndex>& numbers = wanted.numbers[block.rank];
     peer.rank = block.rank;
     for_each_cell_of(box, [&](int i, int j, int k) {
-      const LevelHalo::Cell cell = local_cell(grid, i, j, k);
+      const LevelHalo::Cell cell = local_cell(grid, {i, j, k});
       if (!marks[cell.natural])
         return;
       peer.ghosts.push_back(cell);
@@ -197,6 +190,23 @@ std::vector<Cell> spread(const std::vector<Cell>& begins, int axis, int reach, i
 }
 
 }  // namespace
+
+LevelHalo::Cell local_cell(const LevelGrid& grid, const Cell& cell) {
+  const int i = cell[0] - grid.begin[0], j = cell[1] - grid.begin[1], k = cell[2] - grid.begin[2];
+  return {grid.natural(i, j, k), grid.slot_of_cell(i, j, k), LevelGrid::colour(i, j, k)};
+}
+
+void for_each_within_reach(const LatticeBlocks& blocks, int level, const GhostReach& reach,
+                           const LevelGrid& grid, const std::function<void(const Cell&)>& visit) {
+  const std::vector<char> marks = mark_reach(blocks, level, reach, grid);
+  CellBox box{grid.begin, {}};
+  for (int axis = 0; axis < 3; ++axis)
+    box.end[axis] = grid.begin[axis] + grid.n[axis];
+  for_each_cell_of(box, [&](int i, int j, int k) {
+    if (marks[local_cell(grid, {i, j, k}).natural])
+      visit({i, j, k});
+  });
+}
 
 bool holds_cells(const LatticeBlocks& blocks, const Cell& begin) {
   for (int axis = 0; axis < blocks.dimension; ++axis) {
@@ -247,9 +257,9 @@ std::vector<LevelHalo::Peer> distributed_peers(const LatticeBlocks& blocks,
   std::vector<LevelHalo::Peer> peers;
   for (auto& [rank, peer] : wanted.peers) {
     for (const GlobalIndex number : asked.at(rank))
-      peer.owned.push_back(local_cell(grid, static_cast<int>(number % n_x),
-                                      static_cast<int>(number / n_x % n_y),
-                                      static_cast<int>(number / n_x / n_y)));
+      peer.owned.push_back(
+          local_cell(grid, {static_cast<int>(number % n_x), static_cast<int>(number / n_x % n_y),
+                            static_cast<int>(number / n_x / n_y)}));
     peers.push_back(std::move(peer));
   }
   return peers;
@@ -270,8 +280,8 @@ std::vector<LevelHalo::Peer> periodic_peers(const LatticeBlocks& blocks, const L
             Cell owned{i, j, k}, ghost{i, j, k};
             owned[axis] = side == 0 ? 0 : grid.n[axis] - 1;
             ghost[axis] = side == 0 ? grid.n[axis] : -1;
-            LevelHalo::Cell from = local_cell(grid, owned[0], owned[1], owned[2]);
-            LevelHalo::Cell to = local_cell(grid, ghost[0], ghost[1], ghost[2]);
+            LevelHalo::Cell from = local_cell(grid, owned);
+            LevelHalo::Cell to = local_cell(grid, ghost);
             if (grid.n[axis] % 2 != 0)  // only the coarsest level: no sweep runs there
               to.colour = from.colour;
             peer.owned.push_back(from);

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "linear/stencil_operator.hpp"
@@ -19,6 +20,15 @@ struct GhostReach {
   /// Maximum norm, else beyond faces only.
   bool around_corners = false;
 };
+
+/// Where a cell, in coordinates of the level's lattice, stands in a rank's storage.
+LevelHalo::Cell local_cell(const LevelGrid& grid, const std::array<int, 3>& cell);
+
+/// Calls visit(coordinates in the level's lattice) for the cells of a rank's blocks and those of
+/// `grid` within reach of them.
+void for_each_within_reach(const LatticeBlocks& blocks, int level, const GhostReach& reach,
+                           const LevelGrid& grid,
+                           const std::function<void(const std::array<int, 3>&)>& visit);
 
 /// False for blocks wholly beyond the domain.
 bool holds_cells(const LatticeBlocks& blocks, const std::array<int, 3>& begin);

@@ -270,29 +270,46 @@ void sum_over_ranks(const std::vector<std::vector<float>*>& arrays, const Commun
   }
 }
 
-/// What ranks have added to each other's cells comes home; sums are cleaned of round-off.
-void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_all_ranks, bool moved,
-             NaturalStencil& coarse) {
-  std::vector<std::vector<float>*> arrays{&coarse.dirichlet};
-  if (!coarse.reaction.empty())
-    arrays.push_back(&coarse.reaction);
-  for (int axis = 0; axis < level.grid.dimension; ++axis)
-    arrays.push_back(&coarse.lower[axis]);
-  if (from_all_ranks)
-    sum_over_ranks(arrays, blocks.comm);
+std::vector<std::vector<float>*> sums_of(NaturalStencil& stencil, int dimension) {
+  std::vector<std::vector<float>*> arrays{&stencil.dirichlet};
+  if (!stencil.reaction.empty())
+    arrays.push_back(&stencil.reaction);
+  for (int axis = 0; axis < dimension; ++axis)
+    arrays.push_back(&stencil.lower[axis]);
+  return arrays;
+}
+
+std::vector<float*> data_of(const std::vector<std::vector<float>*>& arrays) {
   std::vector<float*> data;
   for (std::vector<float>* values : arrays)
     data.push_back(values->data());
-  if (moved)
-    level.halo.sum_natural_to_owner(data);
+  return data;
+}
+
+/// What differences of sums leave is no coupling.
+void clean_round_off(std::vector<float>& values) {
+  float largest = 0;
+  for (const float value : values)
+    largest = std::max(largest, value);
+  for (float& value : values)
+    value = value < round_off * largest ? 0 : value;
+}
+
+/// What ranks have added to each other's cells, in `landed`, comes home to `coarse`; the same where
+/// the level's ranks are the finer one's.
+void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_all_ranks, bool moved,
+             NaturalStencil& landed, NaturalStencil& coarse) {
+  const auto arrays = sums_of(coarse, level.grid.dimension);
+  if (from_all_ranks)
+    sum_over_ranks(arrays, blocks.comm);
+  if (level.landing)
+    level.landing->halo.sum_natural_to_owner(data_of(sums_of(landed, level.grid.dimension)),
+                                             data_of(arrays));
+  else if (moved)
+    level.halo.sum_natural_to_owner(data_of(arrays));
   for (std::vector<float>* values : arrays) {
-    if (!moved)
-      break;
-    float largest = 0;
-    for (const float value : *values)
-      largest = std::max(largest, value);
-    for (float& value : *values)
-      value = value < round_off * largest ? 0 : value;
+    if (moved)
+      clean_round_off(*values);
   }
   for (int axis = 0; axis < level.grid.dimension; ++axis) {
     if (blocks.periodic[axis] && level.grid.n[axis] == 1)
@@ -305,14 +322,19 @@ void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_al
 Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
                  const LayoutLevel& coarse_level, const LatticeBlocks& blocks,
                  const CoarseningFactors& factors, NaturalStencil& coarse) {
-  coarse.resize(coarse_level.grid, !fine.reaction.empty());
-  Coarsening step(fine_level, fine, coarse_level, factors, coarse);
+  const bool has_reaction = !fine.reaction.empty();
+  coarse.resize(coarse_level.grid, has_reaction);
+  NaturalStencil elsewhere;
+  if (coarse_level.landing)
+    elsewhere.resize(coarse_level.landing->grid, has_reaction);
+  NaturalStencil& landed = coarse_level.landing ? elsewhere : coarse;
+  Coarsening step(fine_level, fine, coarse_level.as_landed(), factors, landed);
   step.sum_rows();
   const auto destinations = destinations_behind_thin_walls(fine_level, fine, blocks.comm);
   if (!destinations.empty())
     step.move(destinations);
   const bool gathers = fine_level.grid.is_distributed && !coarse_level.grid.is_distributed;
-  collect(coarse_level, blocks, gathers, !destinations.empty(), coarse);
+  collect(coarse_level, blocks, gathers, !destinations.empty(), landed, coarse);
   coarse.complete(coarse_level);
   Transfer transfer = step.take_transfer();
   sort_by_slab(fine_level.grid, transfer);

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
-#include "multigrid/block_neighbors.hpp"
+#include "multigrid/gathered_blocks.hpp"
 
 namespace lockstep {
 
@@ -12,8 +12,6 @@ namespace {
 
 /// Levels up to this many cells have a dense inverse.
 constexpr int coarsest_cells = 300;
-/// So many cells every rank sweeps sooner than it hears from its neighbours.
-constexpr int replicated_cells = 8000;
 /// The most that a lattice may have left where a periodic axis cannot be halved again.
 constexpr int most_coarsest_cells = 700;
 
@@ -29,22 +27,6 @@ long long product(const std::array<int, 3>& n) {
   return static_cast<long long>(n[0]) * n[1] * n[2];
 }
 
-int log2_of(int width) {
-  int log = 0;
-  while ((1 << log) < width)
-    ++log;
-  return log;
-}
-
-/// Of several ranks. Levels with at most one cell a block are whole on every rank.
-int n_distributed_levels(const LatticeBlocks& blocks) {
-  int levels = 1;
-  while (levels < log2_of(blocks.width) &&
-         product(LatticeLayout::n_cells(blocks, levels)) > replicated_cells)
-    ++levels;
-  return levels;
-}
-
 int n_levels(const LatticeBlocks& blocks) {
   const int at_least = log2_of(blocks.width) + 1;
   int levels = at_least;
@@ -54,7 +36,72 @@ int n_levels(const LatticeBlocks& blocks) {
   return levels;
 }
 
+/// The box around a rank's cells and those that are `depth` cells or less from them.
+LevelGrid distributed_grid(const LatticeBlocks& blocks, int level, int depth) {
+  const auto whole = LatticeLayout::n_cells(blocks, level);
+  LevelGrid grid;
+  grid.dimension = blocks.dimension;
+  grid.is_distributed = true;
+  grid.n = whole;
+  for (int axis = 0; axis < blocks.dimension; ++axis) {
+    int lowest = std::numeric_limits<int>::max(), highest = 0;
+    for (const auto& begin : blocks.begins) {
+      if (!holds_cells(blocks, begin))
+        continue;
+      lowest = std::min(lowest, begin[axis]);
+      highest = std::max(highest, begin[axis] + blocks.width);
+    }
+    if (highest == 0) {
+      grid.n[axis] = 0;
+      continue;
+    }
+    // Boxes begin at even cells.
+    int begin = ((lowest >> level) - depth) & ~1, end = (highest >> level) + ((depth + 1) & ~1);
+    if (!blocks.periodic[axis]) {
+      begin = std::max(begin, 0);
+      end = std::min(end, whole[axis]);
+    }
+    grid.begin[axis] = begin;
+    grid.n[axis] = end - begin;
+  }
+  grid.set_strides(true);
+  return grid;
+}
+
+LevelGrid replicated_grid(const LatticeBlocks& blocks, int level) {
+  LevelGrid grid;
+  grid.dimension = blocks.dimension;
+  grid.n = LatticeLayout::n_cells(blocks, level);
+  grid.set_strides(blocks.periodic[0]);
+  return grid;
+}
+
+void mark_owned(const LatticeBlocks& blocks, int level, LayoutLevel& result) {
+  const LevelGrid& grid = result.grid;
+  result.owned.assign(grid.n_natural, 0);
+  for (const auto& block : blocks.begins) {
+    if (!holds_cells(blocks, block))
+      continue;
+    std::array<int, 3> low{}, high{1, 1, 1};
+    for (int axis = 0; axis < grid.dimension; ++axis) {
+      low[axis] = (block[axis] >> level) - grid.begin[axis];
+      high[axis] = std::min(low[axis] + (blocks.width >> level), grid.n[axis]);
+    }
+    for (int k = low[2]; k < high[2]; ++k)
+      for (int j = low[1]; j < high[1]; ++j)
+        for (int i = low[0]; i < high[0]; ++i)
+          result.owned[grid.natural(i, j, k)] = 1;
+  }
+}
+
 }  // namespace
+
+int log2_of(int width) {
+  int log = 0;
+  while ((1 << log) < width)
+    ++log;
+  return log;
+}
 
 std::array<int, 3> LatticeLayout::n_cells(const LatticeBlocks& blocks, int level) {
   std::array<int, 3> n = blocks.n_cells;
@@ -100,84 +147,65 @@ void LayoutLevel::find_parts() {
   }
 }
 
-LevelGrid LatticeLayout::make_grid(int level, bool is_distributed, int depth) const {
-  const LatticeBlocks& blocks = *blocks_;
-  const auto whole = n_cells(blocks, level);
-  LevelGrid grid;
-  grid.dimension = blocks.dimension;
-  grid.is_distributed = is_distributed;
-  grid.n = whole;
-  if (is_distributed) {
-    for (int axis = 0; axis < blocks.dimension; ++axis) {
-      int lowest = std::numeric_limits<int>::max(), highest = 0;
-      for (const auto& begin : blocks.begins) {
-        if (!holds_cells(blocks, begin))
-          continue;
-        lowest = std::min(lowest, begin[axis]);
-        highest = std::max(highest, begin[axis] + blocks.width);
-      }
-      if (highest == 0) {
-        grid.n[axis] = 0;
-        continue;
-      }
-      const int margin = (depth + 1) & ~1;  // boxes begin at even cells
-      int begin = (lowest >> level) - margin, end = (highest >> level) + margin;
-      if (!blocks.periodic[axis]) {
-        begin = std::max(begin, 0);
-        end = std::min(end, whole[axis]);
-      }
-      grid.begin[axis] = begin;
-      grid.n[axis] = end - begin;
-    }
-  }
-  grid.set_strides(is_distributed || blocks.periodic[0]);
-  return grid;
-}
-
-LatticeLayout::LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks, int depth)
-    : blocks_(std::move(blocks)) {
+LatticeLayout::LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks,
+                             const LayoutOptions& options)
+    : options_(options), blocks_(std::move(blocks)) {
   const std::string reason = why_not(*blocks_);
   check_solve(reason.empty(), "{}", reason);
-  const bool several_ranks = blocks_->comm->getSize() > 1;
-  const int n_distributed = several_ranks ? n_distributed_levels(*blocks_) : 0;
-  const auto near_blocks =
-      several_ranks ? find_near_blocks(*blocks_, (depth + 1) / 2) : std::vector<NearBlock>();
-  levels_.resize(n_levels(*blocks_));
-  for (int level = 0; level < static_cast<int>(levels_.size()); ++level) {
-    LayoutLevel& result = levels_[level];
-    result.grid = make_grid(level, level < n_distributed, depth);
-    if (level < n_distributed) {
-      const auto halo = [&](const GhostReach& reach) {
-        return LevelHalo(blocks_->comm,
-                         distributed_peers(*blocks_, near_blocks, level, reach, result.grid));
-      };
-      result.halo = halo({1, false});
-      result.deep_halo = halo({depth, true});
-      mark_owned(level);
-    } else {
-      result.halo = LevelHalo(blocks_->comm, periodic_peers(*blocks_, result.grid));
-    }
-    result.find_parts();
+  const int n = n_levels(*blocks_);
+  levels_.resize(n);
+  Stage stage{blocks_, 0, 1, {}};
+  bool is_distributed = blocks_->comm->getSize() > 1;
+  if (is_distributed)
+    stage.near_blocks = find_near_blocks(*blocks_, (options_.depth + 1) / 2);
+  for (int level = 0; level < n; ++level) {
+    const bool ends_stage = level - stage.first == log2_of(stage.blocks->width);
+    if (level > 0)
+      is_distributed = is_distributed && level + 1 < n &&
+                       product(n_cells(*blocks_, level)) > options_.most_replicated_cells &&
+                       (!ends_stage || can_gather(*stage.blocks));
+    if (is_distributed && ends_stage)
+      gather(level, stage);
+    else if (is_distributed)
+      distribute(stage, level);
+    else
+      replicate(level);
+    levels_[level].find_parts();
   }
 }
 
-void LatticeLayout::mark_owned(int level) {
+void LatticeLayout::replicate(int level) {
   LayoutLevel& result = levels_[level];
-  const LevelGrid& grid = result.grid;
-  result.owned.assign(grid.n_natural, 0);
-  for (const auto& block : blocks_->begins) {
-    if (!holds_cells(*blocks_, block))
-      continue;
-    std::array<int, 3> low{}, high{1, 1, 1};
-    for (int axis = 0; axis < grid.dimension; ++axis) {
-      low[axis] = (block[axis] >> level) - grid.begin[axis];
-      high[axis] = std::min(low[axis] + (blocks_->width >> level), grid.n[axis]);
-    }
-    for (int k = low[2]; k < high[2]; ++k)
-      for (int j = low[1]; j < high[1]; ++j)
-        for (int i = low[0]; i < high[0]; ++i)
-          result.owned[grid.natural(i, j, k)] = 1;
-  }
+  result.grid = replicated_grid(*blocks_, level);
+  result.halo = LevelHalo(blocks_->comm, periodic_peers(*blocks_, result.grid));
+}
+
+void LatticeLayout::distribute(const Stage& stage, int level) {
+  const int in_stage = level - stage.first;
+  LayoutLevel& result = levels_[level];
+  result.grid = distributed_grid(*stage.blocks, in_stage, options_.depth);
+  const auto halo = [&](const GhostReach& reach) {
+    return LevelHalo(blocks_->comm, distributed_peers(*stage.blocks, stage.near_blocks, in_stage,
+                                                      reach, result.grid));
+  };
+  result.halo = halo({1, false});
+  result.deep_halo = halo({options_.depth, true});
+  mark_owned(*stage.blocks, in_stage, result);
+}
+
+void LatticeLayout::gather(int level, Stage& stage) {
+  const auto finer = stage.blocks;
+  const int in_finer = level - stage.first;
+  const auto gathered = gather_blocks(*finer, stage.rank_stride * options_.gathered_ranks);
+  auto landing = std::make_unique<LayoutLevel>();
+  landing->grid = distributed_grid(*finer, in_finer, 1);
+  mark_owned(*finer, in_finer, *landing);
+  stage = {gathered.blocks, level, gathered.rank_stride,
+           find_near_blocks(*gathered.blocks, (options_.depth + 1) / 2)};
+  distribute(stage, level);
+  landing->halo =
+      LevelHalo(blocks_->comm, landing_peers(*finer, landing->grid, gathered, levels_[level].grid));
+  levels_[level].landing = std::move(landing);
 }
 
 }  // namespace lockstep

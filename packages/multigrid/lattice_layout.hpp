@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "linear/stencil_operator.hpp"
+#include "multigrid/block_neighbors.hpp"
 #include "multigrid/level_grid.hpp"
 #include "multigrid/level_halo.hpp"
 
@@ -26,6 +27,9 @@ void for_each_cell(const LatticeBlocks& blocks, const Visit& visit) {
   }
 }
 
+/// Of a power of two.
+int log2_of(int width);
+
 /// One level's storage and exchange.
 struct LayoutLevel {
   /// Cells [begin, end) of a row, local coordinates.
@@ -38,6 +42,12 @@ struct LayoutLevel {
   /// On a distributed level: as far as half sweeps reach in one pass through memory.
   LevelHalo deep_halo;
   std::vector<char> owned;  ///< natural array of the box: this rank's cells; empty: all of them
+  /// Of a level that is gathered to fewer ranks than the next finer one: its cells as the finer
+  /// level's ranks see them; `halo` leads to those that hold them. Else null.
+  std::unique_ptr<const LayoutLevel> landing;
+
+  /// As the next finer level's ranks see it.
+  const LayoutLevel& as_landed() const { return landing ? *landing : *this; }
 
   /// The parts of row (j, k) that are this rank's cells. Those of a distributed level begin at even
   /// cells, and rows 2 j and 2 j + 1 have the same, if both exist; likewise planes.
@@ -59,16 +69,25 @@ struct LayoutLevel {
   std::vector<std::size_t> parts_at_;  ///< by row, and one more
 };
 
+struct LayoutOptions {
+  /// On distributed levels a rank holds the cells of others that are so many cells or less from its
+  /// own (maximum norm).
+  int depth = 1;
+  /// So many cells every rank sweeps sooner than it hears from its neighbours.
+  int most_replicated_cells = 8000;
+  /// Of how many ranks one holds what is gathered.
+  int gathered_ranks = 8;
+};
+
 /// The levels of a multigrid on a lattice: each halves the cells along every axis. Levels whose
-/// cells are smaller than the blocks are distributed like the blocks; coarser ones, with at most
-/// one cell a block, and small ones but the finest every rank holds whole. The coarsest is small
-/// enough for a dense inverse.
-/// Depends on the blocks only, not on what fills them. The same on any number of ranks.
+/// cells are smaller than the blocks are distributed like the blocks. One with a single cell a
+/// block is gathered to every eighth rank, in blocks of its own, and so on from there. Small levels
+/// but the finest every rank holds whole. The coarsest is small enough for a dense inverse. Depends
+/// on the blocks only, not on what fills them. The same on any number of ranks.
 class LatticeLayout {
  public:
-  /// On distributed levels a rank holds the cells of others that are `depth` cells or less from its
-  /// own (maximum norm). Throws SolveError if `why_not` has a reason. Collective.
-  LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks, int depth);
+  /// Throws SolveError if `why_not` has a reason. Collective.
+  LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks, const LayoutOptions& options);
 
   /// Why no multigrid can be built on this lattice, as a sentence; empty if one can.
   static std::string why_not(const LatticeBlocks& blocks);
@@ -80,8 +99,19 @@ class LatticeLayout {
   static std::array<int, 3> n_cells(const LatticeBlocks& blocks, int level);
 
  private:
-  void mark_owned(int level);
-  LevelGrid make_grid(int level, bool is_distributed, int depth) const;
+  /// Levels that are distributed alike: `first` is the finest.
+  struct Stage {
+    std::shared_ptr<const LatticeBlocks> blocks;
+    int first = 0;
+    int rank_stride = 1;  ///< of the ranks that hold blocks
+    std::vector<NearBlock> near_blocks;
+  };
+  void replicate(int level);
+  void distribute(const Stage& stage, int level);
+  /// Begins another stage with `level`.
+  void gather(int level, Stage& stage);
+
+  LayoutOptions options_;
 
   std::shared_ptr<const LatticeBlocks> blocks_;
   std::vector<LayoutLevel> levels_;

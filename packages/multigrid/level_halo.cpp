@@ -61,7 +61,7 @@ void LevelHalo::send(const Fields<Value>& fields, bool to_owner) const {
     Value* const begin = next;
     for (const Field<Value>& field : fields)
       for (const std::ptrdiff_t i : (*field.parts)[peer].source(to_owner))
-        *next++ = field.values[i];
+        *next++ = field.source(to_owner)[i];
     const auto n_bytes = static_cast<long long>((next - begin) * sizeof(Value));
     if (natural_[peer].rank == comm_->getRank() || n_bytes == 0)
       continue;
@@ -83,9 +83,9 @@ void LevelHalo::take_in(const Fields<Value>& fields, bool to_owner) const {
       const Value* from = part.rank == comm_->getRank() ? mine : theirs;
       for (const std::ptrdiff_t i : part.target(to_owner)) {
         if (to_owner)
-          field.values[i] += *from++;
+          field.target(to_owner)[i] += *from++;
         else
-          field.values[i] = *from++;
+          field.target(to_owner)[i] = *from++;
       }
       mine += part.source(to_owner).size();
       theirs += part.target(to_owner).size();
@@ -104,7 +104,7 @@ void LevelHalo::transfer(const Fields<Value>& fields, bool to_owner) const {
     for (const Field<Value>& field : fields)
       for (const Part& part : *field.parts)
         for (const std::ptrdiff_t ghost : part.ghosts)
-          field.values[ghost] = 0;
+          field.ghosts[ghost] = 0;
   }
   MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
   take_in(fields, to_owner);

@@ -34,24 +34,37 @@ class LevelHalo {
   /// Sets the ghosts of one colour, of values in slots.
   template <typename Value>
   void fill(int colour, Value* values) const {
-    transfer<Value>({{&by_colour_[colour], values}}, false);
+    transfer<Value>({{&by_colour_[colour], values, values}}, false);
   }
   /// Those of both colours, in one message to each neighbour.
   template <typename Value>
   void fill(Value* even, Value* odd) const {
-    transfer<Value>({{by_colour_.data(), even}, {by_colour_.data() + 1, odd}}, false);
+    transfer<Value>({{by_colour_.data(), even, even}, {by_colour_.data() + 1, odd, odd}}, false);
   }
   /// Adds the ghosts' values of both colours to their owners' and zeroes them.
   void sum_to_owner(float* even, float* odd) const {
-    transfer<float>({{by_colour_.data(), even}, {by_colour_.data() + 1, odd}}, true);
+    sum_to_owner(Colours{even, odd}, Colours{even, odd});
+  }
+  /// Values of both colours.
+  using Colours = std::array<float*, 2>;
+  /// The same three where ghosts stand in arrays of another grid than what they copy.
+  void fill(const Colours& owned, const Colours& ghosts) const {
+    transfer<float>(of_colours(owned, ghosts), false);
+  }
+  void sum_to_owner(const Colours& ghosts, const Colours& owned) const {
+    transfer<float>(of_colours(owned, ghosts), true);
   }
   /// The same for natural arrays, several in one message.
   template <typename Value>
   void fill_natural(const std::vector<Value*>& arrays) const {
-    transfer(of_natural(arrays), false);
+    transfer(of_natural(arrays, arrays), false);
   }
   void sum_natural_to_owner(const std::vector<float*>& arrays) const {
-    transfer(of_natural(arrays), true);
+    sum_natural_to_owner(arrays, arrays);
+  }
+  void sum_natural_to_owner(const std::vector<float*>& ghosts,
+                            const std::vector<float*>& owned) const {
+    transfer(of_natural(owned, ghosts), true);
   }
   /// Calls f(slot) for the ghosts of a colour.
   template <typename Function>
@@ -79,17 +92,24 @@ class LevelHalo {
   template <typename Value>
   struct Field {
     const Parts* parts;
-    Value* values;
+    Value *owned, *ghosts;  ///< the same array, or of two grids
+
+    Value* source(bool to_owner) const { return to_owner ? ghosts : owned; }
+    Value* target(bool to_owner) const { return source(!to_owner); }
   };
   template <typename Value>
   using Fields = std::vector<Field<Value>>;
 
   template <typename Value>
-  Fields<Value> of_natural(const std::vector<Value*>& arrays) const {
+  Fields<Value> of_natural(const std::vector<Value*>& owned,
+                           const std::vector<Value*>& ghosts) const {
     Fields<Value> fields;
-    for (Value* values : arrays)
-      fields.push_back({&natural_, values});
+    for (std::size_t i = 0; i < owned.size(); ++i)
+      fields.push_back({&natural_, owned[i], ghosts[i]});
     return fields;
+  }
+  Fields<float> of_colours(const Colours& owned, const Colours& ghosts) const {
+    return {{by_colour_.data(), owned[0], ghosts[0]}, {by_colour_.data() + 1, owned[1], ghosts[1]}};
   }
   /// Moves the values of one list of each part to the other list's place on the peer: owned to
   /// ghosts, or back (then they are added). All fields go in one message to each peer.

@@ -10,6 +10,10 @@ namespace lockstep {
 namespace {
 
 constexpr int red = 0, black = 1;
+
+LevelHalo::Colours colours(std::array<AlignedArray<float>, 2>& values) {
+  return {values[0].data(), values[1].data()};
+}
 /// A fixed-pressure point stays where it is while cells grow: delta_{l+1} = delta_l + h_l / 2, in
 /// units of the finest h, is its distance from the centre of the first cell on level l + 1.
 float dirichlet_factor(int level) {
@@ -28,12 +32,8 @@ Multigrid<dim>::Multigrid(std::shared_ptr<const LatticeLayout> layout,
   std::size_t longest_row = 0, largest_coarse_slab = 0;
   for (const LayoutLevel& level : layout_->levels()) {
     stencils_.emplace_back(level);
-    Work work;
-    for (int colour = 0; colour < 2; ++colour) {
-      work.x[colour] = AlignedArray<float>(level.grid.n_slots);
-      work.b[colour] = AlignedArray<float>(level.grid.n_slots);
-    }
-    work_.push_back(std::move(work));
+    work_.emplace_back(level.grid);
+    landed_.emplace_back(level.landing ? level.landing->grid : LevelGrid());
     longest_row = std::max<std::size_t>(longest_row, level.grid.row_stride);
     const std::size_t slab = (level.grid.n[0] + 1) / 2 * (dim == 3 ? (level.grid.n[1] + 1) / 2 : 1);
     largest_coarse_slab = std::max(largest_coarse_slab, slab);
@@ -43,10 +43,20 @@ Multigrid<dim>::Multigrid(std::shared_ptr<const LatticeLayout> layout,
 }
 
 template <int dim>
+Multigrid<dim>::Work::Work(const LevelGrid& grid) {
+  for (int colour = 0; colour < 2; ++colour) {
+    x[colour] = AlignedArray<float>(grid.n_slots);
+    b[colour] = AlignedArray<float>(grid.n_slots);
+  }
+}
+
+template <int dim>
 std::size_t Multigrid<dim>::bytes() const {
   std::size_t n = 0;
   for (std::size_t level = 0; level < stencils_.size(); ++level)
-    n += stencils_[level].bytes() + 4 * sizeof(float) * stencils_[level].grid().n_slots;
+    n += stencils_[level].bytes() + 2 * sizeof(float) *
+                                        (work_[level].x[0].size() + work_[level].x[1].size() +
+                                         landed_[level].x[0].size() + landed_[level].x[1].size());
   return n;
 }
 
@@ -93,6 +103,8 @@ void Multigrid<dim>::set(const FaceCoefficients& coefficients) {
     stencils_[level].set(fine, unit);
     for (AlignedArray<float>& x : work_[level].x)
       std::fill_n(x.data(), x.size(), 0.0F);
+    for (AlignedArray<float>& b : landed_[level].b)
+      std::fill_n(b.data(), b.size(), 0.0F);
     if (level + 1 == n_levels())
       break;
     transfers_.push_back(coarsen(layout_->levels()[level], fine, layout_->levels()[level + 1],
@@ -140,8 +152,9 @@ void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero, const SlabFu
   Work& work = work_[level];
   const StencilLevel<dim>& stencil = stencils_[level];
   const LevelGrid& coarse = stencils_[level + 1].grid();
+  const LayoutLevel& coarse_level = layout_->levels()[level + 1];
   const bool gathers = stencil.grid().is_distributed && !coarse.is_distributed;
-  if (gathers || transfers_[level].leaves_rank) {
+  if (gathers || transfers_[level].leaves_rank || coarse_level.landing) {
     for (AlignedArray<float>& b : work_[level + 1].b)
       std::fill_n(b.data(), b.size(), 0.0F);
   }
@@ -185,9 +198,11 @@ void Multigrid<dim>::smooth_and_restrict(int level, bool from_zero, const SlabFu
   restrict_moved(level);
   if (gathers)
     add_over_ranks(level + 1);
-  if (transfers_[level].leaves_rank)
-    layout_->levels()[level + 1].halo.sum_to_owner(work_[level + 1].b[red].data(),
-                                                   work_[level + 1].b[black].data());
+  if (coarse_level.landing)
+    coarse_level.landing->halo.sum_to_owner(colours(landed_[level + 1].b),
+                                            colours(work_[level + 1].b));
+  else if (transfers_[level].leaves_rank)
+    coarse_level.halo.sum_to_owner(colours(work_[level + 1].b), colours(work_[level + 1].b));
 }
 
 /// Adds the red residual of a fine slab to the sums of the coarse slab; black ones are zero after
@@ -218,7 +233,7 @@ void Multigrid<dim>::restrict_slab(int level, int slab) {
 template <int dim>
 void Multigrid<dim>::flush_coarse_rows(int level, int fine_slab) {
   const LevelGrid& fine = stencils_[level].grid();
-  const LevelGrid& coarse = stencils_[level + 1].grid();
+  const LevelGrid& coarse = layout_->levels()[level + 1].as_landed().grid;
   const auto& offset = transfers_[level].offset;
   const int n_coarse = (fine.n[0] + 1) / 2;
   const int n_rows = dim == 3 ? (fine.n[1] + 1) / 2 : 1;
@@ -232,8 +247,8 @@ void Multigrid<dim>::flush_coarse_rows(int level, int fine_slab) {
       const int begin = part.begin / 2, end = (part.end + 1) / 2;
       for (int first = begin; first < std::min(begin + 2, end); ++first) {
         const int i = offset[0] + first;
-        float* b =
-            work_[level + 1].b[LevelGrid::colour(i, j, k)].data() + coarse.slot_of_cell(i, j, k);
+        float* b = as_landed(level + 1).b[LevelGrid::colour(i, j, k)].data() +
+                   coarse.slot_of_cell(i, j, k);
         const int n = (end - first + 1) / 2;
         for (int m = 0; m < n; ++m)
           b[m] = sums[2 * m + first];
@@ -245,7 +260,7 @@ void Multigrid<dim>::flush_coarse_rows(int level, int fine_slab) {
 template <int dim>
 void Multigrid<dim>::restrict_moved(int level) {
   Work& work = work_[level];
-  Work& coarse = work_[level + 1];
+  Work& coarse = as_landed(level + 1);
   for (const MovedCell& cell : transfers_[level].moved) {
     const float residual = stencils_[level].residual_at(
         red, cell.m, cell.j, cell.k, work.b[red].data(), work.x[red].data(), work.x[black].data());
@@ -261,10 +276,10 @@ template <int dim>
 void Multigrid<dim>::prolong_slab(int level, int slab) {
   const StencilLevel<dim>& stencil = stencils_[level];
   const LevelGrid& fine = stencil.grid();
-  const LevelGrid& coarse = stencils_[level + 1].grid();
+  const LevelGrid& coarse = layout_->levels()[level + 1].as_landed().grid;
   const Transfer& transfer = transfers_[level];
   const auto& offset = transfer.offset;
-  const Work& from = work_[level + 1];
+  const Work& from = as_landed(level + 1);
   float* x = work_[level].x[red].data();
   const auto rows = stencil.rows_of(slab);
   for (int j = rows.j_begin; j < rows.j_end; ++j) {
@@ -308,6 +323,8 @@ void Multigrid<dim>::prolong_and_smooth(int level, const SlabFunction& after) {
   };
   const LayoutLevel& layout = layout_->levels()[level];
   const int n_slabs = stencil.grid().n_slabs();
+  if (const auto& landing = layout_->levels()[level + 1].landing)
+    landing->halo.fill(colours(work_[level + 1].x), colours(landed_[level + 1].x));
   if (!exchanges(level) && !is_deep(level)) {
     in_one_pass(level, n_half_sweeps + 1, [&](int s, int slab) {
       if (s == 0)
@@ -322,7 +339,7 @@ void Multigrid<dim>::prolong_and_smooth(int level, const SlabFunction& after) {
   if (is_deep(level)) {
     layout.deep_halo.fill(red, work.x[red].data());
     in_one_pass(level, n_half_sweeps, relax_and_show);
-    if (level > 0 && transfers_[level - 1].leaves_rank)
+    if (level > 0 && transfers_[level - 1].leaves_rank && !layout.landing)
       layout.halo.fill(work.x[red].data(), work.x[black].data());
     return;
   }

@@ -16,9 +16,14 @@ struct MultigridOptions {
   /// where the V-cycle overshoots by more than 2, as behind the narrow mouth of a thin bag.
   bool is_w_cycle = false;
 
+  /// See LayoutOptions.
+  int most_replicated_cells = LayoutOptions().most_replicated_cells;
+  int gathered_ranks = LayoutOptions().gathered_ranks;
+
   /// How deep the ghosts of distributed levels must be: the farthest cell that half sweeps between
   /// two exchanges, from zero or not, carry into a rank's own.
   int ghost_depth() const { return 2 * n_sweeps + (is_w_cycle ? 1 : 0); }
+  LayoutOptions layout() const { return {ghost_depth(), most_replicated_cells, gathered_ranks}; }
 };
 
 /// One multigrid cycle for a stencil (coefficients over its unit) as an approximate inverse:
@@ -54,8 +59,13 @@ class Multigrid {
 
  private:
   struct Work {
+    explicit Work(const LevelGrid& grid);
     std::array<AlignedArray<float>, 2> x, b;
   };
+  /// Of a level, as the next finer one's ranks see it.
+  Work& as_landed(int level) {
+    return layout_->levels()[level].landing ? landed_[level] : work_[level];
+  }
 
   void copy_to_natural(const FaceCoefficients& coefficients, NaturalStencil& natural) const;
   void invert_coarsest(const NaturalStencil& stencil);
@@ -83,7 +93,7 @@ class Multigrid {
   MultigridOptions options_;
   std::vector<StencilLevel<dim>> stencils_;
   std::vector<Transfer> transfers_;
-  std::vector<Work> work_;
+  std::vector<Work> work_, landed_;             ///< `landed_` of gathered levels only
   std::vector<std::ptrdiff_t> coarsest_slots_;  ///< of its unknowns: colour * n_slots + slot
   Eigen::MatrixXd coarsest_inverse_;
   Eigen::VectorXd coarsest_rhs_, coarsest_solution_;

@@ -81,9 +81,15 @@ class PressureLayoutOf final : public PressureLayout {
   }
   MessageCount sent() const override {
     MessageCount total;
+    const auto add = [&total](const LevelHalo& halo) {
+      total.messages += halo.sent().messages;
+      total.bytes += halo.sent().bytes;
+    };
     for (const LayoutLevel& level : layout_->levels()) {
-      total.messages += level.halo.sent().messages + level.deep_halo.sent().messages;
-      total.bytes += level.halo.sent().bytes + level.deep_halo.sent().bytes;
+      add(level.halo);
+      add(level.deep_halo);
+      if (level.landing)
+        add(level.landing->halo);
     }
     return total;
   }
@@ -189,7 +195,7 @@ std::shared_ptr<PressureLayout> make_layout(const BlockSystem& system,
   auto result = std::dynamic_pointer_cast<PressureLayoutOf<dim>>(previous);
   if (!result || &result->layout()->blocks() != coefficients.blocks.get())
     result = std::make_shared<PressureLayoutOf<dim>>(
-        std::make_shared<const LatticeLayout>(coefficients.blocks, options.ghost_depth()), options);
+        std::make_shared<const LatticeLayout>(coefficients.blocks, options.layout()), options);
   result->set(system);
   return result;
 }
