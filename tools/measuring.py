@@ -1,4 +1,6 @@
-"""What the tools that measure have in common: the program of a build, and runs that may fail."""
+"""What the tools that measure have in common: the program of a build, runs on ranks and such as may fail, tables."""
+import csv
+import os
 import pathlib
 import shlex
 import subprocess
@@ -23,3 +25,26 @@ def run_or_end(command, **options):
         said = "".join(text for text in (done.stdout, done.stderr) if text)
         sys.exit(f"{said}{TOOL}: a run ended with exit code {done.returncode}; nothing is written.\n  {shlex.join(command)}")
     return done
+
+
+def version_of(program):
+    """With the commit that it was built from."""
+    return subprocess.run([program, "--version"], capture_output=True, text=True).stdout.strip()
+
+
+def environment():
+    """For runs of one thread a rank, as root too, of more ranks than cores too."""
+    return dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
+                OMPI_MCA_mpi_yield_when_idle="1")
+
+
+def on_ranks(n):
+    """What stands before a command."""
+    return ["mpirun", "--oversubscribe", "-n", str(n)] if n > 1 else []
+
+
+def write_rows(path, rows):
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0].keys())
+        writer.writeheader()
+        writer.writerows(rows)
