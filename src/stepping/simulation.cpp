@@ -302,7 +302,7 @@ void Simulation<dim>::write_rows() {
   if (const ConstraintModel* joints = components_.solids->joints()) {
     const std::vector<JointState> coordinates = joints->states(report_->time);
     const std::vector<char> limited = limited_torques(*joints, coordinates.size());
-    tables_.append_joints(step_, report_->time, coordinates, limited);
+    tables_.append_joints(step_, *report_, coordinates, limited);
     summary_.count(coordinates, limited);
   }
   if (!observers_.empty()) {
@@ -331,15 +331,9 @@ void Simulation<dim>::write_what_is_due() {
 
 template <int dim>
 std::vector<std::pair<std::string, HistoryValue>> Simulation<dim>::history_row() const {
-  std::vector<std::pair<std::string, HistoryValue>> row;
   if (!report_)
-    return row;
-  const std::vector<HistoryValue> values =
-      lockstep::history_row<dim>(step_, *report_, step_seconds_);
-  const std::vector<HistoryColumn>& columns = tables_.columns();
-  for (std::size_t c = 0; c < columns.size(); ++c)
-    row.emplace_back(columns[c].name, values[c]);
-  return row;
+    return {};
+  return tables_.history_row(step_, *report_, step_seconds_);
 }
 
 template <int dim>

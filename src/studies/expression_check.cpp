@@ -5,9 +5,9 @@
 
 #include "base/errors.hpp"
 #include "base/regular_file.hpp"
-#include "output/run_columns.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/strict_xml.hpp"
+#include "stepping/tables/run_columns.hpp"
 
 namespace lockstep {
 
@@ -88,15 +88,19 @@ bool is_observed(const std::string& name, const std::set<std::string>& observers
          observers.count(name.substr(0, before)) != 0;
 }
 
+template <typename Columns>
+void add_names(const Columns& columns, Variables& variables) {
+  for (const HistoryColumn& column : columns)
+    variables[column.name] = 1;
+}
+
 /// Adds the columns of history.csv, and those of bodies.csv and of observers that the formula
 /// names.
 void add_columns(const std::string& formula, const Bodies& bodies, Variables& variables) {
-  for (const auto& columns : {history_columns<2>(true, bodies.watches, true, true),
-                              history_columns<3>(true, bodies.watches, true, true)}) {
-    for (const HistoryColumn& column : columns)
-      variables[column.name] = 1;
-  }
-  const std::vector<HistoryColumn> columns = body_columns<3>();
+  const LiquidColumns all{bodies.watches, true, true};
+  add_names(history_columns<2>(all), variables);
+  add_names(history_columns<3>(all), variables);
+  const auto columns = body_columns<3>();
   const auto add_body = [&](const std::string& body) {
     for (const HistoryColumn& column : columns) {
       if (column.name != "step" && column.name != "time" && column.name != "name")

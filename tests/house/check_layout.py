@@ -20,8 +20,8 @@ SIBLINGS = {
     "strategies": {"multigrid"},
 }
 # The rooms of src from the ground up; a room knows the rooms of the same row and those before it.
-FLOORS = [{"base"}, {"parameters"}, {"output", "scenes", "studies"}, {"motion", "geometry"}, {"linear"}, {"interfaces"},
-          {"solve"}, {"coupling"}, {"stepping"}]
+FLOORS = [{"base"}, {"parameters"}, {"output", "scenes"}, {"motion", "geometry"}, {"linear"}, {"interfaces"},
+          {"solve"}, {"coupling"}, {"stepping"}, {"studies"}]
 HEIGHT = {room: height for height, row in enumerate(FLOORS) for room in row}
 HEAVY = re.compile(r"^(Stratimikos|Teko|MueLu|Belos)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')

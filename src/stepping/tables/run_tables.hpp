@@ -6,6 +6,7 @@
 #include "output/history.hpp"
 #include "output/progress.hpp"
 #include "stepping/stepper.hpp"
+#include "stepping/tables/run_columns.hpp"
 
 namespace lockstep {
 
@@ -21,26 +22,23 @@ class RunTables {
   /// Throws InputError if tables that are there have other columns.
   void check_columns() const;
   void resume(long long step);
-  /// Collective. `names` and states as the SolidSystem gives them.
+  /// Collective. States as the SolidSystem gives them.
   void append(long long step, const StepReport<dim>& report,
               const std::vector<SolidState<dim>>& states, double wall_seconds);
   /// Likewise. Only with joints.
   /// `limited`: by coordinate, whether its torque was the largest.
-  void append_joints(long long step, double time, const std::vector<JointState>& joints,
-                     const std::vector<char>& limited);
-  const std::vector<HistoryColumn>& columns() const {
-    return history_.columns();
-  }  ///< of history.csv
+  void append_joints(long long step, const StepReport<dim>& report,
+                     const std::vector<JointState>& joints, const std::vector<char>& limited);
+  /// The row of a step in history.csv, by column. Local.
+  std::vector<std::pair<std::string, HistoryValue>> history_row(long long step,
+                                                                const StepReport<dim>& report,
+                                                                double wall_seconds) const;
 
  private:
-  HistoryTable history_, bodies_;
-  std::optional<HistoryTable> joints_;
+  RowTable<HistoryRow<dim>> history_;
+  RowTable<BodyRow<dim>> bodies_;
+  std::optional<RowTable<JointRow<dim>>> joints_;
 };
-
-/// The row of a step in history.csv.
-template <int dim>
-std::vector<HistoryValue> history_row(long long step, const StepReport<dim>& report,
-                                      double wall_seconds);
 
 /// The numbers of the progress line.
 template <int dim>

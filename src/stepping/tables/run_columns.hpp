@@ -1,0 +1,61 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stepping/tables/row_table.hpp"
+
+namespace lockstep {
+
+struct JointState;
+template <int dim>
+struct Momentum;
+template <int dim>
+struct SolidState;
+template <int dim>
+struct StepReport;
+
+/// What a row of history.csv is made from: a step.
+template <int dim>
+struct HistoryRow {
+  long long step;
+  const StepReport<dim>& report;
+  double wall_seconds;
+};
+
+/// Of bodies.csv: a step and a solid.
+template <int dim>
+struct BodyRow {
+  long long step;
+  const StepReport<dim>& report;
+  const SolidState<dim>& state;
+  const Momentum<dim>& impulse;  ///< hydrodynamic, over dt, angular about the origin
+};
+
+/// Of joints.csv: a step and a coordinate.
+template <int dim>
+struct JointRow {
+  long long step;
+  const StepReport<dim>& report;
+  const JointState& joint;
+  bool limited;  ///< its torque was the largest
+};
+
+/// What a liquid with a free surface reports, see LiquidReport.
+struct LiquidColumns {
+  std::vector<std::string> watches;  ///< names
+  bool gas = false, drops = false;
+};
+
+/// Columns of history.csv, bodies.csv and joints.csv: what is written, and what the formulas of a
+/// study may name. Those of a liquid with a free surface stand at the end, then those of its
+/// watched places, of trapped gas and of drops.
+template <int dim>
+std::vector<TableColumn<HistoryRow<dim>>> history_columns(
+    const std::optional<LiquidColumns>& liquid);
+template <int dim>
+std::vector<TableColumn<BodyRow<dim>>> body_columns();
+template <int dim>
+std::vector<TableColumn<JointRow<dim>>> joint_columns();
+
+}  // namespace lockstep

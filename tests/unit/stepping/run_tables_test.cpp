@@ -1,0 +1,321 @@
+#include "stepping/tables/run_tables.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+
+#include "base/errors.hpp"
+#include "output/atomic_file.hpp"
+#include "output/csv_line.hpp"
+#include "unit/output/test_folder.hpp"
+
+namespace lockstep::test {
+namespace {
+
+using Texts = std::map<std::string, std::string>;  ///< of a row, by the name of its column
+
+/// A liquid of which all is reported that there can be.
+template <int dim>
+struct FullLiquid : LiquidFluid<dim> {
+  bool has_surface() const override { return true; }
+  double surface_distance(const Point<dim>&) const override { return 0; }
+  std::vector<WetBody<dim>> wet_bodies() const override { return {}; }
+  LiquidReport liquid() const override { return {}; }
+  bool traps_gas() const override { return true; }
+  bool has_drops() const override { return true; }
+  std::vector<std::string> watch_names() const override { return {"Cup", "Bowl"}; }
+};
+
+/// 1, 2, 3, ... : no two fields get the same.
+template <int n>
+Eigen::Matrix<double, n, 1> next_vector(double& number) {
+  Eigen::Matrix<double, n, 1> vector;
+  for (int i = 0; i < n; ++i)
+    vector[i] = ++number;
+  return vector;
+}
+
+SolveReport next_solve(double& number) {
+  SolveReport solve;
+  solve.iterations = static_cast<int>(++number);
+  solve.solid_iterations = static_cast<int>(++number);
+  solve.pressure_residual = ++number;
+  solve.solid_residual = ++number;
+  return solve;
+}
+
+template <int dim>
+Momentum<dim> next_momentum(double& number) {
+  const Point<dim> linear = next_vector<dim>(number);
+  return {linear, next_vector<n_rotations<dim>>(number)};
+}
+
+LiquidReport next_liquid(double& number) {
+  LiquidReport liquid;
+  liquid.volume = ++number;
+  liquid.target = ++number;
+  liquid.shift = ++number;
+  liquid.lost = ++number;
+  liquid.n_bodies = static_cast<long long>(++number);
+  for (int w = 0; w < 2; ++w) {
+    const double first = number;
+    liquid.watches.push_back({first + 1, first + 2, first + 3});
+    number += 3;
+  }
+  const double first = number;
+  liquid.gas = {static_cast<long long>(first + 1), first + 2, first + 3};
+  liquid.drops = {static_cast<long long>(first + 4), first + 5};
+  number += 5;
+  return liquid;
+}
+
+template <int dim>
+StepReport<dim> numbered_report() {
+  StepReport<dim> report;
+  double number = 100;
+  for (double* value :
+       {&report.time, &report.dt, &report.cfl, &report.viscous_dissipation, &report.viscous_number,
+        &report.max_divergence, &report.incompatibility_s1, &report.incompatibility_f2,
+        &report.incompatibility_s2, &report.momentum_error, &report.angular_momentum_error,
+        &report.fluid_kinetic_energy, &report.solid_kinetic_energy, &report.elastic_energy,
+        &report.fluid_volume, &report.stretch_beyond_limit,
+        &report.contact_position.deepest_overlap, &report.contact_velocity.deepest_overlap})
+    *value = ++number;
+  report.viscous_iterations = static_cast<int>(++number);
+  report.n_clamped_elements = static_cast<GlobalIndex>(++number);
+  report.contact_position.n_contacts = static_cast<int>(++number);
+  report.contact_velocity.n_contacts = static_cast<int>(++number);
+  for (SolveReport* solve : {&report.s1, &report.f2, &report.s2})
+    *solve = next_solve(number);
+  std::swap(report.f2.pressure_residual, report.f2.solid_residual);  // the larger one counts
+  for (Momentum<dim>* momentum : {&report.fluid_momentum, &report.solid_momentum,
+                                  &report.boundary_impulse, &report.transport_change})
+    *momentum = next_momentum<dim>(number);
+  report.lever_impulse = next_vector<n_rotations<dim>>(number);
+  report.linearisation_impulse = next_vector<n_rotations<dim>>(number);
+  report.liquid = next_liquid(number);
+  for (int s = 0; s < 2; ++s)
+    report.hydrodynamic_impulse.push_back(next_momentum<dim>(number));
+  return report;
+}
+
+std::string text_of(double value) {
+  return fmt::format("{:.17g}", value);
+}
+
+template <typename Vector>
+void expect_vector(Texts& texts, const std::string& name, const Vector& values) {
+  for (int i = 0; i < values.size(); ++i)
+    texts[name + axis_names[values.size() == 1 ? 2 : i]] = text_of(values[i]);
+}
+
+/// The rows of a table, and that each has all columns.
+std::vector<Texts> rows_of(const std::string& path) {
+  std::vector<Texts> rows;
+  std::vector<std::string> names;
+  std::istringstream file(read_whole_file(path));
+  for (std::string line; std::getline(file, line);) {
+    if (line.front() == '#')
+      continue;
+    const std::vector<std::string> fields = csv_fields(line);
+    if (names.empty()) {
+      names = fields;
+      continue;
+    }
+    EXPECT_EQ(fields.size(), names.size());
+    Texts row;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      row[names[i]] = fields.at(i);
+    EXPECT_EQ(row.size(), names.size()) << "two columns of one name";
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+template <int dim>
+Texts expected_history(const StepReport<dim>& report) {
+  Texts texts = {{"step", "7"}, {"wall_seconds", "0.5"}};
+  const std::vector<std::pair<const char*, double>> numbers = {
+      {"time", report.time},
+      {"dt", report.dt},
+      {"cfl", report.cfl},
+      {"s1_iterations", report.s1.iterations},
+      {"f2_iterations", report.f2.iterations},
+      {"s2_iterations", report.s2.iterations},
+      {"viscous_iterations", report.viscous_iterations},
+      {"max_divergence", report.max_divergence},
+      {"liquid_volume", report.fluid_volume},
+      {"solid_iterations", report.s1.solid_iterations + report.s2.solid_iterations},
+      {"momentum_error", report.momentum_error},
+      {"angular_momentum_error", report.angular_momentum_error},
+      {"fluid_kinetic_energy", report.fluid_kinetic_energy},
+      {"solid_kinetic_energy", report.solid_kinetic_energy},
+      {"elastic_energy", report.elastic_energy},
+      {"viscous_dissipation", report.viscous_dissipation},
+      {"s1_residual", report.s1.solid_residual},
+      {"f2_residual", report.f2.pressure_residual},
+      {"s2_residual", report.s2.solid_residual},
+      {"incompatibility", report.incompatibility_s2},
+      {"f2_incompatibility", report.incompatibility_f2},
+      {"contacts", report.contact_position.n_contacts},
+      {"deepest_overlap", report.contact_position.deepest_overlap},
+      {"clamped_elements", double(report.n_clamped_elements)}};
+  for (const auto& [name, value] : numbers)
+    texts[name] = text_of(value);
+  expect_vector(texts, "fluid_momentum_", report.fluid_momentum.linear);
+  expect_vector(texts, "solid_momentum_", report.solid_momentum.linear);
+  expect_vector(texts, "boundary_impulse_", report.boundary_impulse.linear);
+  expect_vector(texts, "transport_change_", report.transport_change.linear);
+  expect_vector(texts, "lever_impulse_", report.lever_impulse);
+  expect_vector(texts, "linearisation_impulse_", report.linearisation_impulse);
+  return texts;
+}
+
+void expect_liquid(Texts& texts, const LiquidReport& liquid) {
+  const std::vector<std::pair<const char*, double>> numbers = {
+      {"liquid_volume_target", liquid.target},
+      {"volume_shift", liquid.shift},
+      {"lost_volume", liquid.lost},
+      {"liquid_bodies", double(liquid.n_bodies)},
+      {"watch_Cup_volume", liquid.watches[0].volume},
+      {"watch_Cup_volume_target", liquid.watches[0].target},
+      {"watch_Cup_leak", liquid.watches[0].leak},
+      {"watch_Bowl_volume", liquid.watches[1].volume},
+      {"watch_Bowl_volume_target", liquid.watches[1].target},
+      {"watch_Bowl_leak", liquid.watches[1].leak},
+      {"gas_pockets", double(liquid.gas->n_pockets)},
+      {"gas_volume", liquid.gas->volume},
+      {"gas_pressure", liquid.gas->pressure},
+      {"drops", double(liquid.drops->n)},
+      {"drops_volume", liquid.drops->volume}};
+  for (const auto& [name, value] : numbers)
+    texts[name] = text_of(value);
+}
+
+template <typename Dimension>
+struct RunTablesOf : ::testing::Test {
+  static constexpr int dim = Dimension::value;
+  Communicator comm = Tpetra::getDefaultComm();
+  std::string folder = fresh_folder("tables-" + std::to_string(dim));
+  FullLiquid<dim> liquid;
+  StepReport<dim> report = numbered_report<dim>();
+
+  std::vector<Texts> rows(const std::string& name) const {
+    comm->barrier();
+    std::vector<Texts> rows = rows_of(folder + "/" + name);
+    comm->barrier();  // the next test removes the folder
+    return rows;
+  }
+};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(RunTablesOf, Dimensions);
+
+TYPED_TEST(RunTablesOf, HistorySaysOfEachColumnWhatItsNameSays) {
+  constexpr int dim = TestFixture::dim;
+  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
+  tables.start();
+  tables.append(7, this->report, {}, 0.5);
+  Texts expected = expected_history(this->report);
+  expect_liquid(expected, *this->report.liquid);
+  EXPECT_THAT(this->rows("history.csv"), ::testing::ElementsAre(expected));
+
+  const auto row = tables.history_row(7, this->report, 0.5);
+  ASSERT_EQ(row.size(), expected.size());
+  EXPECT_EQ(row.front(), std::make_pair(std::string("step"), HistoryValue(7LL)));
+  EXPECT_EQ(row.back(), std::make_pair(std::string("drops_volume"),
+                                       HistoryValue(this->report.liquid->drops->volume)));
+}
+
+TYPED_TEST(RunTablesOf, AFullDomainHasNoColumnsOfALiquid) {
+  constexpr int dim = TestFixture::dim;
+  RunTables<dim> tables(this->comm, this->folder, nullptr, false);
+  tables.start();
+  tables.append(7, this->report, {}, 0.5);
+  EXPECT_THAT(this->rows("history.csv"), ::testing::ElementsAre(expected_history(this->report)));
+}
+
+TYPED_TEST(RunTablesOf, AFluidThatTellsLessThanItSaidIsRefused) {
+  constexpr int dim = TestFixture::dim;
+  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
+  tables.start();
+  const LiquidReport whole = *this->report.liquid;
+  this->report.liquid->watches.pop_back();
+  EXPECT_THROW(tables.append(7, this->report, {}, 0.5), OutputError);
+  this->report.liquid = whole;
+  this->report.liquid->gas.reset();
+  EXPECT_THROW(tables.append(7, this->report, {}, 0.5), OutputError);
+  this->report.liquid.reset();
+  EXPECT_THROW(tables.append(7, this->report, {}, 0.5), OutputError);
+}
+
+TYPED_TEST(RunTablesOf, BodiesHaveTheirOwnStatesAndImpulses) {
+  constexpr int dim = TestFixture::dim;
+  this->report.dt = 0.5;
+  double number = 0;
+  std::vector<SolidState<dim>> states(2);
+  for (SolidState<dim>& state : states) {
+    state.center_of_mass = next_vector<dim>(number);
+    state.velocity = next_vector<dim>(number);
+    state.angular_velocity = next_vector<n_rotations<dim>>(number);
+  }
+  states[0].name = "Ball";
+  states[1].name = "Disc";
+  RunTables<dim> tables(this->comm, this->folder, nullptr, false);
+  tables.start();
+  tables.append(7, this->report, states, 0.5);
+  const std::vector<Texts> rows = this->rows("bodies.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  for (int s = 0; s < 2; ++s) {
+    const Momentum<dim>& impulse = this->report.hydrodynamic_impulse[s];
+    const auto about_origin = cross<dim>(states[s].center_of_mass, impulse.linear);
+    Texts expected = {
+        {"step", "7"}, {"time", text_of(this->report.time)}, {"name", states[s].name}};
+    expect_vector(expected, "", states[s].center_of_mass);
+    expect_vector(expected, "v", states[s].velocity);
+    expect_vector(expected, "w", states[s].angular_velocity);
+    expect_vector(expected, "f", Point<dim>(2 * impulse.linear));
+    expect_vector(expected, "t", AngularVector<dim>(2 * (impulse.angular - about_origin)));
+    EXPECT_EQ(rows[s], expected);
+  }
+}
+
+TYPED_TEST(RunTablesOf, JointsSayOfEachColumnWhatItsNameSays) {
+  constexpr int dim = TestFixture::dim;
+  JointState slide{"Sleeve", 2, 1, 2, 3, 4, 5, 6, 8, true, false};
+  JointState hinge{"Hinge", 0, 11, 12, 13, 14, 15, 16, 18, false, true};
+  RunTables<dim> tables(this->comm, this->folder, nullptr, true);
+  tables.start();
+  tables.append_joints(7, this->report, {slide, hinge}, {0, 1});
+  const std::string time = text_of(this->report.time);
+  EXPECT_THAT(this->rows("joints.csv"), ::testing::ElementsAre(Texts{{"step", "7"},
+                                                                     {"time", time},
+                                                                     {"name", "Sleeve 2"},
+                                                                     {"q", "1"},
+                                                                     {"rate", "2"},
+                                                                     {"target", "3"},
+                                                                     {"torque", "4"},
+                                                                     {"power", "5"},
+                                                                     {"limit_torque", "6"},
+                                                                     {"gap", "8"},
+                                                                     {"two_halves", "1"},
+                                                                     {"at_limit", "0"},
+                                                                     {"limited", "0"}},
+                                                               Texts{{"step", "7"},
+                                                                     {"time", time},
+                                                                     {"name", "Hinge"},
+                                                                     {"q", "11"},
+                                                                     {"rate", "12"},
+                                                                     {"target", "13"},
+                                                                     {"torque", "14"},
+                                                                     {"power", "15"},
+                                                                     {"limit_torque", "16"},
+                                                                     {"gap", "18"},
+                                                                     {"two_halves", "0"},
+                                                                     {"at_limit", "1"},
+                                                                     {"limited", "1"}}));
+}
+
+}  // namespace
+}  // namespace lockstep::test
