@@ -7,19 +7,41 @@ namespace lockstep {
 
 namespace {
 
-/// Its numbers, in the order of the columns.
-std::vector<double EnergyBook::*> numbers() {
-  return {&EnergyBook::joints,
-          &EnergyBook::loads,
-          &EnergyBook::kinetic_change,
-          &EnergyBook::elastic_change,
-          &EnergyBook::fluid_friction,
-          &EnergyBook::solid_friction,
-          &EnergyBook::transport,
-          &EnergyBook::pressure,
-          &EnergyBook::lumping,
-          &EnergyBook::elasticity,
-          &EnergyBook::ties};
+/// A number of the book, and its column.
+struct BookColumn {
+  ObservedColumn column;
+  double EnergyBook::*value;
+};
+
+/// In the order of the table and of checkpoints.
+std::vector<BookColumn> book_columns() {
+  return {
+      {{"joints", "J", "work of what controls joints, as joints.csv has it"}, &EnergyBook::joints},
+      {{"loads", "J", "work of gravity, loads, contact and drops, on fluid and solids"},
+       &EnergyBook::loads},
+      {{"kinetic_change", "J", "of the energy of motion of fluid and solids"},
+       &EnergyBook::kinetic_change},
+      {{"elastic_change", "J", "of the elastic energy"}, &EnergyBook::elastic_change},
+      {{"fluid_friction", "J", "what viscosity took from fluid and solids"},
+       &EnergyBook::fluid_friction},
+      {{"solid_friction", "J", "what the damping of soft solids took"},
+       &EnergyBook::solid_friction},
+      {{"transport", "J", "what advection, and the change of the fluid's place, took"},
+       &EnergyBook::transport},
+      {{"pressure", "J", "what pressure took; less what moving sides and prescribed solids gave"},
+       &EnergyBook::pressure},
+      {{"lumping", "J", "what was lost where fluid is lumped on solids"}, &EnergyBook::lumping},
+      {{"elasticity", "J", "what elastic forces took beside the change of elastic energy"},
+       &EnergyBook::elasticity},
+      {{"ties", "J", "what joints and attachments took from velocities they do not let"},
+       &EnergyBook::ties}};
+}
+
+std::vector<double> values_of(const EnergyBook& book) {
+  std::vector<double> values;
+  for (const BookColumn& entry : book_columns())
+    values.push_back(book.*entry.value);
+  return values;
 }
 
 constexpr const char* stored = "energy";
@@ -33,19 +55,11 @@ ParameterList energy_parameters() {
 
 template <int dim>
 std::vector<ObservedColumn> Energy<dim>::columns() const {
-  return {
-      {"joints", "J", "work of what controls joints, as joints.csv has it"},
-      {"loads", "J", "work of gravity, loads, contact and drops, on fluid and solids"},
-      {"kinetic_change", "J", "of the energy of motion of fluid and solids"},
-      {"elastic_change", "J", "of the elastic energy"},
-      {"fluid_friction", "J", "what viscosity took from fluid and solids"},
-      {"solid_friction", "J", "what the damping of soft solids took"},
-      {"transport", "J", "what advection, and the change of the fluid's place, took"},
-      {"pressure", "J", "what pressure took; less what moving sides and prescribed solids gave"},
-      {"lumping", "J", "what was lost where fluid is lumped on solids"},
-      {"elasticity", "J", "what elastic forces took beside the change of elastic energy"},
-      {"ties", "J", "what joints and attachments took from velocities they do not let"},
-      {"left", "J", "of joints and loads, what is in none of these"}};
+  std::vector<ObservedColumn> columns;
+  for (const BookColumn& entry : book_columns())
+    columns.push_back(entry.column);
+  columns.push_back({"left", "J", "of joints and loads, what is in none of these"});
+  return columns;
 }
 
 template <int dim>
@@ -60,30 +74,25 @@ std::vector<std::vector<double>> Energy<dim>::observe(const RunView<dim>& run) {
               "The fluid \"{}\" cannot tell what is done to its energy, which the observer "
               "\"energy\" wants; leave that observer out.",
               run.fluid.name());
-  std::vector<double> row;
-  for (const auto number : numbers())
-    row.push_back(total_.*number);
+  std::vector<double> row = values_of(total_);
   row.push_back(total_.left());
   return {row};
 }
 
 template <int dim>
 void Energy<dim>::save(CheckpointWriter& checkpoint) const {
-  std::vector<double> values;
-  for (const auto number : numbers())
-    values.push_back(total_.*number);
-  checkpoint.file().write_replicated(stored, values);
+  checkpoint.file().write_replicated(stored, values_of(total_));
 }
 
 template <int dim>
 void Energy<dim>::load(const CheckpointReader& checkpoint) {
   const std::vector<double> values = checkpoint.file().read_all<double>(stored);
-  check_input(values.size() == numbers().size(),
+  check_input(values.size() == book_columns().size(),
               "{}: the checkpoint's \"{}\" is incomplete; restart from another one.",
               checkpoint.file().path(), stored);
   auto value = values.begin();
-  for (const auto number : numbers())
-    total_.*number = *value++;
+  for (const BookColumn& entry : book_columns())
+    total_.*entry.value = *value++;
 }
 
 template ParameterList energy_parameters<2>();

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
+#include <map>
 
 #include "base/errors.hpp"
 #include "conformance/fake_fluid.hpp"
 #include "interfaces/liquid.hpp"
 #include "interfaces/surface_sampler.hpp"
+#include "observers/energy.hpp"
 #include "observers/flow.hpp"
 #include "observers/gauge.hpp"
 #include "observers/probes.hpp"
@@ -50,6 +52,15 @@ class Pool : public FakeFluid<2>, public SurfaceSampler<2>, public LiquidFluid<2
 
  private:
   bool has_surface_;
+};
+
+/// Nothing works on it.
+class EnergyTeller : public FakeFluid<2>, public EnergyFluid<2> {
+ public:
+  EnergyTeller() : FakeFluid<2>({{4, 4}, 0.5}, Tpetra::getDefaultComm()) {}
+  void begin_works() override {}
+  void end_work() override {}
+  std::vector<double> works() override { return {}; }
 };
 
 ParameterList box(double x0, double y0, double x1, double y1) {
@@ -153,6 +164,43 @@ TEST(Gauge, WhatHasNoSurfaceOrNoLengthIsRefused) {
   EXPECT_THROW(gauge.observe({1, 0.1, other, no_solids}), InputError);
   EXPECT_THROW(Gauge<2>(line(1, 1, 1, 1)), InputError);
   EXPECT_THROW(Gauge<2>(line(0, 0, 1e9, 0)).observe({1, 0.1, Pool(), no_solids}), InputError);
+}
+
+TEST(Energy, SaysOfEachColumnWhatItsNameSays) {
+  const EnergyTeller fluid;
+  EnergyBook book;
+  book.joints = 1000;
+  book.loads = 2000;
+  book.kinetic_change = 1;
+  book.elastic_change = 2;
+  book.fluid_friction = 4;
+  book.solid_friction = 8;
+  book.transport = 16;
+  book.pressure = 32;
+  book.lumping = 64;
+  book.elasticity = 128;
+  book.ties = 256;
+  Energy<2> energy;
+  const RunView<2> run{1, 0.1, fluid, no_solids, &book};
+  energy.follow(run);
+  const std::vector<ObservedColumn> columns = energy.columns();
+  const std::vector<double> row = energy.observe(run).at(0);
+  ASSERT_EQ(row.size(), columns.size());
+  std::map<std::string, double> values;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    values[columns[c].name] = row[c];
+  EXPECT_EQ(values, (std::map<std::string, double>{{"joints", 1000},
+                                                   {"loads", 2000},
+                                                   {"kinetic_change", 1},
+                                                   {"elastic_change", 2},
+                                                   {"fluid_friction", 4},
+                                                   {"solid_friction", 8},
+                                                   {"transport", 16},
+                                                   {"pressure", 32},
+                                                   {"lumping", 64},
+                                                   {"elasticity", 128},
+                                                   {"ties", 256},
+                                                   {"left", 3000 - 511}}));
 }
 
 }  // namespace
