@@ -84,6 +84,9 @@ SCENES = {
                                                   "Outside": OUTSIDE}, full=(1.2, .55)),
     "sheets": scene({"Left": sheet(1.2), "Right": sheet(1.2 + H / 10)},
                     {"Left": {"Point": (.6, .2)}, "Right": {"Point": (1.8, .2)}}, dry=(1.8, .2)),
+    # In the place of the paddle; it comes so near to the side that no centre of a cell is left between them.
+    "slot": scene({"Paddle": {**sheet(.1), "Motion": {"Type": "sinusoid", "Amplitude": (-.09, 0.), "Frequency": 2.5}}},
+                  {"Slot": {"Point": (.003, .5)}, "Outside": OUTSIDE}, dry=(.003, .5)),
 }
 
 
@@ -160,6 +163,13 @@ class Leaks(Storm):
         rows = self.storm("sheets")
         self.assertEqual(max(self.inside(rows, "Right")), 0)
         self.assertGreater(min(self.inside(rows, "Left")), .3)
+
+    def test_a_place_without_cells_is_nan_until_it_has_some(self):
+        rows = self.run_scene(self.scenes["slot"], 1, 16)
+        for end in ("volume", "volume_target", "leak"):
+            unknown = [row["step"] for row in rows if row[f"watch_Slot_{end}"] == "nan"]
+            self.assertEqual(unknown, [str(step) for step in range(7, 14)])  # .09 sin(5 pi time) > .1 - H / 2
+        self.assertEqual(self.inside(rows, "Slot")[-1], 0)
 
 
 if __name__ == "__main__":

@@ -161,7 +161,7 @@ void add_watch(Columns<HistoryRow<dim>>& columns, const std::string& name, std::
   using Row = HistoryRow<dim>;
   const auto add = [&](const std::string& suffix, const std::string& description,
                        double WatchedLiquid::*value) {
-    columns.push_back({{"watch_" + name + suffix, volume_unit<dim>(), description},
+    columns.push_back({{"watch_" + name + suffix, volume_unit<dim>(), description, true},
                        [number, value](const Row& row) {
                          const std::vector<WatchedLiquid>& watches = liquid_in(row).watches;
                          check_told(number < watches.size());

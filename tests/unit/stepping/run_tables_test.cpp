@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -234,6 +236,18 @@ TYPED_TEST(RunTablesOf, AFullDomainHasNoColumnsOfALiquid) {
   tables.start();
   tables.append(7, this->report, {}, 0.5);
   EXPECT_THAT(this->rows("history.csv"), ::testing::ElementsAre(expected_history(this->report)));
+}
+
+TYPED_TEST(RunTablesOf, APlaceThatIsNotWatchedIsNan) {
+  constexpr int dim = TestFixture::dim;
+  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
+  tables.start();
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  this->report.liquid->watches[1] = {unknown, unknown, unknown};
+  tables.append(7, this->report, {}, 0.5);
+  const std::vector<Texts> rows = this->rows("history.csv");
+  for (const char* name : {"watch_Bowl_volume", "watch_Bowl_volume_target", "watch_Bowl_leak"})
+    EXPECT_EQ(rows.at(0).at(name), "nan");
 }
 
 TYPED_TEST(RunTablesOf, AFluidThatTellsLessThanItSaidIsRefused) {
