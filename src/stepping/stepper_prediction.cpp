@@ -46,7 +46,7 @@ Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
         context.ledger->add("surface tension", tension);
     }
   }
-  if (energy_ && context.ledger)
+  if (energy_ && context.phase == Phase::F3)
     energy_->end_forces();
   if (!sides_.viscous_fluid)
     return {};
