@@ -4,7 +4,7 @@
 compare_ranks.py MPIEXEC SIMULATE SCENE OUTPUT --ranks 1 2 4 --steps 20 --tolerance 1e-8 [--set ...]
 
 Two histories agree if in every column the largest difference is at most `tolerance` times the column's largest
-value. Numbers that are round-off themselves (errors, residuals, iteration counts) are reported, not compared.
+value; what is no number agrees with nothing. Numbers that are round-off themselves (errors, residuals, iteration counts) are reported, not compared.
 """
 import argparse
 import csv
@@ -22,15 +22,21 @@ def table(path):
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
+def largest(values):
+    """NaN if any of them is, wherever it stands; `max` gives that of a list only if it is the first."""
+    values = list(values)
+    return math.nan if any(map(math.isnan, values)) else max(values)
+
+
 def differences(one, other):
     """Largest difference of each column over the column's largest value."""
     found = {}
     for column in one[0]:
         if column in NOT_COMPARED:
             continue
-        scale = max(abs(float(row[column])) for row in one)
-        largest = max(abs(float(a[column]) - float(b[column])) for a, b in zip(one, other))
-        found[column] = largest / scale if scale > 0 else (0 if largest == 0 else math.inf)
+        scale = largest(abs(float(row[column])) for row in one)
+        apart = largest(abs(float(a[column]) - float(b[column])) for a, b in zip(one, other))
+        found[column] = 0 if apart == 0 else apart / scale if scale != 0 else math.inf
     return found
 
 
@@ -60,7 +66,7 @@ def main():
         results[ranks] = {name: table(f"{folder}/{name}.csv") for name in ("history", "bodies")}
     reference, failures = results[arguments.ranks[0]], []
     print("largest residual of S2: %s, momentum error: %s" % tuple(
-        max(float(row[c]) for r in results.values() for row in r["history"])
+        largest(float(row[c]) for r in results.values() for row in r["history"])
         for c in ("s2_residual", "momentum_error")))
     for ranks in arguments.ranks[1:]:
         for name, one in reference.items():
@@ -70,7 +76,7 @@ def main():
                 continue
             for column, difference in differences(one, other).items():
                 print(f"{ranks} ranks, {name}.csv, {column}: {difference:.1e}")
-                if difference > arguments.tolerance:
+                if not difference <= arguments.tolerance:
                     failures.append(f"{name}.csv, {column}: differs by {difference:.1e} on {ranks} ranks")
         for column in ("s1_iterations", "f2_iterations", "s2_iterations"):
             apart = max(abs(int(a[column]) - int(b[column]))
@@ -79,9 +85,10 @@ def main():
             if apart > max(2, arguments.iterations * most):
                 failures.append(f"{column} differs by {apart} on {ranks} ranks")
     for row in (row for r in results.values() for row in r["history"]):
-        if float(row["momentum_error"]) > 1e-10 or float(row["angular_momentum_error"]) > 1e-10:
+        if not (float(row["momentum_error"]) <= 1e-10 and float(row["angular_momentum_error"]) <= 1e-10):
             failures.append(f"momentum error {row['momentum_error']} in step {row['step']}")
     sys.exit("\n".join(failures) if failures else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()

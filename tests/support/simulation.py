@@ -1,5 +1,6 @@
 """Runs scenes with `simulate` and reads the tables that it writes."""
 import csv
+import math
 import os
 import subprocess
 
@@ -29,7 +30,10 @@ def table(path):
 
 
 def column(rows, name):
-    return [float(row[name]) for row in rows]
+    """Its numbers; all of them must be some, because neither `max` nor `>` would find one that is none."""
+    values = [float(row[name]) for row in rows]
+    assert all(map(math.isfinite, values)), f"{name}: not finite in row {[*map(math.isfinite, values)].index(False) + 1}"
+    return values
 
 
 def without_times(rows):
