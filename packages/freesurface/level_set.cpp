@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "freesurface/band_tiles.hpp"
+#include "freesurface/common/band_tiles.hpp"
+#include "freesurface/common/redistance.hpp"
+#include "freesurface/common/voids.hpp"
 #include "freesurface/particles/drop_births.hpp"
 #include "freesurface/particles/particle_correction.hpp"
 #include "freesurface/particles/particle_motion.hpp"
 #include "freesurface/particles/particle_seeding.hpp"
 #include "freesurface/particles/particle_storage.hpp"
-#include "freesurface/redistance.hpp"
-#include "freesurface/voids.hpp"
 #include "mac/state/stored_fields.hpp"
 #include "mac/transport/revalidation.hpp"
 #include "mac/transport/transport.hpp"

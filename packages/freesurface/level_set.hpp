@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
 
-#include "freesurface/continuation.hpp"
+#include "freesurface/common/continuation.hpp"
+#include "freesurface/common/volume_ledger.hpp"
 #include "freesurface/particles/particles.hpp"
-#include "freesurface/volume_ledger.hpp"
 #include "mac/liquid/interface_model.hpp"
 #include "parameters/parameter_list.hpp"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "mac/make_geometry.hpp"
 #include "mac/pressure/extended_pressure.hpp"
 #include "mac/state/face_moments.hpp"
 #include "mac/state/initial_state.hpp"

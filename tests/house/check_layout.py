@@ -110,6 +110,26 @@ def folder_violations(root):
             yield f"{folder.relative_to(root)}: {n_files} files, more than {MOST_FILES}: a room of its own for some of them"
 
 
+def folder_loops(root):
+    """The folders inside of a room are floors, too, and so are the files that stand in it beside them: who knows whom must
+    not lead back."""
+    knows = {}
+    for path in source_files(root, {".cpp", ".hpp"}, ["src", "packages"]):
+        *room, folder = (*path.relative_to(root).parts[:-1], "")[:3]
+        for line in path.read_text().splitlines():
+            match = INCLUDE.match(line)
+            target = match.group(1).split("/") if match else []
+            if target[:1] == room[1:2] and (other := target[1] if len(target) > 2 else "") != folder:
+                knows.setdefault("/".join(room), {}).setdefault((folder, other), path.name)
+    for room, edges in knows.items():
+        reached = set(edges)
+        while more := {(a, d) for a, b in reached for c, d in reached if b == c} - reached:
+            reached |= more
+        for (folder, other), file in edges.items():
+            if (other, folder) in reached:
+                yield f"{room}: {folder or 'what is in no folder'} knows {other or 'what is in no folder'} ({file}) in a loop"
+
+
 def unnamed(text):
     """What the unnamed namespaces of a file define."""
     for part in UNNAMED.findall(text):
@@ -141,6 +161,7 @@ def violations(root):
     for path in sorted((root / "src" / "interfaces").glob("*.hpp")):
         yield from interface_violations(path, root)
     yield from folder_violations(root)
+    yield from folder_loops(root)
     yield from clashes(root)
     # In a worktree .git is a file that holds a path.
     top = [path for path in sorted(root.iterdir())

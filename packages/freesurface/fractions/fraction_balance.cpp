@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "freesurface/voids.hpp"
+#include "freesurface/common/voids.hpp"
 #include "grid/flagged_tiles.hpp"
 
 namespace lockstep {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "freesurface/band_tiles.hpp"
+#include "freesurface/common/band_tiles.hpp"
 #include "freesurface/fractions/fraction_balance.hpp"
 #include "freesurface/fractions/fraction_solids.hpp"
 #include "mac/liquid/wet_fraction.hpp"

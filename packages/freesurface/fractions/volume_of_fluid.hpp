@@ -1,7 +1,7 @@
 #pragma once
-#include "freesurface/continuation.hpp"
+#include "freesurface/common/continuation.hpp"
+#include "freesurface/common/redistance.hpp"
 #include "freesurface/fractions/fraction_transport.hpp"
-#include "freesurface/redistance.hpp"
 #include "mac/liquid/interface_model.hpp"
 #include "mac/transport/transport.hpp"
 #include "parameters/parameter_list.hpp"

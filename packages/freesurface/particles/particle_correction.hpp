@@ -1,6 +1,6 @@
 #pragma once
+#include "freesurface/common/phi_lookup.hpp"
 #include "freesurface/particles/particles.hpp"
-#include "freesurface/phi_lookup.hpp"
 
 namespace lockstep {
 

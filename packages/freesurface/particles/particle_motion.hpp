@@ -1,7 +1,7 @@
 #pragma once
+#include "freesurface/common/phi_lookup.hpp"
+#include "freesurface/common/volume_ledger.hpp"
 #include "freesurface/particles/particles.hpp"
-#include "freesurface/phi_lookup.hpp"
-#include "freesurface/volume_ledger.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "mac/transport/ray_halo.hpp"
 #include "mac/transport/transport_frame.hpp"

@@ -5,12 +5,10 @@
 #include "interfaces/fluid.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "mac/state/face_table.hpp"
+#include "mac/state/mac_state.hpp"
 #include "mac/state/rows.hpp"
 
 namespace lockstep {
-
-template <int dim>
-struct FreeSurface;
 
 /// The frozen geometry of one instant with the numbering of the pressures. The coupled volumes are
 /// those of `coupled`, behind them volumes at prescribed sides (add_covered_sides) and those that
@@ -70,15 +68,6 @@ bool MacGeometry<dim>::has_regular_faces(const CellRow<dim>& row) const {
   }
   return true;
 }
-
-/// Judges cells by their centres, asks `rule` about faces near the surface, numbers the pressures.
-/// All of the fluid has this density. `surface` may be null or empty. Without a free surface the
-/// fluid fills the domain. Pressure block and regions are left to be made of it. Collective.
-template <int dim>
-MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
-                               const std::shared_ptr<const SurfaceSnapshot<dim>>& surface,
-                               const OpenFractionRule<dim>& rule,
-                               const FreeSurface<dim>* free_surface = nullptr);
 
 /// The control volume of a face that is not prescribed; its cells must be stored. `open_fraction`
 /// and `seen_by_fluid` are left at 1 and true.

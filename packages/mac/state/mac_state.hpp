@@ -5,17 +5,9 @@
 
 #include "geometry/surface_snapshot.hpp"
 #include "grid/tiled_grid.hpp"
+#include "mac/domain/cell_state.hpp"
 
 namespace lockstep {
-
-/// What fills a cell, judged at its centre.
-enum class CellState : char {
-  outside,  ///< beyond the domain
-  fluid,    ///< carries a pressure
-  solid,    ///< centre inside a closed solid
-  empty     ///< its pressure is known: a void above a free surface, p = 0, or fluid at rest at the
-            ///< rim of the stored tiles
-};
 
 /// What a face velocity is.
 enum class FaceState : char {

@@ -3,7 +3,7 @@
 #include "mac/liquid/cell_groups.hpp"
 
 #include "bath.hpp"
-#include "freesurface/voids.hpp"
+#include "freesurface/common/voids.hpp"
 #include "geometry/generators.hpp"
 
 namespace lockstep::test {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "bath.hpp"
-#include "freesurface/redistance.hpp"
+#include "freesurface/common/redistance.hpp"
 #include "geometry/generators.hpp"
 
 namespace lockstep::test {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "freesurface/volume_ledger.hpp"
+#include "freesurface/common/volume_ledger.hpp"
 
 #include "bath.hpp"
 #include "geometry/generators.hpp"

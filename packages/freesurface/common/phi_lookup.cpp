@@ -1,4 +1,4 @@
-#include "freesurface/phi_lookup.hpp"
+#include "freesurface/common/phi_lookup.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "freesurface/voids.hpp"
+#include "freesurface/common/voids.hpp"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "freesurface/volume_ledger.hpp"
+#include "freesurface/common/volume_ledger.hpp"
 
 namespace lockstep {
 

@@ -1,4 +1,4 @@
-#include "mac/state/moving_tiles.hpp"
+#include "mac/moving_tiles.hpp"
 
 #include <algorithm>
 #include <cmath>

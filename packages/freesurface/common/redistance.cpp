@@ -1,4 +1,4 @@
-#include "freesurface/redistance.hpp"
+#include "freesurface/common/redistance.hpp"
 
 #include <algorithm>
 #include <cmath>

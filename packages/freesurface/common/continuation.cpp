@@ -1,4 +1,4 @@
-#include "freesurface/continuation.hpp"
+#include "freesurface/common/continuation.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "freesurface/band_tiles.hpp"
+#include "freesurface/common/band_tiles.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "freesurface/volume_ledger.hpp"
+#include "freesurface/common/volume_ledger.hpp"
 
 namespace lockstep {
 

@@ -1,4 +1,4 @@
-#include "freesurface/volume_ledger.hpp"
+#include "freesurface/common/volume_ledger.hpp"
 
 #include <algorithm>
 #include <cmath>

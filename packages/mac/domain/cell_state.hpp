@@ -1,0 +1,14 @@
+#pragma once
+
+namespace lockstep {
+
+/// What fills a cell, judged at its centre.
+enum class CellState : char {
+  outside,  ///< beyond the domain
+  fluid,    ///< carries a pressure
+  solid,    ///< centre inside a closed solid
+  empty     ///< its pressure is known: a void above a free surface, p = 0, or fluid at rest at the
+            ///< rim of the stored tiles
+};
+
+}  // namespace lockstep

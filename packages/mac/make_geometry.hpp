@@ -1,0 +1,15 @@
+#pragma once
+#include "mac/liquid/free_surface.hpp"
+
+namespace lockstep {
+
+/// Judges cells by their centres, asks `rule` about faces near the surface, numbers the pressures.
+/// All of the fluid has this density. `surface` may be null or empty. Without a free surface the
+/// fluid fills the domain. Pressure block and regions are left to be made of it. Collective.
+template <int dim>
+MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
+                               const std::shared_ptr<const SurfaceSnapshot<dim>>& surface,
+                               const OpenFractionRule<dim>& rule,
+                               const FreeSurface<dim>* free_surface = nullptr);
+
+}  // namespace lockstep
