@@ -1,5 +1,6 @@
 """Scenes of jointed bodies, and what comes of them."""
 import json
+import math
 import sys
 import tempfile
 from pathlib import Path
@@ -42,9 +43,12 @@ def tank(solids, joints, coupling, viscosity=0., step=.01, end=.1, **articulatio
 
 
 def table(path):
-    """The rows of a table as numbers, but for names."""
-    return [{key: value if key == "name" else float(value) for key, value in row.items()}
+    """The rows of a table as numbers, but for names; all of them finite, because `max` would miss one that is not."""
+    rows = [{key: value if key == "name" else float(value) for key, value in row.items()}
             for row in simulation.table(path)]
+    bad = {key for row in rows for key, value in row.items() if key != "name" and not math.isfinite(value)}
+    assert not bad, f"{path.name}: not finite: {bad}"
+    return rows
 
 
 def run(scene, ranks=1, arguments=(), folder=None):
