@@ -113,16 +113,23 @@ function(lockstep_all_libraries)
   target_link_libraries(lockstep_all INTERFACE ${libraries})
   add_library(Lockstep::lockstep_all ALIAS lockstep_all)
   install(TARGETS lockstep_all EXPORT LockstepTargets)
+  add_custom_target(lockstep_installed)
+  foreach(library IN LISTS libraries)
+    add_dependencies(lockstep_installed ${library})
+  endforeach()
 endfunction()
 
-# lockstep_driver(NAME): drivers/NAME.cpp -> executable NAME; the target lockstep_drivers builds all.
+# lockstep_driver(NAME DEPENDS targets...): drivers/NAME.cpp -> executable NAME, which links no more rooms than it needs.
+# The target lockstep_drivers builds all; lockstep_installed also what else cmake --install copies.
 add_custom_target(lockstep_drivers)
 function(lockstep_driver name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS" ${ARGN})
   add_executable(${name} ${name}.cpp)
-  target_link_libraries(${name} PRIVATE Lockstep::lockstep_all)
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS})
   target_compile_options(${name} PRIVATE ${LOCKSTEP_WARNINGS})
   lockstep_precompile(${name})
   add_dependencies(lockstep_drivers ${name})
+  add_dependencies(lockstep_installed ${name})
   install(TARGETS ${name} DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
