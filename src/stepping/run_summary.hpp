@@ -6,7 +6,7 @@
 
 #include "interfaces/constraint.hpp"
 #include "output/timers.hpp"
-#include "stepping/step_report.hpp"
+#include "stepping/report/step_report.hpp"
 
 namespace lockstep {
 

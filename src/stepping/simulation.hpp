@@ -5,10 +5,10 @@
 
 #include "output/frames.hpp"
 #include "solve/dumping_strategy.hpp"
+#include "stepping/report/observer_tables.hpp"
+#include "stepping/report/run_tables.hpp"
 #include "stepping/run_summary.hpp"
 #include "stepping/scene.hpp"
-#include "stepping/tables/observer_tables.hpp"
-#include "stepping/tables/run_tables.hpp"
 
 namespace lockstep {
 

@@ -4,8 +4,8 @@
 #include "coupling/coupled_system.hpp"
 #include "coupling/viscous_solve.hpp"
 #include "stepping/components.hpp"
+#include "stepping/report/step_report.hpp"
 #include "stepping/step_context.hpp"
-#include "stepping/step_report.hpp"
 
 namespace lockstep {
 

@@ -8,10 +8,10 @@
 #include "output/timers.hpp"
 #include "stepping/components.hpp"
 #include "stepping/implicit_motion.hpp"
+#include "stepping/report/step_report.hpp"
 #include "stepping/solve_audit.hpp"
 #include "stepping/step_context.hpp"
 #include "stepping/step_energy.hpp"
-#include "stepping/step_report.hpp"
 
 namespace lockstep {
 

@@ -7,7 +7,7 @@
 #include "base/regular_file.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/strict_xml.hpp"
-#include "stepping/tables/run_columns.hpp"
+#include "stepping/report/run_columns.hpp"
 
 namespace lockstep {
 

@@ -1,4 +1,4 @@
-#include "stepping/tables/run_tables.hpp"
+#include "stepping/report/run_tables.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

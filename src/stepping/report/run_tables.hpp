@@ -5,8 +5,8 @@
 
 #include "output/history.hpp"
 #include "output/progress.hpp"
-#include "stepping/stepper.hpp"
-#include "stepping/tables/run_columns.hpp"
+#include "stepping/report/run_columns.hpp"
+#include "stepping/report/step_report.hpp"
 
 namespace lockstep {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "stepping/tables/row_table.hpp"
+#include "stepping/report/row_table.hpp"
 
 namespace lockstep {
 

@@ -1,11 +1,11 @@
-#include "stepping/tables/run_columns.hpp"
+#include "stepping/report/run_columns.hpp"
 
 #include <algorithm>
 
 #include "base/errors.hpp"
 #include "interfaces/constraint.hpp"
 #include "interfaces/solid.hpp"
-#include "stepping/step_report.hpp"
+#include "stepping/report/step_report.hpp"
 
 namespace lockstep {
 

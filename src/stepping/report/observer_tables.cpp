@@ -1,4 +1,4 @@
-#include "stepping/tables/observer_tables.hpp"
+#include "stepping/report/observer_tables.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,4 +1,4 @@
-#include "stepping/tables/run_tables.hpp"
+#include "stepping/report/run_tables.hpp"
 
 namespace lockstep {
 namespace {
