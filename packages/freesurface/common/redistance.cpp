@@ -16,6 +16,15 @@ bool differ(double a, double b) {
   return (a < 0) != (b < 0);
 }
 
+/// Along an axis, from the step across the interface and the other one: their mean where phi is
+/// smooth, the step across alone at a crest, where they cancel. It passes over from one to the
+/// other where the other step falls below half of it, so that round-off decides nothing.
+double slope_across(double across, double other) {
+  const double mean = std::abs(0.5 * (across + other));
+  const double share = std::clamp(1 - 2 * other / across, 0.0, 1.0);
+  return mean + share * (std::abs(across) - mean);
+}
+
 /// What keeps its share of the distance: |phi| / |grad phi| at a cell beside the interface.
 template <int dim>
 double scaled(const TiledGrid<dim>& grid, const SolidCells<dim>& solids, const CellField& phi,
@@ -32,11 +41,10 @@ double scaled(const TiledGrid<dim>& grid, const SolidCells<dim>& solids, const C
       step[side] = side == 0 ? phi[cell] - phi[other] : phi[other] - phi[cell];
       across[side] = differ(phi[cell], phi[other]);
     }
-    double slope = seen[0] && seen[1] ? 0.5 * (step[0] + step[1]) : step[0] + step[1];
-    if (step[0] * step[1] < 0)
-      for (int side = 0; side < 2; ++side)
-        if (across[side] && std::abs(step[side]) > std::abs(slope))
-          slope = step[side];
+    double slope = std::abs(seen[0] && seen[1] ? 0.5 * (step[0] + step[1]) : step[0] + step[1]);
+    for (int side = 0; side < 2; ++side)
+      if (across[side])
+        slope = std::max(slope, slope_across(step[side], step[1 - side]));
     squares += slope * slope;
   }
   const double h = grid.spacing();

@@ -98,8 +98,10 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
     std::vector<double> shift = limited_shifts(solids, left);
     bool any = false;
     for (int body = 0; body < groups_.n; ++body) {
-      // Round-off of the measure is not to move what is at rest.
-      if (std::abs(shift[body]) < 1e-13 * domain_.spacing())
+      // Round-off of the measure is not to move what is at rest: that of one cell, and of the sum.
+      constexpr double round_off = 1e-13;
+      if (std::abs(shift[body]) * volumes_.area[body] <
+          round_off * (domain_.spacing() * volumes_.area[body] + volumes_.volume[body]))
         shift[body] = 0;
       left[body] -= std::abs(shift[body]);
       targets_.shift += std::abs(shift[body]) * volumes_.area[body];
