@@ -15,6 +15,13 @@ inline std::string name_of(Phase phase) {
   return names[static_cast<int>(phase)];
 }
 
+/// What joints give where the step begins, found in S1 with how far the bodies go; S2 finds the
+/// rest.
+struct StartImpulse {
+  RCP<const Vector> given;  ///< null: all of what they give acts at the end of the step
+  RCP<const Vector> held;   ///< of it, what holds given dofs
+};
+
 /// What the parts of a step share: where in the step they are, over which time they act, at which
 /// velocities dofs are held meanwhile, and who takes note of the impulses.
 template <int dim>
@@ -25,6 +32,7 @@ struct StepContext {
   double dt = 0;       ///< over which this part acts [s]: half of it in F1 and S1
   Reduction constraints;
   MomentumLedger<dim>* ledger = nullptr;  ///< null: this part's impulses are thrown away
+  StartImpulse joints = {};               ///< of F3 and S2
 
   /// F1 and S1 find where the solids go; what they do to momenta and velocities is thrown away.
   bool moves_positions() const { return phase == Phase::F1 || phase == Phase::S1; }

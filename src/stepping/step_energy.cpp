@@ -99,7 +99,6 @@ void StepEnergy<dim>::end_friction() {
 template <int dim>
 void StepEnergy<dim>::end_solve(const StepContext<dim>& context, const CoupledSolution& solution,
                                 const RCP<const Vector>& friction,
-                                const RCP<const Vector>& start_impulse,
                                 const RCP<const Vector>& reactions) {
   if (fluid_) {
     fluid_->end_work();
@@ -109,14 +108,13 @@ void StepEnergy<dim>::end_solve(const StepContext<dim>& context, const CoupledSo
     book_.pressure -= works[2];
   }
   if (components_.solids->has_unknowns())
-    add_solids(context, solution, friction, start_impulse, reactions);
+    add_solids(context, solution, friction, reactions);
   add_lumping(solution);
 }
 
 template <int dim>
 void StepEnergy<dim>::add_solids(const StepContext<dim>& context, const CoupledSolution& solution,
                                  const RCP<const Vector>& friction,
-                                 const RCP<const Vector>& start_impulse,
                                  const RCP<const Vector>& reactions) {
   const SolidSystem<dim>& solids = *components_.solids;
   Vector mean(*solution.velocity, Teuchos::Copy);
@@ -128,7 +126,7 @@ void StepEnergy<dim>::add_solids(const StepContext<dim>& context, const CoupledS
   // Buoyancy that the grid does not see, contact and drops have come to the momentum besides.
   Vector others(*solution.momentum, Teuchos::Copy);
   others.update(-1, *solids.explicit_momentum(context.time, context.dt), 1);
-  const double by_friction = work_of(friction), at_start = work_of(start_impulse);
+  const double by_friction = work_of(friction), at_start = work_of(context.joints.given);
   book_.loads += own.loads + dot(others, mean) - by_friction - at_start;
   book_.fluid_friction -= by_friction;
   book_.solid_friction -= own.damping;

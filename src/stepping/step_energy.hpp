@@ -22,12 +22,10 @@ class StepEnergy {
   void end_transport();
   void end_forces();    ///< of F3, but for viscosity
   void end_friction();  ///< viscosity
-  /// u* is that of the end, solids do not know their velocities yet. `start_impulse`: what joints
-  /// gave where the step began, part of the momentum of the solve; null: nothing. `reactions`: of
-  /// constraints; null: of none. `friction`: of the fluid on the solids; null: none.
+  /// u* is that of the end, solids do not know their velocities yet. `reactions`: of constraints;
+  /// null: of none. `friction`: of the fluid on the solids; null: none.
   void end_solve(const StepContext<dim>& context, const CoupledSolution& solution,
-                 const RCP<const Vector>& friction, const RCP<const Vector>& start_impulse,
-                 const RCP<const Vector>& reactions);
+                 const RCP<const Vector>& friction, const RCP<const Vector>& reactions);
   /// Solids and joints are at the end of the step, at `time`, whose length is dt.
   EnergyBook end(double time, double dt);
 
@@ -35,8 +33,7 @@ class StepEnergy {
   double fluid_energy() const;
   double solid_energy(bool elastic) const;
   void add_solids(const StepContext<dim>& context, const CoupledSolution& solution,
-                  const RCP<const Vector>& friction, const RCP<const Vector>& start_impulse,
-                  const RCP<const Vector>& reactions);
+                  const RCP<const Vector>& friction, const RCP<const Vector>& reactions);
   void add_lumping(const CoupledSolution& solution);
 
   Components<dim>& components_;

@@ -99,8 +99,8 @@ RCP<const Vector> Stepper<dim>::unseen_buoyancy(double dt, StepReport<dim>& repo
 template <int dim>
 RCP<Vector> Stepper<dim>::explicit_momentum(const StepContext<dim>& context) const {
   const RCP<Vector> momentum = components_.solids->explicit_momentum(context.time, context.dt);
-  if (!context.moves_positions() && !start_impulse_.is_null())
-    momentum->update(1, *start_impulse_, 1);
+  if (!context.joints.given.is_null())
+    momentum->update(1, *context.joints.given, 1);
   return momentum;
 }
 
@@ -120,8 +120,8 @@ RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
   if (context.ledger) {
     context.ledger->add("solid forces", solids.external_impulse(context.time, dt));
     context.ledger->add("unseen buoyancy", solids.momentum(*buoyancy));
-    if (!start_impulse_.is_null())
-      context.ledger->add("joints", solids.momentum(*start_impulse_));
+    if (!context.joints.given.is_null())
+      context.ledger->add("joints", solids.momentum(*context.joints.given));
   }
   if (!context.moves_positions())
     add_drops(context, *momentum, report);
@@ -267,7 +267,7 @@ void Stepper<dim>::tell_joints(const StepContext<dim>& context, const StepReport
   Vector reactions(*report.reactions, Teuchos::Copy);
   if (!report.contact_velocity.reactions.is_null())
     reactions.update(1, *report.contact_velocity.reactions, 1);
-  solids.joints()->take_note({held_at_start_, solids.reduction().on_given(reactions),
+  solids.joints()->take_note({context.joints.held, solids.reduction().on_given(reactions),
                               report.contact_velocity.limit_impulses},
                              context.time, context.dt);
 }
@@ -287,8 +287,7 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
   const std::vector<double> coupled_after = components_.coupling->velocity(*solution.velocity);
   fluid.set_coupled_velocity(coupled_after);
   if (energy_)
-    energy_->end_solve(context, solution, prediction.viscous.solid_impulse, start_impulse_,
-                       report.reactions);
+    energy_->end_solve(context, solution, prediction.viscous.solid_impulse, report.reactions);
   fluid.accept();
 
   const Momentum<dim> of_fluid = fluid_momentum();
@@ -348,9 +347,10 @@ StepContext<dim> Stepper<dim>::context_of_positions(double dt) const {
 
 /// F3 and S2: those at the end of the step.
 template <int dim>
-StepContext<dim> Stepper<dim>::context_of_velocities(double dt, MomentumLedger<dim>& ledger) const {
+StepContext<dim> Stepper<dim>::context_of_velocities(double dt, MomentumLedger<dim>& ledger,
+                                                     const StartImpulse& joints) const {
   const double end = time_ + dt;
-  return {Phase::F3, time_, dt, dt, components_.solids->constraints(end, end), &ledger};
+  return {Phase::F3, time_, dt, dt, components_.solids->constraints(end, end), &ledger, joints};
 }
 
 template <int dim>
@@ -377,11 +377,11 @@ typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim
     reset_unseen_faces();
     prediction = predict_forces(context, report);
   }
-  move_solids(context.in(Phase::S1), prediction, report);  // S1
+  const StartImpulse joints = move_solids(context.in(Phase::S1), prediction, report);  // S1
   report.s1.add_work(prediction.pressure_work);
   make_advection_velocity(dt, report);  // F2
   advect(dt, report);                   // F3
-  context = context_of_velocities(dt, report.ledger);
+  context = context_of_velocities(dt, report.ledger, joints);
   {
     ScopedPhase phase(timers_, "F3 forces");
     prediction = predict_forces(context, report);

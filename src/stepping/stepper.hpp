@@ -67,7 +67,8 @@ class Stepper {
   /// V^{n+1/2}.
   struct FoundMotion {
     RCP<Vector> velocity;
-    RCP<const Vector> solved;  ///< before contact; null without joints
+    RCP<const Vector> solved;   ///< before contact; null without joints
+    RCP<Vector> joint_impulse;  ///< of the joints; null without
   };
   void freeze();
   void freeze(const std::shared_ptr<const SurfaceSnapshot<dim>>& surface);
@@ -77,7 +78,8 @@ class Stepper {
   Solved solve_step(double dt, StepReport<dim>& report);
   bool coupled() const { return components_.solids->has_unknowns(); }
   StepContext<dim> context_of_positions(double dt) const;
-  StepContext<dim> context_of_velocities(double dt, MomentumLedger<dim>& ledger) const;
+  StepContext<dim> context_of_velocities(double dt, MomentumLedger<dim>& ledger,
+                                         const StartImpulse& joints) const;
 
   // F1, and the forces of F3.
   Prediction<dim> predict_forces(const StepContext<dim>& context, StepReport<dim>& report);
@@ -109,11 +111,11 @@ class Stepper {
   FoundMotion find_motion(const StepContext<dim>& context, const Prediction<dim>& prediction,
                           const RCP<const Vector>& correction, BlockVector& solution,
                           StepReport<dim>& report);
-  void close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
-                    const RCP<const Vector>& correction, BlockVector& solution, FoundMotion& motion,
-                    StepReport<dim>& report);
-  void move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
-                   StepReport<dim>& report);
+  StartImpulse close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
+                            const RCP<const Vector>& correction, BlockVector& solution,
+                            FoundMotion& found, StepReport<dim>& report);
+  StartImpulse move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
+                           StepReport<dim>& report);
   // Pockets of gas.
   bool has_gas() const;
   std::vector<double> expected_gas_pressure(double dt) const;
@@ -143,10 +145,6 @@ class Stepper {
   bool fluid_moved_ = false;     ///< to other cells, before this step
   bool frozen_at_rest_ = false;  ///< the geometry is that of solids that did not move then
   Momentum<dim> last_momentum_;  ///< at the end of the last step
-  /// Of joints, from S1 to S2: the half of their impulses that acts where the step begins; null:
-  /// all of them acts at its end.
-  RCP<Vector> start_impulse_;
-  RCP<const Vector> held_at_start_;        ///< of it, what holds given dofs
   std::optional<StepEnergy<dim>> energy_;  ///< none: nobody wants it
 };
 

@@ -48,7 +48,7 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
   const double dt = context.step_dt;
   RCP<Vector> half_velocity = make_vector(solids.map());
   SweptRates swept;
-  RCP<Vector> momentum;
+  RCP<Vector> momentum, joint_impulse;
   if (coupled()) {
     ScopedPhase phase(timers_, "S1");
     momentum = solid_momentum(context, prediction, report, correction);
@@ -61,8 +61,8 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
       Vector given(*momentum, Teuchos::Copy);
       if (!found.gas_momentum.is_null())
         given.update(1, *found.gas_momentum, 1);
-      start_impulse_ = system_.reactions(context.dt, context.constraints, given,
-                                         {solution.pressure, half_velocity});
+      joint_impulse = system_.reactions(context.dt, context.constraints, given,
+                                        {solution.pressure, half_velocity});
     }
     swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
   }
@@ -94,7 +94,7 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
     report.contact_position = components_.contact->resolve(
         solids, ContactPhase::position, dt, *half_velocity, contact_response(context.dt));
   }
-  return {half_velocity, before_contact};
+  return {half_velocity, before_contact, joint_impulse};
 }
 
 /// Velocities that joints let take bodies off them by O(dt^2) all the same. Closing finds what
@@ -102,9 +102,9 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
 /// and what is still left to close is of higher order. How bodies turn on the way depends on the
 /// impulses at its begin, so that the correction of S1 is found with them.
 template <int dim>
-void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
-                                const RCP<const Vector>& correction, BlockVector& solution,
-                                FoundMotion& found, StepReport<dim>& report) {
+StartImpulse Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>& prediction,
+                                        const RCP<const Vector>& correction, BlockVector& solution,
+                                        FoundMotion& found, StepReport<dim>& report) {
   auto& solids = *components_.solids;
   const double end = context.time + context.step_dt;
   auto* const flights = side_of<FreeFlight>(*solids.joints());
@@ -129,38 +129,40 @@ void Stepper<dim>::close_joints(StepContext<dim> context, const Prediction<dim>&
     report.s1.add_work(earlier);
     motion = close(*next);
   }
-  held_at_start_ = Teuchos::null;
-  if (motion.drift.is_null()) {
-    start_impulse_ = Teuchos::null;
-    return;
-  }
+  if (motion.drift.is_null())
+    return {};
+  const RCP<Vector> impulse = found.joint_impulse;
   if (!motion.at_end.is_null())
-    drop_with_followers(solids.reduction(), *motion.at_end, *start_impulse_);
-  held_at_start_ = solids.reduction().on_given(*start_impulse_);
-  solids.reduction().drop_given(*start_impulse_);
+    drop_with_followers(solids.reduction(), *motion.at_end, *impulse);
+  const RCP<const Vector> held = solids.reduction().on_given(*impulse);
+  solids.reduction().drop_given(*impulse);
   if (!motion.later_impulse.is_null())
-    start_impulse_->update(1, *motion.later_impulse, 1);
+    impulse->update(1, *motion.later_impulse, 1);
+  return {impulse, held};
 }
 
 /// All solids go to their positions at t^{n+1}.
 template <int dim>
-void Stepper<dim>::move_solids(const StepContext<dim>& context, const Prediction<dim>& prediction,
-                               StepReport<dim>& report) {
+StartImpulse Stepper<dim>::move_solids(const StepContext<dim>& context,
+                                       const Prediction<dim>& prediction, StepReport<dim>& report) {
   auto& solids = *components_.solids;
   const bool jointed = coupled() && solids.joints();
-  start_impulse_ = Teuchos::null;
   RCP<const Vector> correction;
   if (jointed)
     correction = midpoint_correction(context.dt);
   BlockVector solution;
   FoundMotion found = find_motion(context, prediction, correction, solution, report);
+  StartImpulse joints;
   if (jointed)
-    close_joints(context, prediction, correction, solution, found, report);
+    joints = close_joints(context, prediction, correction, solution, found, report);
   ScopedPhase phase(timers_, "solid motion");
   solids.move(*found.velocity, context.time, context.step_dt);
+  return joints;
 }
 
-template void Stepper<2>::move_solids(const StepContext<2>&, const Prediction<2>&, StepReport<2>&);
-template void Stepper<3>::move_solids(const StepContext<3>&, const Prediction<3>&, StepReport<3>&);
+template StartImpulse Stepper<2>::move_solids(const StepContext<2>&, const Prediction<2>&,
+                                              StepReport<2>&);
+template StartImpulse Stepper<3>::move_solids(const StepContext<3>&, const Prediction<3>&,
+                                              StepReport<3>&);
 
 }  // namespace lockstep
