@@ -175,11 +175,11 @@ std::vector<double> FluxCoupling<dim>::effective_velocity(const SolidSystem<dim>
 template <int dim>
 std::vector<Momentum<dim>> FluxCoupling<dim>::prescribed_impulses(
     const std::vector<double>& velocity_before, const std::vector<double>&,
-    const Vector& scaled_pressure) const {
+    const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const {
   std::vector<Momentum<dim>> impulses(surface_->solids().size());
   if (!any_prescribed(surface_->solids()))
     return impulses;
-  const std::vector<double> of_fluid = this->pushes(scaled_pressure);
+  const std::vector<double> of_fluid = this->pushes(scaled_pressure, gas_pressure);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     for (const FluxShare<dim>& share : shares_[f].all)
       if (surface_->solids()[share.solid].prescribed)
@@ -213,14 +213,15 @@ template <int dim>
 AngularVector<dim> FluxCoupling<dim>::lever_impulse(const SolidSystem<dim>& solids,
                                                     const std::vector<double>& velocity_before,
                                                     const std::vector<double>& velocity_after,
-                                                    const BlockVector& solution) const {
+                                                    const BlockVector& solution,
+                                                    const std::vector<double>& gas_pressure) const {
   const auto is_soft = [](const SolidDescription& solid) {
     return !solid.rigid && !solid.prescribed;
   };
   if (coupling_transposed_.is_null() ||
       std::none_of(solids.solids().begin(), solids.solids().end(), is_soft))
     return AngularVector<dim>::Zero();
-  const std::vector<double> of_fluid = this->pushes(*solution.pressure);
+  const std::vector<double> of_fluid = this->pushes(*solution.pressure, gas_pressure);
   Momentum<dim> given;
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const int axis = volumes_[f].direction;
@@ -236,7 +237,7 @@ AngularVector<dim> FluxCoupling<dim>::lever_impulse(const SolidSystem<dim>& soli
               masses_[f] * (share * velocity_before[f] -
                             (velocity_after[f] - prescribed_thin_velocity_[f])));
   }
-  return this->taken_by_solids(solids, velocity_before, solution).angular -
+  return this->taken_by_solids(solids, velocity_before, solution, gas_pressure).angular -
          sum_over_ranks<dim>(given, solids.comm()).angular;
 }
 

@@ -19,7 +19,6 @@ void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
   coupling_transposed_ = Teuchos::null;
   added_mass_ = Teuchos::null;
   closed_area_.clear();
-  gas_pressure_.clear();
   std::vector<GlobalIndex> unknowns;
   for (const ControlVolume<dim>& volume : volumes_) {
     closed_area_.push_back(closed_area(volume));
@@ -69,7 +68,8 @@ void FaceCoupling<dim>::add_prescribed_divergence(Vector& rhs) const {
 }
 
 template <int dim>
-std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure) const {
+std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure,
+                                              const std::vector<double>& gas_pressure) const {
   Vector beside(pressure_import_->getTargetMap());
   beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
   const auto pressure = beside.getData();
@@ -81,7 +81,7 @@ std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure) con
         result[f] += push(f, side) * pressure[beside.getMap()->getLocalElement(unknown)];
     }
   }
-  add_pushes_of_gas(gas_pressure_, result);
+  add_pushes_of_gas(gas_pressure, result);
   return result;
 }
 
@@ -133,14 +133,15 @@ std::vector<double> FaceCoupling<dim>::closed_velocity(const Vector& solid_veloc
 template <int dim>
 Momentum<dim> FaceCoupling<dim>::taken_by_solids(const SolidSystem<dim>& solids,
                                                  const std::vector<double>& velocity_before,
-                                                 const BlockVector& solution) const {
+                                                 const BlockVector& solution,
+                                                 const std::vector<double>& gas_pressure) const {
   Vector taken(solids.map());
   this->add_lumped_momentum(velocity_before, taken);
   coupling_transposed_->apply(*solution.pressure, taken, Teuchos::NO_TRANS, -1, 1);
   if (!added_mass_.is_null())
     added_mass_->apply(*solution.solid, taken, Teuchos::NO_TRANS, -1, 1);
-  if (!gas_pressure_.empty())
-    add_gas_push(gas_pressure_, taken);
+  if (!gas_pressure.empty())
+    add_gas_push(gas_pressure, taken);
   return solids.momentum(taken);
 }
 

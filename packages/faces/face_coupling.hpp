@@ -26,9 +26,6 @@ class FaceCoupling : public Coupling<dim>,
   const std::vector<double>& fluid_mass() const override { return masses_; }
   void add_divergence(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
   void add_prescribed_divergence(Vector& rhs) const override;
-  void set_gas_pressure(const std::vector<double>& scaled_pressure) override {
-    gas_pressure_ = scaled_pressure;
-  }
   void add_gas_push(const std::vector<double>& scaled_pressure, Vector& momentum) const override;
   std::vector<double> gas_rates(const std::vector<double>& coupled_velocity,
                                 int n_pockets) const override;
@@ -48,14 +45,16 @@ class FaceCoupling : public Coupling<dim>,
   }
   /// B^T from `weights_`. Collective.
   void assemble_coupling(const SolidSystem<dim>& solids);
-  /// What p̂ pushes on the closed part of each face, along its axis [kg m/s], and that of the gas.
-  /// Collective.
-  std::vector<double> pushes(const Vector& scaled_pressure) const;
+  /// What p̂, and that of the pockets of gas, pushes on the closed part of each face, along its axis
+  /// [kg m/s]. Collective.
+  std::vector<double> pushes(const Vector& scaled_pressure,
+                             const std::vector<double>& gas_pressure) const;
   /// Momentum that the dynamic solids took in a solve: of the fluid lumped on them before, less
   /// what they hold of it after, and of pressures. Collective.
   Momentum<dim> taken_by_solids(const SolidSystem<dim>& solids,
                                 const std::vector<double>& velocity_before,
-                                const BlockVector& solution) const;
+                                const BlockVector& solution,
+                                const std::vector<double>& gas_pressure) const;
   /// Of the fluid at the coupled faces, wherever one has them; else in the middle of a solid, of
   /// which there must be one. Collective.
   double density_around(const FluidDiscretization<dim>& fluid, const Communicator& comm) const;
@@ -71,12 +70,11 @@ class FaceCoupling : public Coupling<dim>,
   RCP<Import> pressure_import_;  ///< pressure map -> unknowns beside this rank's coupled volumes
 
  private:
-  /// result[f] += what pockets of gas of these p̂ push, with the sign of `pushes`.
+  /// result[f] += what pockets of gas of these p̂ push, with the sign of `pushes`; empty: nothing.
   void add_pushes_of_gas(const std::vector<double>& scaled_pressure,
                          std::vector<double>& result) const;
 
   std::vector<double> closed_area_;
-  std::vector<double> gas_pressure_;  ///< p̂ by pocket
 };
 
 /// rhs += weights^T momentum, one value a row; `import` brings the dofs of the weights. Collective.

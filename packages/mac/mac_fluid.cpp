@@ -91,10 +91,11 @@ void MacFluid<dim>::divergence(Vector& rhs) const {
 }
 
 template <int dim>
-void MacFluid<dim>::project(const Vector& scaled_pressure) {
+void MacFluid<dim>::project(const Vector& scaled_pressure,
+                            const std::vector<double>& gas_pressure) {
   scaled_pressure_ = pressure_field(domain_, geometry_, scaled_pressure);
   if (holds_gas())
-    liquid_->gas()->fill(scaled_pressure_);
+    liquid_->gas()->fill(gas_pressure, scaled_pressure_);
   subtract_gradient<dim>(domain_, geometry_, scaled_pressure_, prediction_);
   domain_.halo.fill(prediction_);
 }

@@ -73,7 +73,8 @@ class MacFluid : public FluidDiscretization<dim>,
   void load(const CheckpointReader& checkpoint) override;
 
   void divergence(Vector& rhs) const override;
-  void project(const Vector& scaled_pressure) override;
+  void project(const Vector& scaled_pressure) override { project(scaled_pressure, {}); }
+  void project(const Vector& scaled_pressure, const std::vector<double>& gas_pressure) override;
   std::vector<double> coupled_velocity() const override;
   /// Partly open volumes keep their own velocity.
   void set_coupled_velocity(const std::vector<double>& velocity) override;
@@ -120,10 +121,7 @@ class MacFluid : public FluidDiscretization<dim>,
   std::vector<double> gas_conductance() const override;
   std::vector<double> gas_rates() const override;
   std::vector<double> gas_answer(const Vector& scaled_pressure) const override;
-  void set_gas_pressure(const std::vector<double>& scaled_pressure) override {
-    liquid_->gas()->set_pressure(scaled_pressure);
-  }
-  Momentum<dim> gas_side_impulse() const override;
+  Momentum<dim> gas_side_impulse(const std::vector<double>& scaled_pressure) const override;
   Momentum<dim> momentum() const override;
   double kinetic_energy() const override;
   void begin_works() override { stages_ = {prediction_}; }

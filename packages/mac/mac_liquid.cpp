@@ -119,8 +119,8 @@ std::vector<double> MacFluid<dim>::gas_answer(const Vector& scaled_pressure) con
 }
 
 template <int dim>
-Momentum<dim> MacFluid<dim>::gas_side_impulse() const {
-  return sum_over_ranks(push_of_sides<dim>(domain_, geometry_, liquid_->gas()->scaled_pressure()),
+Momentum<dim> MacFluid<dim>::gas_side_impulse(const std::vector<double>& scaled_pressure) const {
+  return sum_over_ranks(push_of_sides<dim>(domain_, geometry_, scaled_pressure),
                         domain_.grid.comm());
 }
 
@@ -140,11 +140,11 @@ template void MacFluid<2>::add_gas_push(const std::vector<double>&, Vector&) con
 template std::vector<double> MacFluid<2>::gas_conductance() const;
 template std::vector<double> MacFluid<2>::gas_rates() const;
 template std::vector<double> MacFluid<2>::gas_answer(const Vector&) const;
-template Momentum<2> MacFluid<2>::gas_side_impulse() const;
+template Momentum<2> MacFluid<2>::gas_side_impulse(const std::vector<double>&) const;
 template void MacFluid<3>::add_gas_push(const std::vector<double>&, Vector&) const;
 template std::vector<double> MacFluid<3>::gas_conductance() const;
 template std::vector<double> MacFluid<3>::gas_rates() const;
 template std::vector<double> MacFluid<3>::gas_answer(const Vector&) const;
-template Momentum<3> MacFluid<3>::gas_side_impulse() const;
+template Momentum<3> MacFluid<3>::gas_side_impulse(const std::vector<double>&) const;
 
 }  // namespace lockstep

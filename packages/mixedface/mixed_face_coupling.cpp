@@ -169,11 +169,11 @@ std::vector<double> MixedFaceCoupling<dim>::effective_velocity(
 template <int dim>
 std::vector<Momentum<dim>> MixedFaceCoupling<dim>::prescribed_impulses(
     const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
-    const Vector& scaled_pressure) const {
+    const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const {
   std::vector<Momentum<dim>> impulses(surface_->solids().size());
   if (!any_prescribed(surface_->solids()))
     return impulses;
-  const std::vector<double> of_fluid = this->pushes(scaled_pressure);
+  const std::vector<double> of_fluid = this->pushes(scaled_pressure, gas_pressure);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     if (prescribed_share_[f] == 0)
       continue;
@@ -193,13 +193,13 @@ std::vector<Momentum<dim>> MixedFaceCoupling<dim>::prescribed_impulses(
 }
 
 template <int dim>
-AngularVector<dim> MixedFaceCoupling<dim>::lever_impulse(const SolidSystem<dim>& solids,
-                                                         const std::vector<double>& velocity_before,
-                                                         const std::vector<double>& velocity_after,
-                                                         const BlockVector& solution) const {
+AngularVector<dim> MixedFaceCoupling<dim>::lever_impulse(
+    const SolidSystem<dim>& solids, const std::vector<double>& velocity_before,
+    const std::vector<double>& velocity_after, const BlockVector& solution,
+    const std::vector<double>& gas_pressure) const {
   if (coupling_transposed_.is_null())
     return AngularVector<dim>::Zero();
-  const std::vector<double> of_fluid = this->pushes(*solution.pressure);
+  const std::vector<double> of_fluid = this->pushes(*solution.pressure, gas_pressure);
   Momentum<dim> given;
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const double share = 1 - prescribed_share_[f];
@@ -209,7 +209,7 @@ AngularVector<dim> MixedFaceCoupling<dim>::lever_impulse(const SolidSystem<dim>&
     given.add(volumes_[f].center, volumes_[f].direction,
               masses_[f] * (share * velocity_before[f] - after) - share * of_fluid[f]);
   }
-  return this->taken_by_solids(solids, velocity_before, solution).angular -
+  return this->taken_by_solids(solids, velocity_before, solution, gas_pressure).angular -
          sum_over_ranks<dim>(given, solids.comm()).angular;
 }
 

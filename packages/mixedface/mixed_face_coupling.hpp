@@ -40,13 +40,14 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   std::vector<double> velocity(const Vector& solid_velocity) const override;
   std::vector<double> effective_velocity(const SolidSystem<dim>& solids) const override;
 
-  std::vector<Momentum<dim>> prescribed_impulses(const std::vector<double>& velocity_before,
-                                                 const std::vector<double>& velocity_after,
-                                                 const Vector& scaled_pressure) const override;
+  std::vector<Momentum<dim>> prescribed_impulses(
+      const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
+      const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const override;
   AngularVector<dim> lever_impulse(const SolidSystem<dim>& solids,
                                    const std::vector<double>& velocity_before,
                                    const std::vector<double>& velocity_after,
-                                   const BlockVector& solution) const override;
+                                   const BlockVector& solution,
+                                   const std::vector<double>& gas_pressure) const override;
   std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
                                                  Vector& rhs) const override;
   void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,

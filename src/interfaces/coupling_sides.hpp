@@ -7,7 +7,8 @@ namespace lockstep {
 
 /// The impulses that go through the coupled volumes, for the ledger and for the forces that are
 /// reported. Without it a run has no `momentum_error` with prescribed or soft solids, and the
-/// forces on prescribed ones lack those of the pressure.
+/// forces on prescribed ones lack those of the pressure. `gas_pressure`: p̂ of the pockets of a
+/// GasCoupling; empty without any.
 template <int dim>
 class AuditedCoupling {
  public:
@@ -15,9 +16,9 @@ class AuditedCoupling {
   /// Impulse that each prescribed solid gave to the fluid of its share of the coupled volumes in a
   /// solve, face by face: mass times velocity change plus area times pressure jump. One per solid
   /// of the snapshot, zero for dynamic ones. Global. Collective.
-  virtual std::vector<Momentum<dim>> prescribed_impulses(const std::vector<double>& velocity_before,
-                                                         const std::vector<double>& velocity_after,
-                                                         const Vector& scaled_pressure) const = 0;
+  virtual std::vector<Momentum<dim>> prescribed_impulses(
+      const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
+      const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const = 0;
   /// Angular impulse about the origin that a solve makes because soft solids take the impulses of
   /// coupled volumes at their nodes, with diagonally lumped masses, and the fluid gives them at the
   /// volumes' centres: taken minus given [kg m^2/s]. Zero (to round-off) where W reproduces rigid
@@ -26,7 +27,8 @@ class AuditedCoupling {
   virtual AngularVector<dim> lever_impulse(const SolidSystem<dim>&,
                                            const std::vector<double>& /*velocity_before*/,
                                            const std::vector<double>& /*velocity_after*/,
-                                           const BlockVector& /*solution*/) const {
+                                           const BlockVector& /*solution*/,
+                                           const std::vector<double>& /*gas_pressure*/) const {
     return AngularVector<dim>::Zero();
   }
 };

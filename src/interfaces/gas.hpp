@@ -34,19 +34,18 @@ class GasFluid {
   /// of the unknowns take. Collective.
   virtual std::vector<double> gas_rates() const = 0;
   virtual std::vector<double> gas_answer(const Vector& scaled_pressure) const = 0;
-  /// What the next `project` finds in the pockets. Local.
-  virtual void set_gas_pressure(const std::vector<double>& scaled_pressure) = 0;
+  /// `FluidDiscretization::project`, which finds no pressure in the pockets, with theirs.
+  /// Collective.
+  virtual void project(const Vector& scaled_pressure, const std::vector<double>& gas_pressure) = 0;
   /// Impulse that the sides of the domain give through the pockets beside them. Collective.
-  virtual Momentum<dim> gas_side_impulse() const = 0;
+  virtual Momentum<dim> gas_side_impulse(const std::vector<double>& scaled_pressure) const = 0;
 };
 
-/// Side interface of couplings: gas pushes on the solids around it.
+/// Side interface of couplings: gas pushes on the solids around it. `AuditedCoupling` counts it.
 template <int dim>
 class GasCoupling {
  public:
   virtual ~GasCoupling() = default;
-  /// What `AuditedCoupling` counts besides the pressures of the unknowns. Local.
-  virtual void set_gas_pressure(const std::vector<double>& scaled_pressure) = 0;
   /// momentum += what p̂ of the pockets gives dynamic solids [kg m/s]. Collective.
   virtual void add_gas_push(const std::vector<double>& scaled_pressure, Vector& momentum) const = 0;
   /// The rate at which coupled volumes of these velocities open each pocket [m^dim/s]. Collective.

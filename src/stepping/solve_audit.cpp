@@ -28,13 +28,14 @@ void audit_solve(const Components<dim>& components, const ComponentSides<dim>& s
                                   : Momentum<dim>();
   report.ledger.add("walls", walls);
   if (!solution.gas_momentum.is_null())  // gas pushes on what is around it; sides push back
-    report.ledger.add("walls through gas", sides.gas_fluid->gas_side_impulse());
+    report.ledger.add("walls through gas",
+                      sides.gas_fluid->gas_side_impulse(solution.gas_pressure));
   report.boundary_impulse = walls + report.ledger.impulse_of("viscous boundaries");
   const std::vector<double> coupled_after = components.coupling->velocity(*whole.solid);
   std::vector<Momentum<dim>> prescribed;
   if (sides.audited_coupling)
-    prescribed = sides.audited_coupling->prescribed_impulses(solution.coupled_before, coupled_after,
-                                                             *whole.pressure);
+    prescribed = sides.audited_coupling->prescribed_impulses(
+        solution.coupled_before, coupled_after, *whole.pressure, solution.gas_pressure);
   report.ledger.add("prescribed solids", total_of(prescribed));
   for (std::size_t s = 0; s < prescribed.size(); ++s)
     report.hydrodynamic_impulse[s] -= prescribed[s];
@@ -50,8 +51,8 @@ void audit_solve(const Components<dim>& components, const ComponentSides<dim>& s
   report.ledger.add("locks", solids.momentum(*reactions));
   report.reactions = reactions;
   if (sides.audited_coupling)
-    report.lever_impulse = sides.audited_coupling->lever_impulse(solids, solution.coupled_before,
-                                                                 coupled_after, whole);
+    report.lever_impulse = sides.audited_coupling->lever_impulse(
+        solids, solution.coupled_before, coupled_after, whole, solution.gas_pressure);
   report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lever_impulse});
   const RCP<const Vector> implicit = solids.implicit_impulse(context.dt, *whole.solid);
   report.linearisation_impulse =

@@ -17,7 +17,7 @@ struct CoupledSolution {
   std::vector<double> coupled_before;  ///< u*_F
   RCP<Vector> momentum;                ///< M_S V_S* as it entered row 2
   RCP<Vector> gas_momentum;            ///< what pockets of gas gave besides; null: there are none
-  std::vector<double> gas_pressure;    ///< p̂ of the pockets
+  std::vector<double> gas_pressure;    ///< p̂ of the pockets; empty: there are none
 };
 
 /// Largest residual of row 1 per cell [1/s]. Collective.

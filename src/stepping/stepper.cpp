@@ -281,7 +281,7 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
   report.max_divergence =
       largest_divergence(system_.blocks(context.dt), solution, fluid.smallest_length(), dim);
   audit_solve<dim>(components_, sides_, system_, context, solution, prediction.viscous, report);
-  fluid.project(*solution.unknowns.pressure);
+  project(*solution.unknowns.pressure, solution.gas_pressure);
   if (!prediction.pressure.is_null() && sides_.pressure_memory)
     sides_.pressure_memory->correct_pressure(*prediction.pressure);
   const std::vector<double> coupled_after = components_.coupling->velocity(*solution.velocity);

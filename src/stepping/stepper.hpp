@@ -119,11 +119,12 @@ class Stepper {
   // Pockets of gas.
   bool has_gas() const;
   std::vector<double> expected_gas_pressure(double dt) const;
-  void push_solids(const std::vector<double>& gas_pressure, double factor, Vector& momentum) const;
+  void project(const Vector& scaled_pressure, const std::vector<double>& gas_pressure);
   void solve_coupled(const StepContext<dim>& context, const BlockSystem& blocks,
                      const SolveRequest& request, CoupledSolution& solution, SolveReport& report);
-  void solve_advection(double dt, const std::vector<double>& effective, const BlockSystem& blocks,
-                       BlockVector& rhs, BlockVector& solution, SolveReport& report);
+  std::vector<double> solve_advection(double dt, const std::vector<double>& effective,
+                                      const BlockSystem& blocks, BlockVector& rhs,
+                                      BlockVector& solution, SolveReport& report);
   SolveRequest request(const std::string& name, double dt) const;
   void check_possible(const StepContext<dim>& context, double incompatibility) const;
 

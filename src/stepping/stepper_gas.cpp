@@ -21,14 +21,13 @@ std::vector<double> Stepper<dim>::expected_gas_pressure(double dt) const {
   return result;
 }
 
-/// momentum += what the pockets give dynamic solids.
+/// Of the fluid, and of the pockets; empty: there are none.
 template <int dim>
-void Stepper<dim>::push_solids(const std::vector<double>& gas_pressure, double factor,
-                               Vector& momentum) const {
-  std::vector<double> scaled = gas_pressure;
-  for (double& value : scaled)
-    value *= factor;
-  sides_.gas_coupling->add_gas_push(scaled, momentum);
+void Stepper<dim>::project(const Vector& scaled_pressure, const std::vector<double>& gas_pressure) {
+  if (gas_pressure.empty())
+    components_.fluid->project(scaled_pressure);
+  else
+    sides_.gas_fluid->project(scaled_pressure, gas_pressure);
 }
 
 /// Solves S1 or S2 with the pockets' pressures.
@@ -73,23 +72,21 @@ void Stepper<dim>::solve_coupled(const StepContext<dim>& context, const BlockSys
   };
   const std::vector<double> pressure = solve_with_gas(gas, *components_.strategy, blocks, request,
                                                       solution.rhs, solution.unknowns, report);
-  fluid.set_gas_pressure(pressure);
-  coupling.set_gas_pressure(pressure);
   solution.gas_momentum = make_vector(solids.map());
   coupling.add_gas_push(pressure, *solution.gas_momentum);
   solution.gas_pressure = pressure;
 }
 
 /// F2: pockets that keep their volume do so in u_ADV, too; others have the solids' effective
-/// velocities change it by no more than the next solve answers.
+/// velocities change it by no more than the next solve answers. Returns their p̂.
 template <int dim>
-void Stepper<dim>::solve_advection(double dt, const std::vector<double>& effective,
-                                   const BlockSystem& blocks, BlockVector& rhs,
-                                   BlockVector& solution, SolveReport& report) {
+std::vector<double> Stepper<dim>::solve_advection(double dt, const std::vector<double>& effective,
+                                                  const BlockSystem& blocks, BlockVector& rhs,
+                                                  BlockVector& solution, SolveReport& report) {
   const SolveRequest asked = request(name_of(Phase::F2), dt);
   if (!has_gas()) {
     report = components_.strategy->solve(blocks, rhs, solution, asked);
-    return;
+    return {};
   }
   GasFluid<dim>& fluid = *sides_.gas_fluid;
   GasCoupling<dim>& coupling = *sides_.gas_coupling;
@@ -109,23 +106,24 @@ void Stepper<dim>::solve_advection(double dt, const std::vector<double>& effecti
       rates[k] = before[k] + solids[k] - rates[k];
     return rates;
   };
-  fluid.set_gas_pressure(
-      solve_with_gas(gas, *components_.strategy, blocks, asked, rhs, solution, report));
+  return solve_with_gas(gas, *components_.strategy, blocks, asked, rhs, solution, report);
 }
 
 template bool Stepper<2>::has_gas() const;
 template bool Stepper<3>::has_gas() const;
 template std::vector<double> Stepper<2>::expected_gas_pressure(double) const;
 template std::vector<double> Stepper<3>::expected_gas_pressure(double) const;
-template void Stepper<2>::push_solids(const std::vector<double>&, double, Vector&) const;
-template void Stepper<3>::push_solids(const std::vector<double>&, double, Vector&) const;
+template void Stepper<2>::project(const Vector&, const std::vector<double>&);
+template void Stepper<3>::project(const Vector&, const std::vector<double>&);
 template void Stepper<2>::solve_coupled(const StepContext<2>&, const BlockSystem&,
                                         const SolveRequest&, CoupledSolution&, SolveReport&);
 template void Stepper<3>::solve_coupled(const StepContext<3>&, const BlockSystem&,
                                         const SolveRequest&, CoupledSolution&, SolveReport&);
-template void Stepper<2>::solve_advection(double, const std::vector<double>&, const BlockSystem&,
-                                          BlockVector&, BlockVector&, SolveReport&);
-template void Stepper<3>::solve_advection(double, const std::vector<double>&, const BlockSystem&,
-                                          BlockVector&, BlockVector&, SolveReport&);
+template std::vector<double> Stepper<2>::solve_advection(double, const std::vector<double>&,
+                                                         const BlockSystem&, BlockVector&,
+                                                         BlockVector&, SolveReport&);
+template std::vector<double> Stepper<3>::solve_advection(double, const std::vector<double>&,
+                                                         const BlockSystem&, BlockVector&,
+                                                         BlockVector&, SolveReport&);
 
 }  // namespace lockstep

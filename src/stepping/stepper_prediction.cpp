@@ -112,15 +112,10 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
       components_.coupling->coupling_transposed()->apply(*pressure, *row, Teuchos::NO_TRANS, -1, 1);
     system_.subtract_given(dt, context.constraints, *row);
   }
-  const bool feels_gas = has_gas() && !pressure.is_null();
-  const std::vector<double>& gas = expected.of_gas;
-  if (feels_gas) {
-    sides_.gas_fluid->set_gas_pressure(gas);
-    if (!row.is_null())
-      push_solids(gas, 1, *row);
-  }
+  if (!expected.of_gas.empty() && !row.is_null())
+    sides_.gas_coupling->add_gas_push(expected.of_gas, *row);
   if (!pressure.is_null())
-    fluid.project(*pressure);
+    project(*pressure, expected.of_gas);
   const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
   Prediction<dim> prediction;
   prediction.pressure_work = expected.work;
@@ -139,13 +134,10 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
   if (!pressure.is_null()) {
     Vector back(*pressure, Teuchos::Copy);
     back.scale(-1);
-    if (feels_gas) {
-      std::vector<double> gas_back = gas;
-      for (double& value : gas_back)
-        value = -value;
-      sides_.gas_fluid->set_gas_pressure(gas_back);
-    }
-    fluid.project(back);
+    std::vector<double> gas_back = expected.of_gas;
+    for (double& value : gas_back)
+      value = -value;
+    project(back, gas_back);
   }
   return prediction;
 }
@@ -187,8 +179,9 @@ void Stepper<dim>::make_advection_velocity(double dt, StepReport<dim>& report) {
   report.incompatibility_f2 = relative_part_removed(blocks.null_space, *rhs.pressure);
   solution.pressure = make_vector(fluid.pressure_map());
   components_.strategy->prepare(blocks);
-  solve_advection(dt, effective, blocks, rhs, solution, report.f2);
-  fluid.project(*solution.pressure);
+  const std::vector<double> gas_pressure =
+      solve_advection(dt, effective, blocks, rhs, solution, report.f2);
+  project(*solution.pressure, gas_pressure);
 }
 
 /// F3 but for the forces: along the rays of u_ADV, to the geometry of t^{n+1}.

@@ -240,7 +240,9 @@ GasPocket GasPockets<dim>::pocket_of(double volume, double amount, double last_p
 }
 
 template <int dim>
-void GasPockets<dim>::fill(CellField& scaled_pressure) const {
+void GasPockets<dim>::fill(const std::vector<double>& of_pockets, CellField& scaled_pressure) {
+  scaled_pressure_ = of_pockets;
+  scaled_pressure_.resize(pockets_.size(), 0);
   if (pockets_.empty())
     return;
   for (std::size_t cell = 0; cell < of_cell_.size(); ++cell)

@@ -45,11 +45,9 @@ class GasPockets {
   const std::vector<int>& of_cell() const { return of_cell_; }  ///< of stored cells; -1: none
   const std::vector<GasPocket>& all() const { return pockets_; }
 
-  void set_pressure(const std::vector<double>& scaled) { scaled_pressure_ = scaled; }
-  const std::vector<double>& scaled_pressure() const { return scaled_pressure_; }
-  /// The cells of the pockets have their pressures. Local.
-  void fill(CellField& scaled_pressure) const;
-  void accept(double dt);  ///< keeps the pressures of a step of dt. Local.
+  /// Gives the cells of the pockets these pressures p̂; empty: zero. Local.
+  void fill(const std::vector<double>& of_pockets, CellField& scaled_pressure);
+  void accept(double dt);  ///< keeps the pressures last given, in a step of dt. Local.
   GasReport report() const;
   std::vector<StoredField> fields();
   std::function<void()> undo();

@@ -172,7 +172,7 @@ TEST(Flux, LosesNoMomentumNorAngularMomentum) {
     const auto velocity =
         distributed(dense(blocks.solids.op).llt().solve(dense(*rhs)), c.solids->map());
     const std::vector<double> after = c.coupling.velocity(*velocity);
-    total += total_of(c.coupling.prescribed_impulses(before, after, *pressure));
+    total += total_of(c.coupling.prescribed_impulses(before, after, *pressure, {}));
     total += c.fluid->boundary_pressure_impulse(*pressure);
     c.fluid->project(*pressure);
     c.fluid->set_coupled_velocity(after);
@@ -263,7 +263,7 @@ TEST(Flux, NamesTheLeversOfNodes) {
   const std::vector<double> after = c.coupling.velocity(*solution.solid);
   Momentum<2> total = c.fluid->momentum() + c.system->lumped_fluid_momentum(before);
   total += c.solids->momentum(*momentum) + c.fluid->boundary_pressure_impulse(*solution.pressure);
-  const AngularVector<2> levers = c.coupling.lever_impulse(*c.solids, before, after, solution);
+  const AngularVector<2> levers = c.coupling.lever_impulse(*c.solids, before, after, solution, {});
   c.fluid->project(*solution.pressure);
   c.fluid->set_coupled_velocity(after);
   const auto gained = make_vector(c.solids->map());

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/generators.hpp"
-#include "mac_cases.hpp"
+#include "liquid_cases.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -64,6 +64,41 @@ void expect_forgotten(double left_before, double right_before, double shift) {
 TEST(GasPockets, SurfacesPassOverCellsBeyondAPeriodicSide) {
   expect_forgotten<2>(0.83, 1.02, 0.04);
   expect_forgotten<3>(0.83, 1.02, 0.04);
+}
+
+/// A projection finds the pressure in a pocket that it is given with the others, and none of an
+/// earlier one.
+TEST(GasPockets, ProjectWithTheirOwnPressureOrNone) {
+  Case<2> scene({16, 16}, 1.0 / 16);
+  ParameterList& surface = scene.fluid.sublist("Free Surface");
+  surface.set("Trapped Air", "ideal gas");
+  surface.sublist("Interface").set("Type", "fixed");
+  const auto add_box = [&](const std::string& name, const ParameterArray<double>& lower,
+                           const ParameterArray<double>& upper) {
+    surface.sublist("Liquid")
+        .sublist(name)
+        .set("Type", "box")
+        .set("Lower", lower)
+        .set("Upper", upper);
+  };
+  add_box("below", numbers({-1, -1}), numbers({2, 0.4}));
+  add_box("above", numbers({-1, 0.7}), numbers({2, 2}));
+  add_box("left", numbers({-1, -1}), numbers({0.3, 2}));
+  add_box("right", numbers({0.7, -1}), numbers({2, 2}));
+  scene.fluid.set("Gravity", numbers({0, -9.8}));
+  const auto fluid = make_liquid<2>(scene);
+  fluid->set_geometry(nullptr, BlockedFaces<2>());
+  fluid->begin_prediction();
+  ASSERT_EQ(fluid->gas_pockets().size(), 1U);
+  const Vector no_pressure(fluid->pressure_map());
+  const double pressure = 3, opens = pressure * fluid->gas_conductance()[0];
+  EXPECT_GT(opens, 0);
+  fluid->project(no_pressure, {pressure});
+  EXPECT_NEAR(fluid->gas_rates()[0], opens, 1e-14 * opens);
+  fluid->project(no_pressure);
+  EXPECT_NEAR(fluid->gas_rates()[0], opens, 1e-14 * opens);
+  fluid->project(no_pressure, {-pressure});
+  EXPECT_NEAR(fluid->gas_rates()[0], 0, 1e-14 * opens);
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ TEST(Balance, AHeldBodyReportsItsExactBuoyancy) {
         falling.push_back(dt * gravity[volume.direction]);
         rest.push_back(0);
       }
-      const Momentum<2> given = c.coupling.prescribed_impulses(falling, rest, *pressure).at(0);
+      const Momentum<2> given = c.coupling.prescribed_impulses(falling, rest, *pressure, {}).at(0);
       const Point<2> lift = -dt * tank.density * properties.measure * gravity;
       EXPECT_LT((impulse.linear - given.linear - lift).norm(), 1e-13) << radius << ' ' << k;
       EXPECT_NEAR(impulse.angular[0] - given.angular[0], cross<2>(properties.centroid, lift)[0],

@@ -33,7 +33,7 @@ Momentum<2> defect_of_row_2(CoupledCase<2>& c) {
   apply(*c.solids.mass(), *velocity, *final);
   Momentum<2> defect = c.solids.momentum(*final) + c.system.lumped_fluid_momentum(after);
   defect -= c.solids.momentum(*momentum) + c.system.lumped_fluid_momentum(before);
-  defect -= total_of(c.coupling.prescribed_impulses(before, after, *pressure));
+  defect -= total_of(c.coupling.prescribed_impulses(before, after, *pressure, {}));
   const Eigen::VectorXd p = dense(*pressure);
   for (const auto& face : c.fluid.faces()) {
     if (face.kind != FakeFluid<2>::FaceKind::coupled)
