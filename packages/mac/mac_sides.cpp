@@ -44,7 +44,7 @@ std::vector<PrescribedFlux> MacFluid<dim>::side_fluxes(double time) const {
       const double velocity =
           side.mean_velocity(axis, domain_.face_box(axis, cell), time)[axis] * (is_upper ? -1 : 1);
       const int fluid = is_upper ? domain_.grid.neighbor(cell, axis, 0) : cell;
-      const double area = domain_.face_area() * geometry_.flux_fraction(axis, cell);
+      const double area = geometry_.face_table.area() * geometry_.flux_fraction(axis, cell);
       if (velocity != 0)
         fluxes.back().into.emplace_back(geometry_.unknown[fluid], area * velocity);
     }
@@ -78,7 +78,7 @@ std::vector<std::pair<std::string, std::string>> MacFluid<dim>::notes() const {
       if (face_axis != axis || is_upper != (end == 1))
         continue;
       const double open = opening.mean_factor(axis, domain_.face_box(axis, cell));
-      sums[0] += open * domain_.face_area();
+      sums[0] += open * geometry_.face_table.area();
       sums[1] += open > 0;
       sums[2] += open > 0 && open < 1;
     }

@@ -138,7 +138,7 @@ class Builder {
   /// mu area / h to the neighbour [kg/s]; the dual cell at an open side is only half as long, so it
   /// has half the area across.
   double full_coefficient(int across) const {
-    const double unit = parameters_.viscosity * domain_.face_area() / domain_.spacing();
+    const double unit = parameters_.viscosity * geometry_.face_table.area() / domain_.spacing();
     return across != face_.axis && cells_.at_side() ? 0.5 * unit : unit;
   }
 
@@ -152,7 +152,7 @@ class Builder {
   }
 
   void add_partners(RowBuilder& rows) {
-    const double unit = parameters_.viscosity * domain_.face_area() / domain_.spacing();
+    const double unit = parameters_.viscosity * geometry_.face_table.area() / domain_.spacing();
     at_void_->for_each_partner(face_, [&](const auto& partner) {
       if (partner.coefficient != 0)
         rows.add(ids_[partner.face.axis][partner.face.cell], unit * partner.coefficient);
