@@ -196,7 +196,9 @@ void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
     if (before_ && !is_second_order(bodies_[body_of_node_[i]]))
       (*before_)[i] = x_[i];
   }
-  surface_velocity_ = surface_values(change);
+  std::vector<Nodes> at_surface = surface_values({&x_, &change});
+  surface_.vertices = std::move(at_surface[0]);
+  surface_velocity_ = std::move(at_surface[1]);
   moved_ = true;
   linearisation_ = Teuchos::null;
   if (before_) {
@@ -207,7 +209,7 @@ void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
     }
     linearisation_ = space_.vector(halfway);
   }
-  update_geometry();
+  update_within_surface();
 }
 
 /// At the present positions; of second-order bodies that have moved, those of S2: halfway, for
@@ -232,20 +234,31 @@ void DeformableSolids<dim>::update_forces() {
 }
 
 template <int dim>
-std::vector<Point<dim>> DeformableSolids<dim>::surface_values(const Nodes& owned) const {
+std::vector<std::vector<Point<dim>>> DeformableSolids<dim>::surface_values(
+    std::initializer_list<const Nodes*> of_nodes) const {
   std::vector<double> mine;
   for (const int node : own_surface_vertices_)
-    mine.insert(mine.end(), owned[node].data(), owned[node].data() + dim);
+    for (const Nodes* values : of_nodes)
+      mine.insert(mine.end(), (*values)[node].data(), (*values)[node].data() + dim);
   const std::vector<double> gathered = gather_all(comm_, mine);
-  Nodes all(surface_node_.size());
-  for (std::size_t i = 0; i < all.size(); ++i)
-    all[gathered_surface_vertices_[i]] = Eigen::Map<const Point<dim>>(&gathered[dim * i]);
+  std::vector<Nodes> all(of_nodes.size(), Nodes(surface_node_.size()));
+  const double* next = gathered.data();
+  for (std::size_t i = 0; i < surface_node_.size(); ++i)
+    for (Nodes& values : all) {
+      values[gathered_surface_vertices_[i]] = Eigen::Map<const Point<dim>>(next);
+      next += dim;
+    }
   return all;
 }
 
 template <int dim>
 void DeformableSolids<dim>::update_geometry() {
-  surface_.vertices = surface_values(x_);
+  surface_.vertices = surface_values({&x_})[0];
+  update_within_surface();
+}
+
+template <int dim>
+void DeformableSolids<dim>::update_within_surface() {
   update_forces();
   update_largest_stable_step();
   update_states();

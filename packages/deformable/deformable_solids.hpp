@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -125,6 +126,7 @@ class DeformableSolids : public SolidModel<dim>,
   void distribute_surface(const std::vector<DeformableBody<dim>>& bodies);
   /// After the positions have changed: surface, forces, linearisation, states.
   void update_geometry();
+  void update_within_surface();  ///< the same but for the surface
   void update_forces();
   /// The time after which the elastic forces that the coming solve solves for are taken, over that
   /// of the solve: in S1 the end of the step, two halves of it, in S2 its end or its middle; 0
@@ -146,7 +148,9 @@ class DeformableSolids : public SolidModel<dim>,
   std::array<std::array<int, 2>, 2> nodes_of(int body) const;
   void update_states();
   Nodes mobility() const;
-  Nodes surface_values(const Nodes& owned) const;
+  /// Several values of this rank's nodes at all vertices of the surface, by one message.
+  /// Collective.
+  std::vector<Nodes> surface_values(std::initializer_list<const Nodes*> of_nodes) const;
   std::array<Point<dim>, dim> of_corners(int simplex, const Nodes& of_vertices) const;
   void find_rims();
   std::vector<char> free_rims() const;

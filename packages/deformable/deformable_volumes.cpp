@@ -200,9 +200,9 @@ void DeformableSolids<dim>::sweep(double dt, const std::vector<double>& volumes,
   if (std::all_of(volumes.begin(), volumes.end(), [](double v) { return std::isnan(v); }))
     return;
   const Nodes own_direction = swelling();
-  const Nodes direction = surface_values(own_direction);
   Nodes own_velocity = space_.owned(velocity);
-  const Nodes surface_velocity = surface_values(own_velocity);
+  const std::vector<Nodes> at_surface = surface_values({&own_direction, &own_velocity});
+  const Nodes &direction = at_surface[0], &surface_velocity = at_surface[1];
   std::vector<double> speed(solids_.size(), 0);  // along the direction, of each solid
   for (std::size_t b = 0; b < solids_.size(); ++b) {
     if (std::isnan(volumes[b]))
