@@ -15,10 +15,13 @@ struct EdgeGeometry {
   int n_faces = 0;
   Box<3> box;
 
-  /// True if a plane with this normal that holds the edge has both faces behind it.
+  /// True if a plane with this normal that holds the edge has both faces behind it, or nearly: of
+  /// faces that lie flush on each other but for a little tilt all crossings of rims carry, as
+  /// before it tilted, not those alone that the tilt has made deeper.
   bool supports(const Point<3>& normal) const {
+    constexpr double tilt = 0.05;
     for (int f = 0; f < n_faces; ++f) {
-      if (normal.dot(away[f]) > 1e-6)
+      if (normal.dot(away[f]) > tilt)
         return false;
     }
     return true;

@@ -119,10 +119,11 @@ void VertexContacts<dim>::against_surface(int vertex, const Point<dim>& x, const
 template <int dim>
 std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
     const Point<dim>& x, const Point<dim>& normal) {
-  const double tie = 1e-7 * reach_.near;
+  const double tie = 1e-7 * reach_.near, on_surface = 1e-4 * reach_.near;
   double nearest = farthest_;
   double best = -2;
   std::optional<Hit> hit;
+  std::optional<bool> is_inside;  // of the other solid, when it matters
   for (int s : simplices_) {
     const double range = std::max(nearest, near_) + tie;
     if (shapes_.bounds(s).squaredExteriorDistance(x) > range * range)
@@ -139,7 +140,7 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
     candidate.point.barycentric = point.barycentric;
     candidate.point.position = point.position;
     const double side = height < 0 ? -1 : 1;
-    if (point.distance > 1e-4 * reach_.near) {
+    if (point.distance > on_surface) {
       candidate.normal = (other_closed_ ? side : 1) * arm / point.distance;
     } else {
       candidate.normal = other_closed_ || face.dot(normal) < 0 ? face : Point<dim>(-face);
@@ -148,10 +149,16 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
     if (other_closed_) {
       // Where two faces of a box are equally near, the one that faces the vertex is meant; and
       // inside a solid the closest point lies straight below the vertex.
-      if (height < 0 && -height < 0.7 * point.distance)
+      if (height < 0 && point.distance > on_surface && -height < 0.7 * point.distance)
         continue;
       if (!faces(normal, candidate.normal))
         continue;
+      if (-height > on_surface) {
+        if (!is_inside)
+          is_inside = inside(x);
+        if (!*is_inside)
+          continue;
+      }
     }
     if (point.distance <= near_ && candidate.distance >= 0 && point.barycentric.minCoeff() > 1e-6)
       inner_.push_back(candidate);
@@ -159,8 +166,8 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
       continue;
     // Of simplices that share the closest point the one that faces x decides on which side x is,
     // and for x on the surface the one that faces the vertex.
-    const double facing = point.distance > 1e-4 * reach_.near ? std::abs(height) / point.distance
-                                                              : -candidate.normal.dot(normal);
+    const double facing = point.distance > on_surface ? std::abs(height) / point.distance
+                                                      : -candidate.normal.dot(normal);
     if (point.distance < nearest - tie || facing > best) {
       hit = candidate;
       best = facing;
@@ -170,6 +177,24 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
   if (hit && hit->distance > near_)
     hit.reset();
   return hit;
+}
+
+template <int dim>
+bool VertexContacts<dim>::inside(const Point<dim>& x) const {
+  const double tie = 1e-9 * farthest_;
+  double nearest = farthest_, alignment = 0;
+  for (const int s : simplices_) {
+    if (shapes_.bounds(s).squaredExteriorDistance(x) > nearest * nearest)
+      continue;
+    const auto point = closest_on_simplex<dim>(shapes_.corners(s), x);
+    if (point.distance > nearest + tie)
+      continue;
+    const double facing = shapes_.normal(s).dot(x - point.position);
+    if (point.distance < nearest - tie || std::abs(facing) > std::abs(alignment))
+      alignment = facing;
+    nearest = std::min(nearest, point.distance);
+  }
+  return alignment < 0;
 }
 
 template <int dim>

@@ -72,5 +72,49 @@ TYPED_TEST(Resting, AMovingFloorCarriesWhatLiesOnIt) {
   EXPECT_NEAR(world.state(0).angular_velocity.norm(), 0, round_off / h);
 }
 
+/// A plank of about a cell; lengths in its width.
+RigidBody<3> plank(const Point<3>& size, double spacing, double z) {
+  constexpr double width = 0.8 * h;
+  return make_body<3>(box_surface<3>(width * size, width * spacing), Point<3>(0, 0, width * z));
+}
+
+/// Flush with another that it lies across, whatever their meshes: edges cross, and vertices beside
+/// a rim are outside.
+TEST(Planks, RestAcrossEachOther) {
+  if (world_communicator()->getSize() > 1)
+    GTEST_SKIP();
+  for (const double length : {1.1, 1.4, 2.0, 4.0}) {
+    for (const double spacing : {0.5, 0.875, 10.0}) {
+      for (const double friction : {0.0, 0.5}) {
+        World<3> world({rough(plank({1, length, 1}, spacing, 0.5), friction),
+                        fixed(plank({1.3 * std::sqrt(length), 1, 1}, spacing, -0.5))},
+                       up<3>(-g));
+        const Point<3> start = world.state(0).center_of_mass;
+        world.run(0.6, 0.01);
+        EXPECT_LT((world.state(0).center_of_mass - start).norm(), 1e-4 * h)
+            << length << " " << spacing << " " << friction;
+        EXPECT_LT(world.state(0).angular_velocity.norm(), 1e-3)
+            << length << " " << spacing << " " << friction;
+      }
+    }
+  }
+}
+
+/// Head on and without friction, two of one mass that cross go on as one, and neither turns.
+TEST(Planks, DoNotTurnWhenTheyMeetInTheMiddle) {
+  if (world_communicator()->getSize() > 1)
+    GTEST_SKIP();
+  for (const double length : {1.05, 1.1, 1.2, 1.4}) {
+    World<3> world({moving(plank({1, length, 1}, 0.875, 0.5), Point<3>(0, 0, -0.5)),
+                    plank({length, 1, 1}, 0.875, -0.5)},
+                   Point<3>::Zero());
+    world.step(0.01);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_NEAR(world.state(i).velocity[2], -0.25, 1e-6) << length;
+      EXPECT_LT(world.state(i).angular_velocity.norm(), 1e-5) << length;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lockstep::test
