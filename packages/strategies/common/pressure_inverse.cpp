@@ -198,7 +198,9 @@ RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
   auto op = system.pressure.op;
   if (const auto a = assembled(op); !a.is_null()) {
     const std::string type = type_of(list);
-    const bool factors = type == "Incomplete Cholesky" || type == "Ifpack2" || type == "Direct";
+    // These solve exactly, or nearly so, what cannot be solved where A is singular.
+    const bool factors = type == "Incomplete Cholesky" || type == "Ifpack2" || type == "Direct" ||
+                         type == "Exact" || type == "Conjugate Gradients";
     // Its coarsest level is factored: what comes out of a singular one the iteration can project
     // out if it is a null vector of the system too, but not in pockets that a soft shell closes.
     const bool has_pockets = system.pressure_null_space.size() > system.null_space.size();

@@ -19,7 +19,8 @@ class DenseSolidSchur : public SolidSchur, public std::enable_shared_from_this<D
                   Keep keep)
       : coupling_(system.coupling_transposed),
         pressure_inverse_(pressure_inverse),
-        matrix_(replicated(*assembled(system.solids.op))) {
+        solid_block_(replicated(*assembled(system.solids.op))),
+        matrix_(solid_block_) {
     const auto n = static_cast<int>(matrix_.rows());
     Vector unit(coupling_->getRangeMap()), force(coupling_->getRangeMap());
     Vector column(coupling_->getDomainMap()), kept(coupling_->getDomainMap());
@@ -58,18 +59,36 @@ class DenseSolidSchur : public SolidSchur, public std::enable_shared_from_this<D
   }
 
  private:
+  /// As (I - W B^T) M (I - B W^T) + W C W^T with W = M B S^-1, which is definite whatever rounding
+  /// does to M: where C is small, Woodbury's difference has nothing else left.
   void apply_woodbury(const Vector& r, Vector& z) const {
-    apply(*pressure_inverse_, r, z);
-    Vector force(coupling_->getRangeMap());
-    coupling_->apply(z, force);
-    const Eigen::VectorXd velocity = factors_.solve(replicated(force));
-    for (int dof = 0; dof < velocity.size(); ++dof)
-      z.update(-velocity[dof], *columns_->getVector(dof), 1);
+    const Eigen::VectorXd velocity = factors_.solve(kept_products(r));
+    Vector of_solid(coupling_->getRangeMap()), rest(r, Teuchos::Copy);
+    distribute(velocity, of_solid);
+    coupling_->apply(of_solid, rest, Teuchos::TRANS, -1, 1);
+    apply(*pressure_inverse_, rest, z);
+    coupling_->apply(z, of_solid);
+    const Eigen::VectorXd change = factors_.solve(solid_block_ * velocity - replicated(of_solid));
+    for (int dof = 0; dof < change.size(); ++dof)
+      z.update(change[dof], *columns_->getVector(dof), 1);
+  }
+  /// (M B)^T r.
+  Eigen::VectorXd kept_products(const Vector& r) const {
+    Eigen::VectorXd products(matrix_.rows());
+    const auto values = r.getData();
+    const Eigen::Map<const Eigen::VectorXd> here(values.getRawPtr(), values.size());
+    for (int dof = 0; dof < products.size(); ++dof) {
+      const auto column = columns_->getData(dof);
+      products[dof] =
+          here.dot(Eigen::Map<const Eigen::VectorXd>(column.getRawPtr(), column.size()));
+    }
+    sum_all(r.getMap()->getComm(), products.data(), static_cast<int>(products.size()));
+    return products;
   }
 
   RCP<const CrsMatrix> coupling_;
   RCP<const LinearOperator> pressure_inverse_;
-  Eigen::MatrixXd matrix_;
+  Eigen::MatrixXd solid_block_, matrix_;  ///< C; C + B^T M B
   Eigen::LLT<Eigen::MatrixXd> factors_;
   RCP<MultiVector> columns_;  ///< M B, if kept
 };

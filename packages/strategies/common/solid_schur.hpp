@@ -23,7 +23,8 @@ class SolidSchur {
 
   /// Ŝ^-1 as an operator on the solid unknowns.
   virtual RCP<const LinearOperator> inverse() const = 0;
-  /// (M^-1 + B C^-1 B^T)^-1 = M - M B Ŝ^-1 B^T M (Woodbury): symmetric positive definite.
+  /// (M^-1 + B C^-1 B^T)^-1 = M - M B Ŝ^-1 B^T M (Woodbury), in a form that is symmetric positive
+  /// definite however light the solids are (after Bucy and Joseph 1968).
   virtual RCP<const LinearOperator> woodbury() const = 0;
 };
 

@@ -71,7 +71,7 @@ RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOpera
     apply(*op, solution, residual, -1, 1);
     throw SolveError(fmt::format(
         "The inner conjugate gradients on the {} stopped at a relative residual of {:.1e} after {} "
-        "iterations, but {:.1e} is required. Choose a stronger \"Solid Inverse\".",
+        "iterations, but {:.1e} is required. Choose a stronger inverse of it.",
         inner.name, residual.norm2() / rhs.norm2(), iterations, inner.tolerance));
   });
 }
