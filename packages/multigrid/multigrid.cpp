@@ -33,7 +33,7 @@ Multigrid<dim>::Multigrid(std::shared_ptr<const LatticeLayout> layout,
   for (const LayoutLevel& level : layout_->levels()) {
     stencils_.emplace_back(level);
     work_.emplace_back(level.grid);
-    landed_.emplace_back(level.landing ? level.landing->grid : LevelGrid());
+    landed_.push_back(level.landing ? Work(level.landing->grid) : Work());
     longest_row = std::max<std::size_t>(longest_row, level.grid.row_stride);
     const std::size_t slab = (level.grid.n[0] + 1) / 2 * (dim == 3 ? (level.grid.n[1] + 1) / 2 : 1);
     largest_coarse_slab = std::max(largest_coarse_slab, slab);

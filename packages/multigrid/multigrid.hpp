@@ -59,6 +59,7 @@ class Multigrid {
 
  private:
   struct Work {
+    Work() = default;
     explicit Work(const LevelGrid& grid);
     std::array<AlignedArray<float>, 2> x, b;
   };
