@@ -51,15 +51,17 @@ ParameterList strategy_list(const std::string& file, const StrategyRegistry& str
                             double& tolerance, const Communicator& comm) {
   Document document = read_xml(file, comm);
   const bool nested = document.list.isSublist("Strategy");
-  if (nested && document.list.isType<double>("Tolerance"))
+  const bool is_given = nested && document.list.isType<double>("Tolerance");
+  if (is_given)
     tolerance = document.list.get<double>("Tolerance");
   Document strategy{ParameterList(), document.source};
   strategy.list.sublist("Strategy") = nested ? document.list.sublist("Strategy") : document.list;
+  const bool has_own = strategy.list.sublist("Strategy").isParameter("Tolerance");
   ParameterList valid;
   declare_typed_sublist(valid, "Strategy", "The solver strategy.", strategies.schemas());
   validate(strategy, valid);
   const ParameterList& list = strategy.list.sublist("Strategy");
-  if (!nested && list.isType<double>("Tolerance"))
+  if (!is_given && has_own)
     tolerance = list.get<double>("Tolerance");
   return list;
 }

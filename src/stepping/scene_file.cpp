@@ -27,6 +27,16 @@ std::string named_solver_file(const Document& document) {
   return solver.isType<std::string>("File") ? solver.get<std::string>("File") : "";
 }
 
+/// Whether the strategy has a tolerance, which solver files bring along, and the scene's own is not
+/// given.
+bool strategy_sets_tolerance(const Document& document) {
+  if (!document.list.isSublist("Solver"))
+    return false;
+  const ParameterList& solver = document.list.sublist("Solver");
+  return !solver.isParameter("Tolerance") && solver.isSublist("Strategy") &&
+         solver.sublist("Strategy").isParameter("Tolerance");
+}
+
 /// Kinds of joints that there are in space alone, and what the plane has in their place.
 const std::map<std::string, std::string> spatial_joints = {
     {"ball", "a ball is a hinge, so write \"hinge\""},
@@ -75,7 +85,12 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
   }
   if (dimension == 2)
     check_flat_joints(document, valid);
+  const bool tolerance_of_strategy = strategy_sets_tolerance(document);
   validate(document, valid);
+  if (tolerance_of_strategy) {
+    ParameterList& solver = document.list.sublist("Solver");
+    solver.set("Tolerance", solver.sublist("Strategy").get<double>("Tolerance"));
+  }
   check_input(
       document.list.get<int>("Dimension") == dimension,
       "{}: the scene has {} dimensions, which all its vectors follow; choose another scene.",
