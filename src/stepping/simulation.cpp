@@ -9,6 +9,7 @@
 #include "interfaces/limited_torques.hpp"
 #include "interfaces/liquid.hpp"
 #include "output/checkpoint.hpp"
+#include "output/on_root.hpp"
 #include "output/run_record.hpp"
 #include "output/signals.hpp"
 #include "output/xdmf.hpp"
@@ -139,12 +140,24 @@ void Simulation<dim>::begin_outputs() {
   }
   fraction_at_begin_ = fraction_done();
   create_output_directory(comm_, options_.output_directory);
+  lock_folder();
   record_input(comm_, options_.output_directory, options_.scene_file, to_xml(scene_));
   header_ = run_header(comm_, options_.command_line);
   write_summary(comm_, options_.output_directory, unfinished_summary("running", "", header_));
   recorded([&] { begin_tables(); });
   first_step_ = step_;
   last_checkpoint_ = stepper_->time();
+}
+
+template <int dim>
+void Simulation<dim>::lock_folder() {
+  constexpr double seconds_to_wait = 2;  // for ranks of an mpirun that was killed just now
+  on_root(comm_, [&] {
+    folder_lock_ = FolderLock::take(options_.output_directory, seconds_to_wait);
+    check_input(folder_lock_ != nullptr,
+                "Another run writes to '{}': wait for it, end it or choose another --output.",
+                options_.output_directory);
+  });
 }
 
 template <int dim>
@@ -241,6 +254,7 @@ void Simulation<dim>::recorded(const Function& f) {
   } catch (const std::exception& error) {
     failed_ = true;
     record_ending("failed", error.what());
+    folder_lock_.reset();
     throw;
   }
 }
@@ -342,6 +356,7 @@ void Simulation<dim>::end() {
     write_checkpoint();
     end_outputs(seconds_since(start_));
   });
+  folder_lock_.reset();
 }
 
 template <int dim>
@@ -351,6 +366,7 @@ void Simulation<dim>::stop(const std::string& message) {
   if (comm_->getSize() == 1)
     recorded([&] { write_checkpoint(); });
   record_ending("stopped by an exception", message);
+  folder_lock_.reset();
 }
 
 template <int dim>

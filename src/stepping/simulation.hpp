@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "output/folder_lock.hpp"
 #include "output/frames.hpp"
 #include "solve/dumping_strategy.hpp"
 #include "stepping/report/observer_tables.hpp"
@@ -77,6 +78,8 @@ class Simulation {
   template <typename Function>
   void recorded(const Function& f);
   void begin_outputs();
+  /// Throws InputError if another run writes to the folder.
+  void lock_folder();
   void begin_tables();
   void end_outputs(double wall_seconds);
   /// On rank 0, not collective: others may have failed elsewhere.
@@ -90,6 +93,7 @@ class Simulation {
   void warn();
   void warn_of_watches();
 
+  std::unique_ptr<FolderLock> folder_lock_;  // on rank 0, until the last is written
   ParameterList scene_;
   RunOptions options_;
   SceneOptions scene_options_;

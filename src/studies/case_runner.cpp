@@ -12,9 +12,9 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "output/folder_lock.hpp"
 #include "studies/case_files.hpp"
 #include "studies/child_process.hpp"
-#include "studies/folder_lock.hpp"
 
 namespace lockstep {
 
@@ -177,7 +177,12 @@ std::vector<CaseOutcome> run_cases(
     const std::function<void(std::size_t, const std::string&)>& started) {
   const std::string key = executable_key(options.simulate);
   fs::create_directories(options.output_directory);
-  const FolderLock folder_lock(options.output_directory, options.seconds_to_wait);
+  const auto folder_lock = FolderLock::take(options.output_directory, options.seconds_to_wait);
+  check_output(
+      folder_lock != nullptr,
+      "Another study, or a run that it has left behind, works in '{}': wait for it, end it "
+      "or choose another --output.",
+      options.output_directory);
   std::vector<CaseOutcome> outcomes(cases.size());
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};

@@ -124,6 +124,27 @@ class Faults(unittest.TestCase):
                 self.assertIn("Stopped by signal", output)
                 self.assert_restarts(folder)
 
+    def test_one_run_at_a_time_in_a_folder(self):
+        """Another one is refused and changes nothing; once the first has ended, be it by SIGKILL, the folder is free."""
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks), tempfile.TemporaryDirectory() as folder:
+                output = Path(folder) / "output"
+                with started(folder, *CHECKPOINTS, "--set", "Time/End=1e6") as process:
+                    wait_for(lambda: newest_checkpoint(folder), process)
+                    process.send_signal(signal.SIGSTOP)
+                    before = {path: path.read_bytes() for path in output.rglob("*") if path.is_file()}
+                    for more in ((), ("--restart", newest_checkpoint(folder))):
+                        result = simulate(folder, *more, ranks=ranks)
+                        self.assertEqual(result.returncode, 2, result.stderr)
+                        self.assertEqual(result.stderr.count("lockstep: "), 1, result.stderr)
+                        self.assertIn(f"Another run writes to '{output}': wait for it", result.stderr)
+                    self.assertEqual({path: path.read_bytes() for path in output.rglob("*") if path.is_file()}, before)
+                    process.kill()
+                    process.wait()
+                self.assertEqual(simulate(folder, "--steps", 3, ranks=ranks).returncode, 0)
+                result = simulate(folder, "--restart", newest_checkpoint(folder), "--steps", 5, ranks=ranks)
+                self.assertEqual(result.returncode, 0, result.stderr)
+
     def test_signal_in_a_long_step(self):
         """A step that would take minutes is left within seconds, wherever it is, and has not been."""
         slow = SCENE.replace("rigid body", "deformable body").replace('<Parameter name="Density" type="double" value="500"/>', SOFT)

@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
-#include "studies/folder_lock.hpp"
+#include "output/folder_lock.hpp"
 #include "studies/study_table.hpp"
 
 namespace lockstep::test {
@@ -227,7 +227,7 @@ TEST_F(Runs, EveryFileThatACaseReadsCounts) {
 TEST_F(Runs, OneStudyAtATimeInAFolder) {
   options_.seconds_to_wait = 0;
   {
-    const FolderLock lock(folder_, 0);
+    const auto lock = FolderLock::take(folder_, 0);
     EXPECT_THROW(run(), OutputError);
   }
   EXPECT_TRUE(run()[0].done);
