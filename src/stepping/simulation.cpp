@@ -261,8 +261,8 @@ void Simulation<dim>::recorded(const Function& f) {
 
 template <int dim>
 int Simulation<dim>::run() {
+  install_signal_handlers();  // what begins writes already
   begin();
-  install_signal_handlers();
   while (step()) {
   }
   end();

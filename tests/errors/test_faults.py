@@ -2,6 +2,7 @@
 import contextlib
 import csv
 import os
+import resource
 import signal
 import subprocess
 import tempfile
@@ -144,6 +145,16 @@ class Faults(unittest.TestCase):
                 self.assertEqual(simulate(folder, "--steps", 3, ranks=ranks).returncode, 0)
                 result = simulate(folder, "--restart", newest_checkpoint(folder), "--steps", 5, ranks=ranks)
                 self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_a_limit_of_the_size_of_files(self):
+        """It is told from the first file on."""
+        for size in (16, 4096, 65536):
+            with self.subTest(size=size), tempfile.TemporaryDirectory() as folder:
+                (Path(folder) / "scene.xml").write_text(SCENE)
+                result = subprocess.run(command(folder), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60,
+                                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
+                self.assertEqual(result.returncode, 4, result.stderr)
+                self.assertIn("File too large", result.stderr)
 
     def test_signal_in_a_long_step(self):
         """A step that would take minutes is left within seconds, wherever it is, and has not been."""
