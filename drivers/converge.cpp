@@ -10,7 +10,8 @@
 // if neither scene, case nor program changed. Runs serially and starts `simulate`, which lies
 // beside it, through mpirun where a case asks for ranks.
 //
-// Exit codes: 0 done, 2 bad input (a quantity that cannot be measured among it), 4 output failed;
+// Exit codes: 0 done, 2 bad input (a quantity or curve that cannot be measured among it), 4 output
+// failed;
 // that of the first failed run otherwise; in both cases after the table of the rest is written.
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -102,6 +103,15 @@ std::vector<CaseOutcome> run_cases_and_tell(const std::vector<StudyCase>& cases,
       [&](std::size_t i, const std::string& log) { status.started(cases[i].directory, log); });
 }
 
+/// Of an earlier call: what this one does not write must not pass for its own.
+void remove_results(const std::string& directory) {
+  for (const char* file : {"table.csv", "table.md", "plot.png", "curves.csv", "curves.png"}) {
+    std::error_code error;
+    fs::remove(fs::path(directory) / file, error);
+    check_output(!error, "Cannot remove '{}/{}': {}.", directory, file, error.message());
+  }
+}
+
 int run_study(const Study& study, const Arguments& arguments) {
   // 3. The cases.
   const std::vector<StudyCase> cases =
@@ -123,19 +133,20 @@ int run_study(const Study& study, const Arguments& arguments) {
   const std::vector<CaseOutcome> outcomes = run_cases_and_tell(cases, arguments.runner);
 
   // 5. Measure what is there.
+  remove_results(directory);
   bool all_measured = true;
-  const std::vector<StudyRow> table =
-      study_table(study, cases, outcomes, [&all_measured](const std::string& sentence) {
-        std::cerr << "converge: " << sentence << "\n";
-        all_measured = false;
-      });
+  const auto tell = [&all_measured](const std::string& sentence) {
+    std::cerr << "converge: " << sentence << "\n";
+    all_measured = false;
+  };
+  const std::vector<StudyRow> table = study_table(study, cases, outcomes, tell);
   write_file_atomically(directory + "/table.csv", table_csv(study, table));
   write_file_atomically(directory + "/table.md", table_markdown(study, table) +
                                                      targets_markdown(study, table) +
                                                      extrapolations_markdown(study, table));
   if (!table.empty())
     plot(directory, "plot-study", "table.csv", "plot.png");
-  const std::string curves = curves_csv(study, cases, outcomes);
+  const std::string curves = curves_csv(study, cases, outcomes, tell);
   if (!curves.empty()) {
     write_file_atomically(directory + "/curves.csv", curves);
     plot(directory, "plot-curves", "curves.csv", "curves.png");

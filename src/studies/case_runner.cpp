@@ -41,14 +41,32 @@ std::string case_key(const StudyCase& study_case, const std::string& common) {
   return key + common + checksums_of_inputs(study_case);
 }
 
+/// Whether the frames that the run's index names are there still.
+bool frames_are_there(const fs::path& directory) {
+  const std::string index = read_whole_file(directory / "frames.xmf");
+  const std::string begin = "frames/frame-";
+  std::string last;
+  for (std::size_t at = index.find(begin); at != std::string::npos;
+       at = index.find(begin, at + begin.size())) {
+    const std::string name = index.substr(at, index.find(".h5", at) + 3 - at);
+    if (name != last && !fs::exists(directory / name))
+      return false;
+    last = name;
+  }
+  return true;
+}
+
 constexpr const char* at_a_time = "runs at a time: ";
 
 /// How many runs went at a time when this case was run; none if it was not, or was another.
 std::optional<int> finished_with(const std::string& directory, const std::string& key) {
-  for (const char* file : {"case.txt", "summary.json", "used-parameters.xml", "history.csv"}) {
+  for (const char* file : {"case.txt", "summary.json", "used-parameters.xml", "history.csv",
+                           "bodies.csv", "frames.xmf"}) {
     if (!fs::exists(fs::path(directory) / file))
       return {};
   }
+  if (!frames_are_there(directory))
+    return {};
   const std::string text = read_whole_file(directory + "/case.txt");
   if (text.rfind(key, 0) != 0)
     return {};

@@ -29,23 +29,29 @@ std::string curve_lines(const Curve& curve, const std::string& prefix, const Run
 }  // namespace
 
 std::string curves_csv(const Study& study, const std::vector<StudyCase>& cases,
-                       const std::vector<CaseOutcome>& outcomes) {
-  if (study.curves.empty())
-    return "";
-  std::string csv = fmt::format("# title: {}\n# ladder: {}\ncurve,series,ladder,time,value,exact\n",
-                                study.title, study.ladder_name);
+                       const std::vector<CaseOutcome>& outcomes,
+                       const std::function<void(const std::string&)>& tell) {
+  std::string csv;
   for (const Curve& curve : study.curves) {
     for (std::size_t i = 0; i < cases.size(); ++i) {
       if (!outcomes[i].done || cases[i].sample != 0)
         continue;
-      const RunResults run = read_run(outcomes[i].directory);
       const std::string prefix = fmt::format("{},{},{}", without_separators(curve.name),
                                              without_separators(study.series[cases[i].series].name),
                                              number_text(cases[i].constants.at(study.ladder_name)));
-      csv += curve_lines(curve, prefix, run, run_variables(study, cases[i], run));
+      try {
+        const RunResults run = read_run(outcomes[i].directory);
+        csv += curve_lines(curve, prefix, run, run_variables(study, cases[i], run));
+      } catch (const Failure& failure) {
+        tell(fmt::format("{}: the curve \"{}\" is not drawn. {}", cases[i].directory, curve.name,
+                         failure.what()));
+      }
     }
   }
-  return csv;
+  const std::string head =
+      fmt::format("# title: {}\n# ladder: {}\ncurve,series,ladder,time,value,exact\n", study.title,
+                  study.ladder_name);
+  return csv.empty() ? "" : head + csv;
 }
 
 }  // namespace lockstep

@@ -21,19 +21,37 @@ struct Rung {
   int n_at_a_time = 1;
 };
 
+/// What a case has to say; none, and a sentence, if that cannot be read.
+std::optional<std::pair<RunResults, Variables>> read_case(
+    const Study& study, const StudyCase& one, const CaseOutcome& outcome,
+    const std::function<void(const std::string&)>& tell) {
+  try {
+    RunResults run = read_run(outcome.directory);
+    Variables variables = run_variables(study, one, run);
+    return std::pair(std::move(run), std::move(variables));
+  } catch (const Failure& failure) {
+    tell(fmt::format("{}: not measured. {}", one.directory, failure.what()));
+    return std::nullopt;
+  }
+}
+
 std::vector<Rung> read_rungs(const Study& study, int series, const std::vector<StudyCase>& cases,
-                             const std::vector<CaseOutcome>& outcomes) {
+                             const std::vector<CaseOutcome>& outcomes,
+                             const std::function<void(const std::string&)>& tell) {
   std::vector<Rung> rungs;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (cases[i].series != series || !outcomes[i].done)
+      continue;
+    auto found = read_case(study, cases[i], outcomes[i], tell);
+    if (!found)
       continue;
     if (rungs.empty() || rungs.back().first->rung != cases[i].rung) {
       rungs.emplace_back();
       rungs.back().first = &cases[i];
     }
-    rungs.back().runs.push_back(read_run(outcomes[i].directory));
+    rungs.back().runs.push_back(std::move(found->first));
+    rungs.back().variables.push_back(std::move(found->second));
     rungs.back().n_at_a_time = std::max(rungs.back().n_at_a_time, outcomes[i].n_at_a_time);
-    rungs.back().variables.push_back(run_variables(study, cases[i], rungs.back().runs.back()));
   }
   return rungs;
 }
@@ -126,8 +144,9 @@ std::vector<StudyRow> rows_of(const Study& study, const Quantity& quantity,
     try {
       rows.push_back(make_row(study, quantity, rung));
       measured.push_back(&rung);
-    } catch (const InputError& error) {
-      tell(fmt::format("{}: not measured. {}", rung.first->directory, error.what()));
+    } catch (const Failure& failure) {
+      tell(fmt::format("{}: \"{}\" is not measured. {}", rung.first->directory, quantity.name,
+                       failure.what()));
     }
   }
   const bool is_whole = !measured.empty() && measured.back()->first->rung == last_rung;
@@ -172,7 +191,7 @@ std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCas
                                   const std::function<void(const std::string&)>& tell) {
   std::vector<StudyRow> table;
   for (int s = 0; s < static_cast<int>(study.series.size()); ++s) {
-    const std::vector<Rung> rungs = read_rungs(study, s, cases, outcomes);
+    const std::vector<Rung> rungs = read_rungs(study, s, cases, outcomes, tell);
     int last_rung = 0;  // of those that were asked for
     for (const StudyCase& one : cases)
       last_rung = one.series == s ? std::max(last_rung, one.rung) : last_rung;

@@ -1,5 +1,6 @@
 """Studies: mistakes are found before anything runs, and a killed study leaves nothing that disturbs the next."""
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -75,6 +76,44 @@ class Studies(unittest.TestCase):
                 self.assertEqual(result.returncode, 2, result.stderr)
                 self.assertIn("at most", result.stderr)
                 self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+
+    def test_what_cannot_be_read_leaves_the_rest(self):
+        """And what an earlier call wrote does not stay; a case without its frames is run anew."""
+        study = STUDY.replace("Output/Frames=false", "Output/Frame Interval=0").replace(
+            "    </ParameterList>\n  </ParameterList>\n</ParameterList>",
+            """    </ParameterList>
+    <ParameterList name="width">
+      <Parameter name="Type" type="string" value="surface"/>
+      <Parameter name="Solid" type="string" value="Ball"/>
+      <Parameter name="Point" type="Array(double)" value="{0, 0}"/>
+      <Parameter name="Expression" type="string" value="x_extent"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Curves">
+    <ParameterList name="bad"><Parameter name="Expression" type="string" value="1 / (step - 1)"/></ParameterList>
+    <ParameterList name="good"><Parameter name="Expression" type="string" value="Ball.vy"/></ParameterList>
+  </ParameterList>
+</ParameterList>""")
+        results = self.folder / "results"
+        frames = results / "runs" / "all" / "step=0.01" / "frames"
+        result = self.converge(study=study)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn('the curve "bad" is not drawn', result.stderr)
+        self.assertIn("good,all,", (results / "curves.csv").read_text())
+        for frame in frames.glob("*.h5"):
+            frame.write_bytes(b"no frame")
+        result = self.converge(study=study.replace("Ball.vy", "Ball.vx"))
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn('"width" is not measured. Cannot read the frame', result.stderr)
+        table = (results / "table.csv").read_text()
+        self.assertIn(",speed,", table)
+        self.assertNotIn(",width,", table)
+        shutil.rmtree(frames)
+        result = self.converge(study=study[:study.index('  <ParameterList name="Curves">')] + "</ParameterList>")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(": done", result.stdout)
+        self.assertIn(",width,", (results / "table.csv").read_text())
+        self.assertFalse((results / "curves.csv").exists())
 
     def test_a_changed_solver_file_is_noticed(self):
         solver = self.folder / "solver.xml"

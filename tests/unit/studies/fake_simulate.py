@@ -53,6 +53,7 @@ h = 1 / cells[0]
 </ParameterList>
 """)
 (folder / "frames").mkdir()
+(folder / "frames.xmf").write_text("".join(f"<DataItem>frames/frame-{k:06}.h5:/a</DataItem>" * 2 for k in range(25)))
 for k in range(25):
     size = 1 + 0.1 * math.cos(2 * math.pi * k / 8)
     with h5py.File(folder / f"frames/frame-{k:06}.h5", "w") as file:

@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
 #include "output/folder_lock.hpp"
+#include "studies/curves.hpp"
 #include "studies/study_table.hpp"
 
 namespace lockstep::test {
@@ -47,11 +48,13 @@ class Runs : public testing::Test {
   }
   std::vector<StudyRow> table_of(const std::vector<CaseOutcome>& outcomes) {
     told_.clear();
-    return study_table(study_, cases_, outcomes,
-                       [this](const std::string& sentence) { told_.push_back(sentence); });
+    return study_table(study_, cases_, outcomes, tell_);
   }
 
   std::vector<std::string> told_;
+  std::function<void(const std::string&)> tell_ = [this](const std::string& sentence) {
+    told_.push_back(sentence);
+  };
   std::string folder_ = "studies-test-runs";
   Study study_;
   RunnerOptions options_;
@@ -147,7 +150,9 @@ TEST_F(Runs, SurfacesInTheFrames) {
   EXPECT_NEAR(rows[2].value, 0.81 / 1.21, 1e-12);  // of a cone from outside the square
   EXPECT_NEAR(rows[3].value, 0.9 / 1.1 - 1, 1e-12);
   study_.quantities[0].solid = "Bell";
-  EXPECT_THROW(table(), OutputError);
+  EXPECT_EQ(table().size(), 3u);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_THAT(told_[0], testing::HasSubstr("no dataset \"/solids/Bell/vertices\""));
 }
 
 TEST_F(Runs, ExtremaAlongLines) {
@@ -199,6 +204,50 @@ TEST_F(Runs, FinishedRunsAreUsedAgainOnlyIfNothingChanged) {
   EXPECT_TRUE(run()[2].reused);
   options_.fresh = true;
   EXPECT_FALSE(run()[0].reused);
+}
+
+TEST_F(Runs, WithoutAllOfItsFilesACaseIsRunAnew) {
+  study_.ladder_values = {4};
+  run();
+  EXPECT_TRUE(run()[0].reused);
+  const std::string folder = folder_ + "/runs/all/n=4/";
+  for (const char* name :
+       {"history.csv", "bodies.csv", "frames.xmf", "frames/frame-000024.h5", "frames"}) {
+    fs::remove_all(folder + name);
+    EXPECT_FALSE(run()[0].reused) << name;
+    EXPECT_TRUE(run()[0].reused) << name;
+  }
+}
+
+TEST_F(Runs, WhatCannotBeReadLeavesTheRest) {
+  Quantity width = study_.quantities[0];
+  width.name = "width";
+  width.from = Quantity::From::surface;
+  width.solid = "Ball 1";
+  width.expression = "x";
+  width.over = Quantity::Over::max;
+  width.reference = "";
+  study_.quantities.push_back(width);
+  study_.curves = {{"first", "dt", ""}, {"second", "1 / (step - 2)", ""}, {"third", "step", ""}};
+  ASSERT_EQ(table().size(), 6u);
+  std::ofstream(folder_ + "/runs/all/n=8/frames/frame-000003.h5") << "no frame";
+  EXPECT_EQ(table().size(), 5u);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_THAT(told_[0], testing::HasSubstr("all/n=8: \"width\" is not measured. Cannot read"));
+  const auto outcomes = run();
+  std::ofstream(folder_ + "/runs/all/n=8/history.csv") << "step,time\n1\n";
+  EXPECT_EQ(table_of(outcomes).size(), 4u);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_THAT(told_[0], testing::HasSubstr("all/n=8: not measured. "));
+  told_.clear();
+  const std::string curves = curves_csv(study_, cases_, outcomes, tell_);
+  EXPECT_THAT(curves, testing::HasSubstr("\nfirst,all,16,"));
+  EXPECT_THAT(curves, testing::Not(testing::HasSubstr("second")));
+  EXPECT_THAT(curves, testing::HasSubstr("\nthird,all,4,"));
+  EXPECT_THAT(curves, testing::Not(testing::HasSubstr(",all,8,")));
+  EXPECT_EQ(told_.size(), 5u);
+  study_.curves.resize(0);
+  EXPECT_EQ(curves_csv(study_, cases_, outcomes, tell_), "");
 }
 
 TEST_F(Runs, EveryFileThatACaseReadsCounts) {
