@@ -233,7 +233,8 @@ std::vector<CaseOutcome> run_cases(
     }
   };
   std::vector<std::thread> threads;
-  for (int t = 1; t < options.n_jobs; ++t)
+  const std::size_t n_jobs = std::min<std::size_t>(options.n_jobs, cases.size());
+  for (std::size_t t = 1; t < n_jobs; ++t)
     threads.emplace_back(work);
   work();
   for (std::thread& thread : threads)

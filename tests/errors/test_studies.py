@@ -115,6 +115,10 @@ class Studies(unittest.TestCase):
         self.assertIn(",width,", (results / "table.csv").read_text())
         self.assertFalse((results / "curves.csv").exists())
 
+    def test_more_jobs_than_cases(self):
+        result = self.converge("--jobs", "2000000000")
+        self.assertEqual(result.returncode, 0, result.stderr)
+
     def test_a_changed_solver_file_is_noticed(self):
         solver = self.folder / "solver.xml"
         solver.write_text('<ParameterList name="s"><Parameter name="Type" type="string" value="direct"/></ParameterList>')

@@ -250,6 +250,12 @@ TEST_F(Runs, WhatCannotBeReadLeavesTheRest) {
   EXPECT_EQ(curves_csv(study_, cases_, outcomes, tell_), "");
 }
 
+TEST_F(Runs, MoreJobsThanCases) {
+  options_.n_jobs = 2000000000;
+  for (const CaseOutcome& outcome : run())
+    EXPECT_TRUE(outcome.done);
+}
+
 TEST_F(Runs, EveryFileThatACaseReadsCounts) {
   const auto write = [&](const std::string& name, const std::string& parameter,
                          const std::string& value) {
