@@ -46,7 +46,12 @@ Expression::Expression(const std::string& formula, Variables& variables, const s
     for (auto& [name, value] : variables)
       parser_->parser.DefineVar(name, &value);
     parser_->parser.SetExpr(formula);
-    parser_->parser.Eval();  // parses, so that mistakes show here
+    int n_results = 0;
+    parser_->parser.Eval(n_results);  // parses, so that mistakes show here
+    check_input(n_results == 1,
+                "{}: \"{}\" is {} numbers with commas between them, but must be one; decimals come "
+                "after a point.",
+                where, formula, n_results);
   } catch (const mu::Parser::exception_type& error) {
     explain(error, formula, where, variables);
   }

@@ -157,6 +157,8 @@ CASES = [
     Case("an unknown fluid", "\"lattice boltzmann\"", sets=["Fluid/Type=lattice boltzmann"]),
     Case("an unknown strategy", ["\"schur\"", "one of"], sets=["Solver/Strategy/Type=schur"]),
     Case("a solver file that is not there", ["none.xml", "Cannot read"], sets=["Solver/File=none.xml"]),
+    Case("a decimal comma in a formula", ["line", "\"1000*0,5\" is 2 numbers"],
+         change=(DENSITY, value("Density", "double", "[1000*0,5]"))),
     Case("no plug-in", "\"Type\"", change=(BODY_TYPE, "")),
     Case("no dimension", ["\"Dimension\"", "required"], change=(DIMENSION, "")),
     Case("one dimension", ["\"Dimension\" is 1", "2 or 3"], change=(DIMENSION, value("Dimension", "int", "1"))),

@@ -33,6 +33,13 @@ TEST(Formulas, MistakesAreNamed) {
   }
   EXPECT_THROW(evaluate("", {}, "test"), InputError);
   EXPECT_THROW(evaluate("1/zero", {{"zero", 0}}, "test"), InputError);
+  EXPECT_EQ(evaluate("max(1, 3)", {}, "test"), 3);
+  try {
+    evaluate("0,5", {}, "Constant \"size\"");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("Constant \"size\": \"0,5\" is 2 numbers"));
+  }
 }
 
 TEST(Formulas, NumbersOfTheSceneByPath) {
