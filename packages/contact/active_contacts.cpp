@@ -131,13 +131,16 @@ int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
     leave_out_immovable(solver);
   if (scale_ == 0)
     return 0;
+  for (const Contact<dim>& contact : held_)
+    solver.add(contact, 0, 0);
   for (int round = 0; round < shapes_.n_solids() + further_rounds; ++round) {
     poll_interruption(system_.comm());
     const SolidMotion<dim> motion(system_, shapes_, solver.velocity());
     const double tolerance = (round == 0 ? 0 : 10) * options_.tolerance * scale_;
     const int most = round == 0 ? most_at_once<dim> : 2;
     const int n_limits = activate_limits(solver.velocity(), tolerance, solver);
-    if (activate_violated(motion, most, tolerance, solver) + n_limits == 0)
+    if (activate_violated(motion, most, tolerance, solver) + n_limits == 0 &&
+        (round > 0 || held_.empty()))
       break;
     sweeps += sweep(solver, std::max(1, options_.sweeps / 8));
     if (phase_ == ContactPhase::position && searches < most_searches) {

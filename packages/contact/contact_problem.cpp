@@ -227,6 +227,8 @@ template <int dim>
 void ContactProblem<dim>::find_scale(const SolidMotion<dim>& motion,
                                      const std::vector<double>& velocity) {
   scale_ = largest_violation(motion, velocity);
+  for (const Contact<dim>& contact : held_)
+    scale_ = std::max(scale_, -normal_velocity(motion, contact));
   if (scale_ > 0)
     return;
   for (const Contact<dim>& contact : impacts_of(velocity))

@@ -21,6 +21,8 @@ class ContactProblem {
                  const std::vector<HalfSpace>& walls, const GaussSeidelOptions& options,
                  const SolidPairs& apart, double spacing, ContactPhase phase, double dt);
 
+  /// Contacts that act without friction, as if they touched, wherever they are; before `prepare`.
+  void hold(std::vector<Contact<dim>> contacts) { held_ = std::move(contacts); }
   /// Finds the candidates; false if there is nothing to act on. Where that is not `expected`, most
   /// of what a solid that is not rigid has near itself is passed by at first.
   bool prepare(const std::vector<double>& before, const std::vector<double>& velocity,
@@ -110,6 +112,7 @@ class ContactProblem {
   std::vector<double> before_;
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed
   std::vector<Candidate> candidates_;
+  std::vector<Contact<dim>> held_;
   std::vector<Limit> limits_;
   std::map<Pair, std::vector<int>> pairs_;                      ///< candidates of each pair
   std::unordered_map<std::size_t, std::vector<int>> by_place_;  ///< candidates by hash_of

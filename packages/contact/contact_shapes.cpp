@@ -210,10 +210,15 @@ Point<dim> ContactShapes<dim>::rigid_velocity(int solid, const Point<dim>& x,
 }
 
 template <int dim>
+void ContactShapes<dim>::rigid_row(int solid, const Point<dim>& x, VelocityRow<dim>& row) const {
+  system_.rigid_row(solid, x, row);
+  resolve(row);
+}
+
+template <int dim>
 std::vector<GlobalIndex> ContactShapes<dim>::rigid_dofs(int solid) const {
   VelocityRow<dim> row;
-  system_.rigid_row(solid, Point<dim>::Zero(), row);
-  resolve(row);
+  rigid_row(solid, Point<dim>::Zero(), row);
   return row.dofs;
 }
 

@@ -69,6 +69,8 @@ class ContactShapes {
   /// The velocity of a point of a rigid solid that is not prescribed, with a surface or without.
   Point<dim> rigid_velocity(int solid, const Point<dim>& x,
                             const std::vector<double>& velocity) const;
+  /// What moves that point.
+  void rigid_row(int solid, const Point<dim>& x, VelocityRow<dim>& row) const;
   /// The dofs that move it.
   std::vector<GlobalIndex> rigid_dofs(int solid) const;
   /// The rigid solid that this vertex is attached to; -1: none.

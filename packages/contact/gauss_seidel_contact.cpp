@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "contact/contact_problem.hpp"
+#include "contact/held_contacts.hpp"
 #include "contact/impact_zones.hpp"
 
 namespace lockstep {
@@ -43,6 +44,12 @@ GaussSeidelContact<dim>::GaussSeidelContact(const GaussSeidelOptions& options,
       walls_(std::move(walls)),
       spacing_(grid_spacing),
       wall_velocity_(std::move(wall_velocity)) {}
+
+template <int dim>
+void GaussSeidelContact<dim>::begin_step(double time) {
+  time_ = time;
+  held_back_.clear();
+}
 
 /// Positions go by velocities in the middle of the step, velocities are those at its end.
 template <int dim>
@@ -102,6 +109,10 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
     shapes.set_drift(replicated(solids, *drift_of(solids, velocity)));
   ContactProblem<dim> problem(solids, shapes, walls_, options_, apart_among(shapes.solids()),
                               spacing_, phase, dt);
+  if (phase == ContactPhase::position)
+    held_back_.clear();
+  else
+    problem.hold(held_contacts(shapes, held_back_));
   const std::vector<double> given = replicated(solids, velocity);
   bool& acted = acted_[phase == ContactPhase::position ? 0 : 1];
   const bool acts = problem.prepare(replicated(solids, *solids.velocity()), given, acted);
@@ -126,8 +137,10 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   }
   std::vector<double> resolved = solver.velocity();
   if (phase == ContactPhase::position) {
-    report.n_crossings =
+    ZonedMotion<dim> zoned =
         join_impact_zones(solids, shapes, inverse_mass, options_.self_contact, dt, resolved);
+    report.n_crossings = zoned.n_left;
+    held_back_ = std::move(zoned.held_back);
   }
   RCP<Vector> change = distributed(solids, resolved);
   if (response) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contact/contact_search.hpp"
+#include "contact/impacts.hpp"
 #include "contact/impulse_solver.hpp"
 #include "contact/inverse_mass.hpp"
 #include "interfaces/contact.hpp"
@@ -41,7 +42,8 @@ struct GaussSeidelOptions {
 ///
 /// Surfaces that are not rigid pass neither through each other nor through themselves: after the
 /// resolution of positions, impacts along the way (`find_impacts`) become contacts until there are
-/// none, and if that does not end, impact zones do (`join_impact_zones`). Prescribed solids are
+/// none, and if that does not end, impact zones do (`join_impact_zones`); what these hold back, the
+/// velocity phase that follows stops (`held_contacts`). Prescribed solids are
 /// followed with their present velocities only. Their nodes are pushed by barycentric weights
 /// through M_S; pinned ones do not yield, and their reactions are in the report. Where M_S is
 /// consistent, lumped masses serve for the positions and, in the velocity phase, for the size of
@@ -60,7 +62,7 @@ class GaussSeidelContact : public ContactModel<dim> {
                      double grid_spacing, WallVelocity<dim> wall_velocity = {});
 
   std::string name() const override { return "gauss seidel"; }
-  void begin_step(double time) override { time_ = time; }
+  void begin_step(double time) override;
   using ContactModel<dim>::resolve;
   ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
                              Vector& velocity, const ContactResponse& response) override;
@@ -80,6 +82,7 @@ class GaussSeidelContact : public ContactModel<dim> {
   std::vector<std::string> numbers_;  ///< of solids with these names
   RCP<const LinearOperator> known_inverse_;  ///< of which `inverse_mass_` is the copy
   InverseMass inverse_mass_;
+  std::vector<FoundImpact<dim>> held_back_;  ///< by impact zones, in the positions of this step
   /// By phase, whether there was something to act on last time; results do not depend on it.
   std::array<bool, 2> acted_{};
 };

@@ -9,6 +9,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/interruption.hpp"
+#include "contact/rigid_member.hpp"
 
 namespace lockstep {
 
@@ -38,16 +39,24 @@ struct Node {
 template <int dim>
 struct Zone {
   std::vector<Node<dim>> nodes;
-  std::set<int> rigid;                          ///< solids
-  std::array<std::optional<double>, dim> held;  ///< velocities of locked nodes, by axis [m/s]
-  bool disagrees = false;                       ///< they differ
+  std::set<int> rigid;  ///< solids
+  /// Least and largest velocity of locked nodes, by axis [m/s].
+  std::array<std::optional<std::array<double, 2>>, dim> held;
 
   bool is_held() const {
     return std::any_of(held.begin(), held.end(), [](const auto& v) { return v.has_value(); });
   }
   void hold(int axis, double velocity) {
-    disagrees = disagrees || held[axis].value_or(velocity) != velocity;
-    held[axis] = velocity;
+    const auto [least, largest] = held[axis].value_or(std::array{velocity, velocity});
+    held[axis] = {std::min(least, velocity), std::max(largest, velocity)};
+  }
+  /// Where nodes are locked, their velocity, the middle of those that differ; else this one.
+  Point<dim> with_held(Point<dim> velocity) const {
+    for (int a = 0; a < dim; ++a) {
+      if (held[a])
+        velocity[a] = 0.5 * ((*held[a])[0] + (*held[a])[1]);
+    }
+    return velocity;
   }
 };
 
@@ -80,16 +89,33 @@ class ImpactZones {
         sets_.join(v, found.pair.vertices[0]);
       }
     }
-    std::map<int, Zone<dim>> zones;
-    for (const int v : members_)
-      add_to(zones[sets_.root(v)], v);
+    impacts_.insert(impacts_.end(), impacts.begin(), impacts.end());
     const SolidMotion<dim> motion(system_, shapes_, velocity_);
-    for (const auto& [root, zone] : zones)
+    for (const auto& [root, zone] : zones())
       move(zone, motion);
+  }
+
+  /// All impacts of zones with rigid solids or locked nodes.
+  std::vector<FoundImpact<dim>> held_back() {
+    const std::map<int, Zone<dim>> all = zones();
+    std::vector<FoundImpact<dim>> held;
+    for (const FoundImpact<dim>& found : impacts_) {
+      const Zone<dim>& zone = all.at(sets_.root(found.pair.vertices[0]));
+      if (!zone.rigid.empty() || zone.is_held())
+        held.push_back(found);
+    }
+    return held;
   }
 
  private:
   const Point<dim>& x(int vertex) const { return shapes_.mesh().vertices[vertex]; }
+
+  std::map<int, Zone<dim>> zones() {
+    std::map<int, Zone<dim>> all;
+    for (const int v : members_)
+      add_to(all[sets_.root(v)], v);
+    return all;
+  }
 
   void add_to(Zone<dim>& zone, int vertex) const {
     const int solid = solid_of_[vertex];
@@ -128,7 +154,7 @@ class ImpactZones {
   void move(const Zone<dim>& zone, const SolidMotion<dim>& motion) {
     if (zone.rigid.empty() && !zone.is_held()) {
       move_rigidly(zone, motion);
-    } else if (zone.rigid.empty() && !zone.disagrees) {
+    } else if (zone.rigid.empty()) {
       move_along(zone, motion);
     } else if (zone.rigid.size() == 1 && !zone.is_held()) {
       for (const Node<dim>& node : zone.nodes) {
@@ -136,7 +162,7 @@ class ImpactZones {
         set_velocity(node, (end - x(node.vertex)) / dt_);
       }
     } else {
-      stop(zone);
+      move_with_bodies(zone, motion);
     }
   }
 
@@ -179,10 +205,105 @@ class ImpactZones {
     }
     if (mass > 0)
       velocity /= mass;
-    for (int a = 0; a < dim; ++a)
-      velocity[a] = zone.held[a].value_or(velocity[a]);
+    velocity = zone.with_held(velocity);
     for (const Node<dim>& node : zone.nodes)
       set_velocity(node, velocity);
+  }
+
+  /// As the solids do that nothing moves; else as locked nodes do, without turning; else with the
+  /// momentum that all had.
+  void move_with_bodies(const Zone<dim>& zone, const SolidMotion<dim>& motion) {
+    std::vector<int> given;
+    std::vector<RigidMember<dim>> bodies;
+    for (const int solid : zone.rigid) {
+      if (!shapes_.solids()[solid].prescribed)
+        bodies.emplace_back(shapes_, inverse_mass_, solid, motion.center(solid));
+      if (shapes_.solids()[solid].prescribed || bodies.back().dofs().empty())
+        given.push_back(solid);
+    }
+    CommonMotion common;
+    if (!given.empty()) {
+      for (const int solid : given)
+        common.center += motion.center(solid) / given.size();
+      for (const int solid : given) {
+        const Point<dim> end = motion.end_of_point(solid, common.center, dt_);
+        common.velocity += (end - common.center) / (dt_ * given.size());
+        common.spin += motion.spin(solid) / given.size();
+      }
+    } else {
+      common = motion_of_momentum(zone, bodies, motion);
+    }
+    if (give(common, zone, bodies))
+      return;
+    common.spin.setZero();
+    if (!give(common, zone, bodies))
+      stop(zone);
+  }
+
+  struct CommonMotion {
+    Point<dim> center = Point<dim>::Zero(), velocity = Point<dim>::Zero();
+    AngularVector<dim> spin = AngularVector<dim>::Zero();
+  };
+
+  CommonMotion motion_of_momentum(const Zone<dim>& zone,
+                                  const std::vector<RigidMember<dim>>& bodies,
+                                  const SolidMotion<dim>& motion) const {
+    CommonMotion common;
+    double mass = 0;
+    for (const Node<dim>& node : zone.nodes) {
+      mass += node.mass;
+      common.center += node.mass * x(node.vertex);
+    }
+    for (const RigidMember<dim>& body : bodies) {
+      const double own = body.mass(body.center()).template topLeftCorner<dim, dim>().trace() / dim;
+      mass += own;
+      common.center += own * body.center();
+    }
+    common.center /= mass;
+    MemberMass<dim> inertia = MemberMass<dim>::Zero();
+    MemberMotion<dim> momentum = MemberMotion<dim>::Zero();
+    for (const RigidMember<dim>& body : bodies) {
+      inertia += body.mass(common.center);
+      momentum += body.momentum(common.center, velocity_);
+    }
+    for (const Node<dim>& node : zone.nodes) {
+      Eigen::Matrix<double, dim, dim + n_rotations<dim>> carries;
+      for (int k = 0; k < carries.cols(); ++k) {
+        const MemberMotion<dim> unit = MemberMotion<dim>::Unit(k);
+        const AngularVector<dim> spin = unit.template tail<n_rotations<dim>>();
+        carries.col(k) =
+            unit.template head<dim>() + rotate<dim>(spin, x(node.vertex) - common.center);
+      }
+      inertia += node.mass * carries.transpose() * carries;
+      momentum += node.mass * carries.transpose() * motion.of_vertex(node.solid, node.vertex);
+    }
+    const MemberMotion<dim> twist = inertia.fullPivLu().solve(momentum);
+    common.velocity = zone.with_held(twist.template head<dim>());
+    if (!zone.is_held())
+      common.spin = twist.template tail<n_rotations<dim>>();
+    return common;
+  }
+
+  /// False if joints or locked dofs keep bodies from moving so.
+  bool give(const CommonMotion& common, const Zone<dim>& zone,
+            const std::vector<RigidMember<dim>>& bodies) {
+    const Eigen::Matrix<double, dim, dim> rotation = rotation_by<dim>(dt_ * common.spin);
+    const auto velocity_of = [&](const Point<dim>& place) {
+      const Point<dim> arm = place - common.center;
+      return Point<dim>(common.velocity + (rotation * arm - arm) / dt_);
+    };
+    for (const Node<dim>& node : zone.nodes)
+      set_velocity(node, velocity_of(x(node.vertex)));
+    std::set<GlobalIndex> taken;
+    bool all = true;
+    for (const RigidMember<dim>& body : bodies) {
+      MemberMotion<dim> twist;
+      twist << velocity_of(body.center()), common.spin;
+      all = (body.dofs().empty() || body.move(twist, velocity_)) && all;
+      for (const GlobalIndex dof : body.dofs())
+        all = taken.insert(dof).second && all;
+    }
+    return all;
   }
 
   void stop(const Zone<dim>& zone) {
@@ -204,31 +325,35 @@ class ImpactZones {
   DisjointSets sets_;  ///< of vertices that move together
   std::vector<int> solid_of_;
   std::set<int> members_;
+  std::vector<FoundImpact<dim>> impacts_;  ///< that made the zones
 };
 
 }  // namespace
 
 template <int dim>
-int join_impact_zones(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
-                      const InverseMass& inverse_mass, bool self, double dt,
-                      std::vector<double>& velocity) {
+ZonedMotion<dim> join_impact_zones(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
+                                   const InverseMass& inverse_mass, bool self, double dt,
+                                   std::vector<double>& velocity) {
   ImpactZones<dim> zones(system, shapes, inverse_mass, dt, velocity);
-  int n_left = 0;
+  ZonedMotion<dim> zoned;
   for (int round = 0; round < most_rounds; ++round) {
     poll_interruption(system.comm());
     const SolidMotion<dim> motion(system, shapes, velocity);
     const auto impacts = find_impacts(shapes, SurfacePath<dim>(shapes, motion, dt), self);
-    n_left = static_cast<int>(impacts.size());
-    if (n_left == 0)
+    zoned.n_left = static_cast<int>(impacts.size());
+    if (zoned.n_left == 0)
       break;
     zones.join(impacts);
   }
-  return n_left;
+  zoned.held_back = zones.held_back();
+  return zoned;
 }
 
-template int join_impact_zones<2>(const SolidSystem<2>&, const ContactShapes<2>&,
-                                  const InverseMass&, bool, double, std::vector<double>&);
-template int join_impact_zones<3>(const SolidSystem<3>&, const ContactShapes<3>&,
-                                  const InverseMass&, bool, double, std::vector<double>&);
+template ZonedMotion<2> join_impact_zones<2>(const SolidSystem<2>&, const ContactShapes<2>&,
+                                             const InverseMass&, bool, double,
+                                             std::vector<double>&);
+template ZonedMotion<3> join_impact_zones<3>(const SolidSystem<3>&, const ContactShapes<3>&,
+                                             const InverseMass&, bool, double,
+                                             std::vector<double>&);
 
 }  // namespace lockstep

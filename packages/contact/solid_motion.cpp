@@ -133,6 +133,11 @@ Point<dim> SolidMotion<dim>::end_of_point(int rigid_solid, const Point<dim>& x, 
 }
 
 template <int dim>
+AngularVector<dim> SolidMotion<dim>::spin(int rigid_solid) const {
+  return spin_of(motions_[rigid_solid].gradient);
+}
+
+template <int dim>
 Point<dim> SolidMotion<dim>::end_of_vertex(int solid, int vertex, double dt) const {
   const Point<dim>& x = shapes_.mesh().vertices[vertex];
   const int rigid = motions_[solid].rigid ? solid : shapes_.carrier(vertex);

@@ -25,6 +25,9 @@ class SolidMotion {
   /// such a one that carries it, too [m].
   Point<dim> end_of_vertex(int solid, int vertex, double dt) const;
   Point<dim> end_of_point(int rigid_solid, const Point<dim>& x, double dt) const;
+  /// What a rigid solid turns about, and how fast [rad/s].
+  const Point<dim>& center(int rigid_solid) const { return motions_[rigid_solid].center; }
+  AngularVector<dim> spin(int rigid_solid) const;
   /// Componentwise bounds of the velocity over the solid [m/s].
   const Box<dim>& range(int solid) const { return motions_[solid].range; }
 

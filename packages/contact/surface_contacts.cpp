@@ -145,14 +145,7 @@ class SurfaceContacts {
     contact.other_point = near.points[1];
     contact.normal = normal;
     contact.gap = distance - thickness(*near.pair);
-    // On the surface that bends: a rigid body carries any point exactly.
-    if (shapes_.solids()[contact.solid].rigid) {
-      contact.x = contact.other_point.position;
-    } else if (shapes_.solids()[contact.other].rigid) {
-      contact.x = contact.point.position;
-    } else {
-      contact.x = 0.5 * (contact.point.position + contact.other_point.position);
-    }
+    contact.x = place_between(shapes_, contact);
     contacts_.push_back(contact);
   }
 
