@@ -17,33 +17,40 @@ bool DeformableSolids<dim>::has_implicit_forces() const {
 /// V. The model is -dt f.V + s dt^2/2 V.K V, with the f that `linearise` leaves. Elements' energies
 /// are differences of numbers as large as they are at a strain of one.
 template <int dim>
-ComputedEnergy DeformableSolids<dim>::unlinear_energy(double dt, const Vector& velocity) const {
+std::vector<ComputedEnergy> DeformableSolids<dim>::unlinear_energies(double dt,
+                                                                     const Vector& velocity) const {
   const auto share = [this](int node) { return elastic_share(bodies_[body_of_node_[node]]); };
   const Nodes v = space_.with_ghosts(velocity);
   Nodes x = before_ ? *before_ : x_;
   for (int i = 0; i < space_.n_local(); ++i)
     x[i] += share(i) * dt * v[i];
-  double sums[2] = {0, 0};
+  const std::size_t n = bodies_.size();
+  std::vector<double> sums(2 * n, 0);  // values, then round-off
   Nodes ignored(space_.n_local(), Point<dim>::Zero());
-  for (const Body& body : bodies_) {
+  for (std::size_t b = 0; b < n; ++b) {
+    const Body& body = bodies_[b];
     const double part = elastic_share(body);
     for (std::size_t k = 0; k < body.elements.size() && part > 0; ++k) {
       const double energy = body.elements[k]->add_elastic_forces(x, space_.n_owned(), ignored);
-      sums[0] += body.softening / part * energy;
+      sums[b] += body.softening / part * energy;
     }
   }
   for (int i = 0; i < space_.n_owned(); ++i) {
     if (share(i) == 0)
       continue;
+    const int b = body_of_node_[i];
     const Point<dim> stiff = share(i) * dt * stiffness_.row_times(i, v);
-    sums[0] += dt * v[i].dot(elastic_force_[i] - 0.5 * stiff);
+    sums[b] += dt * v[i].dot(elastic_force_[i] - 0.5 * stiff);
     for (int k = stiffness_.row_begin(i); k < stiffness_.row_end(i); ++k) {
       const double length = (x[stiffness_.column(k)] - x[i]).squaredNorm();
-      sums[1] += stiffness_.block(k).cwiseAbs().sum() * length / share(i);
+      sums[n + b] += stiffness_.block(k).cwiseAbs().sum() * length / share(i);
     }
   }
-  sum_all(comm_, sums, 2);
-  return {sums[0], 4 * std::numeric_limits<double>::epsilon() * sums[1]};
+  sum_all(comm_, sums.data(), static_cast<int>(sums.size()));
+  std::vector<ComputedEnergy> energies;
+  for (std::size_t b = 0; b < n; ++b)
+    energies.push_back({sums[b], 4 * std::numeric_limits<double>::epsilon() * sums[n + b]});
+  return energies;
 }
 
 /// Of what `explicit_momentum` and D give; what limits stretch is elastic.
@@ -152,7 +159,9 @@ template void DeformableSolids<2>::add_midpoint_correction(double, Vector&) cons
 template void DeformableSolids<3>::add_midpoint_correction(double, Vector&) const;
 template bool DeformableSolids<2>::has_implicit_forces() const;
 template bool DeformableSolids<3>::has_implicit_forces() const;
-template ComputedEnergy DeformableSolids<2>::unlinear_energy(double, const Vector&) const;
-template ComputedEnergy DeformableSolids<3>::unlinear_energy(double, const Vector&) const;
+template std::vector<ComputedEnergy> DeformableSolids<2>::unlinear_energies(double,
+                                                                            const Vector&) const;
+template std::vector<ComputedEnergy> DeformableSolids<3>::unlinear_energies(double,
+                                                                            const Vector&) const;
 
 }  // namespace lockstep

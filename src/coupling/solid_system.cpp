@@ -188,14 +188,11 @@ RCP<Vector> SolidSystem<dim>::explicit_momentum(double time, double dt) const {
 }
 
 template <int dim>
-void SolidSystem<dim>::add_midpoint_correction(double dt, double implicit_part,
-                                               Vector& momentum) const {
+void SolidSystem<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
   Vector all(map_);
   for (int m = 0; m < n_models(); ++m) {
     const RCP<Vector> correction = part(all, m);
     model(m).add_midpoint_correction(dt, *correction);
-    if (unlinear(m))
-      correction->scale(implicit_part);
   }
   momentum.update(1, all, 1);
 }
@@ -291,17 +288,19 @@ RCP<const Vector> SolidSystem<dim>::linearisation() const {
 }
 
 template <int dim>
-ComputedEnergy SolidSystem<dim>::unlinear_energy(double dt, const Vector& velocity) const {
-  ComputedEnergy sum;
+std::vector<ComputedEnergy> SolidSystem<dim>::unlinear_energies(double dt,
+                                                                const Vector& velocity) const {
+  std::vector<ComputedEnergy> all;
   for (int m = 0; m < n_models(); ++m) {
     const auto* forces = unlinear(m);
-    if (!forces)
-      continue;
-    const ComputedEnergy energy = forces->unlinear_energy(dt, *part(velocity, m));
-    sum.value += energy.value;
-    sum.round_off += energy.round_off;
+    const std::size_t end = all.size() + model(m).solids().size();
+    if (forces) {
+      for (const ComputedEnergy& energy : forces->unlinear_energies(dt, *part(velocity, m)))
+        all.push_back(energy);
+    }
+    all.resize(end);
   }
-  return sum;
+  return all;
 }
 
 template <int dim>

@@ -95,18 +95,17 @@ class SolidSystem {
   RCP<Vector> velocity() const;  ///< carried nodes move as their solids
   void set_velocity(const Vector& velocity);
   RCP<Vector> explicit_momentum(double time, double dt) const;
-  /// `implicit_part`: of it, for models with implicit forces [1].
-  void add_midpoint_correction(double dt, double implicit_part, Vector& momentum) const;
+  void add_midpoint_correction(double dt, Vector& momentum) const;
   /// dt D V: what the implicit forces give in a step. Its sum is zero, but not its torque: forces
   /// linearised at x act at x + dt V. Collective.
   RCP<Vector> implicit_impulse(double dt, const Vector& velocity) const;
   AngularVector<dim> inner_angular_impulse(double dt) const;  ///< of all models [kg m^2/s]
   Momentum<dim> external_impulse(double time, double dt) const;
   bool linearise(double dt, const Vector& velocity);
-  /// Of any model, and of all: see UnlinearSolids.
+  /// Of any model, of all, and of each solid: see UnlinearSolids.
   bool has_implicit_forces() const;
   RCP<const Vector> linearisation() const;
-  ComputedEnergy unlinear_energy(double dt, const Vector& velocity) const;
+  std::vector<ComputedEnergy> unlinear_energies(double dt, const Vector& velocity) const;
   void limit_motion(double dt, Vector& velocity);
   void move(const Vector& velocity, double time, double dt);
   /// `SolidModel::undo` of all models. Calling what it returns is collective.

@@ -48,8 +48,13 @@ class UnlinearSolids {
   /// The velocity about which forces and D are linearised at present; null: zero. Local.
   virtual RCP<const Vector> linearisation() const = 0;
   /// The potential of these forces at the velocity V of the solve over dt, less the quadratic one
-  /// of which `explicit_momentum` and D are made, up to a constant. Global, collective.
-  virtual ComputedEnergy unlinear_energy(double dt, const Vector& velocity) const = 0;
+  /// of which `explicit_momentum` and D are made, up to a constant: of each solid. Global,
+  /// collective.
+  virtual std::vector<ComputedEnergy> unlinear_energies(double dt,
+                                                        const Vector& velocity) const = 0;
+  /// The solid of each local row of `dof_map`. Rows are velocities of nodes, along all axes of one
+  /// after those of another. Local.
+  virtual std::vector<int> solid_of_row() const = 0;
 };
 
 /// A rigid solid as joints see it. Generalized: dim translations of the reference point, then the

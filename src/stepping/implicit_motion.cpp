@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/unlinear_bodies.hpp"
 #include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
@@ -34,7 +35,7 @@ class Response {
   RCP<const LinearOperator> inverse_;
 };
 
-/// Phi along a line from the velocity about which forces are linearised.
+/// Phi along a line from the velocity about which forces are linearised, solid by solid.
 template <int dim>
 class Descent {
  public:
@@ -43,11 +44,14 @@ class Descent {
           const Vector& from, const Vector& gradient, const Vector& to)
       : solids_(solids), dt_(dt), from_(from), change_(to, Teuchos::Copy) {
     change_.update(-1, from, 1);
-    slope_ = gradient.dot(change_);
+    const UnlinearBodies<dim> bodies(solids);
+    // A translation strains nothing, and how large it is depends on the frame.
+    const RCP<const Vector> strains = bodies.without_translations(change_);
+    slopes_ = bodies.dot(gradient, *strains);
     Vector product(solids.map());
-    apply(block, change_, product);
-    curvature_ = product.dot(change_);
-    start_ = solids.unlinear_energy(dt, from);
+    apply(block, *strains, product);
+    curvatures_ = bodies.dot(product, *strains);
+    start_ = solids.unlinear_energies(dt, from);
   }
 
   RCP<Vector> at(double part) const {
@@ -55,12 +59,19 @@ class Descent {
     velocity->update(part, change_, 1);
     return velocity;
   }
-  /// What the potential exceeds the model by, over the change of the model.
+  /// What the potential of a solid exceeds the model by, over the change of the model: of the worst
+  /// one.
   double excess(double part) const {
-    const ComputedEnergy end = solids_.unlinear_energy(dt_, *at(part));
-    const double model = std::abs(part * slope_ + 0.5 * part * part * curvature_);
-    const double above = end.value - start_.value - end.round_off - start_.round_off;
-    return above <= 0 ? 0 : above / std::max(model, 1e-300);
+    const std::vector<ComputedEnergy> end = solids_.unlinear_energies(dt_, *at(part));
+    double worst = 0;
+    for (std::size_t s = 0; s < end.size(); ++s) {
+      const double above = end[s].value - start_[s].value - end[s].round_off - start_[s].round_off;
+      const double model = std::abs(part * slopes_[s] + 0.5 * part * part * curvatures_[s]);
+      if (std::isnan(above))
+        return above;
+      worst = std::max(worst, above / std::max(model, 1e-300));
+    }
+    return worst;
   }
 
  private:
@@ -68,8 +79,8 @@ class Descent {
   double dt_;
   const Vector& from_;
   Vector change_;
-  double slope_ = 0, curvature_ = 0;
-  ComputedEnergy start_;
+  std::vector<double> slopes_, curvatures_;
+  std::vector<ComputedEnergy> start_;
 };
 
 template <int dim>
@@ -147,7 +158,7 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
 }
 
 /// `before` is where the model is least, so Phi rises by 1/2 d.C d and what the model does not
-/// know.
+/// know. Solid by solid. Closed regions have walls, whose frame is the one that counts.
 template <int dim>
 void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before,
                  Vector& velocity) {
@@ -155,27 +166,35 @@ void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before
   const RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   Vector change(velocity, Teuchos::Copy), product(solids.map());
   change.update(-1, before, 1);
+  const UnlinearBodies<dim> bodies(solids);
   apply(*block, before, product);
-  const double allowed = largest * 0.5 * product.dot(before);
+  const std::vector<double> energy = bodies.dot(product, before);
   apply(*block, change, product);
-  const double cost = 0.5 * product.dot(change);
-  if (cost == 0)
+  const std::vector<double> cost = bodies.dot(product, change);
+  if (std::all_of(cost.begin(), cost.end(), [](double one) { return one == 0; }))
     return;
   if (!is_settled(solids, dt, before)) {  // nor is the motion itself what it should be
     velocity.update(1, before, 0);
     return;
   }
-  const ComputedEnergy start = solids.unlinear_energy(dt, before);
-  double part = 1;
-  for (int k = 0; k < most_halvings; ++k) {
-    velocity.update(1, before, part, change, 0);
-    const ComputedEnergy end = solids.unlinear_energy(dt, velocity);
-    const double rise = part * part * cost + end.value - start.value;
-    if (rise <= allowed + start.round_off + end.round_off)
+  const std::vector<ComputedEnergy> start = solids.unlinear_energies(dt, before);
+  std::vector<double> parts(cost.size(), 1);
+  for (int k = 0; k <= most_halvings; ++k) {
+    Vector changed(change, Teuchos::Copy);
+    bodies.scale(parts, changed);
+    velocity.update(1, before, 1, changed, 0);
+    const std::vector<ComputedEnergy> end = solids.unlinear_energies(dt, velocity);
+    bool all = true;
+    for (std::size_t s = 0; s < parts.size(); ++s) {
+      const double rise = 0.5 * parts[s] * parts[s] * cost[s] + end[s].value - start[s].value;
+      if (rise <= 0.5 * largest * energy[s] + start[s].round_off + end[s].round_off)
+        continue;
+      all = false;
+      parts[s] = k + 1 < most_halvings ? parts[s] / 2 : 0;
+    }
+    if (all)
       return;
-    part /= 2;
   }
-  velocity.update(1, before, 0);
 }
 
 template <int dim>

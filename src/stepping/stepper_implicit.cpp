@@ -1,6 +1,7 @@
 // The parts of the step that solids with implicit inner forces add.
 #include <Tpetra_Vector.hpp>
 
+#include "coupling/unlinear_bodies.hpp"
 #include "stepping/implicit_motion.hpp"
 #include "stepping/stepper.hpp"
 
@@ -28,7 +29,11 @@ double Stepper<dim>::resolved_part(double dt) const {
 template <int dim>
 RCP<Vector> Stepper<dim>::midpoint_correction(double dt) const {
   const RCP<Vector> correction = make_vector(components_.solids->map());
-  components_.solids->add_midpoint_correction(dt, resolved_part(dt), *correction);
+  components_.solids->add_midpoint_correction(dt, *correction);
+  if (components_.solids->has_implicit_forces()) {
+    const std::vector<double> parts(components_.solids->solids().size(), resolved_part(dt));
+    UnlinearBodies<dim>(*components_.solids).scale(parts, *correction);
+  }
   return correction;
 }
 

@@ -12,7 +12,7 @@ RCP<Vector> solved(const SolidSystem<dim>& system, double dt, bool for_positions
                    const Reduction& constraints) {
   const auto momentum = system.explicit_momentum(0, dt);
   if (for_positions)
-    system.add_midpoint_correction(dt, 1, *momentum);
+    system.add_midpoint_correction(dt, *momentum);
   return system.velocity_of(*momentum, dt, constraints);
 }
 

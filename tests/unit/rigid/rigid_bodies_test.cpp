@@ -198,7 +198,7 @@ TEST(RigidBodies, SystemStacksThemAndRanksAgree) {
   for (int i = 0; i < 3; ++i) {
     const double dt = 0.1;
     const auto half = solids.explicit_momentum(i * dt, dt / 2);
-    solids.add_midpoint_correction(dt / 2, 1, *half);
+    solids.add_midpoint_correction(dt / 2, *half);
     solids.move(*solids.velocity_of(*half), i * dt, dt);
     solids.set_velocity(*solids.velocity_of(*solids.explicit_momentum(i * dt, dt)));
   }
