@@ -92,7 +92,6 @@ class Stepper {
   // S1 and S2.
   RCP<const Vector> unseen_buoyancy(double dt, StepReport<dim>& report) const;
   void add_drops(const StepContext<dim>& context, Vector& momentum, StepReport<dim>& report) const;
-  double resolved_part(double dt) const;
   RCP<Vector> explicit_momentum(const StepContext<dim>& context) const;
   RCP<Vector> midpoint_correction(double dt) const;
   RCP<Vector> solid_momentum(const StepContext<dim>& context, const Prediction<dim>& prediction,

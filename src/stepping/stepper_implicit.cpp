@@ -7,32 +7,43 @@
 
 namespace lockstep {
 
-/// Of the motion of solids whose inner forces are implicit, the part that the step resolves: one
-/// where it is short for them, V.K V dt^2 small beside V.M V, nothing where it is long.
+namespace {
+/// Of the motion of each solid whose inner forces are implicit, the part that the step resolves:
+/// one where it is short for them, V.K V dt^2 small beside V.M V, nothing where it is long. In its
+/// own frame: a translation is no motion that forces would have to resolve.
 template <int dim>
-double Stepper<dim>::resolved_part(double dt) const {
-  const auto& solids = *components_.solids;
-  if (!solids.has_implicit_forces())
-    return 1;
-  const RCP<const Vector> velocity = solids.velocity();
-  const double stiff = -velocity->dot(*solids.implicit_impulse(dt, *velocity));
+std::vector<double> resolved_parts(const SolidSystem<dim>& solids,
+                                   const UnlinearBodies<dim>& bodies,
+                                   const RCP<const CrsMatrix>& added_mass, double dt) {
+  const RCP<const Vector> velocity = bodies.without_translations(*solids.velocity());
+  const std::vector<double> given = bodies.dot(*velocity, *solids.implicit_impulse(dt, *velocity));
   Vector product(solids.map());
-  apply(*solids.full_block(components_.coupling->added_mass(), dt), *velocity, product);
-  const double whole = velocity->dot(product);
-  if (!(stiff > 0) || !(whole > stiff))
-    return stiff > 0 ? 0 : 1;
-  const double ratio = 2 * stiff / (whole - stiff);
-  return 1 / ((1 + ratio) * (1 + ratio));
+  apply(*solids.full_block(added_mass, dt), *velocity, product);
+  const std::vector<double> whole = bodies.dot(*velocity, product);
+  std::vector<double> parts;
+  for (std::size_t s = 0; s < whole.size(); ++s) {
+    const double stiff = -given[s];
+    if (!(stiff > 0) || !(whole[s] > stiff)) {
+      parts.push_back(stiff > 0 ? 0 : 1);
+      continue;
+    }
+    const double ratio = 2 * stiff / (whole[s] - stiff);
+    parts.push_back(1 / ((1 + ratio) * (1 + ratio)));
+  }
+  return parts;
 }
+}  // namespace
 
 /// That of the solids themselves.
 template <int dim>
 RCP<Vector> Stepper<dim>::midpoint_correction(double dt) const {
-  const RCP<Vector> correction = make_vector(components_.solids->map());
-  components_.solids->add_midpoint_correction(dt, *correction);
-  if (components_.solids->has_implicit_forces()) {
-    const std::vector<double> parts(components_.solids->solids().size(), resolved_part(dt));
-    UnlinearBodies<dim>(*components_.solids).scale(parts, *correction);
+  const auto& solids = *components_.solids;
+  const RCP<Vector> correction = make_vector(solids.map());
+  solids.add_midpoint_correction(dt, *correction);
+  if (solids.has_implicit_forces()) {
+    const UnlinearBodies<dim> bodies(solids);
+    bodies.scale(resolved_parts(solids, bodies, components_.coupling->added_mass(), dt),
+                 *correction);
   }
   return correction;
 }
@@ -106,12 +117,10 @@ template CoupledSolution Stepper<2>::solve_newton(const StepContext<2>&, const R
                                                   SolveReport&, double&, const BlockVector*);
 template CoupledSolution Stepper<3>::solve_newton(const StepContext<3>&, const RCP<Vector>&,
                                                   SolveReport&, double&, const BlockVector*);
-template double Stepper<2>::resolved_part(double) const;
 template RCP<Vector> Stepper<2>::midpoint_correction(double) const;
 template ContactReport<2> Stepper<2>::settled_momentum(const StepContext<2>&, Vector&);
 template CoupledSolution Stepper<2>::solve_settled(const StepContext<2>&, const RCP<Vector>&,
                                                    StepReport<2>&);
-template double Stepper<3>::resolved_part(double) const;
 template RCP<Vector> Stepper<3>::midpoint_correction(double) const;
 template ContactReport<3> Stepper<3>::settled_momentum(const StepContext<3>&, Vector&);
 template CoupledSolution Stepper<3>::solve_settled(const StepContext<3>&, const RCP<Vector>&,

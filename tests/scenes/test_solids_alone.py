@@ -52,6 +52,13 @@ class SolidsAlone(unittest.TestCase):
             energy = self.elastic_energies(solids, .02, .02, upper=1.5, cells=40)[-1]
             self.assertAlmostEqual(energy, alone, delta=.02 * alone)
 
+    def test_blocks_that_swing_are_damped_as_they_would_be(self):
+        swings = block((-.4, 0.), 1e6, **{"Vortices": {"Amplitude": .5, "Wavelength": .4}})
+        alone = self.elastic_energies({"A": swings}, .01, .1)
+        for solids in ({"A": swings, "B": ball(5e3)}, {"A": {**swings, "Velocity": (0., 3.)}}):
+            for one, other in zip(alone, self.elastic_energies(solids, .01, .1)):
+                self.assertAlmostEqual(other, one, delta=.02 * max(alone))
+
 
 if __name__ == "__main__":
     unittest.main()
