@@ -54,6 +54,8 @@ ParameterList strategy_list(const std::string& file, const StrategyRegistry& str
   const bool is_given = nested && document.list.isType<double>("Tolerance");
   if (is_given)
     tolerance = document.list.get<double>("Tolerance");
+  check_input(tolerance > 0 && tolerance < 1, "{}: \"Tolerance\" {} must lie between 0 and 1.",
+              file, tolerance);
   Document strategy{ParameterList(), document.source};
   strategy.list.sublist("Strategy") = nested ? document.list.sublist("Strategy") : document.list;
   const bool has_own = strategy.list.sublist("Strategy").isParameter("Tolerance");

@@ -13,9 +13,9 @@ ParameterList contact_parameters() {
   declare_positive(list, "Iterations", usual.sweeps,
                    "Sweeps of projected Gauss-Seidel over the final set of contacts, at most; an "
                    "eighth of it while the set grows.");
-  declare_positive(list, "Tolerance", usual.tolerance,
-                   "Sweeps end when velocities at contacts change by less than this part of the "
-                   "largest change that contact asks for [1].");
+  declare_tolerance(list, "Tolerance", usual.tolerance,
+                    "Sweeps end when velocities at contacts change by less than this part of the "
+                    "largest change that contact asks for [1].");
   declare_positive(list, "Margin", usual.margin,
                    "Gap below which surfaces are watched whatever their motion [cells]. Faster "
                    "motion is followed along its path.");

@@ -6,8 +6,8 @@ namespace lockstep {
 
 void declare_viscous_solve(ParameterList& solver) {
   const ViscousOptions standard;
-  declare_positive(solver, "Viscous Tolerance", standard.tolerance,
-                   "Relative residual of the viscous solve [1].");
+  declare_tolerance(solver, "Viscous Tolerance", standard.tolerance,
+                    "Relative residual of the viscous solve [1].");
   ParameterList& list =
       declare_list(solver, "Viscous Solve",
                    "How implicit viscosity is solved, for the fluid and the solids together: "

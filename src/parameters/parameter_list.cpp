@@ -160,6 +160,14 @@ void declare_between(ParameterList& list, const std::string& name, int value, in
   declare(list, name, value, doc);
   set_between(list, name, lower, upper);
 }
+void declare_tolerance(ParameterList& list, const std::string& name, double value,
+                       const std::string& doc) {
+  declare_positive(list, name, value, doc);
+  change_rule(list, name, [](ValueRule& rule) {
+    rule.upper = 1;
+    rule.upper_excluded = true;
+  });
+}
 void declare_required_positive(ParameterList& list, const std::string& name,
                                const std::string& doc) {
   declare_required<double>(list, name, doc);

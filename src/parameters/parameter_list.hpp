@@ -72,6 +72,9 @@ void declare_between(ParameterList& list, const std::string& name, double value,
                      double upper, const std::string& doc);
 void declare_between(ParameterList& list, const std::string& name, int value, int lower, int upper,
                      const std::string& doc);
+/// Greater than 0 and less than 1: of tolerances, which a solve that does nothing must not keep.
+void declare_tolerance(ParameterList& list, const std::string& name, double value,
+                       const std::string& doc);
 void declare_required_positive(ParameterList& list, const std::string& name,
                                const std::string& doc);
 

@@ -77,7 +77,8 @@ std::string ValueRule::bounds() const {
     text = fmt::format(lower_excluded ? "greater than {}" : "at least {}", number_text(*lower));
   }
   if (upper)
-    text += fmt::format("{}at most {}", lower ? " and " : "", number_text(*upper));
+    text += fmt::format("{}{} {}", lower ? " and " : "", upper_excluded ? "less than" : "at most",
+                        number_text(*upper));
   return text;
 }
 
@@ -100,7 +101,8 @@ std::string ValueRule::violation(const ParameterEntry& entry) const {
   }
   for (const double number : numbers(entry)) {
     const bool low = lower && (lower_excluded ? !(number > *lower) : !(number >= *lower));
-    if (low || (upper && !(number <= *upper))) {
+    const bool high = upper && (upper_excluded ? !(number < *upper) : !(number <= *upper));
+    if (low || high) {
       return fmt::format("is {}, but must be {}", shortened(value_text(entry)), bounds());
     }
   }

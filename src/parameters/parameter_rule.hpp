@@ -43,7 +43,7 @@ class ValueRule : public Rule {
  public:
   Presence presence = Presence::has_default;
   std::optional<double> lower, upper;
-  bool lower_excluded = false;
+  bool lower_excluded = false, upper_excluded = false;
   std::vector<std::string> choices;
   int n_components = 0;  // 0: any
 

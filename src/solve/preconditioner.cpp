@@ -2,6 +2,7 @@
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "base/errors.hpp"
@@ -34,6 +35,10 @@ const std::vector<std::string> types = {"Ifpack2",
                                         "Additive Multilevel",
                                         "Conjugate Gradients",
                                         "Exact"};
+
+/// Beyond it a dense block takes 800 MB.
+constexpr int most_dense_rows = 10000;
+constexpr double least_tolerance = 1e-15, largest_tolerance = 0.5;
 
 bool is_package(const std::string& type) {
   return type == "Ifpack2" || type == "MueLu";
@@ -84,25 +89,48 @@ RCP<const LinearOperator> inner_iteration(const RCP<const LinearOperator>& op,
 }
 
 void check_own(const ParameterList& list, const std::string& type, const std::string& where) {
+/// A parameter of our own lists: its type, and what it may be.
+struct OwnParameter {
+  std::string of, name;
+  bool is_int;
+  double lower, upper;
+};
+
+const std::vector<OwnParameter>& own_parameters() {
+  static const std::vector<OwnParameter> all = {
+      {"Block Diagonal", "Largest Block", true, 1, most_dense_rows},
+      {"Conjugate Gradients", "Tolerance", false, least_tolerance, largest_tolerance},
+      {"Conjugate Gradients", "Maximum Iterations", true, 1, std::numeric_limits<int>::max()}};
+  return all;
+}
+
   for (const auto& entry : list) {
     const std::string& name = entry.first;
-    const bool is_int = entry.second.isType<int>(), is_double = entry.second.isType<double>();
     if (type == "Conjugate Gradients" && name == "Preconditioner" && entry.second.isList()) {
       check_preconditioner_list(list.sublist(name), where + ", \"Preconditioner\"");
       continue;
     }
-    const bool fits = name == "Type" ||
-                      (type == "Block Diagonal" && name == "Largest Block" && is_int) ||
-                      (type == "Conjugate Gradients" && name == "Tolerance" && is_double) ||
-                      (type == "Conjugate Gradients" && name == "Maximum Iterations" && is_int);
-    check_input(fits, "{}: \"{}\" is not a parameter of type \"{}\", or not of the right type. {}",
-                where, name, type,
+    const auto own = std::find_if(
+        own_parameters().begin(), own_parameters().end(), [&](const OwnParameter& one) {
+          return one.of == type && one.name == name &&
+                 (one.is_int ? entry.second.isType<int>() : entry.second.isType<double>());
+        });
+    const bool is_own = own != own_parameters().end();
+    check_input(is_own || name == "Type",
+                "{}: \"{}\" is not a parameter of type \"{}\", or not of the right type. {}", where,
+                name, type,
                 type == "Block Diagonal" ? "It takes \"Largest Block\" (int)."
                 : type == "Conjugate Gradients"
                     ? "It takes \"Tolerance\" (double), \"Maximum Iterations\" (int) and the list "
                       "\"Preconditioner\"."
                     : "It takes none.");
   }
+    if (!is_own)
+      continue;
+    const double value = own->is_int ? list.get<int>(name) : list.get<double>(name);
+    check_input(value >= own->lower && value <= own->upper,
+                "{}: \"{}\" is {:g}, but must be between {:g} and {:g}.", where, name, value,
+                own->lower, own->upper);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ void declare_solver(ParameterList& scene, const StrategyRegistry& strategies) {
   declare(solver, "File", "",
           "A solver file (xml-params/solvers), relative to the scene; what the scene itself says "
           "wins.");
-  declare_positive(
+  declare_tolerance(
       solver, "Tolerance", 1e-8,
       "Residual of each block, scaled to its own right-hand side [1]. Left out: that of "
       "\"Strategy\" or of the solver file, if it has one; given, it wins over that.");

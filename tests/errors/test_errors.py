@@ -58,6 +58,12 @@ def source(shape, sizes):
       {value("Shape", "string", shape)} {sizes} {value("Velocity", "Array(double)", "{1, 0}")}</ParameterList></ParameterList>''')}
 
 
+def inverse_file(kind, more, where):
+    """A solver file whose strategy has this inverse."""
+    return {"inverse.xml": f'''<ParameterList name="Strategy"> {value("Type", "string", "schur-cg")}
+      <ParameterList name="{where}"> {value("Type", "string", kind)} {more} </ParameterList> </ParameterList>'''}
+
+
 CASES = [
     # The command line.
     Case("no such option", "--ouput", arguments=["--ouput", "here"]),
@@ -156,6 +162,16 @@ CASES = [
          change=(BODY_TYPE, value("Type", "string", "rigid boby"))),
     Case("an unknown fluid", "\"lattice boltzmann\"", sets=["Fluid/Type=lattice boltzmann"]),
     Case("an unknown strategy", ["\"schur\"", "one of"], sets=["Solver/Strategy/Type=schur"]),
+    *[Case(f"{name} of {number}", ["--set", f"is {number}, but must be greater than 0 and less than 1"],
+           sets=[f"Solver/{name}={number}"])
+      for name in ("Tolerance", "Viscous Tolerance", "Strategy/Tolerance") for number in ("0", "1", "1e30")],
+    *[Case(f"an inverse with {name} {number}", [expected],
+           sets=["Solver/File=inverse.xml"], files=inverse_file(kind, value(name, of, number), where))
+      for where, kind, name, of, number, expected in (
+          ("Solid Inverse", "Conjugate Gradients", "Tolerance", "double", "-1", '"Tolerance" is -1, but must be'),
+          ("Solid Inverse", "Conjugate Gradients", "Maximum Iterations", "int", "0", '"Maximum Iterations" is 0, but must be'),
+          ("Solid Inverse", "Block Diagonal", "Largest Block", "int", "-7", '"Largest Block" is -7, but must be'),
+          ("Pressure Inverse", "Multigrid", "Sweeps", "int", "2000000000", '"Sweeps" (int, from 1 to 100)'))],
     Case("a solver file that is not there", ["none.xml", "Cannot read"], sets=["Solver/File=none.xml"]),
     Case("a decimal comma in a formula", ["line", "\"1000*0,5\" is 2 numbers"],
          change=(DENSITY, value("Density", "double", "[1000*0,5]"))),

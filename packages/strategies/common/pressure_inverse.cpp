@@ -109,6 +109,8 @@ RCP<const CrsMatrix> with_filled_rows(const BlockSystem& system, const RCP<const
 namespace {
 
 const std::string list_name = "Pressure Inverse";
+/// More smooth no better than another cycle.
+constexpr int most_sweeps = 100;
 
 std::string type_of(const Teuchos::ParameterList& list) {
   return list.isType<std::string>("Type") ? list.get<std::string>("Type") : "";
@@ -118,14 +120,15 @@ void check_multigrid_list(const Teuchos::ParameterList& list) {
   for (const auto& entry : list) {
     const std::string& key = entry.first;
     const bool fits = key == "Type" ||
-                      (key == "Sweeps" && entry.second.isType<int>() && list.get<int>(key) > 0) ||
+                      (key == "Sweeps" && entry.second.isType<int>() && list.get<int>(key) > 0 &&
+                       list.get<int>(key) <= most_sweeps) ||
                       (key == "Cycle" && entry.second.isType<std::string>() &&
                        (list.get<std::string>(key) == "V" || list.get<std::string>(key) == "W"));
     check_input(
         fits,
         "\"{}\": \"{}\" is not a parameter of type \"Multigrid\", or has a value that it "
-        "cannot have. It takes \"Sweeps\" (int, at least 1) and \"Cycle\" (string, V or W).",
-        list_name, key);
+        "cannot have. It takes \"Sweeps\" (int, from 1 to {}) and \"Cycle\" (string, V or W).",
+        list_name, key, most_sweeps);
   }
 }
 

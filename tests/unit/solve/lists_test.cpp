@@ -141,6 +141,17 @@ TEST(Preconditioner, BadListsAreRefused) {
                         typed("MueLoo") + "</ParameterList>"),
               HasSubstr("here, \"Preconditioner\": there is no inverse of type \"MueLoo\""));
   EXPECT_THAT(complaint(""), HasSubstr("\"Type\" (string) is missing"));
+  const auto with = [&](const char* type, const char* name, const char* kind, const char* value) {
+    return complaint(typed(type) + "<Parameter name=\"" + name + "\" type=\"" + kind +
+                     "\" value=\"" + value + "\"/>");
+  };
+  EXPECT_THAT(with("Block Diagonal", "Largest Block", "int", "-1"),
+              HasSubstr("\"Largest Block\" is -1, but must be between 1 and 10000"));
+  for (const char* value : {"-1e-3", "0", "1"})
+    EXPECT_THAT(with("Conjugate Gradients", "Tolerance", "double", value),
+                HasSubstr("but must be between 1e-15 and 0.5"));
+  EXPECT_THAT(with("Conjugate Gradients", "Maximum Iterations", "int", "0"),
+              HasSubstr("\"Maximum Iterations\" is 0"));
   EXPECT_THAT(complaint(typed("Jacobi") + R"(<Parameter name="Omega" type="double" value="1"/>)"),
               HasSubstr("\"Omega\" is not a parameter"));
   EXPECT_THAT(complaint(ifpack2("RILUK", R"(<Parameter name="fact: fil" type="int" value="0"/>)")),
