@@ -2,6 +2,7 @@
 
 #include <Tpetra_Core.hpp>
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "base/errors.hpp"
@@ -17,11 +18,19 @@
 namespace lockstep {
 namespace {
 
+/// A script's division by zero is told where it was, not steps later by a solve.
+void check_finite(const std::vector<double>& values, const char* what, const std::string& name) {
+  for (const double value : values)
+    check_input(std::isfinite(value), "The {} of \"{}\" holds {}, but must be finite.", what, name,
+                value);
+}
+
 template <typename Vector>
 Vector vector_of(const std::vector<double>& values, const char* what, const std::string& name) {
   check_input(static_cast<Eigen::Index>(values.size()) == Vector::SizeAtCompileTime,
               "The {} on \"{}\" has {} components; it takes {}.", what, name, values.size(),
               int(Vector::SizeAtCompileTime));
+  check_finite(values, what, name);
   return Eigen::Map<const Vector>(values.data());
 }
 
@@ -125,6 +134,8 @@ class SteppedRun : public AnyRun {
     auto* steered = solids().joints() ? side_of<SteeredJoints>(*solids().joints()) : nullptr;
     check_input(steered != nullptr, "The scene has no joints, so none that is called \"{}\".",
                 joint);
+    check_finite(q, "target", joint);
+    check_finite(rate, "rate", joint);
     steered->set_target(joint, time(), q, rate);
   }
 

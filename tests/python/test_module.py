@@ -92,6 +92,17 @@ class Module(unittest.TestCase):
             self.assertEqual(float(text), row[name], name)
         self.assertIn('"done"', (self.root / "run" / "summary.json").read_text())
 
+    def test_one_run_at_a_time_in_a_folder(self):
+        """Also in one program; a run that was closed, or has failed, leaves the folder to another."""
+        with self.open(tank()) as run:
+            run.step()
+            with self.assertRaisesRegex(lockstep.InputError, "Another run writes to"):
+                self.open(tank())
+        with self.assertRaisesRegex(RuntimeError, "not today"), self.open(tank()):
+            raise RuntimeError("not today")
+        with self.open(tank()) as run:
+            self.assertTrue(run.step())
+
     def test_force_and_torque_move_a_body_in_vacuum(self):
         inertia = 2 * 1.04 / 12
         for dimension, torque in ((2, .5), (3, (0., 0., .5))):
@@ -122,6 +133,9 @@ class Module(unittest.TestCase):
                  "Target": {"Type": "constant"}}
         scene = tank(solids={"Box": unseen_box()}, Joints={"Hinge": joint}, Contact={"Type": "none"})
         with self.open(scene) as run:
+            for target in ((math.nan, 0.), (0., math.inf)):
+                with self.assertRaisesRegex(lockstep.InputError, '(target|rate) of "Hinge" holds (nan|inf)'):
+                    run.set_target("Hinge", *target)
             run.set_target("Hinge", .1, 2.)
             while run.step():
                 state, = run.joints()["Hinge"]
@@ -284,6 +298,8 @@ class Module(unittest.TestCase):
                                    (lambda: run.set_force("Given", (0., 0.)), "prescribed"),
                                    (lambda: run.set_target("Knee", np.float32(0)), "no joints"),
                                    (lambda: run.set_force("Ball", "up"), "neither a number"),
+                                   (lambda: run.set_force("Ball", (0., math.nan)), 'force of "Ball" holds nan'),
+                                   (lambda: run.set_force("Ball", (0., 0.), math.inf), 'torque of "Ball" holds inf'),
                                    (lambda: run.sample(np.zeros((1, 3))), "3 coordinates")):
                 with self.assertRaisesRegex(lockstep.InputError, sentence):
                     call()
