@@ -26,9 +26,11 @@ std::string checkpoint_path(const std::string& directory, long long step) {
   return fmt::format("{}/checkpoint-{:06}.h5", directory, step);
 }
 
-/// Steps of the checkpoints in a folder, with their files.
-std::map<long long, fs::path> checkpoints_in(const std::string& directory) {
-  static const std::regex pattern("checkpoint-([0-9]{1,18})\\.h5");
+/// Steps of the checkpoints in a folder, or of those that killed runs have left half-written, with
+/// their files.
+std::map<long long, fs::path> checkpoints_in(const std::string& directory, bool whole = true) {
+  const std::regex pattern(whole ? "checkpoint-([0-9]{1,18})\\.h5"
+                                 : "checkpoint-([0-9]{1,18})\\.h5\\.part");
   std::map<long long, fs::path> found;
   std::error_code error;
   for (const fs::directory_entry& item : fs::directory_iterator(directory, error)) {
@@ -299,13 +301,15 @@ void discard_checkpoints_after(const Communicator& comm, const std::string& dire
                                long long step) {
   std::string message;
   if (is_root(comm)) {
-    const std::map<long long, fs::path> found = checkpoints_in(directory);
-    for (auto later = found.upper_bound(step); later != found.end(); ++later) {
-      std::error_code error;
-      fs::remove(later->second, error);
-      if (error) {
-        message = fmt::format("Cannot remove the obsolete checkpoint '{}': {}.",
-                              later->second.string(), error.message());
+    std::map<long long, fs::path> obsolete = checkpoints_in(directory);
+    obsolete.erase(obsolete.begin(), obsolete.upper_bound(step));
+    std::error_code error;
+    for (const auto& files : {obsolete, checkpoints_in(directory, false)}) {
+      for (const auto& [number, file] : files) {
+        fs::remove(file, error);
+        if (error)
+          message = fmt::format("Cannot remove the obsolete checkpoint '{}': {}.", file.string(),
+                                error.message());
       }
     }
   }

@@ -9,12 +9,10 @@
 #include "interfaces/limited_torques.hpp"
 #include "interfaces/liquid.hpp"
 #include "output/checkpoint.hpp"
-#include "output/on_root.hpp"
 #include "output/run_record.hpp"
 #include "output/signals.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/write.hpp"
-#include "stepping/restart_check.hpp"
 #include "stepping/surface_frames.hpp"
 
 namespace lockstep {
@@ -130,56 +128,6 @@ double Simulation<dim>::fraction_done() const {
 }
 
 template <int dim>
-void Simulation<dim>::begin_outputs() {
-  files_ = checksums_of_files(scene_, options_.scene_file, comm_);
-  // What does not fit must not leave anything behind, nor take anything away.
-  if (!options_.restart_file.empty()) {
-    load_checkpoint();
-    tables_.check_columns();
-    observers_.check_columns();
-  }
-  fraction_at_begin_ = fraction_done();
-  create_output_directory(comm_, options_.output_directory);
-  lock_folder();
-  record_input(comm_, options_.output_directory, options_.scene_file, to_xml(scene_));
-  header_ = run_header(comm_, options_.command_line);
-  write_summary(comm_, options_.output_directory, unfinished_summary("running", "", header_));
-  recorded([&] { begin_tables(); });
-  first_step_ = step_;
-  last_checkpoint_ = stepper_->time();
-}
-
-template <int dim>
-void Simulation<dim>::lock_folder() {
-  constexpr double seconds_to_wait = 2;  // for ranks of an mpirun that was killed just now
-  on_root(comm_, [&] {
-    folder_lock_ = FolderLock::take(options_.output_directory, seconds_to_wait);
-    check_input(folder_lock_ != nullptr,
-                "Another run writes to '{}': wait for it, end it or choose another --output.",
-                options_.output_directory);
-  });
-}
-
-template <int dim>
-void Simulation<dim>::begin_tables() {
-  if (options_.restart_file.empty()) {
-    discard_checkpoints_after(comm_, options_.output_directory, -1);
-    tables_.start();
-    if (!observers_.empty())
-      observers_.start(step_, view(components_.solids->states()));
-    frames_.start();
-    if (scene_options_.output.frames)
-      write_frame();
-  } else {
-    discard_checkpoints_after(comm_, options_.output_directory, step_);
-    tables_.resume(step_);
-    observers_.resume(step_);
-    frames_.resume(stepper_->time());
-    last_frame_ = frames_.n_frames() > 0 ? frames_.last_time() : -1e300;
-  }
-}
-
-template <int dim>
 RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) const {
   const bool has_energy = report_ && report_->energy;
   return {stepper_->time(), last_dt_, *components_.fluid, states,
@@ -223,17 +171,6 @@ void Simulation<dim>::write_checkpoint() {
 }
 
 template <int dim>
-void Simulation<dim>::load_checkpoint() {
-  CheckpointReader checkpoint(comm_, options_.restart_file);
-  check_same_scene(scene_, files_, checkpoint.header(), options_.restart_file);
-  for_each_plug_in(components_, [&](PlugIn& plug_in) { plug_in.load(checkpoint); });
-  observers_.load(checkpoint);
-  step_ = checkpoint.header().step;
-  last_dt_ = checkpoint.file().read_attribute<double>("/", "last dt");
-  stepper_->resume(checkpoint.header().time, last_dt_, step_);
-}
-
-template <int dim>
 bool Simulation<dim>::take_step(double dt) {
   ScopedPhase phase(timers_, "step");
   try {
@@ -273,6 +210,7 @@ template <int dim>
 void Simulation<dim>::begin() {
   start_ = Clock::now();
   begin_outputs();
+  recorded([&] { begin_tables(); });
 }
 
 template <int dim>

@@ -259,6 +259,37 @@ class Faults(unittest.TestCase):
                               *(word for setting in others for word in ("--set", setting)))
             self.assertEqual(result.returncode, 0, result.stderr)
 
+    def test_what_an_earlier_run_has_left(self):
+        """Halves of checkpoints go; a run that begins anew removes tables of observers and joints that it has not."""
+        joint = """<ParameterList name="Joints"> <ParameterList name="Neck"> <Parameter name="Type" type="string" value="hinge"/>
+          <Parameter name="Solids" type="Array(string)" value="{space, Ball}"/>
+          <Parameter name="Point" type="Array(double)" value="{0.5, 0.5}"/> </ParameterList> </ParameterList>"""
+        jointed = with_gauges("old", "kept").replace('  <ParameterList name="Time">', joint + '  <ParameterList name="Time">')
+        with tempfile.TemporaryDirectory() as folder:
+            output = Path(folder) / "output"
+            self.assertEqual(simulate(folder, "--steps", 3, scene=jointed).returncode, 0)
+            for name in ("old.csv", "kept.csv", "joints.csv"):
+                self.assertTrue((output / name).exists(), name)
+            mine = [output / name for name in ("mine.csv", "checkpoint-1.h5.part.txt", "my checkpoint-1.h5.part")]
+            half = [output / f"checkpoint-{step}.h5.part" for step in ("000001", "000009")]
+            for path in (*mine, *half):
+                path.write_text("text")
+            result = simulate(folder, "--restart", newest_checkpoint(folder), "--steps", 4,
+                              scene=jointed.replace('"old"', '"other"'))
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertFalse([path for path in half if path.exists()])
+            self.assertTrue((output / "old.csv").exists(), "rows of the run that goes on")
+            half[1].write_text("text")
+            result = simulate(folder, "--steps", 2, scene=with_gauges("kept"))
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertFalse(half[1].exists())
+            self.assertEqual([row["step"] for row in read_table(output / "kept.csv")], ["0", "1", "2"])
+            for name in ("joints.csv", "other.csv"):
+                self.assertFalse((output / name).exists(), name)
+            for path in mine:
+                self.assertEqual(path.read_text(), "text")
+            self.assertTrue((output / "old.csv").exists(), "no record names it any more")
+
     def test_an_observer_that_is_new_at_a_restart(self):
         """It looks from the next step on; the one that was there goes on."""
         with tempfile.TemporaryDirectory() as folder:
