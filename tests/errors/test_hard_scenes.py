@@ -86,6 +86,21 @@ class HardScenes(unittest.TestCase):
                     rows, _ = self.run_scene(scene(solids={"Mover": solid}, coupling=coupling), "--steps", 30)
                     self.assertEqual(len(rows), 30)
 
+    def test_a_solid_fills_the_whole_domain(self):
+        """There is no pressure to solve for, with whatever strategy."""
+        inverses = [{"Type": kind, **({"Prec Type": "RILUK"} if kind == "Ifpack2" else {})}
+                    for kind in ("Direct", "Incomplete Cholesky", "MueLu", "Multigrid", "Ifpack2", "Jacobi")]
+        kinds = ("schur-cg", "paper", "pressure-schur", "solid-schur", "block-lu", "gauss-seidel", "simple",
+                 "bramble-pasciak", "uzawa", "block-elimination", "direct")
+        strategies = [{"Type": kind} for kind in kinds] + [{"Type": "schur-cg", "Pressure Inverse": one} for one in inverses]
+        still = {"Type": "rigid body", "Geometry": box(1.4, 1.4), "Position": (.5, .5), "Motion": {"Type": "static"}}
+        free = {"Type": "rigid body", "Geometry": box(.999, .999), "Position": (.5, .5), "Density": 500.}
+        for solid in (still, free):
+            for strategy in strategies:
+                with self.subTest(strategy=strategy, free=solid is free):
+                    rows, _ = self.run_scene(scene(solids={"Plug": solid}, Solver={"Strategy": strategy}), "--steps", 2)
+                    self.assertEqual(len(rows), 2)
+
     def test_openings_of_one_area_balance(self):
         opening = {"Opening": {"Lower": (0., .31), "Upper": (1., .48)}}
         other = {"Opening": {"Lower": (0., .52), "Upper": (1., .69)}, "Profile": "parabolic"}

@@ -133,6 +133,13 @@ int RefinedStrategy::pressure_cg(const BlockSystem& system, const CorrectionRequ
                              *request.residual, correction, cg);
 }
 
+namespace {
+/// A solid may fill the whole domain; V_S is back-substituted, and there is no more to do.
+bool has_pressures(const BlockSystem& system) {
+  return domain_map(*system.pressure.op)->getGlobalNumElements() > 0;
+}
+}  // namespace
+
 bool RefinedStrategy::geometry_matches(const BlockSystem& system) const {
   return is_prepared_ && prepared_.geometry_stamp == system.geometry_stamp &&
          prepared_.system_name == system.name &&
@@ -229,7 +236,7 @@ void RefinedStrategy::relay(const BlockSystem& system) {
 bool RefinedStrategy::is_ready(const BlockSystem& system) const {
   const bool is_relaid = !layout_ || !working(system).pressure.op.is_null();
   return geometry_matches(system) && solid_matches(system) && is_relaid &&
-         is_built_for(working(system));
+         (!has_pressures(system) || is_built_for(working(system)));
 }
 
 void RefinedStrategy::prepare(const BlockSystem& system) {
@@ -244,11 +251,13 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
   if (geometry_changed) {
     solid_.reset();
     relaid_ = relaid_pressure_ = {};
-    if (pressure_list_)
+    layout_ = has_pressures(system) ? layout_ : nullptr;
+    if (pressure_list_ && has_pressures(system))
       build_pressure_inverse(system);
   }
   const bool inverse_changed =
-      geometry_changed || (solid_changed && pressure_list_ && update_pressure_inverse(system));
+      geometry_changed || (solid_changed && pressure_list_ && has_pressures(system) &&
+                           update_pressure_inverse(system));
   if (solid_changed) {
     solid_.build(system);
     solid_gain_ = -1;
@@ -258,7 +267,8 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
     if (inverts_schur() && system.has_solid() && (solid_changed || !layout_->has_schur_inverse()))
       layout_->build_schur_inverse(system, *solid_.to(rough));
   }
-  build(working(system), inverse_changed, solid_changed);
+  if (has_pressures(system))
+    build(working(system), inverse_changed, solid_changed);
   solid_.restart_count(0);
   prepared_.system_name = system.name;
   prepared_.geometry_stamp = system.geometry_stamp;

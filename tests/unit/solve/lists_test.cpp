@@ -7,6 +7,8 @@
 
 #include "base/errors.hpp"
 #include "conformance/saddle_problem.hpp"
+#include "linear/matrix_rows.hpp"
+#include "solve/gathered_direct.hpp"
 #include "solve/preconditioner.hpp"
 #include "solve/solve_with_stratimikos.hpp"
 #include "solve/solver_list.hpp"
@@ -129,6 +131,15 @@ TEST(Preconditioner, UnsymmetricSmootherIsCaught) {
       "test");
   EXPECT_GT(symmetry_defect(*forward), 1e-3);
   EXPECT_THROW(check_symmetric_positive(*forward, "test"), SolveError);
+}
+
+/// Where a solid fills the whole domain.
+TEST(Preconditioner, NoUnknownsNeedNoFactors) {
+  const auto none = rcp(new Map(0, 0, Tpetra::getDefaultComm()));
+  const auto direct = gathered_direct(matrix_from_rows(none, {}), "nothing");
+  Vector x(none), y(none);
+  apply(*direct, x, y);
+  EXPECT_EQ(y.getGlobalLength(), 0u);
 }
 
 TEST(Preconditioner, BadListsAreRefused) {
