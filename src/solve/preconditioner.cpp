@@ -44,10 +44,11 @@ bool is_package(const std::string& type) {
   return type == "Ifpack2" || type == "MueLu";
 }
 
-std::string type_of(const ParameterList& list, const std::string& where) {
+std::string type_of(const ParameterList& list, const std::string& where,
+                    const std::vector<std::string>& offered = types) {
   check_input(list.isType<std::string>("Type"),
               "{}: the parameter \"Type\" (string) is missing; it is one of {}.", where,
-              fmt::join(types, ", "));
+              fmt::join(offered, ", "));
   return list.get<std::string>("Type");
 }
 
@@ -88,7 +89,6 @@ RCP<const LinearOperator> inner_iteration(const RCP<const LinearOperator>& op,
   return conjugate_gradient_inverse(op, {inner, Teuchos::null, tolerance, most, name, nullptr});
 }
 
-void check_own(const ParameterList& list, const std::string& type, const std::string& where) {
 /// A parameter of our own lists: its type, and what it may be.
 struct OwnParameter {
   std::string of, name;
@@ -104,6 +104,7 @@ const std::vector<OwnParameter>& own_parameters() {
   return all;
 }
 
+void check_own(const ParameterList& list, const std::string& type, const std::string& where) {
   for (const auto& entry : list) {
     const std::string& name = entry.first;
     if (type == "Conjugate Gradients" && name == "Preconditioner" && entry.second.isList()) {
@@ -124,25 +125,28 @@ const std::vector<OwnParameter>& own_parameters() {
                     ? "It takes \"Tolerance\" (double), \"Maximum Iterations\" (int) and the list "
                       "\"Preconditioner\"."
                     : "It takes none.");
-  }
     if (!is_own)
       continue;
     const double value = own->is_int ? list.get<int>(name) : list.get<double>(name);
     check_input(value >= own->lower && value <= own->upper,
                 "{}: \"{}\" is {:g}, but must be between {:g} and {:g}.", where, name, value,
                 own->lower, own->upper);
+  }
 }
 
 }  // namespace
 
-void check_preconditioner_list(const ParameterList& list, const std::string& where) {
-  const std::string type = type_of(list, where);
-  const std::string nearest = nearest_name(type, types);
+void check_preconditioner_list(const ParameterList& list, const std::string& where,
+                               const std::vector<std::string>& others) {
+  std::vector<std::string> offered = others;
+  offered.insert(offered.end(), types.begin(), types.end());
+  const std::string type = type_of(list, where, offered);
+  const std::string nearest = nearest_name(type, offered);
   check_input(std::find(types.begin(), types.end(), type) != types.end(),
               "{}: there is no inverse of type \"{}\".{} There are: {}.", where, type,
               nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest),
-              fmt::join(types, ", "));
-  check_input(type != "Ifpack2" || list.isParameter("Prec Type"),
+              fmt::join(offered, ", "));
+  check_input(type != "Ifpack2" || list.isType<std::string>("Prec Type"),
               "{}: type \"Ifpack2\" needs the parameter \"Prec Type\" (string), one of its "
               "preconditioners; \"Incomplete Cholesky\" needs none.",
               where);
@@ -205,10 +209,10 @@ void declare_inverse(ParameterList& list, const std::string& name, const std::st
 }
 
 ParameterList inverse_list(const ParameterList& list, const std::string& name,
-                           const ParameterList& standard) {
+                           const ParameterList& standard, const std::vector<std::string>& others) {
   if (!list.isSublist(name) || list.sublist(name).numParams() == 0)
     return standard;
-  check_preconditioner_list(list.sublist(name), "\"" + name + "\"");
+  check_preconditioner_list(list.sublist(name), "\"" + name + "\"", others);
   return list.sublist(name);
 }
 

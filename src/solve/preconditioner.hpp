@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "linear/soft_nodes.hpp"
 #include "parameters/parameter_list.hpp"
@@ -35,15 +36,17 @@ RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
                                            const SoftNodes& soft_nodes, const std::string& name);
 
 /// Throws InputError unless the list is one that preconditioner_from_list takes. `where` is for
-/// messages.
-void check_preconditioner_list(const Teuchos::ParameterList& list, const std::string& where);
+/// messages, and so are the types that the caller takes besides.
+void check_preconditioner_list(const Teuchos::ParameterList& list, const std::string& where,
+                               const std::vector<std::string>& others = {});
 
 /// Declares a sublist that preconditioner_from_list reads.
 void declare_inverse(ParameterList& list, const std::string& name, const std::string& doc);
 
 /// The sublist `name` of `list`, or `standard` if it is absent or
-/// empty. Throws InputError if preconditioner_from_list would not take it.
+/// empty. Throws InputError if preconditioner_from_list would not take it; `others`: as above.
 ParameterList inverse_list(const ParameterList& list, const std::string& name,
-                           const ParameterList& standard);
+                           const ParameterList& standard,
+                           const std::vector<std::string>& others = {});
 
 }  // namespace lockstep

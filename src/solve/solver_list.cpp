@@ -1,5 +1,6 @@
 #include "solve/solver_list.hpp"
 
+#include <Ifpack2_Factory.hpp>
 #include <Ifpack2_Parameters.hpp>
 #include <Stratimikos_DefaultLinearSolverBuilder.hpp>
 #include <Tpetra_Core.hpp>
@@ -62,6 +63,15 @@ void check_muelu(const ParameterList& list, const std::string& where) {
 
 void check_ifpack2(const ParameterList& list, const std::string& where) {
   check_names(list, {"Type", "Prec Type", "Overlap", "Ifpack2 Settings", "VerboseObject"}, where);
+  if (list.isParameter("Prec Type")) {
+    const bool is_text = list.isType<std::string>("Prec Type");
+    const std::string type = is_text ? list.get<std::string>("Prec Type") : "";
+    check_input(
+        is_text && Ifpack2::Factory::isSupported<Tpetra::RowMatrix<double, int, GlobalIndex>>(type),
+        "{}: \"Prec Type\" is {}, which is no preconditioner of this Ifpack2; RELAXATION, "
+        "CHEBYSHEV, RILUK, ILUT and BLOCK_RELAXATION are.",
+        where, is_text ? "\"" + type + "\"" : "no string");
+  }
   if (!list.isSublist("Ifpack2 Settings"))
     return;
   ParameterList known;

@@ -171,7 +171,12 @@ CASES = [
           ("Solid Inverse", "Conjugate Gradients", "Tolerance", "double", "-1", '"Tolerance" is -1, but must be'),
           ("Solid Inverse", "Conjugate Gradients", "Maximum Iterations", "int", "0", '"Maximum Iterations" is 0, but must be'),
           ("Solid Inverse", "Block Diagonal", "Largest Block", "int", "-7", '"Largest Block" is -7, but must be'),
-          ("Pressure Inverse", "Multigrid", "Sweeps", "int", "2000000000", '"Sweeps" (int, from 1 to 100)'))],
+          ("Pressure Inverse", "Multigrid", "Sweeps", "int", "2000000000", '"Sweeps" (int, from 1 to 100)'),
+          ("Pressure Inverse", "Ifpack2", "Prec Type", "string", "RILUKK", '"Prec Type" is "RILUKK"'))],
+    *[Case(f"a misspelt inverse {kind}", expected, sets=["Solver/File=inverse.xml"], files=inverse_file(kind, "", where))
+      for where, kind, expected in (
+          ("Pressure Inverse", "Mutligrid", ["Did you mean \"Multigrid\"", "There are: Automatic, Multigrid, Ifpack2"]),
+          ("Solid Inverse", "Automtic", ["Did you mean \"Automatic\""]))],
     Case("a solver file that is not there", ["none.xml", "Cannot read"], sets=["Solver/File=none.xml"]),
     Case("a decimal comma in a formula", ["line", "\"1000*0,5\" is 2 numbers"],
          change=(DENSITY, value("Density", "double", "[1000*0,5]"))),

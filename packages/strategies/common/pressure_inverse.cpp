@@ -150,7 +150,7 @@ Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
   const Teuchos::ParameterList& given = list.sublist(list_name);
   const std::string type = type_of(given);
   if (type != "Multigrid" && type != "Automatic")
-    return inverse_list(list, list_name, standard);
+    return inverse_list(list, list_name, standard, {"Automatic", "Multigrid"});
   if (type == "Multigrid")
     check_multigrid_list(given);
   else

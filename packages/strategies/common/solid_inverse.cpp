@@ -57,7 +57,7 @@ SolidInverse::SolidInverse(const ParameterList& list) {
     return;
   list_ = list.sublist("Solid Inverse");
   if (!is_own_type(list_))
-    check_preconditioner_list(list_, "\"Solid Inverse\"");
+    check_preconditioner_list(list_, "\"Solid Inverse\"", {"Automatic"});
   type_ = list_.get<std::string>("Type");
 }
 

@@ -152,6 +152,9 @@ TEST(Preconditioner, BadListsAreRefused) {
                         typed("MueLoo") + "</ParameterList>"),
               HasSubstr("here, \"Preconditioner\": there is no inverse of type \"MueLoo\""));
   EXPECT_THAT(complaint(""), HasSubstr("\"Type\" (string) is missing"));
+  EXPECT_THAT(complaint(ifpack2("RILUKK", "")),
+              HasSubstr("\"Prec Type\" is \"RILUKK\", which is no preconditioner"));
+  EXPECT_THAT(complaint(ifpack2("Relaxation", "")), HasSubstr("nothing was thrown"));
   const auto with = [&](const char* type, const char* name, const char* kind, const char* value) {
     return complaint(typed(type) + "<Parameter name=\"" + name + "\" type=\"" + kind +
                      "\" value=\"" + value + "\"/>");
@@ -163,6 +166,11 @@ TEST(Preconditioner, BadListsAreRefused) {
                 HasSubstr("but must be between 1e-15 and 0.5"));
   EXPECT_THAT(with("Conjugate Gradients", "Maximum Iterations", "int", "0"),
               HasSubstr("\"Maximum Iterations\" is 0"));
+  const auto with_others = message_of<InputError>([] {
+    check_preconditioner_list(inverse(typed("Mutligrid")), "here", {"Automatic", "Multigrid"});
+  });
+  EXPECT_THAT(with_others,
+              HasSubstr("Did you mean \"Multigrid\"? There are: Automatic, Multigrid, "));
   EXPECT_THAT(complaint(typed("Jacobi") + R"(<Parameter name="Omega" type="double" value="1"/>)"),
               HasSubstr("\"Omega\" is not a parameter"));
   EXPECT_THAT(complaint(ifpack2("RILUK", R"(<Parameter name="fact: fil" type="int" value="0"/>)")),
