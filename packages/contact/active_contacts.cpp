@@ -114,7 +114,7 @@ void ContactProblem<dim>::extend_search(const std::vector<double>& velocity) {
     farther = farther || !known.contains(motion.range(i));
   }
   if (farther)
-    add_candidates(motion, SolidMotion<dim>(system_, shapes_, before_));
+    add_candidates(motion, SolidMotion<dim>(system_, shapes_, before_), false);
 }
 
 template <int dim>
@@ -168,7 +168,8 @@ std::vector<Contact<dim>> ContactProblem<dim>::impacts_of(
   if (!follows_impacts())
     return contacts;
   const SolidMotion<dim> motion(system_, shapes_, velocity);
-  const SurfacePath<dim> path(shapes_, motion, dt_);
+  SurfacePath<dim> path(shapes_, motion, dt_);
+  path.unheld = unheld_;
   for (const FoundImpact<dim>& found : find_impacts(shapes_, path, options_.self_contact)) {
     const double apart = clearance_between(found.pair.solid, found.pair.other);
     contacts.push_back(impact_contact(shapes_, motion, path, found, apart, dt_));

@@ -167,8 +167,10 @@ double ContactProblem<dim>::worst_violation(const SolidMotion<dim>& motion,
 
 template <int dim>
 void ContactProblem<dim>::add_candidates(const SolidMotion<dim>& motion,
-                                         const SolidMotion<dim>& before) {
-  for (Contact<dim>& contact : find_contacts(shapes_, motion, walls_, reach(motion))) {
+                                         const SolidMotion<dim>& before, bool unheld) {
+  ContactReach look = reach(motion);
+  look.unheld = unheld;
+  for (Contact<dim>& contact : find_contacts(shapes_, motion, walls_, look)) {
     if (is_apart(contact) || is_known(contact))
       continue;
     Candidate candidate;
@@ -191,6 +193,8 @@ bool ContactProblem<dim>::prepare(const std::vector<double>& before,
   before_ = before;
   const SolidMotion<dim> motion(system_, shapes_, velocity);
   const SolidMotion<dim> motion_before(system_, shapes_, before);
+  if (follows_impacts())
+    unheld_ = SurfacePath<dim>(shapes_, motion, dt_).after;
   bool is_searched = expected || worst_violation(motion, motion_before) > 0;
   if (is_searched)
     add_candidates(motion, motion_before);

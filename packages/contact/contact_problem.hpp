@@ -31,6 +31,8 @@ class ContactProblem {
   int solve(ImpulseSolver<dim>& solver);
 
   double deepest_overlap() const;
+  /// See `SurfacePath`: of the velocities given to `prepare`; empty where it does not matter.
+  const std::vector<Point<dim>>& unheld() const { return unheld_; }
   /// Of limits of joints, by dof of a coordinate.
   std::vector<std::pair<GlobalIndex, double>> limit_impulses(
       const ImpulseSolver<dim>& solver) const;
@@ -64,7 +66,9 @@ class ContactProblem {
   /// True for what does not touch: pairs that are kept so, and where one is glued to the other.
   bool is_apart(const Contact<dim>& contact) const;
   bool is_known(const Contact<dim>& contact) const;
-  void add_candidates(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
+  /// `unheld`: nothing has acted on the motion yet.
+  void add_candidates(const SolidMotion<dim>& motion, const SolidMotion<dim>& before,
+                      bool unheld = true);
   double target(const Contact<dim>& contact, double normal_velocity, double before) const;
   double normal_velocity(const SolidMotion<dim>& motion, const Contact<dim>& contact) const;
   /// Geometric mean of a property of both sides.
@@ -110,6 +114,7 @@ class ContactProblem {
   double dt_;
   std::vector<double> half_thickness_;  ///< of the skin of each solid [m]
   std::vector<double> before_;
+  std::vector<Point<dim>> unheld_;
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed
   std::vector<Candidate> candidates_;
   std::vector<Contact<dim>> held_;

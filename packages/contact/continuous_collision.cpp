@@ -181,7 +181,8 @@ std::optional<ClosestPrimitives<dim>> closest_primitives(PrimitiveKind kind,
 
 template <int dim>
 std::optional<Impact<dim>> first_impact(PrimitiveKind kind, const PrimitivePoints<dim>& before,
-                                        const PrimitivePoints<dim>& after) {
+                                        const PrimitivePoints<dim>& after,
+                                        const SideAtStart<dim>& side) {
   for (const double time : roots_in_unit_interval(coplanarity(before, after))) {
     PrimitivePoints<dim> middle;
     for (int k = 0; k <= dim; ++k)
@@ -192,11 +193,20 @@ std::optional<Impact<dim>> first_impact(PrimitiveKind kind, const PrimitivePoint
     impact->time = time;
     const Point<dim> start = weighted<dim>(impact->weights, before);
     const Point<dim> motion = weighted<dim>(impact->weights, after) - start;
-    // What lies on each other at the start has no sides, and what slides does not cross.
     const double approach = impact->normal.dot(motion);
-    if (approach == 0 || start.norm() <= 1e-14 * (before[1] - before[2]).norm())
+    const double negligible = 1e-14 * (before[1] - before[2]).norm();
+    double out = -approach;  // what slides does not cross
+    if (start.norm() <= negligible) {
+      constexpr double steep = 0.5;
+      if (!side || std::abs(approach) <= negligible)
+        continue;
+      out = impact->normal.dot(side(impact->weights, impact->normal));
+      if (std::abs(out) < steep || out * approach >= 0)
+        continue;
+    }
+    if (out == 0)
       continue;
-    if (approach > 0)
+    if (out < 0)
       impact->normal = -impact->normal;
     return impact;
   }
@@ -208,8 +218,8 @@ template std::optional<ClosestPrimitives<2>> closest_primitives<2>(PrimitiveKind
 template std::optional<ClosestPrimitives<3>> closest_primitives<3>(PrimitiveKind,
                                                                    const PrimitivePoints<3>&);
 template std::optional<Impact<2>> first_impact<2>(PrimitiveKind, const PrimitivePoints<2>&,
-                                                  const PrimitivePoints<2>&);
+                                                  const PrimitivePoints<2>&, const SideAtStart<2>&);
 template std::optional<Impact<3>> first_impact<3>(PrimitiveKind, const PrimitivePoints<3>&,
-                                                  const PrimitivePoints<3>&);
+                                                  const PrimitivePoints<3>&, const SideAtStart<3>&);
 
 }  // namespace lockstep

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -48,10 +49,17 @@ struct Impact {
   PrimitiveWeights<dim> weights = PrimitiveWeights<dim>::Zero();
   Point<dim> normal = Point<dim>::Zero();  ///< of the second primitive, to the first one's side
 };
+/// The side of the second primitive on which the first one is, where they lie on each other at the
+/// start: a direction, or zero if nothing tells.
+template <int dim>
+using SideAtStart =
+    std::function<Point<dim>(const PrimitiveWeights<dim>&, const Point<dim>& normal)>;
 /// After Bridson et al. 2002: the points are coplanar (2D: collinear) at roots of a cubic (2D:
-/// quadratic) in time. Motion inside one plane is not an impact.
+/// quadratic) in time. Motion inside one plane is not an impact. What lies on each other at the
+/// start meets at once if it goes to the other side; without `side` it has none.
 template <int dim>
 std::optional<Impact<dim>> first_impact(PrimitiveKind kind, const PrimitivePoints<dim>& before,
-                                        const PrimitivePoints<dim>& after);
+                                        const PrimitivePoints<dim>& after,
+                                        const SideAtStart<dim>& side = {});
 
 }  // namespace lockstep

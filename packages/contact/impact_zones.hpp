@@ -22,10 +22,12 @@ struct ZonedMotion {
 /// positions, whose velocities are discarded); one with locked nodes moves as they do along the
 /// axes that are locked. With several rigid solids it moves as those that are prescribed do, in the
 /// mean; if none is, with the momentum of all. Bodies that joints keep from that stay where they
-/// are, and all their zone with them. Changes `velocity` (by id). Local; the same on all ranks.
+/// are, and all their zone with them. `unheld`: see `SurfacePath`. Changes `velocity` (by id).
+/// Local; the same on all ranks.
 template <int dim>
 ZonedMotion<dim> join_impact_zones(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
                                    const InverseMass& inverse_mass, bool self, double dt,
-                                   std::vector<double>& velocity);
+                                   std::vector<double>& velocity,
+                                   const std::vector<Point<dim>>& unheld = {});
 
 }  // namespace lockstep

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/meeting_pairs.hpp"
+#include "contact/touching_side.hpp"
 
 namespace lockstep {
 
@@ -58,11 +59,23 @@ std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
     for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
       solid_swept[i].extend(swept[v]);
   }
+  const std::vector<Point<dim>>& unheld = path.unheld.empty() ? path.after : path.unheld;
+  const PrimitivePair<dim>* current = nullptr;
+  const SideAtStart<dim> side = [&](const PrimitiveWeights<dim>& weights,
+                                    const Point<dim>& normal) -> Point<dim> {
+    constexpr double negligible = 1e-9;  // of an edge
+    const auto start = points_of(*current, path.before);
+    const Point<dim> motion =
+        weighted<dim>(weights, points_of(*current, unheld)) - weighted<dim>(weights, start);
+    return touching_side(shapes, *current, weights, normal, motion,
+                         negligible * (start[1] - start[2]).norm());
+  };
   std::vector<FoundImpact<dim>> found;
   const auto keep_impacts = [&](const std::vector<PrimitivePair<dim>>& pairs) {
     for (const PrimitivePair<dim>& pair : pairs) {
-      const auto impact =
-          first_impact<dim>(pair.kind, points_of(pair, path.before), points_of(pair, path.after));
+      current = &pair;
+      const auto impact = first_impact<dim>(pair.kind, points_of(pair, path.before),
+                                            points_of(pair, path.after), side);
       if (impact && !hang_together(shapes, pair))
         found.push_back({pair, *impact});
     }

@@ -18,6 +18,9 @@ template <int dim>
 struct SurfacePath {
   SurfacePath(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion, double dt);
   std::vector<Point<dim>> before, after;
+  /// Where they would be if nothing held them, which tells the sides of what coincides before;
+  /// empty: `after`.
+  std::vector<Point<dim>> unheld;
 };
 
 /// First impacts of all pairs of primitives of which at least one is of a solid that is not rigid;

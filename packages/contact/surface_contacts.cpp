@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "contact/approach.hpp"
+#include "contact/touching_side.hpp"
 
 namespace lockstep {
 
@@ -22,9 +23,10 @@ template <int dim>
 class SurfaceContacts {
  public:
   /// With `approach` those only that it does not rule out.
-  SurfaceContacts(const ContactShapes<dim>& shapes, const ContactReach& reach,
-                  const Approach<dim>* approach, std::vector<Contact<dim>>& contacts)
-      : shapes_(shapes), reach_(reach), approach_(approach), contacts_(contacts) {}
+  SurfaceContacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
+                  const ContactReach& reach, const Approach<dim>* approach,
+                  std::vector<Contact<dim>>& contacts)
+      : shapes_(shapes), motion_(motion), reach_(reach), approach_(approach), contacts_(contacts) {}
 
   /// Of one first primitive.
   void add(const std::vector<PrimitivePair<dim>>& pairs) {
@@ -90,7 +92,33 @@ class SurfaceContacts {
     return sum;
   }
 
+  double range(const NearPair<dim>& near) const { return reach_.near + thickness(*near.pair); }
+
+  /// So near that the points tell no direction.
+  bool touches(const NearPair<dim>& near) const {
+    return near.closest.distance <= 1e-9 * range(near);
+  }
+
+  Point<dim> normal_where_they_touch(const NearPair<dim>& near) const {
+    const PrimitivePair<dim>& pair = *near.pair;
+    if (!reach_.unheld)
+      return Point<dim>::Zero();
+    Point<dim> normal = shapes_.normal(pair.other_simplex);
+    if constexpr (dim == 3) {
+      if (pair.kind == PrimitiveKind::edge_edge) {
+        const auto x = points_of(pair, shapes_.mesh().vertices);
+        normal = (x[1] - x[0]).cross(x[3] - x[2]).normalized();
+      }
+    }
+    const Point<dim> velocity = motion_.at(pair.solid, near.points[0], near.points[0].position) -
+                                motion_.at(pair.other, near.points[1], near.points[1].position);
+    return touching_side(shapes_, pair, near.closest.weights, normal,
+                         Point<dim>(reach_.dt * velocity), 1e-9 * range(near));
+  }
+
   bool on_outer_sides(const NearPair<dim>& near) const {
+    if (touches(near))
+      return true;
     return !(is_closed(near.pair->other) && outward(near.points[1]).dot(near.arm) <= 0) &&
            !(is_closed(near.pair->solid) && outward(near.points[0]).dot(near.arm) >= 0);
   }
@@ -114,7 +142,7 @@ class SurfaceContacts {
     }
     if (near.empty())
       return;
-    if (overlaps(near[nearest])) {
+    if (!touches(near[nearest]) && overlaps(near[nearest])) {
       add_overlap(near[nearest]);
       return;
     }
@@ -125,11 +153,15 @@ class SurfaceContacts {
   }
 
   void add_contact(const NearPair<dim>& near) {
-    const double range = reach_.near + thickness(*near.pair), distance = near.closest.distance;
+    const double distance = near.closest.distance;
     if (approach_ != nullptr && !approach_->may_close(*near.pair, distance, thickness(*near.pair)))
       return;
-    if (distance <= range && distance > 1e-9 * range)
+    if (touches(near)) {
+      if (const Point<dim> normal = normal_where_they_touch(near); !normal.isZero(0))
+        append(near, normal, distance);
+    } else if (distance <= range(near)) {
       append(near, near.arm / distance, distance);
+    }
   }
 
   void add_overlap(const NearPair<dim>& near) {
@@ -150,6 +182,7 @@ class SurfaceContacts {
   }
 
   const ContactShapes<dim>& shapes_;
+  const SolidMotion<dim>& motion_;
   const ContactReach& reach_;
   const Approach<dim>* approach_;
   std::vector<Contact<dim>>& contacts_;
@@ -168,7 +201,7 @@ void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<di
   std::optional<Approach<dim>> approach;
   if (reach.violated_only && solid == other)
     approach.emplace(shapes, motion, solid, reach.dt);
-  SurfaceContacts<dim> found(shapes, reach, approach ? &*approach : nullptr, contacts);
+  SurfaceContacts<dim> found(shapes, motion, reach, approach ? &*approach : nullptr, contacts);
   primitives.for_each(range, solid, other,
                       [&](const std::vector<PrimitivePair<dim>>& pairs) { found.add(pairs); });
 }

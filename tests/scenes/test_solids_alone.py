@@ -59,6 +59,14 @@ class SolidsAlone(unittest.TestCase):
             for one, other in zip(alone, self.elastic_energies(solids, .01, .1)):
                 self.assertAlmostEqual(other, one, delta=.02 * max(alone))
 
+    def test_a_block_that_lies_exactly_on_a_box_lies_still(self):
+        # The weight of 60 kg strains its 0.2 m by 1e-2 or less.
+        floor = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (1.6, .2)}, "Density": 1000.,
+                 "Position": (0., -.6), "Motion": {"Type": "static"}, "Friction": .3}
+        lies = {**block((0., -.4), 1e5), "Time Integration": "semi-implicit", "Friction": .3}
+        energies = self.elastic_energies({"Floor": floor, "Block": lies}, .005, .5, gravity=-9.8, contact="gauss seidel")
+        self.assertLess(max(energies), 10.)
+
 
 if __name__ == "__main__":
     unittest.main()
