@@ -51,6 +51,9 @@ class Descent {
     Vector product(solids.map());
     apply(block, *strains, product);
     curvatures_ = bodies.dot(product, *strains);
+    apply(block, change_, product);
+    whole_slopes_ = bodies.dot(gradient, change_);
+    whole_curvatures_ = bodies.dot(product, change_);
     start_ = solids.unlinear_energies(dt, from);
   }
 
@@ -63,13 +66,18 @@ class Descent {
   /// one.
   double excess(double part) const {
     const std::vector<ComputedEnergy> end = solids_.unlinear_energies(dt_, *at(part));
+    constexpr double unseen = 1e-12;  // of what a flight brings, round-off is strain
+    const auto change = [part](double slope, double curvature) {
+      return std::abs(part * slope + 0.5 * part * part * curvature);
+    };
     double worst = 0;
     for (std::size_t s = 0; s < end.size(); ++s) {
-      const double above = end[s].value - start_[s].value - end[s].round_off - start_[s].round_off;
-      const double model = std::abs(part * slopes_[s] + 0.5 * part * part * curvatures_[s]);
+      const double whole = change(whole_slopes_[s], whole_curvatures_[s]);
+      const double above =
+          end[s].value - start_[s].value - end[s].round_off - start_[s].round_off - unseen * whole;
       if (std::isnan(above))
         return above;
-      worst = std::max(worst, above / std::max(model, 1e-300));
+      worst = std::max(worst, above / std::max(change(slopes_[s], curvatures_[s]), 1e-300));
     }
     return worst;
   }
@@ -79,7 +87,8 @@ class Descent {
   double dt_;
   const Vector& from_;
   Vector change_;
-  std::vector<double> slopes_, curvatures_;
+  std::vector<double> slopes_, curvatures_;  ///< of what strains
+  std::vector<double> whole_slopes_, whole_curvatures_;
   std::vector<ComputedEnergy> start_;
 };
 

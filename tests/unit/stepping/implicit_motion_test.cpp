@@ -71,14 +71,17 @@ TEST(ImplicitMotion, SettlesTheSameInAnotherFrame) {
     const auto motion = settle_motion<2>(*system, nullptr, context, {}, *start, *start, *momentum);
     EXPECT_TRUE(motion.linearised_anew);
     EXPECT_TRUE(motion.is_settled);
-    return motion.velocity;
+    std::vector<double> own;
+    const auto values = motion.velocity->getData();
+    for (int row = 0; row < values.size(); ++row) {
+      if (system->map()->getGlobalElement(row) < system->n_unknowns())
+        own.push_back(values[row]);
+    }
+    return own;
   };
-  const RCP<Vector> rest = settled("0, 0"), moves = settled("3, 4");
-  const auto one = rest->getData(), other = moves->getData();
-  for (int row = 0; row < one.size(); ++row) {
-    if (rest->getMap()->getGlobalElement(row) < static_cast<GlobalIndex>(2 * 24))
-      EXPECT_NEAR(other[row], one[row] + (row % 2 == 0 ? 3 : 4), 1e-4) << row;
-  }
+  const std::vector<double> rest = settled("0, 0"), moves = settled("3, 4");
+  for (std::size_t row = 0; row < rest.size(); ++row)
+    EXPECT_NEAR(moves[row], rest[row] + (row % 2 == 0 ? 3 : 4), 1e-4) << row;
 }
 
 }  // namespace lockstep::test
