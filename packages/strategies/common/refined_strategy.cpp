@@ -256,8 +256,8 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
       build_pressure_inverse(system);
   }
   const bool inverse_changed =
-      geometry_changed || (solid_changed && pressure_list_ && has_pressures(system) &&
-                           update_pressure_inverse(system));
+      geometry_changed ||
+      (solid_changed && pressure_list_ && has_pressures(system) && update_pressure_inverse(system));
   if (solid_changed) {
     solid_.build(system);
     solid_gain_ = -1;
