@@ -67,6 +67,23 @@ class SolidsAlone(unittest.TestCase):
         energies = self.elastic_energies({"Floor": floor, "Block": lies}, .005, .5, gravity=-9.8, contact="gauss seidel")
         self.assertLess(max(energies), 10.)
 
+    def test_a_box_does_not_hang_in_the_air_above_cloth(self):
+        # At 20 m/s and steps of 0.05 s it would pass cloth and floor in one. Both stop it where it is; then it falls
+        # 0.5 m, and lies on the cloth.
+        floor = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (1.8, .2)}, "Density": 1000.,
+                 "Position": (0., -.3), "Motion": {"Type": "static"}}
+        falls = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.3, .3)}, "Density": 5000.,
+                 "Position": (0., .4), "Velocity": (0., -20.)}
+        cloth = {"Type": "cloth", "Geometry": {"Shape": "sheet", "Size": (.6, 0.), "Normal": "y", "Mesh Spacing": .05},
+                 "Young's Modulus": 1e5, "Thickness": .01, "Surface Density": 5., "Position": (0., -.17),
+                 "Time Integration": "fully-implicit", "Friction": .3}
+        output = self.run_scene(scene({"Floor": floor, "Box": falls, "Cloth": cloth}, .05, .7, gravity=-9.8, contact="gauss seidel"))
+        rows = [row for row in table(output / "bodies.csv") if "Box" in row.values()]
+        self.assertLess(max(map(abs, column(rows, "vy"))), 4.)
+        self.assertLess(column(rows, "y")[-1], 0.)
+        self.assertGreater(column(rows, "y")[-1], -.06)
+        self.assertLess(max(column(table(output / "history.csv"), "momentum_error")), 1e-10)
+
 
 if __name__ == "__main__":
     unittest.main()
