@@ -16,13 +16,13 @@ bool differ(double a, double b) {
   return (a < 0) != (b < 0);
 }
 
-/// Along an axis, from the step across the interface and the other one: their mean where phi is
-/// smooth, the step across alone at a crest, where they cancel. It passes over from one to the
-/// other where the other step falls below half of it, so that round-off decides nothing.
+/// Along an axis, from the step across the interface and the other one. Where phi is smooth it is
+/// their mean, to second order; at corners and crests, where the mean falls short, that of their
+/// squares, but no more than the step across. What is continuous leaves nothing to round-off.
 double slope_across(double across, double other) {
   const double mean = std::abs(0.5 * (across + other));
-  const double share = std::clamp(1 - 2 * other / across, 0.0, 1.0);
-  return mean + share * (std::abs(across) - mean);
+  const double of_squares = std::sqrt(0.5 * (across * across + other * other));
+  return std::max(mean, std::min(of_squares, std::abs(across)));
 }
 
 /// What keeps its share of the distance: |phi| / |grad phi| at a cell beside the interface.
