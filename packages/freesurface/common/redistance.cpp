@@ -16,13 +16,13 @@ bool differ(double a, double b) {
   return (a < 0) != (b < 0);
 }
 
-/// Along an axis, from the step across the interface and the other one. Where phi is smooth it is
-/// their mean, to second order; at corners and crests, where the mean falls short, that of their
-/// squares, but no more than the step across. What is continuous leaves nothing to round-off.
+/// Along an axis, from the step across the interface and the other one: their mean, to second order
+/// where phi is smooth; at a crest, where they cancel, the step across, if that is more. It passes
+/// over from one to the other by and by: round-off of a step that is 0 decides nothing.
 double slope_across(double across, double other) {
   const double mean = std::abs(0.5 * (across + other));
-  const double of_squares = std::sqrt(0.5 * (across * across + other * other));
-  return std::max(mean, std::min(of_squares, std::abs(across)));
+  const double share = std::clamp(-4 * other / across, 0.0, 1.0);
+  return mean + share * std::max(0.0, std::abs(across) - mean);
 }
 
 /// What keeps its share of the distance: |phi| / |grad phi| at a cell beside the interface.
