@@ -169,7 +169,7 @@ class Leaks(Storm):
         for end in ("volume", "volume_target", "leak"):
             unknown = [row["step"] for row in rows if row[f"watch_Slot_{end}"] == "nan"]
             self.assertEqual(unknown, [str(step) for step in range(7, 14)])  # .09 sin(5 pi time) > .1 - H / 2
-        self.assertEqual(self.inside(rows, "Slot")[-1], 0)
+        self.assertEqual(self.inside(rows[-1:], "Slot"), [0])
 
 
 if __name__ == "__main__":
