@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "contact/gauss_seidel_contact.hpp"
-#include "contact/impacts.hpp"
+#include "contact/impacts/impacts.hpp"
 
 namespace lockstep {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "contact/contact_problem.hpp"
-#include "contact/held_contacts.hpp"
-#include "contact/impact_zones.hpp"
+#include "contact/impacts/held_contacts.hpp"
+#include "contact/impacts/impact_zones.hpp"
 
 namespace lockstep {
 

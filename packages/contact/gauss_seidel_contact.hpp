@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "contact/contact_search.hpp"
-#include "contact/impacts.hpp"
-#include "contact/impulse_solver.hpp"
-#include "contact/inverse_mass.hpp"
+#include "contact/bodies/inverse_mass.hpp"
+#include "contact/impacts/impacts.hpp"
+#include "contact/impulses/impulse_solver.hpp"
+#include "contact/search/contact_search.hpp"
 #include "interfaces/contact.hpp"
 
 namespace lockstep {

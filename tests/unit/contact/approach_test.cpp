@@ -4,8 +4,8 @@
 #include <random>
 
 #include "cloth_world.hpp"
-#include "contact/contact_search.hpp"
-#include "contact/inverse_mass.hpp"
+#include "contact/bodies/inverse_mass.hpp"
+#include "contact/search/contact_search.hpp"
 
 namespace lockstep::test {
 namespace {

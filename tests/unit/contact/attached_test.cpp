@@ -4,7 +4,7 @@
 #include <map>
 
 #include "cloth_world.hpp"
-#include "contact/impact_zones.hpp"
+#include "contact/impacts/impact_zones.hpp"
 
 namespace lockstep::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "cloth_world.hpp"
-#include "contact/impact_zones.hpp"
+#include "contact/impacts/impact_zones.hpp"
 #include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep::test {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "contact/carried_point.hpp"
-#include "contact/continuous_collision.hpp"
+#include "contact/bodies/carried_point.hpp"
+#include "contact/search/continuous_collision.hpp"
 
 namespace lockstep::test {
 namespace {

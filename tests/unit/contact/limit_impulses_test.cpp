@@ -1,6 +1,6 @@
 // Impulses of limits: the complementarity problem against a search through all cases, and two
 // limits of one velocity.
-#include "contact/limit_impulses.hpp"
+#include "contact/impulses/limit_impulses.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cloth_world.hpp"
-#include "contact/impulse_solver.hpp"
+#include "contact/impulses/impulse_solver.hpp"
 #include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep::test {

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "cloth_world.hpp"
-#include "contact/impacts.hpp"
-#include "contact/meeting_pairs.hpp"
+#include "contact/impacts/impacts.hpp"
+#include "contact/search/meeting_pairs.hpp"
 
 namespace lockstep::test {
 namespace {

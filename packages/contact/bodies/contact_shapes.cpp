@@ -1,0 +1,381 @@
+#include "contact/bodies/contact_shapes.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include "contact/bodies/inverse_mass.hpp"
+#include "geometry/simplex_queries.hpp"
+#include "linear/matrix_rows.hpp"
+
+namespace lockstep {
+
+namespace {
+
+constexpr double smooth_cosine = 0.87;  // edges that bend by less than 30 degrees are smooth
+
+template <int dim>
+std::array<Point<dim>, dim> corners_of(const SurfaceMesh<dim>& mesh, int simplex) {
+  std::array<Point<dim>, dim> corners;
+  for (int k = 0; k < dim; ++k)
+    corners[k] = mesh.vertices[mesh.simplices[simplex][k]];
+  return corners;
+}
+
+std::vector<SurfaceEdge> find_edges(const SurfaceMesh<3>& mesh, const SolidDescription& solid) {
+  std::map<std::array<int, 2>, SurfaceEdge> edges;
+  for (int simplex = solid.simplex_begin; simplex < solid.simplex_end; ++simplex) {
+    for (int k = 0; k < 3; ++k) {
+      std::array<int, 2> ends{mesh.simplices[simplex][k], mesh.simplices[simplex][(k + 1) % 3]};
+      std::sort(ends.begin(), ends.end());
+      SurfaceEdge& edge = edges[ends];
+      edge.vertices = ends;
+      edge.simplices[edge.simplices[0] < 0 ? 0 : 1] = simplex;
+    }
+  }
+  std::vector<SurfaceEdge> all;
+  for (const auto& [ends, edge] : edges)
+    all.push_back(edge);
+  return all;
+}
+
+bool is_sharp(const SurfaceMesh<3>& mesh, const SurfaceEdge& edge) {
+  if (edge.simplices[1] < 0)
+    return true;
+  const Point<3> one = area_vector<3>(corners_of(mesh, edge.simplices[0])).normalized();
+  const Point<3> other = area_vector<3>(corners_of(mesh, edge.simplices[1])).normalized();
+  return one.dot(other) <= smooth_cosine;
+}
+
+template <int dim>
+SurfaceMesh<dim> all_surfaces(const SolidSystem<dim>& system) {
+  SurfaceMesh<dim> all;
+  for (int m = 0; m < system.n_models(); ++m) {
+    const SurfaceMesh<dim>& mesh = system.model(m).surface();
+    const int shift = static_cast<int>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (auto simplex : mesh.simplices) {
+      for (int& vertex : simplex)
+        vertex += shift;
+      all.simplices.push_back(simplex);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+template <int dim>
+ContactTopology<dim>::ContactTopology(const SurfaceMesh<dim>& mesh,
+                                      const std::vector<SolidDescription>& solids)
+    : simplices_(mesh.simplices), begin_(mesh.vertices.size() + 1, 0) {
+  for (const auto& simplex : simplices_) {
+    for (int vertex : simplex)
+      ++begin_[vertex + 1];
+  }
+  for (std::size_t v = 1; v < begin_.size(); ++v)
+    begin_[v] += begin_[v - 1];
+  around_.resize(begin_.back());
+  std::vector<int> next = begin_;
+  for (int s = 0; s < static_cast<int>(simplices_.size()); ++s) {
+    for (int vertex : simplices_[s])
+      around_[next[vertex]++] = s;
+  }
+  edges_.resize(solids.size());
+  sharp_edges_.resize(solids.size());
+  orders_.resize(solids.size());
+  if constexpr (dim == 3) {
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+      edges_[i] = find_edges(mesh, solids[i]);
+      std::copy_if(edges_[i].begin(), edges_[i].end(), std::back_inserter(sharp_edges_[i]),
+                   [&mesh](const SurfaceEdge& edge) { return is_sharp(mesh, edge); });
+    }
+  }
+}
+
+template <int dim>
+bool ContactTopology<dim>::connected(int vertex, int other) const {
+  return std::any_of(begin(vertex), end(vertex), [this, other](int s) {
+    return std::find(simplices_[s].begin(), simplices_[s].end(), other) != simplices_[s].end();
+  });
+}
+
+template <int dim>
+ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopology<dim>& topology)
+    : system_(system), solids_(system.solids()), topology_(&topology), mesh_(all_surfaces(system)) {
+  if (!topology.belongs_to(mesh_))
+    topology = ContactTopology<dim>(mesh_, solids_);
+  solid_bounds_.resize(solids_.size());
+  bounds_.resize(mesh_.simplices.size());
+  for (int i = 0; i < n_solids(); ++i) {
+    for (int s = solids_[i].simplex_begin; s < solids_[i].simplex_end; ++s) {
+      for (int vertex : mesh_.simplices[s])
+        bounds_[s].extend(mesh_.vertices[vertex]);
+      solid_bounds_[i].extend(bounds_[s]);
+    }
+  }
+  find_combinations();
+  find_carriers();
+  find_held();
+}
+
+/// Contacts are the same on all ranks, so all know all combinations.
+template <int dim>
+void ContactShapes<dim>::find_combinations() {
+  const Reduction& reduction = system_.reduction();
+  if (!reduction.has_combinations())
+    return;
+  std::vector<double> mine;
+  const Map& rows = *system_.map();
+  for_each_entry(*reduction.combinations(), [&](int row, GlobalIndex dof, double weight) {
+    mine.insert(mine.end(), {double(rows.getGlobalElement(row)), double(dof), weight});
+  });
+  const std::vector<double> all = gather_all(system_.comm(), mine);
+  for (std::size_t k = 0; k + 2 < all.size(); k += 3)
+    combinations_[static_cast<GlobalIndex>(all[k])].emplace_back(
+        static_cast<GlobalIndex>(all[k + 1]), all[k + 2]);
+}
+
+/// Which vertices the attached nodes are, all ranks know, too.
+template <int dim>
+void ContactShapes<dim>::find_carriers() {
+  if (!system_.reduction().has_combinations())
+    return;
+  std::vector<double> mine;
+  for (const AttachedNode<dim>& node : system_.attached())
+    mine.insert(mine.end(), {double(node.dofs[0]), double(node.solid)});
+  const std::vector<double> all = gather_all(system_.comm(), mine);
+  if (all.empty())
+    return;
+  std::unordered_map<GlobalIndex, int> carrier_of;
+  for (std::size_t k = 0; k + 1 < all.size(); k += 2)
+    carrier_of.emplace(static_cast<GlobalIndex>(all[k]), static_cast<int>(all[k + 1]));
+  carriers_.assign(mesh_.vertices.size(), -1);
+  VelocityRow<dim> row;
+  for (const SolidDescription& solid : solids_) {
+    if (solid.rigid || solid.prescribed)
+      continue;
+    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
+      const SurfacePoint<dim> point = at_vertex(v);
+      if (point.simplex < 0)
+        continue;
+      system_.velocity_row(point, point.position, row);
+      for (std::size_t k = 0; k < row.dofs.size(); ++k) {
+        const auto found = carrier_of.find(row.dofs[k]);
+        if (found != carrier_of.end() && !row.coefficients[k].isZero(0))
+          carriers_[v] = found->second;
+      }
+    }
+  }
+}
+
+template <int dim>
+bool ContactShapes<dim>::hangs_on(int vertex, int solid) const {
+  if (carriers_.empty())
+    return false;
+  return std::any_of(topology_->begin(vertex), topology_->end(vertex), [&](int s) {
+    const auto& corners = mesh_.simplices[s];
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](int corner) { return carriers_[corner] == solid; });
+  });
+}
+
+template <int dim>
+bool ContactShapes<dim>::hangs_on(const SurfacePoint<dim>& point, int solid) const {
+  for (int k = 0; k < dim && !carriers_.empty(); ++k) {
+    if (point.barycentric[k] != 0 && hangs_on(mesh_.simplices[point.simplex][k], solid))
+      return true;
+  }
+  return false;
+}
+
+template <int dim>
+void ContactShapes<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
+                                      VelocityRow<dim>& row) const {
+  system_.velocity_row(point, x, row);
+  resolve(row);
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::rigid_velocity(int solid, const Point<dim>& x,
+                                              const std::vector<double>& velocity) const {
+  VelocityRow<dim> row;
+  system_.rigid_row(solid, x, row);
+  Point<dim> sum = drift_of(row);
+  resolve(row);
+  for (std::size_t k = 0; k < row.dofs.size(); ++k)
+    sum += velocity[row.dofs[k]] * row.coefficients[k];
+  return sum;
+}
+
+template <int dim>
+void ContactShapes<dim>::rigid_row(int solid, const Point<dim>& x, VelocityRow<dim>& row) const {
+  system_.rigid_row(solid, x, row);
+  resolve(row);
+}
+
+template <int dim>
+std::vector<GlobalIndex> ContactShapes<dim>::rigid_dofs(int solid) const {
+  VelocityRow<dim> row;
+  rigid_row(solid, Point<dim>::Zero(), row);
+  return row.dofs;
+}
+
+/// Dofs that are combinations are replaced by what they are made of.
+template <int dim>
+void ContactShapes<dim>::resolve(VelocityRow<dim>& row) const {
+  if (combinations_.empty())
+    return;
+  VelocityRow<dim> reduced;
+  for (std::size_t k = 0; k < row.dofs.size(); ++k) {
+    const auto combination = combinations_.find(row.dofs[k]);
+    if (combination == combinations_.end()) {
+      reduced.dofs.push_back(row.dofs[k]);
+      reduced.coefficients.push_back(row.coefficients[k]);
+      continue;
+    }
+    for (const auto& [dof, weight] : combination->second) {
+      reduced.dofs.push_back(dof);
+      reduced.coefficients.push_back(weight * row.coefficients[k]);
+    }
+  }
+  row = std::move(reduced);
+}
+
+template <int dim>
+std::vector<std::pair<GlobalIndex, double>> ContactShapes<dim>::resolved(
+    const std::vector<std::pair<GlobalIndex, double>>& terms) const {
+  std::vector<std::pair<GlobalIndex, double>> all;
+  for (const auto& [dof, weight] : terms) {
+    const auto combination = combinations_.find(dof);
+    if (combination == combinations_.end())
+      all.emplace_back(dof, weight);
+    else
+      for (const auto& [inner, part] : combination->second)
+        all.emplace_back(inner, weight * part);
+  }
+  return all;
+}
+
+template <int dim>
+std::vector<GlobalIndex> ContactShapes<dim>::leading_dofs() const {
+  std::vector<GlobalIndex> dofs;
+  for (const auto& [dof, terms] : combinations_) {
+    for (const auto& [other, weight] : terms)
+      dofs.push_back(other);
+  }
+  return dofs;
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::drift(const SurfacePoint<dim>& point, const Point<dim>& x) const {
+  if (drift_.empty())
+    return Point<dim>::Zero();
+  VelocityRow<dim> row;
+  system_.velocity_row(point, x, row);
+  return drift_of(row);
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::drift_of(const VelocityRow<dim>& row) const {
+  Point<dim> sum = Point<dim>::Zero();
+  for (std::size_t k = 0; k < row.dofs.size() && !drift_.empty(); ++k)
+    sum += drift_[row.dofs[k]] * row.coefficients[k];
+  return sum;
+}
+
+template <int dim>
+void ContactShapes<dim>::find_held() {
+  held_.assign(mesh_.vertices.size(), false);
+  std::vector<double> free;
+  if (system_.reduction().has_given())
+    free = replicated(system_, *system_.reduction().unknowns());
+  VelocityRow<dim> row;
+  for (int i = 0; i < n_solids(); ++i) {
+    if (solids_[i].prescribed)
+      std::fill(held_.begin() + solids_[i].vertex_begin, held_.begin() + solids_[i].vertex_end,
+                true);
+    if (solids_[i].prescribed || solids_[i].rigid || free.empty())
+      continue;
+    for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v) {
+      const SurfacePoint<dim> point = at_vertex(v);
+      if (point.simplex < 0)
+        continue;
+      velocity_row(point, point.position, row);
+      held_[v] = std::all_of(row.dofs.begin(), row.dofs.end(),
+                             [&free](GlobalIndex dof) { return free[dof] == 0; });
+    }
+  }
+}
+
+template <int dim>
+std::array<Point<dim>, dim> ContactShapes<dim>::corners(int simplex) const {
+  return corners_of(mesh_, simplex);
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::normal(int simplex) const {
+  return area_vector<dim>(corners(simplex)).normalized();
+}
+
+template <int dim>
+Point<dim> ContactShapes<dim>::vertex_normal(int vertex) const {
+  Point<dim> sum = Point<dim>::Zero();
+  for (const int* s = topology_->begin(vertex); s != topology_->end(vertex); ++s)
+    sum += area_vector<dim>(corners(*s));
+  return sum.normalized();
+}
+
+template <int dim>
+std::optional<Point<dim>> ContactShapes<dim>::smooth_normal(const SurfacePoint<dim>& point) const {
+  Point<dim> sum = Point<dim>::Zero();
+  for (int k = 0; k < dim; ++k) {
+    const int vertex = mesh_.simplices[point.simplex][k];
+    const Point<dim> around = vertex_normal(vertex);
+    for (const int* s = topology_->begin(vertex); s != topology_->end(vertex); ++s) {
+      if (normal(*s).dot(around) < smooth_cosine)
+        return {};
+    }
+    sum += point.barycentric[k] * around;
+  }
+  return sum.normalized();
+}
+
+template <int dim>
+SurfacePoint<dim> ContactShapes<dim>::at_vertex(int vertex) const {
+  SurfacePoint<dim> point;
+  point.position = mesh_.vertices[vertex];
+  if (topology_->begin(vertex) == topology_->end(vertex))
+    return point;
+  point.simplex = *topology_->begin(vertex);
+  const auto& simplex = mesh_.simplices[point.simplex];
+  point.barycentric[std::find(simplex.begin(), simplex.end(), vertex) - simplex.begin()] = 1;
+  return point;
+}
+
+template <int dim>
+bool ContactShapes<dim>::inside(int solid, const Point<dim>& x, double radius) const {
+  double nearest = radius, alignment = 0;
+  for (int s = solids_[solid].simplex_begin; s < solids_[solid].simplex_end; ++s) {
+    if (bounds_[s].squaredExteriorDistance(x) > nearest * nearest)
+      continue;
+    const auto closest = closest_on_simplex<dim>(corners(s), x);
+    const double tie = 1e-9 * radius;
+    if (closest.distance > nearest + tie)
+      continue;
+    // Among the simplices that share the closest point, the one that faces x decides.
+    const double facing = normal(s).dot(x - closest.position);
+    if (closest.distance < nearest - tie || std::abs(facing) > std::abs(alignment))
+      alignment = facing;
+    nearest = std::min(nearest, closest.distance);
+  }
+  return alignment < 0;
+}
+
+template class ContactTopology<2>;
+template class ContactTopology<3>;
+template class ContactShapes<2>;
+template class ContactShapes<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,75 @@
+// The parts of ImpulseSolver for solids that answer an impulse as a whole.
+#include <cmath>
+
+#include "contact/impulses/impulse_solver.hpp"
+
+namespace lockstep {
+
+template <int dim>
+int ImpulseSolver<dim>::activate(int dof) {
+  const int id = mobility_.activate(dof);
+  if (id == static_cast<int>(active_.size()))
+    active_.push_back(velocity_[dof]);
+  return id;
+}
+
+/// Of active dofs, whose responses are kept as they are.
+template <int dim>
+void ImpulseSolver<dim>::find_response(const Row& row, Compliance& compliance,
+                                       double& of_parts) const {
+  for (int k = row.begin; k < row.end; ++k) {
+    const GrowingColumn& column = mobility_.column(jacobian_[k].id);
+    Point<dim> velocity = Point<dim>::Zero();
+    for (int j = row.begin; j < row.end; ++j)
+      velocity += column[jacobian_[j].id] * jacobian_[j].coefficient;
+    compliance += velocity * jacobian_[k].coefficient.transpose();
+    of_parts +=
+        column[jacobian_[k].id] * std::pow(row.contact.normal.dot(jacobian_[k].coefficient), 2);
+  }
+}
+
+/// Dofs have become active since limits were added.
+template <int dim>
+void ImpulseSolver<dim>::extend_limits() {
+  for (int k = 0; k < limits_.size() && responds(); ++k) {
+    const auto weights = limits_.row(k).weights;
+    for (auto id = static_cast<int>(limits_.row(k).response.size()); id < mobility_.n_active();
+         ++id) {
+      double velocity = 0;
+      for (const auto& [other, weight] : weights)
+        velocity += weight * mobility_.column(other)[id];
+      limits_.extend(k, id, velocity);
+    }
+  }
+}
+
+/// Of all dofs: sweeps have followed the active ones alone.
+template <int dim>
+void ImpulseSolver<dim>::find_velocity() {
+  std::vector<double> of_active(active_.size(), 0);
+  for (const Row& row : rows_) {
+    const Point<dim> pushed = impulse(row);
+    for (int k = row.begin; k < row.end; ++k)
+      of_active[jacobian_[k].id] += jacobian_[k].coefficient.dot(pushed);
+  }
+  limits_.add_to(of_active);
+  std::vector<double> impulses(velocity_.size(), 0);
+  for (std::size_t id = 0; id < of_active.size(); ++id)
+    impulses[dof_of(static_cast<int>(id))] += of_active[id];
+  const std::vector<double> change = mobility_.velocities(std::move(impulses));
+  for (std::size_t dof = 0; dof < velocity_.size(); ++dof)
+    velocity_[dof] = given_[dof] + change[dof];
+  for (std::size_t id = 0; id < active_.size(); ++id)
+    velocity_[dof_of(static_cast<int>(id))] = active_[id];
+}
+
+template int ImpulseSolver<2>::activate(int);
+template void ImpulseSolver<2>::find_response(const Row&, Compliance&, double&) const;
+template void ImpulseSolver<2>::extend_limits();
+template void ImpulseSolver<2>::find_velocity();
+template int ImpulseSolver<3>::activate(int);
+template void ImpulseSolver<3>::find_response(const Row&, Compliance&, double&) const;
+template void ImpulseSolver<3>::extend_limits();
+template void ImpulseSolver<3>::find_velocity();
+
+}  // namespace lockstep

@@ -1,0 +1,361 @@
+#include "contact/impulses/impulse_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "contact/bodies/carried_point.hpp"
+
+namespace lockstep {
+
+namespace {
+/// Below this part of what its dofs would answer one by one, the response of a contact or a limit
+/// is the round-off of joints that let nothing move along it.
+constexpr double unmovable = 1e-10;
+
+template <int dim>
+Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
+  Eigen::Matrix<double, dim, dim - 1> tangents;
+  if constexpr (dim == 2) {
+    tangents.col(0) = Point<2>(-normal.y(), normal.x());
+  } else {
+    tangents.col(0) = normal.unitOrthogonal();
+    tangents.col(1) = normal.cross(tangents.col(0));
+  }
+  return tangents;
+}
+}  // namespace
+
+template <int dim>
+ImpulseSolver<dim>::ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
+                                  Mobility<dim>& mobility, std::vector<double> velocity)
+    : system_(system), shapes_(shapes), mobility_(mobility), velocity_(std::move(velocity)) {
+  if (responds())
+    given_ = velocity_;
+}
+
+template <int dim>
+void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& point,
+                                  const Point<dim>& x, double sign) {
+  using Factor = Eigen::Matrix<double, dim, dim>;
+  const SolidDescription& description = system_.solids()[solid];
+  if (description.prescribed) {
+    row.prescribed += sign * system_.prescribed_velocity(point, x);
+    return;
+  }
+  if (description.rigid) {
+    row.prescribed += sign * shapes_.drift(point, x);
+    add_entries(row, point, x, sign * Factor::Identity());
+    return;
+  }
+  const auto factors = carried_point<dim>(shapes_.corners(point.simplex), point, x);
+  for (int k = 0; k < dim; ++k) {
+    SurfacePoint<dim> corner;
+    corner.simplex = point.simplex;
+    corner.barycentric[k] = 1;
+    if (factors[k].isZero(0))
+      continue;
+    row.prescribed += sign * factors[k] * shapes_.drift(corner, x);
+    add_entries(row, corner, x, sign * factors[k]);
+  }
+}
+
+template <int dim>
+void ImpulseSolver<dim>::add_entries(Row& row, const SurfacePoint<dim>& point, const Point<dim>& x,
+                                     const Eigen::Matrix<double, dim, dim>& factor) {
+  shapes_.velocity_row(point, x, velocity_row_);
+  for (std::size_t k = 0; k < velocity_row_.dofs.size(); ++k) {
+    const auto dof = static_cast<int>(velocity_row_.dofs[k]);
+    const Point<dim> coefficient = factor * velocity_row_.coefficients[k];
+    if (!responds()) {
+      jacobian_.push_back({dof, coefficient});
+      continue;
+    }
+    if (row.friction == 0 && row.contact.normal.dot(coefficient) == 0)
+      continue;  // what goes along the surface is not asked for
+    if (mobility_.is_held(dof))
+      row.prescribed += velocity_[dof] * coefficient;
+    else
+      jacobian_.push_back({activate(dof), coefficient});
+  }
+}
+
+/// `of_parts`: the normal response if no dof took back what another gives.
+template <int dim>
+void ImpulseSolver<dim>::add_mass_response(Row& row, Compliance& compliance, double& of_parts) {
+  std::map<int, Point<dim>> response;
+  for (int k = row.begin; k < row.end; ++k) {
+    for (const auto& [dof, value] : mobility_.row(jacobian_[k].id)) {
+      const auto place = response.try_emplace(dof, Point<dim>::Zero()).first;
+      place->second += value * jacobian_[k].coefficient;
+      if (dof == jacobian_[k].id)
+        of_parts += value * std::pow(row.contact.normal.dot(jacobian_[k].coefficient), 2);
+    }
+  }
+  row.response_begin = static_cast<int>(response_.size());
+  for (const auto& [dof, coefficient] : response)
+    response_.push_back({dof, coefficient});
+  row.response_end = static_cast<int>(response_.size());
+  for (int k = row.begin; k < row.end; ++k) {
+    const auto found = response.find(jacobian_[k].id);
+    if (found != response.end())
+      compliance += jacobian_[k].coefficient * found->second.transpose();
+  }
+}
+
+template <int dim>
+void ImpulseSolver<dim>::add_response(Row& row) {
+  Compliance compliance = Compliance::Zero();
+  double of_parts = 0;
+  if (responds())
+    find_response(row, compliance, of_parts);
+  else
+    add_mass_response(row, compliance, of_parts);
+  row.normal_response = row.contact.normal.dot(compliance * row.contact.normal);
+  if (row.normal_response < unmovable * of_parts)
+    row.normal_response = 0;
+  row.tangents = tangents_of<dim>(row.contact.normal);
+  auto tangent = (row.tangents.transpose() * compliance * row.tangents).eval();
+  // Directions that locks hold get no impulse to speak of.
+  tangent.diagonal().array() += 1e-12 * compliance.trace();
+  row.tangent_response = tangent.norm();
+  row.tangent_inverse = tangent.inverse();
+}
+
+template <int dim>
+typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& contact,
+                                                            double friction) {
+  const auto& solids = system_.solids();
+  Row row;
+  row.contact = contact;
+  row.friction = friction;
+  row.tangent_impulse.setZero();
+  row.solid_prescribed = solids[contact.solid].prescribed;
+  row.other_prescribed = contact.other < 0 || solids[contact.other].prescribed;
+  row.begin = static_cast<int>(jacobian_.size());
+  add_side(row, contact.solid, contact.point, contact.place(), 1);
+  if (contact.other >= 0)
+    add_side(row, contact.other, contact.other_point, contact.other_place(), -1);
+  else
+    row.prescribed -= contact.wall_velocity;
+  row.end = static_cast<int>(jacobian_.size());
+  row.response_begin = row.response_end = static_cast<int>(response_.size());
+  add_response(row);
+  return row;
+}
+
+/// The row that was made last.
+template <int dim>
+void ImpulseSolver<dim>::forget_last(const Row& row) {
+  jacobian_.resize(row.begin);
+  response_.resize(row.response_begin);
+}
+
+template <int dim>
+bool ImpulseSolver<dim>::add(const Contact<dim>& contact, double target, double friction) {
+  Row row = row_of(contact, friction);
+  if (!(row.normal_response > 0)) {
+    forget_last(row);
+    return false;
+  }
+  row.target = target;
+  rows_.push_back(row);
+  return true;
+}
+
+template <int dim>
+bool ImpulseSolver<dim>::can_move(const Contact<dim>& contact) {
+  const Row row = row_of(contact, 0);
+  forget_last(row);
+  return row.normal_response > 0;
+}
+
+/// Without a response if nothing of it can move; `least` is what held dofs leave of zero.
+template <int dim>
+LimitImpulses::Row ImpulseSolver<dim>::row_of(const Terms& terms) {
+  LimitImpulses::Row row;
+  std::map<int, double> weights, response;
+  for (const auto& [dof, weight] : shapes_.resolved(terms)) {
+    if (!responds())
+      weights[static_cast<int>(dof)] += weight;
+    else if (mobility_.is_held(static_cast<int>(dof)))
+      row.least -= weight * velocity_[dof];
+    else
+      weights[activate(static_cast<int>(dof))] += weight;
+  }
+  double of_parts = 0, of_all = 0;
+  for (const auto& [id, weight] : weights) {
+    const auto add = [&, id = id, weight = weight](int other, double value) {
+      response[other] += weight * value;
+      if (other == id)
+        of_parts += weight * weight * value;
+    };
+    if (!responds()) {
+      for (const auto& [other, value] : mobility_.row(id))
+        add(other, value);
+      continue;
+    }
+    for (int other = 0; other < mobility_.n_active(); ++other)
+      add(other, mobility_.column(id)[other]);
+  }
+  for (const auto& [id, velocity] : response) {
+    const auto weight = weights.find(id);
+    of_all += weight == weights.end() ? 0 : weight->second * velocity;
+  }
+  row.weights.assign(weights.begin(), weights.end());
+  if (of_all > unmovable * of_parts)
+    row.response.assign(response.begin(), response.end());
+  return row;
+}
+
+template <int dim>
+int ImpulseSolver<dim>::add(const Terms& terms, double least) {
+  LimitImpulses::Row row = row_of(terms);
+  if (row.response.empty())
+    return -1;
+  row.least += least;
+  limits_.add(std::move(row));
+  return limits_.size() - 1;
+}
+
+template <int dim>
+bool ImpulseSolver<dim>::can_move(const Terms& terms) {
+  return !row_of(terms).response.empty();
+}
+
+template <int dim>
+Point<dim> ImpulseSolver<dim>::relative_velocity(const Row& row) const {
+  Point<dim> velocity = row.prescribed;
+  const std::vector<double>& known = velocity_by_id();
+  for (int k = row.begin; k < row.end; ++k)
+    velocity += known[jacobian_[k].id] * jacobian_[k].coefficient;
+  return velocity;
+}
+
+template <int dim>
+void ImpulseSolver<dim>::push(const Row& row, const Point<dim>& impulse) {
+  for (int k = row.response_begin; k < row.response_end; ++k)
+    velocity_[response_[k].id] += response_[k].coefficient.dot(impulse);
+  for (int k = row.begin; k < row.end && responds(); ++k) {
+    const double pushed = jacobian_[k].coefficient.dot(impulse);
+    if (pushed != 0)
+      mobility_.column(jacobian_[k].id).add_to(active_, pushed);
+  }
+}
+
+template <int dim>
+double ImpulseSolver<dim>::relax_normal(Row& row) {
+  const Point<dim>& normal = row.contact.normal;
+  const double wanted = row.target - normal.dot(relative_velocity(row));
+  const double total = std::max(0.0, row.normal_impulse + wanted / row.normal_response);
+  const double change = total - row.normal_impulse;
+  row.normal_impulse = total;
+  if (change != 0)
+    push(row, change * normal);
+  return std::abs(change) * row.normal_response;
+}
+
+template <int dim>
+double ImpulseSolver<dim>::relax_friction(Row& row) {
+  if (row.friction == 0)
+    return 0;
+  const auto slip = (row.tangents.transpose() * relative_velocity(row)).eval();
+  const double largest = row.friction * row.normal_impulse;
+  auto total = (row.tangent_impulse - row.tangent_inverse * slip).eval();
+  if (total.norm() > largest) {
+    // Sliding: a scalar step, whose fixed point is friction exactly against the slip.
+    total = row.tangent_impulse - slip / row.tangent_response;
+    const double size = total.norm();
+    if (size > largest)
+      total *= largest / size;
+  }
+  const auto change = (total - row.tangent_impulse).eval();
+  row.tangent_impulse = total;
+  if (change.norm() == 0)
+    return 0;
+  push(row, row.tangents * change);
+  return change.norm() * row.tangent_response;
+}
+
+template <int dim>
+int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance, double negligible) {
+  extend_limits();
+  int sweep = 0;
+  for (double change = 1e300; sweep < maximum_sweeps && !(change <= tolerance); ++sweep) {
+    change = limits_.relax(velocity_by_id(), negligible);
+    for (Row& row : rows_) {
+      change = std::max(change, relax_normal(row));
+      change = std::max(change, relax_friction(row));
+    }
+  }
+  if (responds() && n_contacts() > 0)
+    find_velocity();
+  return sweep;
+}
+
+template <int dim>
+Point<dim> ImpulseSolver<dim>::impulse(const Row& row) const {
+  return row.normal_impulse * row.contact.normal + row.tangents * row.tangent_impulse;
+}
+
+template <int dim>
+void ImpulseSolver<dim>::add_side_impulse(int solid, const SurfacePoint<dim>& point,
+                                          const Point<dim>& x, const Point<dim>& impulse,
+                                          std::vector<double>& total) const {
+  const SolidDescription& description = system_.solids()[solid];
+  if (description.prescribed)
+    return;
+  VelocityRow<dim> row;
+  const auto add = [&](const SurfacePoint<dim>& at, const Point<dim>& pushed) {
+    system_.velocity_row(at, x, row);
+    for (std::size_t k = 0; k < row.dofs.size(); ++k)
+      total[row.dofs[k]] += row.coefficients[k].dot(pushed);
+  };
+  if (description.rigid) {
+    add(point, impulse);
+    return;
+  }
+  const auto factors = carried_point<dim>(shapes_.corners(point.simplex), point, x);
+  for (int k = 0; k < dim; ++k) {
+    SurfacePoint<dim> corner;
+    corner.simplex = point.simplex;
+    corner.barycentric[k] = 1;
+    add(corner, factors[k].transpose() * impulse);
+  }
+}
+
+template <int dim>
+std::vector<double> ImpulseSolver<dim>::generalized_impulse() const {
+  std::vector<double> total(velocity_.size());
+  for (const Row& row : rows_) {
+    const Point<dim> pushed = impulse(row);
+    add_side_impulse(row.contact.solid, row.contact.point, row.contact.place(), pushed, total);
+    if (row.contact.other >= 0)
+      add_side_impulse(row.contact.other, row.contact.other_point, row.contact.other_place(),
+                       -pushed, total);
+  }
+  std::vector<double> of_limits(responds() ? active_.size() : total.size(), 0);
+  limits_.add_to(of_limits);
+  for (std::size_t id = 0; id < of_limits.size(); ++id)
+    total[dof_of(static_cast<int>(id))] += of_limits[id];
+  return total;
+}
+
+template <int dim>
+Momentum<dim> ImpulseSolver<dim>::external_impulse() const {
+  Momentum<dim> total;
+  for (const Row& row : rows_) {
+    if (row.solid_prescribed)
+      total.add(row.contact.place(), -impulse(row));
+    if (row.other_prescribed)
+      total.add(row.contact.other_place(), impulse(row));
+  }
+  return total;
+}
+
+template class ImpulseSolver<2>;
+template class ImpulseSolver<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,106 @@
+#pragma once
+#include <vector>
+
+#include "contact/impulses/limit_impulses.hpp"
+#include "contact/impulses/mobility.hpp"
+#include "contact/search/contact_search.hpp"
+
+namespace lockstep {
+
+/// Projected Gauss-Seidel for contact impulses: normal ones that only push, so that the normal
+/// velocity reaches a target, and Coulomb friction inside its disc. Every impulse acts at one point
+/// on both solids with opposite signs. Local, the same on all ranks.
+template <int dim>
+class ImpulseSolver {
+ public:
+  ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
+                Mobility<dim>& mobility, std::vector<double> velocity);
+
+  using Terms = std::vector<std::pair<GlobalIndex, double>>;  ///< dof and weight
+
+  /// `target`: least normal velocity of `contact.solid` relative to the other [m/s]; `friction`:
+  /// Coulomb's coefficient [1]. Adds nothing, and returns false, if no push of the contact changes
+  /// that velocity. Collective if the mobility is.
+  bool add(const Contact<dim>& contact, double target, double friction);
+  /// A limit of joints: the sum of weights times velocities of dofs, of whatever unit, is not to be
+  /// below `least`. Returns its number; -1, and adds nothing, if no impulse on it changes that sum.
+  /// Collective if the mobility is.
+  int add(const Terms& terms, double least);
+  /// Whether `add` would add it. Collective if the mobility is.
+  bool can_move(const Contact<dim>& contact);
+  bool can_move(const Terms& terms);
+  /// Sweeps until no velocity at a contact changes by more than `tolerance` [m/s]; returns the
+  /// number of sweeps. Limits of joints that contradict one another may be missed by `negligible`
+  /// [m/s].
+  int iterate(int maximum_sweeps, double tolerance, double negligible = 0);
+
+  /// With limits of joints.
+  int n_contacts() const { return static_cast<int>(rows_.size()) + limits_.size(); }
+  const std::vector<double>& velocity() const { return velocity_; }
+  /// What the limit with this number gave: times the weights, on their dofs.
+  double limit_impulse(int number) const { return limits_.impulse(number); }
+  /// J^T impulses, by id: on the dofs of the surfaces themselves, combinations or not.
+  std::vector<double> generalized_impulse() const;
+  /// What walls and prescribed solids gave to the others.
+  Momentum<dim> external_impulse() const;
+
+ private:
+  struct Entry {
+    int id;
+    Point<dim> coefficient;
+  };
+  using Compliance = Eigen::Matrix<double, dim, dim>;
+  using Tangents = Eigen::Matrix<double, dim, dim - 1>;
+  struct Row {
+    Contact<dim> contact;
+    int begin = 0, end = 0;                    ///< in `jacobian_`
+    int response_begin = 0, response_end = 0;  ///< in `response_`: M_S^-1 J^T, without a response
+    Point<dim> prescribed = Point<dim>::Zero();
+    double target = 0, friction = 0;
+    double normal_response = 0, tangent_response = 0;  ///< velocity per impulse [1/kg]
+    bool solid_prescribed = false, other_prescribed = false;
+    Tangents tangents;
+    Eigen::Matrix<double, dim - 1, dim - 1> tangent_inverse;
+    double normal_impulse = 0;
+    Eigen::Matrix<double, dim - 1, 1> tangent_impulse;
+  };
+
+  /// With a response ids are numbers of active dofs, and `active_` their velocities; else they are
+  /// dofs.
+  bool responds() const { return !mobility_.response().is_null(); }
+  std::vector<double>& velocity_by_id() { return responds() ? active_ : velocity_; }
+  const std::vector<double>& velocity_by_id() const { return responds() ? active_ : velocity_; }
+  int dof_of(int id) const { return responds() ? mobility_.active_dof(id) : id; }
+  int activate(int dof);
+  void extend_limits();
+  void find_velocity();
+
+  Row row_of(const Contact<dim>& contact, double friction);
+  void forget_last(const Row& row);
+  LimitImpulses::Row row_of(const Terms& terms);
+  void add_side(Row& row, int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
+                double sign);
+  void add_entries(Row& row, const SurfacePoint<dim>& point, const Point<dim>& x,
+                   const Eigen::Matrix<double, dim, dim>& factor);
+  void add_response(Row& row);
+  void add_mass_response(Row& row, Compliance& compliance, double& of_parts);
+  void find_response(const Row& row, Compliance& compliance, double& of_parts) const;
+  Point<dim> relative_velocity(const Row& row) const;
+  void push(const Row& row, const Point<dim>& impulse);
+  void add_side_impulse(int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
+                        const Point<dim>& impulse, std::vector<double>& total) const;
+  double relax_normal(Row& row);
+  double relax_friction(Row& row);
+  Point<dim> impulse(const Row& row) const;
+
+  const SolidSystem<dim>& system_;
+  const ContactShapes<dim>& shapes_;
+  Mobility<dim>& mobility_;
+  std::vector<double> velocity_, active_, given_;
+  VelocityRow<dim> velocity_row_;  ///< for use by add_entries alone
+  std::vector<Row> rows_;
+  std::vector<Entry> jacobian_, response_;
+  LimitImpulses limits_;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,81 @@
+#include "contact/search/approach.hpp"
+
+#include <cmath>
+
+#include "contact/bodies/carried_point.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// A bound on the norm of (v(x) - v(p)) / |x - p| for a point x beside a point p of a simplex.
+template <int dim>
+double turn_of(const std::array<Point<dim>, dim>& corners,
+               const std::array<Point<dim>, dim>& moves) {
+  SurfacePoint<dim> point;
+  point.position = corners[0];
+  point.barycentric.fill(0);
+  point.barycentric[0] = 1;
+  double square = 0;
+  for (int axis = 0; axis < dim; ++axis) {
+    const auto factors = carried_point<dim>(corners, point, corners[0] + Point<dim>::Unit(axis));
+    Point<dim> move = -moves[0];
+    for (int i = 0; i < dim; ++i)
+      move += factors[i] * moves[i];
+    square += move.squaredNorm();
+  }
+  return std::sqrt(square);
+}
+
+/// Boxes of value(vertex) for either primitive.
+template <int dim, typename Value>
+std::array<Box<dim>, 2> boxes_of(const PrimitivePair<dim>& pair, const Value& value) {
+  const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
+  std::array<Box<dim>, 2> boxes;
+  for (int k = 0; k <= dim; ++k)
+    boxes[k < n_first ? 0 : 1].extend(value(pair.vertices[k]));
+  return boxes;
+}
+
+}  // namespace
+
+template <int dim>
+Approach<dim>::Approach(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion, int solid,
+                        double dt)
+    : positions_(shapes.mesh().vertices) {
+  const SolidDescription& description = shapes.solids()[solid];
+  first_vertex_ = description.vertex_begin;
+  first_simplex_ = description.simplex_begin;
+  for (int v = first_vertex_; v < description.vertex_end; ++v)
+    moves_.push_back(dt * motion.of_vertex(solid, v));
+  for (int s = first_simplex_; s < description.simplex_end; ++s) {
+    std::array<Point<dim>, dim> moves;
+    for (int k = 0; k < dim; ++k)
+      moves[k] = moves_[shapes.mesh().simplices[s][k] - first_vertex_];
+    turns_.push_back(turn_of<dim>(shapes.corners(s), moves));
+  }
+}
+
+template <int dim>
+double Approach<dim>::distance_of_boxes(const PrimitivePair<dim>& pair) const {
+  const auto [one, other] = boxes_of(pair, [&](int v) { return positions_[v]; });
+  return one.exteriorDistance(other);
+}
+
+template <int dim>
+bool Approach<dim>::may_close(const PrimitivePair<dim>& pair, double apart,
+                              double thickness) const {
+  const auto [one, other] = boxes_of(pair, [&](int v) { return moves_[v - first_vertex_]; });
+  const double relative =
+      (other.max() - one.min()).cwiseAbs().cwiseMax((one.max() - other.min()).cwiseAbs()).norm();
+  // The impulse of a contact acts half way between its two points.
+  const double turn =
+      0.5 * (turns_[pair.simplex - first_simplex_] + turns_[pair.other_simplex - first_simplex_]);
+  constexpr double certain = 1e-6;
+  return turn >= 1 || !((1 - turn) * apart > (1 + certain) * (thickness + relative));
+}
+
+template class Approach<2>;
+template class Approach<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,13 @@
+#pragma once
+#include <vector>
+
+#include "contact/search/contact_search.hpp"
+
+namespace lockstep {
+
+/// Convex sharp edges (and rims of shells) of two solids that cross within `reach.near`, or overlap
+/// by up to `reach.depth`: what no vertex sees. Nothing is swept.
+void add_edge_contacts(const ContactShapes<3>& shapes, const ContactReach& reach, int solid,
+                       int other, std::vector<Contact<3>>& contacts);
+
+}  // namespace lockstep

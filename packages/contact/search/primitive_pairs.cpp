@@ -1,0 +1,188 @@
+#include "contact/search/primitive_pairs.hpp"
+
+#include <algorithm>
+
+namespace lockstep {
+
+namespace {
+
+/// Vertices with the simplex that holds them: a vertex, an edge or a simplex.
+template <int n>
+struct Primitive {
+  std::array<int, n> vertices{};
+  int simplex = -1;
+};
+
+/// The pairs of two solids, in boxes that are near both.
+template <int dim>
+class PairFinder {
+ public:
+  PairFinder(const ContactShapes<dim>& shapes, double margin, const Box<dim>& region, bool self,
+             const UsePrimitivePairs<dim>& use)
+      : shapes_(shapes), margin_(margin), region_(region), self_(self), use_(use) {}
+
+  /// Vertices of `solid` against simplices of `other`.
+  void add_vertices(int solid, const BoxTree<dim>& vertices, int other,
+                    const BoxTree<dim>& simplices) {
+    const int first_vertex = shapes_.solids()[solid].vertex_begin;
+    const int first_simplex = shapes_.solids()[other].simplex_begin;
+    add<1, dim>(
+        PrimitiveKind::vertex_simplex, solid, vertices, other, simplices,
+        [&](int i) {
+          const int v = first_vertex + i;
+          return Primitive<1>{{v}, shapes_.at_vertex(v).simplex};
+        },
+        [&](int j) {
+          const int s = first_simplex + j;
+          return Primitive<dim>{shapes_.mesh().simplices[s], s};
+        });
+  }
+  void add_edges(int solid, const BoxTree<dim>& edges, int other, const BoxTree<dim>& others) {
+    const auto edge_of = [this](int of, int i) {
+      const SurfaceEdge& edge = shapes_.topology().edges(of)[i];
+      return Primitive<2>{edge.vertices, edge.simplices[0]};
+    };
+    add<2, 2>(
+        PrimitiveKind::edge_edge, solid, edges, other, others,
+        [&](int i) { return edge_of(solid, i); }, [&](int j) { return edge_of(other, j); });
+  }
+
+ private:
+  /// `first` and `second` make primitives of their numbers in the trees.
+  template <int n, int m, typename First, typename Second>
+  void add(PrimitiveKind kind, int solid, const BoxTree<dim>& first_tree, int other,
+           const BoxTree<dim>& second_tree, const First& first, const Second& second) {
+    std::vector<int> near_both, found;
+    first_tree.touching(region_, near_both);
+    for (const int i : near_both) {
+      second_tree.touching(inflated<dim>(first_tree.box(i), margin_), found);
+      if (found.empty())
+        continue;
+      const Primitive<n> one = first(i);
+      pairs_.clear();
+      for (const int j : found) {
+        if (kind == PrimitiveKind::vertex_simplex || !self_ || i < j)
+          add_pair<n, m>(kind, solid, one, other, second(j));
+      }
+      if (!pairs_.empty())
+        use_(pairs_);
+    }
+  }
+  template <int n, int m>
+  void add_pair(PrimitiveKind kind, int solid, const Primitive<n>& first, int other,
+                const Primitive<m>& second) {
+    if constexpr (n + m == dim + 1) {
+      PrimitivePair<dim> pair;
+      pair.kind = kind;
+      pair.solid = solid;
+      pair.other = other;
+      pair.simplex = first.simplex;
+      pair.other_simplex = second.simplex;
+      std::copy(first.vertices.begin(), first.vertices.end(), pair.vertices.begin());
+      std::copy(second.vertices.begin(), second.vertices.end(), pair.vertices.begin() + n);
+      const auto is_held = [this](int v) { return shapes_.held(v); };
+      if (std::all_of(pair.vertices.begin(), pair.vertices.end(), is_held))
+        return;
+      if (std::find_first_of(first.vertices.begin(), first.vertices.end(), second.vertices.begin(),
+                             second.vertices.end()) == first.vertices.end())
+        pairs_.push_back(pair);
+    }
+  }
+
+  const ContactShapes<dim>& shapes_;
+  double margin_;
+  Box<dim> region_;
+  bool self_;
+  const UsePrimitivePairs<dim>& use_;
+  std::vector<PrimitivePair<dim>> pairs_;  ///< of one first primitive
+};
+
+}  // namespace
+
+template <int dim>
+PrimitivePairs<dim>::PrimitivePairs(const ContactShapes<dim>& shapes,
+                                    std::vector<Box<dim>> vertex_boxes)
+    : shapes_(shapes), vertex_boxes_(std::move(vertex_boxes)), trees_(shapes.n_solids()) {}
+
+template <int dim>
+const typename PrimitivePairs<dim>::Trees& PrimitivePairs<dim>::trees_of(int solid) {
+  if (!trees_[solid])
+    trees_[solid] = std::make_unique<const Trees>(make_trees(solid));
+  return *trees_[solid];
+}
+
+/// Vertices that no simplex has are empty boxes, which nothing finds.
+template <int dim>
+typename PrimitivePairs<dim>::Trees PrimitivePairs<dim>::make_trees(int solid) const {
+  const SolidDescription& description = shapes_.solids()[solid];
+  const auto box_of = [this](const auto& vertices) {
+    Box<dim> box;
+    for (const int v : vertices)
+      box.extend(vertex_boxes_[v]);
+    return box;
+  };
+  const auto make_tree = [](std::vector<Box<dim>> boxes, BoxOrder& order) {
+    BoxTree<dim> tree(std::move(boxes), order);
+    order = tree.order();
+    return tree;
+  };
+  Trees trees;
+  std::vector<Box<dim>> vertices, simplices, edges;
+  for (int v = description.vertex_begin; v < description.vertex_end; ++v) {
+    trees.extent.extend(vertex_boxes_[v]);
+    vertices.push_back(shapes_.at_vertex(v).simplex >= 0 ? vertex_boxes_[v] : Box<dim>());
+  }
+  for (int s = description.simplex_begin; s < description.simplex_end; ++s)
+    simplices.push_back(box_of(shapes_.mesh().simplices[s]));
+  for (const SurfaceEdge& edge : shapes_.topology().edges(solid))
+    edges.push_back(box_of(edge.vertices));
+  auto& orders = shapes_.topology().orders(solid);
+  trees.vertices = make_tree(std::move(vertices), orders[0]);
+  trees.simplices = make_tree(std::move(simplices), orders[1]);
+  trees.edges = make_tree(std::move(edges), orders[2]);
+  return trees;
+}
+
+template <int dim>
+void PrimitivePairs<dim>::for_each(double margin, int solid, int other,
+                                   const UsePrimitivePairs<dim>& use) {
+  const Trees &one = trees_of(solid), &two = trees_of(other);
+  const Box<dim> region =
+      inflated<dim>(one.extent, margin).intersection(inflated<dim>(two.extent, margin));
+  PairFinder<dim> finder(shapes_, margin, region, solid == other, use);
+  finder.add_vertices(solid, one.vertices, other, two.simplices);
+  if (solid != other)
+    finder.add_vertices(other, two.vertices, solid, one.simplices);
+  if constexpr (dim == 3)
+    finder.add_edges(solid, one.edges, other, two.edges);
+}
+
+template <int dim>
+std::array<SurfacePoint<dim>, 2> surface_points(const ContactShapes<dim>& shapes,
+                                                const PrimitivePair<dim>& pair,
+                                                const PrimitiveWeights<dim>& weights) {
+  std::array<SurfacePoint<dim>, 2> points;
+  points[0].simplex = pair.simplex;
+  points[1].simplex = pair.other_simplex;
+  const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
+  for (int k = 0; k <= dim; ++k) {
+    SurfacePoint<dim>& point = points[k < n_first ? 0 : 1];
+    const double weight = k < n_first ? weights[k] : -weights[k];
+    const auto& simplex = shapes.mesh().simplices[point.simplex];
+    point.barycentric[std::find(simplex.begin(), simplex.end(), pair.vertices[k]) -
+                      simplex.begin()] = weight;
+    point.position += weight * shapes.mesh().vertices[pair.vertices[k]];
+  }
+  return points;
+}
+
+template class PrimitivePairs<2>;
+template class PrimitivePairs<3>;
+template std::array<SurfacePoint<2>, 2> surface_points<2>(const ContactShapes<2>&,
+                                                          const PrimitivePair<2>&,
+                                                          const PrimitiveWeights<2>&);
+template std::array<SurfacePoint<3>, 2> surface_points<3>(const ContactShapes<3>&,
+                                                          const PrimitivePair<3>&,
+                                                          const PrimitiveWeights<3>&);
+
+}  // namespace lockstep
