@@ -355,22 +355,41 @@ SurfacePoint<dim> ContactShapes<dim>::at_vertex(int vertex) const {
 }
 
 template <int dim>
-bool ContactShapes<dim>::inside(int solid, const Point<dim>& x, double radius) const {
+template <typename ForEach>
+bool ContactShapes<dim>::inside_of(const ForEach& for_each_simplex, const Point<dim>& x,
+                                   double radius) const {
+  const double tie = 1e-9 * radius;
   double nearest = radius, alignment = 0;
-  for (int s = solids_[solid].simplex_begin; s < solids_[solid].simplex_end; ++s) {
+  for_each_simplex([&](int s) {
     if (bounds_[s].squaredExteriorDistance(x) > nearest * nearest)
-      continue;
+      return;
     const auto closest = closest_on_simplex<dim>(corners(s), x);
-    const double tie = 1e-9 * radius;
     if (closest.distance > nearest + tie)
-      continue;
+      return;
     // Among the simplices that share the closest point, the one that faces x decides.
     const double facing = normal(s).dot(x - closest.position);
     if (closest.distance < nearest - tie || std::abs(facing) > std::abs(alignment))
       alignment = facing;
     nearest = std::min(nearest, closest.distance);
-  }
+  });
   return alignment < 0;
+}
+
+template <int dim>
+bool ContactShapes<dim>::inside(int solid, const Point<dim>& x, double radius) const {
+  const auto all = [this, solid](const auto& look) {
+    for (int s = solids_[solid].simplex_begin; s < solids_[solid].simplex_end; ++s)
+      look(s);
+  };
+  return inside_of(all, x, radius);
+}
+
+template <int dim>
+bool ContactShapes<dim>::inside(const std::vector<int>& simplices, const Point<dim>& x,
+                                double radius) const {
+  return inside_of(
+      [&simplices](const auto& look) { std::for_each(simplices.begin(), simplices.end(), look); },
+      x, radius);
 }
 
 template class ContactTopology<2>;

@@ -103,10 +103,16 @@ class ContactShapes {
   SurfacePoint<dim> at_vertex(int vertex) const;  ///< simplex -1 if no simplex has it
   /// Normal of a smooth surface, interpolated between vertices; nothing beside a sharp edge.
   std::optional<Point<dim>> smooth_normal(const SurfacePoint<dim>& point) const;
-  /// True if x is on the inner side of the closest point of the solid within `radius`.
+  /// True if x is on the inner side of the closest point of the solid, or of these simplices,
+  /// within `radius`.
   bool inside(int solid, const Point<dim>& x, double radius) const;
+  bool inside(const std::vector<int>& simplices, const Point<dim>& x, double radius) const;
 
  private:
+  /// Of those that for_each_simplex(look) looks at.
+  template <typename ForEach>
+  bool inside_of(const ForEach& for_each_simplex, const Point<dim>& x, double radius) const;
+
   void find_combinations();
   void find_carriers();
   void resolve(VelocityRow<dim>& row) const;

@@ -155,7 +155,7 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
         continue;
       if (-height > on_surface) {
         if (!is_inside)
-          is_inside = inside(x);
+          is_inside = shapes_.inside(simplices_, x, farthest_);
         if (!*is_inside)
           continue;
       }
@@ -177,24 +177,6 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
   if (hit && hit->distance > near_)
     hit.reset();
   return hit;
-}
-
-template <int dim>
-bool VertexContacts<dim>::inside(const Point<dim>& x) const {
-  const double tie = 1e-9 * farthest_;
-  double nearest = farthest_, alignment = 0;
-  for (const int s : simplices_) {
-    if (shapes_.bounds(s).squaredExteriorDistance(x) > nearest * nearest)
-      continue;
-    const auto point = closest_on_simplex<dim>(shapes_.corners(s), x);
-    if (point.distance > nearest + tie)
-      continue;
-    const double facing = shapes_.normal(s).dot(x - point.position);
-    if (point.distance < nearest - tie || std::abs(facing) > std::abs(alignment))
-      alignment = facing;
-    nearest = std::min(nearest, point.distance);
-  }
-  return alignment < 0;
 }
 
 template <int dim>

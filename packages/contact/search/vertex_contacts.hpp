@@ -26,9 +26,6 @@ class VertexContacts {
                        std::vector<Contact<dim>>& contacts);
   /// Fills `inner_` with hits inside simplices, for corners that touch several sides.
   std::optional<Hit> closest(const Point<dim>& x, const Point<dim>& normal);
-  /// Of all simplices, whichever way they face, the nearest one decides, and of those that share
-  /// the closest point the one that faces x.
-  bool inside(const Point<dim>& x) const;
   std::optional<Hit> crossed_shell(const Hit& hit, const Point<dim>& normal) const;
   std::optional<Hit> swept(const Point<dim>& x, const Point<dim>& displacement) const;
   bool faces(const Point<dim>& vertex_normal, const Point<dim>& normal) const;
