@@ -24,8 +24,11 @@ class DenseSolidSchur : public SolidSchur, public std::enable_shared_from_this<D
     const auto n = static_cast<int>(matrix_.rows());
     Vector unit(coupling_->getRangeMap()), force(coupling_->getRangeMap());
     Vector column(coupling_->getDomainMap()), kept(coupling_->getDomainMap());
-    if (keep == Keep::columns)
+    if (keep == Keep::columns) {
       columns_ = rcp(new MultiVector(coupling_->getDomainMap(), n));
+      rest_ = make_vector(coupling_->getDomainMap());
+      of_solid_ = make_vector(coupling_->getRangeMap());
+    }
     for (int dof = 0; dof < n; ++dof) {
       unit.putScalar(0);
       if (unit.getMap()->isNodeGlobalElement(dof))
@@ -63,12 +66,12 @@ class DenseSolidSchur : public SolidSchur, public std::enable_shared_from_this<D
   /// does to M: where C is small, Woodbury's difference has nothing else left.
   void apply_woodbury(const Vector& r, Vector& z) const {
     const Eigen::VectorXd velocity = factors_.solve(kept_products(r));
-    Vector of_solid(coupling_->getRangeMap()), rest(r, Teuchos::Copy);
-    distribute(velocity, of_solid);
-    coupling_->apply(of_solid, rest, Teuchos::TRANS, -1, 1);
-    apply(*pressure_inverse_, rest, z);
-    coupling_->apply(z, of_solid);
-    const Eigen::VectorXd change = factors_.solve(solid_block_ * velocity - replicated(of_solid));
+    distribute(velocity, *of_solid_);
+    rest_->update(1, r, 0);
+    coupling_->apply(*of_solid_, *rest_, Teuchos::TRANS, -1, 1);
+    apply(*pressure_inverse_, *rest_, z);
+    coupling_->apply(z, *of_solid_);
+    const Eigen::VectorXd change = factors_.solve(solid_block_ * velocity - replicated(*of_solid_));
     for (int dof = 0; dof < change.size(); ++dof)
       z.update(change[dof], *columns_->getVector(dof), 1);
   }
@@ -90,7 +93,8 @@ class DenseSolidSchur : public SolidSchur, public std::enable_shared_from_this<D
   RCP<const LinearOperator> pressure_inverse_;
   Eigen::MatrixXd solid_block_, matrix_;  ///< C; C + B^T M B
   Eigen::LLT<Eigen::MatrixXd> factors_;
-  RCP<MultiVector> columns_;  ///< M B, if kept
+  RCP<MultiVector> columns_;     ///< M B, if kept, as all below
+  RCP<Vector> rest_, of_solid_;  ///< work vectors of `apply_woodbury`
 };
 
 }  // namespace
