@@ -280,14 +280,15 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
   };
   // Walks cost by the bins on the way, the rest of this by the simplices in the box.
   if (small_simplices_) {
-    Eigen::Array<bool, 1 << dim, 1> is_free = Eigen::Array<bool, 1 << dim, 1>::Constant(true);
+    Values clearance = Values::Constant(std::numeric_limits<double>::infinity());
     patch_bins_.visit(widened<dim>(box, patch_reach_), [&](const auto& list) {
       const Patch& patch = patches_[list.place];
       const double from = patch.plane(eye), side = from < 0 ? -1 : 1;
-      is_free = is_free && (side * at_corners(patch.plane)).min(side * from) > patch.half_thickness;
+      clearance =
+          clearance.min((side * at_corners(patch.plane)).min(side * from) - patch.half_thickness);
     });
     for (int k = 0; k < 1 << dim; ++k)
-      hits[k] = is_free[k] ? std::nullopt : first_hit(eye, corner(k));
+      hits[k] = clearance[k] > 0 ? std::nullopt : first_hit(eye, corner(k));
     return;
   }
   Values square = Values::Zero();
@@ -306,19 +307,22 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       const Near& near = near_[i];
       const double from = near.plane(eye);
       const Values to = at_corners(near.plane);
-      const Eigen::Array<bool, 1 << dim, 1> stays =
-          to.min(from) > 3 * tolerance_ || to.max(from) < -3 * tolerance_;
-      if (stays.all())
+      const double tolerance = 3 * tolerance_;
+      if (std::min(from, to.minCoeff()) > tolerance || std::max(from, to.maxCoeff()) < -tolerance)
         continue;
-      const Values drop = from - to, sign = (drop < 0).select(Values::Constant(-1), 1);
+      // In terms of minima alone, which Eigen vectorizes, as it does no choices: segments reach the
+      // plane, and do not pass by the simplex.
+      const Values drop = from - to, size = drop.abs();
       Values inside = Values::Constant(std::numeric_limits<double>::infinity());
       for (const Rim& rim : near.rims)
-        inside = inside.min(sign * (from * at_corners(rim) - rim(eye) * to));
-      const Eigen::Array<bool, 1 << dim, 1> passes_by =
-          stays ||
-          (inside < -2 * tolerance_ * length && drop.abs() > 1e-9 * length && length > tolerance_);
+        inside = inside.min(drop * (from * at_corners(rim) - rim(eye) * to));
+      const Values reaches = (tolerance - to.min(from)).min(tolerance + to.max(from));
+      const Values passes = (-2 * tolerance_ * length * size - inside)
+                                .min(size - 1e-9 * length)
+                                .min(length - tolerance_);
+      const Values meets = reaches.min(-passes);
       for (int k = 0; k < 1 << dim; ++k)
-        if (!passes_by[k])
+        if (meets[k] >= 0)
           look_at(i, eye, corner(k), length[k], first[k]);
     }
   });
