@@ -1,5 +1,8 @@
 #include "stepping/report/run_tables.hpp"
 
+#include "interfaces/constraint.hpp"
+#include "interfaces/solid.hpp"
+
 namespace lockstep {
 namespace {
 

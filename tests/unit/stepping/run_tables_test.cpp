@@ -198,11 +198,11 @@ void expect_liquid(Texts& texts, const LiquidReport& liquid) {
 
 template <typename Dimension>
 struct RunTablesOf : ::testing::Test {
-  static constexpr int dim = Dimension::value;
+  static constexpr int dimension = Dimension::value;
   Communicator comm = Tpetra::getDefaultComm();
-  std::string folder = fresh_folder("tables-" + std::to_string(dim));
-  FullLiquid<dim> liquid;
-  StepReport<dim> report = numbered_report<dim>();
+  std::string folder = fresh_folder("tables-" + std::to_string(dimension));
+  FullLiquid<dimension> liquid;
+  StepReport<dimension> report = numbered_report<dimension>();
 
   std::vector<Texts> rows(const std::string& name) const {
     comm->barrier();
@@ -215,7 +215,7 @@ using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integra
 TYPED_TEST_SUITE(RunTablesOf, Dimensions);
 
 TYPED_TEST(RunTablesOf, HistorySaysOfEachColumnWhatItsNameSays) {
-  constexpr int dim = TestFixture::dim;
+  constexpr int dim = TestFixture::dimension;
   RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
   tables.start();
   tables.append(7, this->report, {}, 0.5);
@@ -231,7 +231,7 @@ TYPED_TEST(RunTablesOf, HistorySaysOfEachColumnWhatItsNameSays) {
 }
 
 TYPED_TEST(RunTablesOf, AFullDomainHasNoColumnsOfALiquid) {
-  constexpr int dim = TestFixture::dim;
+  constexpr int dim = TestFixture::dimension;
   RunTables<dim> tables(this->comm, this->folder, nullptr, false);
   tables.start();
   tables.append(7, this->report, {}, 0.5);
@@ -239,7 +239,7 @@ TYPED_TEST(RunTablesOf, AFullDomainHasNoColumnsOfALiquid) {
 }
 
 TYPED_TEST(RunTablesOf, APlaceThatIsNotWatchedIsNan) {
-  constexpr int dim = TestFixture::dim;
+  constexpr int dim = TestFixture::dimension;
   RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
   tables.start();
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -251,7 +251,7 @@ TYPED_TEST(RunTablesOf, APlaceThatIsNotWatchedIsNan) {
 }
 
 TYPED_TEST(RunTablesOf, AFluidThatTellsLessThanItSaidIsRefused) {
-  constexpr int dim = TestFixture::dim;
+  constexpr int dim = TestFixture::dimension;
   RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
   tables.start();
   const LiquidReport whole = *this->report.liquid;
@@ -265,7 +265,7 @@ TYPED_TEST(RunTablesOf, AFluidThatTellsLessThanItSaidIsRefused) {
 }
 
 TYPED_TEST(RunTablesOf, BodiesHaveTheirOwnStatesAndImpulses) {
-  constexpr int dim = TestFixture::dim;
+  constexpr int dim = TestFixture::dimension;
   this->report.dt = 0.5;
   double number = 0;
   std::vector<SolidState<dim>> states(2);
@@ -296,7 +296,7 @@ TYPED_TEST(RunTablesOf, BodiesHaveTheirOwnStatesAndImpulses) {
 }
 
 TYPED_TEST(RunTablesOf, JointsSayOfEachColumnWhatItsNameSays) {
-  constexpr int dim = TestFixture::dim;
+  constexpr int dim = TestFixture::dimension;
   JointState slide{"Sleeve", 2, 1, 2, 3, 4, 5, 6, 8, true, false};
   JointState hinge{"Hinge", 0, 11, 12, 13, 14, 15, 16, 18, false, true};
   RunTables<dim> tables(this->comm, this->folder, nullptr, true);
