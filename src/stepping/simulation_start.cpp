@@ -28,7 +28,6 @@ void Simulation<dim>::begin_outputs() {
   header_ = run_header(comm_, options_.command_line);
   write_summary(comm_, options_.output_directory, unfinished_summary("running", "", header_));
   first_step_ = step_;
-  last_checkpoint_ = stepper_->time();
 }
 
 template <int dim>
@@ -55,9 +54,10 @@ void Simulation<dim>::begin_tables() {
   } else {
     discard_checkpoints_after(comm_, options_.output_directory, step_);
     tables_.resume(step_);
-    observers_.resume(step_);
+    observers_.resume(step_, stepper_->time(), last_dt_);
     frames_.resume(stepper_->time());
-    last_frame_ = frames_.n_frames() > 0 ? frames_.last_time() : -1e300;
+    frame_times_.reach(stepper_->time(), last_dt_);
+    checkpoint_times_.reach(stepper_->time(), last_dt_);
   }
 }
 
