@@ -168,6 +168,7 @@ void Simulation<dim>::write_checkpoint() {
   for_each_plug_in(components_, [&](const PlugIn& plug_in) { plug_in.save(checkpoint); });
   observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
+  checkpoint.file().write_attribute("/", "last frame", last_frame_);
   checkpoint.finish(scene_options_.output.keep_checkpoints);
 }
 
@@ -260,7 +261,7 @@ void Simulation<dim>::write_rows() {
   }
   if (!observers_.empty()) {
     ScopedPhase phase(timers_, "observers");
-    observers_.observe(step_, view(states));
+    observers_.observe(step_, view(states), finished());
   }
   StepProgress progress = progress_of<dim>(step_, *report_, step_seconds_);
   progress.remaining_seconds =
@@ -271,9 +272,10 @@ void Simulation<dim>::write_rows() {
 template <int dim>
 void Simulation<dim>::write_what_is_due() {
   const OutputOptions& output = scene_options_.output;
-  const bool frame_is_due = frame_times_.reach(stepper_->time(), last_dt_);
-  // Another folder may hold none yet.
-  if (output.frames && (frame_is_due || finished() || frames_.n_frames() == 0))
+  const bool is_due = frame_times_.reach(stepper_->time(), last_dt_) || frames_.n_frames() == 0;
+  if (output.frames && is_due)
+    last_frame_ = stepper_->time();
+  if (output.frames && (is_due || finished()))
     write_frame();
   if (output.checkpoint_interval > 0 && checkpoint_times_.reach(stepper_->time(), last_dt_))
     write_checkpoint();

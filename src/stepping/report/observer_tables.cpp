@@ -87,13 +87,13 @@ void ObserverTables<dim>::look(Watch& watch, long long step, const RunView<dim>&
     rows.push_back(std::move(row));
   }
   watch.table->append_rows(rows);
-  watch.last_time = run.time;
 }
 
 template <int dim>
 void ObserverTables<dim>::start(long long step, const RunView<dim>& run) {
   for (Watch& watch : watches_) {
     watch.table->start();
+    watch.last_time = run.time;
     look(watch, step, run);
   }
 }
@@ -105,18 +105,22 @@ void ObserverTables<dim>::check_columns() const {
 }
 
 template <int dim>
-void ObserverTables<dim>::resume(long long step, double time, double dt) {
+void ObserverTables<dim>::resume(long long step, double time, double dt, bool at_end) {
   for (Watch& watch : watches_) {
-    watch.table->resume(step);
+    const bool was_due = watch.last_time == never || watch.last_time >= time;
+    watch.table->resume(was_due || at_end ? step : step - 1);
     watch.times.reach(time, dt);
   }
 }
 
 template <int dim>
-void ObserverTables<dim>::observe(long long step, const RunView<dim>& run) {
+void ObserverTables<dim>::observe(long long step, const RunView<dim>& run, bool at_end) {
   for (Watch& watch : watches_) {
     watch.observer->follow(run);
-    if (watch.times.reach(run.time, run.dt) || watch.last_time == never)
+    const bool is_due = watch.times.reach(run.time, run.dt) || watch.last_time == never;
+    if (is_due)
+      watch.last_time = run.time;
+    if (is_due || at_end)
       look(watch, step, run);
   }
 }

@@ -24,10 +24,11 @@ class ObserverTables {
   void start(long long step, const RunView<dim>& run);
   /// Throws InputError if tables that are there have other columns.
   void check_columns() const;
-  /// Continues them after `step`, of dt up to `time` [s].
-  void resume(long long step, double time, double dt);
-  /// After a step; observers whose interval has not passed yet look away.
-  void observe(long long step, const RunView<dim>& run);
+  /// Continues them after `step`, of dt up to `time` [s]. A run that is not at its end drops looks
+  /// that came only because the earlier one ended there.
+  void resume(long long step, double time, double dt, bool at_end);
+  /// After a step; observers whose interval has not passed yet look away, but at the end.
+  void observe(long long step, const RunView<dim>& run, bool at_end);
   void save(CheckpointWriter& checkpoint) const;
   void load(CheckpointReader& checkpoint);
   /// Lets other observers, made from the same lists, look once, so that what cannot be seen is told
@@ -40,7 +41,7 @@ class ObserverTables {
   struct Watch {
     std::string name, type;
     Schedule times;
-    double last_time = never;  ///< of its last look [s]
+    double last_time = never;  ///< of its last look that was due [s]
     std::unique_ptr<Observer<dim>> observer{};
     std::unique_ptr<HistoryTable> table{};
   };

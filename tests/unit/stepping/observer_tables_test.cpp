@@ -72,7 +72,7 @@ TEST(ObserverTables, TwoOfOneTypeKeepTheirOwnState) {
   ObserverTables<2> tables(registry(), counters(), comm, folder, 1);
   tables.start(0, {1, 0, fluid, solids});
   seen.clear();
-  tables.observe(1, {2, 1, fluid, solids});
+  tables.observe(1, {2, 1, fluid, solids}, false);
   EXPECT_THAT(seen, ElementsAre(12, 22));
   CheckpointWriter writer(comm, folder, {1, 2, "<ParameterList/>"});
   tables.save(writer);
@@ -83,9 +83,9 @@ TEST(ObserverTables, TwoOfOneTypeKeepTheirOwnState) {
   CheckpointReader reader(comm, folder + "/checkpoint-000001.h5");
   resumed.load(reader);
   EXPECT_EQ(reader.file().read_attribute<double>("/", "count"), -1);
-  resumed.resume(1, 2, 1);
+  resumed.resume(1, 2, 1, false);
   seen.clear();
-  resumed.observe(2, {3, 1, fluid, solids});
+  resumed.observe(2, {3, 1, fluid, solids}, false);
   EXPECT_THAT(seen, ElementsAre(13, 23));
 }
 
