@@ -166,6 +166,7 @@ void Simulation<dim>::write_checkpoint() {
   CheckpointWriter checkpoint(comm_, options_.output_directory,
                               {step_, stepper_->time(), to_xml(scene_), files_});
   for_each_plug_in(components_, [&](const PlugIn& plug_in) { plug_in.save(checkpoint); });
+  stepper_->save(checkpoint);
   observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
   checkpoint.file().write_attribute("/", "last frame", last_frame_);

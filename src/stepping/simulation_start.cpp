@@ -83,7 +83,7 @@ void Simulation<dim>::load_checkpoint() {
   last_dt_ = checkpoint.file().read_attribute<double>("/", "last dt");
   if (checkpoint.file().has_attribute("/", "last frame"))  // older ones say nothing of it
     last_frame_ = checkpoint.file().read_attribute<double>("/", "last frame");
-  stepper_->resume(checkpoint.header().time, last_dt_, step_);
+  stepper_->resume(checkpoint, last_dt_);
 }
 
 template void Simulation<2>::begin_outputs();
