@@ -48,9 +48,12 @@ void declare_output(ParameterList& scene) {
   ParameterList& output = declare_list(scene, "Output", "What is written.");
   declare(output, "Frames", true, "Write frames.h5 and frames.xmf.");
   declare_at_least(output, "Frame Interval", 0., 0.,
-                   "Simulated time between frames [s]; 0: every step.");
-  declare_at_least(output, "Checkpoint Interval", 0., 0.,
-                   "Simulated time between checkpoints [s]; 0: only at the end and when stopped.");
+                   "Simulated time between frames [s]: each comes with the first step at or past a "
+                   "multiple of it after the start, the last at the end. 0: every step.");
+  declare_at_least(
+      output, "Checkpoint Interval", 0., 0.,
+      "Simulated time between checkpoints [s], counted as that of frames; 0: only at the "
+      "end and when stopped.");
   declare_at_least(output, "Keep Checkpoints", 2, 1, "How many checkpoints are kept.");
   declare_choice(output, "Precision", "single", {"single", "double"}, "Of the fields in frames.");
 }
@@ -78,8 +81,10 @@ template <int dim>
 void declare_observers(ParameterList& scene, const ObserverRegistry<dim>& observers) {
   std::vector<TypedSchema> types = observers.schemas();
   for (TypedSchema& type : types) {
-    declare_at_least(type.parameters, "Interval", 0., 0.,
-                     "Simulated time between two looks [s]; 0: after every step.");
+    declare_at_least(
+        type.parameters, "Interval", 0., 0.,
+        "Simulated time between two looks [s], counted as that of frames; 0: after every "
+        "step.");
   }
   declare_named_sublists(scene, "Observers",
                          "What is measured on the way: one sublist each, whose name is that of the "

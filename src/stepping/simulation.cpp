@@ -49,11 +49,14 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
       components_(build_components<dim>(registries, scene, options.scene_file, comm)),
       tables_(comm, options.output_directory, liquid_of<dim>(*components_.fluid),
               components_.solids->joints() != nullptr),
-      observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory),
+      observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory,
+                 scene_options_.time.start),
       frames_(comm, options.output_directory,
               {scene_options_.output.precision == "double" ? Precision::double_precision
                                                            : Precision::single_precision,
-               0}) {
+               0}),
+      frame_times_(scene_options_.time.start, scene_options_.output.frame_interval),
+      checkpoint_times_(scene_options_.time.start, scene_options_.output.checkpoint_interval) {
   if (options.end_time)
     scene_options_.time.end = *options.end_time;
   if (options.steps)
@@ -155,7 +158,6 @@ void Simulation<dim>::write_frame() {
   ScopedPhase phase(timers_, "frames");
   const Frame now = frame();
   frames_.write(step_, stepper_->time(), now.boxes, now.meshes);
-  last_frame_ = stepper_->time();
 }
 
 template <int dim>
@@ -164,10 +166,11 @@ void Simulation<dim>::write_checkpoint() {
   CheckpointWriter checkpoint(comm_, options_.output_directory,
                               {step_, stepper_->time(), to_xml(scene_), files_});
   for_each_plug_in(components_, [&](const PlugIn& plug_in) { plug_in.save(checkpoint); });
+  stepper_->save(checkpoint);
   observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
+  checkpoint.file().write_attribute("/", "last frame", last_frame_);
   checkpoint.finish(scene_options_.output.keep_checkpoints);
-  last_checkpoint_ = stepper_->time();
 }
 
 template <int dim>
@@ -259,7 +262,7 @@ void Simulation<dim>::write_rows() {
   }
   if (!observers_.empty()) {
     ScopedPhase phase(timers_, "observers");
-    observers_.observe(step_, view(states));
+    observers_.observe(step_, view(states), finished());
   }
   StepProgress progress = progress_of<dim>(step_, *report_, step_seconds_);
   progress.remaining_seconds =
@@ -270,15 +273,13 @@ void Simulation<dim>::write_rows() {
 template <int dim>
 void Simulation<dim>::write_what_is_due() {
   const OutputOptions& output = scene_options_.output;
-  const double slack = 1e-9 * std::max(last_dt_, output.frame_interval);
-  if (output.frames &&
-      (finished() || stepper_->time() >= last_frame_ + output.frame_interval - slack)) {
+  const bool is_due = frame_times_.reach(stepper_->time(), last_dt_) || frames_.n_frames() == 0;
+  if (output.frames && is_due)
+    last_frame_ = stepper_->time();
+  if (output.frames && (is_due || finished()))
     write_frame();
-  }
-  if (output.checkpoint_interval > 0 &&
-      stepper_->time() >= last_checkpoint_ + output.checkpoint_interval - slack) {
+  if (output.checkpoint_interval > 0 && checkpoint_times_.reach(stepper_->time(), last_dt_))
     write_checkpoint();
-  }
 }
 
 template <int dim>

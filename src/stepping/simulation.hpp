@@ -5,6 +5,7 @@
 
 #include "output/folder_lock.hpp"
 #include "output/frames.hpp"
+#include "output/schedule.hpp"
 #include "solve/dumping_strategy.hpp"
 #include "stepping/report/observer_tables.hpp"
 #include "stepping/report/run_tables.hpp"
@@ -89,6 +90,7 @@ class Simulation {
   void write_frame();
   void write_checkpoint();
   void load_checkpoint();
+  void resume_frames();
   double fraction_done() const;
   void warn();
   void warn_of_watches();
@@ -105,11 +107,14 @@ class Simulation {
   RunTables<dim> tables_;
   ObserverTables<dim> observers_;
   FrameWriter frames_;
+  Schedule frame_times_, checkpoint_times_;
+  static constexpr double never_ = -1e300;
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
   bool warned_of_viscous_step_ = false, warned_of_stretch_ = false, warned_of_unsettled_ = false;
   std::vector<char> warned_of_watch_;
-  double last_dt_ = 0, last_frame_ = -1e300, last_checkpoint_ = 0;
+  double last_dt_ = 0;
+  double last_frame_ = never_;                ///< that was due [s]
   double fraction_at_begin_ = 0;              ///< of the run, done before this program
   const DumpingStrategy* dumping_ = nullptr;  ///< of --dump-system; `components_` owns it
   std::optional<StepReport<dim>> report_;     ///< of the last step

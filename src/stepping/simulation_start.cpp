@@ -1,4 +1,6 @@
 // What a run does before its first step: looks at the checkpoint, then takes its folder over.
+#include <cmath>
+
 #include "base/errors.hpp"
 #include "output/checkpoint.hpp"
 #include "output/on_root.hpp"
@@ -28,7 +30,6 @@ void Simulation<dim>::begin_outputs() {
   header_ = run_header(comm_, options_.command_line);
   write_summary(comm_, options_.output_directory, unfinished_summary("running", "", header_));
   first_step_ = step_;
-  last_checkpoint_ = stepper_->time();
 }
 
 template <int dim>
@@ -50,15 +51,26 @@ void Simulation<dim>::begin_tables() {
     if (!observers_.empty())
       observers_.start(step_, view(components_.solids->states()));
     frames_.start();
-    if (scene_options_.output.frames)
+    if (scene_options_.output.frames) {
+      last_frame_ = stepper_->time();
       write_frame();
+    }
   } else {
     discard_checkpoints_after(comm_, options_.output_directory, step_);
     tables_.resume(step_);
-    observers_.resume(step_);
-    frames_.resume(stepper_->time());
-    last_frame_ = frames_.n_frames() > 0 ? frames_.last_time() : -1e300;
+    observers_.resume(step_, stepper_->time(), last_dt_, finished());
+    resume_frames();
+    checkpoint_times_.reach(stepper_->time(), last_dt_);
   }
+}
+
+/// A frame that came only because the earlier run ended here is none of a run that goes on.
+template <int dim>
+void Simulation<dim>::resume_frames() {
+  const double now = stepper_->time();
+  const bool was_due = last_frame_ == never_ || last_frame_ >= now;
+  frames_.resume(was_due || finished() ? now : std::nextafter(now, never_));
+  frame_times_.reach(now, last_dt_);
 }
 
 template <int dim>
@@ -69,7 +81,9 @@ void Simulation<dim>::load_checkpoint() {
   observers_.load(checkpoint);
   step_ = checkpoint.header().step;
   last_dt_ = checkpoint.file().read_attribute<double>("/", "last dt");
-  stepper_->resume(checkpoint.header().time, last_dt_, step_);
+  if (checkpoint.file().has_attribute("/", "last frame"))  // older ones say nothing of it
+    last_frame_ = checkpoint.file().read_attribute<double>("/", "last frame");
+  stepper_->resume(checkpoint, last_dt_);
 }
 
 template void Simulation<2>::begin_outputs();

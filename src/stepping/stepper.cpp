@@ -40,15 +40,6 @@ Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options
 }
 
 template <int dim>
-void Stepper<dim>::resume(double time, double last_dt, long long n_steps) {
-  time_ = time;
-  last_dt_ = last_dt;
-  n_steps_ = n_steps;
-  components_.solids->begin_step(time, 0);
-  freeze();
-}
-
-template <int dim>
 void Stepper<dim>::freeze() {
   freeze(components_.solids->snapshot());
   components_.fluid->begin_prediction();
@@ -331,8 +322,10 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
     finish(solved, report);  // F4
   } catch (const Interrupted&) {
     undo();
+    cells_are_gone_ = fluid_moved_;
     throw;
   }
+  cells_are_gone_ = false;
   time_ += dt;
   last_dt_ = dt;
   ++n_steps_;

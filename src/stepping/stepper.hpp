@@ -52,9 +52,11 @@ class Stepper {
   /// then fluid and solids can be saved as they were at its start, and not stepped on. Collective.
   StepReport<dim> advance(double dt);
   double time() const { return time_; }
+  /// What a restart needs beside fluid and solids. Collective.
+  void save(CheckpointWriter& checkpoint) const;
   /// For restart, after fluid and solids were loaded: freezes the geometry anew. `last_dt` is that
-  /// of the last of `n_steps` steps. Collective.
-  void resume(double time, double last_dt, long long n_steps);
+  /// of the checkpoint's last step. Collective.
+  void resume(const CheckpointReader& checkpoint, double last_dt);
   CoupledSystem<dim>& system() { return system_; }
 
  private:
@@ -145,6 +147,7 @@ class Stepper {
   bool fluid_moved_ = false;     ///< to other cells, before this step
   bool frozen_at_rest_ = false;  ///< the geometry is that of solids that did not move then
   Momentum<dim> last_momentum_;  ///< at the end of the last step
+  bool cells_are_gone_ = false;  ///< an abandoned step has left some that were in it
   std::optional<StepEnergy<dim>> energy_;  ///< none: nobody wants it
 };
 

@@ -48,14 +48,11 @@ std::string group_of(const std::string& key) {
 template <int dim>
 ObserverTables<dim>::ObserverTables(const ObserverRegistry<dim>& registry,
                                     const ParameterList& observers, const Communicator& comm,
-                                    const std::string& directory) {
+                                    const std::string& directory, double start_time) {
   for (const auto& [name, entry] : entries(observers)) {
     check_name(name);
     const ParameterList& list = observers.sublist(name);
-    Watch watch;
-    watch.name = name;
-    watch.interval = list.get<double>("Interval");
-    watch.type = list.get<std::string>("Type");
+    Watch watch{name, list.get<std::string>("Type"), {start_time, list.get<double>("Interval")}};
     watch.observer = registry.create(watch.type, list);
     watch.table = std::make_unique<HistoryTable>(comm, directory + "/" + name + ".csv",
                                                  table_columns(watch.observer->columns()));
@@ -90,13 +87,13 @@ void ObserverTables<dim>::look(Watch& watch, long long step, const RunView<dim>&
     rows.push_back(std::move(row));
   }
   watch.table->append_rows(rows);
-  watch.last_time = run.time;
 }
 
 template <int dim>
 void ObserverTables<dim>::start(long long step, const RunView<dim>& run) {
   for (Watch& watch : watches_) {
     watch.table->start();
+    watch.last_time = run.time;
     look(watch, step, run);
   }
 }
@@ -108,17 +105,22 @@ void ObserverTables<dim>::check_columns() const {
 }
 
 template <int dim>
-void ObserverTables<dim>::resume(long long step) {
-  for (Watch& watch : watches_)
-    watch.table->resume(step);
+void ObserverTables<dim>::resume(long long step, double time, double dt, bool at_end) {
+  for (Watch& watch : watches_) {
+    const bool was_due = watch.last_time == never || watch.last_time >= time;
+    watch.table->resume(was_due || at_end ? step : step - 1);
+    watch.times.reach(time, dt);
+  }
 }
 
 template <int dim>
-void ObserverTables<dim>::observe(long long step, const RunView<dim>& run) {
+void ObserverTables<dim>::observe(long long step, const RunView<dim>& run, bool at_end) {
   for (Watch& watch : watches_) {
     watch.observer->follow(run);
-    const double slack = 1e-9 * std::max(run.dt, watch.interval);
-    if (run.time >= watch.last_time + watch.interval - slack)
+    const bool is_due = watch.times.reach(run.time, run.dt) || watch.last_time == never;
+    if (is_due)
+      watch.last_time = run.time;
+    if (is_due || at_end)
       look(watch, step, run);
   }
 }

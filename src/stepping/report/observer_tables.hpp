@@ -5,6 +5,7 @@
 
 #include "interfaces/registries.hpp"
 #include "output/history.hpp"
+#include "output/schedule.hpp"
 
 namespace lockstep {
 
@@ -12,10 +13,10 @@ namespace lockstep {
 template <int dim>
 class ObserverTables {
  public:
-  /// `observers`: the validated list "Observers" of a scene. Throws InputError for a name that
-  /// cannot be that of a file, or is that of another table.
+  /// `observers`: the validated list "Observers" of a scene. Intervals count from `start_time` [s].
+  /// Throws InputError for a name that cannot be that of a file, or is that of another table.
   ObserverTables(const ObserverRegistry<dim>& registry, const ParameterList& observers,
-                 const Communicator& comm, const std::string& directory);
+                 const Communicator& comm, const std::string& directory, double start_time);
 
   bool empty() const { return watches_.empty(); }
   bool want_energy() const;  ///< any of them. Local.
@@ -23,10 +24,11 @@ class ObserverTables {
   void start(long long step, const RunView<dim>& run);
   /// Throws InputError if tables that are there have other columns.
   void check_columns() const;
-  /// Continues them after `step`.
-  void resume(long long step);
-  /// After a step; observers whose interval has not passed yet look away.
-  void observe(long long step, const RunView<dim>& run);
+  /// Continues them after `step`, of dt up to `time` [s]. A run that is not at its end drops looks
+  /// that came only because the earlier one ended there.
+  void resume(long long step, double time, double dt, bool at_end);
+  /// After a step; observers whose interval has not passed yet look away, but at the end.
+  void observe(long long step, const RunView<dim>& run, bool at_end);
   void save(CheckpointWriter& checkpoint) const;
   void load(CheckpointReader& checkpoint);
   /// Lets other observers, made from the same lists, look once, so that what cannot be seen is told
@@ -35,12 +37,13 @@ class ObserverTables {
                       const RunView<dim>& run);
 
  private:
+  static constexpr double never = -1e300;
   struct Watch {
     std::string name, type;
-    double interval = 0;        ///< [s]
-    double last_time = -1e300;  ///< of its last look [s]
-    std::unique_ptr<Observer<dim>> observer;
-    std::unique_ptr<HistoryTable> table;
+    Schedule times;
+    double last_time = never;  ///< of its last look that was due [s]
+    std::unique_ptr<Observer<dim>> observer{};
+    std::unique_ptr<HistoryTable> table{};
   };
   void look(Watch& watch, long long step, const RunView<dim>& run);
 

@@ -69,23 +69,23 @@ TEST(ObserverTables, TwoOfOneTypeKeepTheirOwnState) {
   const std::string folder = fresh_folder("observers");
   const FakeFluid<2> fluid({{2, 2}, 0.5}, comm);
   const std::vector<SolidState<2>> solids;
-  ObserverTables<2> tables(registry(), counters(), comm, folder);
+  ObserverTables<2> tables(registry(), counters(), comm, folder, 1);
   tables.start(0, {1, 0, fluid, solids});
   seen.clear();
-  tables.observe(1, {2, 1, fluid, solids});
+  tables.observe(1, {2, 1, fluid, solids}, false);
   EXPECT_THAT(seen, ElementsAre(12, 22));
   CheckpointWriter writer(comm, folder, {1, 2, "<ParameterList/>"});
   tables.save(writer);
   writer.file().write_attribute("/", "count", -1.);  // at its top, as a run does
   writer.finish(1);
 
-  ObserverTables<2> resumed(registry(), counters(), comm, folder);
+  ObserverTables<2> resumed(registry(), counters(), comm, folder, 1);
   CheckpointReader reader(comm, folder + "/checkpoint-000001.h5");
   resumed.load(reader);
   EXPECT_EQ(reader.file().read_attribute<double>("/", "count"), -1);
-  resumed.resume(1);
+  resumed.resume(1, 2, 1, false);
   seen.clear();
-  resumed.observe(2, {3, 1, fluid, solids});
+  resumed.observe(2, {3, 1, fluid, solids}, false);
   EXPECT_THAT(seen, ElementsAre(13, 23));
 }
 
