@@ -119,9 +119,10 @@ double ContactProblem<dim>::target(const Contact<dim>& contact, double normal_ve
     const double excess = -contact.gap - slop(contact);
     return excess <= 0 ? free : std::min(options_.push_rate * excess, 0.25 * spacing_) / dt_;
   }
-  // Forces of this step alone, as those on a resting body, do not bounce.
+  // Forces of this step alone, as those on a resting body, do not bounce. What arrives exactly at
+  // the end of the step does so in the next, whatever the round-off.
   const double closing = std::min(-normal_velocity, -before);
-  if (normal_velocity < free && closing > options_.bounce_speed)
+  if (normal_velocity < free - 1e-9 * closing && closing > options_.bounce_speed)
     return std::max(
         free, closing * mean(contact, &SolidDescription::restitution, options_.wall_restitution));
   return free;

@@ -129,19 +129,28 @@ class SurfaceContacts {
            outward(near.points[1]).dot(near.arm) < 0;
   }
 
+  /// Of simplices that are equally near but for round-off, as all around a node below the vertex,
+  /// the first: friction acts on its corners, which must be the same on any number of ranks.
+  std::size_t nearest_of(const std::vector<NearPair<dim>>& near) const {
+    double least = near.front().closest.distance;
+    for (const NearPair<dim>& one : near)
+      least = std::min(least, one.closest.distance);
+    std::size_t first = 0;
+    while (near[first].closest.distance > least + 1e-9 * range(near[first]))
+      ++first;
+    return first;
+  }
+
   /// All simplices near one vertex.
   void add_vertex(const std::vector<PrimitivePair<dim>>& pairs) {
     std::vector<NearPair<dim>> near;
-    std::size_t nearest = 0;
     for (const PrimitivePair<dim>& pair : pairs) {
-      if (const auto found = near_pair(pair)) {
+      if (const auto found = near_pair(pair))
         near.push_back(*found);
-        if (near.back().closest.distance < near[nearest].closest.distance)
-          nearest = near.size() - 1;
-      }
     }
     if (near.empty())
       return;
+    const std::size_t nearest = nearest_of(near);
     if (!touches(near[nearest]) && overlaps(near[nearest])) {
       add_overlap(near[nearest]);
       return;

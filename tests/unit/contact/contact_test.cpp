@@ -52,6 +52,20 @@ TYPED_TEST(Contacts, ElasticBallsHeadOnKeepMomentumAndEnergy) {
   EXPECT_NEAR(world.state(1).velocity[0], 2, 0.05);
 }
 
+TYPED_TEST(Contacts, WhatArrivesExactlyAtTheEndOfAStepStopsInTheNextWhateverTheRoundOff) {
+  constexpr int dim = TypeParam::value;
+  const double speed = 1, dt = 0.1 * h / speed;
+  for (const double moved : {-1e-14, 0.0, 1e-14}) {
+    World<dim> world(
+        {moving<dim>(box<dim>(4 * h, up<dim>((2.2 + moved) * h), 2 * h), up<dim>(-speed))},
+        Point<dim>::Zero(), cube_walls<dim>());
+    world.step(dt);
+    EXPECT_NEAR(world.state(0).velocity[dim - 1], -speed, 1e-9) << moved;
+    world.step(dt);
+    EXPECT_NEAR(world.state(0).velocity[dim - 1], 0, 1e-5) << moved;  // to the sweeps' tolerance
+  }
+}
+
 TYPED_TEST(Contacts, AStackOfThreeBoxesStays) {
   constexpr int dim = TypeParam::value;
   std::vector<RigidBody<dim>> bodies;

@@ -6,6 +6,7 @@
 
 #include "cloth_world.hpp"
 #include "contact/impacts/impacts.hpp"
+#include "contact/search/contact_search.hpp"
 #include "contact/search/meeting_pairs.hpp"
 
 namespace lockstep::test {
@@ -122,6 +123,39 @@ TYPED_TEST(Searches, ImpactsAreThoseOfAllPairs) {
     n_found += found.size();
   }
   EXPECT_GT(n_found, 20U);
+}
+
+/// The simplices of all contacts of a sheet over another whose nodes are straight below its own,
+/// each of the upper ones moved by so much at most along any axis.
+template <int dim>
+std::vector<std::array<int, 2>> simplices_in_contact(double moved) {
+  std::vector<DeformableBody<dim>> cloths;
+  for (const double height : {0., 0.05 * h})
+    cloths.push_back(sheet<dim>(4 * h, up<dim>(height), h));
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> uniform(-moved, moved);
+  for (Point<dim>& x : cloths.back().position)
+    x += Point<dim>::NullaryExpr([&] { return uniform(generator); });
+  const ClothWorld<dim> world(std::move(cloths), {}, Point<dim>::Zero());
+  ContactTopology<dim> topology;
+  const ContactShapes<dim> shapes(*world.solids, topology);
+  ContactReach reach;
+  reach.near = 0.1 * h;
+  reach.half_thickness.assign(2, 0);
+  const std::vector<double> velocity(world.solids->n_unknowns(), 0);
+  std::vector<std::array<int, 2>> found;
+  for (const Contact<dim>& contact :
+       find_contacts(shapes, SolidMotion<dim>(*world.solids, shapes, velocity), {}, reach))
+    found.push_back({contact.point.simplex, contact.other_point.simplex});
+  return found;
+}
+
+TYPED_TEST(Searches, RoundOffDoesNotChooseAmongSimplicesThatAreEquallyNear) {
+  constexpr int dim = TypeParam::value;
+  const auto expected = simplices_in_contact<dim>(0);
+  EXPECT_EQ(expected.size(), dim == 2 ? 2 * 5U : 2 * 7 * 7U);  // all nodes
+  for (const double moved : {1e-15, 1e-14, 1e-13})
+    EXPECT_EQ(simplices_in_contact<dim>(moved * h), expected) << moved;
 }
 
 }  // namespace
