@@ -12,11 +12,11 @@ from simulation import column, simulate, table  # noqa: E402
 LIQUID = {"Liquid": {"Drop": {"Type": "box", "Lower": (-1., -1.), "Upper": (1., -.875)}}}
 
 
-def scene(solids, step, end, gravity=0., contact="none", upper=1., cells=32):
+def scene(solids, step, end, gravity=0., contact="none", upper=1., cells=32, **more):
     return xml("Scene", {
         "Dimension": 2, "Domain": {"Lower": (-1., -1.), "Upper": (upper, 1.), "Cells": (cells, 32)},
         "Fluid": {"Density": 1000., "Gravity": (0., gravity), "Free Surface": LIQUID},
-        "Solids": solids, "Contact": {"Type": contact}, "Time": {"End": end, "Fixed Step": step}, "Output": {"Frames": False}})
+        "Solids": solids, "Contact": {"Type": contact, **more}, "Time": {"End": end, "Fixed Step": step}, "Output": {"Frames": False}})
 
 
 def block(position, stiffness, **more):
@@ -83,6 +83,19 @@ class SolidsAlone(unittest.TestCase):
         self.assertLess(column(rows, "y")[-1], 0.)
         self.assertGreater(column(rows, "y")[-1], -.06)
         self.assertLess(max(column(table(output / "history.csv"), "momentum_error")), 1e-10)
+
+    def test_a_ring_that_hits_a_sheet_in_its_middle_keeps_the_symmetry(self):
+        # Nodes lie above nodes, so that each is counted to one of the two edges beside it. A hundredth of a metre a second
+        # where that edge takes the lever of the gap, of 2.2 with which the ring leaves; without friction there is none.
+        cloth = {"Type": "cloth", "Young's Modulus": 1e4, "Thickness": .01, "Surface Density": 5.,
+                 "Time Integration": "semi-implicit", "Friction": 0.}
+        sheet = {**cloth, "Geometry": {"Shape": "sheet", "Size": (.6, 0.), "Normal": "y", "Mesh Spacing": .05}}
+        ring = {**cloth, "Geometry": {"Shape": "ball", "Radius": .15, "Mesh Spacing": .06}, "Position": (0., .2),
+                "Velocity": (0., -3.)}
+        output = self.run_scene(scene({"Sheet": sheet, "Ring": ring}, .004, .08, contact="gauss seidel", Iterations=20000, Tolerance=1e-11))
+        rows = table(output / "bodies.csv")
+        self.assertGreater(max(abs(row) for row in column(rows[-2:], "vy")), 1.)
+        self.assertLess(max(map(abs, column(rows, "vx"))), 1e-9)
 
 
 if __name__ == "__main__":

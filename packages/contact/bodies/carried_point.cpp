@@ -4,6 +4,9 @@ namespace lockstep {
 
 namespace {
 
+template <int dim>
+using Factors = std::array<Eigen::Matrix<double, dim, dim>, dim>;
+
 /// Gradients of the barycentric coordinates within the simplex, and its unit normal; zero for a
 /// degenerate one.
 template <int dim>
@@ -40,13 +43,12 @@ Frame<3> frame_of(const std::array<Point<3>, 3>& corners) {
 }  // namespace
 
 template <int dim>
-std::array<Eigen::Matrix<double, dim, dim>, dim> carried_point(
-    const std::array<Point<dim>, dim>& corners, const SurfacePoint<dim>& point,
-    const Point<dim>& x) {
+Factors<dim> linear_motion(const std::array<Point<dim>, dim>& corners,
+                           const SurfacePoint<dim>& point, const Point<dim>& x) {
   const Frame<dim> frame = frame_of(corners);
   const Point<dim> arm = x - point.position;
   const double height = frame.normal.dot(arm);
-  std::array<Eigen::Matrix<double, dim, dim>, dim> factors;
+  Factors<dim> factors;
   for (int i = 0; i < dim; ++i) {
     const double weight = point.barycentric[i] + frame.gradient[i].dot(arm);
     factors[i] = weight * Eigen::Matrix<double, dim, dim>::Identity() -
@@ -55,11 +57,23 @@ std::array<Eigen::Matrix<double, dim, dim>, dim> carried_point(
   return factors;
 }
 
-template std::array<Eigen::Matrix<double, 2, 2>, 2> carried_point<2>(const std::array<Point<2>, 2>&,
-                                                                     const SurfacePoint<2>&,
-                                                                     const Point<2>&);
-template std::array<Eigen::Matrix<double, 3, 3>, 3> carried_point<3>(const std::array<Point<3>, 3>&,
-                                                                     const SurfacePoint<3>&,
-                                                                     const Point<3>&);
+template <int dim>
+Factors<dim> carried_point(const std::array<Point<dim>, dim>& corners,
+                           const SurfacePoint<dim>& point, const Point<dim>& x) {
+  Factors<dim> factors = linear_motion<dim>(corners, point, x);
+  const Point<dim> rod = (x - point.position).stableNormalized();
+  for (int i = 0; i < dim; ++i)
+    factors[i] += rod * (point.barycentric[i] * rod.transpose() - rod.transpose() * factors[i]);
+  return factors;
+}
+
+template Factors<2> linear_motion<2>(const std::array<Point<2>, 2>&, const SurfacePoint<2>&,
+                                     const Point<2>&);
+template Factors<3> linear_motion<3>(const std::array<Point<3>, 3>&, const SurfacePoint<3>&,
+                                     const Point<3>&);
+template Factors<2> carried_point<2>(const std::array<Point<2>, 2>&, const SurfacePoint<2>&,
+                                     const Point<2>&);
+template Factors<3> carried_point<3>(const std::array<Point<3>, 3>&, const SurfacePoint<3>&,
+                                     const Point<3>&);
 
 }  // namespace lockstep

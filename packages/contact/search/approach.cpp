@@ -8,7 +8,8 @@ namespace lockstep {
 
 namespace {
 
-/// A bound on the norm of (v(x) - v(p)) / |x - p| for a point x beside a point p of a simplex.
+/// A bound on the norm of (v(x) - v(p)) / |x - p| for a point x that a point p of a simplex
+/// carries: that of the linear motion, of which `carried_point` takes a part.
 template <int dim>
 double turn_of(const std::array<Point<dim>, dim>& corners,
                const std::array<Point<dim>, dim>& moves) {
@@ -18,7 +19,7 @@ double turn_of(const std::array<Point<dim>, dim>& corners,
   point.barycentric[0] = 1;
   double square = 0;
   for (int axis = 0; axis < dim; ++axis) {
-    const auto factors = carried_point<dim>(corners, point, corners[0] + Point<dim>::Unit(axis));
+    const auto factors = linear_motion<dim>(corners, point, corners[0] + Point<dim>::Unit(axis));
     Point<dim> move = -moves[0];
     for (int i = 0; i < dim; ++i)
       move += factors[i] * moves[i];

@@ -120,5 +120,25 @@ TEST(CarriedPoint, FollowsRigidMotions) {
                          AngularVector<3>(0.7, -0.2, 0.4));
 }
 
+/// Above a vertex of two edges, or of four triangles, the corners that take a normal impulse do not
+/// hang on which of them the vertex is counted to.
+template <int dim>
+void expect_impulse_at_vertex(const std::array<Point<dim>, dim>& corners, const Point<dim>& arm) {
+  SurfacePoint<dim> vertex;
+  vertex.barycentric.fill(0);
+  vertex.barycentric[0] = 1;
+  vertex.position = corners[0];
+  const auto factors = carried_point<dim>(corners, vertex, corners[0] + arm);
+  for (int k = 0; k < dim; ++k)
+    EXPECT_NEAR((factors[k].transpose() * arm - (k == 0 ? 1 : 0) * arm).norm(), 0, 1e-15) << k;
+}
+
+TEST(CarriedPoint, TakesAnImpulseAlongTheRodAlone) {
+  expect_impulse_at_vertex<2>({Point<2>(0, 0), Point<2>(1, -0.2)}, {0, 0.1});
+  expect_impulse_at_vertex<2>({Point<2>(0, 0), Point<2>(-1, -0.2)}, {0, 0.1});
+  expect_impulse_at_vertex<3>({Point<3>(0, 0, 0), Point<3>(1, 0, -0.2), Point<3>(0, 1, -0.2)},
+                              {0, 0.02, 0.1});
+}
+
 }  // namespace
 }  // namespace lockstep::test
