@@ -209,11 +209,13 @@ std::vector<std::pair<GlobalIndex, double>> ContactProblem<dim>::limit_impulses(
 
 template void ContactProblem<2>::leave_out_immovable(ImpulseSolver<2>&);
 template std::vector<Contact<2>> ContactProblem<2>::impacts_of(const std::vector<double>&) const;
+template bool ContactProblem<2>::follows_impacts() const;
 template int ContactProblem<2>::solve(ImpulseSolver<2>&);
 template std::vector<std::pair<GlobalIndex, double>> ContactProblem<2>::limit_impulses(
     const ImpulseSolver<2>&) const;
 template void ContactProblem<3>::leave_out_immovable(ImpulseSolver<3>&);
 template std::vector<Contact<3>> ContactProblem<3>::impacts_of(const std::vector<double>&) const;
+template bool ContactProblem<3>::follows_impacts() const;
 template int ContactProblem<3>::solve(ImpulseSolver<3>&);
 template std::vector<std::pair<GlobalIndex, double>> ContactProblem<3>::limit_impulses(
     const ImpulseSolver<3>&) const;

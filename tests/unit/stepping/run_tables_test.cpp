@@ -9,6 +9,8 @@
 #include <sstream>
 
 #include "base/errors.hpp"
+#include "interfaces/constraint.hpp"
+#include "interfaces/solid.hpp"
 #include "output/atomic_file.hpp"
 #include "output/csv_line.hpp"
 #include "unit/output/test_folder.hpp"
