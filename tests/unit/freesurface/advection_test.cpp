@@ -27,16 +27,19 @@ TEST(Advection, TheVortexGivesTheDiscBack) {
   const Return plain = vortex("particle level set", uncorrected(), 64);
   EXPECT_LT(std::abs(plain.loss), 0.036);
   EXPECT_LT(plain.shape, 0.052);
-  // The last step before the thread tears decides on single drops, and so does round-off: nine
-  // discs moved by 1e-4 ended with .056 on average, each off by .006. Five of them are off by .003.
+  // The last step before the thread tears decides on single drops, and so does round-off: 25 discs
+  // moved by 1e-4 ended with .057 on average, each off by .015, the worst with .101. Five of them
+  // are off by .0065, so that another compiler must not meet these bounds by luck. Level sets
+  // without particles lose most of the disc.
   double shape = 0;
   for (int i = -2; i <= 2; ++i) {
     const Return corrected = vortex("particle level set", {}, 64, 8, 0.5, 1e-4 * i);
     EXPECT_LT(std::abs(corrected.ledger), 1e-3);
-    EXPECT_LT(corrected.shape, 0.08);
+    EXPECT_LT(corrected.shape, 0.13);
     shape += corrected.shape / 5;
   }
-  EXPECT_LT(shape, 0.065);
+  EXPECT_LT(shape, 0.083);
+  EXPECT_GT(vortex("level set", uncorrected(), 64).shape, 0.3);
 }
 
 TEST(Advection, FractionsLoseNothing) {

@@ -249,8 +249,9 @@ TEST(Viscosity, HiddenSolidsAcrossASeamPull) {
   for (const double y : {1.5, 2.5})
     solids.add(box_surface<2>(Point<2>(0.4, 0.4), 1.0), Point<2>(0.5, y), true);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
+  const auto system = fluid->viscous_system();
   GlobalIndex found = 0;
-  for (const ViscousLink<2>& link : fluid->viscous_system()->links)
+  for (const ViscousLink<2>& link : system->links)
     found += link.direction == 1 && (link.position - Point<2>(7.5, 2)).norm() < 1e-12 &&
              (link.end - Point<2>(0.5, 2)).norm() < 1e-12;
   EXPECT_EQ(sum_all(world(), found), 1);
