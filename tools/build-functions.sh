@@ -20,7 +20,7 @@ export HWLOC_COMPONENTS=${HWLOC_COMPONENTS:--gl}
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 
 # Core-minutes of a build without a compiler cache: of the programs (measured), and of the tests besides (from a sample of the files).
-core_minutes_of_programs=18
+core_minutes_of_programs=14
 core_minutes_of_tests=15
 
 # Says how long the first build will take here; nothing after it.
