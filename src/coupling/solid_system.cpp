@@ -62,7 +62,7 @@ std::vector<Block> SolidSystem<dim>::blocks() const {
 }
 
 template <int dim>
-std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot() const {
+SurfaceMesh<dim> SolidSystem<dim>::surface() const {
   SurfaceMesh<dim> all;
   for (const auto& solid_model : models_) {
     const SurfaceMesh<dim>& mesh = solid_model->surface();
@@ -74,9 +74,14 @@ std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot() const {
       all.simplices.push_back(simplex);
     }
   }
-  auto surface = std::make_shared<const SurfaceSnapshot<dim>>(std::move(all), solids_, order_);
-  order_ = surface->order();
-  return surface;
+  return all;
+}
+
+template <int dim>
+std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot() const {
+  auto snapshot = std::make_shared<const SurfaceSnapshot<dim>>(surface(), solids_, order_);
+  order_ = snapshot->order();
+  return snapshot;
 }
 
 template <int dim>

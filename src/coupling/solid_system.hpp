@@ -33,7 +33,9 @@ class SolidSystem {
   RCP<const Map> map() const { return map_; }             ///< never null
   const Communicator& comm() const { return comm_; }
 
-  /// The surfaces at the present positions. Solids are numbered over all models.
+  /// The surfaces of all models at the present positions, one after the other.
+  SurfaceMesh<dim> surface() const;
+  /// The same for questions. Solids are numbered over all models.
   std::shared_ptr<const SurfaceSnapshot<dim>> snapshot() const;
   /// True if the surfaces are where this snapshot of them has them, to the last bit.
   bool is_where(const SurfaceSnapshot<dim>& snapshot) const;

@@ -48,22 +48,6 @@ bool is_sharp(const SurfaceMesh<3>& mesh, const SurfaceEdge& edge) {
   return one.dot(other) <= smooth_cosine;
 }
 
-template <int dim>
-SurfaceMesh<dim> all_surfaces(const SolidSystem<dim>& system) {
-  SurfaceMesh<dim> all;
-  for (int m = 0; m < system.n_models(); ++m) {
-    const SurfaceMesh<dim>& mesh = system.model(m).surface();
-    const int shift = static_cast<int>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    for (auto simplex : mesh.simplices) {
-      for (int& vertex : simplex)
-        vertex += shift;
-      all.simplices.push_back(simplex);
-    }
-  }
-  return all;
-}
-
 }  // namespace
 
 template <int dim>
@@ -103,7 +87,7 @@ bool ContactTopology<dim>::connected(int vertex, int other) const {
 
 template <int dim>
 ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopology<dim>& topology)
-    : system_(system), solids_(system.solids()), topology_(&topology), mesh_(all_surfaces(system)) {
+    : system_(system), solids_(system.solids()), topology_(&topology), mesh_(system.surface()) {
   if (!topology.belongs_to(mesh_))
     topology = ContactTopology<dim>(mesh_, solids_);
   solid_bounds_.resize(solids_.size());

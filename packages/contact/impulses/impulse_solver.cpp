@@ -26,6 +26,21 @@ Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
   }
   return tangents;
 }
+
+/// Calls f(corner, factor of its velocity) for the corners of a soft surface that carry x along.
+template <int dim, typename Function>
+void for_each_carrier(const ContactShapes<dim>& shapes, const SurfacePoint<dim>& point,
+                      const Point<dim>& x, const Function& f) {
+  const auto factors = carried_point<dim>(shapes.corners(point.simplex), point, x);
+  for (int k = 0; k < dim; ++k) {
+    if (factors[k].isZero(0))
+      continue;
+    SurfacePoint<dim> corner;
+    corner.simplex = point.simplex;
+    corner.barycentric[k] = 1;
+    f(corner, factors[k]);
+  }
+}
 }  // namespace
 
 template <int dim>
@@ -50,16 +65,10 @@ void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& 
     add_entries(row, point, x, sign * Factor::Identity());
     return;
   }
-  const auto factors = carried_point<dim>(shapes_.corners(point.simplex), point, x);
-  for (int k = 0; k < dim; ++k) {
-    SurfacePoint<dim> corner;
-    corner.simplex = point.simplex;
-    corner.barycentric[k] = 1;
-    if (factors[k].isZero(0))
-      continue;
-    row.prescribed += sign * factors[k] * shapes_.drift(corner, x);
-    add_entries(row, corner, x, sign * factors[k]);
-  }
+  for_each_carrier(shapes_, point, x, [&](const SurfacePoint<dim>& corner, const Factor& factor) {
+    row.prescribed += sign * factor * shapes_.drift(corner, x);
+    add_entries(row, corner, x, sign * factor);
+  });
 }
 
 template <int dim>
@@ -317,13 +326,9 @@ void ImpulseSolver<dim>::add_side_impulse(int solid, const SurfacePoint<dim>& po
     add(point, impulse);
     return;
   }
-  const auto factors = carried_point<dim>(shapes_.corners(point.simplex), point, x);
-  for (int k = 0; k < dim; ++k) {
-    SurfacePoint<dim> corner;
-    corner.simplex = point.simplex;
-    corner.barycentric[k] = 1;
-    add(corner, factors[k].transpose() * impulse);
-  }
+  for_each_carrier(shapes_, point, x, [&](const SurfacePoint<dim>& corner, const auto& factor) {
+    add(corner, factor.transpose() * impulse);
+  });
 }
 
 template <int dim>
