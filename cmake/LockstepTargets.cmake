@@ -28,7 +28,7 @@ if(LOCKSTEP_SANITIZE)
   target_link_options(lockstep_flags INTERFACE -fsanitize=address,undefined)
 else()
   # Nobody looks at errno or at the processor's flags of exceptions, or replaces a function when a
-  # library is loaded: none of the three changes a value, NaN and infinity keep their meaning.
+  # library is loaded: nothing changes but round-off, NaN and infinity keep their meaning.
   target_compile_options(lockstep_flags INTERFACE
     $<$<CXX_COMPILER_ID:GNU,Clang>:-fno-math-errno -fno-trapping-math -fno-semantic-interposition>)
 endif()
