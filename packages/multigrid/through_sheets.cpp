@@ -7,6 +7,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "linear/matrix_rows.hpp"
 #include "linear/overlap.hpp"
@@ -84,31 +85,82 @@ std::vector<int> axes_of_rows(const SoftNodes& space) {
 }
 
 /// Cloth has up to 100, the nodes of a thick flag of FSI1 10^6, and with them the preconditioner
-/// took four times the iterations; in between it makes no difference.
+/// took four times the iterations; in between it makes no difference. Per unit of the node's mass.
 constexpr double stiffest_sheet = 1000;
 
-/// How much more than its mass the own block of a row's node in C resists in its softest direction.
-/// Across a cloth that is little, whatever its elasticity; inside a volume it is much.
-double least_stiffness(const CrsMatrix& c, const std::vector<int>& axes, int row, double mass) {
-  const int first = row - axes[row];
-  int n_axes = 1;
-  while (first + n_axes < static_cast<int>(axes.size()) && axes[first + n_axes] == n_axes)
-    ++n_axes;
-  CrsMatrix::local_inds_host_view_type columns;
-  CrsMatrix::values_host_view_type values;
-  using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
-  Block block = Block::Zero(n_axes, n_axes);
-  for (int a = 0; a < n_axes; ++a) {
-    c.getLocalRowView(first + a, columns, values);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      const GlobalIndex column = c.getColMap()->getGlobalElement(columns[k]);
-      const int b = c.getRowMap()->getLocalElement(column) - first;
-      if (b >= 0 && b < n_axes)
-        block(a, b) += values[k];
+/// The softest direction of a node's own block in a matrix. Across a cloth that is little, whatever
+/// its elasticity; inside a volume it is much.
+class SoftestDirections {
+ public:
+  SoftestDirections(const CrsMatrix& c, const std::vector<int>& axes)
+      : c_(c), axes_(axes), row_of_(c.getColMap()->getNodeNumElements(), -1), least_(axes.size()) {
+    const std::vector<int> columns = own_columns(c);
+    for (std::size_t row = 0; row < columns.size(); ++row) {
+      if (columns[row] >= 0)
+        row_of_[columns[row]] = static_cast<int>(row);
     }
   }
-  return Eigen::SelfAdjointEigenSolver<Block>(block, Eigen::EigenvaluesOnly).eigenvalues()[0] /
-         mass;
+
+  /// The least eigenvalue of the block of the row's node.
+  double of_row(int row) {
+    const int first = row - axes_[row];
+    if (!least_[first])
+      least_[first] = of_node(first);
+    return *least_[first];
+  }
+
+ private:
+  double of_node(int first) const {
+    int n_axes = 1;
+    while (first + n_axes < static_cast<int>(axes_.size()) && axes_[first + n_axes] == n_axes)
+      ++n_axes;
+    CrsMatrix::local_inds_host_view_type columns;
+    CrsMatrix::values_host_view_type values;
+    using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+    Block block = Block::Zero(n_axes, n_axes);
+    for (int a = 0; a < n_axes; ++a) {
+      c_.getLocalRowView(first + a, columns, values);
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        const int b = row_of_[columns(k)] - first;
+        if (b >= 0 && b < n_axes)
+          block(a, b) += values(k);
+      }
+    }
+    return Eigen::SelfAdjointEigenSolver<Block>(block, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  }
+
+  const CrsMatrix& c_;
+  const std::vector<int>& axes_;
+  std::vector<int> row_of_;                   ///< by local column, -1: another rank's
+  std::vector<std::optional<double>> least_;  ///< by a node's first row
+};
+
+/// The entries of each node's row, by where their cells lie.
+std::vector<std::vector<Touched>> touched_cells(const CrsMatrix& coupling,
+                                                const std::vector<int>& axes, const Vector& numbers,
+                                                const std::array<int, 3>& n_cells) {
+  std::vector<std::vector<Touched>> rows(axes.size());
+  const std::array<long, 3> stride{1, n_cells[0], static_cast<long>(n_cells[0]) * n_cells[1]};
+  const auto number = numbers.getData();
+  CrsMatrix::local_inds_host_view_type columns;
+  CrsMatrix::values_host_view_type values;
+  for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
+    const int axis = axes[row];
+    if (axis < 0)
+      continue;
+    coupling.getLocalRowView(row, columns, values);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (values(k) == 0)
+        continue;
+      // Cells to be left alone stand on lines of their own, where nothing cancels.
+      const int column = columns(k);
+      const long cell = static_cast<long>(number[column]);
+      const int place = cell < 0 ? 0 : static_cast<int>(cell / stride[axis] % n_cells[axis]);
+      const long line = cell < 0 ? -1 - column : cell - place * stride[axis];
+      rows[row].push_back({line, place, values(k), column});
+    }
+  }
+  return rows;
 }
 
 /// b_f sum_g b_g / m by axis of the face, on the columns of B^T that are its upper cell.
@@ -116,35 +168,25 @@ MultiVector conductances(const BlockSystem& system, const Vector& numbers,
                          const std::array<int, 3>& n_cells) {
   const CrsMatrix& coupling = *system.coupling_transposed;
   const std::vector<int> axes = axes_of_rows(system.soft_nodes);
-  std::vector<std::vector<Touched>> rows(axes.size());
-  const std::array<long, 3> stride{1, n_cells[0], static_cast<long>(n_cells[0]) * n_cells[1]};
-  const auto number = numbers.getData();
-  for_each_entry(coupling, [&](int row, GlobalIndex global_column, double value) {
-    const int column = coupling.getColMap()->getLocalElement(global_column);
-    const int axis = axes[row];
-    if (axis < 0 || value == 0)
-      return;
-    // Cells to be left alone stand on lines of their own, where nothing cancels.
-    const long cell = static_cast<long>(number[column]);
-    const int place = cell < 0 ? 0 : static_cast<int>(cell / stride[axis] % n_cells[axis]);
-    const long line = cell < 0 ? -1 - column : cell - place * stride[axis];
-    rows[row].push_back({line, place, value, column});
-  });
+  std::vector<std::vector<Touched>> rows = touched_cells(coupling, axes, numbers, n_cells);
   const auto solid_block = assembled(system.solids.op);
-  const CrsMatrix& c = *solid_block;
+  SoftestDirections softest(*solid_block, axes);
   const auto masses = system.soft_nodes.mass->getData();
   MultiVector result(coupling.getColMap(), system.soft_nodes.n_axes());
+  std::vector<Teuchos::ArrayRCP<double>> by_axis;
+  for (int axis = 0; axis < system.soft_nodes.n_axes(); ++axis)
+    by_axis.push_back(result.getDataNonConst(axis));
   for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
     if (rows[row].empty() || !(masses[row] > 0))
       continue;
     const std::vector<TouchedFace> faces = faces_of(rows[row]);
-    if (faces.empty() || least_stiffness(c, axes, row, masses[row]) > stiffest_sheet)
+    if (faces.empty() || softest.of_row(row) > stiffest_sheet * masses[row])
       continue;
     double sum = 0;
     for (const TouchedFace& face : faces)
       sum += face.weight;
     for (const TouchedFace& face : faces)
-      result.sumIntoLocalValue(face.upper, axes[row], face.weight * sum / masses[row]);
+      by_axis[axes[row]][face.upper] += face.weight * sum / masses[row];
   }
   return result;
 }

@@ -23,13 +23,11 @@ class GatheredOperator : public Tpetra::Operator<double, int, GlobalIndex> {
     const Communicator comm = map_->getComm();
     root_map_ = rcp(new Map(n, is_root(comm) ? static_cast<std::size_t>(n) : 0, 0, comm));
     gather_ = rcp(new Import(map_, root_map_));
-    CrsMatrix gathered(root_map_, 0);
-    gathered.doImport(*matrix, *gather_, Tpetra::INSERT);
-    gathered.fillComplete(root_map_, root_map_);
+    const RCP<const CrsMatrix> gathered = on_root(matrix);
     std::string message;
     if (is_root(comm) && n > 0) {  // libraries take no matrix of nothing
       try {
-        solve_ = factor(gathered);
+        solve_ = factor(*gathered);
       } catch (const std::exception& error) {
         message = failure + " " + library_message(error);
       }
@@ -53,6 +51,16 @@ class GatheredOperator : public Tpetra::Operator<double, int, GlobalIndex> {
   }
 
  private:
+  /// The matrix itself where one rank has all rows in this order. Collective.
+  RCP<const CrsMatrix> on_root(const RCP<const CrsMatrix>& matrix) const {
+    if (map_->getComm()->getSize() == 1 && map_->isSameAs(*root_map_))
+      return matrix;
+    const auto gathered = rcp(new CrsMatrix(root_map_, 0));
+    gathered->doImport(*matrix, *gather_, Tpetra::INSERT);
+    gathered->fillComplete(root_map_, root_map_);
+    return gathered;
+  }
+
   RCP<const Map> map_, root_map_;
   RCP<const Import> gather_;
   SolveInPlace solve_;  ///< empty on other ranks

@@ -38,6 +38,13 @@ std::vector<std::vector<Entry>> rows_of(const CrsMatrix& matrix) {
   return rows;
 }
 
+std::vector<int> own_columns(const CrsMatrix& matrix) {
+  std::vector<int> columns;
+  for (const GlobalIndex id : matrix.getRowMap()->getNodeElementList())
+    columns.push_back(matrix.getColMap()->getLocalElement(id));
+  return columns;
+}
+
 RCP<Vector> diagonal_of(const CrsMatrix& matrix) {
   const auto diagonal = make_vector(matrix.getRowMap());
   matrix.getLocalDiagCopy(*diagonal);

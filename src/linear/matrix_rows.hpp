@@ -37,6 +37,9 @@ RCP<CrsMatrix> matrix_from_rows(const RCP<const Map>& map,
 /// This rank's rows as lists.
 std::vector<std::vector<Entry>> rows_of(const CrsMatrix& matrix);
 
+/// By local row of a square matrix the local column of the same number, -1 if it stores none.
+std::vector<int> own_columns(const CrsMatrix& matrix);
+
 /// The diagonal of a square matrix. Collective.
 RCP<Vector> diagonal_of(const CrsMatrix& matrix);
 

@@ -16,13 +16,13 @@ namespace {
 /// Rows of a node that no other row is tied to are held, or feel no D.
 std::vector<bool> tied_rows(const CrsMatrix& c, const SoftNodes& space) {
   std::vector<bool> tied(space.body_of_row.size(), false);
+  const std::vector<int> own = own_columns(c);
   for (int row = 0; row < static_cast<int>(tied.size()); ++row) {
-    const int own = c.getColMap()->getLocalElement(c.getRowMap()->getGlobalElement(row));
     typename CrsMatrix::local_inds_host_view_type columns;
     typename CrsMatrix::values_host_view_type values;
     c.getLocalRowView(row, columns, values);
     for (std::size_t k = 0; k < columns.extent(0) && space.body_of_row[row] >= 0; ++k)
-      tied[row] = tied[row] || (values(k) != 0 && columns(k) != own);
+      tied[row] = tied[row] || (values(k) != 0 && columns(k) != own[row]);
   }
   return tied;
 }

@@ -26,8 +26,11 @@ struct Factored {
   MultifrontalCholesky factors;
 };
 
-/// The lower triangle of the block of these rows, taken from the upper one.
+/// The lower triangle of the block of these rows, a component, taken from the upper one. With the
+/// zeros that are stored: which entries vanish changes from step to step, and each time the
+/// analysis would be another.
 MultifrontalCholesky::Matrix part_of(const CrsMatrix& all, const std::vector<int>& rows,
+                                     const Teuchos::ArrayRCP<const double>& components,
                                      std::vector<int>& place_of) {
   const int n = static_cast<int>(rows.size());
   for (int i = 0; i < n; ++i)
@@ -41,7 +44,7 @@ MultifrontalCholesky::Matrix part_of(const CrsMatrix& all, const std::vector<int
     all.getLocalRowView(rows[i], columns, values);
     for (std::size_t k = 0; k < columns.extent(0); ++k) {
       const auto column = static_cast<int>(global[columns(k)]);
-      if (values(k) != 0 && column >= rows[i])
+      if (column >= rows[i] && components[column] == components[rows[i]])
         result.insertBack(place_of[column], i) = values(k);
     }
   }
@@ -132,7 +135,7 @@ SolveInPlace factor_components(const CrsMatrix& gathered, const Vector& componen
   for (auto& [id, rows] : rows_of_component) {
     auto part = std::make_unique<Factored>();
     part->rows = std::move(rows);
-    const MultifrontalCholesky::Matrix matrix = part_of(gathered, part->rows, place_of);
+    const MultifrontalCholesky::Matrix matrix = part_of(gathered, part->rows, ids, place_of);
     part->factors = analyses.of(matrix);
     if (part->factors.n_operations() > most_operations)
       continue;

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/disjoint_sets.hpp"
+#include "linear/matrix_rows.hpp"
 
 namespace lockstep {
 
@@ -72,13 +73,11 @@ std::vector<GlobalIndex> occurrences(const std::vector<GlobalIndex>& ids,
 std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const SoftNodes& space) {
   const auto row_map = matrix.getRowMap();
   const auto column_map = matrix.getColMap();
-  const auto column_of = [&](int row) {
-    return column_map->getLocalElement(row_map->getGlobalElement(row));
-  };
+  const std::vector<int> column_of = own_columns(matrix);
   ColumnSets sets(matrix);
   const auto n_rows = static_cast<int>(row_map->getNodeNumElements());
   for (int row = 0; row < n_rows; ++row) {
-    const int own = column_of(row);
+    const int own = column_of[row];
     typename CrsMatrix::local_inds_host_view_type columns;
     typename CrsMatrix::values_host_view_type values;
     matrix.getLocalRowView(row, columns, values);
@@ -89,13 +88,13 @@ std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const Soft
   }
   for (const int first : first_rows_of_nodes(space)) {
     for (int axis = 1; axis < space.n_axes(); ++axis)
-      sets.join(column_of(first), column_of(first + axis));
+      sets.join(column_of[first], column_of[first + axis]);
   }
   const auto importer = matrix.getGraph()->getImporter();
   for (bool changed = !importer.is_null(); changed;) {
     Vector lowest(row_map), seen(column_map);  // integers, which a double holds exactly
     for (int row = 0; row < n_rows; ++row)
-      lowest.replaceLocalValue(row, static_cast<double>(sets.lowest(column_of(row))));
+      lowest.replaceLocalValue(row, static_cast<double>(sets.lowest(column_of[row])));
     seen.doImport(lowest, *importer, Tpetra::INSERT);
     bool news = false;
     const auto ids = seen.getData();
@@ -105,7 +104,7 @@ std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const Soft
   }
   std::vector<GlobalIndex> ids;
   for (int row = 0; row < n_rows; ++row)
-    ids.push_back(sets.lowest(column_of(row)));
+    ids.push_back(sets.lowest(column_of[row]));
   const std::vector<GlobalIndex> sizes = occurrences(ids, row_map);
   std::vector<RowComponent> result;
   for (int row = 0; row < n_rows; ++row)
