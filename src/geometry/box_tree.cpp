@@ -9,8 +9,8 @@ namespace {
 
 /// Of the nodes of a tree, until its boxes are sorted anew.
 constexpr double most_growth = 1.5;
+}  // namespace
 
-/// Sorts different numbers: if there are many, by a map of bits.
 void sort_ids(std::vector<int>& ids) {
   constexpr int many = 32;
   if (ids.size() < many)
@@ -27,8 +27,6 @@ void sort_ids(std::vector<int>& ids) {
     for (std::uint64_t rest = bits[word]; rest != 0; rest &= rest - 1)
       *next++ = first + 64 * word + __builtin_ctzll(rest);
 }
-
-}  // namespace
 
 template <int dim>
 BoxTree<dim>::BoxTree(std::vector<Box<dim>> boxes, BoxOrder order)
@@ -109,12 +107,7 @@ void BoxTree<dim>::sort(std::vector<int>& order, int begin_leaf, int end_leaf) c
 
 template <int dim>
 void BoxTree<dim>::touching(const Box<dim>& box, std::vector<int>& found) const {
-  found.clear();
-  any_touching(box, [&](int i) {
-    found.push_back(i);
-    return false;
-  });
-  sort_ids(found);
+  touching(box, found, [](int) { return true; });
 }
 
 template class BoxTree<2>;

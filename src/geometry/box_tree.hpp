@@ -14,6 +14,9 @@ struct SortedBoxes {
 };
 using BoxOrder = std::shared_ptr<const SortedBoxes>;
 
+/// Sorts different numbers: if there are many, by a map of bits.
+void sort_ids(std::vector<int>& ids);
+
 /// Finds those of many boxes that touch another or are near a point. What it finds does not depend
 /// on the order, so that boxes that have moved a little may be sorted as they were before.
 template <int dim>
@@ -24,12 +27,23 @@ class BoxTree {
   explicit BoxTree(std::vector<Box<dim>> boxes, BoxOrder order = nullptr);
 
   const BoxOrder& order() const { return order_; }
+  int n_boxes() const { return static_cast<int>(boxes_.size()); }
   const Box<dim>& box(int i) const { return boxes_[i]; }
   /// Calls f(i) for the boxes that touch this one, until f returns true. True if f did.
   template <typename Function>
   bool any_touching(const Box<dim>& box, const Function& f) const;
   /// Those that touch `box`, ascending; replaces the content of `found`.
   void touching(const Box<dim>& box, std::vector<int>& found) const;
+  /// Of these the ones that are wanted.
+  template <typename Wanted>
+  void touching(const Box<dim>& box, std::vector<int>& found, const Wanted& is_wanted) const;
+  /// Calls f(i) for the boxes below the nodes of which all `meets(box of the node, node)` are true,
+  /// until f returns true. True if f did.
+  template <typename Meets, typename Function>
+  bool any(const Meets& meets, const Function& f) const;
+  /// By node a sum over the boxes below it: `add(sum, i)` adds one, `merge` two sums.
+  template <typename Sum, typename Add, typename Merge>
+  std::vector<Sum> over_nodes(const Add& add, const Merge& merge) const;
   /// Calls f(i) for the boxes whose square distance from x is no more than `reach()`, which may
   /// shrink on the way: the near ones come early.
   template <typename Function, typename Reach>
@@ -37,7 +51,6 @@ class BoxTree {
 
  private:
   static constexpr int in_leaf = 4;  ///< boxes, at most
-  int n_boxes() const { return static_cast<int>(boxes_.size()); }
   int first_of(int leaf) const {
     return static_cast<int>(static_cast<long long>(leaf) * n_boxes() / n_leaves_);
   }
@@ -53,14 +66,14 @@ class BoxTree {
 };
 
 template <int dim>
-template <typename Function>
-bool BoxTree<dim>::any_touching(const Box<dim>& box, const Function& f) const {
-  if (n_leaves_ == 0 || box.isEmpty())
+template <typename Meets, typename Function>
+bool BoxTree<dim>::any(const Meets& meets, const Function& f) const {
+  if (n_leaves_ == 0)
     return false;
   std::array<int, 64> waiting;
   int n_waiting = 0;
   for (int node = 1;;) {
-    if (nodes_[node].intersects(box)) {
+    if (meets(nodes_[node], node)) {
       if (node < n_leaves_) {
         waiting[n_waiting++] = 2 * node + 1;
         node *= 2;
@@ -68,13 +81,45 @@ bool BoxTree<dim>::any_touching(const Box<dim>& box, const Function& f) const {
       }
       const int leaf = node - n_leaves_, end = first_of(leaf + 1);
       for (int k = first_of(leaf); k < end; ++k)
-        if (const int i = order_->places[k]; boxes_[i].intersects(box) && f(i))
+        if (f(order_->places[k]))
           return true;
     }
     if (n_waiting == 0)
       return false;
     node = waiting[--n_waiting];
   }
+}
+
+template <int dim>
+template <typename Function>
+bool BoxTree<dim>::any_touching(const Box<dim>& box, const Function& f) const {
+  return !box.isEmpty() && any([&](const Box<dim>& node, int) { return node.intersects(box); },
+                               [&](int i) { return boxes_[i].intersects(box) && f(i); });
+}
+
+template <int dim>
+template <typename Wanted>
+void BoxTree<dim>::touching(const Box<dim>& box, std::vector<int>& found,
+                            const Wanted& is_wanted) const {
+  found.clear();
+  any_touching(box, [&](int i) {
+    if (is_wanted(i))
+      found.push_back(i);
+    return false;
+  });
+  sort_ids(found);
+}
+
+template <int dim>
+template <typename Sum, typename Add, typename Merge>
+std::vector<Sum> BoxTree<dim>::over_nodes(const Add& add, const Merge& merge) const {
+  std::vector<Sum> sums(nodes_.size());
+  for (int leaf = 0; leaf < n_leaves_; ++leaf)
+    for (int k = first_of(leaf); k < first_of(leaf + 1); ++k)
+      add(sums[n_leaves_ + leaf], order_->places[k]);
+  for (int node = n_leaves_ - 1; node > 0; --node)
+    sums[node] = merge(sums[2 * node], sums[2 * node + 1]);
+  return sums;
 }
 
 template <int dim>

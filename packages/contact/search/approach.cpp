@@ -28,22 +28,26 @@ double turn_of(const std::array<Point<dim>, dim>& corners,
   return std::sqrt(square);
 }
 
-/// Boxes of value(vertex) for either primitive.
-template <int dim, typename Value>
-std::array<Box<dim>, 2> boxes_of(const PrimitivePair<dim>& pair, const Value& value) {
-  const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
-  std::array<Box<dim>, 2> boxes;
-  for (int k = 0; k <= dim; ++k)
-    boxes[k < n_first ? 0 : 1].extend(value(pair.vertices[k]));
-  return boxes;
-}
-
 }  // namespace
 
 template <int dim>
+bool may_close(const PrimitiveMotion<dim>& one, const PrimitiveMotion<dim>& other, double apart,
+               double thickness) {
+  // The impulse of a contact acts half way between its two points.
+  const double turn = 0.5 * (one.turn + other.turn);
+  if (turn >= 1)
+    return true;
+  const double relative = (other.moves.max() - one.moves.min())
+                              .cwiseAbs()
+                              .cwiseMax((one.moves.max() - other.moves.min()).cwiseAbs())
+                              .norm();
+  constexpr double certain = 1e-6;
+  return !((1 - turn) * apart > (1 + certain) * (thickness + relative));
+}
+
+template <int dim>
 Approach<dim>::Approach(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion, int solid,
-                        double dt)
-    : positions_(shapes.mesh().vertices) {
+                        double dt) {
   const SolidDescription& description = shapes.solids()[solid];
   first_vertex_ = description.vertex_begin;
   first_simplex_ = description.simplex_begin;
@@ -58,24 +62,17 @@ Approach<dim>::Approach(const ContactShapes<dim>& shapes, const SolidMotion<dim>
 }
 
 template <int dim>
-double Approach<dim>::distance_of_boxes(const PrimitivePair<dim>& pair) const {
-  const auto [one, other] = boxes_of(pair, [&](int v) { return positions_[v]; });
-  return one.exteriorDistance(other);
-}
-
-template <int dim>
 bool Approach<dim>::may_close(const PrimitivePair<dim>& pair, double apart,
                               double thickness) const {
-  const auto [one, other] = boxes_of(pair, [&](int v) { return moves_[v - first_vertex_]; });
-  const double relative =
-      (other.max() - one.min()).cwiseAbs().cwiseMax((one.max() - other.min()).cwiseAbs()).norm();
-  // The impulse of a contact acts half way between its two points.
-  const double turn =
-      0.5 * (turns_[pair.simplex - first_simplex_] + turns_[pair.other_simplex - first_simplex_]);
-  constexpr double certain = 1e-6;
-  return turn >= 1 || !((1 - turn) * apart > (1 + certain) * (thickness + relative));
+  const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
+  const std::vector<int> first(pair.vertices.begin(), pair.vertices.begin() + n_first),
+      second(pair.vertices.begin() + n_first, pair.vertices.end());
+  return lockstep::may_close(of(first, pair.simplex), of(second, pair.other_simplex), apart,
+                             thickness);
 }
 
+template bool may_close<2>(const PrimitiveMotion<2>&, const PrimitiveMotion<2>&, double, double);
+template bool may_close<3>(const PrimitiveMotion<3>&, const PrimitiveMotion<3>&, double, double);
 template class Approach<2>;
 template class Approach<3>;
 

@@ -2,9 +2,30 @@
 #include <vector>
 
 #include "contact/bodies/solid_motion.hpp"
-#include "contact/search/primitive_pairs.hpp"
+#include "contact/search/primitive_pair.hpp"
 
 namespace lockstep {
+
+/// How far the vertices of a primitive, or of many, move within a step.
+template <int dim>
+struct PrimitiveMotion {
+  Box<dim> moves;  ///< [m]
+  /// Of a point beside it, which it carries along (`carried_point`), per distance from the
+  /// primitive, besides the primitive's own move [1]; the largest.
+  double turn = 0;
+};
+
+/// Of both together.
+template <int dim>
+PrimitiveMotion<dim> merged(const PrimitiveMotion<dim>& one, const PrimitiveMotion<dim>& other) {
+  return {one.moves.merged(other.moves), std::max(one.turn, other.turn)};
+}
+
+/// False if primitives that are at least so far `apart` are farther than `thickness`, and no normal
+/// velocity of a contact of theirs brings them to that within the step [m].
+template <int dim>
+bool may_close(const PrimitiveMotion<dim>& one, const PrimitiveMotion<dim>& other, double apart,
+               double thickness);
 
 /// How far parts of one solid that is not rigid come closer to each other within a step, at most:
 /// what its motion leaves side by side need not be looked at closely. Local.
@@ -13,19 +34,22 @@ class Approach {
  public:
   Approach(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion, int solid, double dt);
 
-  /// False if primitives that are at least so far `apart` are farther than `thickness`, and no
-  /// normal velocity of a contact of theirs brings them to that within the step [m].
+  /// Of the primitive with these vertices, held by that simplex.
+  template <typename Vertices>
+  PrimitiveMotion<dim> of(const Vertices& vertices, int simplex) const {
+    PrimitiveMotion<dim> motion;
+    for (const int vertex : vertices)
+      motion.moves.extend(moves_[vertex - first_vertex_]);
+    motion.turn = turns_[simplex - first_simplex_];
+    return motion;
+  }
+  /// `lockstep::may_close` of a pair of this solid.
   bool may_close(const PrimitivePair<dim>& pair, double apart, double thickness) const;
-  /// The distance of their boxes [m].
-  double distance_of_boxes(const PrimitivePair<dim>& pair) const;
 
  private:
-  const std::vector<Point<dim>>& positions_;
   int first_vertex_, first_simplex_;
   std::vector<Point<dim>> moves_;  ///< of vertices over the step [m]
-  /// By simplex: of a point beside it, which it carries along (`carried_point`), per distance from
-  /// the simplex, besides the simplex' own move [1].
-  std::vector<double> turns_;
+  std::vector<double> turns_;      ///< of simplices
 };
 
 }  // namespace lockstep

@@ -6,6 +6,42 @@ namespace lockstep {
 
 namespace {
 
+/// The boxes of a tree with how they move: those that come near.
+template <int dim>
+class ClosingTree {
+ public:
+  /// `motion_of(i)`: of box i.
+  template <typename MotionOf>
+  ClosingTree(const BoxTree<dim>& tree, double margin, double thickness, const MotionOf& motion_of)
+      : tree_(tree),
+        margin_(margin),
+        thickness_(thickness),
+        of_nodes_(tree.template over_nodes<PrimitiveMotion<dim>>(
+            [&](PrimitiveMotion<dim>& sum, int i) { sum = merged(sum, motion_of(i)); },
+            [](const auto& one, const auto& other) { return merged(one, other); })) {
+    for (int i = 0; i < tree.n_boxes(); ++i)
+      motions_.push_back(motion_of(i));
+  }
+
+  /// Calls f(i) for those that may come to this box, which moves so, until f returns true.
+  template <typename Function>
+  bool any_closing(const Box<dim>& box, const PrimitiveMotion<dim>& motion,
+                   const Function& f) const {
+    const Box<dim> near = inflated<dim>(box, margin_);
+    const auto closes = [&](const Box<dim>& other, const PrimitiveMotion<dim>& its_motion) {
+      return other.intersects(near) &&
+             may_close(motion, its_motion, box.exteriorDistance(other), thickness_);
+    };
+    return tree_.any([&](const Box<dim>& node, int at) { return closes(node, of_nodes_[at]); },
+                     [&](int i) { return closes(tree_.box(i), motions_[i]) && f(i); });
+  }
+
+ private:
+  const BoxTree<dim>& tree_;
+  double margin_, thickness_;
+  std::vector<PrimitiveMotion<dim>> of_nodes_, motions_;
+};
+
 /// Vertices with the simplex that holds them: a vertex, an edge or a simplex.
 template <int n>
 struct Primitive {
@@ -20,6 +56,11 @@ class PairFinder {
   PairFinder(const ContactShapes<dim>& shapes, double margin, const Box<dim>& region, bool self,
              const UsePrimitivePairs<dim>& use)
       : shapes_(shapes), margin_(margin), region_(region), self_(self), use_(use) {}
+  /// Of the solid with itself, from now on.
+  void leave_out(const Approach<dim>& approach, double thickness) {
+    approach_ = &approach;
+    thickness_ = thickness;
+  }
 
   /// Vertices of `solid` against simplices of `other`.
   void add_vertices(int solid, const BoxTree<dim>& vertices, int other,
@@ -54,19 +95,58 @@ class PairFinder {
            const BoxTree<dim>& second_tree, const First& first, const Second& second) {
     std::vector<int> near_both, found;
     first_tree.touching(region_, near_both);
-    for (const int i : near_both) {
-      second_tree.touching(inflated<dim>(first_tree.box(i), margin_), found);
-      if (found.empty())
-        continue;
+    const auto is_second = [&](int i, int j) {
+      return kind == PrimitiveKind::vertex_simplex || !self_ || i < j;
+    };
+    const auto use_pairs = [&](int i) {
       const Primitive<n> one = first(i);
       pairs_.clear();
-      for (const int j : found) {
-        if (kind == PrimitiveKind::vertex_simplex || !self_ || i < j)
-          add_pair<n, m>(kind, solid, one, other, second(j));
-      }
+      for (const int j : found)
+        add_pair<n, m>(kind, solid, one, other, second(j));
       if (!pairs_.empty())
         use_(pairs_);
+    };
+    const auto find_touching = [&](int i) {
+      second_tree.touching(inflated<dim>(first_tree.box(i), margin_), found,
+                           [&](int j) { return is_second(i, j); });
+    };
+    if (approach_ == nullptr) {
+      for (const int i : near_both) {
+        find_touching(i);
+        use_pairs(i);
+      }
+      return;
     }
+    const auto motion_of = [&](const auto& primitive) {
+      return approach_->of(primitive.vertices, primitive.simplex);
+    };
+    const ClosingTree<dim> closing(second_tree, margin_, thickness_,
+                                   [&](int j) { return motion_of(second(j)); });
+    for (const int i : near_both) {
+      const Primitive<n> one = first(i);
+      found.clear();
+      const bool any = closing.any_closing(first_tree.box(i), motion_of(one), [&](int j) {
+        if (kind == PrimitiveKind::vertex_simplex)
+          return !connected(one, second(j));
+        if (is_second(i, j))
+          found.push_back(j);
+        return false;
+      });
+      if (any)  // which simplex is the nearest to a vertex, all of them tell
+        find_touching(i);
+      else
+        std::sort(found.begin(), found.end());
+      use_pairs(i);
+    }
+  }
+  /// One vertex is common, or an edge leads from one to the other.
+  template <int n, int m>
+  bool connected(const Primitive<n>& one, const Primitive<m>& other) const {
+    for (const int v : one.vertices)
+      for (const int w : other.vertices)
+        if (v == w || shapes_.topology().connected(v, w))
+          return true;
+    return false;
   }
   template <int n, int m>
   void add_pair(PrimitiveKind kind, int solid, const Primitive<n>& first, int other,
@@ -94,6 +174,8 @@ class PairFinder {
   Box<dim> region_;
   bool self_;
   const UsePrimitivePairs<dim>& use_;
+  const Approach<dim>* approach_ = nullptr;  ///< null: nothing is left out
+  double thickness_ = 0;
   std::vector<PrimitivePair<dim>> pairs_;  ///< of one first primitive
 };
 
@@ -158,6 +240,29 @@ void PrimitivePairs<dim>::for_each(double margin, int solid, int other,
 }
 
 template <int dim>
+void PrimitivePairs<dim>::for_each_closing(double margin, int solid, const Approach<dim>& approach,
+                                           double thickness, const UsePrimitivePairs<dim>& use) {
+  const Trees& trees = trees_of(solid);
+  PairFinder<dim> finder(shapes_, margin, inflated<dim>(trees.extent, margin), true, use);
+  finder.leave_out(approach, thickness);
+  finder.add_vertices(solid, trees.vertices, solid, trees.simplices);
+  if constexpr (dim == 3)
+    finder.add_edges(solid, trees.edges, solid, trees.edges);
+}
+
+template <int dim>
+bool are_neighbours(const ContactTopology<dim>& topology, const PrimitivePair<dim>& pair) {
+  const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
+  for (int i = 0; i < n_first; ++i) {
+    for (int j = n_first; j <= dim; ++j) {
+      if (topology.connected(pair.vertices[i], pair.vertices[j]))
+        return true;
+    }
+  }
+  return false;
+}
+
+template <int dim>
 std::array<SurfacePoint<dim>, 2> surface_points(const ContactShapes<dim>& shapes,
                                                 const PrimitivePair<dim>& pair,
                                                 const PrimitiveWeights<dim>& weights) {
@@ -178,6 +283,8 @@ std::array<SurfacePoint<dim>, 2> surface_points(const ContactShapes<dim>& shapes
 
 template class PrimitivePairs<2>;
 template class PrimitivePairs<3>;
+template bool are_neighbours<2>(const ContactTopology<2>&, const PrimitivePair<2>&);
+template bool are_neighbours<3>(const ContactTopology<3>&, const PrimitivePair<3>&);
 template std::array<SurfacePoint<2>, 2> surface_points<2>(const ContactShapes<2>&,
                                                           const PrimitivePair<2>&,
                                                           const PrimitiveWeights<2>&);

@@ -4,19 +4,11 @@
 #include <vector>
 
 #include "contact/bodies/contact_shapes.hpp"
-#include "contact/search/continuous_collision.hpp"
+#include "contact/search/approach.hpp"
+#include "contact/search/primitive_pair.hpp"
 #include "geometry/box_tree.hpp"
 
 namespace lockstep {
-
-/// Two primitives without a common vertex, of two solids or of one and the same.
-template <int dim>
-struct PrimitivePair {
-  PrimitiveKind kind = PrimitiveKind::vertex_simplex;
-  int solid = -1, other = -1;            ///< of the first and of the second primitive
-  int simplex = -1, other_simplex = -1;  ///< that hold them
-  std::array<int, dim + 1> vertices{};   ///< in the order of `PrimitivePoints`
-};
 
 /// Called with all pairs of one first primitive.
 template <int dim>
@@ -34,6 +26,11 @@ class PrimitivePairs {
   /// closer than `margin` in every direction; what contact cannot move is left out. The order does
   /// not depend on the ranks.
   void for_each(double margin, int solid, int other, const UsePrimitivePairs<dim>& use);
+  /// The same of one solid with itself, where its motion may bring primitives to `thickness`: pairs
+  /// of edges of which it rules out that, and vertices of which it does so with all simplices that
+  /// no edge connects with them, are left out. The vertices' boxes must hold their points alone.
+  void for_each_closing(double margin, int solid, const Approach<dim>& approach, double thickness,
+                        const UsePrimitivePairs<dim>& use);
 
  private:
   /// Numbers in the trees count from the solid's first vertex, simplex and edge.
@@ -49,14 +46,9 @@ class PrimitivePairs {
   std::vector<std::unique_ptr<const Trees>> trees_;  ///< of each solid; null: not asked for yet
 };
 
+/// True if an edge of their mesh leads from one to the other.
 template <int dim>
-PrimitivePoints<dim> points_of(const PrimitivePair<dim>& pair,
-                               const std::vector<Point<dim>>& vertices) {
-  PrimitivePoints<dim> points;
-  for (int k = 0; k <= dim; ++k)
-    points[k] = vertices[pair.vertices[k]];
-  return points;
-}
+bool are_neighbours(const ContactTopology<dim>& topology, const PrimitivePair<dim>& pair);
 
 /// The points of both surfaces that these weights mean.
 template <int dim>

@@ -22,7 +22,7 @@ struct NearPair {
 template <int dim>
 class SurfaceContacts {
  public:
-  /// With `approach` those only that it does not rule out.
+  /// With `approach`, of one solid with itself, those only that it does not rule out.
   SurfaceContacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
                   const ContactReach& reach, const Approach<dim>* approach,
                   std::vector<Contact<dim>>& contacts)
@@ -31,42 +31,22 @@ class SurfaceContacts {
   /// Of one first primitive.
   void add(const std::vector<PrimitivePair<dim>>& pairs) {
     if (pairs.front().kind == PrimitiveKind::vertex_simplex) {
-      // Which simplex is the nearest, all of them tell.
-      if (std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) { return matters(pair); }))
-        add_vertex(pairs);
+      add_vertex(pairs);
       return;
     }
     for (const PrimitivePair<dim>& pair : pairs) {
-      if (!matters(pair))
-        continue;
       if (const auto near = near_pair(pair); near && on_outer_sides(*near))
         add_contact(*near);
     }
   }
 
  private:
-  bool matters(const PrimitivePair<dim>& pair) const {
-    return approach_ == nullptr ||
-           approach_->may_close(pair, approach_->distance_of_boxes(pair), thickness(pair));
-  }
-
   double thickness(const PrimitivePair<dim>& pair) const {
     return reach_.half_thickness[pair.solid] + reach_.half_thickness[pair.other];
   }
 
-  bool neighbours(const PrimitivePair<dim>& pair) const {
-    const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
-    for (int i = 0; i < n_first; ++i) {
-      for (int j = n_first; j <= dim; ++j) {
-        if (shapes_.topology().connected(pair.vertices[i], pair.vertices[j]))
-          return true;
-      }
-    }
-    return false;
-  }
-
   std::optional<NearPair<dim>> near_pair(const PrimitivePair<dim>& pair) const {
-    if (pair.solid == pair.other && neighbours(pair))
+    if (pair.solid == pair.other && are_neighbours(shapes_.topology(), pair))
       return {};
     const auto closest =
         closest_primitives<dim>(pair.kind, points_of(pair, shapes_.mesh().vertices));
@@ -207,12 +187,15 @@ void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<di
   const bool any_closed = shapes.solids()[solid].closed || shapes.solids()[other].closed;
   if (solid != other && any_closed)
     range = std::max(range, reach.depth);
-  std::optional<Approach<dim>> approach;
-  if (reach.violated_only && solid == other)
-    approach.emplace(shapes, motion, solid, reach.dt);
-  SurfaceContacts<dim> found(shapes, motion, reach, approach ? &*approach : nullptr, contacts);
-  primitives.for_each(range, solid, other,
-                      [&](const std::vector<PrimitivePair<dim>>& pairs) { found.add(pairs); });
+  if (reach.violated_only && solid == other) {
+    const Approach<dim> approach(shapes, motion, solid, reach.dt);
+    SurfaceContacts<dim> found(shapes, motion, reach, &approach, contacts);
+    primitives.for_each_closing(range, solid, approach, 2 * reach.half_thickness[solid],
+                                [&](const auto& pairs) { found.add(pairs); });
+    return;
+  }
+  SurfaceContacts<dim> found(shapes, motion, reach, nullptr, contacts);
+  primitives.for_each(range, solid, other, [&](const auto& pairs) { found.add(pairs); });
 }
 
 template void add_surface_contacts<2>(const ContactShapes<2>&, const SolidMotion<2>&,
