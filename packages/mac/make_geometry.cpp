@@ -230,13 +230,13 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   if (free_surface && free_surface->gas)
     find_pockets<dim>(*free_surface, marks, fractions, geometry);
   number_pressures(domain, geometry);
-  const std::vector<char> plain = find_plain_tiles(grid, geometry);
+  geometry.plain = find_plain_tiles(grid, geometry);
   std::vector<ControlVolume<dim>> gas_volumes;
   for (int axis = 0; axis < dim; ++axis) {
     state.faces[axis].assign(grid.n_stored_cells(), FaceState::inactive);
     const int place_in_tile = (tile_width<dim> - 1) << (axis * log_tile_width<dim>);
     grid.for_each_owned_face(axis, [&](int cell) {
-      if (plain[TiledGrid<dim>::tile_of(cell)] && (cell & place_in_tile) != 0) {
+      if (geometry.is_plain(cell) && (cell & place_in_tile) != 0) {
         state.faces[axis][cell] = FaceState::free;
         return;
       }

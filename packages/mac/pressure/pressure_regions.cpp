@@ -45,13 +45,18 @@ class ComponentFinder {
  private:
   /// All cells of the row are fluid and connected along it.
   bool is_one(int begin, int n) const {
+    if (geometry_.is_plain(begin))
+      return true;
     return all_are(cells_, begin, n, CellState::fluid) &&
            all_are(geometry_.state.faces[0], begin + 1, n - 1, FaceState::free);
   }
   void join_row(const CellRow<dim>& row) {
     const bool one = is_one(row.begin, row.n);
     if (one) {
-      sets.join_run(row.begin, row.n);
+      if (!geometry_.is_plain(row.begin))
+        sets.join_run(row.begin, row.n);
+      else if (row.begin % tile_volume<dim> == 0)
+        sets.join_run(row.begin, tile_volume<dim>);
       look(row.begin, row.neighbors[0], 0, 0);
       look(row.begin + row.n - 1, row.neighbors[1], 0, 1);
     } else {
@@ -69,6 +74,9 @@ class ComponentFinder {
   }
   void join_rows(const CellRow<dim>& row, bool one, int axis, int end) {
     const int other = row.neighbors[2 * axis + end];
+    if (geometry_.is_plain(row.begin) && other >= 0 &&
+        TiledGrid<dim>::tile_of(other) == TiledGrid<dim>::tile_of(row.begin))
+      return;
     if (one && other >= 0 && grid_.owned(other) && is_one(other, row.n)) {
       if (end == 1)  // the other row does it
         return;
@@ -99,37 +107,43 @@ class ComponentFinder {
   const std::vector<CellState>& cells_;
 };
 
+/// Calls f(first, n) for runs of fluid cells in a row that are known to be connected.
+template <int dim, typename Function>
+void for_each_run(const MacGeometry<dim>& geometry, const CellRow<dim>& row, const Function& f) {
+  if (geometry.is_plain(row.begin))
+    return f(row.begin, row.n);
+  for (int cell = row.begin; cell < row.begin + row.n; ++cell)
+    if (geometry.state.cells[cell] == CellState::fluid)
+      f(cell, 1);
+}
+
 template <int dim>
 LocalComponents local_components(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry) {
   const TiledGrid<dim>& grid = domain.grid;
-  const auto& cells = geometry.state.cells;
   ComponentFinder<dim> found(domain, geometry);
 
   LocalComponents result;
   result.label.assign(grid.n_stored_cells(), no_index);
   // First the smallest lattice number of each set at its root, then that for all its cells. Numbers
   // grow along a row: only where another set begins one may be smaller.
-  int last_root = -1, last_cell = -1;
-  grid.for_each_owned_cell([&](int cell) {
-    if (cells[cell] != CellState::fluid)
-      return;
-    const int root = found.sets.root(cell);
-    const bool goes_on = root == last_root && cell == last_cell + 1 && cell % tile_width<dim> > 0;
-    last_root = root;
-    last_cell = cell;
-    if (goes_on)
-      return;
-    GlobalIndex& label = result.label[root];
-    const GlobalIndex id = grid.global_id(cell);
-    label = label == no_index ? id : std::min(label, id);
+  grid.for_each_owned_row([&](const CellRow<dim>& row) {
+    int last_root = -1;
+    for_each_run(geometry, row, [&](int cell, int) {
+      const int root = found.sets.root(cell);
+      if (std::exchange(last_root, root) == root)
+        return;
+      GlobalIndex& label = result.label[root];
+      const GlobalIndex id = grid.global_id(cell);
+      label = label == no_index ? id : std::min(label, id);
+    });
   });
-  grid.for_each_owned_cell([&](int cell) {
-    if (cells[cell] != CellState::fluid)
-      return;
-    const int root = found.sets.root(cell);
-    result.label[cell] = result.label[root];
-    if (root == cell)
-      result.labels.push_back(result.label[cell]);
+  grid.for_each_owned_row([&](const CellRow<dim>& row) {
+    for_each_run(geometry, row, [&](int cell, int n) {
+      const int root = found.sets.root(cell);
+      std::fill_n(result.label.begin() + cell, n, result.label[root]);
+      if (root == cell)
+        result.labels.push_back(result.label[cell]);
+    });
   });
   domain.halo.fill(result.label);
   for (const int cell : found.fixed_cells)
@@ -201,14 +215,12 @@ PressureRegions find_regions(const MacDomain<dim>& domain, const MacGeometry<dim
   regions.of_unknown.reserve(geometry.pressure_map->getNodeNumElements());
   GlobalIndex last_label = no_index;
   int last_region = -1;
-  grid.for_each_owned_cell([&](int cell) {
-    if (geometry.state.cells[cell] != CellState::fluid)
-      return;
-    if (mine.label[cell] != last_label) {
-      last_label = mine.label[cell];
-      last_region = region[position(last_label)];
-    }
-    regions.of_unknown.push_back(last_region);
+  grid.for_each_owned_row([&](const CellRow<dim>& row) {
+    for_each_run(geometry, row, [&](int cell, int n) {
+      if (std::exchange(last_label, mine.label[cell]) != mine.label[cell])
+        last_region = region[position(last_label)];
+      regions.of_unknown.insert(regions.of_unknown.end(), n, last_region);
+    });
   });
   return regions;
 }

@@ -22,6 +22,8 @@ struct MacGeometry : FluidGeometry<dim> {
   FaceTable<dim> face_table;
   /// Cells so near to a surface that a link from their faces may meet it; empty without surface.
   std::vector<char> near;
+  /// Owned tiles all of whose cells are fluid, with no surface near: their inner faces are free.
+  std::vector<char> plain;
   /// Owned faces with open fraction < 1 and fluid on at least one side.
   std::vector<FaceId> coupled;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows beside fluid
@@ -50,6 +52,8 @@ struct MacGeometry : FluidGeometry<dim> {
   /// The same for all faces of a row of cells, which then are fluid.
   bool has_regular_faces(const CellRow<dim>& row) const;
   bool in_pocket(int cell) const { return !pocket.empty() && pocket[cell] >= 0; }
+  /// Of an owned cell: its tile.
+  bool is_plain(int cell) const { return plain[TiledGrid<dim>::tile_of(cell)] != 0; }
   bool near_surface(int cell) const { return !near.empty() && near[cell] != 0; }
 };
 
