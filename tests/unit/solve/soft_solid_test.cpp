@@ -124,6 +124,25 @@ TEST(SoftSolid, CholeskyOfCheapComponentsOnly) {
     EXPECT_NEAR(values[row], one.is_factored[row] ? 2 : 0, 1e-14);
 }
 
+TEST(SoftSolid, StoredZerosTieNoComponents) {
+  const int rank = Tpetra::getDefaultComm()->getRank();
+  const auto map = make_map(rank == 0 ? 7 : 0, Tpetra::getDefaultComm());
+  std::vector<std::vector<Entry>> rows;
+  // Two chains of three rows, in turn, and a lone one; what ties them is stored, and zero.
+  for (int i = 0; i < (rank == 0 ? 7 : 0); ++i) {
+    rows.emplace_back();
+    for (int j = 0; j < 7; ++j) {
+      const bool tied = i < 6 && j < 6 && std::abs(i - j) == 2;
+      rows.back().push_back({j, i == j ? 3.0 + i : tied ? -1.0 : 0.0});
+    }
+  }
+  const auto matrix = matrix_from_rows(map, rows);
+  const auto components = components_of_rows(*matrix);
+  const auto cholesky = cheap_component_cholesky(matrix, components, 1e9, "solid");
+  EXPECT_EQ(std::count(cholesky.is_factored.begin(), cholesky.is_factored.end(), false), 0);
+  EXPECT_LT(error_of(*cholesky.inverse, *matrix), 1e-14);
+}
+
 TEST(SoftSolid, IndefiniteMatricesHaveNoCholeskyFactors) {
   const Lattice solid(6, -1);
   const auto components = components_of_rows(*solid.c);
