@@ -62,13 +62,21 @@ Approach<dim>::Approach(const ContactShapes<dim>& shapes, const SolidMotion<dim>
 }
 
 template <int dim>
+PrimitiveMotion<dim> Approach<dim>::of(const int* begin, const int* end, int simplex) const {
+  PrimitiveMotion<dim> motion;
+  for (const int* vertex = begin; vertex != end; ++vertex)
+    motion.moves.extend(moves_[*vertex - first_vertex_]);
+  motion.turn = turns_[simplex - first_simplex_];
+  return motion;
+}
+
+template <int dim>
 bool Approach<dim>::may_close(const PrimitivePair<dim>& pair, double apart,
                               double thickness) const {
-  const int n_first = pair.kind == PrimitiveKind::edge_edge ? 2 : 1;
-  const std::vector<int> first(pair.vertices.begin(), pair.vertices.begin() + n_first),
-      second(pair.vertices.begin() + n_first, pair.vertices.end());
-  return lockstep::may_close(of(first, pair.simplex), of(second, pair.other_simplex), apart,
-                             thickness);
+  const int *begin = pair.vertices.data(), *end = begin + pair.vertices.size();
+  const int* second = begin + (pair.kind == PrimitiveKind::edge_edge ? 2 : 1);
+  return lockstep::may_close(of(begin, second, pair.simplex), of(second, end, pair.other_simplex),
+                             apart, thickness);
 }
 
 template bool may_close<2>(const PrimitiveMotion<2>&, const PrimitiveMotion<2>&, double, double);

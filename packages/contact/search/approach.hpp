@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "contact/bodies/solid_motion.hpp"
@@ -34,15 +35,8 @@ class Approach {
  public:
   Approach(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion, int solid, double dt);
 
-  /// Of the primitive with these vertices, held by that simplex.
-  template <typename Vertices>
-  PrimitiveMotion<dim> of(const Vertices& vertices, int simplex) const {
-    PrimitiveMotion<dim> motion;
-    for (const int vertex : vertices)
-      motion.moves.extend(moves_[vertex - first_vertex_]);
-    motion.turn = turns_[simplex - first_simplex_];
-    return motion;
-  }
+  /// Of the primitive with these vertices, [begin, end), held by that simplex.
+  PrimitiveMotion<dim> of(const int* begin, const int* end, int simplex) const;
   /// `lockstep::may_close` of a pair of this solid.
   bool may_close(const PrimitivePair<dim>& pair, double apart, double thickness) const;
 

@@ -118,7 +118,8 @@ class PairFinder {
       return;
     }
     const auto motion_of = [&](const auto& primitive) {
-      return approach_->of(primitive.vertices, primitive.simplex);
+      const auto& vertices = primitive.vertices;
+      return approach_->of(vertices.data(), vertices.data() + vertices.size(), primitive.simplex);
     };
     const ClosingTree<dim> closing(second_tree, margin_, thickness_,
                                    [&](int j) { return motion_of(second(j)); });

@@ -77,6 +77,22 @@ bool is_among(const Contact<dim>& contact, const std::vector<Contact<dim>>& othe
   });
 }
 
+/// Two plates in one mesh, the second so far from the first; its vertices are the last half.
+template <int dim>
+SurfaceMesh<dim> layers_of(double size, const Point<dim>& apart) {
+  SurfaceMesh<dim> mesh = plate_surface<dim>(Point<dim>::Constant(size), dim - 1, 0.3 * h);
+  const SurfaceMesh<dim> lower = mesh;
+  const int n = static_cast<int>(lower.vertices.size());
+  for (const Point<dim>& x : lower.vertices)
+    mesh.vertices.push_back(x + apart);
+  for (auto simplex : lower.simplices) {
+    for (int& vertex : simplex)
+      vertex += n;
+    mesh.simplices.push_back(simplex);
+  }
+  return mesh;
+}
+
 TYPED_TEST(Approaches, LeaveOutNothingThatOverlapsOrIsViolated) {
   constexpr int dim = TypeParam::value;
   std::mt19937 generator(5);
@@ -127,16 +143,8 @@ TYPED_TEST(Approaches, LayersThatMeetAreFoundAndOthersAreNot) {
   constexpr int dim = TypeParam::value;
   constexpr double gap = 0.3 * h, thickness = 0.1 * h;  // that of Search
   for (const double part_of_gap : {0.99, 1.01}) {
-    SurfaceMesh<dim> mesh = plate_surface<dim>(Point<dim>::Constant(h), dim - 1, 0.3 * h);
-    const SurfaceMesh<dim> lower = mesh;
-    const int n = static_cast<int>(lower.vertices.size());
-    for (const Point<dim>& x : lower.vertices)
-      mesh.vertices.push_back(x + (gap + thickness) * Point<dim>::Unit(dim - 1));
-    for (auto simplex : lower.simplices) {
-      for (int& vertex : simplex)
-        vertex += n;
-      mesh.simplices.push_back(simplex);
-    }
+    const SurfaceMesh<dim> mesh = layers_of<dim>(h, (gap + thickness) * Point<dim>::Unit(dim - 1));
+    const int n = static_cast<int>(mesh.vertices.size()) / 2;
     DeformableBody<dim> body = cloth<dim>(mesh);
     for (int v = n; v < 2 * n; ++v)
       body.velocity[v] = -part_of_gap * gap / dt * Point<dim>::Unit(dim - 1);
@@ -147,6 +155,32 @@ TYPED_TEST(Approaches, LayersThatMeetAreFoundAndOthersAreNot) {
         std::any_of(search.normal_velocity.begin(), search.normal_velocity.end(), is_violated),
         part_of_gap > 1);
     EXPECT_EQ(search.violated_only.empty(), part_of_gap < 1);
+  }
+}
+
+// What moves is one simplex of many, so that few of the boxes that hold it move as a whole.
+TYPED_TEST(Approaches, OneSimplexThatMovesIsFoundWhereverItIs) {
+  constexpr int dim = TypeParam::value;
+  constexpr double gap = 0.3 * h, thickness = 0.1 * h;  // that of Search
+  Point<dim> apart = Point<dim>::Constant(0.1 * h);     // no vertex below another
+  apart[dim - 1] = gap + thickness;
+  const SurfaceMesh<dim> mesh = layers_of<dim>(2 * h, apart);
+  const std::size_t n_simplices = mesh.simplices.size();
+  for (std::size_t s = n_simplices / 2; s < n_simplices; s += 3) {
+    DeformableBody<dim> body = cloth<dim>(mesh);
+    for (const int v : mesh.simplices[s])
+      body.velocity[v] = -1.05 * gap / dt * Point<dim>::Unit(dim - 1);
+    Sheet<dim> layers(std::move(body));
+    const Search<dim> search(layers, replicated(*layers.solids, *layers.solids->velocity()));
+    int n_violated = 0;
+    for (std::size_t i = 0; i < search.all.size(); ++i) {
+      if (search.normal_velocity[i] >= -search.all[i].gap / dt)
+        continue;
+      ++n_violated;
+      EXPECT_TRUE(is_among(search.all[i], search.violated_only)) << s;
+    }
+    EXPECT_GT(n_violated, 0) << s;
+    EXPECT_LT(search.violated_only.size(), search.all.size());
   }
 }
 
