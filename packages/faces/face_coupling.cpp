@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
+#include <cmath>
 
 #include "linear/overlap.hpp"
 #include "linear/triplet_matrix.hpp"
@@ -106,6 +107,21 @@ void FaceCoupling<dim>::add_gas_push(const std::vector<double>& scaled_pressure,
   for (double& value : given)
     value = -value;
   add_transposed(weights_, *solid_import_, given, momentum);
+}
+
+template <int dim>
+std::vector<double> FaceCoupling<dim>::gas_push_size(int n_pockets) const {
+  std::vector<double> size(n_pockets, 0);
+  for (int f = 0; f < weights_.n_rows(); ++f) {
+    double weight = 0;
+    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k)
+      weight += std::abs(weights_.values[k]);
+    for (int side = 0; side < 2; ++side)
+      if (const int pocket = volumes_[f].sides[side].pocket; pocket >= 0)
+        size[pocket] += std::abs(push(f, side)) * weight;
+  }
+  sum_all(pressure_import_->getSourceMap()->getComm(), size.data(), n_pockets);
+  return size;
 }
 
 template <int dim>

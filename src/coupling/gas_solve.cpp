@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
@@ -12,7 +13,7 @@
 namespace lockstep {
 
 namespace {
-/// Below this part of what would open it if no unknown answered a pocket cannot open: what is
+/// Below this part of what would open it if no pressure answered a pocket cannot open: what is
 /// around it is all closed in.
 constexpr double closed_in = 1e-9;
 
@@ -21,7 +22,6 @@ struct Answer {
   int pocket = 0;
   BlockVector unknowns;
   std::vector<double> rates;  ///< of all pockets [m^dim/s]
-  double unanswered = 0;      ///< what would open this one if no pressure answered [m^dim/s]
 };
 
 /// What the pocket's push opens of it where solids move by the diagonal of their mass alone.
@@ -47,9 +47,18 @@ double round_off_of_rows(const BlockSystem& blocks, const RCP<const Map>& map) {
   return round_off * product.norm2();
 }
 
-Answer answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
-                 const BlockSystem& blocks, const SolveRequest& request, const BlockVector& like,
-                 SolveReport& report) {
+/// Nothing but solids is beside the pocket, and its pushes on them cancel but for round-off: it is
+/// all within one shell, say.
+bool pushes_cancel(int pocket, const GasProblem& gas, const BlockVector& rhs) {
+  constexpr double round_off = 1e-14;
+  return gas.conductance[pocket] == 0 &&
+         (rhs.solid.is_null() || rhs.solid->normInf() <= round_off * gas.push_size[pocket]);
+}
+
+/// Empty: nothing that it pushes on can open it.
+std::optional<Answer> answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
+                                const BlockSystem& blocks, const SolveRequest& request,
+                                const BlockVector& like, SolveReport& report) {
   const auto zero = [](const RCP<Vector>& v) {
     return v.is_null() ? RCP<Vector>() : make_vector(v->getMap());
   };
@@ -58,6 +67,8 @@ Answer answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
   std::vector<double> unit(gas.pockets.size(), 0);
   unit[pocket] = 1;
   gas.push(unit, rhs);
+  if (pushes_cancel(pocket, gas, rhs))
+    return {};
   relative_part_removed(blocks.null_space, *rhs.pressure);
   // What opens the pocket is a small difference of what goes through its faces. Where only solids
   // are beside it and all is closed in, pressures hold them still, and nothing is left for the
@@ -68,7 +79,9 @@ Answer answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
   report.add_work(strategy.solve(blocks, rhs, answer.unknowns, exact));
   answer.rates = gas.rates(answer.unknowns, true);
   answer.rates[pocket] += gas.conductance[pocket];
-  answer.unanswered = gas.conductance[pocket] + opened_by_solids(pocket, gas, blocks, rhs);
+  const double unanswered = gas.conductance[pocket] + opened_by_solids(pocket, gas, blocks, rhs);
+  if (answer.rates[pocket] <= closed_in * unanswered)
+    return {};
   return answer;
 }
 
@@ -96,19 +109,17 @@ std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strate
   for (int k = 0; k < n; ++k) {
     const GasPocket& pocket = gas.pockets[k];
     const double stiff = dt * dt * pocket.stiffness;
-    if (gas.conductance[k] == 0 && unknowns.solid.is_null())
-      continue;  // nothing that moves is beside it
     const bool may_be_stiff =
         !unknowns.solid.is_null() || stiff * gas.conductance[k] > 1;  // solids answer, too
     if (!pocket.keeps_volume && !(gas.with_springs && may_be_stiff))
       continue;
-    Answer answer = answer_to(k, gas, strategy, blocks, request, unknowns, report);
-    if (answer.rates[k] <= closed_in * answer.unanswered)
+    std::optional<Answer> answer = answer_to(k, gas, strategy, blocks, request, unknowns, report);
+    if (!answer)
       continue;
-    const double part = pocket.keeps_volume ? 1 : implicit_part(stiff * answer.rates[k]);
+    const double part = pocket.keeps_volume ? 1 : implicit_part(stiff * answer->rates[k]);
     if (part == 0)
       continue;
-    answers.push_back(std::move(answer));
+    answers.push_back(std::move(*answer));
     compliance.push_back(pocket.keeps_volume ? 0 : 1 / (part * stiff));
   }
   if (answers.empty())

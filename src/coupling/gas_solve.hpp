@@ -11,6 +11,7 @@ namespace lockstep {
 struct GasProblem {
   std::vector<GasPocket> pockets;
   std::vector<double> conductance;  ///< GasFluid::gas_conductance
+  std::vector<double> push_size;    ///< GasCoupling::gas_push_size; 0: no solid feels it
   double dt = 0;                    ///< of p̂ [s]
   double step_dt = 0;               ///< over which the solution moves the pockets' sides [s]
   /// False: only pockets that keep their volume have a pressure (F2).

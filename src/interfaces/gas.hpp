@@ -48,6 +48,9 @@ class GasCoupling {
   virtual ~GasCoupling() = default;
   /// momentum += what p̂ of the pockets gives dynamic solids [kg m/s]. Collective.
   virtual void add_gas_push(const std::vector<double>& scaled_pressure, Vector& momentum) const = 0;
+  /// By pocket, the sum of the magnitudes that a unit of its p̂ gives all dofs, before any cancel:
+  /// the scale of the round-off of `add_gas_push`. Collective.
+  virtual std::vector<double> gas_push_size(int n_pockets) const = 0;
   /// The rate at which coupled volumes of these velocities open each pocket [m^dim/s]. Collective.
   virtual std::vector<double> gas_rates(const std::vector<double>& coupled_velocity,
                                         int n_pockets) const = 0;

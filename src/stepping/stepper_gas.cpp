@@ -44,8 +44,12 @@ void Stepper<dim>::solve_coupled(const StepContext<dim>& context, const BlockSys
   const Reduction& constraints = context.constraints;
   const auto& solids = *components_.solids;
   const int n = static_cast<int>(fluid.gas_pockets().size());
-  GasProblem gas{
-      fluid.gas_pockets(), fluid.gas_conductance(), context.dt, context.step_dt, true, {}, {}};
+  GasProblem gas;
+  gas.pockets = fluid.gas_pockets();
+  gas.conductance = fluid.gas_conductance();
+  gas.push_size = coupling.gas_push_size(n);
+  gas.dt = context.dt;
+  gas.step_dt = context.step_dt;
   gas.push = [&](const std::vector<double>& pressure, BlockVector& rhs) {
     fluid.add_gas_push(pressure, *rhs.pressure);
     if (rhs.solid.is_null())
@@ -91,7 +95,12 @@ std::vector<double> Stepper<dim>::solve_advection(double dt, const std::vector<d
   GasFluid<dim>& fluid = *sides_.gas_fluid;
   GasCoupling<dim>& coupling = *sides_.gas_coupling;
   const int n = static_cast<int>(fluid.gas_pockets().size());
-  GasProblem gas{fluid.gas_pockets(), fluid.gas_conductance(), dt, dt, false, {}, {}};
+  GasProblem gas;
+  gas.pockets = fluid.gas_pockets();
+  gas.conductance = fluid.gas_conductance();
+  gas.push_size.assign(n, 0);
+  gas.dt = gas.step_dt = dt;
+  gas.with_springs = false;
   for (GasPocket& pocket : gas.pockets)
     pocket.pressure = 0;  // u^n has felt it
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {

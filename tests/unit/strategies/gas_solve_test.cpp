@@ -33,7 +33,7 @@ TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
   pocket.pressure = 3;
   pocket.keeps_volume = true;
   pocket.missing = 0.1;
-  GasProblem gas{{pocket}, {0.}, 0.5, 0.5, true, {}, {}};
+  GasProblem gas{{pocket}, {0.}, {area.norm1()}, 0.5, 0.5, true, {}, {}};
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
     to.solid->update(pressure[0], area, 1);
   };
@@ -56,6 +56,41 @@ TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
   }
 }
 
+/// All around the pocket is one rigid shell: what it pushes on that is round-off, and so is what
+/// that would open. No pressure may be made of their quotient.
+TEST(GasSolve, GasWithinOneShellPushesOnNothing) {
+  SaddleOptions options;
+  options.open_top = true;
+  const SaddleProblem problem(world(), options);
+  BlockVector rhs = problem.zero(), unknowns = problem.zero();
+  const double perimeter = 0.25, leftover = 1e-17;
+  GasPocket pocket;
+  pocket.volume = 1;
+  pocket.pressure = 3;
+  pocket.keeps_volume = true;
+  pocket.missing = 1e-12;
+  GasProblem gas{{pocket}, {0.}, {perimeter}, 0.5, 0.5, true, {}, {}};
+  gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
+    Vector pushed(to.solid->getMap());
+    pushed.putScalar(leftover * pressure[0]);
+    to.solid->update(1, pushed, 1);
+  };
+  gas.rates = [&](const BlockVector& found, bool) {
+    Vector pushed(found.solid->getMap());
+    pushed.putScalar(leftover);
+    return std::vector<double>{pushed.dot(*found.solid)};
+  };
+  StrategyRegistry registry("solver strategy");
+  register_strategies(registry);
+  const auto strategy = registry.create("direct", ParameterList());
+  strategy->prepare(problem.system);
+  SolveReport report;
+  const std::vector<double> pressure =
+      solve_with_gas(gas, *strategy, problem.system, {"S2", 1e-10, 1e-12}, rhs, unknowns, report);
+  EXPECT_EQ(pressure[0], 1.5);
+  EXPECT_LT(unknowns.solid->normInf(), 1e-12);
+}
+
 /// S1 finds the velocity at half a step, by which solids move over the whole of it.
 TEST(GasSolve, WhatAPocketLacksIsMadeGoodInTheStep) {
   SaddleOptions options;
@@ -72,7 +107,7 @@ TEST(GasSolve, WhatAPocketLacksIsMadeGoodInTheStep) {
   pocket.keeps_volume = true;
   pocket.missing = 0.1;
   const double conductance = 1e6, step_dt = 0.5;
-  GasProblem gas{{pocket}, {conductance}, step_dt / 2, step_dt, true, {}, {}};
+  GasProblem gas{{pocket}, {conductance}, {0.}, step_dt / 2, step_dt, true, {}, {}};
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
     to.pressure->update(pressure[0], beside, 1);
   };
