@@ -8,30 +8,38 @@ namespace lockstep {
 /// What makes the viscous form that of the symmetric stress beside a void, where nothing may pull:
 /// sum over the cells of 2 mu (d_a u_a)^2, over the edges all of whose faces have fluid of
 /// mu (d_b u_a + d_a u_b)^2. The bonds of the Laplacian have half of the first, and the squares of
-/// the second. In the middle of the fluid the rest cancels, pair by pair of faces at right angles
-/// to each other, each of which shares a cell and an edge; in 3D but for mu (div u)^2, without
-/// which the form would not be positive.
+/// the second. In the middle of the fluid, and beside a side whose velocity is known, the rest
+/// cancels, pair by pair of faces at right angles to each other, each of which shares a cell and an
+/// edge; in 3D but for mu (div u)^2, without which the form would not be positive.
 ///
-/// Where solids or sides are near, the form is that of the bonds alone. What cancels in the middle
-/// leaves a term of either sign where that ends: only for what void_is_clear says is safe.
+/// Where solids are near, the form is that of the bonds alone. What cancels in the middle leaves a
+/// term of either sign where that ends: only for what `is_definite` says is safe.
 template <int dim>
 class StressAtVoid {
  public:
-  /// A part of the form: 2 coefficient u_own u_other.
+  /// A part of the form: 2 coefficient u_own u_other, in units of that of a bond.
   struct Partner {
-    FaceId face;
-    double coefficient = 0;  ///< in units of that of a bond
-    double beside_void = 0;  ///< of that, what is not mu (div u)^2, which turns nothing
+    FaceId face;  ///< free, or prescribed at an inflow
+    double coefficient = 0;
+    /// Of that, what neither the cell's other face takes, as of mu (div u)^2, nor turns nothing.
+    double from_outside = 0;
   };
 
   /// For fluids with a free surface. References must outlive this. Collective.
   StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
+  /// False if fluid beside the void has a solid near it, or fluid stands at an open side, on any
+  /// rank: there the form might not be positive, and is to be that of the bonds everywhere.
+  /// Collective.
+  bool is_definite() const;
+
   /// True if a face and its neighbour across have the void beside them: no bond.
   bool parts(const FaceId& face, int across, int end) const;
   /// Bonds along a velocity's own axis, through this cell, count so much more: 0 or 1.
-  double extra_bond(int cell) const { return dim == 3 && has_divergence_[cell] ? 1 : 0; }
-  /// Calls f(partner) for the free faces at right angles to this one.
+  double extra_bond(int cell) const {
+    return dim == 3 && is_fluid(cell) && is_far_from_solids_[cell] ? 1 : 0;
+  }
+  /// Calls f(partner) for the faces with a velocity at right angles to this one.
   template <typename Function>
   void for_each_partner(const FaceId& face, const Function& f) const {
     for (int across = 0; across < dim; ++across)
@@ -43,6 +51,22 @@ class StressAtVoid {
   enum class Edge { other, whole, parted };
   Edge edge(const FaceId& face, int across, int end) const;
   bool is_fluid(int cell) const { return geometry_.state.cells[cell] == CellState::fluid; }
+  bool is_plain(int cell) const {
+    const CellState state = geometry_.state.cells[cell];
+    return (state == CellState::fluid || state == CellState::empty) &&
+           !geometry_.near_surface(cell);
+  }
+  /// Stored cells all of whose neighbours in the domain, those at edges and corners too, are
+  /// marked, as they are.
+  std::vector<char> with_marked_surroundings(std::vector<char> marked) const;
+  bool fluid_at_open_side() const;
+  /// Of the two faces of a cell normal to that axis, whether this one can move freely. None is
+  /// stored at an upper wall.
+  bool is_free(int axis, int cell, int end) const {
+    const int face = end == 0 ? cell : domain_.grid.neighbor(cell, axis, 1);
+    return face >= 0 && geometry_.state.faces[axis][face] == FaceState::free;
+  }
+  bool has_velocity(int axis, int face) const;
 
   /// The two cells of the face, each with the face across at that end.
   template <typename Function>
@@ -52,26 +76,22 @@ class StressAtVoid {
       return;
     for (int side = 0; side < 2; ++side) {
       const int cell = side == 0 ? domain_.grid.neighbor(face.cell, face.axis, 0) : face.cell;
+      const int other = end == 0 ? cell : domain_.grid.neighbor(cell, across, 1);
+      if (other < 0 || !has_velocity(across, other))
+        continue;
       const double beside_void = (kind == Edge::whole ? 1 : 0) - (is_fluid(cell) ? 1 : 0);
       const double weight = beside_void + extra_bond(cell);
-      const int other = end == 0 ? cell : domain_.grid.neighbor(cell, across, 1);
       // The face is the cell's upper one if the cell is on its lower side.
       const double sign = (side == 0) == (end == 1) ? 1 : -1;
-      if ((weight != 0 || beside_void != 0) &&
-          geometry_.state.faces[across][other] == FaceState::free)
-        f(Partner{{across, other}, sign * weight, sign * beside_void});
+      const double from_outside = is_free(face.axis, cell, side) ? beside_void : weight;
+      if (weight != 0 || from_outside != 0)
+        f(Partner{{across, other}, sign * weight, sign * from_outside});
     }
   }
 
   const MacDomain<dim>& domain_;
   const MacGeometry<dim>& geometry_;
-  std::vector<char> is_plain_;        ///< stored cells of fluid or void, far from solids
-  std::vector<char> has_divergence_;  ///< stored cells that have mu (div u)^2; empty in 2D
+  std::vector<char> is_far_from_solids_;  ///< stored cells: all around them is plain
 };
-
-/// False if a solid is near the void or fluid stands at an open side, on any rank: there the form
-/// might not be positive, and is to be that of the bonds everywhere. Collective.
-template <int dim>
-bool void_is_clear(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
 }  // namespace lockstep

@@ -20,6 +20,7 @@ Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& 
   sides_ = std::move(found.sides);
   couples_ = std::move(found.couples);
   cross_pulls_ = std::move(found.cross_pulls);
+  inflow_pulls_ = std::move(found.inflow_pulls);
   tension_pulls_ = std::move(found.tension_pulls);
   viscosity_ = found.viscosity;
 }
@@ -41,6 +42,8 @@ std::unique_ptr<ViscousSystem<dim>> Viscosity<dim>::system(const FaceField<dim>&
   const auto forces = result->wall_force->getDataNonConst();
   for (const SideLink& side : sides_)
     forces[side.row] += side.coefficient * side_velocity(side, time);
+  for (const InflowPull& pull : inflow_pulls_)
+    forces[pull.row] -= pull.coefficient * inflow_velocity(pull.from, time);
   return result;
 }
 
@@ -53,6 +56,15 @@ double Viscosity<dim>::side_velocity(const SideLink& side, double time) const {
   const Point<dim> half = Point<dim>::Constant(domain_.grid.spacing() / 2);
   const Box<dim> volume = Box<dim>(x - half, x + half).intersection(domain_.bounds());
   return domain_.boundary.side(side.axis, side.end).mean_velocity(side.axis, volume, time)[axis];
+}
+
+/// What comes in through a prescribed face.
+template <int dim>
+double Viscosity<dim>::inflow_velocity(const FaceId& face, double time) const {
+  const int below = domain_.grid.neighbor(face.cell, face.axis, 0);
+  const int end = below < 0 ? 0 : 1;
+  return domain_.boundary.side(face.axis, end)
+      .mean_velocity(face.axis, domain_.face_box(face.axis, face.cell), time)[face.axis];
 }
 
 template <int dim>
@@ -73,6 +85,11 @@ Momentum<dim> Viscosity<dim>::impulse(const FaceField<dim>& velocity, double tim
     result.add(grid.face_center(axis, cell), axis, dt * pull);
   }
   result += sum_of(cross_pulls_, velocity, dt);
+  for (const InflowPull& pull : inflow_pulls_) {
+    const auto [axis, cell] = faces_[pull.row];
+    const double force = -pull.from_outside * inflow_velocity(pull.from, time);
+    result.add(grid.face_center(axis, cell), axis, dt * force);
+  }
   const double h = grid.spacing();
   for (const CoupleEnd& couple : couples_) {
     const auto [axis, cell] = faces_[couple.row];

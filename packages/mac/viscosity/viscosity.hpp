@@ -36,6 +36,7 @@ class Viscosity {
   Momentum<dim> sum_of(const std::vector<CrossPull>& pulls, const FaceField<dim>& velocity,
                        double dt) const;
   double side_velocity(const SideLink& side, double time) const;
+  double inflow_velocity(const FaceId& face, double time) const;
 
   const MacDomain<dim>& domain_;
   RCP<const Map> map_;
@@ -46,6 +47,7 @@ class Viscosity {
   std::vector<SideLink> sides_;
   std::vector<CoupleEnd> couples_;
   std::vector<CrossPull> cross_pulls_, tension_pulls_;
+  std::vector<InflowPull> inflow_pulls_;
   double viscosity_;
 };
 

@@ -59,8 +59,11 @@ class Builder {
         grid_(domain.grid),
         parameters_(parameters),
         tension_(tension.strength) {
-    if (parameters.viscosity > 0 && parameters.has_void && void_is_clear(domain, geometry))
+    if (parameters.viscosity > 0 && parameters.has_void) {
       at_void_.emplace(domain, geometry);
+      if (!at_void_->is_definite())
+        at_void_.reset();
+    }
     if (tension.strength > 0)
       along_surface_.emplace(domain, geometry, *tension.distance);
   }
@@ -154,10 +157,17 @@ class Builder {
   void add_partners(RowBuilder& rows) {
     const double unit = parameters_.viscosity * geometry_.face_table.area() / domain_.spacing();
     at_void_->for_each_partner(face_, [&](const auto& partner) {
-      if (partner.coefficient != 0)
-        rows.add(ids_[partner.face.axis][partner.face.cell], unit * partner.coefficient);
-      if (partner.beside_void != 0)
-        result_.cross_pulls.push_back({row_, partner.face, unit * partner.beside_void});
+      const double coefficient = unit * partner.coefficient;
+      const double from_outside = unit * partner.from_outside;
+      const GlobalIndex id = ids_[partner.face.axis][partner.face.cell];
+      if (id == no_index) {
+        result_.inflow_pulls.push_back({{row_, partner.face, coefficient}, from_outside});
+        return;
+      }
+      if (coefficient != 0)
+        rows.add(id, coefficient);
+      if (from_outside != 0)
+        result_.cross_pulls.push_back({row_, partner.face, from_outside});
     });
   }
 

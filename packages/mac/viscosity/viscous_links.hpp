@@ -40,6 +40,11 @@ struct CrossPull {
   double coefficient = 0;  ///< [kg/s]
 };
 
+/// A prescribed velocity pulls likewise, in part from outside of the fluid.
+struct InflowPull : CrossPull {
+  double from_outside = 0;  ///< of the coefficient [kg/s]
+};
+
 /// Everything that free velocities are viscously tied to.
 template <int dim>
 struct ViscousLinks {
@@ -50,7 +55,8 @@ struct ViscousLinks {
   std::vector<ViscousLink<dim>> links;
   std::vector<SideLink> sides;
   std::vector<CoupleEnd> couples;
-  std::vector<CrossPull> cross_pulls;    ///< beside a void, at right angles
+  std::vector<CrossPull> cross_pulls;    ///< at right angles, of a void and of sides
+  std::vector<InflowPull> inflow_pulls;  ///< at right angles
   std::vector<CrossPull> tension_pulls;  ///< all that implicit surface tension does
   double viscosity = 0;                  ///< [Pa s]
 };

@@ -3,31 +3,10 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <cmath>
 
-#include "liquid_cases.hpp"
+#include "viscous_cases.hpp"
 
 namespace lockstep::test {
 namespace {
-
-/// (M + dt K) x, every solid at rest.
-struct ViscousOperator {
-  const CrsMatrix& stiffness;
-  const Vector& mass;
-  double dt;
-  void operator()(const Vector& x, Vector& y) const {
-    stiffness.apply(x, y);
-    y.elementWiseMultiply(1, mass, x, dt);
-  }
-};
-
-template <int dim>
-void viscous_step(MacFluid<dim>& fluid, double dt, Momentum<dim>& impulse) {
-  const auto system = fluid.viscous_system();
-  Vector rhs(system->map), solution(system->map);
-  rhs.elementWiseMultiply(1, *system->mass, *system->velocity, 0);
-  rhs.update(dt, *system->wall_force, 1);
-  conjugate_gradients(ViscousOperator{*system->stiffness, *system->mass, dt}, rhs, solution, 1e-14);
-  impulse = fluid.accept_viscous(solution, solution, dt);
-}
 
 Vector ones(const ViscousSystem<2>& system) {
   Vector result(system.map);
@@ -272,58 +251,6 @@ TEST(Viscosity, CouetteFlowIsLinear) {
   grid.for_each_owned_face(0, [&](int cell) {
     EXPECT_NEAR(fluid->prediction()[0][cell], grid.face_center(0, cell)[1], 1e-6);
   });
-}
-
-/// A ball of liquid in a void: whatever moves as a solid is left alone, nothing gains energy, and
-/// the fluid has what the ledger says.
-template <int dim>
-void expect_stress_of_a_blob() {
-  Case<dim> scene(cube<dim>(16), 1.0 / 16);
-  scene.fluid.set("Density", 1.5).set("Viscosity", 0.7);
-  const Point<dim> center = Point<dim>::Constant(0.49);
-  add_ball<dim>(scene, center, 0.3);
-  const auto fluid = make_liquid<dim>(scene);
-  fluid->set_geometry(nullptr, BlockedFaces<dim>());
-  fluid->begin_prediction();
-  const auto stiffness_of = [&](const std::function<Point<dim>(const Point<dim>&)>& velocity) {
-    fluid->set_prediction(velocity);
-    const auto system = fluid->viscous_system();
-    Vector force(system->map);
-    system->stiffness->apply(*system->velocity, force);
-    return std::make_pair(force.normInf(), force.dot(*system->velocity));
-  };
-  const auto turning = [&](const Point<dim>& x) {
-    Point<dim> u = Point<dim>::Constant(0.3);
-    u[0] -= x[1] - center[1];
-    u[1] += x[0] - center[0];
-    return u;
-  };
-  EXPECT_LT(stiffness_of(turning).first, 1e-13);
-  const auto growing = [&](const Point<dim>& x) { return Point<dim>(x - center); };
-  EXPECT_GE(stiffness_of(growing).second, -1e-13);
-  for (const double k : {1.0, 5.0, 20.0, 50.0})
-    EXPECT_GT(stiffness_of([&](const Point<dim>& x) {
-                Point<dim> u;
-                for (int axis = 0; axis < dim; ++axis)
-                  u[axis] = wavy<dim>(Point<dim>(k * x + Point<dim>::Unit(axis)));
-                return u;
-              }).second,
-              0);
-  const Momentum<dim> before = fluid->momentum();
-  Momentum<dim> impulse;
-  viscous_step(*fluid, 0.3, impulse);
-  const Momentum<dim> gained = fluid->momentum() - before;
-  EXPECT_LT((gained.linear - impulse.linear).norm(), 1e-12);
-  EXPECT_LT((gained.angular - impulse.angular).norm(), 1e-12);
-  // Nobody is there to give any.
-  EXPECT_LT(impulse.linear.norm(), 1e-12);
-  EXPECT_LT(impulse.angular.norm(), 1e-12);
-}
-TEST(Viscosity, NothingHoldsABlob2D) {
-  expect_stress_of_a_blob<2>();
-}
-TEST(Viscosity, NothingHoldsABlob3D) {
-  expect_stress_of_a_blob<3>();
 }
 
 }  // namespace
