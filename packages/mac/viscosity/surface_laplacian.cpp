@@ -111,6 +111,9 @@ bool SurfaceLaplacian<dim>::make_cube(int axis, const Index<dim>& lowest, Cube& 
     for (int a = 0; a < dim; ++a)
       place[a] += corner >> a & 1;
     cube.cells[corner] = grid.cell(place);
+    // Never where phi is a distance. Where it jumps all corners must find the same cubes.
+    if (cube.cells[corner] >= 0 && !is_near(cube.cells[corner]))
+      return false;
   }
   std::array<std::bitset<dim>, n_corners> bonded;
   for (int upper = 0; upper < n_corners; ++upper) {

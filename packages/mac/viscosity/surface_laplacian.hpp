@@ -26,7 +26,7 @@ class SurfaceLaplacian {
   /// this rank, itself included. Cheap where the faces of an axis come one after the other. Local.
   template <typename Function>
   void for_each_entry(const FaceId& face, const Function& f) {
-    if (std::abs(distance_[face.cell]) > 3 * domain_.spacing())
+    if (!is_near(face.cell))
       return;
     constexpr int n_neighbors = dim == 2 ? 9 : 27;
     std::array<double, n_neighbors> row{};
@@ -61,6 +61,8 @@ class SurfaceLaplacian {
     Eigen::Matrix<double, n_corners, n_corners> form;
   };
 
+  /// Whether a face of the cell may be a corner of a cube that has a form.
+  bool is_near(int cell) const { return std::abs(distance_[cell]) <= 3 * domain_.spacing(); }
   /// Null if it has none.
   const Cube* cube_at(int axis, const Index<dim>& lowest);
   /// False if it has none.

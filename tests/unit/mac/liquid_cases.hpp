@@ -15,8 +15,10 @@ class FixedInterface : public InterfaceModel<dim> {
   void initialise(const SignedDistance<dim>& distance, const Surface&) override {
     const TiledGrid<dim>& grid = domain_.grid;
     distance_.assign(grid.n_stored_cells(), 1e9);
-    grid.for_each_stored_cell([&](int cell) { distance_[cell] = distance(grid.center(cell)); });
+    grid.for_each_stored_cell(
+        [&](int cell) { distance_[cell] = steepness * distance(grid.center(cell)); });
   }
+  static inline double steepness = 1;  ///< of phi; of no distance if not 1
   void advance(const InterfaceStep<dim>&) override {}
   const CellField& distance() const override { return distance_; }
   int band(double) const override { return 4; }

@@ -199,5 +199,17 @@ TEST(SurfaceTension, ItsImplicitPartHoldsBackOnlyWhatIsAlongTheSurface) {
   expect_only_what_is_along_is_held_back<3>(16, {1, 1, 1}, 0.02);
 }
 
+// Where phi is steeper than a distance, as where it jumps near solids, rows and columns agree, too.
+TEST(SurfaceTension, ItsImplicitPartIsSymmetricWherePhiIsSteep) {
+  const auto ball = [](Case<2>& scene) { add_ball<2>(scene, Point<2>::Constant(0.5), 0.31); };
+  for (const double steepness : {2.0, 3.0, 5.0}) {
+    FixedInterface<2>::steepness = steepness;
+    const Held<2> held = held_back<2>(32, ball, wavy_velocity<2>);
+    FixedInterface<2>::steepness = 1;
+    EXPECT_GT(held.work, 0.1);
+    EXPECT_LT(held.asymmetry, 1e-13);
+  }
+}
+
 }  // namespace
 }  // namespace lockstep::test
