@@ -7,7 +7,7 @@ DIRECTIONS = {"Velocity", "Gravity", "Body Force", "Force", "Amplitude", "Offset
 AXIAL = {"Angular Velocity", "Torque", "Angular Amplitude"}  # turn as directions do, numbers in 2D
 IN_SPACE = {"Center", "Position", "Point"}
 BOXES_OF_BODIES = {"Pin", "Pull", "Spring", "Root"}  # in the body's own coordinates
-NOT_TURNED = ("taylor green", '"linear"', "particle level set", "volume of fluid", "Vortices", "Wavelength")
+NOT_TURNED = ("taylor green", '"linear"', "particle level set", "volume of fluid", "Vortices", "Wavelength", "Trapped Air")
 QUARTER = math.pi / 2
 
 
@@ -93,7 +93,7 @@ def turn_list(content, name, dimension):
 
 
 def has_image(scene):
-    """Not where directions or numbers of cells are built in, not where contact decides by inequalities, and not where a
+    """Not where directions or numbers of cells are built in (gas has its pressure of a volume of triangles), not where contact decides by inequalities, and not where a
     body may stick through a periodic side: it is not repeated at the other."""
     return (not any(word in scene.xml for word in NOT_TURNED) and scene.content["Contact"]["Type"] == "none" and
             not (scene.facts.periodic and scene.content["Solids"]))
