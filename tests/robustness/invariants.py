@@ -9,7 +9,7 @@
 | scalar | smoke and temperature between their least and most initial, inflowing and held values |
 | energy | kinetic and elastic, at most GROWTH times the start's and gravity's work, where nothing else does work |
 | image | bodies and energies equal, as ranks', of the scene with its axes turned (images.py) |
-| ranks | bodies and energies equal on 1, 2 and 3 ranks to RANKS of their scale, once contact decides by inequalities to RANKS_IN_CONTACT, or to CHAOS times what another tolerance changes on one rank |
+| ranks | bodies and energies equal on 1, 2 and 3 ranks to RANKS of their scale, once contact decides by inequalities to RANKS_IN_CONTACT, or to CHAOS times what another tolerance, or a density by 1e-12 of itself, changes on one rank |
 | restart | tables and last frame bit for bit |
 """
 import math
