@@ -9,13 +9,14 @@
 #include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
 #include "linear/symmetry_check.hpp"
+#include "solve/block_residual.hpp"
 
 namespace lockstep {
 
 namespace {
 /// Below this part of what would open it if no pressure answered a pocket cannot open: what is
 /// around it is all closed in.
-constexpr double closed_in = 1e-9;
+constexpr double closed_in = 1e-12;
 
 /// What p̂ = 1 in one pocket does.
 struct Answer {
@@ -79,6 +80,11 @@ std::optional<Answer> answer_to(int pocket, const GasProblem& gas, SolverStrateg
   report.add_work(strategy.solve(blocks, rhs, answer.unknowns, exact));
   answer.rates = gas.rates(answer.unknowns, true);
   answer.rates[pocket] += gas.conductance[pocket];
+  // What flows through the pocket's faces flows out elsewhere, but for what the solve left: without
+  // that nothing is left of a pocket that is closed in.
+  const BlockResidual left = block_residual(blocks, rhs, answer.unknowns);
+  answer.rates[pocket] -=
+      left.vector.pressure->meanValue() * left.vector.pressure->getGlobalLength();
   const double unanswered = gas.conductance[pocket] + opened_by_solids(pocket, gas, blocks, rhs);
   if (answer.rates[pocket] <= closed_in * unanswered)
     return {};

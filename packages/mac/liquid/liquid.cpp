@@ -88,10 +88,14 @@ template <int dim>
 FreeSurface<dim> Liquid<dim>::surface() {
   FreeSurface<dim> surface;
   surface.distance = &interface_->distance();
+  // All that is about a wet cell's centre must be at the same place, or tension would drive what is
+  // between two such places, at the speed of its difference over next to no distance.
   surface.crossing = [this, &phi = interface_->distance()](int wet, int dry) {
     const double part = interface_->crossing(wet, dry);
     const double lead = (1 - part) * lead_[wet] + part * lead_[dry];
-    return lead == 0 ? part : std::min(part - lead / (phi[dry] - phi[wet]), 1.0);
+    return lead == 0 ? part
+                     : std::clamp(part - lead / (phi[dry] - phi[wet]),
+                                  parameters_.smallest_distance, 1.0);
   };
   surface.smallest_distance = parameters_.smallest_distance;
   surface.at_true_place = parameters_.pressure_order == 2;
