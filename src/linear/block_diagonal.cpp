@@ -204,6 +204,18 @@ std::string not_positive_definite(const std::string& name) {
       name);
 }
 
+bool has_small_blocks(const RCP<const CrsMatrix>& matrix, int largest_block) {
+  const auto map = matrix->getRowMap();
+  const std::vector<char> is_tied = find_tied_rows(*matrix);
+  KnownRows rows(matrix, is_tied);
+  const std::vector<Component> components = find_components(rows, *map, is_tied, largest_block);
+  const bool are_small =
+      std::all_of(components.begin(), components.end(), [&](const Component& component) {
+        return static_cast<int>(component.size()) <= largest_block;
+      });
+  return min_all(map->getComm(), are_small ? 1.0 : 0.0) > 0;
+}
+
 BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, int largest_block,
                                             const std::string& name) {
   const auto map = matrix->getRowMap();

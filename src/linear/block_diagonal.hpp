@@ -22,6 +22,10 @@ struct BlockDiagonalInverse {
 BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, int largest_block,
                                             const std::string& name);
 
+/// Whether no block of a symmetric matrix, as above, has more than `largest_block` rows; its values
+/// do not matter. Collective.
+bool has_small_blocks(const RCP<const CrsMatrix>& matrix, int largest_block);
+
 /// The sentence for a C = M̃ - dt D without a Cholesky factor; `name` is its name in messages.
 std::string not_positive_definite(const std::string& name);
 

@@ -220,6 +220,17 @@ TEST(BlockDiagonal, LargeComponentsFallBackToTheDiagonal) {
   EXPECT_LT(inverse_error(*as_operator(tridiagonal(24)), *as_operator(small.inverse)), 1e-13);
 }
 
+// Rates of joints have rows without a mass, which their bodies make good.
+TEST(BlockDiagonal, BlocksAreSmallWhateverTheirValues) {
+  EXPECT_FALSE(has_small_blocks(tridiagonal(40), 24));
+  EXPECT_TRUE(has_small_blocks(tridiagonal(24), 24));
+  const RCP<CrsMatrix> zero = rcp(new CrsMatrix(*tridiagonal(40), Teuchos::Copy));
+  zero->resumeFill();
+  zero->setAllToScalar(0);
+  zero->fillComplete();
+  EXPECT_TRUE(has_small_blocks(zero, 24));
+}
+
 TEST(BlockDiagonal, RefusesAnIndefiniteBlock) {
   SaddleOptions options;
   options.plate_mass = -1;
