@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "coupling/viscous_bonds.hpp"
+#include "linear/block_diagonal.hpp"
 #include "linear/conjugate_gradients.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/vector_sums.hpp"
@@ -112,6 +113,12 @@ RCP<Vector> inverse_diagonal(const ViscousOperator<dim>& op) {
     const RCP<Vector> solid = diagonal_of(*matrix), drag = op.links.strength_on_solids();
     op.constraints.select(*drag);
     solid->update(op.dt, *drag, 1);
+    const auto values = solid->getData();
+    const bool is_positive =
+        std::all_of(values.begin(), values.end(), [](double value) { return value > 0; });
+    throw_on_all(op.rows.solid->getComm(),
+                 is_positive ? "" : not_positive_definite("solid block of the viscous solve"),
+                 static_cast<int>(ExitCode::solve_failed));
     solid_inverse->reciprocal(*solid);
   }
   return inverse;

@@ -177,6 +177,20 @@ TEST(Viscous, ToleranceThatIsNotReachedIsAnErrorWithNumbers) {
   }
 }
 
+TEST(Viscous, SolidsWithoutMassThatNothingHoldsAreAnError) {
+  FakeBody<2> body = partition(FakeBody<2>::Kind::rigid);
+  body.mass = -100;
+  CoupledCase<2> c(viscous_tank(5), fake_solids<2>({{body}}));
+  c.fluid.set_velocity(swirl);
+  try {
+    solve_viscosity(c);
+    ADD_FAILURE();
+  } catch (const SolveError& error) {
+    EXPECT_NE(std::string(error.what()).find("masses must be positive"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Viscous, VanishingViscosityLeavesEverythingAlone) {
   double last = 0;
   for (double viscosity : {1e-6, 1e-9}) {
