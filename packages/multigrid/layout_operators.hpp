@@ -51,8 +51,6 @@ class LayoutOperator : public Base {
   RCP<const Map> map_;
 };
 
-/// A in the layout. `empty` are the entries of unknowns whose row A leaves empty: the loops over
-/// cells with faces may pass them by.
 /// A coefficient on the diagonal that A has besides those of the stencil.
 struct DiagonalRest {
   int row = 0;  ///< of cells along x, 2 * (j + n_y k) + colour
@@ -60,6 +58,8 @@ struct DiagonalRest {
   double value = 0;
 };
 
+/// A in the layout. `empty` are the entries of unknowns whose row A leaves empty: the loops over
+/// cells with faces may pass them by.
 template <int dim>
 class LayoutStencil final : public LayoutOperator<ResidualOperator> {
  public:

@@ -147,14 +147,17 @@ std::vector<DiagonalRest> PressureLayoutOf<dim>::diagonal_rests(
   const LevelGrid& grid = layout_->finest();
   const LatticeBlocks& blocks = layout_->blocks();
   std::vector<DiagonalRest> rests;
-  for (const auto& [cell, value] : coefficients.dirichlet_rest) {
+  for (const auto& [cell, dirichlet, diagonal] : coefficients.stiff) {
     std::array<int, 3> at = blocks.begins[cell / blocks.block_volume()];
     for (int axis = 0, in_block = cell % blocks.block_volume(); axis < dim;
          ++axis, in_block /= blocks.width)
       at[axis] += in_block % blocks.width - grid.begin[axis];
     const int x = at[0], y = at[1], z = dim == 3 ? at[2] : 0;
-    rests.push_back(
-        {2 * (y + grid.n[1] * z) + LevelGrid::colour(x, y, z), grid.slot_of_cell(x, y, z), value});
+    const int colour = LevelGrid::colour(x, y, z);
+    const std::ptrdiff_t slot = grid.slot_of_cell(x, y, z);
+    const double rest = diagonal - multigrid_.finest().diagonal(colour)[slot];
+    if (rest != 0)
+      rests.push_back({2 * (y + grid.n[1] * z) + colour, slot, rest});
   }
   std::sort(rests.begin(), rests.end(), [](const DiagonalRest& a, const DiagonalRest& b) {
     return std::tie(a.row, a.slot) < std::tie(b.row, b.slot);

@@ -3,7 +3,6 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "linear/types.hpp"
@@ -37,9 +36,13 @@ struct FaceCoefficients {
   /// By cell: coefficient of the face to its lower neighbour along each axis, 0 without coupling.
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;  ///< by cell: what fixed pressures beside it add to the diagonal
-  /// Of A too: what rounding has taken from that, so that single precision may add up a row; by
-  /// cell in rising order, where it is not 0.
-  std::vector<std::pair<int, double>> dirichlet_rest;
+  /// A cell beside fixed pressures whose diagonal single precision does not hold.
+  struct StiffCell {
+    int cell = 0;
+    double dirichlet = 0;  ///< in full
+    double diagonal = 0;   ///< with that
+  };
+  std::vector<StiffCell> stiff;  ///< in rising order
   /// By cell: what gives way to the pressure in it. Null on all ranks or on none: a rank without
   /// cells has an empty one. A fluid has none.
   std::optional<std::vector<float>> reaction;

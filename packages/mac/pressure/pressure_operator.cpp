@@ -11,13 +11,12 @@ namespace lockstep {
 
 namespace {
 
-/// To a multiple of a power of 2, 2^-13 or so much larger that single precision adds six ones to it
-/// exactly.
+/// Sums of faces and of a dirichlet coefficient of at most so much are exact in single precision:
+/// open fractions are multiples of 2^-20, and so is what this is rounded to.
+constexpr double largest_exact = 8;
 double rounded_for_sums(double value) {
-  int exponent = 0;
-  std::frexp(value, &exponent);
-  const double unit = std::exp2(std::max(-13, exponent - 22));
-  return std::round(value / unit) * unit;
+  constexpr double steps = 1 << 20;
+  return value > largest_exact ? value : std::round(value * steps) / steps;
 }
 
 /// Whether all faces of a row of cells are regular and lead to fluid.
@@ -54,7 +53,7 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
     if (cells[cell] != CellState::fluid)
       return;
     result.row[cell] = row++;
-    double dirichlet = 0;
+    double dirichlet = 0, faces = 0;
     for (int axis = 0; axis < dim; ++axis) {
       for (int end = 0; end < 2; ++end) {
         const int other = neighbors[2 * axis + end];
@@ -65,13 +64,12 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
         if (other < 0 || cells[other] != CellState::fluid)
           dirichlet += coefficient;
         else
-          result.lower[axis][face] = static_cast<float>(coefficient);
+          faces += result.lower[axis][face] = static_cast<float>(coefficient);
       }
     }
-    const double rounded = rounded_for_sums(dirichlet);
-    result.dirichlet[cell] = static_cast<float>(rounded);
-    if (rounded != dirichlet)
-      result.dirichlet_rest.emplace_back(cell, dirichlet - rounded);
+    result.dirichlet[cell] = static_cast<float>(rounded_for_sums(dirichlet));
+    if (dirichlet > largest_exact || result.dirichlet[cell] != dirichlet)
+      result.stiff.push_back({cell, dirichlet, dirichlet + faces});
   };
   const auto regular = static_cast<float>(geometry.face_table.regular().coefficient);
   domain.grid.for_each_owned_row([&](const CellRow<dim>& fluid) {
@@ -213,8 +211,9 @@ void MacPressureOperator<dim>::apply_to(const Vector& x, Vector& y, double alpha
     const RowValues<dim> before = beta == 0 ? RowValues<dim>::Zero() : RowValues<dim>(result);
     result = scale * product(cells) + beta * before;
   });
-  for (const auto& [cell, rest] : coefficients_.dirichlet_rest)
-    out[coefficients_.row[cell]] += scale * rest * field_[cell];
+  for (const auto& [cell, dirichlet, diagonal] : coefficients_.stiff)
+    out[coefficients_.row[cell]] +=
+        scale * (dirichlet - coefficients_.dirichlet[cell]) * field_[cell];
 }
 
 template <int dim>
@@ -228,11 +227,11 @@ RCP<const CrsMatrix> MacPressureOperator<dim>::assembled() const {
   });
   domain_.halo.fill(unknown);
   RowBuilder rows(coefficients_.map, 2 * dim + 1);
-  auto rest = coefficients_.dirichlet_rest.begin();
+  auto stiff = coefficients_.stiff.begin();
   const auto add_row = [&](int cell, const auto& neighbors, const auto& face) {
     double diagonal = coefficients_.dirichlet[cell];
-    if (rest != coefficients_.dirichlet_rest.end() && rest->first == cell)
-      diagonal += (rest++)->second;
+    if (stiff != coefficients_.stiff.end() && stiff->cell == cell)
+      diagonal = (stiff++)->dirichlet;
     const auto add = [&](int side) {
       if (face[side] == 0)
         return;
