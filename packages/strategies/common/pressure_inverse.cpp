@@ -205,8 +205,10 @@ RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
     const bool factors = type == "Incomplete Cholesky" || type == "Ifpack2" || type == "Direct" ||
                          type == "Exact" || type == "Conjugate Gradients";
     // Its coarsest level is factored: what comes out of a singular one the iteration can project
-    // out if it is a null vector of the system too, but not in pockets that a soft shell closes.
-    const bool has_pockets = system.pressure_null_space.size() > system.null_space.size();
+    // out if it is a null vector of the system too, but not in pockets that a soft shell closes;
+    // and a pocket of a few cells can come down to a row of zeros, of which nothing finite comes.
+    const bool has_pockets = system.pressure_null_space.size() > system.null_space.size() ||
+                             system.pressure_null_space.size() > 1;
     const auto regular =
         shifted(a, diagonal_shift(system, *a, factors || (type == "MueLu" && has_pockets)));
     if (regular != a)
