@@ -221,6 +221,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   }
   OpenFractions<dim> fractions;
   const bool cut = state.surface && rule.cuts_cells();
+  state.has_cut_cells = cut;
   if (cut) {
     fractions = find_open_fractions(domain, rule, marks, geometry);
     open_cut_cells<dim>(domain, fractions, geometry);

@@ -33,6 +33,9 @@ struct MacState {
   std::shared_ptr<const SurfaceSnapshot<dim>> surface;
   std::vector<CellState> cells;
   std::array<std::vector<FaceState>, dim> faces;  ///< of the lower face of each cell
+  /// Surfaces may leave faces open in part: cells are fluid wherever their centres are. The same on
+  /// all ranks.
+  bool has_cut_cells = false;
   /// Where the fluid of partly open faces is, owned and ghost; their centres may lie in a solid.
   std::array<std::unordered_map<int, Point<dim>>, dim> open_centers;
 };

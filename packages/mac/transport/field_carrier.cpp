@@ -35,14 +35,10 @@ int row_in_tile(int id) {
   return (id & (tile_volume<dim> - 1)) / tile_width<dim>;
 }
 
-/// What the centre of a cell is in, or `outside` if its state does not tell: a surface that leaves
-/// faces open in part has cells that are fluid wherever their centres are.
+/// What the centre of a cell is in, or `outside` if its state does not tell.
 template <int dim>
 CellState state_of_center(const MacState<dim>& state, int cell) {
-  for (const auto& places : state.open_centers)
-    if (!places.empty())
-      return CellState::outside;
-  return state.cells[cell];
+  return state.has_cut_cells ? CellState::outside : state.cells[cell];
 }
 
 }  // namespace

@@ -126,9 +126,7 @@ class Fronts {
   }
   /// A cell that is cut by a surface and holds fluid, though its centre is in a solid.
   bool center_is_covered(int id) const {
-    const auto has_open_parts = [](const auto& centers) { return !centers.empty(); };
-    return kind_ == cell_centers && state_.surface &&
-           std::any_of(state_.open_centers.begin(), state_.open_centers.end(), has_open_parts) &&
+    return kind_ == cell_centers && state_.has_cut_cells &&
            state_.surface->inside(position(id)) >= 0;
   }
 
