@@ -21,7 +21,8 @@ class StressAtVoid {
   struct Partner {
     FaceId face;  ///< free, or prescribed at an inflow
     double coefficient = 0;
-    /// Of that, what neither the cell's other face takes, as of mu (div u)^2, nor turns nothing.
+    /// Of that, what comes from outside of the fluid: what is not mu (div u)^2, and that too where
+    /// the cell's other face, which gives as much back, is a side's.
     double from_outside = 0;
   };
 
