@@ -66,7 +66,7 @@ class Seed:
         facts = self.scene.facts
         return (ranks > 1 and facts.needs_full_ranks and NO_UNKNOWNS.search(errors) or
                 ranks > 1 and facts.solid_by_muelu and MUELU.search(errors) or
-                ranks > 1 and facts.pressure_by_muelu and INDEFINITE.search(errors) or
+                facts.pressure_by_muelu and INDEFINITE.search(errors) or
                 facts.crushed and CRUSHED.search(errors) or
                 facts.massless and NO_MASS.search(errors) or
                 facts.strategy in NEEDS_FLUID_ALONE and CLOSED_REGION.search(errors))
