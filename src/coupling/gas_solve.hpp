@@ -11,7 +11,8 @@ namespace lockstep {
 struct GasProblem {
   std::vector<GasPocket> pockets;
   std::vector<double> conductance;  ///< GasFluid::gas_conductance
-  std::vector<double> push_size;    ///< GasCoupling::gas_push_size; 0: no solid feels it
+  /// GasCoupling::gas_push_size, where a pocket without conductance pushes on solids.
+  std::vector<double> push_size;
   double dt = 0;                    ///< of p̂ [s]
   double step_dt = 0;               ///< over which the solution moves the pockets' sides [s]
   /// False: only pockets that keep their volume have a pressure (F2).

@@ -1,5 +1,6 @@
 // What pockets of gas beside a liquid add to the step.
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
 #include "coupling/gas_solve.hpp"
 #include "stepping/stepper.hpp"
@@ -47,7 +48,9 @@ void Stepper<dim>::solve_coupled(const StepContext<dim>& context, const BlockSys
   GasProblem gas;
   gas.pockets = fluid.gas_pockets();
   gas.conductance = fluid.gas_conductance();
-  gas.push_size = coupling.gas_push_size(n);
+  const auto& conductance = gas.conductance;
+  if (std::find(conductance.begin(), conductance.end(), 0.) != conductance.end())
+    gas.push_size = coupling.gas_push_size(n);
   gas.dt = context.dt;
   gas.step_dt = context.step_dt;
   gas.push = [&](const std::vector<double>& pressure, BlockVector& rhs) {
@@ -98,7 +101,6 @@ std::vector<double> Stepper<dim>::solve_advection(double dt, const std::vector<d
   GasProblem gas;
   gas.pockets = fluid.gas_pockets();
   gas.conductance = fluid.gas_conductance();
-  gas.push_size.assign(n, 0);
   gas.dt = gas.step_dt = dt;
   gas.with_springs = false;
   for (GasPocket& pocket : gas.pockets)

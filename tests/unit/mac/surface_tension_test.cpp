@@ -5,6 +5,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "liquid_cases.hpp"
+#include "mac/liquid/liquid.hpp"
 #include "mac/liquid/surface_tension.hpp"
 
 namespace lockstep::test {
@@ -197,6 +198,33 @@ TEST(SurfaceTension, ItsImplicitPartHoldsBackOnlyWhatIsAlongTheSurface) {
   expect_only_what_is_along_is_held_back<2>(32, {1, 1}, 0.005);
   expect_only_what_is_along_is_held_back<2>(32, {0.4, 1}, 0.08);
   expect_only_what_is_along_is_held_back<3>(16, {1, 1, 1}, 0.02);
+}
+
+// However far the pressure's surface is ahead of the liquid's: beyond centres of cells, faces that
+// look at one from several sides would find different curvatures at next to no distance.
+TEST(SurfaceTension, ThePressuresSurfaceStaysBetweenCentres) {
+  Case<2> scene({16, 16}, 1.0 / 16);
+  add_ball<2>(scene, Point<2>::Constant(0.49), 0.31);
+  const auto fluid = make_liquid<2>(scene);
+  const MacDomain<2>& domain = fluid->domain();
+  const InterfaceRegistry<2> interfaces = fixed_interfaces<2>();
+  Liquid<2> liquid(scene.fluid, {}, interfaces, domain);
+  liquid.begin(nullptr);
+  const std::vector<StoredField> fields = liquid.fields();
+  ASSERT_EQ(fields[0].name, "surface_lead");
+  for (const double lead : {0.0, -0.4, -2.0, 0.4, 2.0}) {
+    fields[0].components[0]->assign(domain.grid.n_stored_cells(), lead / 16);
+    const FreeSurface<2> surface = liquid.surface();
+    domain.grid.for_each_owned_cell([&](int cell) {
+      for (int i = 0; i < 4; ++i) {
+        const int other = domain.grid.neighbor(cell, i / 2, i % 2);
+        if (!surface.wet(cell) || other < 0 || surface.wet(other))
+          continue;
+        EXPECT_GT(surface.crossing(cell, other), 0) << lead;
+        EXPECT_LE(surface.crossing(cell, other), 1) << lead;
+      }
+    });
+  }
 }
 
 // Where phi is steeper than a distance, as where it jumps near solids, rows and columns agree, too.
