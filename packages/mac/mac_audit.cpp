@@ -105,12 +105,8 @@ double MacFluid<dim>::largest_speed() const {
       row.for_each_cell(look_at_cell);
       return;
     }
-    const double* along = velocity_[0].data() + row.begin;
-    constexpr int last = tile_width<dim> - 1;
-    RowValues<dim> sum;
-    for (int i = 0; i < last; ++i)
-      sum[i] = std::max(std::abs(along[i]), std::abs(along[i + 1]));
-    sum[last] = std::max(std::abs(along[last]), speed(0, row.neighbors[1]));
+    const RowValues<dim> along = row_of<dim>(velocity_[0].data(), row.begin).abs();
+    RowValues<dim> sum = along.max(row_ahead<dim>(along, speed(0, row.neighbors[1])));
     for (int axis = 1; axis < dim; ++axis) {
       const double* u = velocity_[axis].data();
       sum += row_of<dim>(u, row.begin).abs().max(row_of<dim>(u, row.neighbors[2 * axis + 1]).abs());

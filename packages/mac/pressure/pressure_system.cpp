@@ -9,12 +9,8 @@ namespace {
 /// What flows out of a row of cells whose faces are all regular, per area.
 template <int dim>
 RowValues<dim> outflow_of_row(const FaceField<dim>& velocity, const CellRow<dim>& cells) {
-  constexpr int last = tile_width<dim> - 1;
-  const double* along = velocity[0].data() + cells.begin;
-  RowValues<dim> outflow;
-  for (int i = 0; i < last; ++i)
-    outflow[i] = along[i + 1] - along[i];
-  outflow[last] = velocity[0][cells.neighbors[1]] - along[last];
+  const RowValues<dim> along = row_of<dim>(velocity[0].data(), cells.begin);
+  RowValues<dim> outflow = row_ahead<dim>(along, velocity[0][cells.neighbors[1]]) - along;
   for (int axis = 1; axis < dim; ++axis)
     outflow += row_of<dim>(velocity[axis].data(), cells.neighbors[2 * axis + 1]) -
                row_of<dim>(velocity[axis].data(), cells.begin);
@@ -25,13 +21,10 @@ RowValues<dim> outflow_of_row(const FaceField<dim>& velocity, const CellRow<dim>
 /// the first.
 template <int dim>
 RowValues<dim> jumps_of_row(const double* field, int axis, int first, int below) {
+  const RowValues<dim> row = row_of<dim>(field, first);
   if (axis > 0)
-    return row_of<dim>(field, first) - row_of<dim>(field, below);
-  RowValues<dim> jumps;
-  jumps[0] = field[first] - field[below];
-  for (int i = 1; i < tile_width<dim>; ++i)
-    jumps[i] = field[first + i] - field[first + i - 1];
-  return jumps;
+    return row - row_of<dim>(field, below);
+  return row - row_behind<dim>(row, field[below]);
 }
 
 }  // namespace

@@ -135,9 +135,9 @@ bool FieldCarrier<dim>::carry_rows(std::vector<Passenger<dim>>& passengers, int 
       const RowRays<dim> rays = block.trace(row, -1, passenger.cubic());
       if (passenger.corrects()) {
         block.look_up(rays.end, values, low, high);
-        const auto stays_inside = rays.clipped == 0;
-        row_of<dim>(passenger.low, first) = stays_inside.select(low, 1);
-        row_of<dim>(passenger.high.get(), first) = stays_inside.select(high, 0);
+        const RowValues<dim> none_low = RowValues<dim>::Ones(), none_high = RowValues<dim>::Zero();
+        row_of<dim>(passenger.low, first) = chosen(rays.clipped, none_low, low);
+        row_of<dim>(passenger.high.get(), first) = chosen(rays.clipped, none_high, high);
       } else if (passenger.cubic()) {
         block.look_up_cubic(rays.end, values);
       } else {
@@ -360,9 +360,9 @@ bool FieldCarrier<dim>::correct_rows(std::vector<Passenger<dim>>& passengers,
       const RowValues<dim> half_way = row_of<dim>(passenger.half_way.data(), first);
       const RowValues<dim> low = row_of<dim>(passenger.low, first);
       const RowValues<dim> high = row_of<dim>(passenger.high.get(), first);
-      const RowValues<dim> better = (half_way - 0.5 * (returned - start)).max(low).min(high);
+      const RowValues<dim> corrected = half_way - 0.5 * (returned - start);
       row_of<dim>(passenger.result->data(), first) =
-          (low <= high && rays.clipped == 0).select(better, half_way);
+          chosen(rays.clipped, half_way, within<tile_width<dim>>(corrected, low, high, half_way));
     });
   }
   return true;

@@ -42,7 +42,7 @@ struct RowSplit {
       is_ahead += 1;
     }
     by_rows = !has_nonzero(RowValues<dim>(is_ahead * (is_ahead - 1)));
-    weight_of_other = chosen<dim>(is_ahead, weight, 1 - weight);
+    weight_of_other = chosen(is_ahead, weight, RowValues<dim>(1 - weight));
   }
 };
 
@@ -160,7 +160,7 @@ class RowStencil {
       if constexpr ((mixed >> axis & 1) == 0)
         return blend<RowValues<dim>>(lower, upper, splits_[axis]->weight);
       const RowValues<dim> last = between<axis - 1, mixed>(c + 2 * step);
-      return blend<RowValues<dim>>(upper, chosen<dim>(splits_[axis]->is_ahead, last, lower),
+      return blend<RowValues<dim>>(upper, chosen(splits_[axis]->is_ahead, last, lower),
                                    splits_[axis]->weight_of_other);
     }
   }
@@ -173,11 +173,11 @@ class RowStencil {
       const int step = axis == 0 ? 1 : stride_[axis];
       const Range lower = range<axis - 1, mixed>(c), upper = range<axis - 1, mixed>(c + step);
       if constexpr ((mixed >> axis & 1) == 0)
-        return {lower.low.min(upper.low), lower.high.max(upper.high)};
+        return {least(lower.low, upper.low), most(lower.high, upper.high)};
       const Range last = range<axis - 1, mixed>(c + 2 * step);
       const RowValues<dim>& is_ahead = splits_[axis]->is_ahead;
-      return {upper.low.min(chosen<dim>(is_ahead, last.low, lower.low)),
-              upper.high.max(chosen<dim>(is_ahead, last.high, lower.high))};
+      return {least(upper.low, chosen(is_ahead, last.low, lower.low)),
+              most(upper.high, chosen(is_ahead, last.high, lower.high))};
     }
   }
   /// The same for point i of the row alone.

@@ -1,5 +1,5 @@
 #pragma once
-#ifdef __AVX512F__
+#ifdef __AVX2__
 #include <immintrin.h>
 #endif
 #include <array>
@@ -63,27 +63,88 @@ template <int n>
     found |=
         _mm512_cmp_pd_mask(_mm512_loadu_pd(values.data() + i), _mm512_setzero_pd(), _CMP_NEQ_UQ);
   return found != 0;
+#elif defined(__AVX2__)
+  __m256d found = _mm256_setzero_pd();
+  for (int i = 0; i < n; i += 4)
+    found = _mm256_or_pd(
+        found, _mm256_cmp_pd(_mm256_loadu_pd(values.data() + i), _mm256_setzero_pd(), _CMP_NEQ_UQ));
+  return _mm256_movemask_pd(found) != 0;
 #else
   return values.abs().sum() != 0;
 #endif
 }
 
-/// Where the flag is not 0 the first, else the second.
-template <int dim>
-[[gnu::always_inline]] inline RowValues<dim> chosen(const RowValues<dim>& flag,
-                                                    const RowValues<dim>& first,
-                                                    const RowValues<dim>& second) {
-  // Compilers make jumps of a loop with a condition.
-  using Part [[gnu::vector_size(EIGEN_MAX_ALIGN_BYTES), gnu::may_alias]] = double;
-  constexpr int n = EIGEN_MAX_ALIGN_BYTES / sizeof(double);
-  RowValues<dim> result;
-  for (int i = 0; i < tile_width<dim>; i += n) {
-    const auto part = [i](const RowValues<dim>& values) -> const Part& {
-      return *reinterpret_cast<const Part*>(values.data() + i);
-    };
-    *reinterpret_cast<Part*>(result.data() + i) = part(flag) != 0 ? part(first) : part(second);
-  }
+/// The lesser and the greater of each two; where one is not a number the second. As conditions they
+/// would take two instructions, one of them slow.
+[[gnu::always_inline]] inline RowPart least_of(RowPart a, RowPart b) {
+#ifdef __AVX512F__
+  return _mm512_min_pd(a, b);
+#elif defined(__AVX2__)
+  return _mm256_min_pd(a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
+[[gnu::always_inline]] inline RowPart most_of(RowPart a, RowPart b) {
+#ifdef __AVX512F__
+  return _mm512_max_pd(a, b);
+#elif defined(__AVX2__)
+  return _mm256_max_pd(a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+
+/// The values of f(part of each row, ...): one instruction each where f is one. Compilers make
+/// jumps of a loop with a condition, and calls of what Eigen returns.
+template <int n, typename Function, typename... Rows>
+[[gnu::always_inline]] inline Eigen::Array<double, n, 1> by_parts(
+    const Function& f, const Eigen::Array<double, n, 1>& first, const Rows&... others) {
+  Eigen::Array<double, n, 1> result;
+  for (int i = 0; i < n; i += row_part_size)
+    part_of(result, i) = f(part_of(first, i), part_of(others, i)...);
   return result;
+}
+
+/// Where the flag is not 0 the first, else the second.
+template <int n>
+[[gnu::always_inline]] inline Eigen::Array<double, n, 1> chosen(
+    const Eigen::Array<double, n, 1>& flag, const Eigen::Array<double, n, 1>& first,
+    const Eigen::Array<double, n, 1>& second) {
+  return by_parts([](RowPart f, RowPart a, RowPart b) -> RowPart { return f != 0 ? a : b; }, flag,
+                  first, second);
+}
+template <int n>
+[[gnu::always_inline]] inline Eigen::Array<double, n, 1> least(
+    const Eigen::Array<double, n, 1>& a, const Eigen::Array<double, n, 1>& b) {
+  return by_parts([](RowPart x, RowPart y) { return least_of(x, y); }, a, b);
+}
+template <int n>
+[[gnu::always_inline]] inline Eigen::Array<double, n, 1> most(const Eigen::Array<double, n, 1>& a,
+                                                              const Eigen::Array<double, n, 1>& b) {
+  return by_parts([](RowPart x, RowPart y) { return most_of(x, y); }, a, b);
+}
+/// The values, but none below `low` nor above `high`; what is not a number becomes `low`.
+template <int n>
+[[gnu::always_inline]] inline Eigen::Array<double, n, 1> clamped(
+    const Eigen::Array<double, n, 1>& values, double low, double high) {
+  return by_parts(
+      [low, high](RowPart x) -> RowPart {
+        return least_of(most_of(x, low + RowPart{}), high + RowPart{});
+      },
+      values);
+}
+
+/// The values between `low` and `high`; where there is nothing between them the other one.
+template <int n>
+[[gnu::always_inline]] inline Eigen::Array<double, n, 1> within(
+    const Eigen::Array<double, n, 1>& values, const Eigen::Array<double, n, 1>& low,
+    const Eigen::Array<double, n, 1>& high, const Eigen::Array<double, n, 1>& otherwise) {
+  return by_parts(
+      [](RowPart x, RowPart lowest, RowPart highest, RowPart other) -> RowPart {
+        return lowest <= highest ? least_of(most_of(x, lowest), highest) : other;
+      },
+      values, low, high, otherwise);
 }
 
 }  // namespace lockstep

@@ -90,21 +90,12 @@ RowValues<dim> TileBlock<dim>::velocity_at_samples(int axis, int place) const {
   // A sample lies at a face of the component, or half-way between two along one axis or two.
   if (axis == kind_)
     return Row(c);
-  const RowValues<dim> half = RowValues<dim>::Constant(0.5);
   if (kind_ == cell_centers)
-    return blend<RowValues<dim>>(Row(c), Row(c + stride_[axis]), half);
+    return 0.5 * (Row(c) + Row(c + stride_[axis]));
   const int first = stride_[std::min(axis, kind_)], second = stride_[std::max(axis, kind_)];
   c -= stride_[kind_];
-  const RowValues<dim> lower = blend<RowValues<dim>>(Row(c), Row(c + first), half);
-  const RowValues<dim> upper =
-      blend<RowValues<dim>>(Row(c + second), Row(c + second + first), half);
-  return blend<RowValues<dim>>(lower, upper, half);
-}
-
-template <int dim>
-RowValues<dim> TileBlock<dim>::clamped(const RowValues<dim>& x, int axis) const {
-  // In this order, what is not a number goes to the lower limit.
-  return RowValues<dim>::Constant(lower_[axis]).max(x).min(upper_[axis]);
+  // In pairs, so that constants stay exact.
+  return 0.25 * ((Row(c) + Row(c + first)) + (Row(c + second) + Row(c + second + first)));
 }
 
 template <int dim>
@@ -153,9 +144,10 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, 
   RowPoints<dim> start;
   for (int a = 0; a < dim; ++a) {
     const int cell = margin_[a] + (a == 0 ? 0 : in_tile[a]);
-    start[a] = cell + offset_[a] + (a == 0 ? 1.0 : 0.0) * steps<dim>();
+    start[a].setConstant(cell + offset_[a]);
     place += cell * stride_[a];
   }
+  start[0] += steps<dim>();
   RowPoints<dim> velocity;
   if (cubic) {
     velocity = velocity_at(start, true);
@@ -177,12 +169,13 @@ RowRays<dim> TileBlock<dim>::rays_from(const RowPoints<dim>& start, const RowPoi
                                        double factor, bool cubic) const {
   RowRays<dim> rays;
   for (int a = 0; a < dim; ++a)
-    rays.middle[a] = clamped(start[a] + 0.5 * factor * velocity[a], a);
+    rays.middle[a] =
+        clamped(RowValues<dim>(start[a] + 0.5 * factor * velocity[a]), lower_[a], upper_[a]);
   const RowPoints<dim> halfway = velocity_at(rays.middle, cubic);
   rays.clipped.setZero();
   for (int a = 0; a < dim; ++a) {
     const RowValues<dim> wanted = start[a] + factor * halfway[a];
-    rays.end[a] = clamped(wanted, a);
+    rays.end[a] = clamped(wanted, lower_[a], upper_[a]);
     rays.clipped += (rays.end[a] - wanted).abs();
   }
   return rays;

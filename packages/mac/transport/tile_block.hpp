@@ -67,8 +67,6 @@ class TileBlock {
   /// The midpoint rule, given the velocity at the start; displacements are `factor` times velocity.
   RowRays<dim> rays_from(const RowPoints<dim>& start, const RowPoints<dim>& velocity, double factor,
                          bool cubic) const;
-  /// Coordinates along an axis, moved to where rays may go.
-  RowValues<dim> clamped(const RowValues<dim>& x, int axis) const;
 
   using Runs = std::vector<typename SampleLattice<dim>::Run>;
   using Values = std::vector<double, Eigen::aligned_allocator<double>>;

@@ -154,8 +154,9 @@ TEST(Minres, QlpKeepsDigitsThatMinresLoses) {
   const Eigen::MatrixXd a = with_eigenvalues(values);
   DenseProblem problem(a, a * Eigen::VectorXd::Ones(n));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  const auto report = problem.solve(x, 1e-12 * problem.b.norm());
-  EXPECT_GT(report.condition, 1e7);
+  // The residual is down before the least eigenvalue, 1e-9, is seen; by how much round-off decides.
+  const auto report = problem.solve(x, 1e-12 * problem.b.norm(), 1e5);
+  EXPECT_GT(report.condition, 1e6);
   EXPECT_GT(report.n_qlp_iterations, 0);
   EXPECT_LT(report.residuals[0], 1e-8 * problem.b.norm());
 }
