@@ -9,12 +9,16 @@ import sys
 TOOL = pathlib.Path(sys.argv[0]).name
 
 
-def simulate_of(build):
+def program_of(build, name):
     """Its path; ends the tool if there is none."""
-    program = pathlib.Path(build).resolve() / "drivers/simulate"
+    program = pathlib.Path(build).resolve() / "drivers" / name
     if not program.exists():
         sys.exit(f"{TOOL}: there is no {program}; build it, or name another build with --build.")
     return program
+
+
+def simulate_of(build):
+    return program_of(build, "simulate")
 
 
 def run_or_end(command, **options):

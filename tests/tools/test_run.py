@@ -14,10 +14,12 @@ class Run(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.tree = Path(folder.name).resolve() / "tree"
-        self.write("tools/build-functions.sh", "build() { :; }")
+        self.write("tools/build-functions.sh", 'build() { echo "builds $*"; }')
         self.write("tools/set-up", "#!/bin/bash\n[[ $* == --go-on ]]")
         self.write("build/release/drivers/simulate", '#!/bin/bash\nprintf "<%s>" "$@"\nexit 3')
+        self.write("build/release/drivers/converge", '#!/bin/bash\nprintf "converge <%s>" "$@"\nexit 4')
         self.write("xml-params/scenes/buoyant-spheres-water.xml", "")
+        self.write("rise.xml", '<!-- how fast -->\n<ParameterList name="Study">\n</ParameterList>')
         self.write("my scene.xml", "")
         shutil.copy(ROOT / "run", self.tree / "run")
 
@@ -38,6 +40,7 @@ class Run(unittest.TestCase):
         self.assertIn("Into output/buoyant-spheres-water;", said)
         self.assertIn(f"<{self.tree}/xml-params/scenes/buoyant-spheres-water.xml>", said)
         self.assertIn(f"<--output><{self.tree}/output/buoyant-spheres-water>", said)
+        self.assertIn("builds release simulate\n", said)   # a scene needs no other program
 
     def test_a_scene_of_ones_own_from_elsewhere(self):
         code, said, _ = self.run_it("../my scene.xml", "--steps", "3", folder="tools")
@@ -50,6 +53,13 @@ class Run(unittest.TestCase):
             code, said, _ = self.run_it(*arguments)
             self.assertEqual(code, 3)
             self.assertNotIn("Into", said)
+
+    def test_a_study(self):
+        code, said, complained = self.run_it("rise.xml", "--jobs", "2")
+        self.assertEqual((code, complained), (4, ""))
+        self.assertIn("builds release simulate converge\n", said)
+        self.assertIn("Into output/rise: table.md", said)
+        self.assertIn(f"converge <rise.xml>converge <--jobs>converge <2>converge <--output>converge <{self.tree}/output/rise>", said)
 
     def test_no_such_scene(self):
         code, _, complained = self.run_it("none.xml")
