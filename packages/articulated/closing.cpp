@@ -1,11 +1,11 @@
 #include "articulated/closing.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "linear/least_squares.hpp"
 #include "motion/free_rotation.hpp"
 
 namespace lockstep {
@@ -136,10 +136,8 @@ class Impulses {
   /// Of all bodies, those that change what `rows` read by `values`; the smallest ones.
   Eigen::VectorXd that_change(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values) const {
     constexpr double dependent = 1e-9;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(scale_.asDiagonal() * rows *
-                                                                   response_);
-    solver.setThreshold(dependent);
-    return impulses_ * solver.solve(scale_.cwiseProduct(values));
+    return impulses_ * least_squares(scale_.asDiagonal() * rows * response_,
+                                     scale_.cwiseProduct(values), dependent);
   }
 
   void give(const Eigen::VectorXd& impulses, double factor,

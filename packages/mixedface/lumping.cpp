@@ -1,11 +1,12 @@
 #include "mixedface/lumping.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "faces/wet_volume.hpp"
 #include "geometry/solid_volume.hpp"
+#include "linear/least_squares.hpp"
 
 namespace lockstep {
 
@@ -194,7 +195,7 @@ std::vector<MassFactor<dim>> corrections_of(const std::vector<SolidDescription>&
           density * (partly_wet ? displaced_by<dim>(wet[s], centers[s], a) : balance.displaced);
       one.excess[0] += density * solid_volumes[s];
       if (!solids[s].prescribed) {
-        one.factor = balance.normal.completeOrthogonalDecomposition().solve(-one.excess);
+        one.factor = least_squares(balance.normal, -one.excess);
         const double unsolved = (balance.normal * one.factor + one.excess).norm();
         one.solvable = unsolved <= 1e-9 * (one.excess.norm() + 1e-300);
       }

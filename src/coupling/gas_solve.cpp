@@ -1,11 +1,12 @@
 #include "coupling/gas_solve.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "linear/least_squares.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/null_space.hpp"
 #include "linear/symmetry_check.hpp"
@@ -143,10 +144,8 @@ std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strate
     for (int j = 0; j < m; ++j)
       matrix(i, j) = answers[j].rates[k] + (i == j ? compliance[i] : 0);
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(m, m);
-  factors.setThreshold(1e-7);  // of pockets that can only change together, none is preferred
-  factors.compute(matrix);
-  const Eigen::VectorXd change = factors.solve(wanted);
+  // Of pockets that can only change together, none is preferred.
+  const Eigen::VectorXd change = least_squares(matrix, wanted, 1e-7);
   std::vector<double> changes(n, 0);
   for (int i = 0; i < m; ++i) {
     changes[answers[i].pocket] = change[i];

@@ -13,6 +13,23 @@
 #include "solve/minres.hpp"
 #include "solve/thyra_vectors.hpp"
 
+// Stratimikos' library holds these for the same types: to make them once more takes most of a
+// minute of a build.
+namespace Belos {
+using ThyraVectors = Thyra::MultiVectorBase<double>;
+using ThyraOperator = Thyra::LinearOpBase<double>;
+extern template class BiCGStabSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class BlockCGSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class BlockGmresSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class FixedPointSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class GCRODRSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class MinresSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class PseudoBlockCGSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class PseudoBlockGmresSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class RCGSolMgr<double, ThyraVectors, ThyraOperator>;
+extern template class TFQMRSolMgr<double, ThyraVectors, ThyraOperator>;
+}  // namespace Belos
+
 namespace lockstep {
 
 namespace {

@@ -1,6 +1,5 @@
 #include "contact/impacts/impact_zones.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <map>
@@ -10,6 +9,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/interruption.hpp"
 #include "contact/impacts/rigid_member.hpp"
+#include "linear/least_squares.hpp"
 
 namespace lockstep {
 
@@ -186,7 +186,7 @@ class ImpactZones {
       if constexpr (dim == 3)
         inertia -= node.mass * arm * arm.transpose();
     }
-    const AngularVector<dim> spin = inertia.fullPivLu().solve(angular);
+    const AngularVector<dim> spin = least_squares(inertia, angular);
     const Eigen::Matrix<double, dim, dim> rotation = rotation_by<dim>(dt_ * spin);
     for (const Node<dim>& node : zone.nodes) {
       const Point<dim> arm = x(node.vertex) - center;
@@ -277,7 +277,7 @@ class ImpactZones {
       inertia += node.mass * carries.transpose() * carries;
       momentum += node.mass * carries.transpose() * motion.of_vertex(node.solid, node.vertex);
     }
-    const MemberMotion<dim> twist = inertia.fullPivLu().solve(momentum);
+    const MemberMotion<dim> twist = least_squares(inertia, momentum);
     common.velocity = zone.with_held(twist.template head<dim>());
     if (!zone.is_held())
       common.spin = twist.template tail<n_rotations<dim>>();

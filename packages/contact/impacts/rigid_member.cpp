@@ -1,8 +1,9 @@
 #include "contact/impacts/rigid_member.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
+
+#include "linear/least_squares.hpp"
 
 namespace lockstep {
 
@@ -58,7 +59,7 @@ RigidMember<dim>::RigidMember(const ContactShapes<dim>& shapes, const InverseMas
     }
   }
   if (n > 0) {
-    inverse_ = rows_.completeOrthogonalDecomposition().pseudoInverse();
+    inverse_ = pseudo_inverse(rows_);
     mass_ = inverse.inverse();
   } else {
     inverse_ = Eigen::MatrixXd::Zero(0, rows_.rows());
