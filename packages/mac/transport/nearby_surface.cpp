@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/simplex_queries.hpp"
+#include "mac/transport/row_values.hpp"
 
 namespace lockstep {
 
@@ -321,9 +322,10 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
                                 .min(size - 1e-9 * length)
                                 .min(length - tolerance_);
       const Values meets = reaches.min(-passes);
-      for (int k = 0; k < 1 << dim; ++k)
-        if (meets[k] >= 0)
-          look_at(i, eye, corner(k), length[k], first[k]);
+      for (unsigned left = bits_of_non_negative(meets); left != 0; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        look_at(i, eye, corner(k), length[k], first[k]);
+      }
     }
   });
   for (int k = 0; k < 1 << dim; ++k)

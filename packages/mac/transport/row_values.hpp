@@ -74,6 +74,23 @@ template <int n>
 #endif
 }
 
+/// A bit for each value that is 0 or more.
+template <int n>
+[[gnu::always_inline]] inline unsigned bits_of_non_negative(
+    const Eigen::Array<double, n, 1>& values) {
+  unsigned bits = 0;
+#ifdef __AVX2__
+  for (int i = 0; i < n; i += 4)
+    bits |= static_cast<unsigned>(_mm256_movemask_pd(
+                _mm256_cmp_pd(_mm256_loadu_pd(values.data() + i), _mm256_setzero_pd(), _CMP_GE_OQ)))
+            << i;
+#else
+  for (int i = 0; i < n; ++i)
+    bits |= static_cast<unsigned>(values[i] >= 0) << i;
+#endif
+  return bits;
+}
+
 /// The lesser and the greater of each two; where one is not a number the second. As conditions they
 /// would take two instructions, one of them slow.
 [[gnu::always_inline]] inline RowPart least_of(RowPart a, RowPart b) {

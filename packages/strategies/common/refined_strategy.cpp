@@ -288,8 +288,9 @@ SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector&
     prepare(system);
   if (!layout_)
     return refine(system, rhs, solution, request);
-  const BlockVector b{make_vector(layout_->map()), rhs.solid};
-  BlockVector x{make_vector(layout_->map()), solution.solid};
+  constexpr bool zero = false;  // to_layout sets all entries
+  const BlockVector b{rcp(new Vector(layout_->map(), zero)), rhs.solid};
+  BlockVector x{rcp(new Vector(layout_->map(), zero)), solution.solid};
   layout_->to_layout(*rhs.pressure, *b.pressure);
   layout_->to_layout(*solution.pressure, *x.pressure);
   const SolveReport report = refine(working(system), b, x, request);
