@@ -19,9 +19,9 @@ export OMPI_MCA_rmaps_base_oversubscribe=1
 export HWLOC_COMPONENTS=${HWLOC_COMPONENTS:--gl}
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 
-# Core-minutes of a build without a compiler cache: of simulate, and of what ./check builds besides.
+# Core-minutes of a build without a compiler cache: of simulate, and of what ./check builds besides (docs/contributing.md).
 core_minutes_of_programs=12
-core_minutes_of_tests=16
+core_minutes_of_tests=11
 
 # Says how long the first build will take here; nothing after it.
 say_build_time() {

@@ -362,7 +362,7 @@ bool FieldCarrier<dim>::correct_rows(std::vector<Passenger<dim>>& passengers,
       const RowValues<dim> high = row_of<dim>(passenger.high.get(), first);
       const RowValues<dim> corrected = half_way - 0.5 * (returned - start);
       row_of<dim>(passenger.result->data(), first) =
-          chosen(rays.clipped, half_way, within<tile_width<dim>>(corrected, low, high, half_way));
+          chosen(rays.clipped, half_way, within(corrected, low, high, half_way));
     });
   }
   return true;

@@ -288,9 +288,9 @@ SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector&
     prepare(system);
   if (!layout_)
     return refine(system, rhs, solution, request);
-  constexpr bool zero = false;  // to_layout sets all entries
-  const BlockVector b{rcp(new Vector(layout_->map(), zero)), rhs.solid};
-  BlockVector x{rcp(new Vector(layout_->map(), zero)), solution.solid};
+  constexpr bool zero_out = false;  // to_layout sets all entries
+  const BlockVector b{rcp(new Vector(layout_->map(), zero_out)), rhs.solid};
+  BlockVector x{rcp(new Vector(layout_->map(), zero_out)), solution.solid};
   layout_->to_layout(*rhs.pressure, *b.pressure);
   layout_->to_layout(*solution.pressure, *x.pressure);
   const SolveReport report = refine(working(system), b, x, request);

@@ -26,7 +26,7 @@ void check_each_value() {
   flag[1] = -2;
   flag[tile_width<dim> - 1] = 1e-300;
   const RowValues<dim> either = chosen(flag, a, b), between = within(a, low, high, b);
-  const RowValues<dim> nothing_between = within(a, high, low, b);
+  const RowValues<dim> nothing_between = within(a, high, low, b), one_value = within(b, a, a, flag);
   for (int i = 0; i < tile_width<dim>; ++i) {
     EXPECT_EQ(ahead[i], i + 1 < tile_width<dim> ? a[i + 1] : 100);
     EXPECT_EQ(behind[i], i > 0 ? a[i - 1] : -100);
@@ -35,6 +35,7 @@ void check_each_value() {
     EXPECT_EQ(limited[i], std::clamp(a[i], -1.0, 2.0));
     EXPECT_EQ(either[i], flag[i] != 0 ? a[i] : b[i]);
     EXPECT_EQ(between[i], a[i]);
+    EXPECT_EQ(one_value[i], a[i]);
     EXPECT_EQ(nothing_between[i], a[i] == b[i] ? a[i] : b[i]);
     EXPECT_EQ(bits_of_non_negative(a) >> i & 1, a[i] >= 0 ? 1U : 0U);
   }
