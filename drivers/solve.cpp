@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <Tpetra_Core.hpp>
 #include <Tpetra_Vector.hpp>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -20,8 +21,8 @@
 #include "base/shortened.hpp"
 #include "output/on_root.hpp"
 #include "output/run_record.hpp"
-#include "parameters/strict_xml.hpp"
 #include "parameters/validate.hpp"
+#include "solve/solver_file.hpp"
 #include "solve/system_file.hpp"
 #include "stepping/scene_file.hpp"
 #include "strategies/register_strategies.hpp"
@@ -49,7 +50,7 @@ struct Row {
 /// A solver file holds a strategy, or the list "Solver" of a scene with the strategy inside.
 ParameterList strategy_list(const std::string& file, const StrategyRegistry& strategies,
                             double& tolerance, const Communicator& comm) {
-  Document document = read_xml(file, comm);
+  Document document = read_solver_file(file, comm);
   const bool nested = document.list.isSublist("Strategy");
   const bool is_given = nested && document.list.isType<double>("Tolerance");
   if (is_given)
@@ -154,11 +155,13 @@ std::string csv(const std::vector<Row>& rows) {
   return text;
 }
 
+/// The file's name tells more than the strategy's: several lists are of one strategy.
 std::string line(const Row& row) {
+  const std::string name = std::filesystem::path(row.file).stem().string();
   if (!row.failure.empty())
-    return fmt::format("{:<16} failed: {}", row.strategy, row.failure);
+    return fmt::format("{:<16} failed: {}", name, row.failure);
   return fmt::format("{:<16} {:>10} {:>9.3f} {:>9.3f} {:>10.2e} {:>10.2e} {:>10} {:>8.1f}",
-                     row.strategy, row.report.iterations, row.report.setup_seconds,
+                     name, row.report.iterations, row.report.setup_seconds,
                      row.report.solve_seconds, row.report.pressure_residual,
                      row.report.solid_residual, row.error ? fmt::format("{:.2e}", *row.error) : "-",
                      row.memory_mb);

@@ -9,10 +9,10 @@
 #include "column_fluid.hpp"
 #include "coupling/coupled_system.hpp"
 #include "mixedface/mixed_face_coupling.hpp"
-#include "parameters/strict_xml.hpp"
 #include "piston.hpp"
-#include "solve/solve_with_stratimikos.hpp"
+#include "solve/solver_file.hpp"
 #include "stepping/scene_file.hpp"
+#include "strategies/register_strategies.hpp"
 using namespace lockstep;
 
 void run(const std::string& solver_file, const Communicator& comm) {
@@ -25,15 +25,19 @@ void run(const std::string& solver_file, const Communicator& comm) {
   models.push_back(std::make_unique<Piston>(plate, comm));
   SolidSystem<2> solids(std::move(models), comm);
   MixedFaceCoupling<2> coupling(MixedFaceOptions{});
-  // 2. Eq. 16: [A, -B; -B^T, -C] as Thyra operators, and its right-hand side.
+  // 2. Eq. 16: [A, -B; -B^T, -C] as a Thyra operator, and its right-hand side.
   CoupledSystem<2> system(fluid, solids, coupling);
   system.freeze(solids.snapshot());
   double removed = 0;
   const BlockVector rhs = system.right_hand_side(*solids.explicit_momentum(0, dt), removed);
-  // 3. Belos MINRES with a Teko block preconditioner.
-  const ParameterList list = read_xml(solver_file, comm).list;
+  // 3. Belos MINRES with a Teko block preconditioner, or whatever else the file names.
+  StrategyRegistry strategies("solver strategy");
+  register_strategies(strategies);
+  const ParameterList list = read_solver_file(solver_file, comm).list;
+  const auto strategy = strategies.create(list.get<std::string>("Type"), list);
   BlockVector solution{make_vector(fluid.pressure_map()), make_vector(solids.map())};
-  const auto report = solve_with_stratimikos(system.blocks(dt), rhs, solution, list);
+  const SolveReport report =
+      strategy->solve(system.blocks(dt), rhs, solution, {"S2", /*tolerance*/ 1e-10});
   // 4. The velocities of both sides: all move together, at dt F / (m + rho A L).
   fluid.project(*solution.pressure);
   solids.set_velocity(*solution.solid);

@@ -34,12 +34,12 @@ class SaddleProblem {
     const int n_solid = 6 + (options.elastic_wall ? 1 : 0);
     const auto first_dof = [&](int r) { return r * n_solid / comm->getSize(); };
     dofs_ = make_map(first_dof(rank + 1) - first_dof(rank), comm);
-    system.pressure.op = as_operator(pressure_block());
+    const auto a = as_operator(pressure_block());
+    if (options.with_solid)
+      system.set_blocks(a, coupling(), as_operator(solid_block()));
+    else
+      system.set_blocks(a);
     system.geometry_stamp = system.solids.stamp = 1;
-    if (options.with_solid) {
-      system.coupling_transposed = coupling();
-      system.solids.op = as_operator(solid_block());
-    }
     if (!options.open_top)
       add_null_vectors();
   }

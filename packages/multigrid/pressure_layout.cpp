@@ -26,7 +26,7 @@ class PressureLayoutOf final : public PressureLayout {
   }
 
   void set(const BlockSystem& system) {
-    const FaceCoefficients& coefficients = *stencil_of(system.pressure.op);
+    const FaceCoefficients& coefficients = *stencil_of(system.pressure_block());
     multigrid_.set(coefficients);
     number_rows(coefficients);
     empty_rows_ = find_empty_rows();
@@ -111,7 +111,7 @@ class PressureLayoutOf final : public PressureLayout {
   Preconditioned with_cycle_of(Multigrid<dim>& multigrid, const BlockSystem& system) const {
     const RCP<const LayoutInverse<dim>> inverse =
         rcp(new LayoutInverse<dim>(map_, multigrid, layout_->blocks().comm,
-                                   stencil_of(system.pressure.op)->unit, with_values(system)));
+                                   stencil_of(system.pressure_block())->unit, with_values(system)));
     return {inverse,
             std::make_shared<LayoutKernels<dim>>(stencil_, inverse, layout_->levels().front().halo,
                                                  direction_, layout_->blocks().comm)};
@@ -182,9 +182,9 @@ std::vector<EmptyRow> PressureLayoutOf<dim>::with_values(const BlockSystem& syst
   std::vector<EmptyRow> result;
   if (!some_row_is_empty())
     return result;
-  const auto added = added_mass_diagonal(system, domain_map(*system.pressure.op));
+  const auto added = added_mass_diagonal(system, domain_map(*system.pressure_block()));
   const auto values = added->getData();
-  const double unit = stencil_of(system.pressure.op)->unit;
+  const double unit = stencil_of(system.pressure_block())->unit;
   for (const int row : empty_rows_)
     result.push_back({entry_of_row_[row], 1 / (values[row] > 0 ? values[row] : 2 * dim * unit)});
   return result;
@@ -194,7 +194,7 @@ template <int dim>
 std::shared_ptr<PressureLayout> make_layout(const BlockSystem& system,
                                             const MultigridOptions& options,
                                             const std::shared_ptr<PressureLayout>& previous) {
-  const FaceCoefficients& coefficients = *stencil_of(system.pressure.op);
+  const FaceCoefficients& coefficients = *stencil_of(system.pressure_block());
   auto result = std::dynamic_pointer_cast<PressureLayoutOf<dim>>(previous);
   if (!result || &result->layout()->blocks() != coefficients.blocks.get())
     result = std::make_shared<PressureLayoutOf<dim>>(
@@ -210,13 +210,13 @@ std::shared_ptr<PressureLayout> PressureLayout::make(const BlockSystem& system,
                                                      std::shared_ptr<PressureLayout> previous) {
   const std::string reason = why_not(system);
   check_solve(reason.empty(), "{}", reason);
-  const bool is_flat = stencil_of(system.pressure.op)->blocks->dimension == 2;
+  const bool is_flat = stencil_of(system.pressure_block())->blocks->dimension == 2;
   return is_flat ? make_layout<2>(system, options, previous)
                  : make_layout<3>(system, options, previous);
 }
 
 std::string PressureLayout::why_not(const BlockSystem& system) {
-  const FaceCoefficients* coefficients = stencil_of(system.pressure.op);
+  const FaceCoefficients* coefficients = stencil_of(system.pressure_block());
   if (coefficients == nullptr)
     return fmt::format(
         "The multigrid needs a pressure block that is a stencil on a lattice, and that of the {} "
@@ -242,12 +242,13 @@ void PressureLayout::from_layout(const Vector& layout, Vector& rows) const {
 
 BlockSystem PressureLayout::relaid(const BlockSystem& system) const {
   BlockSystem result = system;
-  result.pressure.op = pressure_block();
   result.null_space = system.null_space.moved_to(map_, entry_of_row_);
   result.pressure_null_space = system.pressure_null_space.moved_to(map_, entry_of_row_);
-  if (!system.has_solid())
+  if (!system.has_solid()) {
+    result.set_blocks(pressure_block());
     return result;
-  const CrsMatrix& coupling = *system.coupling_transposed;
+  }
+  const CrsMatrix& coupling = *system.coupling_transposed();
   Vector ids(coupling.getDomainMap());
   {
     const auto values = ids.getDataNonConst();
@@ -261,7 +262,8 @@ BlockSystem PressureLayout::relaid(const BlockSystem& system) const {
     const int local = coupling.getColMap()->getLocalElement(column);
     rows[row].push_back({static_cast<GlobalIndex>(new_ids[local]), value});
   });
-  result.coupling_transposed = matrix_from_rows(coupling.getRowMap(), rows, map_);
+  result.set_blocks(pressure_block(), matrix_from_rows(coupling.getRowMap(), rows, map_),
+                    system.solid_block());
   return result;
 }
 

@@ -17,7 +17,7 @@ namespace {
 RCP<const Vector> flow_from_even_pressure(const BlockSystem& system,
                                           const LinearOperator& solid_inverse) {
   constexpr double round_off = 1e-10;
-  const CrsMatrix& coupling = *system.coupling_transposed;
+  const CrsMatrix& coupling = *system.coupling_transposed();
   const auto pressure = make_vector(coupling.getDomainMap());
   pressure->putScalar(1);
   Vector force(coupling.getRangeMap()), velocity(coupling.getRangeMap());
@@ -43,7 +43,7 @@ std::optional<std::vector<float>> reaction_of_solids(const BlockSystem& system,
   const RCP<const Vector> flow = flow_from_even_pressure(system, solid_inverse);
   if (flow.is_null())
     return {};
-  const FaceCoefficients& a = *stencil_of(system.pressure.op);
+  const FaceCoefficients& a = *stencil_of(system.pressure_block());
   std::vector<bool> is_empty(flow->getLocalLength(), false);
   for (const int row : empty_rows)
     is_empty[row] = true;
@@ -76,7 +76,7 @@ std::optional<FaceCoefficients> schur_stencil(const BlockSystem& system,
   if (!result && !reaction)
     return {};
   if (!result)
-    result = *stencil_of(system.pressure.op);
+    result = *stencil_of(system.pressure_block());
   result->reaction = std::move(reaction);
   return result;
 }

@@ -166,10 +166,10 @@ std::vector<std::vector<Touched>> touched_cells(const CrsMatrix& coupling,
 /// b_f sum_g b_g / m by axis of the face, on the columns of B^T that are its upper cell.
 MultiVector conductances(const BlockSystem& system, const Vector& numbers,
                          const std::array<int, 3>& n_cells) {
-  const CrsMatrix& coupling = *system.coupling_transposed;
+  const CrsMatrix& coupling = *system.coupling_transposed();
   const std::vector<int> axes = axes_of_rows(system.soft_nodes);
   std::vector<std::vector<Touched>> rows = touched_cells(coupling, axes, numbers, n_cells);
-  const auto solid_block = assembled(system.solids.op);
+  const auto solid_block = assembled(system.solid_block());
   SoftestDirections softest(*solid_block, axes);
   const auto masses = system.soft_nodes.mass->getData();
   MultiVector result(coupling.getColMap(), system.soft_nodes.n_axes());
@@ -195,10 +195,10 @@ MultiVector conductances(const BlockSystem& system, const Vector& numbers,
 
 std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& system,
                                                           const std::vector<int>& empty_rows) {
-  if (!system.has_solid() || system.soft_nodes.empty() || assembled(system.solids.op).is_null())
+  if (!system.has_solid() || system.soft_nodes.empty() || assembled(system.solid_block()).is_null())
     return {};
-  const FaceCoefficients& a = *stencil_of(system.pressure.op);
-  const CrsMatrix& coupling = *system.coupling_transposed;
+  const FaceCoefficients& a = *stencil_of(system.pressure_block());
+  const CrsMatrix& coupling = *system.coupling_transposed();
   const auto importer = coupling.getGraph()->getImporter();
   const RCP<Vector> by_row = cell_numbers(a, empty_rows);
   const MultiVector by_face =

@@ -24,17 +24,15 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   surface_ = surface;
   fluid_.set_geometry(surface, coupling_);
   coupling_.assemble(fluid_, solids_, *surface);
-  RCP<const CrsMatrix> transposed = coupling_.coupling_transposed();
-  if (!transposed.is_null())
-    transposed = solids_.reduction().reduce_rows(transposed);
+  coupling_transposed_ = coupling_.coupling_transposed();
+  if (!coupling_transposed_.is_null())
+    coupling_transposed_ = solids_.reduction().reduce_rows(coupling_transposed_);
   const NullSpaces null_spaces =
-      find_null_spaces(fluid_.regions(), fluid_.pressure_map(), transposed);
+      find_null_spaces(fluid_.regions(), fluid_.pressure_map(), coupling_transposed_);
 
   ++blocks_.geometry_stamp;
   ++blocks_.solids.stamp;
-  blocks_.pressure.op = fluid_.pressure_block();
-  blocks_.coupling_transposed = transposed;
-  blocks_.solids.op = Teuchos::null;
+  blocks_.set_blocks(fluid_.pressure_block());
   blocks_.solids.blocks = solids_.blocks();
   blocks_.soft_nodes = solids_.soft_nodes(coupling_.added_mass());
   blocks_.null_space = null_spaces.coupled;
@@ -42,7 +40,6 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   block_dt_ = -1;
 
   pressure_only_ = blocks_;
-  pressure_only_.coupling_transposed = Teuchos::null;
   pressure_only_.null_space = null_spaces.pressure;
 }
 
@@ -50,8 +47,9 @@ template <int dim>
 const BlockSystem& CoupledSystem<dim>::blocks(double dt, bool with_solid) {
   if (!with_solid || !solids_.has_unknowns())
     return pressure_only_;
-  if (blocks_.solids.op.is_null() || (solid_depends_on_dt_ && dt != block_dt_)) {
-    blocks_.solids.op = solids_.solid_block(coupling_.added_mass(), dt);
+  if (!blocks_.has_solid() || (solid_depends_on_dt_ && dt != block_dt_)) {
+    blocks_.set_blocks(blocks_.pressure_block(), coupling_transposed_,
+                       solids_.solid_block(coupling_.added_mass(), dt));
     ++blocks_.solids.stamp;
     block_dt_ = dt;
   }

@@ -67,8 +67,9 @@ class CoupledSystem {
   SolidSystem<dim>& solids_;
   Coupling<dim>& coupling_;
   std::shared_ptr<const SurfaceSnapshot<dim>> surface_;
+  RCP<const CrsMatrix> coupling_transposed_;  ///< P^T B^T of the geometry; null without solids
   BlockSystem blocks_, pressure_only_;
-  double block_dt_ = -1;  ///< the dt of blocks_.solids.op
+  double block_dt_ = -1;  ///< the dt of C in `blocks_`
   bool solid_depends_on_dt_ = false;
 };
 

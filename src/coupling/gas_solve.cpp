@@ -29,7 +29,7 @@ struct Answer {
 /// What the pocket's push opens of it where solids move by the diagonal of their mass alone.
 double opened_by_solids(int pocket, const GasProblem& gas, const BlockSystem& blocks,
                         const BlockVector& rhs) {
-  const auto mass = blocks.has_solid() ? assembled(blocks.solids.op) : RCP<const CrsMatrix>();
+  const auto mass = blocks.has_solid() ? assembled(blocks.solid_block()) : RCP<const CrsMatrix>();
   if (mass.is_null())
     return 0;
   BlockVector moved{make_vector(rhs.pressure->getMap()), make_vector(rhs.solid->getMap())};
@@ -45,7 +45,7 @@ double round_off_of_rows(const BlockSystem& blocks, const RCP<const Map>& map) {
   Vector unit(map), product(map);
   pseudo_random(unit, 1);
   unit.scale(1 / std::max(unit.normInf(), 1e-300));
-  apply(*blocks.pressure.op, unit, product);
+  apply(*blocks.pressure_block(), unit, product);
   return round_off * product.norm2();
 }
 

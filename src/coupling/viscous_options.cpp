@@ -11,10 +11,8 @@ void declare_viscous_solve(ParameterList& solver) {
   ParameterList& list =
       declare_list(solver, "Viscous Solve",
                    "How implicit viscosity is solved, for the fluid and the solids together: "
-                   "[M_f + dt K_ff, dt K_fs; dt K_sf, C + dt K_ss], symmetric positive definite.");
-  declare_choice(list, "Krylov Solver", standard.krylov_solver, {"Conjugate Gradients", "MINRES"},
-                 "'Conjugate Gradients' stops by the norm of the preconditioner, 'MINRES' by the "
-                 "2-norm of the residual.");
+                   "[M_f + dt K_ff, dt K_fs; dt K_sf, C + dt K_ss], symmetric positive definite, by "
+                   "conjugate gradients.");
   declare_positive(list, "Maximum Iterations", standard.maximum_iterations, "Of one solve.");
   declare_inverse(
       list, "Fluid Inverse",
@@ -30,7 +28,6 @@ ViscousOptions viscous_options(const ParameterList& solver) {
   ViscousOptions options;
   options.tolerance = solver.get<double>("Viscous Tolerance");
   options.maximum_iterations = list.get<int>("Maximum Iterations");
-  options.krylov_solver = list.get<std::string>("Krylov Solver");
   options.fluid_inverse = inverse_list(list, "Fluid Inverse", {});
   options.solid_inverse = inverse_list(list, "Solid Inverse", {});
   return options;

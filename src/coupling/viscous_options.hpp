@@ -1,17 +1,13 @@
 #pragma once
-#include <string>
-
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
 
 /// How the coupled viscous system is solved.
 struct ViscousOptions {
-  /// Of the residual in the norm of the preconditioner ("Conjugate Gradients") or the 2-norm
-  /// ("MINRES"), relative to the right-hand side [1].
+  /// Of the residual in the norm of the preconditioner, relative to the right-hand side [1].
   double tolerance = 1e-10;
   int maximum_iterations = 2000;
-  std::string krylov_solver = "Conjugate Gradients";
   /// What preconditioner_from_list takes for M_f + dt K_ff; empty: its diagonal.
   ParameterList fluid_inverse;
   /// The same for C; empty: its diagonal with that of K_ss, where C is stiff an inverse of it.

@@ -12,7 +12,6 @@
 #include "linear/conjugate_gradients.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/vector_sums.hpp"
-#include "solve/minres.hpp"
 #include "solve/preconditioner.hpp"
 
 namespace lockstep {
@@ -158,23 +157,14 @@ ViscousPreconditioner make_preconditioner(const ViscousOperator<dim>& op,
   return result;
 }
 
-/// The Krylov method that the options name, once, from the guess x on: it ends where the residual
-/// that it carries along, here that of x, has `target` in its norm. Returns its iterations.
+/// One pass of conjugate gradients from the guess x on: it ends where the residual that it carries
+/// along, here that of x, has `target` in the norm of the preconditioner. Returns its iterations.
 template <int dim>
-int krylov_pass(const ViscousOperator<dim>& op, const ViscousPreconditioner& preconditioner,
-                const Vector& rhs, Vector& residual, double target, int maximum_iterations,
-                bool by_minres, Vector& x) {
-  const std::string name = "The viscous solve";
-  if (by_minres) {
-    Blocks solution{rcpFromRef(x)};
-    return minres([&](const Blocks& from, Blocks& to) { op.apply_to(*from[0], *to[0]); },
-                  [&](const Blocks& r, Blocks& to) { preconditioner.apply_to(*r[0], *to[0]); },
-                  {rcp(new Vector(rhs, Teuchos::Copy))}, solution,
-                  {name, {target}, maximum_iterations})
-        .n_iterations;
-  }
+int conjugate_gradient_pass(const ViscousOperator<dim>& op,
+                            const ViscousPreconditioner& preconditioner, Vector& residual,
+                            double target, int maximum_iterations, Vector& x) {
   Vector correction(op.rows.all);
-  ConjugateGradientsRequest request{name, 0, maximum_iterations, {}};
+  ConjugateGradientsRequest request{"The viscous solve", 0, maximum_iterations, {}};
   request.preconditioned_target = target;
   const int iterations =
       conjugate_gradients([&](const Vector& from, Vector& to) { op.apply_to(from, to); },
@@ -184,16 +174,13 @@ int krylov_pass(const ViscousOperator<dim>& op, const ViscousPreconditioner& pre
   return iterations;
 }
 
-/// The Krylov method that the options name, from the guess x on, until b - (M + dt K) x itself is
-/// as small as they ask; returns its iterations.
+/// Conjugate gradients from the guess x on, until b - (M + dt K) x itself is as small as the options
+/// ask, in the norm of the preconditioner; returns the iterations.
 template <int dim>
-int solve_by_name(const ViscousOperator<dim>& op, const ViscousPreconditioner& preconditioner,
-                  const Vector& rhs, Vector& x, const ViscousOptions& options) {
-  const bool by_minres = options.krylov_solver == "MINRES";
+int solve_from_guess(const ViscousOperator<dim>& op, const ViscousPreconditioner& preconditioner,
+                     const Vector& rhs, Vector& x, const ViscousOptions& options) {
   Vector z(op.rows.all), residual(op.rows.all);
   const auto size_of = [&](const Vector& r) {
-    if (by_minres)
-      return norm(r);
     preconditioner.apply_to(r, z);
     return std::sqrt(dot(r, z));
   };
@@ -213,8 +200,9 @@ int solve_by_name(const ViscousOperator<dim>& op, const ViscousPreconditioner& p
   int iterations = 0;
   while (reached > options.tolerance && reached < worth_another * before &&
          iterations < options.maximum_iterations) {
-    iterations += krylov_pass<dim>(op, preconditioner, rhs, residual, options.tolerance * scale,
-                                   options.maximum_iterations - iterations, by_minres, x);
+    iterations +=
+        conjugate_gradient_pass<dim>(op, preconditioner, residual, options.tolerance * scale,
+                                     options.maximum_iterations - iterations, x);
     before = reached;
     reached = measure();
   }
@@ -224,12 +212,11 @@ int solve_by_name(const ViscousOperator<dim>& op, const ViscousPreconditioner& p
                              ? std::max(options.tolerance, loosest_round_off)
                              : options.tolerance;
   check_solve(reached <= allowed,
-              "The viscous solve did not converge: {} iterations of {} (at most {}) brought the "
-              "relative residual from {:.2e} to {:.2e}, asked was {:.1e}. Raise \"Maximum "
-              "Iterations\" of \"Viscous Solve\", name a stronger \"Fluid Inverse\" or \"Solid "
-              "Inverse\" there, or reduce the time step or the viscosity.",
-              iterations, options.krylov_solver, options.maximum_iterations, initial, reached,
-              options.tolerance);
+              "The viscous solve did not converge: {} iterations of conjugate gradients (at most {}) "
+              "brought the relative residual from {:.2e} to {:.2e}, asked was {:.1e}. Raise "
+              "\"Maximum Iterations\" of \"Viscous Solve\", name a stronger \"Fluid Inverse\" or "
+              "\"Solid Inverse\" there, or reduce the time step or the viscosity.",
+              iterations, options.maximum_iterations, initial, reached, options.tolerance);
   return iterations;
 }
 
@@ -284,7 +271,7 @@ ViscousResult<dim> solve_viscous(
   }
   ViscousResult<dim> result;
   result.iterations =
-      solve_by_name<dim>(op, make_preconditioner<dim>(op, soft_nodes, options), rhs, x, options);
+      solve_from_guess<dim>(op, make_preconditioner<dim>(op, soft_nodes, options), rhs, x, options);
 
   const RCP<const Vector> fluid_velocity = op.rows.fluid_of(std::as_const(x));
   if (with_solids) {

@@ -11,10 +11,10 @@ namespace lockstep {
 
 RCP<Vector> added_mass_diagonal(const BlockSystem& system, const RCP<const Map>& map) {
   const auto result = make_vector(map);
-  const auto solid = assembled(system.solids.op);
+  const auto solid = assembled(system.solid_block());
   if (solid.is_null())
     return result;
-  const CrsMatrix& coupling = *system.coupling_transposed;
+  const CrsMatrix& coupling = *system.coupling_transposed();
   const auto mass = diagonal_of(*solid);
   const auto masses = mass->getData();
   // A pressure that the weights of a solid cancel for is not moved by it.

@@ -41,7 +41,7 @@ void add_term(Vector& residual, const Vector& term, double sign, double& scale) 
 void subtract_product(const BlockSystem& system, const BlockVector& rhs,
                       const BlockVector& solution, BlockResidual& result) {
   Vector& r1 = *result.vector.pressure;
-  if (const auto* op = residual_operator_of(system.pressure.op)) {
+  if (const auto* op = residual_operator_of(system.pressure_block())) {
     const auto norms = op->residual(*rhs.pressure, *solution.pressure, r1);
     result.pressure_scale = std::max(norms.rhs, norms.product);
     result.pressure = norms.residual;
@@ -50,7 +50,7 @@ void subtract_product(const BlockSystem& system, const BlockVector& rhs,
   Tpetra::deep_copy(r1, *rhs.pressure);
   result.pressure_scale = norm(r1);
   Vector term(r1.getMap());
-  apply(*system.pressure.op, *solution.pressure, term);
+  apply(*system.pressure_block(), *solution.pressure, term);
   add_term(r1, term, -1, result.pressure_scale);
   result.pressure = norm(r1);
 }
@@ -61,9 +61,9 @@ SolidResidual solid_row_residual(const BlockSystem& system, const BlockVector& r
   SolidResidual result{make_vector(rhs.solid->getMap())};
   Vector term(rhs.solid->getMap());
   add_term(*result.vector, *rhs.solid, -1, result.scale);
-  system.coupling_transposed->apply(*solution.pressure, term);
+  system.coupling_transposed()->apply(*solution.pressure, term);
   add_term(*result.vector, term, 1, result.scale);
-  apply(*system.solids.op, *solution.solid, term);
+  apply(*system.solid_block(), *solution.solid, term);
   add_term(*result.vector, term, 1, result.scale);
   return result;
 }
@@ -84,17 +84,17 @@ void find_block_residual(const BlockSystem& system, const BlockVector& rhs,
   if (!system.has_solid())
     return;
   Vector term(r1->getMap());
-  system.coupling_transposed->apply(*solution.solid, term, Teuchos::TRANS);
+  system.coupling_transposed()->apply(*solution.solid, term, Teuchos::TRANS);
   add_term(*r1, term, 1, result.pressure_scale);
   const double gross_flux =
-      system.coupling_transposed->getFrobeniusNorm() * solution.solid->norm2();
+      system.coupling_transposed()->getFrobeniusNorm() * solution.solid->norm2();
   result.pressure_scale = std::max(result.pressure_scale, least_flux * gross_flux);
   result.pressure = norm(*r1);
 
   const SolidResidual row = solid_row_residual(system, rhs, solution);
   result.vector.solid = row.vector;
   result.solid_scale =
-      std::max(row.scale, least_force * gross_force(system.solids.op, *solution.solid));
+      std::max(row.scale, least_force * gross_force(system.solid_block(), *solution.solid));
   result.solid = norm(*row.vector);
 }
 

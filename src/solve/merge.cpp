@@ -51,7 +51,7 @@ void add_border(const BlockSystem& system, double scale, GlobalIndex first_id, C
 }  // namespace
 
 MergedSystem merge(const BlockSystem& system) {
-  const auto a = need_assembled(system.pressure.op, "pressure block", system);
+  const auto a = need_assembled(system.pressure_block(), "pressure block", system);
   MergedSystem merged;
   merged.n_local_pressure = static_cast<int>(a->getNodeNumRows());
   const auto comm = a->getComm();
@@ -65,16 +65,16 @@ MergedSystem merge(const BlockSystem& system) {
   }
   append(*a, 1, 0, 0, rows);
   if (system.has_solid()) {
-    const auto c = need_assembled(system.solids.op, "solid block", system);
+    const auto c = need_assembled(system.solid_block(), "solid block", system);
     n_solid = static_cast<GlobalIndex>(c->getGlobalNumRows());
     merged.n_local_solid = static_cast<int>(c->getNodeNumRows());
     rows.resize(merged.n_local_pressure + merged.n_local_solid);
     for (int i = 0; i < merged.n_local_solid; ++i) {
       ids.push_back(n_pressure + c->getRowMap()->getGlobalElement(i));
     }
-    Tpetra::RowMatrixTransposer<double, int, GlobalIndex> transposer(system.coupling_transposed);
+    Tpetra::RowMatrixTransposer<double, int, GlobalIndex> transposer(system.coupling_transposed());
     append(*transposer.createTranspose(), -1, n_pressure, 0, rows);
-    append(*system.coupling_transposed, -1, 0, merged.n_local_pressure, rows);
+    append(*system.coupling_transposed(), -1, 0, merged.n_local_pressure, rows);
     append(*c, -1, n_pressure, merged.n_local_pressure, rows);
   }
   const auto n_null = static_cast<GlobalIndex>(system.null_space.size());

@@ -111,7 +111,11 @@ void check_stratimikos_type(const ParameterList& list, const std::string& type,
 /// The factories' own parameters and references, then the lists of the packages that they name.
 void check_library(const ParameterList& library, const ParameterList& valid) {
   check_teko_library(library, Source{place, {}}, "Inverse Factory Library",
-                     {{"SPD Block Diagonal", {"Fluid Inverse Type", "Solid Inverse Type"}}});
+                     {{"SPD Block Diagonal", {"Fluid Inverse Type", "Solid Inverse Type"}},
+                      {"Lockstep Multigrid", {"Sweeps", "Cycle"}},
+                      {"Lockstep Solid", {"Exact", "Inverse"}},
+                      {"Lockstep Schur", {"Inverse Type", "Largest Solid"}},
+                      {"Incomplete Cholesky", {}}});
   for (const auto& entry : library) {
     const ParameterList& list = library.sublist(entry.first);
     const auto& type = list.get<std::string>("Type");

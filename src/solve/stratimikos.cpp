@@ -3,13 +3,11 @@
 #include <Stratimikos_DefaultLinearSolverBuilder.hpp>
 #include <Teuchos_AbstractFactoryStd.hpp>
 #include <Thyra_Ifpack2PreconditionerFactory.hpp>
-#include <Thyra_LinearOpWithSolveFactoryHelpers.hpp>
 #include <Thyra_PreconditionerFactoryHelpers.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 
 #include "base/errors.hpp"
 #include "base/library_message.hpp"
-#include "solve/solver_list.hpp"
 #include "solve/stratimikos_registration.hpp"
 
 namespace lockstep {
@@ -51,29 +49,6 @@ RCP<const LinearOperator> stratimikos_preconditioner(const RCP<const LinearOpera
   } catch (const std::exception& error) {
     throw SolveError(fmt::format("{} cannot build a preconditioner for the {}: {}", type, name,
                                  library_message(error)));
-  }
-}
-
-RCP<Thyra::LinearOpWithSolveBase<double>> linear_op_with_solve(const RCP<const LinearOperator>& op,
-                                                               const Teuchos::ParameterList& list) {
-  check_solver_list(list);
-  try {
-    const auto builder = make_solver_builder();
-    builder->setParameterList(Teuchos::parameterList(list));
-    const auto factory = builder->createLinearSolveStrategy("");
-    factory->setVerbLevel(Teuchos::VERB_NONE);
-    auto solver = Thyra::linearOpWithSolve<double>(*factory, op);
-    // The solver refers to sublists that only the builder owns.
-    Teuchos::set_extra_data(builder, "builder", Teuchos::inOutArg(solver));
-    return solver;
-  } catch (const Failure&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw SolveError(
-        fmt::format("Stratimikos cannot set up the solver \"{}\": {}. Values of the wrong type (a "
-                    "double where an "
-                    "int is wanted) inside the lists of Ifpack2 and MueLu end here as well.",
-                    list.name(), library_message(error)));
   }
 }
 

@@ -7,7 +7,7 @@ namespace Stratimikos {
 class DefaultLinearSolverBuilder;
 }
 
-/// Private to src/solve: one translation unit for each heavy package.
+/// For files that include Stratimikos: one translation unit for each heavy package.
 namespace lockstep {
 
 void register_muelu(Stratimikos::DefaultLinearSolverBuilder& builder);

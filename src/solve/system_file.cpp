@@ -1,9 +1,11 @@
 #include "solve/system_file.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_MultiVector.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/errors.hpp"
 #include "base/regular_file.hpp"
@@ -13,6 +15,7 @@
 #include "output/checksum.hpp"
 #include "output/hdf5_file.hpp"
 #include "output/hdf5_probe.hpp"
+#include "solve/stored_lattice.hpp"
 
 namespace lockstep {
 
@@ -48,29 +51,6 @@ void write_null_space(Hdf5File& file, const std::string& group, const NullSpace&
   file.write_attribute<long long>(group, "size", static_cast<long long>(space.size()));
   for (std::size_t i = 0; i < space.size(); ++i)
     write_vector(file, fmt::format("{}/{}", group, i), *space.vector(i));
-}
-
-/// Where the rows of a stencil lie: nothing that `read_system` wants.
-void write_lattice(Hdf5File& file, const FaceCoefficients& stencil) {
-  const LatticeBlocks& blocks = *stencil.blocks;
-  std::vector<long long> places, cells;
-  for (std::size_t cell = 0; cell < blocks.begins.size() * blocks.block_volume(); ++cell) {
-    if (stencil.row[cell] < 0)
-      continue;
-    places.push_back(stencil.map->getGlobalElement(stencil.row[cell]));
-    const auto& begin = blocks.begins[cell / blocks.block_volume()];
-    auto in_block = static_cast<int>(cell % blocks.block_volume());
-    for (int axis = 0; axis < 3; ++axis, in_block /= blocks.width)
-      cells.push_back(begin[axis] + in_block % blocks.width);
-  }
-  file.create_group("/lattice");
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::string name(1, "xyz"[axis]);
-    file.write_attribute<long long>("/lattice", "cells " + name, blocks.n_cells[axis]);
-    file.write_attribute<long long>("/lattice", "periodic " + name, blocks.periodic[axis] ? 1 : 0);
-  }
-  file.write_slices("/lattice/places", places);
-  file.write_slices("/lattice/cells", cells, 3);
 }
 
 RCP<const CrsMatrix> assembled_block(const RCP<const LinearOperator>& block, const char* name) {
@@ -239,6 +219,92 @@ RCP<const CrsMatrix> read_solid_block(const Hdf5File& file, GlobalIndex n_stored
   return assemble_triplets(std::move(entries), map, map);
 }
 
+const char* const soft_group = "/soft nodes";
+
+void write_soft_nodes(Hdf5File& file, const SoftNodes& nodes) {
+  const MultiVector& motions = *nodes.motions;
+  const int n_motions = static_cast<int>(motions.getNumVectors());
+  const std::size_t n = motions.getLocalLength();
+  std::vector<long long> bodies(n, -1);
+  std::copy(nodes.body_of_row.begin(), nodes.body_of_row.end(), bodies.begin());
+  std::vector<double> values(n * n_motions), masses(n);
+  for (int motion = 0; motion < n_motions; ++motion) {
+    const auto column = motions.getData(motion);
+    for (std::size_t row = 0; row < n; ++row)
+      values[n_motions * row + motion] = column[row];
+  }
+  const auto mass = nodes.mass->getData();
+  std::copy(mass.begin(), mass.end(), masses.begin());
+  file.create_group(soft_group);
+  file.write_attribute<long long>(soft_group, "bodies", nodes.n_bodies);
+  const std::string path = soft_group;
+  file.write_slices(path + "/body", bodies);
+  file.write_slices(path + "/motions", values, n_motions);
+  file.write_slices(path + "/mass", masses);
+}
+
+/// Which body each row of C belongs to; empty: the file knows of no soft solids. Throws InputError
+/// if the tables of the group do not fit each other.
+std::vector<long long> read_bodies(const Hdf5File& file, GlobalIndex n) {
+  const std::string path = soft_group;
+  if (!file.exists(soft_group))
+    return {};
+  for (const char* name : {"/body", "/mass", "/motions"}) {
+    const bool fits = file.exists(path + name) && !file.shape(path + name).empty() &&
+                      file.shape(path + name).front() == n;
+    if (!fits)
+      refuse(file, fmt::format("'{}{}' does not have {} rows", path, name, n));
+  }
+  const auto shape = file.shape(path + "/motions");
+  if (shape.size() != 2 || (shape[1] != 3 && shape[1] != 6))
+    refuse(file, fmt::format("'{}/motions' has neither 3 nor 6 columns", path));
+  const auto n_bodies = file.read_attribute<long long>(soft_group, "bodies");
+  auto bodies = file.read_all<long long>(path + "/body");
+  for (const long long body : bodies) {
+    if (body < -1 || body >= n_bodies)
+      refuse(file, fmt::format("'{}' has a row of body {} of {}", path, body, n_bodies));
+  }
+  return bodies;
+}
+
+/// Rows spread evenly over the ranks, those of a node on one.
+RCP<const Map> map_of_whole_nodes(const std::vector<long long>& bodies, int n_axes,
+                                  const Communicator& comm) {
+  const auto n = static_cast<GlobalIndex>(bodies.size());
+  const auto [begin, end] = share(n, comm);
+  int n_local = 0;
+  for (GlobalIndex row = 0; row < n;) {
+    const GlobalIndex length = bodies[static_cast<std::size_t>(row)] < 0 ? 1 : n_axes;
+    n_local += row >= begin && row < end ? static_cast<int>(std::min(length, n - row)) : 0;
+    row += length;
+  }
+  return make_map(n_local, comm);
+}
+
+SoftNodes read_soft_nodes(const Hdf5File& file, const std::vector<long long>& bodies,
+                          const RCP<const Map>& map) {
+  SoftNodes nodes;
+  const std::string path = soft_group;
+  const auto values = file.read_all<double>(path + "/motions");
+  const auto masses = file.read_all<double>(path + "/mass");
+  const std::size_t n_motions = values.size() / std::max<std::size_t>(1, bodies.size());
+  const auto motions = rcp(new MultiVector(map, n_motions));
+  const auto mass = make_vector(map);
+  nodes.n_bodies = static_cast<int>(file.read_attribute<long long>(soft_group, "bodies"));
+  for (int row = 0; row < static_cast<int>(map->getNodeNumElements()); ++row) {
+    const auto id = static_cast<std::size_t>(map->getGlobalElement(row));
+    if (!std::isfinite(masses[id]))
+      refuse(file, fmt::format("'{}' has the mass {} in row {}", path, masses[id], id));
+    mass->replaceLocalValue(row, masses[id]);
+    nodes.body_of_row.push_back(static_cast<int>(bodies[id]));
+    for (std::size_t motion = 0; motion < n_motions; ++motion)
+      motions->replaceLocalValue(row, motion, values[n_motions * id + motion]);
+  }
+  nodes.motions = motions;
+  nodes.mass = mass;
+  return nodes;
+}
+
 /// Damaged files are found before HDF5, which may crash on them, reads them.
 void check_is_readable(const std::string& path, const Communicator& comm) {
   std::string failure;
@@ -272,19 +338,32 @@ StoredSystem read_parts(const Hdf5File& file) {
   check_size(file, "/pressure rhs", n_pressure);
   // Cells all of whose faces are mixed have an empty row.
   std::vector<Triplet> pressure_entries = read_square(file, "/A", n_pressure, 1);
-  const auto pressures = even_map(n_pressure, comm);
-  system.pressure.op = as_operator(
-      RCP<const CrsMatrix>(assemble_triplets(std::move(pressure_entries), pressures, pressures)));
+  const std::optional<FaceCoefficients> lattice = read_lattice(file, n_pressure);
+  const auto pressures = lattice ? lattice->map : even_map(n_pressure, comm);
+  const RCP<const CrsMatrix> a =
+      assemble_triplets(std::move(pressure_entries), pressures, pressures);
+  const RCP<const LinearOperator> pressure_block =
+      lattice ? as_operator(stored_stencil(a, *lattice)) : as_operator(a);
   system.null_space = read_null_space(file, "/null space", n_pressure, pressures);
   system.pressure_null_space = read_null_space(file, "/pressure null space", n_pressure, pressures);
   stored.rhs.pressure = read_vector(file, "/pressure rhs", n_pressure, pressures);
-  if (n_solid == 0)
+  if (n_solid == 0) {
+    system.set_blocks(pressure_block);
     return stored;
+  }
   check_size(file, "/solid rhs", n_solid);
-  const auto solids = even_map(std::max<GlobalIndex>(n_solid, comm->getSize()), comm);
-  system.coupling_transposed = assemble_triplets(
-      read_entries(file, "/B transposed", n_solid, n_pressure), solids, pressures);
-  system.solids.op = as_operator(read_solid_block(file, n_solid, solids));
+  const std::vector<long long> bodies = read_bodies(file, n_solid);
+  const auto solids =
+      bodies.empty() ? even_map(std::max<GlobalIndex>(n_solid, comm->getSize()), comm)
+                     : map_of_whole_nodes(
+                           bodies, file.shape(std::string(soft_group) + "/motions")[1] == 3 ? 2 : 3,
+                           comm);
+  if (!bodies.empty())
+    system.soft_nodes = read_soft_nodes(file, bodies, solids);
+  system.set_blocks(pressure_block,
+                    assemble_triplets(read_entries(file, "/B transposed", n_solid, n_pressure),
+                                      solids, pressures),
+                    as_operator(read_solid_block(file, n_solid, solids)));
   stored.rhs.solid = read_vector(file, "/solid rhs", n_solid, solids);
   return stored;
 }
@@ -292,9 +371,9 @@ StoredSystem read_parts(const Hdf5File& file) {
 }  // namespace
 
 void write_system(const std::string& path, const BlockSystem& system, const BlockVector& rhs) {
-  const auto pressure = assembled_block(system.pressure.op, "pressure block");
+  const auto pressure = assembled_block(system.pressure_block(), "pressure block");
   const auto solid =
-      system.has_solid() ? assembled_block(system.solids.op, "solid block") : Teuchos::null;
+      system.has_solid() ? assembled_block(system.solid_block(), "solid block") : Teuchos::null;
   Hdf5File file = Hdf5File::create(pressure->getRowMap()->getComm(), path);
   file.write_attribute<std::string>("/", "kind", file_kind);
   file.write_attribute<std::string>("/", "name", system.name);
@@ -305,12 +384,14 @@ void write_system(const std::string& path, const BlockSystem& system, const Bloc
   write_vector(file, "/pressure rhs", *rhs.pressure);
   write_null_space(file, "/null space", system.null_space);
   write_null_space(file, "/pressure null space", system.pressure_null_space);
-  if (const FaceCoefficients* stencil = stencil_of(system.pressure.op))
+  if (const FaceCoefficients* stencil = stencil_of(system.pressure_block()))
     write_lattice(file, *stencil);
   if (!solid.is_null()) {
-    write_matrix(file, "/B transposed", *system.coupling_transposed);
+    write_matrix(file, "/B transposed", *system.coupling_transposed());
     write_matrix(file, "/C", *solid);
     write_vector(file, "/solid rhs", *rhs.solid);
+    if (!system.soft_nodes.empty())
+      write_soft_nodes(file, system.soft_nodes);
   }
   file.close_with_checksum();
 }

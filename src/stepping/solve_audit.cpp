@@ -10,9 +10,9 @@ namespace lockstep {
 double largest_divergence(const BlockSystem& blocks, const CoupledSolution& solution,
                           double spacing, int dim) {
   Vector residual(*solution.rhs.pressure, Teuchos::Copy);
-  apply(*blocks.pressure.op, *solution.unknowns.pressure, residual, -1, 1);
+  apply(*blocks.pressure_block(), *solution.unknowns.pressure, residual, -1, 1);
   if (blocks.has_solid())
-    blocks.coupling_transposed->apply(*solution.unknowns.solid, residual, Teuchos::TRANS, 1, 1);
+    blocks.coupling_transposed()->apply(*solution.unknowns.solid, residual, Teuchos::TRANS, 1, 1);
   return residual.normInf() / std::pow(spacing, dim);
 }
 

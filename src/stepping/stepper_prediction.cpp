@@ -102,7 +102,7 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
   RCP<Vector> row;
   if (coupled()) {
     const BlockSystem& blocks = system_.blocks(dt);
-    block = blocks.solids.op;
+    block = blocks.solid_block();
     soft_nodes = blocks.soft_nodes;
     const RCP<Vector> momentum = explicit_momentum(context);
     if (!pressure.is_null() && sides_.unseen_buoyancy)

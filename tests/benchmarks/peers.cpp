@@ -101,7 +101,7 @@ Problem read_problem(const std::string& path, const Communicator& comm) {
   const StoredSystem stored = read_system(path, comm);
   problem.system = stored.system;
   check_input(!problem.system.has_solid(), "{} has a solid block: dump F2 of a scene.", path);
-  problem.matrix = assembled(problem.system.pressure.op);
+  problem.matrix = assembled(problem.system.pressure_block());
   const Hdf5File file = Hdf5File::open(comm, path);
   const auto places = file.read_all<long long>("/lattice/places");
   const auto cells = file.read_all<long long>("/lattice/cells");
@@ -124,7 +124,7 @@ Outcome lockstep_multigrid(const Problem& problem, double tolerance) {
   BlockSystem system = problem.system;
   const RCP<const StencilOperator> stencil =
       rcp(new StoredStencil(problem.matrix, coefficients_of(problem)));
-  system.pressure.op = as_operator(stencil);
+  system.set_blocks(as_operator(stencil));
   StrategyRegistry strategies("solver strategy");
   register_strategies(strategies);
   const auto strategy = strategies.create("schur-cg", strategies.valid_parameters("schur-cg"));

@@ -33,7 +33,7 @@ void BlockElimination::build(const BlockSystem& system, bool, bool solid_changed
     return;
   schur_ = assembled_schur(system);
   BlockSystem eliminated = system;
-  eliminated.pressure.op = as_operator(schur_);
+  eliminated.set_blocks(as_operator(schur_), system.coupling_transposed(), system.solid_block());
   eliminated.pressure_null_space = system.null_space;
   eliminated.name = "Schur complement of the " + system.name;
   schur_inverse_ = lockstep::pressure_inverse(eliminated, list_);

@@ -35,8 +35,8 @@ RCP<const CrsMatrix> sum(const CrsMatrix& a, const CrsMatrix& coupling_transpose
 }  // namespace
 
 RCP<const CrsMatrix> assembled_schur(const BlockSystem& system) {
-  const auto a = need_assembled(system.pressure.op, "pressure block", system);
-  const auto c = need_assembled(system.solids.op, "solid block", system);
+  const auto a = need_assembled(system.pressure_block(), "pressure block", system);
+  const auto c = need_assembled(system.solid_block(), "solid block", system);
   const auto blocks =
       block_diagonal_inverse(c, largest_dense_block, "solid block of the " + system.name);
   check_solve(
@@ -45,13 +45,13 @@ RCP<const CrsMatrix> assembled_schur(const BlockSystem& system) {
       "that its inverse, and with it the Schur complement, is dense. Choose the strategy "
       "schur-cg.",
       system.name, largest_dense_block);
-  return sum(*a, *system.coupling_transposed, *blocks.inverse);
+  return sum(*a, *system.coupling_transposed(), *blocks.inverse);
 }
 
 RCP<const CrsMatrix> schur_with_diagonal(const BlockSystem& system) {
-  const auto a = need_assembled(system.pressure.op, "pressure block", system);
-  const auto c = need_assembled(system.solids.op, "solid block", system);
-  return sum(*a, *system.coupling_transposed,
+  const auto a = need_assembled(system.pressure_block(), "pressure block", system);
+  const auto c = need_assembled(system.solid_block(), "solid block", system);
+  return sum(*a, *system.coupling_transposed(),
              *jacobi_inverse(*c, "solid block of the " + system.name));
 }
 

@@ -1,11 +1,13 @@
 #pragma once
-#include "strategies/common/block_krylov.hpp"
+#include <memory>
+
+#include "strategies/common/belos_method.hpp"
 #include "strategies/common/refined_strategy.hpp"
 
 namespace lockstep {
 
-/// MINRES on Eq. 16 with the preconditioner diag(pressure, solid), each symmetric positive
-/// definite. What the three strategies of this kind share.
+/// Belos' MINRES on Eq. 16 with the preconditioner diag(pressure, solid), each symmetric positive
+/// definite. What "paper" and "pressure-schur" share.
 class MinresStrategy : public RefinedStrategy {
  protected:
   struct Preconditioners {
@@ -13,8 +15,6 @@ class MinresStrategy : public RefinedStrategy {
   };
 
   MinresStrategy(const ParameterList& list, const ParameterList& pressure_list);
-  /// common_strategy_parameters and "Krylov Method".
-  static ParameterList minres_parameters(const std::string& standard_method);
 
   /// For a system with solids, whenever A, B or C changed. Collective.
   virtual Preconditioners make_preconditioners(const BlockSystem& system) = 0;
@@ -24,8 +24,9 @@ class MinresStrategy : public RefinedStrategy {
   int correct(const BlockSystem& system, const CorrectionRequest& request,
               Vector& correction) final;
 
-  MinresKind minres_;
-  Preconditioners preconditioners_;
+  BelosMethod minres_;
+  std::unique_ptr<FlatSystem> flat_;
+  RCP<const LinearOperator> preconditioner_;  ///< on blocked vectors
 };
 
 }  // namespace lockstep

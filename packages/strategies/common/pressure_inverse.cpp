@@ -102,8 +102,9 @@ RCP<const CrsMatrix> shifted(const RCP<const CrsMatrix>& a, const std::vector<do
 
 }  // namespace
 
-RCP<const CrsMatrix> with_filled_rows(const BlockSystem& system, const RCP<const CrsMatrix>& a) {
-  return shifted(a, diagonal_shift(system, *a, false));
+RCP<const CrsMatrix> regular_pressure_block(const BlockSystem& system,
+                                            const RCP<const CrsMatrix>& a) {
+  return shifted(a, diagonal_shift(system, *a, true));
 }
 
 namespace {
@@ -181,7 +182,7 @@ RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
                                                    const MultigridOptions& options) {
   const auto layout = PressureLayout::make(system, options, nullptr);
   const auto r_layout = make_vector(layout->map()), z_layout = make_vector(layout->map());
-  return action_operator(domain_map(*system.pressure.op), [=](const Vector& r, Vector& z) {
+  return action_operator(domain_map(*system.pressure_block()), [=](const Vector& r, Vector& z) {
     layout->to_layout(r, *r_layout);
     apply(*layout->inverse(), *r_layout, *z_layout);
     layout->from_layout(*z_layout, z);
@@ -198,7 +199,7 @@ RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
   Teuchos::ParameterList list(given);
   if (type_of(list) == "Automatic")
     list.set("Type", "MueLu");
-  auto op = system.pressure.op;
+  auto op = system.pressure_block();
   if (const auto a = assembled(op); !a.is_null()) {
     const std::string type = type_of(list);
     // These solve exactly, or nearly so, what cannot be solved where A is singular.

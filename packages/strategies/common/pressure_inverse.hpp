@@ -29,9 +29,11 @@ RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
 /// depends on C. Collective.
 bool leaves_rows_empty(const RCP<const LinearOperator>& pressure_block);
 
-/// A with the diagonal of B diag(C)^-1 B^T, or its own largest, in the rows that it leaves empty:
-/// for preconditioners that divide by its diagonal. Collective.
-RCP<const CrsMatrix> with_filled_rows(const BlockSystem& system, const RCP<const CrsMatrix>& a);
+/// A with the diagonal of B diag(C)^-1 B^T, or its own largest, in the rows that it leaves empty, and
+/// the first cell of each of its null vectors pinned: for preconditioners that divide by its diagonal
+/// or factor it. `a` itself where there are neither. Collective.
+RCP<const CrsMatrix> regular_pressure_block(const BlockSystem& system,
+                                            const RCP<const CrsMatrix>& a);
 
 /// Any other inverse that a list names, made positive definite where A is not:
 /// - a cell all of whose faces are mixed has an empty row in A; its diagonal becomes that of

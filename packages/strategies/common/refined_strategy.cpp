@@ -128,7 +128,7 @@ int RefinedStrategy::pressure_cg(const BlockSystem& system, const CorrectionRequ
                                      iteration_null_space(system), request.update_target};
   if (layout_)
     return conjugate_gradients(layout_->kernels(), *request.residual, correction, cg);
-  return conjugate_gradients([&](const Vector& x, Vector& y) { apply(*system.pressure.op, x, y); },
+  return conjugate_gradients([&](const Vector& x, Vector& y) { apply(*system.pressure_block(), x, y); },
                              [&](const Vector& x, Vector& y) { apply(*pressure_inverse_, x, y); },
                              *request.residual, correction, cg);
 }
@@ -136,20 +136,20 @@ int RefinedStrategy::pressure_cg(const BlockSystem& system, const CorrectionRequ
 namespace {
 /// A solid may fill the whole domain; V_S is back-substituted, and there is no more to do.
 bool has_pressures(const BlockSystem& system) {
-  return domain_map(*system.pressure.op)->getGlobalNumElements() > 0;
+  return domain_map(*system.pressure_block())->getGlobalNumElements() > 0;
 }
 }  // namespace
 
 bool RefinedStrategy::geometry_matches(const BlockSystem& system) const {
   return is_prepared_ && prepared_.geometry_stamp == system.geometry_stamp &&
          prepared_.system_name == system.name &&
-         prepared_.pressure_map->isSameAs(*domain_map(*system.pressure.op));
+         prepared_.pressure_map->isSameAs(*domain_map(*system.pressure_block()));
 }
 
 bool RefinedStrategy::solid_matches(const BlockSystem& system) const {
   return !system.has_solid() ||
          (solid_.is_built() && prepared_.solid_stamp == system.solids.stamp &&
-          prepared_.solid_map->isSameAs(*domain_map(*system.solids.op)));
+          prepared_.solid_map->isSameAs(*domain_map(*system.solid_block())));
 }
 
 RefinedStrategy::RefinedStrategy(const Teuchos::ParameterList& list,
@@ -190,7 +190,7 @@ bool RefinedStrategy::update_pressure_inverse(const BlockSystem& system) {
     pressure_inverse_ = layout_->inverse();
     return is_another;
   }
-  if (!leaves_rows_empty(system.pressure.op))
+  if (!leaves_rows_empty(system.pressure_block()))
     return false;
   build_pressure_inverse(system);
   return true;
@@ -202,7 +202,7 @@ BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
   if (solid_gain_ < 0) {
     // Set-up, which a restarted run does in another solve than the straight one.
     const int counted = solid_.take_iterations();
-    solid_gain_ = gain(*system.coupling_transposed, *solid_.to(rough));
+    solid_gain_ = gain(*system.coupling_transposed(), *solid_.to(rough));
     solid_.restart_count(counted);
   }
   // Below round-off of row 2 nothing can be asked; what that leaves is for the next correction.
@@ -215,26 +215,20 @@ BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
   return {request.name, relief * request.target, relief * solid_target, request.maximum_iterations};
 }
 
-void RefinedStrategy::refuse_region_closed_by_solid(const BlockSystem& system) const {
-  check_solve(system.pressure_null_space.size() <= system.null_space.size(),
-              "The strategy {} refuses the {}: a moving solid closes a region of fluid, in which "
-              "the fluid alone has no solution. Choose schur-cg, pressure-schur or paper.",
-              name(), system.name);
-}
-
 void RefinedStrategy::relay(const BlockSystem& system) {
   BlockSystem& relaid = system.has_solid() ? relaid_ : relaid_pressure_;
-  if (relaid.pressure.op.is_null()) {
+  if (relaid.op().is_null()) {
     relaid = layout_->relaid(system);
     return;
   }
   // Another C on the same geometry.
+  relaid.set_blocks(relaid.pressure_block(), relaid.coupling_transposed(), system.solid_block());
   relaid.solids = system.solids;
   relaid.soft_nodes = system.soft_nodes;
 }
 
 bool RefinedStrategy::is_ready(const BlockSystem& system) const {
-  const bool is_relaid = !layout_ || !working(system).pressure.op.is_null();
+  const bool is_relaid = !layout_ || !working(system).op().is_null();
   return geometry_matches(system) && solid_matches(system) && is_relaid &&
          (!has_pressures(system) || is_built_for(working(system)));
 }
@@ -272,10 +266,10 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
   solid_.restart_count(0);
   prepared_.system_name = system.name;
   prepared_.geometry_stamp = system.geometry_stamp;
-  prepared_.pressure_map = domain_map(*system.pressure.op);
+  prepared_.pressure_map = domain_map(*system.pressure_block());
   if (system.has_solid()) {
     prepared_.solid_stamp = system.solids.stamp;
-    prepared_.solid_map = domain_map(*system.solids.op);
+    prepared_.solid_map = domain_map(*system.solid_block());
   }
   is_prepared_ = true;
   ++n_builds_;

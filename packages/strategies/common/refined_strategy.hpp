@@ -8,7 +8,7 @@
 #include "interfaces/strategy.hpp"
 #include "multigrid/pressure_layout.hpp"
 #include "solve/block_residual.hpp"
-#include "strategies/common/block_krylov.hpp"
+#include "strategies/common/belos_method.hpp"
 #include "strategies/common/solid_inverse.hpp"
 
 namespace lockstep {
@@ -94,9 +94,6 @@ class RefinedStrategy : public SolverStrategy {
   enum class Presumes { nothing, symmetry };
   BlockKrylovRequest block_krylov(const BlockSystem& system, const CorrectionRequest& request,
                                   Presumes presumes);
-  /// Throws SolveError where a dynamic solid closes a region of fluid: A alone is singular there,
-  /// and a strategy that solves for the fluid alone cannot go on.
-  void refuse_region_closed_by_solid(const BlockSystem& system) const;
 
  private:
   struct Prepared {

@@ -111,7 +111,7 @@ SolidInverse::Iterated SolidInverse::prepared(const InverseByCost::Rest& rest) c
 }
 
 void SolidInverse::build_automatic(const BlockSystem& system) {
-  split_.emplace(system.solids.op, system.soft_nodes, name_, &costly_);
+  split_.emplace(system.solid_block(), system.soft_nodes, name_, &costly_);
   for (const InverseByCost::Rest& rest : split_->rests())
     iterated_.push_back(prepared(rest));
   if (!iterates())
@@ -139,7 +139,7 @@ const RCP<const LinearOperator>& SolidInverse::approximate() const {
 }
 
 void SolidInverse::build_named(const BlockSystem& system) {
-  const RCP<const LinearOperator>& c = system.solids.op;
+  const RCP<const LinearOperator>& c = system.solid_block();
   approximate_ = preconditioner_from_list(c, list_, name_, system.soft_nodes);
   if (type_ == "Direct") {
     exact_ = approximate_;

@@ -21,7 +21,7 @@ Direct::Direct(const ParameterList& given)
       maximum_unknowns_(with_defaults(given, valid_parameters()).get<int>("Maximum Unknowns")) {}
 
 void Direct::build(const BlockSystem& system, bool geometry_changed, bool) {
-  const auto n_pressure = system.pressure.op->domain()->dim();
+  const auto n_pressure = system.pressure_block()->domain()->dim();
   check_solve(n_pressure <= maximum_unknowns_,
               "The strategy direct refuses the {}: its {} pressure unknowns are more than the "
               "\"Maximum Unknowns\" {}. Choose an iterative strategy.",
@@ -39,7 +39,7 @@ int Direct::correct(const BlockSystem& system, const CorrectionRequest& request,
   rhs.pressure = rcp(new Vector(*request.residual, Teuchos::Copy));
   solution.pressure = make_vector(correction.getMap());
   if (system.has_solid()) {
-    rhs.solid = make_vector(system.coupling_transposed->getRangeMap());
+    rhs.solid = make_vector(system.coupling_transposed()->getRangeMap());
     solution.solid = make_vector(rhs.solid->getMap());
   }
   const auto& [merged, inverse] = factors_[system.has_solid()];

@@ -5,7 +5,7 @@
 namespace lockstep {
 
 ParameterList Paper::valid_parameters() {
-  ParameterList list = minres_parameters("Belos MINRES");
+  ParameterList list = common_strategy_parameters();
   declare_pressure_inverse(list,
                            "Approximate inverse of the pressure block A. Default: Incomplete "
                            "Cholesky, as in the paper.");

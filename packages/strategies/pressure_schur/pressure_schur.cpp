@@ -5,12 +5,12 @@
 
 #include "strategies/common/assembled_schur.hpp"
 #include "strategies/common/pressure_inverse.hpp"
-#include "strategies/common/solid_schur.hpp"
+#include "strategies/common/woodbury.hpp"
 
 namespace lockstep {
 
 ParameterList PressureSchur::valid_parameters() {
-  ParameterList list = minres_parameters("Lockstep MINRES");
+  ParameterList list = common_strategy_parameters();
   declare_pressure_inverse(list,
                            "Approximate inverse of the pressure block A, which is extended to one "
                            "of A + B C^-1 B^T. Default: Automatic.");
@@ -28,14 +28,13 @@ PressureSchur::PressureSchur(const ParameterList& given)
       pressure_list_(pressure_inverse_list(given, "Automatic")) {}
 
 RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system) {
-  if (system.solids.op->domain()->dim() <= largest_solid_ && !assembled(system.solids.op).is_null())
-    return SolidSchur::make(system, pressure_inverse(), largest_solid_, name(),
-                            SolidSchur::Keep::columns)
-        ->woodbury();
+  if (system.solid_block()->domain()->dim() <= largest_solid_ && !assembled(system.solid_block()).is_null())
+    return woodbury_inverse(system, pressure_inverse());
   if (layout() != nullptr)
     return layout()->schur_inverse();
   BlockSystem schur = system;
-  schur.pressure.op = as_operator(schur_with_diagonal(system));
+  schur.set_blocks(as_operator(schur_with_diagonal(system)), system.coupling_transposed(),
+                   system.solid_block());
   schur.pressure_null_space = system.null_space;
   return lockstep::pressure_inverse(schur, pressure_list_);
 }

@@ -19,7 +19,7 @@ namespace {
 class Eliminated {
  public:
   Eliminated(const BlockSystem& system, const SolidInverse& solid, double target)
-      : coupling_(*system.coupling_transposed),
+      : coupling_(*system.coupling_transposed()),
         solid_(solid),
         target_(target),
         force_(coupling_.getRangeMap()),
@@ -99,7 +99,7 @@ int SchurCg::correct(const BlockSystem& system, const CorrectionRequest& request
   }
   return conjugate_gradients(
       [&](const Vector& x, Vector& y) {
-        apply(*system.pressure.op, x, y);
+        apply(*system.pressure_block(), x, y);
         eliminated.find(x);
         eliminated.add(1, y);
       },

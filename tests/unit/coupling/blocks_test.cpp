@@ -74,7 +74,7 @@ Eigen::MatrixXd pressure_block_by_hand(bool open_top) {
 TEST(Eq16, PressureBlockByHand) {
   for (bool open_top : {false, true}) {
     CoupledCase<2> c(two_plate_box(open_top), plates({}));
-    const Eigen::MatrixXd a = dense(c.system.blocks(0.1).pressure.op);
+    const Eigen::MatrixXd a = dense(c.system.blocks(0.1).pressure_block());
     EXPECT_LT((a - pressure_block_by_hand(open_top)).norm(), near);
     const Eigen::VectorXd eigenvalues = a.selfadjointView<Eigen::Lower>().eigenvalues();
     EXPECT_EQ((eigenvalues.array() < 1e-12).count(), open_top ? 0 : 1);
@@ -90,7 +90,7 @@ TEST(Eq16, CouplingBlockByHand) {
   expected(0, 6) = 0.25;
   expected(2, 5) = 0.0625;
   expected(2, 6) = -0.0625;
-  const Eigen::MatrixXd bt = dense(c.system.blocks(0.1).coupling_transposed);
+  const Eigen::MatrixXd bt = dense(c.system.blocks(0.1).coupling_transposed());
   EXPECT_LT((bt.topRows(3) - expected).norm(), near);
   EXPECT_EQ(bt.bottomRows(bt.rows() - 3).norm(), 0);  // padding
 }
@@ -111,7 +111,7 @@ TEST(Eq16, AddedMassByHand) {
     const double dt = 0.1;
     Eigen::Matrix3d expected = added + dt * 5 * Eigen::Matrix3d::Identity();
     expected.diagonal() += Eigen::Vector3d(3, 3, 0.7);
-    const Eigen::MatrixXd block = dense(c.system.blocks(dt).solids.op);
+    const Eigen::MatrixXd block = dense(c.system.blocks(dt).solid_block());
     EXPECT_LT((block.topLeftCorner(3, 3) - expected).norm(), near);
     EXPECT_LT((block - block.transpose()).norm(), near);
     EXPECT_EQ(block.llt().info(), Eigen::Success);
@@ -165,12 +165,12 @@ TEST(Eq16, LockedDofsAreEliminatedAndTheirReactionsFound) {
   c.fluid.set_velocity(sheared);
   const double dt = 0.1, inertia = 0.7 + 0.5 * 0.5 * 0.0625;
   const BlockSystem& blocks = c.system.blocks(dt);
-  const Eigen::MatrixXd block = dense(blocks.solids.op);
+  const Eigen::MatrixXd block = dense(blocks.solid_block());
   EXPECT_LT(
       (block.topLeftCorner(3, 3) - Eigen::Matrix3d(Eigen::Vector3d(1, 1, inertia).asDiagonal()))
           .norm(),
       near);
-  const Eigen::MatrixXd bt = dense(blocks.coupling_transposed);
+  const Eigen::MatrixXd bt = dense(blocks.coupling_transposed());
   EXPECT_EQ(bt.topRows(2).norm(), 0);
   EXPECT_NEAR(bt(2, 5), 0.0625, near);
   double removed = 0;
@@ -205,12 +205,12 @@ TEST(Eq16, LockedDofsThatMoveActOnTheOthers) {
   // The blocks with nothing locked say what the velocities do to the two rows.
   CoupledCase<2> loose(two_plate_box(true), plates({}));
   const BlockSystem& blocks = loose.system.blocks(dt);
-  const Eigen::VectorXd flux = dense(blocks.coupling_transposed).transpose() * moving;
+  const Eigen::VectorXd flux = dense(blocks.coupling_transposed()).transpose() * moving;
   EXPECT_GT(flux.norm(), 0.1);
   EXPECT_LT((dense(*rhs.pressure) - dense(*still.pressure) - flux).norm(), near);
   const Eigen::VectorXd push = dense(*rhs.solid) - dense(*still.solid);
   EXPECT_EQ(push.head(2).norm(), 0);
-  const Eigen::VectorXd inertia = dense(blocks.solids.op) * moving;
+  const Eigen::VectorXd inertia = dense(blocks.solid_block()) * moving;
   EXPECT_LT((push + inertia).tail(push.size() - 2).norm(), near);
 }
 
@@ -228,8 +228,8 @@ TEST(Eq16, PressureInsideAHalfFilledDualCell) {
   body.center = {2.25 * h, h / 2};
   body.mass = rho2 * h * h / 2;
   CoupledCase<2> c(channel, fake_solids<2>({{body}}));
-  const Eigen::MatrixXd bt = dense(c.system.blocks(1).coupling_transposed);
-  const Eigen::MatrixXd block = dense(c.system.blocks(1).solids.op);
+  const Eigen::MatrixXd bt = dense(c.system.blocks(1).coupling_transposed());
+  const Eigen::MatrixXd block = dense(c.system.blocks(1).solid_block());
   const Eigen::Vector4d p(0, 11, 2, 0);  // p̂ of the cells; the mixed face lies between 1 and 2
   const Eigen::VectorXd impulse = -bt * p;
   EXPECT_NEAR(impulse[0], h * (11 - 2), near);

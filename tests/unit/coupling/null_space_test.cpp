@@ -36,8 +36,8 @@ FakeBody<2> square_body(bool hollow, typename FakeBody<2>::Kind kind) {
 /// orthonormal and in the kernel of both rows.
 std::pair<std::size_t, std::size_t> null_space_sizes(CoupledCase<2>& c) {
   const BlockSystem& blocks = c.system.blocks(0.1);
-  const Eigen::MatrixXd a = dense(blocks.pressure.op);
-  const Eigen::MatrixXd bt = dense(blocks.coupling_transposed);
+  const Eigen::MatrixXd a = dense(blocks.pressure_block());
+  const Eigen::MatrixXd bt = dense(blocks.coupling_transposed());
   for (std::size_t k = 0; k < blocks.null_space.size(); ++k) {
     const Eigen::VectorXd n = dense(*blocks.null_space.vector(k));
     EXPECT_LT((a * n).norm(), 1e-12);
@@ -46,7 +46,7 @@ std::pair<std::size_t, std::size_t> null_space_sizes(CoupledCase<2>& c) {
       EXPECT_NEAR(n.dot(dense(*blocks.null_space.vector(l))), k == l ? 1 : 0, 1e-12);
   }
   // The kernel of the whole has no more than these.
-  const Eigen::MatrixXd block = dense(blocks.solids.op);
+  const Eigen::MatrixXd block = dense(blocks.solid_block());
   Eigen::MatrixXd all(a.rows() + block.rows(), a.rows() + block.rows());
   all << a, -bt.transpose(), -bt, -block;
   const Eigen::VectorXd eigenvalues = all.selfadjointView<Eigen::Lower>().eigenvalues();

@@ -207,10 +207,10 @@ TEST(SolidSystem, MatrixFreeModelsGiveTheSameBlock) {
   options.matrix_free = true;
   CoupledCase<2> free_case(small_tank(), fake_solids<2>({{locked}, {loose_thread()}}, options));
   const double dt = 0.1;
-  EXPECT_FALSE(assembled(assembled_case.system.blocks(dt).solids.op).is_null());
-  EXPECT_TRUE(assembled(free_case.system.blocks(dt).solids.op).is_null());
-  const Eigen::MatrixXd expected = dense(assembled_case.system.blocks(dt).solids.op);
-  const Eigen::MatrixXd found = dense(free_case.system.blocks(dt).solids.op);
+  EXPECT_FALSE(assembled(assembled_case.system.blocks(dt).solid_block()).is_null());
+  EXPECT_TRUE(assembled(free_case.system.blocks(dt).solid_block()).is_null());
+  const Eigen::MatrixXd expected = dense(assembled_case.system.blocks(dt).solid_block());
+  const Eigen::MatrixXd found = dense(free_case.system.blocks(dt).solid_block());
   EXPECT_LT((found - expected).norm(), 1e-13);
   EXPECT_GT(expected.diagonal()[3], 1 + 2 * dt + 0.1);  // node mass, damping and lumped fluid
   EXPECT_LT((dense(free_case.solids.full_block(Teuchos::null, dt)) -

@@ -168,9 +168,9 @@ TEST(Flux, LosesNoMomentumNorAngularMomentum) {
     total += c.solids->momentum(*momentum);
     const RCP<Vector> rhs = c.system->lumped_momentum(*momentum);
     const BlockSystem& blocks = c.system->blocks(0.1);
-    blocks.coupling_transposed->apply(*pressure, *rhs, Teuchos::NO_TRANS, -1, 1);
+    blocks.coupling_transposed()->apply(*pressure, *rhs, Teuchos::NO_TRANS, -1, 1);
     const auto velocity =
-        distributed(dense(blocks.solids.op).llt().solve(dense(*rhs)), c.solids->map());
+        distributed(dense(blocks.solid_block()).llt().solve(dense(*rhs)), c.solids->map());
     const std::vector<double> after = c.coupling.velocity(*velocity);
     total += total_of(c.coupling.prescribed_impulses(before, after, *pressure, {}));
     total += c.fluid->boundary_pressure_impulse(*pressure);
@@ -258,8 +258,8 @@ TEST(Flux, NamesTheLeversOfNodes) {
   const RCP<Vector> momentum = c.solids->explicit_momentum(0, 0.1);
   const BlockSystem& blocks = c.system->blocks(0.1);
   const RCP<Vector> rhs = c.system->lumped_momentum(*momentum);
-  blocks.coupling_transposed->apply(*solution.pressure, *rhs, Teuchos::NO_TRANS, -1, 1);
-  solution.solid = distributed(dense(blocks.solids.op).llt().solve(dense(*rhs)), c.solids->map());
+  blocks.coupling_transposed()->apply(*solution.pressure, *rhs, Teuchos::NO_TRANS, -1, 1);
+  solution.solid = distributed(dense(blocks.solid_block()).llt().solve(dense(*rhs)), c.solids->map());
   const std::vector<double> after = c.coupling.velocity(*solution.solid);
   Momentum<2> total = c.fluid->momentum() + c.system->lumped_fluid_momentum(before);
   total += c.solids->momentum(*momentum) + c.fluid->boundary_pressure_impulse(*solution.pressure);
@@ -295,9 +295,9 @@ TEST(Flux, SystemIsSymmetricAndDefinite) {
   const FluxCase<2> c(14, {ball<2>(0.2, {0.507, 0.511}, 0.03)});
   const BlockSystem& blocks = c.system->blocks(0.1);
   EXPECT_TRUE(c.coupling.added_mass().is_null());  // C = M_S
-  const Eigen::MatrixXd A = dense(blocks.pressure.op), B = c.pushed();
+  const Eigen::MatrixXd A = dense(blocks.pressure_block()), B = c.pushed();
   EXPECT_EQ((A - A.transpose()).norm(), 0);
-  const Eigen::MatrixXd schur = A + B * dense(blocks.solids.op).inverse() * B.transpose();
+  const Eigen::MatrixXd schur = A + B * dense(blocks.solid_block()).inverse() * B.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(schur);
   const double largest = spectrum.eigenvalues().maxCoeff();
   EXPECT_GT(spectrum.eigenvalues()[0], -1e-13 * largest);  // the constant
@@ -312,7 +312,7 @@ TEST(Flux, AddedMassOfADisc) {
   for (int k = 0; k < n_places; ++k) {
     const Point<2> place(0.5 + 0.31 * k / 32, 0.5 + 0.67 * k / 32);
     const FluxCase<2> c(32, {ball<2>(radius, place, 0.01)});
-    const Eigen::MatrixXd A = dense(c.system->blocks(0.1).pressure.op);
+    const Eigen::MatrixXd A = dense(c.system->blocks(0.1).pressure_block());
     const Eigen::VectorXd push = c.pushed().col(0);
     // The constant is in the null space of A and B^T: a rank-one term fixes it.
     const Eigen::VectorXd one = Eigen::VectorXd::Ones(A.rows()).normalized();

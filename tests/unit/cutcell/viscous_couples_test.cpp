@@ -60,7 +60,7 @@ struct ViscousCase {
     ViscousOptions options;
     options.tolerance = 1e-14;
     return solve_viscous<dim>(*fluid->viscous_system(), *fluid, *solids, coupling,
-                              system->blocks(dt).solids.op, {},
+                              system->blocks(dt).solid_block(), {},
                               system->lumped_momentum(*solids->explicit_momentum(0, dt)), dt,
                               solids->reduction(), options);
   }

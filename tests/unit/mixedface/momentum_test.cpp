@@ -24,8 +24,8 @@ Momentum<2> defect_of_row_2(CoupledCase<2>& c) {
   const std::vector<double> before = c.fluid.coupled_velocity();
   const RCP<Vector> momentum = c.solids.explicit_momentum(0, 0.1);
   const RCP<Vector> rhs = c.system.lumped_momentum(*momentum);
-  c.system.blocks(0.1).coupling_transposed->apply(*pressure, *rhs, Teuchos::NO_TRANS, -1, 1);
-  const Eigen::MatrixXd block = dense(c.system.blocks(0.1).solids.op);
+  c.system.blocks(0.1).coupling_transposed()->apply(*pressure, *rhs, Teuchos::NO_TRANS, -1, 1);
+  const Eigen::MatrixXd block = dense(c.system.blocks(0.1).solid_block());
   const auto velocity = distributed(block.llt().solve(dense(*rhs)), c.solids.map());
   const std::vector<double> after = c.coupling.velocity(*velocity);
 
@@ -191,7 +191,7 @@ TEST(PaperDiagonal, IsTheFullBlockForASymmetricBody) {
   CoupledCase<2> literal(unit_tank<2>(10), fake_solids<2>({{ball<2>(0.24, {0.5, 0.5})}}), options);
   const Eigen::MatrixXd expected = dense(full.coupling.added_mass());
   EXPECT_LT((dense(literal.coupling.added_mass()) - expected).norm(), 1e-12 * expected.norm());
-  EXPECT_EQ(dense(literal.system.blocks(0.1).solids.op).llt().info(), Eigen::Success);
+  EXPECT_EQ(dense(literal.system.blocks(0.1).solid_block()).llt().info(), Eigen::Success);
 }
 
 }  // namespace lockstep::test

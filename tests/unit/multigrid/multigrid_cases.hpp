@@ -18,7 +18,7 @@ struct Problem {
   Problem(Case<dim>& scene, const std::shared_ptr<const SurfaceSnapshot<dim>>& surface)
       : fluid(scene.make()) {
     fluid->set_geometry(surface, BlockedFaces<dim>());
-    system.pressure.op = fluid->pressure_block();
+    system.set_blocks(fluid->pressure_block());
     const PressureRegions& regions = fluid->regions();
     std::vector<RCP<const Vector>> vectors;
     for (int region = 0; region < regions.n_regions; ++region) {
@@ -58,7 +58,7 @@ void expect_products_of_the_operator(const Problem<dim>& problem, const Pressure
   for (int iteration = 0; iteration < 5; ++iteration) {
     const double found = kernels.advance_direction(beta);
     layout.from_layout(kernels.direction(), d);
-    apply(*problem.system.pressure.op, d, product);
+    apply(*problem.system.pressure_block(), d, product);
     const double expected = d.dot(product);
     ASSERT_NEAR(found, expected, 1e-11 * expected) << "iteration " << iteration;
     rr = kernels.advance(rz / found, x, r);

@@ -26,11 +26,11 @@ Solved solve(const Problem<dim>& problem, const MultigridOptions& options) {
   ConjugateGradientsRequest request{"test", 1e-8 * rhs->norm2(), 100, {}};
   Solved result;
   result.n_iterations = conjugate_gradients(
-      [&](const Vector& u, Vector& v) { apply(*relaid.pressure.op, u, v); },
+      [&](const Vector& u, Vector& v) { apply(*relaid.pressure_block(), u, v); },
       [&](const Vector& u, Vector& v) { apply(*layout->inverse(), u, v); }, b, x, request);
   Vector p(rhs->getMap()), residual(*rhs, Teuchos::Copy);
   layout->from_layout(x, p);
-  apply(*problem.system.pressure.op, p, residual, -1, 1);
+  apply(*problem.system.pressure_block(), p, residual, -1, 1);
   result.true_residual = residual.norm2() / rhs->norm2();
   return result;
 }
@@ -53,7 +53,7 @@ void expect_matvec_of_the_layout(const Problem<dim>& problem) {
   layout->to_layout(by_matrix, out);  // what was there must not matter
   apply(*layout->pressure_block(), in, out);
   layout->from_layout(out, ax);
-  const auto matrix = assembled(problem.system.pressure.op);
+  const auto matrix = assembled(problem.system.pressure_block());
   matrix->apply(*x, by_matrix);
   const double scale = by_matrix.normInf();
   EXPECT_NEAR(out.norm2(), by_matrix.norm2(), 1e-13 * by_matrix.norm2());
@@ -90,7 +90,7 @@ TEST(Multigrid, ACellWithoutFacesFarFromAllOthersInItsRow) {
   solids.add(box_surface<2>(Point<2>(23 * h, 8 * h), h), Point<2>(12.5 * h, 4 * h), true);
   solids.add(plate_surface<2>(Point<2>(2 * h, 0), 1, h), Point<2>(0.5 * h, h), false);
   const Problem<2> problem(scene, solids.snapshot());
-  const auto matrix = assembled(problem.system.pressure.op);
+  const auto matrix = assembled(problem.system.pressure_block());
   const auto diagonal = diagonal_of(*matrix);
   double n_empty = 0;
   for (const double value : diagonal->getData())

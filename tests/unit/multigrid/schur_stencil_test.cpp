@@ -55,7 +55,7 @@ template <int dim>
 std::vector<ClosedFace> make_sheet(Problem<dim>& problem, int faces_per_node = 1,
                                    Sides sides = Sides::both, double relative_mass = 1) {
   constexpr double b = 0.7;
-  const FaceCoefficients& a = *stencil_of(problem.system.pressure.op);
+  const FaceCoefficients& a = *stencil_of(problem.system.pressure_block());
   const std::vector<ClosedFace> faces = closed_faces(a);
   const int n_faces = static_cast<int>(faces.size());
   const int n_nodes = (n_faces + faces_per_node - 1) / faces_per_node;
@@ -68,13 +68,14 @@ std::vector<ClosedFace> make_sheet(Problem<dim>& problem, int faces_per_node = 1
       coupling[node].push_back({faces[face].lower, b});
     mass[node].push_back({map->getGlobalElement(node), relative_mass * b * b / a.unit});
   }
-  problem.system.coupling_transposed = matrix_from_rows(map, coupling, a.map);
-  problem.system.solids.op = as_operator(RCP<const CrsMatrix>(matrix_from_rows(map, mass)));
+  problem.system.set_blocks(problem.system.pressure_block(),
+                            matrix_from_rows(map, coupling, a.map),
+                            as_operator(RCP<const CrsMatrix>(matrix_from_rows(map, mass))));
   const auto motions = rcp(new MultiVector(map, dim == 2 ? 3 : 6));
   motions->getVectorNonConst(0)->putScalar(1);
   problem.system.soft_nodes = {motions, std::vector<int>(n_nodes, 0), 1, Teuchos::null};
   problem.system.soft_nodes.mass =
-      lumped_mass(*problem.system.solids.op, problem.system.soft_nodes);
+      lumped_mass(*problem.system.solid_block(), problem.system.soft_nodes);
   return faces;
 }
 
@@ -82,7 +83,7 @@ std::vector<ClosedFace> make_sheet(Problem<dim>& problem, int faces_per_node = 1
 /// is found.
 template <int dim>
 void expect_faces_to_open(const Problem<dim>& problem, const std::vector<ClosedFace>& faces) {
-  const FaceCoefficients& a = *stencil_of(problem.system.pressure.op);
+  const FaceCoefficients& a = *stencil_of(problem.system.pressure_block());
   ASSERT_GT(sum_all(a.map->getComm(), static_cast<GlobalIndex>(faces.size())), 300);
   const auto conducting = conducting_through_sheets(problem.system, {});
   ASSERT_TRUE(conducting.has_value());
@@ -95,7 +96,7 @@ void expect_faces_to_open(const Problem<dim>& problem, const std::vector<ClosedF
 
 template <int dim>
 RCP<const LinearOperator> solid_inverse(const Problem<dim>& problem) {
-  return exact_inverse(problem.system.solids.op, "sheet");
+  return exact_inverse(problem.system.solid_block(), "sheet");
 }
 
 /// Iterations of conjugate gradients on A + B C^-1 B^T of the sheet.
@@ -103,14 +104,14 @@ template <int dim>
 int iterations_with(const Problem<dim>& problem, const PressureLayout& layout,
                     const RCP<const LinearOperator>& preconditioner) {
   const BlockSystem relaid = layout.relaid(problem.system);
-  const CrsMatrix& coupling = *relaid.coupling_transposed;
+  const CrsMatrix& coupling = *relaid.coupling_transposed();
   const auto inverse = solid_inverse(problem);
   Vector b(layout.map()), x(layout.map()), force(coupling.getRangeMap()), velocity(force.getMap());
   layout.to_layout(*right_hand_side(problem), b);
   const ConjugateGradientsRequest request{"test", 1e-8 * b.norm2(), 200, {}};
   return conjugate_gradients(
       [&](const Vector& u, Vector& v) {
-        apply(*relaid.pressure.op, u, v);
+        apply(*relaid.pressure_block(), u, v);
         coupling.apply(u, force);
         apply(*inverse, force, velocity);
         coupling.apply(velocity, v, Teuchos::TRANS, 1, 1);
@@ -158,7 +159,7 @@ TEST(SchurStencil, SolidsWithFluidOnOneSideConductNothing) {
 template <int dim>
 void expect_cells_to_yield(const Problem<dim>& problem, const std::vector<ClosedFace>& faces,
                            float expected_reaction) {
-  const FaceCoefficients& a = *stencil_of(problem.system.pressure.op);
+  const FaceCoefficients& a = *stencil_of(problem.system.pressure_block());
   const auto schur = schur_stencil(problem.system, *solid_inverse(problem), {});
   ASSERT_TRUE(schur.has_value());
   EXPECT_EQ(schur->lower, a.lower);
@@ -195,7 +196,7 @@ TEST(SchurStencil, StiffVolumesConductNothing) {
   Problem<3> problem(scene, plate<3>(1.0 / 16, 7.1 / 16));
   make_sheet(problem);
   // Springs between the nodes, which translations do not feel.
-  const CrsMatrix& mass = *assembled(problem.system.solids.op);
+  const CrsMatrix& mass = *assembled(problem.system.solid_block());
   auto rows = rows_of(mass);
   for (std::size_t node = 0; node + 1 < rows.size(); ++node) {
     const GlobalIndex one = rows[node].front().column, other = rows[node + 1].front().column;
@@ -203,8 +204,9 @@ TEST(SchurStencil, StiffVolumesConductNothing) {
     rows[node].insert(rows[node].end(), {{one, stiffness}, {other, -stiffness}});
     rows[node + 1].insert(rows[node + 1].end(), {{one, -stiffness}, {other, stiffness}});
   }
-  problem.system.solids.op =
-      as_operator(RCP<const CrsMatrix>(matrix_from_rows(mass.getRowMap(), rows)));
+  problem.system.set_blocks(
+      problem.system.pressure_block(), problem.system.coupling_transposed(),
+      as_operator(RCP<const CrsMatrix>(matrix_from_rows(mass.getRowMap(), rows))));
   EXPECT_FALSE(conducting_through_sheets(problem.system, {}).has_value());
 }
 

@@ -30,19 +30,19 @@ void expect_the_same_operator(double height) {
   solids.add(ball_surface<dim>(0.21, 0.05), Point<dim>::Constant(0.48), true);
   fluid->set_geometry(solids.snapshot(), PartlyOpenFaces<dim>());
   BlockSystem system;
-  system.pressure.op = fluid->pressure_block();
+  system.set_blocks(fluid->pressure_block());
   const auto layout = PressureLayout::make(system, {}, nullptr);
 
   const auto x = pressure_vector<dim>(
       *fluid, [](const Point<dim>& at) { return 1 + 0.3 * std::sin(1e3 * at[0] + 3e3 * at[1]); });
   Vector product(x->getMap()), found(x->getMap());
-  apply(*system.pressure.op, *x, product);
+  apply(*system.pressure_block(), *x, product);
   Vector x_there(layout->map()), product_there(layout->map());
   layout->to_layout(*x, x_there);
   apply(*layout->pressure_block(), x_there, product_there);
   layout->from_layout(product_there, found);
   found.update(-1, product, 1);
-  const double unit = stencil_of(system.pressure.op)->unit;
+  const double unit = stencil_of(system.pressure_block())->unit;
   EXPECT_LT(found.normInf(), 1e-15 * (8 / height + 8) * unit) << height;
 }
 

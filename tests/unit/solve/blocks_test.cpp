@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Thyra_PhysicallyBlockedLinearOpBase.hpp>
 #include <Thyra_VectorStdOps.hpp>
 
 #include "base/errors.hpp"
@@ -63,9 +64,8 @@ TEST(BlockOperator, MatchesTheHandMultiplication) {
     c = {{{0, 4}}};
   }
   BlockSystem system;
-  system.pressure.op = as_operator(matrix_from_rows(cells, a));
-  system.coupling_transposed = matrix_from_rows(dofs, b, cells);
-  system.solids.op = as_operator(matrix_from_rows(dofs, c));
+  system.set_blocks(as_operator(matrix_from_rows(cells, a)), matrix_from_rows(dofs, b, cells),
+                    as_operator(matrix_from_rows(dofs, c)));
   const BlockVector x{make_vector(cells), make_vector(dofs)},
       y{make_vector(cells), make_vector(dofs)};
   if (root) {
@@ -73,7 +73,7 @@ TEST(BlockOperator, MatchesTheHandMultiplication) {
     x.pressure->replaceLocalValue(1, 2.0);
     x.solid->replaceLocalValue(0, 3.0);
   }
-  const auto op = block_operator(system);
+  const auto op = system.op();
   op->apply(Thyra::NOTRANS, *as_thyra(x, *op), as_thyra(y, *op).ptr(), 1, 0);
   if (root) {
     EXPECT_DOUBLE_EQ(y.pressure->getData()[0], -3);
@@ -83,7 +83,7 @@ TEST(BlockOperator, MatchesTheHandMultiplication) {
 }
 
 TEST(BlockGroup, ItsBlocksAreNamedWithTheirParts) {
-  BlockGroup group{"solid block", Teuchos::null, {{"bodies", 0, 3}, {"cloth", 3, 4}}};
+  BlockGroup group{"solid block", {{"bodies", 0, 3}, {"cloth", 3, 4}}};
   Vector residual(make_map(4, world()));
   residual.putScalar(2 / std::sqrt(3. * world()->getSize()));
   EXPECT_EQ(by_name(group, residual, 4),
@@ -94,7 +94,7 @@ TEST(BlockGroup, ItsBlocksAreNamedWithTheirParts) {
 
 TEST(BlockOperator, IsSymmetricAndEqualsTheMergedMatrix) {
   const SaddleProblem problem(world(), {});
-  const auto op = block_operator(problem.system, 2, 3);
+  const auto op = problem.system.op();
   const BlockVector u = random_vector(problem, 1), v = random_vector(problem, 2),
                     ku = problem.zero(), kv = problem.zero();
   op->apply(Thyra::NOTRANS, *as_thyra(u, *op), as_thyra(ku, *op).ptr(), 1, 0);
@@ -103,8 +103,6 @@ TEST(BlockOperator, IsSymmetricAndEqualsTheMergedMatrix) {
   const double vu = v.pressure->dot(*ku.pressure) + v.solid->dot(*ku.solid);
   EXPECT_NEAR(uv, vu, 1e-12 * kv.solid->norm2() * u.solid->norm2());
 
-  const auto unscaled = block_operator(problem.system);
-  unscaled->apply(Thyra::NOTRANS, *as_thyra(u, *unscaled), as_thyra(ku, *unscaled).ptr(), 1, 0);
   const MergedSystem merged = merge(problem.system);
   Vector product(merged.matrix->getRowMap());
   merged.matrix->apply(*to_merged(merged, u), product);
@@ -148,8 +146,10 @@ TEST(AddedMassDiagonal, WeightsThatCancelToRoundOffMoveNothing) {
     solid.push_back({{0, 4.0}});
   }
   BlockSystem system;
-  system.coupling_transposed = matrix_from_rows(dofs, coupling, cells);
-  system.solids.op = as_operator(matrix_from_rows(dofs, solid));
+  const std::vector<std::vector<Entry>> nothing(cells->getNodeNumElements());
+  system.set_blocks(as_operator(matrix_from_rows(cells, nothing)),
+                    matrix_from_rows(dofs, coupling, cells),
+                    as_operator(matrix_from_rows(dofs, solid)));
   const auto diagonal = added_mass_diagonal(system, cells);
   if (mine) {
     EXPECT_DOUBLE_EQ(diagonal->getData()[0], 9.0 / 4.0);
@@ -204,11 +204,11 @@ TEST(BlockDiagonal, RowsOfTheirOwnStayBesideOthers) {
 
 TEST(BlockDiagonal, InvertsBlocksThatSpanRanks) {
   const SaddleProblem problem(world(), {});
-  const auto solid = assembled(problem.system.solids.op);
+  const auto solid = assembled(problem.system.solid_block());
   const auto blocks = block_diagonal_inverse(solid, 24, "test");
   EXPECT_TRUE(blocks.exact);
   EXPECT_EQ(blocks.inverse->getGlobalNumEntries(), 18u);
-  EXPECT_LT(inverse_error(*problem.system.solids.op, *as_operator(blocks.inverse)), 1e-14);
+  EXPECT_LT(inverse_error(*problem.system.solid_block(), *as_operator(blocks.inverse)), 1e-14);
 }
 
 TEST(BlockDiagonal, LargeComponentsFallBackToTheDiagonal) {
@@ -235,7 +235,7 @@ TEST(BlockDiagonal, RefusesAnIndefiniteBlock) {
   SaddleOptions options;
   options.plate_mass = -1;
   const SaddleProblem problem(world(), options);
-  EXPECT_THROW(block_diagonal_inverse(assembled(problem.system.solids.op), 24, "test"), SolveError);
+  EXPECT_THROW(block_diagonal_inverse(assembled(problem.system.solid_block()), 24, "test"), SolveError);
 }
 
 TEST(ExactInverse, IsExactForEveryKindOfMatrix) {

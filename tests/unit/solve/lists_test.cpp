@@ -10,7 +10,6 @@
 #include "linear/matrix_rows.hpp"
 #include "solve/gathered_direct.hpp"
 #include "solve/preconditioner.hpp"
-#include "solve/solve_with_stratimikos.hpp"
 #include "solve/solver_list.hpp"
 #include "unit/solve/stratimikos_xml.hpp"
 
@@ -85,18 +84,6 @@ TEST(SolverList, WrongCoarseSolverIsRefusedOnSeveralRanks) {
     EXPECT_EQ(message, "nothing was thrown");
 }
 
-TEST(SolverList, BelosReportsItsNumbersWhenItFails) {
-  const SaddleProblem problem(Tpetra::getDefaultComm(), {});
-  std::string xml = minres_with_teko;
-  xml.replace(xml.find("value=\"300\""), 11, "value=\"3\"");
-  BlockVector solution = problem.zero();
-  EXPECT_THAT(message_of<SolveError>([&] {
-                solve_with_stratimikos(problem.system, problem.random_rhs(), solution,
-                                       *Teuchos::getParametersFromXmlString(xml));
-              }),
-              HasSubstr("after 3 iterations"));
-}
-
 TEST(Preconditioner, EveryTypeIsSymmetricPositiveDefinite) {
   const SaddleProblem problem(Tpetra::getDefaultComm(), {});
   const std::vector<std::string> lists = {
@@ -114,17 +101,17 @@ TEST(Preconditioner, EveryTypeIsSymmetricPositiveDefinite) {
   for (const std::string& xml : lists) {
     SCOPED_TRACE(xml);
     EXPECT_NO_THROW(check_symmetric_positive(
-        *preconditioner_from_list(problem.system.pressure.op, inverse(xml), "test"), "test"));
+        *preconditioner_from_list(problem.system.pressure_block(), inverse(xml), "test"), "test"));
   }
   EXPECT_NO_THROW(check_symmetric_positive(
-      *preconditioner_from_list(problem.system.solids.op, inverse(typed("Block Diagonal")), "test"),
+      *preconditioner_from_list(problem.system.solid_block(), inverse(typed("Block Diagonal")), "test"),
       "test"));
 }
 
 TEST(Preconditioner, UnsymmetricSmootherIsCaught) {
   const SaddleProblem problem(Tpetra::getDefaultComm(), {});
   const auto forward = preconditioner_from_list(
-      problem.system.pressure.op,
+      problem.system.pressure_block(),
       inverse(
           ifpack2("RELAXATION",
                   R"(<Parameter name="relaxation: type" type="string" value="Gauss-Seidel"/>)")),

@@ -244,9 +244,8 @@ TEST(SoftSolid, ResidualsAreNotMeasuredBelowRoundOff) {
       return matrix_from_rows(rows, std::vector<std::vector<Entry>>(rows->getNodeNumElements()),
                               pressures);
     };
-    system.pressure.op = as_operator(RCP<const CrsMatrix>(nothing(pressures)));
-    system.coupling_transposed = nothing(solid.c->getRowMap());
-    system.solids.op = as_operator(solid.c);
+    system.set_blocks(as_operator(RCP<const CrsMatrix>(nothing(pressures))),
+                      nothing(solid.c->getRowMap()), as_operator(solid.c));
     const auto velocity = make_vector(solid.c->getRowMap()),
                momentum = make_vector(velocity->getMap());
     velocity->update(1, *solid.space.motions->getVector(0), 3, *solid.space.motions->getVector(1),

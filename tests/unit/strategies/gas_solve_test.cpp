@@ -25,7 +25,7 @@ TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
   Vector area(rhs.solid->getMap());
   Vector one(rhs.pressure->getMap());
   one.putScalar(1);
-  blocks.coupling_transposed->apply(one, area);
+  blocks.coupling_transposed()->apply(one, area);
   ASSERT_GT(area.norm2(), 0);
 
   GasPocket pocket;
@@ -119,7 +119,7 @@ TEST(GasSolve, TheOnlyVoidCannotOpen) {
   BlockVector rhs = problem.zero(), unknowns = problem.zero();
   Vector one(rhs.pressure->getMap()), beside(rhs.pressure->getMap());
   one.putScalar(1);
-  apply(*blocks.pressure.op, one, beside);
+  apply(*blocks.pressure_block(), one, beside);
   GasPocket pocket;
   pocket.volume = 1;
   pocket.pressure = 3;

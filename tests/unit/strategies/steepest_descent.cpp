@@ -28,7 +28,7 @@ int SteepestDescent::correct(const BlockSystem& system, const CorrectionRequest&
                              Vector& correction) {
   if (!system.has_solid())
     return pressure_cg(system, request, correction);
-  const CrsMatrix& coupling = *system.coupling_transposed;
+  const CrsMatrix& coupling = *system.coupling_transposed();
   Vector r(*request.residual, Teuchos::Copy), z(r.getMap()), s_z(r.getMap());
   Vector force(coupling.getRangeMap()), velocity(coupling.getRangeMap());
   correction.putScalar(0);
@@ -37,7 +37,7 @@ int SteepestDescent::correct(const BlockSystem& system, const CorrectionRequest&
     apply(*pressure_inverse(), r, z);
     project_out(system.null_space, z);
     // S z = A z + B C^-1 B^T z, never assembled
-    apply(*system.pressure.op, z, s_z);
+    apply(*system.pressure_block(), z, s_z);
     coupling.apply(z, force);
     apply(*solid_inverse(), force, velocity);
     coupling.apply(velocity, s_z, Teuchos::TRANS, 1, 1);

@@ -1,0 +1,93 @@
+#include "strategies/common/woodbury.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_MultiVector.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "base/errors.hpp"
+#include "linear/action_operator.hpp"
+#include "strategies/common/small_dense.hpp"
+
+namespace lockstep {
+
+namespace {
+
+class Woodbury {
+ public:
+  Woodbury(const BlockSystem& system, const RCP<const LinearOperator>& pressure_inverse)
+      : coupling_(system.coupling_transposed()),
+        pressure_inverse_(pressure_inverse),
+        solid_block_(replicated(*assembled(system.solid_block()))),
+        rest_(make_vector(coupling_->getDomainMap())),
+        of_solid_(make_vector(coupling_->getRangeMap())) {
+    const auto n = static_cast<int>(solid_block_.rows());
+    columns_ = rcp(new MultiVector(coupling_->getDomainMap(), n));
+    Eigen::MatrixXd schur = solid_block_;
+    Vector unit(coupling_->getRangeMap());
+    for (int dof = 0; dof < n; ++dof) {
+      unit.putScalar(0);
+      if (unit.getMap()->isNodeGlobalElement(dof))
+        unit.replaceGlobalValue(dof, 1.0);
+      coupling_->apply(unit, *rest_, Teuchos::TRANS);
+      const RCP<Vector> column = columns_->getVectorNonConst(dof);
+      apply(*pressure_inverse_, *rest_, *column);
+      coupling_->apply(*column, *of_solid_);
+      schur.col(dof) += replicated(*of_solid_);
+    }
+    factors_.compute(0.5 * (schur + schur.transpose()));
+    check_solve(factors_.info() == Eigen::Success,
+                "C + B^T M B of the {} is not positive definite: the approximate inverse M of A is "
+                "not, or C is not.",
+                system.name);
+  }
+
+  /// As (I - W B^T) M (I - B W^T) + W C W^T with W = M B Ŝ^-1, which is definite whatever rounding
+  /// does to M: where C is small, Woodbury's difference has nothing else left.
+  void apply_to(const Vector& r, Vector& z) const {
+    const Eigen::VectorXd velocity = factors_.solve(products_of_columns(r));
+    distribute(velocity, *of_solid_);
+    rest_->update(1, r, 0);
+    coupling_->apply(*of_solid_, *rest_, Teuchos::TRANS, -1, 1);
+    apply(*pressure_inverse_, *rest_, z);
+    coupling_->apply(z, *of_solid_);
+    const Eigen::VectorXd change = factors_.solve(solid_block_ * velocity - replicated(*of_solid_));
+    for (int dof = 0; dof < change.size(); ++dof)
+      z.update(change[dof], *columns_->getVector(dof), 1);
+  }
+
+  RCP<const Map> map() const { return coupling_->getDomainMap(); }
+
+ private:
+  /// (M B)^T r.
+  Eigen::VectorXd products_of_columns(const Vector& r) const {
+    Eigen::VectorXd products(solid_block_.rows());
+    const auto values = r.getData();
+    const Eigen::Map<const Eigen::VectorXd> here(values.getRawPtr(), values.size());
+    for (int dof = 0; dof < products.size(); ++dof) {
+      const auto column = columns_->getData(dof);
+      products[dof] =
+          here.dot(Eigen::Map<const Eigen::VectorXd>(column.getRawPtr(), column.size()));
+    }
+    sum_all(r.getMap()->getComm(), products.data(), static_cast<int>(products.size()));
+    return products;
+  }
+
+  RCP<const CrsMatrix> coupling_;
+  RCP<const LinearOperator> pressure_inverse_;
+  Eigen::MatrixXd solid_block_;          ///< C
+  Eigen::LLT<Eigen::MatrixXd> factors_;  ///< of Ŝ
+  RCP<MultiVector> columns_;             ///< M B
+  RCP<Vector> rest_, of_solid_;          ///< work vectors
+};
+
+}  // namespace
+
+RCP<const LinearOperator> woodbury_inverse(const BlockSystem& system,
+                                           const RCP<const LinearOperator>& pressure_inverse) {
+  const auto woodbury = std::make_shared<const Woodbury>(system, pressure_inverse);
+  return action_operator(woodbury->map(), [woodbury](const Vector& r, Vector& z) {
+    woodbury->apply_to(r, z);
+  });
+}
+
+}  // namespace lockstep
