@@ -160,11 +160,10 @@ std::string line(const Row& row) {
   const std::string name = std::filesystem::path(row.file).stem().string();
   if (!row.failure.empty())
     return fmt::format("{:<16} failed: {}", name, row.failure);
-  return fmt::format("{:<16} {:>10} {:>9.3f} {:>9.3f} {:>10.2e} {:>10.2e} {:>10} {:>8.1f}",
-                     name, row.report.iterations, row.report.setup_seconds,
-                     row.report.solve_seconds, row.report.pressure_residual,
-                     row.report.solid_residual, row.error ? fmt::format("{:.2e}", *row.error) : "-",
-                     row.memory_mb);
+  return fmt::format("{:<16} {:>10} {:>9.3f} {:>9.3f} {:>10.2e} {:>10.2e} {:>10} {:>8.1f}", name,
+                     row.report.iterations, row.report.setup_seconds, row.report.solve_seconds,
+                     row.report.pressure_residual, row.report.solid_residual,
+                     row.error ? fmt::format("{:.2e}", *row.error) : "-", row.memory_mb);
 }
 
 std::vector<Candidate> read_candidates(const Arguments& arguments,

@@ -8,11 +8,11 @@ void declare_viscous_solve(ParameterList& solver) {
   const ViscousOptions standard;
   declare_tolerance(solver, "Viscous Tolerance", standard.tolerance,
                     "Relative residual of the viscous solve [1].");
-  ParameterList& list =
-      declare_list(solver, "Viscous Solve",
-                   "How implicit viscosity is solved, for the fluid and the solids together: "
-                   "[M_f + dt K_ff, dt K_fs; dt K_sf, C + dt K_ss], symmetric positive definite, by "
-                   "conjugate gradients.");
+  ParameterList& list = declare_list(
+      solver, "Viscous Solve",
+      "How implicit viscosity is solved, for the fluid and the solids together: "
+      "[M_f + dt K_ff, dt K_fs; dt K_sf, C + dt K_ss], symmetric positive definite, by "
+      "conjugate gradients.");
   declare_positive(list, "Maximum Iterations", standard.maximum_iterations, "Of one solve.");
   declare_inverse(
       list, "Fluid Inverse",

@@ -174,8 +174,8 @@ int conjugate_gradient_pass(const ViscousOperator<dim>& op,
   return iterations;
 }
 
-/// Conjugate gradients from the guess x on, until b - (M + dt K) x itself is as small as the options
-/// ask, in the norm of the preconditioner; returns the iterations.
+/// Conjugate gradients from the guess x on, until b - (M + dt K) x itself is as small as the
+/// options ask, in the norm of the preconditioner; returns the iterations.
 template <int dim>
 int solve_from_guess(const ViscousOperator<dim>& op, const ViscousPreconditioner& preconditioner,
                      const Vector& rhs, Vector& x, const ViscousOptions& options) {
@@ -211,12 +211,13 @@ int solve_from_guess(const ViscousOperator<dim>& op, const ViscousPreconditioner
   const double allowed = iterations < options.maximum_iterations
                              ? std::max(options.tolerance, loosest_round_off)
                              : options.tolerance;
-  check_solve(reached <= allowed,
-              "The viscous solve did not converge: {} iterations of conjugate gradients (at most {}) "
-              "brought the relative residual from {:.2e} to {:.2e}, asked was {:.1e}. Raise "
-              "\"Maximum Iterations\" of \"Viscous Solve\", name a stronger \"Fluid Inverse\" or "
-              "\"Solid Inverse\" there, or reduce the time step or the viscosity.",
-              iterations, options.maximum_iterations, initial, reached, options.tolerance);
+  check_solve(
+      reached <= allowed,
+      "The viscous solve did not converge: {} iterations of conjugate gradients (at most {}) "
+      "brought the relative residual from {:.2e} to {:.2e}, asked was {:.1e}. Raise "
+      "\"Maximum Iterations\" of \"Viscous Solve\", name a stronger \"Fluid Inverse\" or "
+      "\"Solid Inverse\" there, or reduce the time step or the viscosity.",
+      iterations, options.maximum_iterations, initial, reached, options.tolerance);
   return iterations;
 }
 

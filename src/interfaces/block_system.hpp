@@ -46,9 +46,9 @@ class BlockSystem {
   const RCP<const BlockedOperator>& op() const { return op_; }
   /// Its blocks without their signs, for solvers that look inside. The last two are null without
   /// solids.
-  const RCP<const LinearOperator>& pressure_block() const { return pressure_block_; }          ///< A
+  const RCP<const LinearOperator>& pressure_block() const { return pressure_block_; }       ///< A
   const RCP<const CrsMatrix>& coupling_transposed() const { return coupling_transposed_; }  ///< B^T
-  const RCP<const LinearOperator>& solid_block() const { return solid_block_; }                ///< C
+  const RCP<const LinearOperator>& solid_block() const { return solid_block_; }             ///< C
   bool has_solid() const { return !solid_block_.is_null(); }
 
   BlockGroup pressure{"pressure block"};

@@ -40,7 +40,7 @@ class StoredStencil final : public StencilOperator {
 
 /// What the lattice_group holds of all unknowns, in the order of the file.
 struct Stored {
-  std::vector<long long> places, cells;          ///< unknown; its cell, three numbers each
+  std::vector<long long> places, cells;            ///< unknown; its cell, three numbers each
   std::vector<double> lower, dirichlet, diagonal;  ///< three each; one; one, 0 where not stiff
 };
 
@@ -75,7 +75,7 @@ std::shared_ptr<LatticeBlocks> read_blocks(const Hdf5File& file) {
   if (blocks->dimension < 2 || blocks->dimension > n_axes || blocks->width < 1 ||
       blocks->width > 64 || (blocks->width & (blocks->width - 1)) != 0)
     refuse_lattice(file, fmt::format("has {} dimensions and blocks of {} cells", blocks->dimension,
-                             blocks->width));
+                                     blocks->width));
   for (int axis = 0; axis < n_axes; ++axis) {
     const auto cells = file.read_attribute<long long>(lattice_group, axis_name("cells", axis));
     if (cells < 1 || cells > most)
@@ -150,13 +150,14 @@ class LatticeReader {
     for (std::size_t i = 0; i < stored_.places.size(); ++i) {
       const long long place = stored_.places[i];
       if (place < 0 || place >= n || seen[static_cast<std::size_t>(place)])
-        refuse_lattice(file_, fmt::format("names the unknown {} outside or for the second time", place));
+        refuse_lattice(file_,
+                       fmt::format("names the unknown {} outside or for the second time", place));
       seen[static_cast<std::size_t>(place)] = true;
       for (int axis = 0; axis < n_axes; ++axis) {
         const long long at = stored_.cells[n_axes * i + axis];
         if (at < 0 || at >= blocks_->n_cells[axis])
           refuse_lattice(file_, fmt::format("has a cell at {} of {} along an axis", at,
-                                    blocks_->n_cells[axis]));
+                                            blocks_->n_cells[axis]));
         if (!(stored_.lower[n_axes * i + axis] >= 0))
           refuse_lattice(file_, "has a face with a negative coefficient");
       }
@@ -197,8 +198,7 @@ class LatticeReader {
       result.lower[axis][cell] = static_cast<float>(stored_.lower[n_axes * i + axis]);
     result.dirichlet[cell] = static_cast<float>(stored_.dirichlet[i]);
     if (stored_.diagonal[i] > 0)
-      result.stiff.push_back(
-          {static_cast<int>(cell), stored_.dirichlet[i], stored_.diagonal[i]});
+      result.stiff.push_back({static_cast<int>(cell), stored_.dirichlet[i], stored_.diagonal[i]});
   }
 
   const Hdf5File& file_;

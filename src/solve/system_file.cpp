@@ -354,10 +354,10 @@ StoredSystem read_parts(const Hdf5File& file) {
   check_size(file, "/solid rhs", n_solid);
   const std::vector<long long> bodies = read_bodies(file, n_solid);
   const auto solids =
-      bodies.empty() ? even_map(std::max<GlobalIndex>(n_solid, comm->getSize()), comm)
-                     : map_of_whole_nodes(
-                           bodies, file.shape(std::string(soft_group) + "/motions")[1] == 3 ? 2 : 3,
-                           comm);
+      bodies.empty()
+          ? even_map(std::max<GlobalIndex>(n_solid, comm->getSize()), comm)
+          : map_of_whole_nodes(
+                bodies, file.shape(std::string(soft_group) + "/motions")[1] == 3 ? 2 : 3, comm);
   if (!bodies.empty())
     system.soft_nodes = read_soft_nodes(file, bodies, solids);
   system.set_blocks(pressure_block,

@@ -17,11 +17,11 @@ struct StoredSystem {
 /// cannot be written. Collective.
 void write_system(const std::string& path, const BlockSystem& system, const BlockVector& rhs);
 
-/// Reads it, rows spread evenly over the ranks, those of A by blocks of the lattice if there is one:
-/// A is then a stencil, as in a run. Where there are fewer solid unknowns than ranks,
-/// unknowns that no other sees are added, so that every rank owns one. Throws InputError for files
-/// that cannot be read, are of another kind, damaged, or hold anything but a complete system of
-/// finite numbers. Collective.
+/// Reads it, rows spread evenly over the ranks, those of A by blocks of the lattice if there is
+/// one: A is then a stencil, as in a run. Where there are fewer solid unknowns than ranks, unknowns
+/// that no other sees are added, so that every rank owns one. Throws InputError for files that
+/// cannot be read, are of another kind, damaged, or hold anything but a complete system of finite
+/// numbers. Collective.
 StoredSystem read_system(const std::string& path, const Communicator& comm);
 
 }  // namespace lockstep

@@ -12,8 +12,9 @@ using ThyraVector = Thyra::VectorBase<double>;
 RCP<ThyraVector> as_thyra(const RCP<Vector>& vector,
                           const RCP<const Thyra::VectorSpaceBase<double>>& space);
 
-/// The vector (p̂, V_S) of a block operator, as a multivector of one column, which MueLu wants; shares
-/// the values of both parts.
-RCP<Thyra::MultiVectorBase<double>> as_thyra(const BlockVector& vector, const LinearOperator& block_operator);
+/// The vector (p̂, V_S) of a block operator, as a multivector of one column, which MueLu wants;
+/// shares the values of both parts.
+RCP<Thyra::MultiVectorBase<double>> as_thyra(const BlockVector& vector,
+                                             const LinearOperator& block_operator);
 
 }  // namespace lockstep

@@ -78,7 +78,8 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
   }
   const std::string file = named_solver_file(document);
   if (!file.empty()) {
-    merge(document, "Solver/Strategy", read_solver_file(resolve_path(document.source.file, file), comm));
+    merge(document, "Solver/Strategy",
+          read_solver_file(resolve_path(document.source.file, file), comm));
   }
   for (const std::string& setting : settings) {
     if (setting.rfind(solver_file_setting, 0) != 0)

@@ -63,8 +63,8 @@ BelosMethod::BelosMethod(const Teuchos::ParameterList& list)
     trilinos_->factory = trilinos_->builder.createLinearSolveStrategy("");
     trilinos_->factory->setVerbLevel(Teuchos::VERB_NONE);
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("Stratimikos does not take the list \"Belos\": {}",
-                                 library_message(error)));
+    throw InputError(
+        fmt::format("Stratimikos does not take the list \"Belos\": {}", library_message(error)));
   }
 }
 
@@ -102,9 +102,9 @@ int BelosMethod::correct(const BlockSystem& system, const FlatSystem& flat,
           *trilinos_->factory, op,
           Thyra::unspecifiedPrec<double>(flat.scaled(preconditioner, 1 / t, factor)), solver.ptr());
     }
-    const auto status = Thyra::solve<double>(
-        *solver, Thyra::NOTRANS, *as_thyra(b, op->range()), as_thyra(x, op->domain()).ptr(),
-        Teuchos::constPtr(criteria));
+    const auto status =
+        Thyra::solve<double>(*solver, Thyra::NOTRANS, *as_thyra(b, op->range()),
+                             as_thyra(x, op->domain()).ptr(), Teuchos::constPtr(criteria));
     pressure.update(1, *flat.pressure_part(*x), 0);
     return status.extraParameters->get<int>("Iteration Count");
   } catch (const Failure&) {

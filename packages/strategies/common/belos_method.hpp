@@ -22,8 +22,8 @@ struct BlockKrylovRequest {
 class BelosMethod {
  public:
   /// `list` is Stratimikos' "Linear Solver Types" / "Belos": "Solver Type" and, in "Solver Types",
-  /// its settings; of these "Convergence Tolerance" is what one solve aims at, at most, and "Maximum
-  /// Iterations" ends one. Throws InputError for a list without "Solver Type".
+  /// its settings; of these "Convergence Tolerance" is what one solve aims at, at most, and
+  /// "Maximum Iterations" ends one. Throws InputError for a list without "Solver Type".
   explicit BelosMethod(const Teuchos::ParameterList& list);
   ~BelosMethod();
 
@@ -31,8 +31,8 @@ class BelosMethod {
   /// that presumes them exact: MINRES and conjugate gradients.
   bool is_symmetric() const;
   /// Writes p̂ of an approximate solution; returns the number of iterations. An iteration that ends
-  /// early is no failure: the caller looks at what is left. `preconditioner` acts on blocked vectors;
-  /// null: none. Throws SolveError on a breakdown. Collective.
+  /// early is no failure: the caller looks at what is left. `preconditioner` acts on blocked
+  /// vectors; null: none. Throws SolveError on a breakdown. Collective.
   int correct(const BlockSystem& system, const FlatSystem& flat,
               const RCP<const LinearOperator>& preconditioner, const Vector& rhs,
               const BlockKrylovRequest& request, Vector& pressure) const;
@@ -42,8 +42,8 @@ class BelosMethod {
   struct Trilinos;
 
   std::string solver_;
-  double tolerance_ = 0;         ///< of the list; 0: none
-  int maximum_iterations_ = 0;   ///< likewise
+  double tolerance_ = 0;        ///< of the list; 0: none
+  int maximum_iterations_ = 0;  ///< likewise
   std::unique_ptr<Trilinos> trilinos_;
 };
 

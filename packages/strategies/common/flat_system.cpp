@@ -13,7 +13,8 @@ FlatSystem::FlatSystem(const BlockSystem& system)
     : pressure_map_(domain_map(*system.pressure_block())),
       solid_map_(domain_map(*system.solid_block())),
       solid_(make_vector(solid_map_)) {
-  const std::size_t n_local = pressure_map_->getNodeNumElements() + solid_map_->getNodeNumElements();
+  const std::size_t n_local =
+      pressure_map_->getNodeNumElements() + solid_map_->getNodeNumElements();
   map_ = make_map(static_cast<int>(n_local), pressure_map_->getComm());
   check_solve(min_all(map_->getComm(), static_cast<double>(n_local)) > 0,
               "Belos cannot solve the {}: some rank owns no unknown. Use fewer ranks, or the "

@@ -14,10 +14,12 @@ void MinresStrategy::build(const BlockSystem& system, bool, bool solid_changed) 
     return;
   flat_ = std::make_unique<FlatSystem>(system);
   const Preconditioners parts = make_preconditioners(system);
-  preconditioner_ = Thyra::block2x2<double>(parts.pressure, Teuchos::null, Teuchos::null, parts.solid);
+  preconditioner_ =
+      Thyra::block2x2<double>(parts.pressure, Teuchos::null, Teuchos::null, parts.solid);
   if (!check_symmetry())
     return;
-  check_symmetric_positive(*parts.pressure, "pressures of the " + system.name, symmetry_tolerance());
+  check_symmetric_positive(*parts.pressure, "pressures of the " + system.name,
+                           symmetry_tolerance());
   check_symmetric_positive(*parts.solid, "solids of the " + system.name, symmetry_tolerance());
 }
 

@@ -29,9 +29,9 @@ RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
 /// depends on C. Collective.
 bool leaves_rows_empty(const RCP<const LinearOperator>& pressure_block);
 
-/// A with the diagonal of B diag(C)^-1 B^T, or its own largest, in the rows that it leaves empty, and
-/// the first cell of each of its null vectors pinned: for preconditioners that divide by its diagonal
-/// or factor it. `a` itself where there are neither. Collective.
+/// A with the diagonal of B diag(C)^-1 B^T, or its own largest, in the rows that it leaves empty,
+/// and the first cell of each of its null vectors pinned: for preconditioners that divide by its
+/// diagonal or factor it. `a` itself where there are neither. Collective.
 RCP<const CrsMatrix> regular_pressure_block(const BlockSystem& system,
                                             const RCP<const CrsMatrix>& a);
 

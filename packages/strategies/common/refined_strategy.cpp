@@ -128,9 +128,10 @@ int RefinedStrategy::pressure_cg(const BlockSystem& system, const CorrectionRequ
                                      iteration_null_space(system), request.update_target};
   if (layout_)
     return conjugate_gradients(layout_->kernels(), *request.residual, correction, cg);
-  return conjugate_gradients([&](const Vector& x, Vector& y) { apply(*system.pressure_block(), x, y); },
-                             [&](const Vector& x, Vector& y) { apply(*pressure_inverse_, x, y); },
-                             *request.residual, correction, cg);
+  return conjugate_gradients(
+      [&](const Vector& x, Vector& y) { apply(*system.pressure_block(), x, y); },
+      [&](const Vector& x, Vector& y) { apply(*pressure_inverse_, x, y); }, *request.residual,
+      correction, cg);
 }
 
 namespace {

@@ -85,9 +85,8 @@ class Woodbury {
 RCP<const LinearOperator> woodbury_inverse(const BlockSystem& system,
                                            const RCP<const LinearOperator>& pressure_inverse) {
   const auto woodbury = std::make_shared<const Woodbury>(system, pressure_inverse);
-  return action_operator(woodbury->map(), [woodbury](const Vector& r, Vector& z) {
-    woodbury->apply_to(r, z);
-  });
+  return action_operator(woodbury->map(),
+                         [woodbury](const Vector& r, Vector& z) { woodbury->apply_to(r, z); });
 }
 
 }  // namespace lockstep

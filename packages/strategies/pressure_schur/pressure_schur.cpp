@@ -28,7 +28,8 @@ PressureSchur::PressureSchur(const ParameterList& given)
       pressure_list_(pressure_inverse_list(given, "Automatic")) {}
 
 RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system) {
-  if (system.solid_block()->domain()->dim() <= largest_solid_ && !assembled(system.solid_block()).is_null())
+  if (system.solid_block()->domain()->dim() <= largest_solid_ &&
+      !assembled(system.solid_block()).is_null())
     return woodbury_inverse(system, pressure_inverse());
   if (layout() != nullptr)
     return layout()->schur_inverse();

@@ -19,12 +19,13 @@ class BlockInverses {
   virtual bool is_solid_block(const RCP<const LinearOperator>& op) const = 0;
   /// A cycle of the multigrid for A.
   virtual RCP<const LinearOperator> multigrid() const = 0;
-  /// The same for A and what gives way of soft solids (`PressureLayout::schur_inverse`), or smoothed
-  /// aggregation for A + B diag(C)^-1 B^T; null if the list names no multigrid.
+  /// The same for A and what gives way of soft solids (`PressureLayout::schur_inverse`), or
+  /// smoothed aggregation for A + B diag(C)^-1 B^T; null if the list names no multigrid.
   virtual RCP<const LinearOperator> schur_multigrid() const = 0;
   virtual const SolidInverse& solid() const = 0;
 
-  /// Teko catches what our inverses throw and throws a copy without its message: they leave it here.
+  /// Teko catches what our inverses throw and throws a copy without its message: they leave it
+  /// here.
   std::exception_ptr failure;
 };
 

@@ -95,9 +95,8 @@ class SolidType : public InverseType {
       const std::string name = (is_own ? "solid block of the " : "solid Schur complement of the ") +
                                inverses.system().name;
       if (list().isSublist("Inverse"))
-        return preconditioner_from_list(
-            block.op, list().sublist("Inverse"), name,
-            is_own ? inverses.system().soft_nodes : SoftNodes());
+        return preconditioner_from_list(block.op, list().sublist("Inverse"), name,
+                                        is_own ? inverses.system().soft_nodes : SoftNodes());
       if (!is_own)
         return exact_inverse(block.op, name);
       return is_exact ? inverses.solid().exact() : inverses.solid().approximate();
@@ -113,8 +112,8 @@ class SchurType : public InverseType {
                 "The inverse \"Lockstep Schur\" stands for that of the pressure block A.");
     const auto factory =
         getInverseLibrary()->getInverseFactory(list().get<std::string>("Inverse Type"));
-    const int largest =
-        list().isType<int>("Largest Solid") ? list().get<int>("Largest Solid") : usual_largest_solid;
+    const int largest = list().isType<int>("Largest Solid") ? list().get<int>("Largest Solid")
+                                                            : usual_largest_solid;
     const auto inverse_of = [&factory](const Teko::LinearOp& matrix) {
       return Teko::LinearOp(Teko::buildInverse(*factory, matrix));
     };
@@ -137,8 +136,8 @@ class IncompleteCholeskyType : public InverseType {
                 "The inverse \"Incomplete Cholesky\" needs an assembled matrix, but a block of the "
                 "{} is matrix-free.",
                 inverses.system().name);
-    return with_factor(block.factor,
-                       incomplete_cholesky_inverse(matrix, "block of the " + inverses.system().name));
+    return with_factor(block.factor, incomplete_cholesky_inverse(
+                                         matrix, "block of the " + inverses.system().name));
   }
 };
 

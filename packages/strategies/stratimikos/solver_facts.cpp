@@ -65,8 +65,9 @@ std::string next_towards_pressure(const std::string& type, const ParameterList& 
 
 bool is_block_factory(const std::string& type) {
   static const std::array<const char*, 8> types = {
-      "Neumann Series", "Diagonal Scaling",  "Iterative Preconditioner", "Diagnostic Inverse",
-      "Block Add",      "Block Multiply",    "Identity",                 "Preconditioner"};
+      "Neumann Series",     "Diagonal Scaling", "Iterative Preconditioner",
+      "Diagnostic Inverse", "Block Add",        "Block Multiply",
+      "Identity",           "Preconditioner"};
   return std::find(types.begin(), types.end(), type) != types.end();
 }
 
@@ -80,8 +81,8 @@ std::string pressure_inverse_of(const ParameterList& library, std::string name) 
       return is_block_factory(type) ? "" : name;
     name = next;
   }
-  throw InputError(
-      fmt::format("Teko's \"Inverse Factory Library\": the inverse \"{}\" refers to itself.", name));
+  throw InputError(fmt::format(
+      "Teko's \"Inverse Factory Library\": the inverse \"{}\" refers to itself.", name));
 }
 
 /// The entries of the library that an inverse leads to.

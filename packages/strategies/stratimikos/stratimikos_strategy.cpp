@@ -131,13 +131,15 @@ ParameterList StratimikosStrategy::valid_parameters() {
           "Stratimikos' name for the package that iterates; Belos is the one that fits");
   declare(list, "Preconditioner Type", std::string("None"),
           "\"Teko\", whose list in \"Preconditioner Types\" names the inverses, or \"None\"");
-  declare_free_sublist(list, "Linear Solver Types",
-                       "Stratimikos' list of that name: in \"Belos\" the \"Solver Type\" (MINRES, "
-                       "Block GMRES, TFQMR, ...) and its settings in \"Solver Types\". "
-                       "\"Convergence Tolerance\" there is what one solve of Belos aims at, at most.");
+  declare_free_sublist(
+      list, "Linear Solver Types",
+      "Stratimikos' list of that name: in \"Belos\" the \"Solver Type\" (MINRES, "
+      "Block GMRES, TFQMR, ...) and its settings in \"Solver Types\". "
+      "\"Convergence Tolerance\" there is what one solve of Belos aims at, at most.");
   declare_free_sublist(
       list, "Preconditioner Types",
-      "Stratimikos' list of that name: in \"Teko\" the \"Inverse Type\" of the whole system and the "
+      "Stratimikos' list of that name: in \"Teko\" the \"Inverse Type\" of the whole system and "
+      "the "
       "\"Inverse Factory Library\" that it is in. Besides Teko's own types and MueLu, Ifpack2 and "
       "Belos there are \"SPD Block Diagonal\", \"Lockstep Multigrid\", \"Lockstep Solid\", "
       "\"Lockstep Schur\" and \"Incomplete Cholesky\".");
@@ -182,12 +184,12 @@ StratimikosStrategy::StratimikosStrategy(const ParameterList& complete, const So
   if (facts_.inverse.empty())
     return;
   in_our_words(*this, "Teko cannot read its \"Inverse Factory Library\"", [&] {
-    trilinos_->library = Teko::InverseLibrary::buildFromParameterList(
-        stratimikos_list(complete)
-            .sublist("Preconditioner Types")
-            .sublist("Teko")
-            .sublist("Inverse Factory Library"),
-        make_solver_builder());
+    trilinos_->library =
+        Teko::InverseLibrary::buildFromParameterList(stratimikos_list(complete)
+                                                         .sublist("Preconditioner Types")
+                                                         .sublist("Teko")
+                                                         .sublist("Inverse Factory Library"),
+                                                     make_solver_builder());
     const auto handler = rcp(new Teko::RequestHandler);
     handler->addRequestCallback(rcp(new InversesCallback(this)));
     trilinos_->library->setRequestHandler(handler);
@@ -224,10 +226,11 @@ RCP<const BlockedOperator> StratimikosStrategy::operator_for_set_up(
   if (is_matrix_free && !facts_.wants_explicit_blocks)
     return system.op();
   const auto a = assembled(system.pressure_block());
-  check_solve(!a.is_null(),
-              "The list of the strategy stratimikos wants the pressure block of the {} as a matrix, "
-              "but it is matrix-free. Name \"Lockstep Multigrid\" for its inverse.",
-              system.name);
+  check_solve(
+      !a.is_null(),
+      "The list of the strategy stratimikos wants the pressure block of the {} as a matrix, "
+      "but it is matrix-free. Name \"Lockstep Multigrid\" for its inverse.",
+      system.name);
   const auto regular = regular_pressure_block(system, a);
   if (!facts_.wants_explicit_blocks && regular == a)
     return system.op();
@@ -241,11 +244,12 @@ RCP<const BlockedOperator> StratimikosStrategy::operator_for_set_up(
     return result.op();
   }
   const auto c = assembled(system.solid_block());
-  check_solve(!c.is_null(),
-              "The list of the strategy stratimikos multiplies blocks with each other, but the solid "
-              "block of the {} is matrix-free. Choose \"SPD Block Diagonal\" or \"Block "
-              "Gauss-Seidel\".",
-              system.name);
+  check_solve(
+      !c.is_null(),
+      "The list of the strategy stratimikos multiplies blocks with each other, but the solid "
+      "block of the {} is matrix-free. Choose \"SPD Block Diagonal\" or \"Block "
+      "Gauss-Seidel\".",
+      system.name);
   Tpetra::RowMatrixTransposer<double, int, GlobalIndex> transposer(system.coupling_transposed());
   const auto op = Thyra::defaultBlockedLinearOp<double>();
   op->beginBlockFill(2, 2);
@@ -261,9 +265,10 @@ RCP<const LinearOperator> StratimikosStrategy::inverse_of(const RCP<const Linear
                                                           const std::string& name) {
   return in_our_words(
       *this,
-      fmt::format("Teko cannot build the inverse \"{}\" for the {} (a value of the wrong type, such "
-                  "as a double where an int is wanted, ends here too)",
-                  name, system_->name),
+      fmt::format(
+          "Teko cannot build the inverse \"{}\" for the {} (a value of the wrong type, such "
+          "as a double where an int is wanted, ends here too)",
+          name, system_->name),
       [&]() -> RCP<const LinearOperator> {
         return Teko::buildInverse(*trilinos_->library->getInverseFactory(name), op);
       });
@@ -306,8 +311,7 @@ void StratimikosStrategy::build(const BlockSystem& system, bool geometry_changed
 int StratimikosStrategy::correct(const BlockSystem& system, const CorrectionRequest& request,
                                  Vector& correction) {
   if (system.has_solid()) {
-    const auto presumes =
-        method_.is_symmetric() ? Presumes::symmetry : Presumes::nothing;
+    const auto presumes = method_.is_symmetric() ? Presumes::symmetry : Presumes::nothing;
     return method_.correct(system, *flat_, preconditioner_, *request.residual,
                            block_krylov(system, request, presumes), correction);
   }

@@ -43,8 +43,8 @@ class StratimikosStrategy : public RefinedStrategy, private BlockInverses {
   RCP<const LinearOperator> schur_multigrid() const override;
   const SolidInverse& solid() const override { return RefinedStrategy::solid(); }
 
-  /// The operator that Teko gets: that of the system, or one with what a factorisation of its blocks
-  /// needs, a regular A and explicit matrices. Collective.
+  /// The operator that Teko gets: that of the system, or one with what a factorisation of its
+  /// blocks needs, a regular A and explicit matrices. Collective.
   RCP<const BlockedOperator> operator_for_set_up(const BlockSystem& system) const;
   /// An inverse of the library for an operator; what fails is told in our words. Collective.
   RCP<const LinearOperator> inverse_of(const RCP<const LinearOperator>& op,
@@ -53,8 +53,8 @@ class StratimikosStrategy : public RefinedStrategy, private BlockInverses {
   SolverFacts facts_;
   BelosMethod method_;
   std::unique_ptr<Trilinos> trilinos_;
-  const BlockSystem* system_ = nullptr;      ///< while something is built
-  RCP<const BlockedOperator> set_up_;        ///< lives as long as what Teko made for it
+  const BlockSystem* system_ = nullptr;       ///< while something is built
+  RCP<const BlockedOperator> set_up_;         ///< lives as long as what Teko made for it
   RCP<const LinearOperator> preconditioner_;  ///< of the whole; null without one
   RCP<const LinearOperator> fluid_inverse_;   ///< of A alone
   std::unique_ptr<FlatSystem> flat_;          ///< null: not built for solids

@@ -259,7 +259,8 @@ TEST(Flux, NamesTheLeversOfNodes) {
   const BlockSystem& blocks = c.system->blocks(0.1);
   const RCP<Vector> rhs = c.system->lumped_momentum(*momentum);
   blocks.coupling_transposed()->apply(*solution.pressure, *rhs, Teuchos::NO_TRANS, -1, 1);
-  solution.solid = distributed(dense(blocks.solid_block()).llt().solve(dense(*rhs)), c.solids->map());
+  solution.solid =
+      distributed(dense(blocks.solid_block()).llt().solve(dense(*rhs)), c.solids->map());
   const std::vector<double> after = c.coupling.velocity(*solution.solid);
   Momentum<2> total = c.fluid->momentum() + c.system->lumped_fluid_momentum(before);
   total += c.solids->momentum(*momentum) + c.fluid->boundary_pressure_impulse(*solution.pressure);

@@ -68,8 +68,7 @@ std::vector<ClosedFace> make_sheet(Problem<dim>& problem, int faces_per_node = 1
       coupling[node].push_back({faces[face].lower, b});
     mass[node].push_back({map->getGlobalElement(node), relative_mass * b * b / a.unit});
   }
-  problem.system.set_blocks(problem.system.pressure_block(),
-                            matrix_from_rows(map, coupling, a.map),
+  problem.system.set_blocks(problem.system.pressure_block(), matrix_from_rows(map, coupling, a.map),
                             as_operator(RCP<const CrsMatrix>(matrix_from_rows(map, mass))));
   const auto motions = rcp(new MultiVector(map, dim == 2 ? 3 : 6));
   motions->getVectorNonConst(0)->putScalar(1);

@@ -235,7 +235,8 @@ TEST(BlockDiagonal, RefusesAnIndefiniteBlock) {
   SaddleOptions options;
   options.plate_mass = -1;
   const SaddleProblem problem(world(), options);
-  EXPECT_THROW(block_diagonal_inverse(assembled(problem.system.solid_block()), 24, "test"), SolveError);
+  EXPECT_THROW(block_diagonal_inverse(assembled(problem.system.solid_block()), 24, "test"),
+               SolveError);
 }
 
 TEST(ExactInverse, IsExactForEveryKindOfMatrix) {

@@ -103,9 +103,10 @@ TEST(Preconditioner, EveryTypeIsSymmetricPositiveDefinite) {
     EXPECT_NO_THROW(check_symmetric_positive(
         *preconditioner_from_list(problem.system.pressure_block(), inverse(xml), "test"), "test"));
   }
-  EXPECT_NO_THROW(check_symmetric_positive(
-      *preconditioner_from_list(problem.system.solid_block(), inverse(typed("Block Diagonal")), "test"),
-      "test"));
+  EXPECT_NO_THROW(
+      check_symmetric_positive(*preconditioner_from_list(problem.system.solid_block(),
+                                                         inverse(typed("Block Diagonal")), "test"),
+                               "test"));
 }
 
 TEST(Preconditioner, UnsymmetricSmootherIsCaught) {

@@ -32,7 +32,8 @@ void set_solver(ParameterList& list, const std::string& name) {
   list.sublist("Linear Solver Types").sublist("Belos") = belos;
 }
 
-/// Flexible GMRES with a factory of Teko for the whole, of which "Multigrid" and "Solids" are parts.
+/// Flexible GMRES with a factory of Teko for the whole, of which "Multigrid" and "Solids" are
+/// parts.
 ParameterList gmres_with(const ParameterList& factory) {
   ParameterList list = shipped_list("gauss-seidel");
   library_of(list).sublist("Coupled") = factory;
@@ -53,7 +54,8 @@ struct SolvedByList {
   SolveReport report;
 };
 
-SolvedByList solve_by(const ParameterList& list, const SaddleProblem& problem, double tolerance = 1e-10) {
+SolvedByList solve_by(const ParameterList& list, const SaddleProblem& problem,
+                      double tolerance = 1e-10) {
   StrategyRegistry registry("solver strategy");
   register_strategies(registry);
   const auto strategy = registry.create(list.get<std::string>("Type"), list);
@@ -99,8 +101,8 @@ SaddleOptions closed(bool by_piston) {
 TEST(Stratimikos, EverySolverOfBelosThatTakesAnIndefiniteSystem) {
   if (world()->getSize() > 2)
     GTEST_SKIP() << "nothing that two ranks do not show";
-  for (const std::string name : {"MINRES", "Block GMRES", "Pseudo Block GMRES", "GCRODR", "TFQMR",
-                                 "BiCGStab"}) {
+  for (const std::string name :
+       {"MINRES", "Block GMRES", "Pseudo Block GMRES", "GCRODR", "TFQMR", "BiCGStab"}) {
     SCOPED_TRACE(name);
     ParameterList list = shipped_list(name == "MINRES" ? "minres-teko" : "gauss-seidel");
     set_solver(list, name);
@@ -115,7 +117,8 @@ TEST(Stratimikos, FactoriesOfTeko) {
     GTEST_SKIP() << "nothing that two ranks do not show";
   const std::vector<ParameterList> factories = {
       factory("Block Jacobi", {{"Inverse Type 1", "Multigrid"}, {"Inverse Type 2", "Solids"}}),
-      factory("Block Gauss-Seidel", {{"Inverse Type 1", "Multigrid"}, {"Inverse Type 2", "Solids"}}),
+      factory("Block Gauss-Seidel",
+              {{"Inverse Type 1", "Multigrid"}, {"Inverse Type 2", "Solids"}}),
       factory("Block Gauss-Seidel", {{"Inverse Type 1", "MueLu"}, {"Inverse Type 2", "Solids"}}),
       factory("Block Gauss-Seidel",
               {{"Inverse Type 1", "Incomplete Cholesky"}, {"Inverse Type 2", "Lockstep Solid"}}),
@@ -150,7 +153,8 @@ TEST(Stratimikos, MinresWithTekoIsPressureSchur) {
     SaddleOptions options = closed(false);
     options.plate_mass = mass;
     const SaddleProblem problem(world(), options);
-    const SolvedByList a = solve_by(by_name, problem), b = solve_by(shipped_list("minres-teko"), problem);
+    const SolvedByList a = solve_by(by_name, problem),
+                       b = solve_by(shipped_list("minres-teko"), problem);
     EXPECT_LT(relative_difference(*a.solution.pressure, *b.solution.pressure), 1e-7);
     EXPECT_NEAR(a.report.iterations, b.report.iterations, 2);
   }
@@ -179,8 +183,8 @@ TEST(Stratimikos, NonConvergenceCarriesTheNumbers) {
 }
 
 TEST(Stratimikos, AnUnsymmetricPreconditionerIsCaughtOnRequest) {
-  ParameterList list = gmres_with(
-      factory("Block Gauss-Seidel", {{"Inverse Type 1", "Multigrid"}, {"Inverse Type 2", "Solids"}}));
+  ParameterList list = gmres_with(factory(
+      "Block Gauss-Seidel", {{"Inverse Type 1", "Multigrid"}, {"Inverse Type 2", "Solids"}}));
   set_solver(list, "MINRES");
   list.set("Check Preconditioner Symmetry", true);
   EXPECT_THAT(complaint<SolveError>(list, SaddleProblem(world(), {})),
