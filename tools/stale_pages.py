@@ -139,6 +139,9 @@ def remake(root, ages, hours):
         if commit_of_tree(root) != commit:
             print(f"The tree is no more that of {commit}, so the rest waits: start anew.")
             break
+        if time.monotonic() >= end:
+            print("The time is over.")
+            break
         seconds = seconds_of(root, age.page.name) or 0
         if age.page.by_hand:
             outcome = f"left: {age.page.by_hand}"
