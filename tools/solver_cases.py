@@ -5,6 +5,8 @@ import random
 import re
 import subprocess
 
+from stale_pages import commit_of_tree
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
@@ -119,10 +121,5 @@ def triad(build, n_cores=1):
     return max(once() for _ in range(3))
 
 
-def describe_commit():
-    return subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True,
-                          text=True).stdout.strip()
-
-
-# Asked for before anything is measured: the figures that a tool writes would make the tree dirty.
-COMMIT = describe_commit()
+# Asked for before anything is measured: somebody may commit while a tool runs.
+COMMIT = commit_of_tree()

@@ -14,7 +14,6 @@ KNOWN = {
     3473: LOOP,
     3483: "the rotated copy differs by 3e-5",
     3519: LOOP,
-    4316: "solid-schur asks for 1e-10 of a solid row that is round-off itself",
     4335: LIQUID,
     4432: CRUSHED,
     4453: LIQUID,

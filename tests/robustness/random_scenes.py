@@ -30,11 +30,8 @@ from invariants import (Tables, check_energy, check_frames, check_restart, check
 from parameter_list import to_xml
 from runs import program, run
 from scenes import random_scene
-from solvers import NEEDS_FLUID_ALONE
 
 # What a strategy or a scene may be refused for, in the program's words.
-NO_UNKNOWNS = re.compile(r"some rank owns no (pressure|solid) unknown")
-CLOSED_REGION = re.compile(r"a moving\s+solid closes a region of fluid")
 MUELU = re.compile(r"MueLu\s+cannot\s+build\s+a\s+preconditioner\s+for\s+the\s+solid\s+block")
 INDEFINITE = re.compile(r"preconditioner\s+is\s+not\s+positive\s+definite")
 CRUSHED = re.compile(r"elastic forces of .* are\s+not finite")
@@ -66,12 +63,10 @@ class Seed:
 
     def may_refuse(self, errors, ranks):
         facts = self.scene.facts
-        return (ranks > 1 and facts.needs_full_ranks and NO_UNKNOWNS.search(errors) or
-                ranks > 1 and facts.solid_by_muelu and MUELU.search(errors) or
+        return (ranks > 1 and facts.solid_by_muelu and MUELU.search(errors) or
                 facts.pressure_by_muelu and INDEFINITE.search(errors) or
                 facts.crushed and CRUSHED.search(errors) or
-                facts.massless and NO_MASS.search(errors) or
-                facts.strategy in NEEDS_FLUID_ALONE and CLOSED_REGION.search(errors))
+                facts.massless and NO_MASS.search(errors))
 
     def check(self, ranks):
         one = self.simulate("one")

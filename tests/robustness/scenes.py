@@ -42,7 +42,6 @@ class Facts:
     strategy: str = ""
     pressure_by_muelu: bool = False  # of A + B C^-1 B^T, which Chebyshev's polynomials may take for smaller than it is
     solid_by_muelu: bool = False  # which on several ranks cannot multiply matrices of which one holds no neighbours
-    needs_full_ranks: bool = False  # Belos' inner products want unknowns on every rank
     massless: bool = False  # a cloth, of which the fluid may leave nodes without any
     scalar_range: dict = dataclasses.field(default_factory=dict)  # smoke, temperature: [least, most]
     lightest: float = math.inf  # density of a solid over that of the fluid

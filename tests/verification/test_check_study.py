@@ -1,7 +1,12 @@
-"""What the bounds of the studies' tests must catch."""
+"""What the bounds of the studies' tests must catch; and that every study has such a test."""
+import re
 import unittest
+import xml.etree.ElementTree
+from pathlib import Path
 
 from check_study import check
+
+HERE = Path(__file__).resolve().parent
 
 
 def row(**columns):
@@ -31,6 +36,16 @@ class Expectations(unittest.TestCase):
         self.assertFalse(self.holds("b | drag | value | all | < | 9", {}))
         self.assertFalse(self.holds("a | drag | order | all | > | 1", {}))
         self.assertTrue(self.holds("a | drag | value | last | < | 2", {"value": "9"}, {}))
+
+
+class Tests(unittest.TestCase):
+    def test_every_study_has_one(self):
+        tested = re.findall(r"^lockstep_verification\(([\w-]+)", (HERE / "CMakeLists.txt").read_text(), re.MULTILINE)
+        files = sorted((HERE.parents[1] / "xml-params/studies").glob("*.xml"))
+        studies = [file.stem for file in files if xml.etree.ElementTree.parse(file).getroot().get("name") == "Study"]
+        self.assertGreater(len(studies), 70)
+        self.assertEqual(sorted(set(studies) - set(tested)), [], "add a lockstep_verification(...) at their first rungs")
+        self.assertEqual(sorted(set(tested) - set(studies)), [])
 
 
 if __name__ == "__main__":
