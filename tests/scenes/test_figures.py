@@ -91,6 +91,32 @@ class Balls(unittest.TestCase):
         self.assertAlmostEqual(run.of("Ball 10000", "y", 2).mean(), radius, delta=.01)
 
 
+class TwentyFourBalls(unittest.TestCase):
+    """Fig. 7: the light ones bob on the water, the heavy ones lie on its floor."""
+    LEVEL = .4 + 6 * 4 / 3 * math.pi * .1**3 * (.1 + .5 + .9 + 1) / 1.5  # of the water that all of them lift [m]
+
+    @classmethod
+    def setUpClass(cls):
+        cls.run_of_all = Run("twenty-four-spheres", (24, 32, 16), end=2)
+
+    def heights(self, density):
+        return [self.run_of_all.of(f"Ball {density} {number}", "y", 1.5).mean() for number in range(1, 7)]
+
+    def test_light_ones_float_and_heavy_ones_sink(self):
+        for height in self.heights(10000):
+            self.assertAlmostEqual(height, .1, delta=.02)
+        for height in self.heights(500):
+            self.assertAlmostEqual(height, self.LEVEL, delta=.05)  # half in; the water swings
+        self.assertGreater(min(self.heights(100)), max(self.heights(500)))
+        self.assertGreater(min(self.heights(500)), max(self.heights(900)))
+
+    @unittest.expectedFailure
+    def test_those_of_nine_tenths_float(self):
+        """On this grid, a radius of 1.6 cells, they hover under water, 0.1 m too deep, also when it has come to rest."""
+        for height in self.heights(900):
+            self.assertAlmostEqual(height, self.LEVEL - .061, delta=.05)  # a tenth is out of the water
+
+
 class Torus(unittest.TestCase):
     """Fig. 8: dives, is squeezed, and floats up."""
 
@@ -186,6 +212,12 @@ class Balloon(unittest.TestCase):
         outside = speed[height > top + .25]
         self.assertGreater(len(outside), 5)
         self.assertLess(outside.max() - outside.min(), 1e-9)  # where there is nothing
+
+    @unittest.expectedFailure
+    def test_the_shipped_one_leaves_the_box(self):
+        """Not with 4 m/s of smoke: it turns 0.4 m below the top with the shipped cells, lower with these."""
+        run = Run("balloon", (16, 24, 16), "Solids/Balloon/Geometry/Mesh Spacing=0.05", end=1.8)
+        self.assertGreater(run.of("Balloon", "y").max(), 1.5)
 
 
 class Fish(unittest.TestCase):
