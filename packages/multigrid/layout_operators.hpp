@@ -24,7 +24,9 @@ inline RCP<const LinearOperator> as_thyra_operator(const RCP<const TpetraOperato
   return Thyra::createConstLinearOp<double, int, GlobalIndex>(op);
 }
 
-/// A symmetric operator on the layout's vectors that overwrites its result.
+/// A symmetric operator on the layout's vectors that overwrites its result, with zeros where there is
+/// no unknown: the vectors of Thyra's spaces begin with whatever was in their memory, and an inner
+/// product of Belos sums all entries.
 template <typename Base>
 class LayoutOperator : public Base {
  public:
@@ -37,6 +39,7 @@ class LayoutOperator : public Base {
     for (std::size_t column = 0; column < x.getNumVectors(); ++column) {
       const auto in = x.getData(column);
       if (alpha == 1 && beta == 0) {
+        y.getVectorNonConst(column)->putScalar(0);
         apply_to(in.getRawPtr(), y.getDataNonConst(column).getRawPtr());
         continue;
       }

@@ -19,7 +19,8 @@ namespace {
 /// The least scale of the pressure rows, as a part of what the fluxes would be without that: with
 /// it the usual tolerances stay above round-off.
 constexpr double least_flux = 1e-6;
-/// The same of stiff solids, whose elastic forces cancel where they move rigidly.
+/// The same of solids, whose elastic forces cancel where they move rigidly, and on which pressures
+/// cancel where the flow is the same on both sides.
 constexpr double least_force = 1e-6;
 
 /// |diag(C) V|, which is what elastic forces would be if they did not cancel; 0 if C is no matrix.
@@ -86,15 +87,16 @@ void find_block_residual(const BlockSystem& system, const BlockVector& rhs,
   Vector term(r1->getMap());
   system.coupling_transposed()->apply(*solution.solid, term, Teuchos::TRANS);
   add_term(*r1, term, 1, result.pressure_scale);
-  const double gross_flux =
-      system.coupling_transposed()->getFrobeniusNorm() * solution.solid->norm2();
+  const double size_of_coupling = system.coupling_transposed()->getFrobeniusNorm();
+  const double gross_flux = size_of_coupling * solution.solid->norm2();
   result.pressure_scale = std::max(result.pressure_scale, least_flux * gross_flux);
   result.pressure = norm(*r1);
 
   const SolidResidual row = solid_row_residual(system, rhs, solution);
   result.vector.solid = row.vector;
   result.solid_scale =
-      std::max(row.scale, least_force * gross_force(system.solid_block(), *solution.solid));
+      std::max({row.scale, least_force * gross_force(system.solid_block(), *solution.solid),
+                least_force * size_of_coupling * solution.pressure->norm2()});
   result.solid = norm(*row.vector);
 }
 

@@ -129,17 +129,21 @@ class Docs(unittest.TestCase):
                     self.assertIn(one.get("name").replace(",", ";"), shown)
 
     def test_sizes_that_scenes_name_make_cubes(self):
-        """What the comment of a scene says of other sizes: "Domain/Cells={160, 240, 160}"."""
+        """What the comment of a scene says of other sizes, "Domain/Cells={160, 240, 160}", and what PaperSize makes of it."""
         n_sizes = 0
         for scene in sorted((ROOT / "xml-params/scenes").glob("*.xml")):
             text = scene.read_text()
-            for cells in re.findall(r'"Domain/Cells=\{([^}]*)\}"', text):
+            sizes = re.findall(r'"Domain/Cells=\{([^}]*)\}"', text)
+            if "[PaperSize" in text:
+                cells = re.search(r'name="Cells"[^>]*value="\{([^}]*)\}"', text).group(1)
+                sizes += [re.sub(r"\[PaperSize \? (\d+) : (\d+)\]", choice, cells) for choice in (r"\1", r"\2")]
+            for cells in sizes:
                 lower, upper = (re.search(rf'name="{name}"[^>]*value="\{{([^}}]*)\}}"', text).group(1) for name in ("Lower", "Upper"))
                 edges = [(float(u) - float(v)) / float(n) for u, v, n in zip(upper.split(","), lower.split(","), cells.split(","))]
                 n_sizes += 1
                 with self.subTest(scene=scene.name, cells=cells):
                     self.assertAlmostEqual(min(edges) / max(edges), 1, delta=1e-9)
-        self.assertGreater(n_sizes, 10)
+        self.assertGreater(n_sizes, 18)
 
     def test_pictures_are_small(self):
         for picture in sorted([*(ROOT / "docs").rglob("*.png"), *(ROOT / "docs").rglob("*.jpg")]):

@@ -24,7 +24,8 @@ def coarse_cells(scene):
     root = xml.etree.ElementTree.parse(scene).getroot()
     dimension = int(root.find("Parameter[@name='Dimension']").get("value"))
     given = root.find("ParameterList[@name='Domain']/Parameter[@name='Cells']")
-    cells = [int(n) for n in given.get("value").strip("{} ").split(",")] if given is not None else [32] * dimension
+    as_shipped = re.sub(r"\[PaperSize \? \d+ : (\d+)\]", r"\1", given.get("value")) if given is not None else ""
+    cells = [int(n) for n in as_shipped.strip("{} ").split(",")] if as_shipped else [32] * dimension
     ratio = math.gcd(*cells)
     smallest = [n // ratio for n in cells]
     factor = min(ratio, max(1, int((MOST_CELLS[dimension] / math.prod(smallest)) ** (1 / dimension))))

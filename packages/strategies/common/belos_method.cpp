@@ -80,7 +80,8 @@ int BelosMethod::correct(const BlockSystem& system, const FlatSystem& flat,
   const double t = request.solid_target > 0 ? request.target / request.solid_target : 1;
   const RCP<const LinearOperator> op = flat.scaled(system.op(), t);
   const RCP<Vector> b = make_vector(flat.map()), x = make_vector(flat.map());
-  flat.pressure_part(*b)->update(1, rhs, 0);
+  const double size = norm(rhs);
+  flat.pressure_part(*b)->update(1 / size, rhs, 0);
   const auto solver = trilinos_->factory->createOp();
   const auto limits = Teuchos::parameterList();
   limits->set("Maximum Iterations", maximum_iterations_ > 0
@@ -89,7 +90,7 @@ int BelosMethod::correct(const BlockSystem& system, const FlatSystem& flat,
   const Thyra::SolveCriteria<double> criteria(
       Thyra::SolveMeasureType(Thyra::SOLVE_MEASURE_NORM_RESIDUAL,
                               Thyra::SOLVE_MEASURE_NORM_INIT_RESIDUAL),
-      std::clamp(std::max(request.target / norm(rhs), tolerance_), strongest_reduction,
+      std::clamp(std::max(request.target / size, tolerance_), strongest_reduction,
                  weakest_reduction),
       limits);
   try {
@@ -105,7 +106,7 @@ int BelosMethod::correct(const BlockSystem& system, const FlatSystem& flat,
     const auto status =
         Thyra::solve<double>(*solver, Thyra::NOTRANS, *as_thyra(b, op->range()),
                              as_thyra(x, op->domain()).ptr(), Teuchos::constPtr(criteria));
-    pressure.update(1, *flat.pressure_part(*x), 0);
+    pressure.update(size, *flat.pressure_part(*x), 0);
     return status.extraParameters->get<int>("Iteration Count");
   } catch (const Failure&) {
     throw;
