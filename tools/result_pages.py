@@ -54,6 +54,7 @@ TOOL_PAGES = {
     "peers": Tool(["tools/measure-peers"], [], [*ANY_SOLVE, "tests/benchmarks/peers*", "tools/solver_cases.py"]),
     "plume-tiles": Tool(["tools/measure-tiles"], [
         f"{STUDIES}/plume-tiles-scene.xml", f"{STUDIES}/pool-tiles-scene.xml", "xml-params/scenes/plume-in-tall-room.xml"]),
+    "presets": Tool(["tools/compare-presets"], [], ["xml-params/presets", "xml-params/studies", "tools/compare-presets", "packages"]),
     "ranks": Tool(["tools/measure-ranks"], [f"{STUDIES}/step-cost-scene.xml"], ["tests/benchmarks/mpi_counter.cpp"]),
     "robustness": Tool(["tests/robustness/random_scenes.py --seeds 0-999 --quick --report docs/results/robustness.md",
                         "tests/robustness/mutations.py --mutations 0-9999 --report docs/results/robustness.md"],
@@ -62,7 +63,7 @@ TOOL_PAGES = {
                    ["tools/solver_cases.py"], by_hand=OTHER_PROGRAM),
     "soft-cost": Tool(["tools/measure-soft"], [f"{STUDIES}/soft-cost-scene.xml", f"{STUDIES}/soft-cost-rigid-scene.xml"]),
     "solver-cost": Tool(["tools/measure-solvers",
-                         "tools/measure-solvers --cases 'free top, ball 1e-3' 'free top, 30 balls 1e-3' --strategies block-lu",
+                         "tools/measure-solvers --cases 'free top, ball 1e-3' 'free top, 30 balls 1e-3' --strategies minres-teko",
                          "tools/measure-solvers --cells 64 96 160 --cases 'free top, ball 1' --strategies schur-cg"],
                         [], [*ANY_SOLVE, "packages/mac/pressure", "packages/faces", "packages/mixedface", "tools/solver_cases.py"]),
     "step-cost": Tool(["tools/measure-step --steps 8"], [f"{STUDIES}/step-cost-scene.xml"], ["xml-params/solvers/paper.xml", "packages/strategies"]),
@@ -75,6 +76,7 @@ TOOL_PAGES = {
     "strategies-joints": Tool(["tools/compare-strategies joints"], [], [
         *ANY_SOLVE, "packages/mac/pressure", "packages/faces", "packages/mixedface", "packages/articulated", "tools/compare-strategies",
         "tools/solver_cases.py"]),
+    "strategies-scenes": Tool(["tools/compare-strategies scenes"], ["xml-params/scenes/*.xml"], [*ANY_SOLVE, "tools/compare-strategies"]),
     "strategies-systems": Tool(["tools/compare-strategies systems"], [], [*ANY_SOLVE, "tests/data", "drivers/solve.cpp"]),
     "swimming": Tool(["tools/measure-swimming"], ["xml-params/scenes/fish-2d.xml", "xml-params/scenes/fish.xml"]),
     "viscous-coupling": Tool(["tools/compare-viscous-coupling"], [], ["tools/compare-viscous-coupling"]),

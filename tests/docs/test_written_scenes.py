@@ -41,7 +41,7 @@ class WrittenScenes(unittest.TestCase):
         return result.stdout
 
     def test_scene(self):
-        box, body, constants, many, like_another, view = blocks("write-a-scene.md")
+        box, body, constants, many, like_another, preset, view = blocks("write-a-scene.md")
         numbers = constants[: constants.index("  ...")]
         self.assertIn("valid", self.run_program(SIMULATE, self.write("box.xml", box), "--validate"))
         self.run_program(SIMULATE, self.write("body.xml", with_lists(box, body, view)), "--validate")
@@ -50,6 +50,8 @@ class WrittenScenes(unittest.TestCase):
         self.assertIn("Ball 20", bodies)
         scene = str(ROOT / "xml-params" / "scenes" / "buoyant-spheres.xml")
         self.run_program(SIMULATE, self.write("finer.xml", like_another.replace("xml-params/scenes/buoyant-spheres.xml", scene)),
+                         "--validate", "--set", "Domain/Cells={32, 12, 8}")
+        self.run_program(SIMULATE, self.write("preset.xml", preset.replace("xml-params/", f"{ROOT}/xml-params/")),
                          "--validate", "--set", "Domain/Cells={32, 12, 8}")
 
     def test_study(self):
