@@ -59,6 +59,7 @@ ParameterList strategy_list(const std::string& file, const StrategyRegistry& str
               file, tolerance);
   Document strategy{ParameterList(), document.source};
   strategy.list.sublist("Strategy") = nested ? document.list.sublist("Strategy") : document.list;
+  check_strategy_is_not_gone(strategy.list.sublist("Strategy"), file);
   const bool has_own = strategy.list.sublist("Strategy").isParameter("Tolerance");
   ParameterList valid;
   declare_typed_sublist(valid, "Strategy", "The solver strategy.", strategies.schemas());
@@ -159,8 +160,8 @@ std::string csv(const std::vector<Row>& rows) {
 std::string line(const Row& row) {
   const std::string name = std::filesystem::path(row.file).stem().string();
   if (!row.failure.empty())
-    return fmt::format("{:<16} failed: {}", name, row.failure);
-  return fmt::format("{:<16} {:>10} {:>9.3f} {:>9.3f} {:>10.2e} {:>10.2e} {:>10} {:>8.1f}", name,
+    return fmt::format("{:<18} failed: {}", name, row.failure);
+  return fmt::format("{:<18} {:>10} {:>9.3f} {:>9.3f} {:>10.2e} {:>10.2e} {:>10} {:>8.1f}", name,
                      row.report.iterations, row.report.setup_seconds, row.report.solve_seconds,
                      row.report.pressure_residual, row.report.solid_residual,
                      row.error ? fmt::format("{:.2e}", *row.error) : "-", row.memory_mb);
@@ -221,8 +222,8 @@ int run(int argc, char** argv, const Communicator& comm) {
                     stored.system.null_space.size(), comm->getSize()));
   if (!exact.solution)
     print("no errors, as there is no reference: " + exact.note);
-  print(fmt::format("{:<16} {:>10} {:>9} {:>9} {:>10} {:>10} {:>10} {:>8}", "strategy",
-                    "iterations", "setup [s]", "solve [s]", "res. p", "res. V", "error", "MB"));
+  print(fmt::format("{:<18} {:>10} {:>9} {:>9} {:>10} {:>10} {:>10} {:>8}", "list", "iterations",
+                    "setup [s]", "solve [s]", "res. p", "res. V", "error", "MB"));
 
   // 3. One after another, each from zero; the table has them as soon as they are done.
   if (!arguments.output_directory.empty())

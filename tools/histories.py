@@ -4,6 +4,7 @@ import json
 import math
 import pathlib
 import re
+import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 
 RULE = """Every number of `history.csv`, `bodies.csv`, `joints.csv` and the observers' tables counts but those of columns that tell how a step was computed: whose names end in `iterations`,
@@ -11,6 +12,7 @@ RULE = """Every number of `history.csv`, `bodies.csv`, `joints.csv` and the obse
 or joint, and at least a tenth of the greatest of the same unit in the table and of what the scene has of that unit, made of its greatest momentum or impulse, its longest step and the smallest length that its
 grid resolves (1 of what has no unit and of angles). So what is zero by symmetry is measured against what could be there. A number in one run alone (a row, a column, one of them nan) counts as infinite. Columns of whole
 numbers without a unit, those of contacts say, are counts: they are the same or not."""
+OF_CONTACT = "Contact/Tolerance=1e-12"
 OF_THE_SOLVING = re.compile(r"(iterations|residual|error|incompatibility|divergence|seconds)$")
 KEYS = ("step", "name")
 PART = 0.1
@@ -155,6 +157,12 @@ def compare(tables, length, limit):
                     one.take(difference(a, b, known[vector_of(column), unit, key[1]]), key, limit)
             found.differences.append(one)
     return found
+
+
+def has_contact(scene):
+    """Whether a scene file leaves contact on, whose iteration then wants a tolerance as tight as the solves have."""
+    contact = ElementTree.parse(scene).getroot().find("ParameterList[@name='Contact']/Parameter[@name='Type']")
+    return contact is None or contact.get("value") != "none"
 
 
 def compare_runs(folders, limit):

@@ -76,6 +76,8 @@ TOOL_PAGES = {
     "strategies-joints": Tool(["tools/compare-strategies joints"], [], [
         *ANY_SOLVE, "packages/mac/pressure", "packages/faces", "packages/mixedface", "packages/articulated", "tools/compare-strategies",
         "tools/solver_cases.py"]),
+    "strategies-paper": Tool(["tools/compare-strategies paper"], [f"xml-params/scenes/{name}.xml" for name in (
+        "buoyant-spheres-water", "torus-drop", "cloth-in-water", "balloon")], [*ANY_SOLVE, "xml-params/presets", "tools/compare-strategies"]),
     "strategies-scenes": Tool(["tools/compare-strategies scenes"], ["xml-params/scenes/*.xml"], [*ANY_SOLVE, "tools/compare-strategies"]),
     "strategies-systems": Tool(["tools/compare-strategies systems"], [], [*ANY_SOLVE, "tests/data", "drivers/solve.cpp"]),
     "swimming": Tool(["tools/measure-swimming"], ["xml-params/scenes/fish-2d.xml", "xml-params/scenes/fish.xml"]),

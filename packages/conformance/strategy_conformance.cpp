@@ -49,13 +49,33 @@ void check_solution(const SaddleProblem& problem, const BlockVector& rhs,
                "solve: solid rows not to the tolerance" + where);
 }
 
+/// The fluid alone between two solves of the whole, as F2 is between S1 and S2.
+void check_fluid_alone(SolverStrategy& strategy, const SaddleProblem& problem,
+                       const std::string& where, Violations& found) {
+  BlockSystem alone = problem.system;
+  alone.set_blocks(problem.system.pressure_block());
+  alone.null_space = problem.system.pressure_null_space;
+  BlockVector rhs{rcp(new Vector(*problem.random_rhs().pressure, Teuchos::Copy)), Teuchos::null};
+  project_out(alone.null_space, *rhs.pressure);
+  BlockVector x{make_vector(rhs.pressure->getMap()), Teuchos::null};
+  const std::string refusal = refusal_of([&] {
+    strategy.prepare(alone);
+    strategy.solve(alone, rhs, x, request);
+    expect_small(found, block_residual(alone, rhs, x).relative_pressure(), tolerance,
+                 "solve: the fluid alone not to the tolerance" + where);
+  });
+  expect_true(found, refusal.empty(), "solve: refuses the fluid alone" + where + ": " + refusal);
+}
+
 /// A second system of the same name: the strategy must see by the stamps that C is another.
 void check_stamps(SolverStrategy& strategy, SaddleProblem& problem, const std::string& where,
                   Violations& found) {
+  check_fluid_alone(strategy, problem, where + ", after a solve with solids", found);
   SaddleOptions heavier = problem.options();
   heavier.plate_mass *= 100;
   const SaddleProblem other(problem.comm(), heavier);
-  problem.system.solids = other.system.solids;
+  problem.system.set_blocks(problem.system.pressure_block(), problem.system.coupling_transposed(),
+                            other.system.solid_block());
   problem.system.solids.stamp = 2;
   const BlockVector rhs = problem.random_rhs(), solution = problem.zero();
   BlockVector x = solution;
@@ -66,6 +86,7 @@ void check_stamps(SolverStrategy& strategy, SaddleProblem& problem, const std::s
   });
   expect_true(found, refusal.empty(),
               "prepare: fails where C changed and its stamp says so" + where + ": " + refusal);
+  check_fluid_alone(strategy, problem, where + ", after another C", found);
 }
 
 /// Right-hand sides that have no solution, or are none.

@@ -24,9 +24,9 @@ inline RCP<const LinearOperator> as_thyra_operator(const RCP<const TpetraOperato
   return Thyra::createConstLinearOp<double, int, GlobalIndex>(op);
 }
 
-/// A symmetric operator on the layout's vectors that overwrites its result, with zeros where there is
-/// no unknown: the vectors of Thyra's spaces begin with whatever was in their memory, and an inner
-/// product of Belos sums all entries.
+/// A symmetric operator on the layout's vectors that overwrites its result, with zeros where there
+/// is no unknown: the vectors of Thyra's spaces begin with whatever was in their memory, and an
+/// inner product of Belos sums all entries.
 template <typename Base>
 class LayoutOperator : public Base {
  public:

@@ -9,7 +9,7 @@
 
 namespace lockstep {
 
-/// Eq. 16 for one fluid, one stack of solids and one coupling, at frozen geometry: the named
+/// Eq. 16 for one fluid, one stack of solids and one coupling, at frozen geometry: the
 /// blocks, right-hand sides, null spaces, and what follows from a solution. Knows none of them
 /// beyond their interfaces.
 template <int dim>

@@ -21,7 +21,7 @@ struct ViscousResult {
   int iterations = 0;
 };
 
-/// Implicit viscosity over dt, coupled to the solids (design, section 5): a Krylov method on
+/// Implicit viscosity over dt, coupled to the solids: conjugate gradients on
 ///   [ M_f + dt K_ff   dt K_fs              ] [ u   ]   [ M_f u*                          ]
 ///   [ dt K_sf         M̃_S - dt D + dt K_ss ] [ V_S ] = [ M_S V_S* + W^T M_F u*_F        ]
 /// The fluid keeps u; of the solid only its viscous impulse is used, so that its own forces are not

@@ -22,7 +22,6 @@ struct Block {
 
 /// Blocks of the same kind, which follow one another in one vector and are solved for as one.
 struct BlockGroup {
-  std::string name;                ///< for messages
   std::vector<Block> blocks = {};  ///< by name; empty: the group has no names within
   long stamp = 0;                  ///< changes whenever the group's operator changes
 };
@@ -37,7 +36,8 @@ struct BlockGroup {
 class BlockSystem {
  public:
   /// Sets the operator from its blocks, which are shared, not copied: A, B^T (solid dofs x pressure
-  /// unknowns; B is never stored, its block is the adjoint) and C; the last two go together.
+  /// unknowns, on the maps of C and A; B is never stored, its block is the adjoint) and C. The last
+  /// two go together. Collective.
   void set_blocks(const RCP<const LinearOperator>& pressure_block,
                   const RCP<const CrsMatrix>& coupling_transposed = Teuchos::null,
                   const RCP<const LinearOperator>& solid_block = Teuchos::null);
@@ -51,8 +51,7 @@ class BlockSystem {
   const RCP<const LinearOperator>& solid_block() const { return solid_block_; }             ///< C
   bool has_solid() const { return !solid_block_.is_null(); }
 
-  BlockGroup pressure{"pressure block"};
-  BlockGroup solids{"solid block"};
+  BlockGroup solids;     ///< the unknowns of C
   SoftNodes soft_nodes;  ///< in the rows of C; empty without soft solids
   /// Orthonormal basis of the null space over (p̂, V_S = 0); empty for a regular system.
   NullSpace null_space;

@@ -39,7 +39,7 @@ void add_list(std::vector<Section>& sections, const ParameterEntry& entry, const
   Section section{path, entry.docString(), "", depth, {}};
   switch (rule.form) {
     case ListForm::free:
-      section.note = "Its content is passed on unchecked.";
+      section.note = "Its content is checked by whoever reads it.";
       sections.push_back(section);
       return;
     case ListForm::optional:

@@ -18,7 +18,15 @@ const std::vector<TekoFactory>& block_factories() {
       {"Block Gauss-Seidel", {"Inverse Type", "Inverse Type #", "Use Upper Triangle"}},
       {"NS SIMPLE",
        {"Inverse Type", "Inverse Velocity Type", "Inverse Pressure Type",
-        "Explicit Velocity Inverse Type", "Alpha", "Use Mass Scaling", "H options"}}};
+        "Explicit Velocity Inverse Type", "Alpha", "Use Mass Scaling", "H options"}},
+      {"Block LU2x2",
+       {"Strategy Name", "Strategy Settings", "Use LDU", "Inverse Type", "Inverse A00 Type",
+        "Inverse Schur Type", "Diagonal Type"}},
+      {"NS LSC",
+       {"Strategy Name", "Strategy Settings", "Is Symmetric", "Inverse Type",
+        "Inverse Velocity Type", "Inverse Pressure Type", "Ignore Boundary Rows", "Use LDU",
+        "Use Mass Scaling", "Use W-Scaling", "Eigen Solver Iterations", "Scaling Type",
+        "Assume Stable Discretization"}}};
   return factories;
 }
 
@@ -32,7 +40,6 @@ const std::vector<std::string>& unchecked_types() {
                                                  "Ifpack",
                                                  "Ifpack2",
                                                  "MueLu",
-                                                 "Block LU2x2",
                                                  "Block Add",
                                                  "Block Multiply",
                                                  "Diagonal Scaling",
@@ -41,7 +48,6 @@ const std::vector<std::string>& unchecked_types() {
                                                  "Iterative Preconditioner",
                                                  "Neumann Series",
                                                  "Identity",
-                                                 "NS LSC",
                                                  "NS SIMPLE-Timed"};
   return types;
 }
@@ -115,9 +121,10 @@ class LibraryCheck {
         fail(path, name, fmt::format("is not a parameter of \"{}\"", factory.type),
              factory.parameters);
       }
-      if (entry.isType<std::string>()) {
+      if (entry.isType<std::string>())
         check_inverse(path, name, Teuchos::getValue<std::string>(entry));
-      }
+      if (name == "Strategy Settings" && entry.isList())
+        check_parameters(list.sublist(name), join_path(path, name), factory);
     }
   }
 

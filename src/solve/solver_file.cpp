@@ -1,5 +1,8 @@
 #include "solve/solver_file.hpp"
 
+#include <map>
+
+#include "base/errors.hpp"
 #include "parameters/strict_xml.hpp"
 
 namespace lockstep {
@@ -10,6 +13,21 @@ Document read_solver_file(const std::string& path, const Communicator& comm) {
   if (!list.isParameter("Type") && list.isParameter("Linear Solver Type"))
     list.set("Type", std::string("stratimikos"));
   return document;
+}
+
+void check_strategy_is_not_gone(const ParameterList& list, const std::string& place) {
+  static const std::map<std::string, std::string> instead = {
+      {"block-lu", "block-lu.xml"},       {"gauss-seidel", "gauss-seidel.xml"},
+      {"simple", "simple.xml"},           {"uzawa", "uzawa.xml"},
+      {"solid-schur", "minres-teko.xml"}, {"bramble-pasciak", "minres-teko.xml"}};
+  if (!list.isType<std::string>("Type"))
+    return;
+  const auto found = instead.find(list.get<std::string>("Type"));
+  check_input(
+      found == instead.end(),
+      "{}: there is no strategy \"{}\" any more; a list of the strategy \"stratimikos\" does what "
+      "it did. Name it by \"Solver/File\": xml-params/solvers/{}.",
+      place, list.get<std::string>("Type"), found == instead.end() ? "" : found->second);
 }
 
 }  // namespace lockstep

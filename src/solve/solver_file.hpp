@@ -11,4 +11,8 @@ namespace lockstep {
 /// Collective.
 Document read_solver_file(const std::string& path, const Communicator& comm);
 
+/// Throws InputError if a list of a strategy has the "Type" of one that is a list of "stratimikos"
+/// now, or is no more; `place` is for the message.
+void check_strategy_is_not_gone(const ParameterList& list, const std::string& place);
+
 }  // namespace lockstep

@@ -2,7 +2,9 @@
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "base/errors.hpp"
@@ -43,6 +45,11 @@ struct Stored {
   std::vector<long long> places, cells;            ///< unknown; its cell, three numbers each
   std::vector<double> lower, dirichlet, diagonal;  ///< three each; one; one, 0 where not stiff
 };
+
+/// Positive or zero, and no more than single precision holds.
+bool is_coefficient(double value) {
+  return value >= 0 && value <= std::numeric_limits<float>::max();
+}
 
 [[noreturn]] void refuse_lattice(const Hdf5File& file, const std::string& reason) {
   throw InputError(fmt::format(
@@ -102,6 +109,7 @@ class LatticeReader {
 
   FaceCoefficients coefficients() {
     check_tables();
+    check_cells();
     deal_out();
     FaceCoefficients result;
     result.blocks = blocks_;
@@ -116,11 +124,8 @@ class LatticeReader {
     std::vector<long long> entry_of_cell(n_cells, -1);
     for (std::size_t i = 0; i < stored_.places.size(); ++i) {
       const long long cell = own_cell(i);
-      if (cell < 0)
-        continue;
-      if (entry_of_cell[cell] >= 0)
-        refuse_lattice(file_, "has two unknowns in one cell");
-      entry_of_cell[cell] = static_cast<long long>(i);
+      if (cell >= 0)
+        entry_of_cell[cell] = static_cast<long long>(i);
     }
     std::vector<GlobalIndex> ids;
     for (std::size_t cell = 0; cell < n_cells; ++cell) {
@@ -144,6 +149,17 @@ class LatticeReader {
     return begin;
   }
 
+  /// Whether no two unknowns are in one cell; on all ranks, so that all of them refuse the file.
+  void check_cells() const {
+    std::vector<std::array<long long, n_axes>> cells(stored_.places.size());
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      std::copy_n(stored_.cells.begin() + static_cast<std::ptrdiff_t>(n_axes * i), n_axes,
+                  cells[i].begin());
+    std::sort(cells.begin(), cells.end());
+    if (std::adjacent_find(cells.begin(), cells.end()) != cells.end())
+      refuse_lattice(file_, "has two unknowns in one cell");
+  }
+
   void check_tables() const {
     const auto n = static_cast<long long>(stored_.places.size());
     std::vector<bool> seen(stored_.places.size(), false);
@@ -158,11 +174,11 @@ class LatticeReader {
         if (at < 0 || at >= blocks_->n_cells[axis])
           refuse_lattice(file_, fmt::format("has a cell at {} of {} along an axis", at,
                                             blocks_->n_cells[axis]));
-        if (!(stored_.lower[n_axes * i + axis] >= 0))
-          refuse_lattice(file_, "has a face with a negative coefficient");
+        if (!is_coefficient(stored_.lower[n_axes * i + axis]))
+          refuse_lattice(file_, "has a face with a coefficient that none can be");
       }
-      if (!(stored_.dirichlet[i] >= 0) || !(stored_.diagonal[i] >= 0))
-        refuse_lattice(file_, "has a negative coefficient");
+      if (!is_coefficient(stored_.dirichlet[i]) || !is_coefficient(stored_.diagonal[i]))
+        refuse_lattice(file_, "has a coefficient that none can be");
     }
   }
 

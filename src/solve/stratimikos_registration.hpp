@@ -11,8 +11,8 @@ class DefaultLinearSolverBuilder;
 namespace lockstep {
 
 void register_muelu(Stratimikos::DefaultLinearSolverBuilder& builder);
-/// Registers Teko and its factory "SPD Block Diagonal". Must come after every other package, whose
-/// list Teko copies.
+/// Registers Teko, with our factory "SPD Block Diagonal" (strategies/stratimikos/block_inverses.hpp
+/// has more). Must come after every other package, whose list Teko copies.
 void register_teko(Stratimikos::DefaultLinearSolverBuilder& builder);
 /// MueLu's own list of the parameters of its simple interface.
 Teuchos::RCP<const Teuchos::ParameterList> muelu_parameters();

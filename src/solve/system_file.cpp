@@ -287,14 +287,18 @@ SoftNodes read_soft_nodes(const Hdf5File& file, const std::vector<long long>& bo
   const std::string path = soft_group;
   const auto values = file.read_all<double>(path + "/motions");
   const auto masses = file.read_all<double>(path + "/mass");
+  for (const std::vector<double>* numbers : {&values, &masses}) {
+    for (const double number : *numbers) {
+      if (!std::isfinite(number))
+        refuse(file, fmt::format("'{}' has the value {}", path, number));
+    }
+  }
   const std::size_t n_motions = values.size() / std::max<std::size_t>(1, bodies.size());
   const auto motions = rcp(new MultiVector(map, n_motions));
   const auto mass = make_vector(map);
   nodes.n_bodies = static_cast<int>(file.read_attribute<long long>(soft_group, "bodies"));
   for (int row = 0; row < static_cast<int>(map->getNodeNumElements()); ++row) {
     const auto id = static_cast<std::size_t>(map->getGlobalElement(row));
-    if (!std::isfinite(masses[id]))
-      refuse(file, fmt::format("'{}' has the mass {} in row {}", path, masses[id], id));
     mass->replaceLocalValue(row, masses[id]);
     nodes.body_of_row.push_back(static_cast<int>(bodies[id]));
     for (std::size_t motion = 0; motion < n_motions; ++motion)

@@ -13,8 +13,7 @@ RCP<ThyraVector> as_thyra(const RCP<Vector>& vector,
                           const RCP<const Thyra::VectorSpaceBase<double>>& space);
 
 /// The vector (p̂, V_S) of a block operator, as a multivector of one column, which MueLu wants;
-/// shares the values of both parts.
-RCP<Thyra::MultiVectorBase<double>> as_thyra(const BlockVector& vector,
-                                             const LinearOperator& block_operator);
+/// shares the values of both parts, which must be there.
+RCP<Thyra::MultiVectorBase<double>> as_thyra(const BlockVector& vector, const LinearOperator& op);
 
 }  // namespace lockstep

@@ -87,6 +87,9 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
   }
   if (dimension == 2)
     check_flat_joints(document, valid);
+  if (document.list.isSublist("Solver") && document.list.sublist("Solver").isSublist("Strategy"))
+    check_strategy_is_not_gone(document.list.sublist("Solver").sublist("Strategy"),
+                               document.source.place("Solver/Strategy/Type"));
   const bool tolerance_of_strategy = strategy_sets_tolerance(document);
   validate(document, valid);
   if (tolerance_of_strategy) {

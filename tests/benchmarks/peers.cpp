@@ -13,7 +13,6 @@
 #include <iostream>
 
 #include "base/errors.hpp"
-#include "linear/stencil_operator.hpp"
 #include "linear/symmetry_check.hpp"
 #include "output/hdf5_file.hpp"
 #include "parameters/registry.hpp"
@@ -25,77 +24,6 @@ using namespace lockstep;
 
 namespace {
 
-/// The stencil of a stored system, with the matrix beside it.
-class StoredStencil final : public StencilOperator {
- public:
-  StoredStencil(RCP<const CrsMatrix> matrix, FaceCoefficients coefficients)
-      : matrix_(std::move(matrix)), coefficients_(std::move(coefficients)) {}
-  RCP<const Map> getDomainMap() const override { return matrix_->getDomainMap(); }
-  RCP<const Map> getRangeMap() const override { return matrix_->getRangeMap(); }
-  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, double alpha,
-             double beta) const override {
-    matrix_->apply(x, y, mode, alpha, beta);
-  }
-  const FaceCoefficients& coefficients() const override { return coefficients_; }
-  RCP<const CrsMatrix> assembled() const override { return matrix_; }
-
- private:
-  RCP<const CrsMatrix> matrix_;
-  FaceCoefficients coefficients_;
-};
-
-FaceCoefficients coefficients_of(const Problem& problem) {
-  constexpr int width = 8;
-  auto blocks = std::make_shared<LatticeBlocks>();
-  blocks->n_cells = problem.n;
-  blocks->periodic = problem.periodic;
-  blocks->width = width;
-  blocks->comm = problem.matrix->getMap()->getComm();
-  std::array<int, 3> n_blocks{};
-  for (int axis = 0; axis < 3; ++axis)
-    n_blocks[axis] = (problem.n[axis] + width - 1) / width;
-  for (int k = 0; k < n_blocks[2]; ++k)
-    for (int j = 0; j < n_blocks[1]; ++j)
-      for (int i = 0; i < n_blocks[0]; ++i)
-        blocks->begins.push_back({width * i, width * j, width * k});
-  FaceCoefficients result;
-  const std::size_t n = blocks->begins.size() * blocks->block_volume();
-  result.map = problem.matrix->getRowMap();
-  result.row.assign(n, -1);
-  result.dirichlet.assign(n, 0);
-  for (auto& lower : result.lower)
-    lower.assign(n, 0);
-  const auto cell_of = [&](int row) {
-    const auto& c = problem.cell_of_row[row];
-    const std::size_t block =
-        c[0] / width + static_cast<std::size_t>(n_blocks[0]) *
-                           (c[1] / width + static_cast<std::size_t>(n_blocks[1]) * (c[2] / width));
-    return block * blocks->block_volume() + c[0] % width +
-           width * (c[1] % width + width * (c[2] % width));
-  };
-  // The largest face is an open one.
-  result.unit = 0;
-  for_each_entry_of(problem, [&](int row, int column, double value) {
-    result.unit = std::max(result.unit, row == column ? 0 : -value);
-  });
-  std::vector<double> sums(problem.n_rows(), 0);
-  for_each_entry_of(problem, [&](int row, int column, double value) {
-    sums[row] += value;
-    if (row == column)
-      return;
-    const int side = side_towards(problem, row, column);
-    if (side % 2 == 0)
-      result.lower[side / 2][cell_of(row)] = static_cast<float>(-value / result.unit);
-  });
-  for (int row = 0; row < problem.n_rows(); ++row) {
-    result.row[cell_of(row)] = row;
-    const double dirichlet = sums[row] / result.unit;
-    result.dirichlet[cell_of(row)] = dirichlet > 1e-6 ? static_cast<float>(dirichlet) : 0;
-  }
-  result.blocks = blocks;
-  return result;
-}
-
 Problem read_problem(const std::string& path, const Communicator& comm) {
   Problem problem;
   const StoredSystem stored = read_system(path, comm);
@@ -106,9 +34,11 @@ Problem read_problem(const std::string& path, const Communicator& comm) {
   const auto places = file.read_all<long long>("/lattice/places");
   const auto cells = file.read_all<long long>("/lattice/cells");
   problem.cell_of_row.resize(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    auto& cell = problem.cell_of_row.at(problem.matrix->getRowMap()->getLocalElement(places[i]));
     for (int axis = 0; axis < 3; ++axis)
-      problem.cell_of_row.at(places[i])[axis] = static_cast<int>(cells.at(3 * i + axis));
+      cell[axis] = static_cast<int>(cells.at(3 * i + axis));
+  }
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     problem.n[axis] = static_cast<int>(file.read_attribute<long long>("/lattice", "cells " + name));
@@ -122,9 +52,6 @@ Problem read_problem(const std::string& path, const Communicator& comm) {
 
 Outcome lockstep_multigrid(const Problem& problem, double tolerance) {
   BlockSystem system = problem.system;
-  const RCP<const StencilOperator> stencil =
-      rcp(new StoredStencil(problem.matrix, coefficients_of(problem)));
-  system.set_blocks(as_operator(stencil));
   StrategyRegistry strategies("solver strategy");
   register_strategies(strategies);
   const auto strategy = strategies.create("schur-cg", strategies.valid_parameters("schur-cg"));

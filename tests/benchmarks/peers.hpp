@@ -36,7 +36,8 @@ inline double seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// Calls f(row, column, value) for the entries of the matrix.
+/// Calls f(row, column, value) for the entries of the matrix, by local numbers of rows (one rank
+/// has them all).
 template <typename Function>
 void for_each_entry_of(const Problem& problem, const Function& f) {
   Teuchos::ArrayView<const int> columns;
@@ -44,7 +45,9 @@ void for_each_entry_of(const Problem& problem, const Function& f) {
   for (int row = 0; row < problem.n_rows(); ++row) {
     problem.matrix->getLocalRowView(row, columns, values);
     for (int i = 0; i < columns.size(); ++i)
-      f(row, static_cast<int>(problem.matrix->getColMap()->getGlobalElement(columns[i])),
+      f(row,
+        problem.matrix->getRowMap()->getLocalElement(
+            problem.matrix->getColMap()->getGlobalElement(columns[i])),
         values[i]);
   }
 }

@@ -64,6 +64,8 @@ def inverse_file(kind, more, where):
       <ParameterList name="{where}"> {value("Type", "string", kind)} {more} </ParameterList> </ParameterList>'''}
 
 
+MINRES_TEKO = (Path(__file__).resolve().parents[2] / "xml-params/solvers/minres-teko.xml").read_text()
+
 CASES = [
     # The command line.
     Case("no such option", "--ouput", arguments=["--ouput", "here"]),
@@ -177,6 +179,16 @@ CASES = [
       for where, kind, expected in (
           ("Pressure Inverse", "Mutligrid", ["Did you mean \"Multigrid\"", "There are: Automatic, Multigrid, Ifpack2"]),
           ("Solid Inverse", "Automtic", ["Did you mean \"Automatic\""]))],
+    *[Case(f"the strategy {name}, which is a list now", [f'no strategy "{name}" any more', f"xml-params/solvers/{file}.xml"],
+           sets=["Solver/File=old.xml"],
+           files={"old.xml": f'<ParameterList name="Solver">{value("Type", "string", name)}</ParameterList>'})
+      for name, file in (("gauss-seidel", "gauss-seidel"), ("solid-schur", "minres-teko"))],
+    *[Case(f"a list of Stratimikos with {what}", expected, sets=["Solver/File=list.xml"], files={"list.xml": MINRES_TEKO.replace(*change)})
+      for what, change, expected in (
+          ("a misspelt key of Teko", ("Fluid Inverse Type", "Fluid Inverse Tipe"), '"Fluid Inverse Tipe" is not a parameter of "SPD Block Diagonal"'),
+          ("a solver that Belos has not", ('"MINRES"', '"MINRESS"'), "MINRESS"),
+          ("a package that is no Belos", ('value="Belos"', 'value="Amesos2"'), '"Linear Solver Type" is "Amesos2"'),
+          ("an inverse that is not there", ('value="Schur"', 'value="Schurr"'), "Schurr"))],
     Case("a solver file that is not there", ["none.xml", "Cannot read"], sets=["Solver/File=none.xml"]),
     Case("a decimal comma in a formula", ["line", "\"1000*0,5\" is 2 numbers"],
          change=(DENSITY, value("Density", "double", "[1000*0,5]"))),

@@ -74,6 +74,19 @@ def mutations():
     for value in (None, -1, 2, 10**12, "one"):
         yield f"size {value}", with_attribute("size", value, "null space")
     yield "zero null vector", replaced("null space/0/values", lambda array: 0 * array)
+    # Without "lower" it is a file of an older version, whose lattice has no coefficients.
+    for table in ("places", "cells", "dirichlet", "diagonal"):
+        yield f"lattice {table} missing", without(f"lattice/{table}")
+        yield f"lattice {table} shorter", replaced(f"lattice/{table}", lambda array: array[:-1])
+    yield "lattice twice", replaced("lattice/places", lambda array: 0 * array)
+    yield "lattice cell twice", replaced("lattice/cells", lambda array: 0 * array)
+    yield "lattice cell beyond", replaced("lattice/cells", first_set(10**6, 0))
+    yield "lattice face negative", replaced("lattice/lower", first_set(-1., 0))
+    yield "lattice nan", replaced("lattice/dirichlet", first_set(numpy.nan))
+    for name, values in (("unit", (None, 0., -1., numpy.inf)), ("width", (None, 0, 3, 2**20)), ("dimension", (None, 1, 4)),
+                         ("cells x", (None, 0, 2**40))):
+        for value in values:
+            yield f"lattice {name} {value}", with_attribute(name, value, "lattice")
 
 
 class Systems(unittest.TestCase):

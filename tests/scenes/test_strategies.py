@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "tools")]
-from histories import compare_runs  # noqa: E402
+from histories import OF_CONTACT, compare_runs, has_contact  # noqa: E402
 from run_scene import coarse_cells  # noqa: E402
 from scene_xml import xml  # noqa: E402
 from simulation import assert_close, simulate, table  # noqa: E402
@@ -41,8 +41,9 @@ class Strategies(unittest.TestCase):
             cells = "{" + ", ".join(map(str, coarse_cells(scene))) + "}"
             with self.subTest(scene.stem), tempfile.TemporaryDirectory() as folder:
                 runs = [Path(folder) / solver for solver in ("schur-cg", "minres-teko")]
+                contact = ["--set", OF_CONTACT] if has_contact(scene) else []
                 for run in runs:
-                    simulate(scene, run, "--steps", "3", "--set", f"Domain/Cells={cells}", "--set", "Output/Frames=false",
+                    simulate(scene, run, "--steps", "3", "--set", f"Domain/Cells={cells}", "--set", "Output/Frames=false", *contact,
                              "--set", "Solver/Tolerance=1e-11", "--set", "Solver/Viscous Tolerance=3e-13",
                              "--set", f"Solver/File={ROOT}/xml-params/solvers/{run.name}.xml")
                 greatest = compare_runs(runs, 1e-8).greatest()

@@ -3,8 +3,10 @@
 #include <Stratimikos_DefaultLinearSolverBuilder.hpp>
 #include <Thyra_LinearOpWithSolveBase.hpp>
 #include <Thyra_LinearOpWithSolveFactoryHelpers.hpp>
+#include <Thyra_PhysicallyBlockedLinearOpBase.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -71,7 +73,9 @@ BelosMethod::BelosMethod(const Teuchos::ParameterList& list)
 BelosMethod::~BelosMethod() = default;
 
 bool BelosMethod::is_symmetric() const {
-  return solver_ == "MINRES" || solver_.find("CG") != std::string::npos;
+  static const std::array<const char*, 5> symmetric = {"MINRES", "Block CG", "Pseudo Block CG",
+                                                       "Pseudo Block Stochastic CG", "RCG"};
+  return std::find(symmetric.begin(), symmetric.end(), solver_) != symmetric.end();
 }
 
 int BelosMethod::correct(const BlockSystem& system, const FlatSystem& flat,

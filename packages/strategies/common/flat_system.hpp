@@ -17,6 +17,7 @@ class FlatSystem {
   /// with the operators that it made before.
   RCP<const LinearOperator> scaled(const RCP<const LinearOperator>& op, double t,
                                    double factor = 1) const;
+  /// The view of p̂ in a flat vector; shares the values.
   RCP<const Vector> pressure_part(const Vector& flat) const;
   RCP<Vector> pressure_part(Vector& flat) const;
 

@@ -197,8 +197,10 @@ bool leaves_rows_empty(const RCP<const LinearOperator>& pressure_block) {
 RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
                                            const Teuchos::ParameterList& given) {
   Teuchos::ParameterList list(given);
-  if (type_of(list) == "Automatic")
+  if (type_of(list) == "Automatic") {  // whatever it says of the multigrid
+    list = Teuchos::ParameterList();
     list.set("Type", "MueLu");
+  }
   auto op = system.pressure_block();
   if (const auto a = assembled(op); !a.is_null()) {
     const std::string type = type_of(list);

@@ -5,9 +5,7 @@ namespace lockstep {
 
 /// Section 6.1: MINRES on Eq. 16 with the preconditioner diag(incomplete Cholesky of A, C^-1), C^-1
 /// to round-off unless "Solid Inverse" says otherwise.
-/// MINRES is Belos', through Thyra's block operator, on the system scaled symmetrically so that
-/// both blocks' residuals mean the same; then every rank must own rows of both blocks. Iterations
-/// grow like sqrt(1 + added mass / solid mass) / h.
+/// MINRES is Belos' (MinresStrategy). Iterations grow like sqrt(1 + added mass / solid mass) / h.
 class Paper : public MinresStrategy {
  public:
   explicit Paper(const ParameterList& list);

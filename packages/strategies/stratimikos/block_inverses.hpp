@@ -35,8 +35,9 @@ inline constexpr const char* block_inverses_request = "Lockstep block inverses";
 /// Registers with Teko, once:
 ///   "Lockstep Multigrid"   of A: a cycle of the matrix-free multigrid ("Sweeps", 2; "Cycle", "V");
 ///                          smoothed aggregation where A is no stencil on a lattice
-///   "Lockstep Solid"       of C, body by body ("Exact", false; or a list "Inverse" as "Solid
-///                          Inverse" has it), and of assembled Schur complements of the solids
+///   "Lockstep Solid"       of C as the strategy's "Solid Inverse" says, to round-off with "Exact"
+///                          (false), or by a list "Inverse" of its own; of assembled Schur
+///                          complements of the solids to round-off, or by that list
 ///   "Lockstep Schur"       of A + B C^-1 B^T ("Inverse Type": of A; "Largest Solid", 18: up to so
 ///                          many solid unknowns by Woodbury's formula)
 ///   "Incomplete Cholesky"  without fill, of an assembled block

@@ -14,6 +14,7 @@
 #include "solve/preconditioner.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "strategies/common/assembled_schur.hpp"
+#include "strategies/common/pressure_inverse.hpp"
 #include "strategies/common/woodbury.hpp"
 #include "strategies/stratimikos/block_inverses.hpp"
 
@@ -72,6 +73,14 @@ class InverseType : public Teko::PreconditionerFactory {
   virtual RCP<const LinearOperator> make(BlockInverses& inverses,
                                          const Teko::LinearOp& op) const = 0;
   const Teuchos::ParameterList& list() const { return list_; }
+  /// A parameter of the list, or `standard` where it is not given.
+  template <typename T>
+  T value_of(const char* name, T standard) const {
+    check_input(!list_.isParameter(name) || list_.isType<T>(name),
+                "Teko's \"Inverse Factory Library\", \"{}\": \"{}\" must be of type {}.",
+                list_.name(), name, Teuchos::TypeNameTraits<T>::name());
+    return list_.isParameter(name) ? list_.get<T>(name) : standard;
+  }
 
  private:
   Teuchos::ParameterList list_;
@@ -88,7 +97,7 @@ class MultigridType : public InverseType {
 
 class SolidType : public InverseType {
   RCP<const LinearOperator> make(BlockInverses& inverses, const Teko::LinearOp& op) const override {
-    const bool is_exact = list().isType<bool>("Exact") && list().get<bool>("Exact");
+    const bool is_exact = value_of("Exact", false);
     const SignedOperator block = made_positive(op);
     const auto inverse = [&]() -> RCP<const LinearOperator> {
       const bool is_own = inverses.is_solid_block(op);
@@ -112,8 +121,7 @@ class SchurType : public InverseType {
                 "The inverse \"Lockstep Schur\" stands for that of the pressure block A.");
     const auto factory =
         getInverseLibrary()->getInverseFactory(list().get<std::string>("Inverse Type"));
-    const int largest = list().isType<int>("Largest Solid") ? list().get<int>("Largest Solid")
-                                                            : usual_largest_solid;
+    const int largest = value_of("Largest Solid", usual_largest_solid);
     const auto inverse_of = [&factory](const Teko::LinearOp& matrix) {
       return Teko::LinearOp(Teko::buildInverse(*factory, matrix));
     };
@@ -124,7 +132,11 @@ class SchurType : public InverseType {
       return woodbury_inverse(system, inverse_of(op));
     if (const auto multigrid = inverses.schur_multigrid(); !multigrid.is_null())
       return multigrid;
-    return inverse_of(as_operator(schur_with_diagonal(system)));
+    const auto matrix = schur_with_diagonal(system);
+    BlockSystem schur = system;
+    schur.set_blocks(as_operator(matrix), system.coupling_transposed(), system.solid_block());
+    schur.pressure_null_space = system.null_space;
+    return inverse_of(as_operator(regular_pressure_block(schur, matrix)));
   }
 };
 

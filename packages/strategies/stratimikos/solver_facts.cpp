@@ -1,7 +1,6 @@
 #include "strategies/stratimikos/solver_facts.hpp"
 
-#include <algorithm>
-#include <array>
+#include <initializer_list>
 #include <set>
 
 #include "base/errors.hpp"
@@ -63,26 +62,25 @@ std::string next_towards_pressure(const std::string& type, const ParameterList& 
   return "";
 }
 
-bool is_block_factory(const std::string& type) {
-  static const std::array<const char*, 8> types = {
-      "Neumann Series",     "Diagonal Scaling", "Iterative Preconditioner",
-      "Diagnostic Inverse", "Block Add",        "Block Multiply",
-      "Identity",           "Preconditioner"};
-  return std::find(types.begin(), types.end(), type) != types.end();
+/// Whether a type of Teko is an inverse of all blocks, none of one block.
+bool is_of_all_blocks(const std::string& type) {
+  return type == "SPD Block Diagonal" || type.rfind("Block ", 0) == 0 || type.rfind("NS ", 0) == 0;
 }
 
-/// The inverse of A that an inverse of the whole leads to; empty where that cannot be told.
-std::string pressure_inverse_of(const ParameterList& library, std::string name) {
-  for (int depth = 0; depth <= library.numParams(); ++depth) {
+/// The inverse of A that the inverse of the whole leads to. Empty where that cannot be told: the
+/// whole is no factory of blocks, or one that names no inverse of A.
+std::string pressure_inverse_of(const ParameterList& library, const std::string& of_the_whole) {
+  std::string name = of_the_whole;
+  for (int depth = 0; depth <= library.numParams() + 1; ++depth) {
     const std::string type = type_of(library, name);
     const std::string next =
         library.isSublist(name) ? next_towards_pressure(type, library.sublist(name)) : "";
     if (next.empty())
-      return is_block_factory(type) ? "" : name;
+      return depth == 0 || is_of_all_blocks(type) ? "" : name;
     name = next;
   }
   throw InputError(fmt::format(
-      "Teko's \"Inverse Factory Library\": the inverse \"{}\" refers to itself.", name));
+      "Teko's \"Inverse Factory Library\": the inverse \"{}\" refers to itself.", of_the_whole));
 }
 
 /// The entries of the library that an inverse leads to.

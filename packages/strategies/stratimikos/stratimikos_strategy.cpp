@@ -18,6 +18,7 @@
 #include "base/errors.hpp"
 #include "base/library_message.hpp"
 #include "linear/matrix_rows.hpp"
+#include "linear/stencil_operator.hpp"
 #include "linear/symmetry_check.hpp"
 #include "solve/solver_list.hpp"
 #include "solve/stratimikos_registration.hpp"
@@ -232,7 +233,8 @@ RCP<const BlockedOperator> StratimikosStrategy::operator_for_set_up(
       "but it is matrix-free. Name \"Lockstep Multigrid\" for its inverse.",
       system.name);
   const auto regular = regular_pressure_block(system, a);
-  if (!facts_.wants_explicit_blocks && regular == a)
+  const bool is_matrix = stencil_of(system.pressure_block()) == nullptr;
+  if (!facts_.wants_explicit_blocks && regular == a && is_matrix)
     return system.op();
   BlockSystem result = system;
   if (!system.has_solid()) {
@@ -295,6 +297,9 @@ void StratimikosStrategy::build(const BlockSystem& system, bool geometry_changed
     const auto op = operator_for_set_up(system);
     const auto kept = std::exchange(set_up_, op);
     fluid_inverse_ = inverse_of(op->getBlock(0, 0), facts_.pressure_inverse);
+    if (check_symmetry())
+      check_symmetric_positive(*fluid_inverse_, "pressure block of the " + system.name,
+                               symmetry_tolerance());
     set_up_ = kept;
     return;
   }

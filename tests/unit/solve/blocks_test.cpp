@@ -83,7 +83,7 @@ TEST(BlockOperator, MatchesTheHandMultiplication) {
 }
 
 TEST(BlockGroup, ItsBlocksAreNamedWithTheirParts) {
-  BlockGroup group{"solid block", {{"bodies", 0, 3}, {"cloth", 3, 4}}};
+  BlockGroup group{{{"bodies", 0, 3}, {"cloth", 3, 4}}};
   Vector residual(make_map(4, world()));
   residual.putScalar(2 / std::sqrt(3. * world()->getSize()));
   EXPECT_EQ(by_name(group, residual, 4),

@@ -135,7 +135,45 @@ TEST(Stratimikos, FactoriesOfTeko) {
     muelu.set("coarse: type", "RELAXATION");
     expect_exact(list, SaddleProblem(world(), {}));
     expect_exact(list, SaddleProblem(world(), closed(false)));
+    expect_exact(list, SaddleProblem(world(), closed(true)));
   }
+}
+
+/// Those of ours, by their parameters: in an open and a closed tank, and where a piston closes it.
+TEST(Stratimikos, InversesOfOurs) {
+  std::vector<ParameterList> lists(5, shipped_list("minres-teko"));
+  library_of(lists[0]).sublist("Multigrid").set("Sweeps", 3);  // which MueLu does not know
+  library_of(lists[1]).sublist("Schur").set("Largest Solid", 1);
+  library_of(lists[2]).sublist("Schur").set("Largest Solid", 1);
+  library_of(lists[2]).sublist("Schur").set("Inverse Type", std::string("Incomplete Cholesky"));
+  library_of(lists[3]).sublist("Solids").set("Exact", true);
+  library_of(lists[4]).sublist("Solids").sublist("Inverse").set("Type", std::string("Jacobi"));
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    SCOPED_TRACE(i);
+    expect_exact(lists[i], SaddleProblem(world(), {}));
+    expect_exact(lists[i], SaddleProblem(world(), closed(false)));
+    expect_exact(lists[i], SaddleProblem(world(), closed(true)));
+  }
+}
+
+/// Eq. 16 is indefinite, which conjugate gradients do not take; the partitioned iteration converges
+/// where the solids are heavy.
+TEST(Stratimikos, MethodsOutsideTheirDomainSaySo) {
+  ParameterList list = shipped_list("minres-teko");
+  set_solver(list, "Block CG");
+  EXPECT_THAT(complaint<SolveError>(list, SaddleProblem(world(), {})),
+              HasSubstr("conjugate gradients a positive definite system"));
+  SaddleOptions heavy;
+  heavy.plate_mass = 1e5;
+  expect_exact(shipped_list("uzawa"), SaddleProblem(world(), heavy));
+}
+
+/// BiCGStab wants no symmetric preconditioner, whatever letters are in its name.
+TEST(Stratimikos, BiCGStabTakesAnUnsymmetricPreconditioner) {
+  ParameterList list = shipped_list("gauss-seidel");
+  set_solver(list, "BiCGStab");
+  list.set("Check Preconditioner Symmetry", true);
+  expect_exact(list, SaddleProblem(world(), {}));
 }
 
 TEST(Stratimikos, WithoutAPreconditioner) {
@@ -214,7 +252,15 @@ TEST(Stratimikos, ListsThatCannotWorkAreRefused) {
               HasSubstr("\"Lockstep Multigrid\" is one of the pressure block A alone"));
   list = shipped_list("minres-teko");
   library_of(list).sublist("Multigrid").set("Sweeps", 0);
-  EXPECT_THAT(complaint<InputError>(list, problem), HasSubstr("\"Sweeps\""));
+  EXPECT_THAT(complaint<InputError>(list, problem), HasSubstr("\"Sweeps\" (int, from 1 to 100)"));
+  list = shipped_list("minres-teko");
+  library_of(list).sublist("Schur").set("Largest Solid", 18.0);
+  EXPECT_THAT(complaint<InputError>(list, problem),
+              HasSubstr("\"Largest Solid\" must be of type int"));
+  list = shipped_list("lsc");
+  library_of(list).sublist("Coupled").set("Assume Stable Discretisation", true);
+  EXPECT_THAT(complaint<InputError>(list, problem),
+              HasSubstr("Did you mean \"Assume Stable Discretization\"?"));
   list = shipped_list("minres-teko");
   library_of(list).sublist("Multigrid").set("Sweps", 2);
   EXPECT_THAT(complaint<InputError>(list, problem),
