@@ -49,7 +49,7 @@ void check_solution(const SaddleProblem& problem, const BlockVector& rhs,
                "solve: solid rows not to the tolerance" + where);
 }
 
-/// The fluid alone between two solves of the whole, as F2 is between S1 and S2.
+/// The fluid alone after a solve of the whole, as F2 comes after S1, and the whole once more.
 void check_fluid_alone(SolverStrategy& strategy, const SaddleProblem& problem,
                        const std::string& where, Violations& found) {
   BlockSystem alone = problem.system;
@@ -65,12 +65,18 @@ void check_fluid_alone(SolverStrategy& strategy, const SaddleProblem& problem,
                  "solve: the fluid alone not to the tolerance" + where);
   });
   expect_true(found, refusal.empty(), "solve: refuses the fluid alone" + where + ": " + refusal);
+  const BlockVector both = problem.random_rhs();
+  BlockVector again = problem.zero();
+  const std::string second = refusal_of([&] {
+    const SolveReport report = strategy.solve(problem.system, both, again, request);
+    check_solution(problem, both, again, report, where + ", after the fluid alone", found);
+  });
+  expect_true(found, second.empty(), "solve: fails after the fluid alone" + where + ": " + second);
 }
 
 /// A second system of the same name: the strategy must see by the stamps that C is another.
 void check_stamps(SolverStrategy& strategy, SaddleProblem& problem, const std::string& where,
                   Violations& found) {
-  check_fluid_alone(strategy, problem, where + ", after a solve with solids", found);
   SaddleOptions heavier = problem.options();
   heavier.plate_mass *= 100;
   const SaddleProblem other(problem.comm(), heavier);
@@ -86,7 +92,9 @@ void check_stamps(SolverStrategy& strategy, SaddleProblem& problem, const std::s
   });
   expect_true(found, refusal.empty(),
               "prepare: fails where C changed and its stamp says so" + where + ": " + refusal);
-  check_fluid_alone(strategy, problem, where + ", after another C", found);
+  // One that solves for another system than it is given might not survive vectors without solids.
+  if (found.empty())
+    check_fluid_alone(strategy, problem, where, found);
 }
 
 /// Right-hand sides that have no solution, or are none.

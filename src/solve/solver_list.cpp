@@ -126,6 +126,10 @@ void check_library(const ParameterList& library, const ParameterList& valid) {
     }
     check_input(type.rfind("Amesos", 0) != 0 || Tpetra::getDefaultComm()->getSize() == 1,
                 "{}: {} is wrong on several ranks with this Trilinos.", where, type);
+    check_input(type != "NS LSC" || Tpetra::getDefaultComm()->getSize() == 1,
+                "{}: {} ends the program on several ranks with this Trilinos. Use one rank, or "
+                "\"NS SIMPLE\".",
+                where, type);
     check_stratimikos_type(list, type, valid, where);
   }
 }

@@ -55,7 +55,7 @@ Its "Type" decides its parameters:
 
 [Solver]
 For Stratimikos.
-Its content is passed on unchecked.
+Its content is checked by whoever reads it.
 )");
 }
 
