@@ -92,7 +92,7 @@ void check_stamps(SolverStrategy& strategy, SaddleProblem& problem, const std::s
   });
   expect_true(found, refusal.empty(),
               "prepare: fails where C changed and its stamp says so" + where + ": " + refusal);
-  // One that solves for another system than it is given might not survive vectors without solids.
+  // A strategy that solves for another system than it is given may crash on vectors without solids.
   if (found.empty())
     check_fluid_alone(strategy, problem, where, found);
 }

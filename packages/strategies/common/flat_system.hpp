@@ -9,7 +9,8 @@ namespace lockstep {
 /// residuals of both rows mean the same to a method that stops by one norm of both.
 class FlatSystem {
  public:
-  /// Of a system with solids. Throws SolveError if some rank owns no row at all. Collective.
+  /// Makes the flat space of a system with solids. Throws SolveError if some rank owns no row at
+  /// all. Collective.
   explicit FlatSystem(const BlockSystem& system);
 
   const RCP<const Map>& map() const { return map_; }

@@ -6,9 +6,9 @@
 
 namespace lockstep {
 
-/// What the inverses that a Teko library names (`register_inverse_types`) ask of the strategy whose
-/// list the library is in. A library is handed operators one by one; an inverse of A wants the
-/// lattice that A lives on, one of A + B C^-1 B^T the whole of Eq. 16.
+/// The strategy as seen by the inverses of its Teko library (`register_inverse_types`). A library
+/// is handed operators one by one; an inverse of A wants the lattice that A lives on, one of A + B
+/// C^-1 B^T the whole of Eq. 16.
 class BlockInverses {
  public:
   virtual ~BlockInverses() = default;
@@ -19,7 +19,7 @@ class BlockInverses {
   virtual bool is_solid_block(const RCP<const LinearOperator>& op) const = 0;
   /// A cycle of the multigrid for A.
   virtual RCP<const LinearOperator> multigrid() const = 0;
-  /// The same for A and what gives way of soft solids (`PressureLayout::schur_inverse`), or
+  /// A cycle for A and what gives way of soft solids (`PressureLayout::schur_inverse`), or
   /// smoothed aggregation for A + B diag(C)^-1 B^T; null if the list names no multigrid.
   virtual RCP<const LinearOperator> schur_multigrid() const = 0;
   virtual const SolidInverse& solid() const = 0;

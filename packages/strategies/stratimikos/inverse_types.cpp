@@ -51,7 +51,8 @@ RCP<const LinearOperator> with_factor(double factor, const RCP<const LinearOpera
   return factor == 1 ? inverse : Thyra::scale<double>(1 / factor, inverse);
 }
 
-/// What the four types share: the strategy behind the library, and messages that arrive.
+/// The base of the four types: it finds the strategy behind the library, and keeps the message of a
+/// failure, which Teko would lose.
 class InverseType : public Teko::PreconditionerFactory {
  public:
   void initializeFromParameterList(const Teuchos::ParameterList& list) override { list_ = list; }

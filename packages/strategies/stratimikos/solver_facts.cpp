@@ -47,7 +47,7 @@ std::string first_of(const ParameterList& factory, std::initializer_list<const c
   return "";
 }
 
-/// What a block factory inverts A by.
+/// The inverse of A that a block factory names; empty if it names none.
 std::string next_towards_pressure(const std::string& type, const ParameterList& factory) {
   if (type == "SPD Block Diagonal")
     return text_of(factory, "Fluid Inverse Type");

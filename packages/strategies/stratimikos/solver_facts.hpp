@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// What a Stratimikos list says that the strategy must know before Trilinos reads it.
+/// Facts of a Stratimikos list that the strategy must know before Trilinos reads it.
 struct SolverFacts {
   std::string inverse;  ///< Teko's "Inverse Type"; empty: no preconditioner
   /// The inverse of A in it; empty: unknown.

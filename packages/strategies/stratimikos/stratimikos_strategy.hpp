@@ -13,11 +13,11 @@ namespace lockstep {
 /// stand beside those that all strategies share; `register_inverse_types` tells which inverses Teko
 /// knows besides its own.
 ///
-/// What one Belos solve leaves goes into the next, until each block's residual is below the
-/// tolerance: so a method may stop where single precision in the multigrid, or its own recurrence,
-/// lets it go no further. "Convergence Tolerance" in the list is what one of them aims at, at most.
-/// Systems without solids take conjugate gradients with the list's inverse of A, which must be
-/// symmetric positive definite.
+/// The strategy solves by Belos again for what one solve leaves, until each block's residual is
+/// below the tolerance: so a method may stop where single precision in the multigrid, or its own
+/// recurrence, lets it go no further. "Convergence Tolerance" in the list is what one of them aims
+/// at, at most. Systems without solids take conjugate gradients with the list's inverse of A, which
+/// must be symmetric positive definite.
 class StratimikosStrategy : public RefinedStrategy, private BlockInverses {
  public:
   explicit StratimikosStrategy(const ParameterList& list);
