@@ -103,7 +103,7 @@ std::vector<CaseOutcome> run_cases_and_tell(const std::vector<StudyCase>& cases,
       [&](std::size_t i, const std::string& log) { status.started(cases[i].directory, log); });
 }
 
-/// Of an earlier call: what this one does not write must not pass for its own.
+/// Removes the results of an earlier call, which must not pass for those of this one.
 void remove_results(const std::string& directory) {
   for (const char* file : {"table.csv", "table.md", "plot.png", "curves.csv", "curves.png"}) {
     std::error_code error;

@@ -39,7 +39,7 @@ struct Arguments {
   int most_direct_unknowns = 100000;
 };
 
-/// What one strategy did.
+/// Result of one strategy.
 struct Row {
   std::string file, strategy, failure;
   SolveReport report;

@@ -12,7 +12,7 @@
 
 namespace lockstep {
 
-/// What Python opens a run with; see `simulate --help`.
+/// Arguments with which Python opens a run; see `simulate --help`.
 struct OpenRequest {
   std::string scene, output, restart;
   std::vector<std::string> settings;  ///< "List/Name=value"

@@ -55,7 +55,7 @@ std::string text_of(const py::object& text) {
   return text.cast<std::string>();
 }
 
-/// Of a str, bytes or what the standard library takes for a path.
+/// Returns the path in a str, bytes, or object that the standard library takes for a path.
 std::string path_text(const py::object& path) {
   return text_of(py::module_::import("os").attr("fsdecode")(path));
 }
@@ -67,7 +67,7 @@ py::object plain(const py::handle& value) {
   return py::reinterpret_borrow<py::object>(value);
 }
 
-/// As a value of `--set`.
+/// Returns the value as `--set` would write it.
 std::string setting_text(const py::handle& given) {
   const py::object value = plain(given);
   if (py::isinstance<py::bool_>(value))

@@ -18,7 +18,7 @@ void for_each_cell_of_tile(const TiledGrid<dim>& grid, int tile, const Function&
     }
 }
 
-/// The same for the owned tiles that are flagged; the flags may be of stored tiles.
+/// Calls f for the cells of the owned tiles that are flagged; the flags may be of stored tiles.
 template <int dim, typename Function>
 void for_each_owned_cell_of(const TiledGrid<dim>& grid, const std::vector<char>& tiles,
                             const Function& f) {
@@ -27,7 +27,7 @@ void for_each_owned_cell_of(const TiledGrid<dim>& grid, const std::vector<char>&
       for_each_cell_of_tile(grid, tile, f);
 }
 
-/// The same for the stored tiles that are flagged.
+/// Calls f for the cells of the stored tiles that are flagged.
 template <int dim, typename Function>
 void for_each_stored_cell_of(const TiledGrid<dim>& grid, const std::vector<char>& tiles,
                              const Function& f) {

@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// What this rank has sent through a HaloExchange.
+/// Count of what this rank has sent through a HaloExchange.
 struct HaloStatistics {
   long long messages = 0;
   long long bytes = 0;
@@ -41,7 +41,8 @@ class HaloExchange {
     fill(std::vector<std::vector<Value>*>(fields));
   }
 
-  /// Where the field has values here; of tiles without any at their owner comes that elsewhere.
+  /// Fills the ghost cells for which the field has values here; a tile without values at its owner
+  /// contributes the field's value elsewhere.
   template <typename Value>
   void fill(TileField<dim, Value>& field) const;
 

@@ -2,7 +2,7 @@
 
 namespace lockstep {
 
-/// What sets the messages of the grid apart from one another, and from those of libraries.
+/// Tags that set the messages of the grid apart from one another, and from those of libraries.
 struct MessageTag {
   static constexpr int halo = 7301, migration = 7302, neighbors = 7303;
 };

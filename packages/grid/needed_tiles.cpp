@@ -44,7 +44,7 @@ void NeededTiles<dim>::add(const Box<dim>& box) {
   const GridDescription<dim>& grid = lattice_.description();
   Index<dim> begin{}, end{};
   for (int a = 0; a < dim; ++a) {
-    // What is far beyond the domain must fit an int.
+    // places far beyond the domain must fit an int
     const double far = 4.0 * grid.n_cells[a];
     const auto place = [&](double x) {
       return static_cast<int>(

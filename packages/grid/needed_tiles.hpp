@@ -14,15 +14,15 @@ namespace lockstep {
 template <int dim>
 class NeededTiles {
  public:
-  /// How far things may come in the next step, and how far around them tiles are made [cells]; the
-  /// margin is at least the reach.
+  /// `reach`: distance that things may move in the next step; `margin`: distance around them in
+  /// which tiles are made [cells], at least the reach.
   NeededTiles(const TileLattice<dim>& lattice, int reach, int margin)
       : lattice_(lattice), reach_(reach), margin_(std::max(reach, margin)) {}
 
   /// A thing in the cells [begin, end) of the lattice; periodic axes wrap, what is beyond the
   /// others counts for the cells at their ends. Local.
   void add(Index<dim> begin, Index<dim> end);
-  /// The same for a box in space.
+  /// Adds a thing in a box in space [m]. Local.
   void add(const Box<dim>& box);
   /// A thing in every owned cell of the domain for which is_there(cell), tile by tile: in the
   /// smallest box around them. Local.
@@ -34,11 +34,11 @@ class NeededTiles {
   /// Collective, one reduction if all stays as it is: the tiles wanted and who should have them,
   /// where they have to change. `present`: those of the grid.
   std::optional<TileOwners> change(const Communicator& comm, const TileOwners& present);
-  /// Collective: whether all tiles within reach are there.
+  /// True if all tiles within reach exist. Collective.
   bool are_there(const Communicator& comm, const TileOwners& present);
 
  private:
-  /// Of this rank.
+  /// True if a tile within reach of this rank's things is missing. Local.
   bool lacks_any(const TileOwners& present);
   void add_tiles(const Index<dim>& begin, const Index<dim>& end, int distance,
                  std::vector<GlobalIndex>& tiles) const;

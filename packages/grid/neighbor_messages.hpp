@@ -12,7 +12,7 @@ class NeighborMessages {
  public:
   explicit NeighborMessages(const TiledGrid<dim>& grid);
 
-  /// What is to go to the owner of a stored cell of another rank.
+  /// Returns the message to the owner of a stored cell of another rank.
   std::vector<double>& to_owner(const TiledGrid<dim>& grid, int cell) {
     return outgoing_[grid.owner(TiledGrid<dim>::tile_of(cell))];
   }

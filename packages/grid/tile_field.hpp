@@ -21,11 +21,11 @@ class TileField {
 
   bool has(int cell) const { return slot_[cell >> log_tile_volume<dim>] > 0; }
   Value operator[](int cell) const { return values_[place(cell)]; }
-  /// Of a cell that has a value.
+  /// Sets the value of a cell that has one.
   void set(int cell, Value value) { values_[place(cell)] = value; }
 
-  /// Where the value of a cell is among all; below `tile_volume` it has none. Places run along with
-  /// the cells of a tile, and tile by tile.
+  /// Place of a cell's value in the array; a cell with a place below `tile_volume` has none. Places
+  /// run along with the cells of a tile, and tile by tile.
   int place(int cell) const {
     return slot_[cell >> log_tile_volume<dim>] + (cell & (tile_volume<dim> - 1));
   }

@@ -51,7 +51,7 @@ TileMigration<dim>::TileMigration(const TiledGrid<dim>& from, const TiledGrid<di
     if (new_ranks.count(old_numbers[tile]) == 0)
       gone_.push_back(static_cast<int>(tile));
 
-  // What this rank wants of each, in the order of its tiles: owned ones come first.
+  // tiles that this rank wants of each rank, in the order of its tiles: owned ones come first
   const int n_ranks = comm_->getSize();
   std::vector<std::vector<int>> wanted(n_ranks);
   std::vector<int> n_wanted(2 * n_ranks, 0), n_asked(2 * n_ranks);

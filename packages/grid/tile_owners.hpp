@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// Which tiles of the domain exist, and who has them: the same on every rank.
+/// Existing tiles of the domain and their owners: the same on every rank.
 struct TileOwners {
   std::vector<GlobalIndex> tiles;  ///< numbers, ascending
   std::vector<int> ranks;          ///< of each

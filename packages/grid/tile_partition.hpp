@@ -22,8 +22,8 @@ std::vector<int> partition_tiles(const TileLattice<dim>& lattice,
                                  const std::vector<GlobalIndex>& tile_numbers, const TileWork& work,
                                  int n_parts);
 
-/// What the slowest rank takes for a step: the most work of either kind, and as much as a cell's
-/// for every face of a cell between two ranks.
+/// Cost of a step on the slowest rank, in cells: the most work of either kind, and one for every
+/// face between cells of two ranks.
 template <int dim>
 double partition_cost(const TileLattice<dim>& lattice, const std::vector<GlobalIndex>& tile_numbers,
                       const TileWork& work, const std::vector<int>& parts, int n_parts);

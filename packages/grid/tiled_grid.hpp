@@ -49,8 +49,9 @@ struct CellRow {
 template <int dim>
 class TiledGrid {
  public:
-  /// Whether a tile, given its cells of the domain [begin, end), should exist. Called on one rank
-  /// only for each tile, so it must not communicate, and it must not depend on the rank.
+  /// Returns true if a tile, given its cells of the domain [begin, end), should exist. It is called
+  /// on one rank only for each tile, so it must not communicate, and it must not depend on the
+  /// rank.
   using TileChoice = std::function<bool(const Index<dim>& begin, const Index<dim>& end)>;
   /// The work of a tile, in that of a cell (default: its number of cells); same rules.
   using TileWeight = std::function<int(const Index<dim>& begin, const Index<dim>& end)>;
@@ -62,7 +63,7 @@ class TiledGrid {
   TiledGrid(const GridDescription<dim>& description, const Communicator& comm,
             const TileChoice& tile_is_needed = {}, const TileWeight& weight = {},
             int ghost_tiles = 1);
-  /// The same with tiles and ranks as given, the same list on all ranks.
+  /// Makes a grid with tiles and ranks as given, the same list on all ranks.
   TiledGrid(const GridDescription<dim>& description, const Communicator& comm,
             const TileOwners& owners, int ghost_tiles = 1);
   /// Collective: a grid with the same owned tiles and cell ids, but ghost tiles within
@@ -78,7 +79,7 @@ class TiledGrid {
   const Index<dim>& n_cells() const { return description().n_cells; }
   Lattice<dim> lattice() const { return {lower(), spacing()}; }
 
-  /// Whether every tile of the lattice exists, on some rank.
+  /// True if every tile of the lattice exists, on some rank.
   bool is_complete() const { return is_complete_; }
   /// Cells [begin, end) of the domain that hold all tiles of all ranks.
   const std::array<Index<dim>, 2>& extent() const { return extent_; }
@@ -114,7 +115,7 @@ class TiledGrid {
   int neighbor(int cell, int axis, int side) const;
   bool owned(int cell) const { return cell < n_owned_cells(); }
   bool in_domain(int cell) const;
-  /// Whether these coordinates, not wrapped, are in the domain; the tile need not exist.
+  /// True if these coordinates, not wrapped, are in the domain; the tile need not exist.
   bool in_domain(const Index<dim>& coordinates) const;
   /// False for padding.
   bool in_lattice(int cell) const;
@@ -138,7 +139,7 @@ class TiledGrid {
   void for_each_owned_cell(const Function& f) const {
     for_each_cell_of_tiles(0, n_owned_tiles_, f);
   }
-  /// The same for all stored cells of the domain, owned first.
+  /// Calls f for all stored cells of the domain, owned first.
   template <typename Function>
   void for_each_stored_cell(const Function& f) const {
     for_each_cell_of_tiles(0, n_tiles(), f);

@@ -154,7 +154,8 @@ Wanted find_ghosts(const LatticeBlocks& blocks, const std::vector<NearBlock>& ne
   return wanted;
 }
 
-/// Who holds ghosts of whom is mutual, so that each rank can ask its peers for their cells.
+/// Tells each rank the cells that this one wants of it. Ghosts are mutual, so that each rank asks
+/// exactly those that ask it.
 std::map<int, std::vector<GlobalIndex>> ask(const Communicator& comm,
                                             std::map<int, std::vector<GlobalIndex>>& wanted) {
   const MPI_Comm mpi = raw_communicator(comm);

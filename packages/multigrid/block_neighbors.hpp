@@ -14,7 +14,7 @@ struct NearBlock {
   int rank = 0;                ///< its owner, maybe this one
 };
 
-/// How far a rank sees cells of others.
+/// Reach of a rank into the cells of others.
 struct GhostReach {
   int depth = 1;
   /// Maximum norm, else beyond faces only.
@@ -30,10 +30,10 @@ void for_each_within_reach(const LatticeBlocks& blocks, int level, const GhostRe
                            const LevelGrid& grid,
                            const std::function<void(const std::array<int, 3>&)>& visit);
 
-/// False for blocks wholly beyond the domain.
+/// Returns false for blocks wholly beyond the domain.
 bool holds_cells(const LatticeBlocks& blocks, const std::array<int, 3>& begin);
 
-/// Those within `reach` blocks along every axis of a block of this rank. Collective.
+/// Returns the blocks within `reach` blocks along every axis of a block of this rank. Collective.
 std::vector<NearBlock> find_near_blocks(const LatticeBlocks& blocks, int reach);
 
 /// The cells to exchange on a distributed level, each ghost once. Collective.

@@ -12,11 +12,11 @@ namespace {
 
 using Cell = std::array<int, 3>;
 
-/// What a face of a fine cell adds to the coarse face it lies in: its coupling in series with half
-/// a regular one on either side, as the centres of coarse cells are that much further from it. Half
-/// of a regular face is left, but nearly all of a narrow gap: cells behind a gap would be corrected
-/// too far otherwise, twice more on every level, and a W-cycle that overshoots by more than two is
-/// not positive definite. Rounded, so that sums stay exact.
+/// Contribution of the face of a fine cell to the coarse face it lies in: its coupling in series
+/// with half a regular one on either side, as the centres of coarse cells are that much further
+/// from it. Half of a regular face is left, but nearly all of a narrow gap: cells behind a gap
+/// would be corrected too far otherwise, twice more on every level, and a W-cycle that overshoots
+/// by more than two is not positive definite. Rounded, so that sums stay exact.
 class FacePart {
  public:
   explicit FacePart(float unit) : unit_(unit) {}
@@ -256,7 +256,7 @@ void sort_by_slab(const LevelGrid& fine, Transfer& transfer) {
     transfer.in_slab[s] = std::min(transfer.in_slab[s], transfer.in_slab[s + 1]);
 }
 
-/// In one message.
+/// Sums arrays over the ranks, all of them in one message.
 void sum_over_ranks(const std::vector<std::vector<float>*>& arrays, const Communicator& comm) {
   std::vector<float> all;
   for (const std::vector<float>* values : arrays)
@@ -286,7 +286,7 @@ std::vector<float*> data_of(const std::vector<std::vector<float>*>& arrays) {
   return data;
 }
 
-/// What differences of sums leave is no coupling.
+/// Sets values to zero that are only the round-off of differences of sums: they are no coupling.
 void clean_round_off(std::vector<float>& values) {
   float largest = 0;
   for (const float value : values)
@@ -295,8 +295,8 @@ void clean_round_off(std::vector<float>& values) {
     value = value < round_off * largest ? 0 : value;
 }
 
-/// What ranks have added to each other's cells, in `landed`, comes home to `coarse`; the same where
-/// the level's ranks are the finer one's.
+/// Moves to `coarse` what ranks have added to each other's cells in `landed`, which is `coarse`
+/// itself where the level's ranks are the finer one's.
 void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_all_ranks, bool moved,
              NaturalStencil& landed, NaturalStencil& coarse) {
   const auto arrays = sums_of(coarse, level.grid.dimension);

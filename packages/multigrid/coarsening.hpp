@@ -14,9 +14,9 @@ struct MovedCell {
   std::ptrdiff_t to = -1;   ///< slot of the one it goes to; -1: it corrects with none
 };
 
-/// How a level and the next coarser one are connected: cell (i, j, k) lies in the coarse cell
-/// (i >> 1, j >> 1, k >> 1) + offset, local coordinates. Piecewise constant: restriction sums over
-/// the cells of a coarse cell, prolongation copies, each the transpose of the other.
+/// Connection of a level to the next coarser one: cell (i, j, k) lies in the coarse cell (i >> 1, j
+/// >> 1, k >> 1) + offset, local coordinates. Piecewise constant: restriction sums over the cells
+/// of a coarse cell, prolongation copies, each the transpose of the other.
 struct Transfer {
   std::array<int, 3> offset{};
   std::vector<MovedCell> moved;      ///< sorted by slab

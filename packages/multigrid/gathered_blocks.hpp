@@ -16,7 +16,8 @@ struct GatheredBlocks {
   int holder_of(const std::array<int, 3>& cell) const;
 };
 
-/// Whether that level can be gathered: what stands behind periodic sides must be whole blocks.
+/// True if the next coarser level can be gathered: images behind periodic sides must be whole
+/// blocks.
 bool can_gather(const LatticeBlocks& finer);
 
 /// Blocks in lexicographic order, dealt out evenly.

@@ -27,7 +27,7 @@ void for_each_cell(const LatticeBlocks& blocks, const Visit& visit) {
   }
 }
 
-/// Of a power of two.
+/// Logarithm to base 2 of a power of two.
 int log2_of(int width);
 
 /// One level's storage and exchange.
@@ -42,11 +42,11 @@ struct LayoutLevel {
   /// On a distributed level: as far as half sweeps reach in one pass through memory.
   LevelHalo deep_halo;
   std::vector<char> owned;  ///< natural array of the box: this rank's cells; empty: all of them
-  /// Of a level that is gathered to fewer ranks than the next finer one: its cells as the finer
-  /// level's ranks see them; `halo` leads to those that hold them. Else null.
+  /// On a level that is gathered to fewer ranks than the next finer one: its cells as the finer
+  /// level's ranks see them; `halo` leads to the ranks that hold them. Else null.
   std::unique_ptr<const LayoutLevel> landing;
 
-  /// As the next finer level's ranks see it.
+  /// Returns this level as the next finer level's ranks see it.
   const LayoutLevel& as_landed() const { return landing ? *landing : *this; }
 
   /// The parts of row (j, k) that are this rank's cells. Those of a distributed level begin at even
@@ -61,7 +61,7 @@ struct LayoutLevel {
     const std::size_t row = j + grid.n[1] * static_cast<std::size_t>(k);
     return {parts_.data() + parts_at_[row], parts_.data() + parts_at_[row + 1]};
   }
-  /// To be called when `grid` and `owned` are set.
+  /// Finds the parts of the rows; called when `grid` and `owned` are set.
   void find_parts();
 
  private:
@@ -70,12 +70,12 @@ struct LayoutLevel {
 };
 
 struct LayoutOptions {
-  /// On distributed levels a rank holds the cells of others that are so many cells or less from its
-  /// own (maximum norm).
+  /// Depth of the ghosts on distributed levels, in cells (maximum norm).
   int depth = 1;
-  /// So many cells every rank sweeps sooner than it hears from its neighbours.
+  /// Largest number of cells of a level that every rank sweeps whole: that takes less time than a
+  /// message from its neighbours.
   int most_replicated_cells = 8000;
-  /// Of how many ranks one holds what is gathered.
+  /// Number of ranks of which one holds the gathered cells.
   int gathered_ranks = 8;
 };
 
@@ -89,7 +89,8 @@ class LatticeLayout {
   /// Throws SolveError if `why_not` has a reason. Collective.
   LatticeLayout(std::shared_ptr<const LatticeBlocks> blocks, const LayoutOptions& options);
 
-  /// Why no multigrid can be built on this lattice, as a sentence; empty if one can.
+  /// Returns the reason why no multigrid can be built on this lattice, as a sentence; empty if one
+  /// can.
   static std::string why_not(const LatticeBlocks& blocks);
 
   const LatticeBlocks& blocks() const { return *blocks_; }

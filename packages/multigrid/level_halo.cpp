@@ -72,7 +72,7 @@ void LevelHalo::send(const Fields<Value>& fields, bool to_owner) const {
   }
 }
 
-/// What the peers have sent, and what this rank has to itself.
+/// Takes in the values that the peers have sent, and those that this rank has sent to itself.
 template <typename Value>
 void LevelHalo::take_in(const Fields<Value>& fields, bool to_owner) const {
   const auto* mine = reinterpret_cast<const Value*>(outgoing_.data());

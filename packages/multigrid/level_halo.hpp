@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// What a rank has sent, since it began.
+/// Count of what a rank has sent since its start.
 struct MessageCount {
   long long messages = 0, bytes = 0;
 };
@@ -36,7 +36,7 @@ class LevelHalo {
   void fill(int colour, Value* values) const {
     transfer<Value>({{&by_colour_[colour], values, values}}, false);
   }
-  /// Those of both colours, in one message to each neighbour.
+  /// Sets the ghosts of both colours, in one message to each neighbour.
   template <typename Value>
   void fill(Value* even, Value* odd) const {
     transfer<Value>({{by_colour_.data(), even, even}, {by_colour_.data() + 1, odd, odd}}, false);
@@ -47,14 +47,14 @@ class LevelHalo {
   }
   /// Values of both colours.
   using Colours = std::array<float*, 2>;
-  /// The same three where ghosts stand in arrays of another grid than what they copy.
+  /// Sets or sums ghosts that stand in arrays of another grid than the cells they copy.
   void fill(const Colours& owned, const Colours& ghosts) const {
     transfer<float>(of_colours(owned, ghosts), false);
   }
   void sum_to_owner(const Colours& ghosts, const Colours& owned) const {
     transfer<float>(of_colours(owned, ghosts), true);
   }
-  /// The same for natural arrays, several in one message.
+  /// Sets or sums ghosts in natural arrays, several in one message.
   template <typename Value>
   void fill_natural(const std::vector<Value*>& arrays) const {
     transfer(of_natural(arrays, arrays), false);

@@ -20,8 +20,8 @@ struct MultigridOptions {
   int most_replicated_cells = LayoutOptions().most_replicated_cells;
   int gathered_ranks = LayoutOptions().gathered_ranks;
 
-  /// How deep the ghosts of distributed levels must be: the farthest cell that half sweeps between
-  /// two exchanges, from zero or not, carry into a rank's own.
+  /// Depth of the ghosts on distributed levels: the farthest cell that half sweeps between two
+  /// exchanges, from zero or not, carry into a rank's own.
   int ghost_depth() const { return 2 * n_sweeps + (is_w_cycle ? 1 : 0); }
   LayoutOptions layout() const { return {ghost_depth(), most_replicated_cells, gathered_ranks}; }
 };
@@ -63,7 +63,7 @@ class Multigrid {
     explicit Work(const LevelGrid& grid);
     std::array<AlignedArray<float>, 2> x, b;
   };
-  /// Of a level, as the next finer one's ranks see it.
+  /// Vectors of a level, as the next finer level's ranks see it.
   Work& as_landed(int level) {
     return layout_->levels()[level].landing ? landed_[level] : work_[level];
   }

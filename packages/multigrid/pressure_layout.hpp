@@ -21,7 +21,8 @@ class PressureLayout {
   static std::shared_ptr<PressureLayout> make(const BlockSystem& system,
                                               const MultigridOptions& options,
                                               std::shared_ptr<PressureLayout> previous);
-  /// Why there can be none for this system, as a sentence; empty if there can.
+  /// Returns the reason why there can be no layout for this system, as a sentence; empty if there
+  /// can.
   static std::string why_not(const BlockSystem& system);
 
   /// The system with its pressures in this layout; other things shared. Collective.

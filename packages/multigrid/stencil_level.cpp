@@ -29,13 +29,13 @@ inline Value weighted_sum(const Neighbors<float>& face, const Neighbors<Value>& 
   return sum;
 }
 
-/// Of a row of cells.
+/// Diagonal that varies along a strip of cells.
 struct DiagonalOfRow {
   const float *values, *inverses;
   float operator()(int m) const { return values[m]; }
   float inverse(int m) const { return inverses[m]; }
 };
-/// Where all have the same.
+/// Diagonal that is the same along a strip of cells.
 struct EvenDiagonal {
   explicit EvenDiagonal(float of_all) : value(of_all), inverse_value(of_all > 0 ? 1 / of_all : 0) {}
   float value, inverse_value;

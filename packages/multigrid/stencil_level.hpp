@@ -8,8 +8,8 @@
 
 namespace lockstep {
 
-/// The stencil of one level in natural arrays, ghosts included: what set-up works on.
-/// `lower[a]` couples a cell to its lower neighbour along a; 0 where there is no coupling.
+/// The stencil of one level in natural arrays, ghosts included, on which set-up works. `lower[a]`
+/// couples a cell to its lower neighbour along a; 0 where there is no coupling.
 struct NaturalStencil {
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;
@@ -23,11 +23,11 @@ struct NaturalStencil {
   void complete(const LayoutLevel& level);
 };
 
-/// One level of the stencil as the sweeps want it: the diagonal and its inverse by colour, and face
-/// coefficients for those rows only in which some coupling between unknowns is not the level's
-/// regular one (`unit`): elsewhere the sweeps need no coefficients at all, for values that are no
-/// unknowns are zero. Nor do they read the diagonal where it is the same along a row but for its
-/// ends.
+/// One level of the stencil in the form that sweeps read: the diagonal and its inverse by colour,
+/// and face coefficients for those rows only in which some coupling between unknowns is not the
+/// level's regular one (`unit`): elsewhere the sweeps need no coefficients at all, for values that
+/// are no unknowns are zero. Nor do they read the diagonal where it is the same along a row but for
+/// its ends.
 template <int dim>
 class StencilLevel {
  public:
@@ -43,7 +43,7 @@ class StencilLevel {
     int first = 0, last = 0;
   };
   const Range& range(int j, int k) const { return ranges_[row_index(j, k)]; }
-  /// Whether none of a row's unknowns is this rank's.
+  /// True if no unknown of a row is this rank's.
   bool is_foreign(int j, int k) const { return level_.parts(j, k).empty(); }
   /// Calls f(first, last) for the slots in `range` of cells that are this rank's.
   template <typename Function>
@@ -56,7 +56,7 @@ class StencilLevel {
         f(first, last);
     }
   }
-  /// Whether all slots of a row's range are known to be unknowns of that colour.
+  /// True if all slots of a row's range are known to be unknowns of that colour.
   bool is_full(int colour, int j, int k) const {
     const EvenRow& row = even_rows_[2 * row_index(j, k) + colour];
     return row.inner > 0 && row.begin > 0 && row.end > 0;
@@ -73,7 +73,7 @@ class StencilLevel {
   /// residual := b - (A x) of one row, 0 where there is no unknown, in slots [first, last).
   void residual(int colour, int j, int k, const float* b, const float* x, const float* other,
                 float* residual) const;
-  /// The same of one cell, in slot m of the row.
+  /// Returns the residual of one cell, in slot m of the row.
   float residual_at(int colour, int m, int j, int k, const float* b, const float* x,
                     const float* other) const;
   /// result := unit A p of one row in double precision, in slots [first, last).

@@ -49,7 +49,7 @@ class ThinWalls {
   int n_children_;
 };
 
-/// Whether some face inside a coarse cell, between two unknowns of this row or of it and the row
+/// True if some face inside a coarse cell, between two unknowns of this row or of it and the row
 /// below, is closed.
 bool ThinWalls::row_is_cut(int j, int k) const {
   const std::ptrdiff_t row = grid_.natural(0, j, k);

@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// Which coarse neighbour a fine cell belongs to instead of the coarse cell it lies in.
+/// Coarse neighbour that a fine cell belongs to instead of the coarse cell it lies in.
 namespace destination {
 constexpr char own = 0;
 /// 1 + 2 axis + side: the neighbour there.

@@ -48,7 +48,8 @@ std::vector<T> gather(const Communicator& comm, const std::vector<T>& values, MP
 }  // namespace
 
 namespace {
-/// What one rank does alone must not be left by that one.
+/// True if the communicator has all ranks of the run. A sum over some of them must not end in an
+/// exception, since the others would not leave with it.
 bool is_of_all_ranks(const Communicator& comm) {
   int n = 0;
   MPI_Comm_size(MPI_COMM_WORLD, &n);

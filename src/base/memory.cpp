@@ -13,7 +13,7 @@ namespace lockstep {
 
 namespace {
 
-/// Of this machine; a container may be allowed less.
+/// Memory of this machine [bytes]; a container may be allowed less.
 double memory_of_machine() {
   const double installed = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE);
   double allowed = 0;
@@ -21,7 +21,7 @@ double memory_of_machine() {
   return limit >> allowed && allowed > 0 ? std::min(installed, allowed) : installed;
 }
 
-/// Whether the system hands out address space only as far as it has memory for all of it.
+/// True if the system hands out address space only as far as it has memory for all of it.
 bool counts_address_space() {
   int mode = 0;
   std::ifstream("/proc/sys/vm/overcommit_memory") >> mode;

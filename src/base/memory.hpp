@@ -9,7 +9,7 @@ namespace lockstep {
 /// small ones than a processor keeps addresses of. Call once, at the start.
 void keep_freed_memory();
 
-/// Of the machines that the ranks run on, each counted once, or what they are allowed of it
+/// Memory of the machines that the ranks run on, each counted once, or the part that they may use
 /// [bytes]. Collective.
 double memory_of_machines(const Communicator& comm);
 

@@ -5,8 +5,8 @@
 /// files (and links to them) are read. None of these functions is collective.
 namespace lockstep {
 
-/// Why `path` cannot be read as a plain file: "it is a pipe", "No such file or directory"; empty if
-/// it can. Never waits.
+/// Reason why `path` cannot be read as a plain file, "it is a pipe" or "No such file or directory";
+/// empty if it can. Never waits.
 std::string refusal_to_read(const std::string& path);
 
 /// All bytes of a plain file; if it cannot be read, nothing, and `failure` says why.

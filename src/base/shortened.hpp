@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// What somebody wrote, for a message: control characters become '?', and of more than `most`
+/// Text of a user, shortened for a message: control characters become '?', and of more than `most`
 /// characters the first are kept, with "..." after them.
 inline std::string shortened(const std::string& text, std::size_t most = 60) {
   std::string result = text.substr(0, most);

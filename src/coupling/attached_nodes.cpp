@@ -20,7 +20,7 @@ std::map<std::string, int> carriers_by_name(const std::vector<SolidDescription>&
   return carriers;
 }
 
-/// What moves a point of a rigid solid without surface.
+/// Makes the row of a point of a rigid solid that has no surface.
 template <int dim>
 void unseen_row(const JointableSolids<dim>& model, int solid, const Point<dim>& x,
                 VelocityRow<dim>& row) {

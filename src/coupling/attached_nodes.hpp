@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// Where a model begins in the stack of all solids.
+/// Place at which a model begins in the stack of all solids.
 struct ModelBegin {
   int simplex = 0;     ///< in the surface of all
   GlobalIndex id = 0;  ///< in the map of all unknowns
@@ -25,16 +25,16 @@ struct AttachedNode {
   Point<dim> position;  ///< present [m]
 };
 
-/// Those of this rank at their present positions; `failure` gets a sentence if one names a solid
-/// that is not rigid and dynamic. Local.
+/// Returns the attached nodes of this rank at their present positions; `failure` gets a sentence if
+/// one names a solid that is not rigid and dynamic. Local.
 template <int dim>
 std::vector<AttachedNode<dim>> find_attached_nodes(
     const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
     const std::vector<ModelBegin>& begin, const std::vector<SolidDescription>& solids,
     std::string& failure);
 
-/// What moves a point of a rigid solid that is not prescribed, whether it has a surface or not, in
-/// ids of the stacked map. Replaces `row`. Local.
+/// Makes the row of a point of a rigid solid that is not prescribed, whether it has a surface or
+/// not, in ids of the stacked map. Replaces `row`. Local.
 template <int dim>
 void rigid_row(const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
                const std::vector<ModelBegin>& begin, const SolidDescription& solid,

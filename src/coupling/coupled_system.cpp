@@ -94,7 +94,7 @@ BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum, double d
 
 namespace {
 
-/// What given dofs push into the pressure unknowns.
+/// Returns the flux that given dofs drive into the pressure unknowns.
 PrescribedFlux flux_of_given(const std::string& name, const CrsMatrix& coupling_transposed,
                              const Vector& velocity) {
   PrescribedFlux flux{name, {}};
@@ -108,7 +108,8 @@ PrescribedFlux flux_of_given(const std::string& name, const CrsMatrix& coupling_
 
 }  // namespace
 
-/// Of motors and of prescribed solids with joints one by one, and of all else that is given.
+/// Adds the fluxes of given dofs: one for each motor and for each prescribed solid with joints, and
+/// one for all other given dofs.
 template <int dim>
 void CoupledSystem<dim>::add_given_fluxes(const Reduction& constraints,
                                           std::vector<PrescribedFlux>& fluxes) const {

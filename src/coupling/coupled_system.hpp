@@ -26,7 +26,7 @@ class CoupledSystem {
   /// Collective.
   const BlockSystem& blocks(double dt, bool with_solid = true);
 
-  /// The solids' D is another one than when `blocks` were asked for last.
+  /// Invalidates C: the solids' D has changed since the last `blocks`.
   void forget_solid_block() { block_dt_ = -1; }
 
   /// Row 1: V G_f^T u* + V G_d^T u_d + V G_c^T W_k V_k + B b; row 2: P^T (`momentum` + W^T M_F
@@ -36,13 +36,13 @@ class CoupledSystem {
   /// `incompatibility` gets their relative size. Collective.
   BlockVector right_hand_side(const Vector& momentum, double dt, const Reduction& constraints,
                               double& incompatibility) const;
-  /// The same with given dofs at rest.
+  /// Makes the right-hand side with given dofs at rest.
   BlockVector right_hand_side(const Vector& momentum, double& incompatibility) const {
     return right_hand_side(momentum, 0, solids_.reduction(), incompatibility);
   }
   /// The row 2 of `right_hand_side` on all dofs, without b.
   RCP<Vector> lumped_momentum(const Vector& momentum) const;
-  /// What a moving b takes from row 2: row -= C b for a step of dt. Collective.
+  /// Subtracts the part of a moving b from row 2: row -= C b for a step of dt. Collective.
   void subtract_given(double dt, const Reduction& constraints, Vector& row) const;
 
   /// A sentence if sides, prescribed solids or what constraints give change the volume of fluid

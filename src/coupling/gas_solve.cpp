@@ -15,18 +15,19 @@
 namespace lockstep {
 
 namespace {
-/// Below this part of what would open it if no pressure answered a pocket cannot open: what is
-/// around it is all closed in.
+/// A bubble that opens at less than this part of its rate without an answering pressure cannot
+/// open: it is closed in [1].
 constexpr double closed_in = 1e-12;
 
-/// What p̂ = 1 in one pocket does.
+/// Solution for p̂ = 1 in one bubble.
 struct Answer {
   int pocket = 0;
   BlockVector unknowns;
   std::vector<double> rates;  ///< of all pockets [m^dim/s]
 };
 
-/// What the pocket's push opens of it where solids move by the diagonal of their mass alone.
+/// Returns the rate at which the bubble's push opens it if solids move by the diagonal of their
+/// mass alone [m^dim/s].
 double opened_by_solids(int pocket, const GasProblem& gas, const BlockSystem& blocks,
                         const BlockVector& rhs) {
   const auto mass = blocks.has_solid() ? assembled(blocks.solid_block()) : RCP<const CrsMatrix>();
@@ -49,15 +50,15 @@ double round_off_of_rows(const BlockSystem& blocks, const RCP<const Map>& map) {
   return round_off * product.norm2();
 }
 
-/// Nothing but solids is beside the pocket, and its pushes on them cancel but for round-off: it is
-/// all within one shell, say.
+/// True if only solids are beside the bubble and its pushes on them cancel to round-off, as within
+/// one shell.
 bool pushes_cancel(int pocket, const GasProblem& gas, const BlockVector& rhs) {
   constexpr double round_off = 1e-14;
   return gas.conductance[pocket] == 0 &&
          (rhs.solid.is_null() || rhs.solid->normInf() <= round_off * gas.push_size[pocket]);
 }
 
-/// Empty: nothing that it pushes on can open it.
+/// Solves for p̂ = 1 in one bubble; empty if nothing that it pushes on can open it.
 std::optional<Answer> answer_to(int pocket, const GasProblem& gas, SolverStrategy& strategy,
                                 const BlockSystem& blocks, const SolveRequest& request,
                                 const BlockVector& like, SolveReport& report) {
@@ -72,17 +73,17 @@ std::optional<Answer> answer_to(int pocket, const GasProblem& gas, SolverStrateg
   if (pushes_cancel(pocket, gas, rhs))
     return {};
   relative_part_removed(blocks.null_space, *rhs.pressure);
-  // What opens the pocket is a small difference of what goes through its faces. Where only solids
-  // are beside it and all is closed in, pressures hold them still, and nothing is left for the
-  // tolerance to be a part of.
+  // The rate at which the bubble opens is a small difference of the flows through its faces. If
+  // only solids are beside it and all is closed in, pressures hold them still, and the right-hand
+  // side of the pressure rows, to which the tolerance is relative, vanishes.
   SolveRequest exact{request.name + ", gas", std::min(request.tolerance, 1e-10), 0, request.step};
   if (gas.conductance[pocket] == 0)
     exact.negligible_pressure_residual = round_off_of_rows(blocks, like.pressure->getMap());
   report.add_work(strategy.solve(blocks, rhs, answer.unknowns, exact));
   answer.rates = gas.rates(answer.unknowns, true);
   answer.rates[pocket] += gas.conductance[pocket];
-  // What flows through the pocket's faces flows out elsewhere, but for what the solve left: without
-  // that nothing is left of a pocket that is closed in.
+  // All volume that flows through the bubble's faces flows out elsewhere, but for the residual of
+  // the solve. Without that residual the rate of a bubble that is closed in is zero.
   const BlockResidual left = block_residual(blocks, rhs, answer.unknowns);
   answer.rates[pocket] -=
       left.vector.pressure->meanValue() * left.vector.pressure->getGlobalLength();
@@ -92,8 +93,8 @@ std::optional<Answer> answer_to(int pocket, const GasProblem& gas, SolverStrateg
   return answer;
 }
 
-/// The part of a spring's answer that is taken at the end of the step: none up to omega dt = 1, so
-/// that what it gives it takes back, then what keeps it stable.
+/// The part of a gas spring's answer that is taken at the end of the step: none up to omega dt = 1,
+/// so that the spring conserves energy, then as much as keeps it stable.
 double implicit_part(double stiffness_times_answer) {
   return stiffness_times_answer > 1 ? 1 - 1 / stiffness_times_answer : 0;
 }
@@ -144,7 +145,7 @@ std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strate
     for (int j = 0; j < m; ++j)
       matrix(i, j) = answers[j].rates[k] + (i == j ? compliance[i] : 0);
   }
-  // Of pockets that can only change together, none is preferred.
+  // The shortest solution prefers none of several bubbles that can only change together.
   const Eigen::VectorXd change = least_squares(matrix, wanted, 1e-7);
   std::vector<double> changes(n, 0);
   for (int i = 0; i < m; ++i) {

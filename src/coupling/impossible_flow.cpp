@@ -16,14 +16,15 @@ namespace {
 
 constexpr double least_one_way = 0.5, side_round_off = 1e-6, solid_inaccuracy = 0.1;
 
-/// What a source changes a region's volume by, and all that its faces push, either way [m^dim/s].
+/// Rate at which a source changes the volume of a region, and the sum of the magnitudes of its
+/// faces' rates [m^dim/s].
 struct Rate {
   const PrescribedFlux* source;
   double net = 0, gross = 0;
 };
 
-/// The region of each unknown that the sources push into (`import`), and what null vectors are
-/// there, scaled to 1 at most.
+/// The region of each unknown that the sources push into (`import`), and the values of the null
+/// vectors there, scaled to 1 at most.
 struct Weights {
   std::vector<int> region;
   RCP<const Map> unknowns;
@@ -54,7 +55,7 @@ Weights weights_of(const NullSpace& space, const Import& import) {
   return weights;
 }
 
-/// Of each null vector what each source does to its volume. One sum over ranks.
+/// Returns for each null vector the rates of all sources. One sum over ranks.
 std::vector<std::vector<Rate>> rates_of(const std::vector<PrescribedFlux>& sources,
                                         const Weights& weights, const Communicator& comm) {
   std::vector<double> sums;

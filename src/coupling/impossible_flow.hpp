@@ -7,7 +7,8 @@
 
 namespace lockstep {
 
-/// What is prescribed at the boundary of the fluid. Every rank names the same, in the same order.
+/// Prescribed velocities at the boundary of the fluid. Every rank names the same, in the same
+/// order.
 struct PrescribedFluxes {
   std::vector<PrescribedFlux> sides;   ///< exact
   std::vector<PrescribedFlux> solids;  ///< as the grid sees them

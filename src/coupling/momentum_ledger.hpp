@@ -8,9 +8,9 @@
 
 namespace lockstep {
 
-/// The momentum audit of a step (design, section 8): opened with the momentum of fluid, lumped
-/// fluid and solids, it collects every impulse from where it acts, and at the end says how well
-/// they balance. The masses of the step are frozen between `open` and `close`.
+/// The momentum audit of a step (docs/method.md): opened with the momentum of fluid, lumped fluid
+/// and solids, it collects every impulse from where it acts, and at the end says how well they
+/// balance. The masses of the step are frozen between `open` and `close`.
 template <int dim>
 class MomentumLedger {
  public:
@@ -53,8 +53,7 @@ class MomentumLedger {
     const double defect = (after_.linear - before_.linear - total_impulse().linear).norm();
     return scale > 0 ? defect / scale : 0;
   }
-  /// The same about the origin; `length` [m] turns linear into angular scales, so that a motion
-  /// without rotation is judged against the size of the domain.
+  /// : Relative defect of the angular momentum about the origin;
   double angular_error(double length, double momentum_scale = 0) const {
     double scale = length * std::max({before_.linear.norm(), after_.linear.norm(), momentum_scale});
     double impulses = 0;

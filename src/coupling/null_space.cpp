@@ -28,8 +28,8 @@ Triangle triangle_of(std::vector<int> columns, const Eigen::MatrixXd& rows) {
   return {std::move(columns), qr.matrixQR().topRows(n).triangularView<Eigen::Upper>()};
 }
 
-/// Regions that solids may tie to one another, in one triangle: work grows with the cube of them.
-/// Of more than these only the columns are kept, for the message.
+/// Largest number of regions that solids may tie to one another in one triangle, since the work
+/// grows with its cube. A larger triangle keeps only its columns, for the message.
 constexpr std::size_t most_tied_regions = 5000;
 
 bool is_too_large(const std::vector<int>& columns) {
@@ -59,10 +59,10 @@ Triangle joined(const Triangle& a, const Triangle& b) {
   return triangle_of(std::move(columns), rows);
 }
 
-/// Triangles that share no column: what solids tie together of the regions.
+/// Triangles that share no column, one for each group of regions that solids tie together.
 using Triangles = std::vector<Triangle>;
 
-/// Why these cannot be dealt with; empty: they can.
+/// Returns the reason why there are too many triangles to treat; empty: there are not.
 std::string too_many(const Triangles& triangles) {
   std::size_t most = 0;
   for (const Triangle& triangle : triangles)
@@ -76,7 +76,8 @@ std::string too_many(const Triangles& triangles) {
       most, most_tied_regions);
 }
 
-/// Numbers of a region and its weight at the columns of B^T on this rank; -1: not singular.
+/// Number and weight of the region at each column of B^T on this rank; -1: the region is not
+/// singular.
 struct ColumnRegions {
   std::vector<int> column_of;  ///< by column of B^T
   std::vector<double> weight;  ///< by column of the result
@@ -188,7 +189,7 @@ Triangles local_triangles(const CrsMatrix& coupling_transposed, const ColumnRegi
   return result;
 }
 
-/// Those that share columns become one.
+/// Joins all triangles that share columns.
 Triangles joined(Triangles all, int n_columns) {
   DisjointSets tied(n_columns);
   for (const Triangle& triangle : all) {
@@ -303,7 +304,7 @@ std::vector<std::vector<NullSpace::Part>> kernel_of(const Triangles& triangles, 
   return kernel;
 }
 
-/// From rank 0 to all.
+/// Sends the vectors from rank 0 to all.
 void broadcast(std::vector<std::vector<NullSpace::Part>>& vectors, const Communicator& comm) {
   const MPI_Comm mpi = raw_communicator(comm);
   std::vector<double> flat;  // of each vector its length, then regions and values

@@ -290,7 +290,7 @@ void Reduction::keep_reactions(Vector& residual) const {
   residual.update(1, *reactions, 0);
 }
 
-/// With the entries of combinations at the dofs that they are made of.
+/// Returns the matrix with the entries of combinations moved to the dofs that they are made of.
 RCP<CrsMatrix> Reduction::combined(const CrsMatrix& matrix) const {
   const RCP<const CrsMatrix> of_columns = rows_of_columns(combinations_, matrix);
   const Map& columns = *matrix.getColMap();

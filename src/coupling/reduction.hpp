@@ -9,10 +9,11 @@
 
 namespace lockstep {
 
-/// Which dofs of the solids are unknowns, and what the others' velocities are: V = P y + b (in the
-/// manner of deal.II's AffineConstraints). A dof is an *unknown*, whose row of P is that of the
-/// identity; or *given*: its row of P is zero, its velocity stands in b; or a *combination* of
-/// others. Locks, pins, scripts, and nodes carried by rigid solids are such constraints.
+/// Divides the dofs of the solids into unknowns y and dofs with given or dependent velocities: V =
+/// P y + b (in the manner of deal.II's AffineConstraints). A dof is an *unknown*, whose row of P is
+/// that of the identity; or *given*: its row of P is zero, its velocity stands in b; or a
+/// *combination* of others. Locks, pins, scripts, and nodes carried by rigid solids are such
+/// constraints.
 ///
 /// Velocities V, momenta q, masses and forces outside of a solve are those of all dofs; a solve
 /// sees C_y = P^T C P, P^T B^T and P^T (q - C b), and V = P y + b is its answer. Reduced vectors
@@ -24,7 +25,7 @@ namespace lockstep {
 /// Without constraints nothing is stored and nothing is done. Cheap to copy.
 class Reduction {
  public:
-  /// What a dof is called in messages.
+  /// Names a dof in messages.
   using NameOf = std::function<std::string(GlobalIndex)>;
 
   Reduction() = default;
@@ -33,8 +34,8 @@ class Reduction {
   /// depends on itself. Collective.
   Reduction(const RCP<const Map>& map, std::vector<Combination> combinations,
             std::vector<GlobalIndex> given, const NameOf& name_of = {});
-  /// The same with velocities: of given dofs, and what combinations have beside their terms; null:
-  /// zero. Collective.
+  /// Returns this reduction with other velocities b: those of given dofs, and what combinations
+  /// have beside their terms; null: zero. Collective.
   Reduction with_velocity(const RCP<const Vector>& velocity) const;
 
   /// All dofs are unknowns. The same on all ranks, as are the next two.
@@ -49,7 +50,8 @@ class Reduction {
   RCP<const Vector> offset() const { return offset_; }
   /// Rows of the combinations, by dofs that are unknowns or given; null: none.
   RCP<const CrsMatrix> combinations() const { return combinations_; }
-  /// Which of these dofs, of any rank, are combinations: ascending. Collective.
+  /// Returns those of these dofs, of any rank, that are combinations, in ascending order.
+  /// Collective.
   std::vector<GlobalIndex> combinations_among(const std::vector<GlobalIndex>& dofs) const;
 
   /// V := P V + b: the unknowns of V are y, all others are replaced. Collective.
@@ -60,8 +62,8 @@ class Reduction {
   void follow(Vector& velocity) const;
   /// y of V: zero where there is no unknown. Local.
   void select(Vector& velocity) const;
-  /// What holds given dofs, by themselves and through the combinations of them, of the reactions
-  /// that `keep_reactions` left. Collective.
+  /// Returns the part of the reactions of `keep_reactions` that holds given dofs, by themselves and
+  /// through the combinations of them. Collective.
   RCP<Vector> on_given(const Vector& reactions) const;
   /// q := q without what acts on given dofs. Local.
   void drop_given(Vector& momentum) const;

@@ -1,4 +1,4 @@
-// Which dofs of the stacked solids follow others, and how that moves them.
+// Constraints of the stacked solids: the dofs that follow others, and their motion.
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 

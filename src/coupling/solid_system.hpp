@@ -35,7 +35,7 @@ class SolidSystem {
 
   /// The surfaces of all models at the present positions, one after the other.
   SurfaceMesh<dim> surface() const;
-  /// The same for questions. Solids are numbered over all models.
+  /// Returns a snapshot of this surface for geometric queries. Solids are numbered over all models.
   std::shared_ptr<const SurfaceSnapshot<dim>> snapshot() const;
   /// True if the surfaces are where this snapshot of them has them, to the last bit.
   bool is_where(const SurfaceSnapshot<dim>& snapshot) const;
@@ -47,7 +47,8 @@ class SolidSystem {
   /// Rows of a surface point of a snapshot, with ids of `map`. Local.
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                     VelocityRow<dim>& row) const;
-  /// The same of a point of a rigid solid that is not prescribed, with a surface or without. Local.
+  /// Makes the row of a point of a rigid solid that is not prescribed, with a surface or without.
+  /// Local.
   void rigid_row(int solid, const Point<dim>& x, VelocityRow<dim>& row) const {
     lockstep::rigid_row(models_, begin_, solids_[solid], x, row);
   }
@@ -71,13 +72,13 @@ class SolidSystem {
   std::vector<Block> blocks() const;
   /// The models' rigid motions on `map`, with the masses M_S + added. Collective.
   SoftNodes soft_nodes(const RCP<const CrsMatrix>& added) const;
-  /// What solids without fluid do: V = P y + b with P^T (M_S - dt D) V = P^T q for a stacked
-  /// momentum q. `inverse`: of `solid_block` without added mass. Collective.
+  /// : Velocity of the solids without fluid: V = P y + b with P^T (M_S - dt D) V = P^T q for a
+  /// stacked momentum q. `inverse`: of `solid_block` without added mass. Collective.
   RCP<Vector> velocity_of(const Vector& momentum, double dt, const Reduction& constraints,
                           const LinearOperator& inverse) const;
-  /// The same, factored anew.
+  /// Velocity of the solids without fluid, with `solid_block` factored anew.
   RCP<Vector> velocity_of(const Vector& momentum, double dt, const Reduction& constraints) const;
-  /// The same by M_S alone, given dofs at rest.
+  /// Velocity of the solids without fluid by M_S alone, given dofs at rest.
   RCP<Vector> velocity_of(const Vector& momentum) const {
     return velocity_of(momentum, 0, reduction_);
   }
@@ -87,7 +88,7 @@ class SolidSystem {
   bool begin_step(double time, double dt);
   /// P at the present positions, locked dofs at rest.
   const Reduction& reduction() const { return reduction_; }
-  /// The same with the mean velocities of locked dofs between two times
+  /// P at the present positions with the mean velocities of locked dofs between two times
   /// (`SolidModel::locked_velocities`), and with `ClosedMotion::drift`; null: none. Collective.
   Reduction constraints(double begin, double end, const RCP<const Vector>& drift = {}) const;
   ConstraintModel* joints() { return joints_.get(); }  ///< null: there are none
@@ -104,7 +105,8 @@ class SolidSystem {
   AngularVector<dim> inner_angular_impulse(double dt) const;  ///< of all models [kg m^2/s]
   Momentum<dim> external_impulse(double time, double dt) const;
   bool linearise(double dt, const Vector& velocity);
-  /// Of any model, of all, and of each solid: see UnlinearSolids.
+  /// Nonlinear implicit forces: true if any model has them; the linearisation of all models; the
+  /// energies of each solid (see UnlinearSolids).
   bool has_implicit_forces() const;
   RCP<const Vector> linearisation() const;
   std::vector<ComputedEnergy> unlinear_energies(double dt, const Vector& velocity) const;
@@ -128,7 +130,7 @@ class SolidSystem {
   const Side* side(int m) const {
     return side_of<Side>(model(m));
   }
-  /// The same of forces that are not linear, if it has any in this scene.
+  /// Returns the model's side of nonlinear forces; null if it has none in this scene.
   const UnlinearSolids<dim>* unlinear(int m) const;
   void find_reduction();
   void move_attached(const Vector& velocity, double time, double dt);

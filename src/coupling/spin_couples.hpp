@@ -5,13 +5,13 @@
 
 namespace lockstep {
 
-/// What the Laplacian form of viscosity leaves out of the symmetric stress at solids, the
-/// transposed gradient mu (grad u)^T n. Inside a fluid free of divergence it exerts no force, and
-/// where the fluid sticks to a surface it depends on the motion of that surface alone: on a closed
-/// solid its sum is the couple -2 mu V Omega, V the volume and Omega the mean angular velocity. It
-/// is exactly the couple that the links of the Laplacian make out of nothing: mu area times the
-/// velocity of the surface at either end of a row of velocities. So V is that between the ends of
-/// the links, and Omega what fits the velocities there best, that of a rigid solid exactly: a fluid
+/// Couple that the Laplacian form of viscosity lacks at solids: the transposed gradient mu (grad
+/// u)^T n of the symmetric stress. Inside a fluid free of divergence it exerts no force, and where
+/// the fluid sticks to a surface it depends on the motion of that surface alone: on a closed solid
+/// its sum is the couple -2 mu V Omega, V the volume and Omega the mean angular velocity. The
+/// viscous couplings of the Laplacian produce the opposite couple: mu area times the velocity of
+/// the surface at either end of a strip of velocities. So V is the volume between the ends of the
+/// couplings, and Omega fits the velocities there best, and is exact for a rigid solid: a fluid
 /// that turns with its solids pulls none of them, and angular momentum is conserved. Shells have no
 /// V; that of a container is negative.
 template <int dim>
@@ -20,7 +20,7 @@ class SpinCouples {
   /// `ends`: of the links. Collective.
   SpinCouples(const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow<dim>>& ends,
               const std::vector<SolidDescription>& solids, const Communicator& comm);
-  /// No solid is turned by them. The same on all ranks.
+  /// True if no solid is turned by them. The same on all ranks.
   bool empty() const { return empty_; }
   /// pull += the couples as forces on the solids at the ends of the links [N], for these velocities
   /// of the ends [m/s]. They are linear and symmetric: pull -= S^T strength S velocity. Collective.

@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// What a model gives to the stack of all solids, and where it stands there.
+/// Operators of one model in the stack of all solids, and their place there.
 struct StackedPart {
   RCP<const LinearOperator> mass;
   RCP<const LinearOperator> implicit_force;  ///< D, or null

@@ -16,15 +16,16 @@ namespace {
 
 constexpr double as_they_like = std::numeric_limits<double>::quiet_NaN();
 
-/// A soft solid and a region: what its dofs push out of the region's cells.
+/// Volume that the dofs of a soft solid push out of a region's cells.
 struct Push {
   int solid = 0, region = 0;
-  double along = 0;  ///< times what the surface sweeps, per velocity squared
-  double size = 0;   ///< absolute values of the former's terms
+  double along = 0;  ///< product with the surface's swept volume, per velocity squared
+  double size = 0;   ///< sum of the absolute values of the terms of `along`
   double rate = 0;   ///< at the given velocity [m^dim/s]
 };
 
-/// All soft solids that can be told, and what they and others push out of the regions.
+/// All soft solids whose swept volume can be given, and the volumes that they and others push out
+/// of the regions.
 struct Pushes {
   int n_regions = 0, n_solids = 0;
   std::vector<Push> of;            ///< of solids with regions that they meet, in this order
@@ -34,8 +35,8 @@ struct Pushes {
   std::vector<double> swept;       ///< [solid], by its surface at the given velocity [m^dim/s]
 };
 
-/// The local rows of the stack that belong to soft solids: their number among all that can be told
-/// (-1: none of them), and what they sweep.
+/// The local rows of the stack by soft solid: the solid's number among those whose swept volume can
+/// be given (-1: none of them), and the swept volume per velocity.
 struct SoftRows {
   std::vector<int> solid;
   std::vector<double> swept;
@@ -97,7 +98,7 @@ std::vector<int> regions_of_columns(const CrsMatrix& coupling_transposed,
   return result;
 }
 
-/// Sums those of the same solid and region, in the order in which they come.
+/// Sums pushes of the same solid and region, in the order in which they come.
 void merge(std::vector<Push>& pushes) {
   std::stable_sort(pushes.begin(), pushes.end(), [](const Push& a, const Push& b) {
     return std::pair(a.solid, a.region) < std::pair(b.solid, b.region);
@@ -152,7 +153,7 @@ void find_begins(Pushes& pushes) {
   std::partial_sum(pushes.begin.begin(), pushes.begin.end(), pushes.begin.begin());
 }
 
-/// That of a region, of few.
+/// Returns the push of a solid on a region, which is made if there is none; a solid has few.
 Push& push_on(std::vector<Push>& of_solid, int solid, int region) {
   const auto found = std::find_if(of_solid.begin(), of_solid.end(),
                                   [region](const Push& push) { return push.region == region; });
@@ -205,8 +206,9 @@ Pushes pushes_of(const CrsMatrix& coupling_transposed, const PressureRegions& re
   return pushes;
 }
 
-/// Rigid and prescribed bodies inside the domain push out nothing on the whole: what their part of
-/// the faces makes beyond that belongs to those they share them with.
+/// Gives the volume of rigid and prescribed bodies to the soft solids that they share faces with:
+/// inside the domain such bodies displace no net volume, so that any sum over their part of the
+/// faces belongs to the others.
 void share_others(Pushes& pushes) {
   std::vector<double> total(pushes.n_regions, 0);
   for (const Push& push : pushes.of)
@@ -217,7 +219,8 @@ void share_others(Pushes& pushes) {
   }
 }
 
-/// True if all solids but those that can be told are rigid or prescribed bodies inside the domain.
+/// True if all solids but those whose swept volume can be given are rigid or prescribed bodies
+/// inside the domain.
 template <int dim>
 bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
                         const Box<dim>& domain) {
@@ -241,10 +244,11 @@ bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
   return true;
 }
 
-/// What solid s must sweep. A body between closed regions: what its own velocities say, not what
-/// its straight steps add; its elasticity answers for the rest, as the grid sees its shape only
-/// roughly. A shell has nothing that answers: what it pushes out of the regions on one of its
-/// sides, if they are all closed and it is all of that side.
+/// Returns the volume rate that solid s must sweep. For a body between closed regions it is that of
+/// its own velocities, without what its straight steps add; its elasticity answers for the rest, as
+/// the grid sees its shape only roughly. A shell has no volume of its own to answer with: its rate
+/// is what it pushes out of the regions on one of its sides, if these are all closed and it is all
+/// of that side.
 double rate_of(const Pushes& pushes, const PressureRegions& regions, int s, bool is_closed) {
   constexpr double least_part = 0.5;   // of the side: 1 on a fine grid
   constexpr double round_off = 1e-12;  // of terms that cancel

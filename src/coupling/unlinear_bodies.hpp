@@ -5,10 +5,10 @@
 
 namespace lockstep {
 
-/// The dofs of each solid that may have implicit forces, apart from those of all others: what is to
-/// be judged solid by solid, lest it depend on what others do. Solids are numbered as in
-/// `SolidSystem::solids`; those of models without such forces have none of these dofs. For the
-/// present dofs and masses.
+/// The dofs of each solid that may have implicit forces: norms and scales of a nonlinear iteration
+/// are taken solid by solid, so that no solid's convergence depends on the others. Solids are
+/// numbered as in `SolidSystem::solids`; those of models without such forces have none of these
+/// dofs. For the present dofs and masses.
 template <int dim>
 class UnlinearBodies {
  public:
@@ -17,10 +17,11 @@ class UnlinearBodies {
 
   /// The product of two stacked vectors over the dofs of each solid. Collective.
   std::vector<double> dot(const Vector& one, const Vector& other) const;
-  /// Velocities in the frame of each solid's centre of mass; as they are where some of a solid's
-  /// nodes are held or carried, for these are the frame. Zero in all other rows. Collective.
+  /// Returns velocities in the frame of each solid's centre of mass, unchanged where some of a
+  /// solid's nodes are held or carried, for these are the frame. Zero in all other rows.
+  /// Collective.
   RCP<Vector> without_translations(const Vector& velocity) const;
-  /// One of these numbers for each row, times that row; rows of no such solid stay.
+  /// Multiplies the rows of each solid by its number; rows of no such solid stay.
   void scale(const std::vector<double>& by_solid, Vector& stacked) const;
 
  private:

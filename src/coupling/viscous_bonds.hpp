@@ -30,15 +30,17 @@ class ViscousBonds {
   void take_from_fluid(double dt, const Vector& values, bool weighted, Vector& fluid) const;
   /// drag = alpha L^T pull + beta drag on the solid map. Only with unknowns. Collective.
   void pull_on_solids(double alpha, const Vector& pull, double beta, Vector& drag) const;
-  /// Beside what the diagonal of K_ff has of it: sum c (v^2 - 2 u v) over the ends' velocities v,
-  /// and that of the couples [W]. This rank's part.
+  /// Dissipation beside that of K_ff's diagonal: sum c (v^2 - 2 u v) over the velocities v of the
+  /// ends, and that of the couples [W]. This rank's part.
   double dissipation(const Vector& u, const Vector& end_velocity, const Vector& couple_pull) const;
-  /// What the links add to the diagonal of the solids' rows, sum c L^2 [kg/s]. Collective.
+  /// Contribution of the viscous couplings to the diagonal of the solids' rows, sum c L^2 [kg/s].
+  /// Collective.
   RCP<Vector> strength_on_solids() const;
 
-  /// The couple of links whose two ends lie apart across their direction, with that of the
-  /// transposed gradient, which cancels it and that of the fluid's own bonds; and what each
-  /// prescribed solid gives the fluid through its links. This rank's part.
+  /// Impulse of the couplings whose two ends lie apart across their direction, which is a couple,
+  /// with the couple of the transposed gradient, which cancels it and that of the fluid's own
+  /// couplings. `of_prescribed` gets the impulse of each prescribed solid on the fluid. This rank's
+  /// part.
   Momentum<dim> impulse(const Vector& pull, const Vector& couple_pull, double dt,
                         std::vector<Momentum<dim>>& of_prescribed) const;
 

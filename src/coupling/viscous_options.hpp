@@ -3,14 +3,15 @@
 
 namespace lockstep {
 
-/// How the coupled viscous system is solved.
+/// Options of the coupled viscous solve.
 struct ViscousOptions {
-  /// Of the residual in the norm of the preconditioner, relative to the right-hand side [1].
+  /// Largest residual in the norm of the preconditioner, relative to the right-hand side [1].
   double tolerance = 1e-10;
   int maximum_iterations = 2000;
-  /// What preconditioner_from_list takes for M_f + dt K_ff; empty: its diagonal.
+  /// List for preconditioner_from_list that preconditions M_f + dt K_ff; empty: its diagonal.
   ParameterList fluid_inverse;
-  /// The same for C; empty: its diagonal with that of K_ss, where C is stiff an inverse of it.
+  /// List for preconditioner_from_list that preconditions C; empty: its diagonal with that of K_ss,
+  /// and where C is stiff an inverse of it.
   ParameterList solid_inverse;
 };
 

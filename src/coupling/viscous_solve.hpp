@@ -5,18 +5,18 @@
 
 namespace lockstep {
 
-/// What the coupled viscous solve hands on.
+/// Result of the coupled viscous solve.
 template <int dim>
 struct ViscousResult {
   RCP<Vector> solid_impulse;   ///< j_nu = -dt (K_sf u + K_ss V_S) [kg m/s] on the solid map; null
                                ///< without unknowns
   RCP<Vector> solid_velocity;  ///< V of the solution, which is not kept; null without unknowns
   Momentum<dim> boundary_impulse;  ///< walls and prescribed solids on the fluid, global
-  /// Of each solid that is prescribed on the fluid, part of `boundary_impulse`; zero for dynamic
-  /// solids. Where several share a face, one of them has it all. Global.
+  /// Impulse of each prescribed solid on the fluid, part of `boundary_impulse` [kg m/s]; zero for
+  /// dynamic solids. Where several share a face, one of them has it all. Global.
   std::vector<Momentum<dim>> prescribed_impulses;
-  /// What friction turns into heat at the velocities of the solution, less what moving sides and
-  /// inflows give it [W]; 0 if it was not asked for.
+  /// Power that friction turns into heat at the velocities of the solution, less the power of
+  /// moving sides and inflows [W]; 0 if it was not asked for.
   double dissipation = 0;
   int iterations = 0;
 };

@@ -7,7 +7,8 @@ namespace lockstep {
 
 namespace {
 
-/// Of the nodes of a tree, until its boxes are sorted anew.
+/// Growth of the extent of a tree's nodes since its boxes were sorted at which they are sorted anew
+/// [1].
 constexpr double most_growth = 1.5;
 }  // namespace
 

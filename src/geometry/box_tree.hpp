@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// Which boxes are near each other.
+/// Order of boxes in which neighbours in the list are near each other in space.
 struct SortedBoxes {
   std::vector<int> places;  ///< in a balanced binary tree
   double extent = 0;        ///< of the tree's nodes together when they were sorted [m]
@@ -32,9 +32,9 @@ class BoxTree {
   /// Calls f(i) for the boxes that touch this one, until f returns true. True if f did.
   template <typename Function>
   bool any_touching(const Box<dim>& box, const Function& f) const;
-  /// Those that touch `box`, ascending; replaces the content of `found`.
+  /// Finds the boxes that touch `box`, in ascending order; replaces the content of `found`.
   void touching(const Box<dim>& box, std::vector<int>& found) const;
-  /// Of these the ones that are wanted.
+  /// Finds the wanted ones of the boxes that touch `box`.
   template <typename Wanted>
   void touching(const Box<dim>& box, std::vector<int>& found, const Wanted& is_wanted) const;
   /// Calls f(i) for the boxes below the nodes of which all `meets(box of the node, node)` are true,

@@ -7,7 +7,8 @@ namespace lockstep {
 
 namespace {
 
-/// Where the edge low -> high crosses the level `v` of its second coordinate; low.v <= v < high.v.
+/// Crossing of an edge low -> high with the level `v` of its second coordinate, low.v <= v <
+/// high.v.
 struct EdgeCrossing {
   double u = 0;       ///< first coordinate
   double weight = 0;  ///< of the high end

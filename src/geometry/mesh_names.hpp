@@ -7,8 +7,8 @@
 
 namespace lockstep {
 
-/// What a mesh file calls its vertices and simplices, for messages. A generated mesh has no file
-/// and counts from 0.
+/// Names of a mesh file's vertices and simplices, for messages. A generated mesh has no file and
+/// counts from 0.
 struct MeshNames {
   std::string file;                       ///< empty: generated
   std::string simplex_word;               ///< "facet", "cell"; empty: "triangle" and the like

@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// What is done to the mesh of a file before it is checked.
+/// Changes to the mesh of a file before it is checked.
 struct MeshRepair {
   double scale = 1;
   double weld = 0;  ///< [m], after scaling

@@ -29,8 +29,8 @@ void add_lines(const std::string& record, std::size_t n_vertices, int line,
     lines.insert(lines.end(), n_vertices - dim + 1, line);
 }
 
-/// What tinyobjloader lets pass: coordinates that are no numbers, which it reads as 0, and indices
-/// of no vertex.
+/// Refuses what tinyobjloader lets pass: coordinates that are no numbers, which it reads as 0, and
+/// indices of no vertex.
 template <int dim>
 void check_records(const std::string& file, MeshNames& names) {
   TextLines lines(file);

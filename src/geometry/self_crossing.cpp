@@ -31,7 +31,7 @@ std::optional<Point<2>> crossing(const std::array<Point<2>, 2>& s, const std::ar
   return Point<2>(s[0] + a / (a - b) * (s[1] - s[0]));
 }
 
-/// Where an edge of `s` goes through the inside of `t`.
+/// Returns the point at which an edge of `s` goes through the inside of `t`.
 std::optional<Point<3>> edge_crossing(const std::array<Point<3>, 3>& s,
                                       const std::array<Point<3>, 3>& t, double length) {
   const double tolerance = 1e-12 * length * length * length;

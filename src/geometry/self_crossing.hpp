@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// Where a surface goes through itself.
+/// Crossings of a surface with itself.
 template <int dim>
 struct SelfCrossing {
   int n_pairs = 0;                        ///< of simplices that cross

@@ -17,7 +17,7 @@ template <int dim>
 ClosestOnSimplex<dim> closest_on_simplex(const std::array<Point<dim>, dim>& corners,
                                          const Point<dim>& x);
 
-/// Where the segment a -> b (of non-zero length) first meets a simplex.
+/// First point of a simplex on the segment a -> b (of non-zero length).
 template <int dim>
 struct SimplexHit {
   double fraction = 0;  ///< 0 at a, 1 at b

@@ -11,11 +11,11 @@ namespace lockstep {
 template <int dim>
 double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box);
 
-/// The same of one closed solid.
+/// Returns the volume of one closed solid in a box [m^dim].
 template <int dim>
 double solid_volume_in_box(const SurfaceSnapshot<dim>& surface, const Box<dim>& box, int solid);
 
-/// What of a solid lies in a box.
+/// Part of a solid in a box.
 template <int dim>
 struct PartOfSolid {
   double volume = 0;                         ///< [m^dim]

@@ -149,7 +149,7 @@ class SurfaceChecker {
         n == 1 ? "it" : "them", from_file() ? ", or merge coinciding vertices with \"Weld\"" : ""));
   }
 
-  /// What is wrong, one clause a kind.
+  /// Returns the faults of the surface, one clause a kind.
   std::vector<std::string> clauses(const OpenRims& open) const {
     std::vector<std::string> list;
     const auto add = [&](const Places& places, const std::string& what) {

@@ -4,7 +4,7 @@
 
 namespace lockstep {
 
-/// What a surface must be, and how messages speak of it.
+/// Demands on a surface, and its names in messages.
 struct SurfaceDemand {
   std::string name;          ///< of the solid
   bool closed = true;        ///< it must enclose a volume

@@ -8,7 +8,7 @@ namespace lockstep {
 /// A rim of a simplex: an edge in 3D (its vertices in ascending order), a vertex in 2D (twice).
 struct Rim {
   int first = 0, second = 0;
-  /// Of traversal, +1 or -1: two neighbours of like orientation have opposite ones.
+  /// Direction of traversal, +1 or -1: two neighbours of like orientation have opposite ones.
   int direction = 0;
   int simplex = 0;
 };

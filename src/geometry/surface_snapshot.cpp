@@ -19,7 +19,8 @@ Box<dim> grown(const Box<dim>& box, double distance) {
   return {box.min() - margin, box.max() + margin};
 }
 
-/// Of two places as near, that of the first simplex counts.
+/// True if this place comes before another one; of two places as near, that of the first simplex
+/// counts.
 template <int dim>
 bool comes_before(double fraction, int simplex, const SurfacePoint<dim>& other) {
   return fraction < other.fraction || (fraction == other.fraction && simplex < other.simplex);

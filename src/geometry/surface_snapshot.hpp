@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// What the framework knows of one solid's surface.
+/// Description of one solid's surface, as the framework knows it.
 struct SolidDescription {
   std::string name;
   bool closed = true;       ///< encloses a volume; false: a thin shell
@@ -146,7 +146,8 @@ std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
                                             const SurfaceSnapshot<dim>& after, const Point<dim>& x,
                                             const std::vector<int>& candidates);
 
-/// The same over a point that moves linearly as well, from -> to; `position` is meaningless.
+/// First passage of the surface over a point that moves linearly as well, from -> to; `position` is
+/// meaningless.
 template <int dim>
 std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
                                             const SurfaceSnapshot<dim>& after,

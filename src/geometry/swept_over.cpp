@@ -144,7 +144,7 @@ std::optional<SurfacePoint<dim>> swept_over(const SurfaceSnapshot<dim>& before,
   LOCKSTEP_ASSERT(before.n_simplices() == after.n_simplices());
   std::optional<SurfacePoint<dim>> first;
   for (const int s : candidates) {
-    // As the point sees it.
+    // corners in the frame of the moving point
     auto corners = after.corners(s);
     for (Point<dim>& corner : corners)
       corner -= to - from;

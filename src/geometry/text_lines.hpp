@@ -51,7 +51,7 @@ class TextLines {
     return value;
   }
   long integer(const std::string& word) const { return integer(word, word); }
-  /// The same of a part of a word; the message shows all of it.
+  /// Reads an integer from a part of a word; the message shows all of the word.
   long integer(const std::string& part, const std::string& word) const {
     char* end = nullptr;
     errno = 0;

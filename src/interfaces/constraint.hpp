@@ -15,17 +15,16 @@ struct Combination {
   std::vector<std::pair<GlobalIndex, double>> terms;  ///< dof and weight
 };
 
-/// Velocities that joints were asked to go with.
+/// Result of `ConstraintModel::close`.
 struct ClosedMotion {
-  /// What combinations have beside their terms when bodies move so that all joints fit, on the
-  /// stacked map. Null: some joints could not be closed, or are not to be; then V is that of bodies
-  /// which follow the rates of their joints, and all of the joints' impulse belongs to the end of
-  /// the step.
+  /// Velocity that a combination has beside its terms when bodies move so that all joints fit, on
+  /// the stacked map. Null: some joints could not be closed, or are not to be; then V is the
+  /// velocity of bodies which follow the rates of their joints, and the whole impulse of the joints
+  /// belongs to the end of the step.
   RCP<Vector> drift;
 };
 
-/// A coordinate of a joint after a step, for joints.csv: of an angle in rad, of a displacement in
-/// m.
+/// A coordinate of a joint after a step, for joints.csv: an angle [rad] or a displacement [m].
 struct JointState {
   std::string name;    ///< of the joint
   int coordinate = 0;  ///< from 1; 0 if it has one alone, or none
@@ -38,17 +37,17 @@ struct JointState {
   bool at_limit = false;    ///< or beyond
 };
 
-/// A limit that joints set to their coordinates. Per step of dt, sum_k weight_k V_k may not be
-/// below -room / dt. Weights make it a speed, of what is as far away as the solids reach [m/s].
+/// A limit of a joint's coordinate: over a step of dt, sum_k weight_k V_k >= -room / dt. The
+/// weights make the sum the speed [m/s] of a point as far from the joint as the solids reach.
 struct JointLimit {
   std::vector<std::pair<GlobalIndex, double>> terms;  ///< dof and weight
   double room = 0;  ///< how far the coordinate may still go [m]; negative: it is beyond
 };
 
-/// What joints gave in a step, generalized.
+/// Generalized impulses of the joints in one step.
 struct JointImpulses {
-  /// Of what holds given dofs (`Reduction::on_given`), where the step began (null: nothing), and
-  /// where it ended.
+  /// Impulses of the constraints that hold given dofs (`Reduction::on_given`): the part that acts
+  /// where the step begins (null: nothing) and the part that acts where it ends.
   RCP<const Vector> at_start, at_end;
   std::vector<std::pair<GlobalIndex, double>>
       of_limits;  ///< dof and impulse; the same on all ranks
@@ -65,27 +64,29 @@ struct GivenMotion {
 /// O(dt^2): `close` mends that. Dofs are those of the stack of all solids.
 class ConstraintModel : public PlugIn {
  public:
-  /// At the present positions. Local, the same on all ranks.
+  /// Returns the combinations at the present positions. Local, the same on all ranks.
   virtual std::vector<Combination> combinations() const = 0;
   /// S1: changes V (stacked, of all dofs), which is about to move all solids from `time` by dt, as
   /// if they had no midpoint corrections: who adds these asks for a `FreeFlight`. Collective.
   virtual ClosedMotion close(double time, double dt, Vector& velocity) = 0;
-  /// At the present positions, for motions with about the velocity V (by dof, of all solids).
-  /// Local, the same on all ranks.
+  /// Returns the limits at the present positions that motions with about the velocity V (by dof, of
+  /// all solids) may meet within dt. Local, the same on all ranks.
   virtual std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const = 0;
   /// Joints whose rates are given, and prescribed solids that carry others.
   virtual std::vector<GivenMotion> given_motions() const = 0;
   /// The name of a joint that has limits; empty: none.
   virtual std::string limited() const = 0;
-  /// Whether forces on their own dofs are implicit: springs, dampers.
+  /// True if forces on the joints' own dofs (springs, dampers) are implicit.
   virtual bool has_implicit_forces() const = 0;
-  /// At most as many unknowns move the solids that are tied to one another.
+  /// Largest number of unknowns that move solids which are tied to one another.
   virtual int largest_block() const = 0;
-  /// At the end of a step from `time` over dt, whose velocities joints know already. Collective.
+  /// Records the impulses at the end of a step from `time` over dt, whose velocities the joints
+  /// know already. Collective.
   virtual void take_note(const JointImpulses& impulses, double time, double dt) = 0;
-  /// Targets are those of `time`. Local, the same on all ranks.
+  /// Returns the states of all coordinates, with the targets at `time`. Local, the same on all
+  /// ranks.
   virtual std::vector<JointState> states(double time) const = 0;
-  /// What there is, for `--explain`. Local.
+  /// Returns a description of the joints for `--explain`. Local.
   virtual std::string note() const = 0;
 };
 

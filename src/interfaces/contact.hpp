@@ -12,7 +12,7 @@ namespace lockstep {
 template <int dim>
 class SolidSystem;
 
-/// What one contact resolution did.
+/// Result of one resolution of contacts.
 template <int dim>
 struct ContactReport {
   int n_contacts = 0;  ///< and limits of joints
@@ -21,24 +21,24 @@ struct ContactReport {
   double deepest_overlap = 0;      ///< before resolution; 0 where nothing is resolved [m]
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global
   RCP<const Vector> impulse;  ///< generalized, on the free dofs, if there was a `ContactResponse`
-  /// What constraints gave while contact acted, of which no solve hears: generalized, as
-  /// `Reduction::keep_reactions` leaves it. Null: nothing.
+  /// Generalized reactions of constraints while contact acted, which no solve contains, as
+  /// `Reduction::keep_reactions` leaves them. Null: there are none.
   RCP<const Vector> reactions;
-  /// Of limits of joints, by dof of a coordinate; the same on all ranks.
+  /// Impulses of joint limits, each with the dof of its coordinate; the same on all ranks.
   std::vector<std::pair<GlobalIndex, double>> limit_impulses;
 };
 
-/// Gives the operator that takes generalized impulses on the free dofs to changes of velocity, when
-/// it is not M_S^-1: (M_S - dt D)^-1 of solids whose inner forces answer within the step. Called if
-/// a contact acts only. Collective.
+/// Returns the operator from generalized impulses on the free dofs to changes of velocity, if it is
+/// not M_S^-1: (M_S - dt D)^-1 of solids whose inner forces answer within the step. Called only if
+/// a contact acts. Collective.
 using ContactResponse = std::function<RCP<const LinearOperator>()>;
 
-/// Of the wall of the domain at an end (0 lower, 1 upper) of an axis, along itself, at a time
-/// [m/s]. Local, the same on all ranks.
+/// Velocity of the wall of the domain at an end (0 lower, 1 upper) of an axis, tangential to the
+/// wall, at a time [m/s]. Local, the same on all ranks.
 template <int dim>
 using WallVelocity = std::function<Point<dim>(int axis, int end, double time)>;
 
-/// In which part of the step contacts are resolved.
+/// The two places of a step at which contacts are resolved.
 enum class ContactPhase {
   position,  ///< S1: V^{n+1/2} moves the positions; existing overlap is pushed out
   velocity   ///< S2: V_S* before the coupled solve; only approach is stopped

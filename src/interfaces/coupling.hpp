@@ -8,11 +8,11 @@ namespace lockstep {
 template <int dim>
 class SolidSystem;
 
-/// How fluid and solids exchange momentum: from the fluid's coupled control volumes and the solids'
-/// velocity rows it makes B^T, the added mass and momentum, and hands velocities back. Its
+/// Exchanges momentum between fluid and solids: from the fluid's coupled control volumes and the
+/// solids' velocity rows it makes B^T, the added mass and momentum, and hands velocities back. Its
 /// `open_fraction` decides which control volumes it takes. Geometry is frozen between two
-/// `assemble`. What audits and outputs want beyond this: interfaces/coupling_sides.hpp; what the
-/// viscous solve wants: viscosity.hpp.
+/// `assemble`. Audits and outputs find more in interfaces/coupling_sides.hpp, the viscous solve in
+/// viscosity.hpp.
 template <int dim>
 class Coupling : public PlugIn, public OpenFractionRule<dim> {
  public:
@@ -34,7 +34,8 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
                                    Vector& rhs) const = 0;
   /// W_d V_S + W_k V_k for each coupled volume [m/s]. Collective.
   virtual std::vector<double> velocity(const Vector& solid_velocity) const = 0;
-  /// The same with every solid's effective velocity (F2); no unknowns. Collective.
+  /// W_d V_S + W_k V_k with the effective velocity of every solid over the last `move` (F2) instead
+  /// of unknowns [m/s], one entry per coupled volume. Collective.
   virtual std::vector<double> effective_velocity(const SolidSystem<dim>& solids) const = 0;
   /// V G_c^T u_c: minus the outflow through coupled volumes of given velocity [m^dim/s].
   /// Collective.

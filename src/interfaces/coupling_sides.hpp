@@ -33,7 +33,8 @@ class AuditedCoupling {
   }
 };
 
-/// Buoyancy that the control volumes do not give right. Without it none is missing.
+/// Correction of the hydrostatic force where the control volumes do not resolve a solid's displaced
+/// volume. A coupling without it needs none.
 template <int dim>
 class UnseenBuoyancy {
  public:

@@ -5,9 +5,10 @@
 
 namespace lockstep {
 
-// Who can tell what the parts of a step do to the energy, and what comes of it. Asked for only
-// where an observer wants it. An impulse works on the mean of the velocities before and after: so
-// the works of all impulses of a step are, to round-off, the change of the kinetic energy.
+// Side interfaces that measure the work which the parts of a step do on the energy, called only if
+// an observer asks for it. An impulse works on the mean of the velocities before and after it, so
+// that the works of all impulses of a step add up, to round-off, to the change of the kinetic
+// energy.
 
 /// Side interface of fluids: the works of what acts on u* one after another, on free faces.
 template <int dim>
@@ -16,13 +17,14 @@ class EnergyFluid {
   virtual ~EnergyFluid() = default;
   /// The present u* is that on which the forces of a step begin to act. Local.
   virtual void begin_works() = 0;
-  /// What has acted since the last call, or since the begin, is one of them. Local.
+  /// Closes one work: all that changed u* since the last call, or since `begin_works`. Local.
   virtual void end_work() = 0;
-  /// Each of them, at the mean of the first u* and the last [J]; forgets them. Global, collective.
+  /// Returns each work, at the mean of the first u* and the last [J], and clears them. Global,
+  /// collective.
   virtual std::vector<double> works() = 0;
 };
 
-/// What their own forces give to the motion of solids [J].
+/// Work of the solids' own forces on their motion over a step [J].
 struct SolidWork {
   double elastic = 0;
   double damping = 0;  ///< hardly ever above 0
@@ -35,22 +37,22 @@ template <int dim>
 class WorkingSolids {
  public:
   virtual ~WorkingSolids() = default;
-  /// The works of their forces in S2, over dt from `time`, which found `velocity`, on bodies that
-  /// move at `mean`; before `set_velocity`. Global, collective.
+  /// Returns the works of the solids' forces in S2, over dt from `time`, which found `velocity`, on
+  /// bodies that move at `mean`; called before `set_velocity`. Global, collective.
   virtual SolidWork solid_work(double time, double dt, const Vector& velocity,
                                const Vector& mean) const = 0;
 };
 
-/// Where the energy of a step comes from and where it goes [J]. Each is measured where it arises,
-/// none is the rest of the others; what they leave open is `left`.
+/// Budget of the energy of a step [J]: sources, change, sinks. Each term is measured where it
+/// arises, none is the remainder of the others; `left` is their imbalance.
 struct EnergyBook {
-  // What comes in.
+  // Sources.
   double joints = 0;  ///< work of their control, as joints.csv has it
   double loads = 0;   ///< work of gravity, loads, contact and drops
-  // What there is.
+  // Change of what is stored.
   double kinetic_change = 0;  ///< of fluid and solids
   double elastic_change = 0;
-  // What is taken, friction first.
+  // Sinks, friction first.
   double fluid_friction = 0;  ///< by viscosity, from fluid and solids
   double solid_friction = 0;  ///< by the damping of soft solids
   double transport = 0;   ///< kinetic energy of the fluid, by advection and all that goes with it

@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// What a fluid is like at one place.
+/// State of a fluid at one point.
 template <int dim>
 struct FluidSample {
   bool in_fluid = false;                     ///< false: in a solid or outside; all else is zero
@@ -13,7 +13,7 @@ struct FluidSample {
   Point<dim> velocity = Point<dim>::Zero();  ///< [m/s]
 };
 
-/// How a fluid goes through a plane at one place.
+/// Flow of a fluid through a plane at one point.
 struct FlowSample {
   double open = 0;  ///< part of the plane there that fluid can go through [1]; 0: all else is zero
   double rate = 0;  ///< volume by area, open or not, and time, along the axis [m/s]
@@ -29,8 +29,9 @@ class FieldSampler {
   /// The state at the end of the last step, one sample a point [m], the same on all ranks.
   /// Collective; all ranks ask for the same points.
   virtual std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const = 0;
-  /// The same of planes at right angles to an axis: what the fluid's own balance of volume says
-  /// goes through. Without a better answer all or nothing, as `sample` has it. Collective.
+  /// Samples the flow through planes normal to `axis` at these points, with the volume that the
+  /// fluid's own mass balance takes through. Default: entirely open or closed, as `sample` finds
+  /// the point. Collective.
   virtual std::vector<FlowSample> flow_across(int axis,
                                               const std::vector<Point<dim>>& points) const {
     std::vector<FlowSample> flows;

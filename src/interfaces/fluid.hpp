@@ -11,7 +11,7 @@
 
 namespace lockstep {
 
-/// What lies on one side of a velocity control volume.
+/// The kinds of neighbour on one side of a velocity control volume.
 enum class SideKind : char {
   unknown,  ///< a pressure that is solved for
   solid,    ///< the inside of a closed solid
@@ -48,11 +48,11 @@ struct ControlVolume {
   double open_fraction = 1;                     ///< alpha_f, as the coupling's rule answered
   Point<dim> open_center = Point<dim>::Zero();  ///< where its fluid moves: R_f unless partly open
   bool seen_by_fluid = true;  ///< a fluid cell beside it sees its centre without crossing a surface
-  /// On a wall or an inflow: the velocity of its open part is prescribed, no fluid moves in it.
+  /// True on a wall or an inflow: a boundary condition prescribes the velocity of its open part.
   bool at_prescribed_side = false;
   GlobalIndex id = no_index;  ///< the fluid's own number; the same on any number of ranks
 
-  /// No pressure unknown is beside it: of what it moves nothing is fluid.
+  /// True if no pressure unknown is beside it, so that it moves gas only.
   bool only_gas() const { return sides[0].unknown == no_index && sides[1].unknown == no_index; }
 };
 
@@ -86,14 +86,15 @@ struct MovingSurface {
   std::function<Point<dim>(const SurfacePoint<dim>&)> velocity;
 };
 
-/// Connected components of the pressure unknowns through free faces (regions, design: null space).
+/// Connected components of the pressure unknowns through free faces: a component without a
+/// Dirichlet face has a constant in the null space of A.
 struct PressureRegions {
   int n_regions = 0;                ///< over all ranks
   std::vector<int> of_unknown;      ///< region of each local pressure unknown
   std::vector<char> has_dirichlet;  ///< per region: some face fixes the pressure level
 };
 
-/// What `set_geometry` freezes.
+/// The frozen geometry, as `set_geometry` makes it.
 template <int dim>
 struct FluidGeometry {
   /// Control volumes with open_fraction < 1 and at least one pressure unknown or pocket of gas,
@@ -107,7 +108,7 @@ struct FluidGeometry {
   double volume = 0;  ///< of the fluid [m^dim], global
 };
 
-/// What the explicit forces of a step did.
+/// Momentum that the explicit forces of a step gave to the fluid.
 template <int dim>
 struct ForceImpulse {
   Momentum<dim> impulse;               ///< given to the free velocities, global
@@ -131,7 +132,7 @@ class FluidDiscretization : public PlugIn {
   void set_geometry(const Surface& surface, const OpenFractionRule<dim>& rule) {
     frozen_ = &freeze(surface, rule);
   }
-  /// What it froze. Local.
+  /// Parts of the frozen geometry. Local.
   const std::vector<ControlVolume<dim>>& coupled_volumes() const {
     return frozen_->coupled_volumes;
   }
@@ -147,10 +148,11 @@ class FluidDiscretization : public PlugIn {
   virtual void project(const Vector& scaled_pressure) = 0;
   /// u* of the coupled control volumes, in their order [m/s]. Local.
   virtual std::vector<double> coupled_velocity() const = 0;
-  /// u* of those that are closed (open fraction 0); a partly open one keeps its own.
+  /// Sets u* of the coupled control volumes that are closed (open fraction 0), in their order
+  /// [m/s]; a partly open one keeps its own.
   virtual void set_coupled_velocity(const std::vector<double>& velocity) = 0;
 
-  // The phases of a step.
+  // The stages of a step.
 
   /// A step from `time` to time + dt begins: room may be made where things will move. True if
   /// u^n lives on other cells than when it was accepted, without being free of divergence there,
@@ -180,15 +182,15 @@ class FluidDiscretization : public PlugIn {
   virtual void revalidate(const MovingSurface<dim>&) {}
   virtual void accept() = 0;  ///< u^n := u* (end of the step)
 
-  // What the step and the solids need to know.
+  // Scales and properties that the step and the solids need to know.
 
-  /// The shortest distance that it resolves [m]: h of its smallest cells. Local.
+  /// Returns the shortest distance that the fluid resolves [m]: h of its smallest cells. Local.
   virtual double smallest_length() const = 0;
   /// Largest sum_a |u_a| of u^n [m/s].
   virtual double largest_speed() const = 0;
-  /// A step in which neither the fluid nor a solid of that speed [m/s] crosses more than so many
-  /// cells; the velocity that gravity adds within the step counts as well. Infinite at rest.
-  /// Default: all cells are as small as the smallest.
+  /// Returns the longest step [s] in which neither the fluid nor a solid of that speed [m/s]
+  /// crosses more than n_cells cells, with the velocity that gravity adds within the step. Infinite
+  /// at rest. Default: all cells are as small as the smallest.
   virtual double suggested_step(double n_cells, double solid_speed) const;
   /// The longest step that is stable [s]; waves on a free surface bound it. Default: any is. Local.
   virtual double largest_stable_step() const { return 1e300; }
@@ -207,7 +209,8 @@ class FluidDiscretization : public PlugIn {
   FluidDiscretization& operator=(const FluidDiscretization&) = delete;
 
  private:
-  /// For `set_geometry`; what is returned stays valid and unchanged until the next call.
+  /// Makes the geometry for `set_geometry`; the result stays valid and unchanged until the next
+  /// call.
   virtual const FluidGeometry<dim>& freeze(const Surface& surface,
                                            const OpenFractionRule<dim>& rule) = 0;
 

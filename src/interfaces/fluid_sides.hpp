@@ -26,8 +26,8 @@ class AuditedFluid {
   virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
 };
 
-/// Keeps the pressure of the last step, the initial guess of the solves and what the viscous solve
-/// reads.
+/// Keeps the pressure of the last step: the initial guess of the solves, and an input of the
+/// viscous solve.
 template <int dim>
 class PressureMemory {
  public:
@@ -35,8 +35,8 @@ class PressureMemory {
   /// p̂ of the last accepted step on the present unknowns, carried on to those where there was none.
   /// Collective.
   virtual RCP<Vector> last_scaled_pressure() const = 0;
-  /// Adds to the scaled pressure of the last `project` what `accept` keeps with it: of each unknown
-  /// `inflow` [Pa s m^dim] over the volume of its cell. Changes no velocity. Collective.
+  /// Adds `inflow` [Pa s m^dim] over the volume of each unknown's cell to the scaled pressure that
+  /// `accept` keeps of the last `project`. Changes no velocity. Collective.
   virtual void correct_pressure(const Vector& inflow) = 0;
 };
 
@@ -47,8 +47,8 @@ RCP<Vector> last_scaled_pressure_of(const FluidDiscretization<dim>& fluid) {
   return memory ? memory->last_scaled_pressure() : make_vector(fluid.pressure_map());
 }
 
-/// Knows in which box it can be. What of a solid lies beyond an open side or a wall displaces
-/// nothing.
+/// Knows the box that the fluid is in. The part of a solid beyond an open side or a wall displaces
+/// no fluid.
 template <int dim>
 class BoundedFluid {
  public:
@@ -56,7 +56,8 @@ class BoundedFluid {
   virtual Box<dim> bounds() const = 0;  ///< [m]; the same on every rank. Local.
   /// [axis][lower, upper]: a wall, which solids cannot pass either. Local.
   virtual std::array<std::array<bool, 2>, dim> closed_sides() const { return {}; }
-  /// Of the wall at an end (0 lower, 1 upper) of an axis, along itself [m/s]. Local.
+  /// Velocity of the wall at an end (0 lower, 1 upper) of an axis, tangential to the wall, at a
+  /// time [m/s]. Local.
   virtual Point<dim> wall_velocity(int, int, double) const { return Point<dim>::Zero(); }
   /// True if what leaves at one side comes in at another: then torques have no common origin.
   /// Local.
@@ -72,7 +73,7 @@ Box<dim> bounds_of(const FluidDiscretization<dim>& fluid) {
   return Box<dim>(-far, far);
 }
 
-/// What only pictures and `--explain` show.
+/// Fields, surfaces and notes that only pictures and `--explain` show.
 template <int dim>
 class FluidOutput {
  public:
@@ -81,7 +82,7 @@ class FluidOutput {
   virtual void add_frame(std::vector<BoxFrame>& boxes) const = 0;
   /// Adds its surfaces, as a liquid with a free surface has one. Collective.
   virtual void add_surfaces(std::vector<SurfaceFrame>&) const {}
-  /// Their names, which no solid may have. Local.
+  /// Returns the names of the surfaces, which no solid may have. Local.
   virtual std::vector<std::string> surface_names() const { return {}; }
   /// Lines for `--explain`, title and text: how the grid has taken what the scene asks for.
   /// Collective.

@@ -5,56 +5,59 @@
 
 namespace lockstep {
 
-/// A closed pocket of gas beside a liquid. It has no mass and one pressure, which pushes on all
-/// that is around it. Global.
+/// A closed gas bubble beside a liquid. It has no mass and one pressure, which pushes on all that
+/// is around it. Global.
 struct GasPocket {
   double volume = 0;     ///< [m^dim]
-  double pressure = 0;   ///< above that of the void: what its volume makes it, or of the last step
-                         ///< if it keeps its volume [Pa]
+  double pressure = 0;   ///< above the pressure of the air: a function of the volume, or the last
+                         ///< step's if the bubble keeps its volume [Pa]
   double stiffness = 0;  ///< -dp/dV [Pa/m^dim]; unused if it keeps its volume
   bool keeps_volume = false;
-  double missing = 0;  ///< of its volume, to be made good within the step [m^dim]
+  double missing = 0;  ///< volume defect, to be made good within the step [m^dim]
 };
 
-/// Side interface of fluids with pockets of gas; those of the frozen geometry, in any step the same
-/// on all ranks. What one number a pocket is in these calls is named by `PressureSide::pocket`.
+/// Side interface of fluids with gas bubbles: the bubbles of the frozen geometry, the same on all
+/// ranks. Vectors have one entry per bubble, indexed by `PressureSide::pocket`.
 template <int dim>
 class GasFluid {
  public:
   virtual ~GasFluid() = default;
   virtual bool holds_gas() const = 0;  ///< false: no pocket ever. Local.
   virtual const std::vector<GasPocket>& gas_pockets() const = 0;
-  /// rhs += what scaled pressures of the pockets, p̂ = dt p, push out of the pressure unknowns
-  /// beside them [m^dim/s]. Local.
+  /// rhs += volume rate that scaled bubble pressures p̂ = dt p [Pa s] push out of the pressure
+  /// unknowns beside them [m^dim/s]. Local.
   virtual void add_gas_push(const std::vector<double>& scaled_pressure, Vector& rhs) const = 0;
-  /// By pocket, what a unit of its p̂ opens of it if no unknown answers: the sum of what
-  /// `add_gas_push` makes of it. Collective.
+  /// Returns per bubble the volume rate by which a unit of its p̂ opens it if no pressure unknown
+  /// answers, [m^dim/s / (Pa s)]: the sum of `add_gas_push` of that unit. Collective.
   virtual std::vector<double> gas_conductance() const = 0;
-  /// The rate at which the free faces open each pocket [m^dim/s]: of u*, less what these pressures
-  /// of the unknowns take. Collective.
+  /// Returns the rate at which u* on the free faces opens each bubble [m^dim/s]; `gas_answer` the
+  /// rate by which these p̂ of the unknowns reduce it. Collective.
   virtual std::vector<double> gas_rates() const = 0;
   virtual std::vector<double> gas_answer(const Vector& scaled_pressure) const = 0;
-  /// `FluidDiscretization::project`, which finds no pressure in the pockets, with theirs.
-  /// Collective.
+  /// Projects as `FluidDiscretization::project` does, but with these pressures in the bubbles
+  /// instead of none. Collective.
   virtual void project(const Vector& scaled_pressure, const std::vector<double>& gas_pressure) = 0;
-  /// Impulse that the sides of the domain give through the pockets beside them. Collective.
+  /// Impulse of the sides of the domain on the bubbles beside them [kg m/s]. Collective.
   virtual Momentum<dim> gas_side_impulse(const std::vector<double>& scaled_pressure) const = 0;
 };
 
-/// Side interface of couplings: gas pushes on the solids around it. `AuditedCoupling` counts it.
+/// Side interface of couplings: gas pushes on the solids around it. `AuditedCoupling` counts that
+/// impulse.
 template <int dim>
 class GasCoupling {
  public:
   virtual ~GasCoupling() = default;
-  /// momentum += what p̂ of the pockets gives dynamic solids [kg m/s]. Collective.
+  /// momentum += impulse of the bubbles' p̂ on dynamic solids [kg m/s]. Collective.
   virtual void add_gas_push(const std::vector<double>& scaled_pressure, Vector& momentum) const = 0;
-  /// By pocket, the sum of the magnitudes that a unit of its p̂ gives all dofs, before any cancel:
-  /// the scale of the round-off of `add_gas_push`. Collective.
+  /// Returns per bubble the sum of the magnitudes of the impulses of a unit of its p̂ on all dofs,
+  /// before any cancel: the scale of the round-off of `add_gas_push`. Collective.
   virtual std::vector<double> gas_push_size(int n_pockets) const = 0;
-  /// The rate at which coupled volumes of these velocities open each pocket [m^dim/s]. Collective.
+  /// Returns the rate at which coupled volumes of these velocities open each bubble [m^dim/s].
+  /// Collective.
   virtual std::vector<double> gas_rates(const std::vector<double>& coupled_velocity,
                                         int n_pockets) const = 0;
-  /// W V_S of the closed parts, for `gas_rates`; with what prescribed solids add to it. Collective.
+  /// Returns W V_S of the closed parts, for `gas_rates`, plus the part of prescribed solids if
+  /// asked for [m/s]. Collective.
   virtual std::vector<double> closed_velocity(const Vector& solid_velocity,
                                               bool with_prescribed) const = 0;
 };

@@ -7,7 +7,8 @@ namespace lockstep {
 class LimitedTorques {
  public:
   virtual ~LimitedTorques() = default;
-  /// Whether they gave that in the last step, by entry of `ConstraintModel::states`. Local.
+  /// True for each joint coordinate whose spring gave its largest torque in the last step, in the
+  /// order of `ConstraintModel::states`. Local.
   virtual std::vector<char> limited_torques() const = 0;
 };
 

@@ -16,14 +16,16 @@ namespace lockstep {
 struct WatchedLiquid {
   double volume = 0;  ///< [m^dim]
   double target = 0;  ///< what it should be [m^dim]
-  double leak = 0;    ///< of it what came through solids; with a leak a step fails [m^dim]
+  double leak =
+      0;  ///< part of the difference that came through solids; with a leak a step fails [m^dim]
 };
 
 /// The gas that is trapped. Global.
 struct GasReport {
   long long n_pockets = 0;
-  double volume = 0;    ///< of all of them [m^dim]
-  double pressure = 0;  ///< in the largest, above that of the void, in the last step [Pa]
+  double volume = 0;  ///< of all of them [m^dim]
+  double pressure =
+      0;  ///< in the largest bubble, above the pressure of the air, in the last step [Pa]
 };
 
 /// The drops that fly beside the liquid. Global.
@@ -40,66 +42,70 @@ struct SurfaceImpulse {
   Point<dim> impulse = Point<dim>::Zero();  ///< [kg m/s]
 };
 
-/// How much liquid there is, and what became of it. Global.
+/// Volume balance of the liquid. Global.
 struct LiquidReport {
   double volume = 0;  ///< [m^dim]
   double target = 0;  ///< what it should be: of the start, with all that flowed in and out [m^dim]
   double shift = 0;   ///< volume that corrections have moved so far [m^dim]
-  double lost = 0;    ///< that vanished with drops too small to see [m^dim]
-  long long n_bodies = 0;              ///< connected bodies of liquid
+  double lost = 0;    ///< volume that vanished with drops below the grid's resolution [m^dim]
+  long long n_bodies = 0;              ///< connected liquid components
   std::vector<WatchedLiquid> watches;  ///< in the order of their names
   std::optional<GasReport> gas;        ///< if any may be trapped
   std::optional<DropsReport> drops;    ///< if there may be any
 };
 
-/// What of a closed solid lies in a liquid, and what the grid takes that for: below the plane that
-/// the free surface around it lies in most nearly. Global.
+/// Part of a closed solid that lies in a liquid, and the volume that the grid counts for it: below
+/// the plane that fits the free surface around the solid best. Global.
 template <int dim>
 struct WetBody {
-  /// The free surface crosses it, or it is above. False: it is all in the liquid, and the rest is
-  /// not set.
+  /// True if the free surface crosses the solid, or the solid is above it. False: it is submerged,
+  /// and the rest is not set.
   bool partly = false;
-  double volume = 0;                         ///< below the free surface [m^dim]
-  Point<dim> centroid = Point<dim>::Zero();  ///< of that, about; zero without volume
+  double volume = 0;  ///< below the free surface [m^dim]
+  Point<dim> centroid =
+      Point<dim>::Zero();  ///< approximate centroid of `volume` [m]; zero without volume
   /// By axis: the wet parts of the dual cells that the solid blocks or fills, which the pressure
   /// lifts along that axis, and their first moment [m^dim, m^(dim+1)].
   std::array<double, dim> displaced{};
   std::array<Point<dim>, dim> moment{};
   /// By axis: a wet column of it ends at a side of the domain, where the pressure does not reach.
   std::array<bool, dim> at_side{};
-  /// Of that plane: a point is slope * x less the level above it, along the vertical [m]. Zero
-  /// slope: no free surface is around, as without gravity.
+  /// The plane of the free surface: the height of a point x above it along the vertical is slope *
+  /// x - level [m]. Slope zero: no free surface is around, as without gravity.
   Point<dim> slope = Point<dim>::Zero();
   double level = 0;
 
   double depth(const Point<dim>& x) const { return std::max(0.0, level - slope.dot(x)); }
 };
 
-/// Side interface of fluids: a liquid with a free surface, above which nothing pushes.
+/// Side interface of fluids: a liquid with a free surface, on which the air exerts no pressure (p =
+/// 0).
 template <int dim>
 class LiquidFluid {
  public:
   virtual ~LiquidFluid() = default;
   virtual bool has_surface() const = 0;  ///< false: the fluid fills the domain. Local.
-  /// From x to the free surface, negative in the liquid [m]; linear between the centres of cells,
-  /// carried on into solids, cut off a few cells away. Near cells that this rank owns. Local.
+  /// Returns the signed distance from x to the free surface, negative in the liquid [m]: linear
+  /// between the centres of cells, extended into solids, cut off at the edge of the narrow band a
+  /// few cells away. Known near cells that this rank owns. Local.
   virtual double surface_distance(const Point<dim>& x) const = 0;
-  /// By solid of the frozen surface; those that are not closed have nothing. Collective.
+  /// Returns the wet part of each solid of the frozen surface; a solid that is not closed has an
+  /// empty one. Collective.
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
   virtual LiquidReport liquid() const = 0;
   virtual bool traps_gas() const { return false; }  ///< reports have `gas`. Local.
   virtual bool has_drops() const { return false; }  ///< reports have `drops`. Local.
-  /// What drops gave to solids in the last `advect`, on every rank; the forces after it take it
-  /// from the drops. Collective.
+  /// Returns the impulses of drops on solids in the last `advect`, the same on every rank; the next
+  /// `add_forces` takes them from the drops. Collective.
   virtual std::vector<SurfaceImpulse<dim>> impulses_on_solids() const { return {}; }
-  /// What surface tension gave in the last `add_forces`, as part of its impulse, and in a viscous
-  /// solve since then, as part of what `accept_viscous` returned. Global. Local.
+  /// Returns the impulse of surface tension in the last `add_forces`, as part of its result, and in
+  /// a viscous solve since then, as part of the result of `accept_viscous`. Global. Local.
   virtual Momentum<dim> surface_impulse() const { return {}; }
-  /// Of the watched places, as columns have them. Local.
+  /// Returns the names of the watched places, as the columns of tables have them. Local.
   virtual std::vector<std::string> watch_names() const { return {}; }
 };
 
-/// Null unless it is a liquid that has a free surface. Local.
+/// Returns the fluid's liquid side; null unless it has a free surface. Local.
 template <int dim, typename Fluid>
 const LiquidFluid<dim>* liquid_of(const Fluid& fluid) {
   const auto* liquid = dynamic_cast<const LiquidFluid<dim>*>(&fluid);

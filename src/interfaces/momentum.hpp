@@ -53,7 +53,7 @@ void sum_over_ranks(std::vector<Momentum<dim>>& momenta, const Communicator& com
   }
 }
 
-/// The same of one. Collective.
+/// Sums one momentum over all ranks. Collective.
 template <int dim>
 Momentum<dim> sum_over_ranks(const Momentum<dim>& mine, const Communicator& comm) {
   std::vector<Momentum<dim>> one{mine};

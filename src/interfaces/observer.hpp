@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// What an observer may look at after a step; valid during the call only.
+/// State of the run that an observer may look at after a step; valid during the call only.
 template <int dim>
 struct RunView {
   double time = 0, dt = 0;  ///< [s]; the end of the step, and its length (0 at the start of a run)
@@ -37,7 +37,7 @@ class Observer : public PlugIn {
   virtual std::vector<std::vector<double>> observe(const RunView<dim>& run) = 0;
   /// After every step, before `observe` if that is due: for what adds up. Collective.
   virtual void follow(const RunView<dim>&) {}
-  /// Whether runs are to keep `RunView::energy`, which costs some percent of a step. Local.
+  /// True if runs are to keep `RunView::energy`, which costs some percent of a step. Local.
   virtual bool wants_energy() const { return false; }
 };
 

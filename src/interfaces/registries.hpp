@@ -18,7 +18,7 @@ namespace lockstep {
 /// The solids of one type as a scene names them, in the order of the file.
 using NamedLists = std::vector<std::pair<std::string, ParameterList>>;
 
-/// What a solid model may know of the scene around it.
+/// Properties of the scene that a solid model may know.
 template <int dim>
 struct SolidSetting {
   double smallest_length = 1;               ///< that the fluid resolves, h [m]
@@ -28,7 +28,7 @@ struct SolidSetting {
   double fluid_density = 0;  ///< in the middle of the domain [kg/m^dim]
 };
 
-/// What a contact model may know of the scene around it.
+/// Properties of the scene that a contact model may know.
 template <int dim>
 struct ContactSetting {
   Box<dim> domain;  ///< [m]
@@ -42,7 +42,7 @@ struct ContactSetting {
   std::vector<std::pair<std::string, std::string>> jointed;
 };
 
-/// What joints may know of the scene around them.
+/// Properties of the scene that joints may know.
 template <int dim>
 struct JointSetting {
   const std::vector<std::unique_ptr<SolidModel<dim>>>& models;  ///< in the order of their stack

@@ -71,7 +71,7 @@ class SolidModel : public PlugIn {
 
   // Operators with the geometry frozen.
   virtual RCP<const Map> dof_map() const = 0;
-  /// M_S, SPD.
+  /// The mass matrix M_S [kg], symmetric positive definite.
   virtual RCP<const LinearOperator> mass() const = 0;
   /// D(dt): symmetric negative semidefinite linearisation of the implicit forces [kg/s], or null.
   virtual RCP<const LinearOperator> implicit_force(double dt) const;
@@ -87,8 +87,8 @@ class SolidModel : public PlugIn {
   virtual void begin_step(double, double) {}
   /// Dofs held at a given velocity in the present step (ids in dof_map, those of this rank). Local.
   virtual std::vector<GlobalIndex> locked_dofs() const { return {}; }
-  /// Mean velocity of each of them between two times, at equal times that of the instant. Default:
-  /// zero. Local.
+  /// Returns the mean velocity of each locked dof between two times; at equal times the velocity
+  /// then. Default: zero. Local.
   virtual std::vector<double> locked_velocities(double, double) const {
     return std::vector<double>(locked_dofs().size(), 0);
   }
@@ -106,8 +106,9 @@ class SolidModel : public PlugIn {
   /// x := x + dt * velocity from the stored positions (S1), and prescribed solids to time + dt.
   /// Collective.
   virtual void move(const Vector& velocity, double time, double dt) = 0;
-  /// Where the last `move` carried the point x^n = x of a rigid solid (its number in this model);
-  /// asked for nodes attached to it. Default, for models without rigid solids: x. Local.
+  /// Returns the position to which the last `move` carried the point x^n = x of a rigid solid (its
+  /// number in this model); nodes attached to the solid ask for it. Default, for models without
+  /// rigid solids: x. Local.
   virtual Point<dim> carried(int solid, const Point<dim>& x) const;
   virtual std::vector<SolidState<dim>> states() const = 0;  ///< one per solid, on every rank
   /// Largest stable step of explicitly integrated forces [s]. Default: none.

@@ -34,12 +34,13 @@ struct ComputedEnergy {
   double value = 0, round_off = 0;
 };
 
-/// Forces at the positions that the solve leads to, and not linear in them.
+/// Nonlinear implicit forces: forces at the positions that the solve leads to.
 template <int dim>
 class UnlinearSolids {
  public:
   virtual ~UnlinearSolids() = default;
-  /// False: none in this scene, the functions below are not asked. Local, the same on all ranks.
+  /// True if this scene has such forces; else the functions below are not called. Local, the same
+  /// on all ranks.
   virtual bool has_implicit_forces() const = 0;
   /// A Newton iteration: linearises forces and D at the positions that this velocity reaches in dt,
   /// instead of at the present ones, until `move` or `set_velocity`. False if nothing depends on
@@ -47,9 +48,9 @@ class UnlinearSolids {
   virtual bool linearise(double dt, const Vector& velocity) = 0;
   /// The velocity about which forces and D are linearised at present; null: zero. Local.
   virtual RCP<const Vector> linearisation() const = 0;
-  /// The potential of these forces at the velocity V of the solve over dt, less the quadratic one
-  /// of which `explicit_momentum` and D are made, up to a constant: of each solid. Global,
-  /// collective.
+  /// Returns for each solid the potential of these forces [J] at the velocity V of the solve over
+  /// dt, less the quadratic model whose gradient `explicit_momentum` and D are, up to a constant.
+  /// Global, collective.
   virtual std::vector<ComputedEnergy> unlinear_energies(double dt,
                                                         const Vector& velocity) const = 0;
   /// The solid of each local row of `dof_map`. Rows are velocities of nodes, along all axes of one
@@ -57,8 +58,8 @@ class UnlinearSolids {
   virtual std::vector<int> solid_of_row() const = 0;
 };
 
-/// A rigid solid as joints see it. Generalized: dim translations of the reference point, then the
-/// rotations, in axes of space.
+/// A rigid solid as joints see it. Its generalized vectors have dim translations of the reference
+/// point, then the rotations, in axes of space.
 template <int dim>
 struct RigidFrame {
   static constexpr int n = dim + n_rotations<dim>;
@@ -74,15 +75,15 @@ class JointableSolids {
  public:
   virtual ~JointableSolids() = default;
   virtual RigidFrame<dim> rigid_frame(int solid) const = 0;  ///< at present
-  /// Where a prescribed solid is at a time.
+  /// Returns the frame of a prescribed solid at a time.
   virtual RigidFrame<dim> prescribed_frame(int solid, double time) const = 0;
-  /// The first of its dofs, in `dof_map`; no_index if it is prescribed.
+  /// Returns the first dof of the solid, in `dof_map`; no_index if it is prescribed.
   virtual GlobalIndex first_dof(int solid) const = 0;
-  /// A parameter of this solid that joints do not go with; empty: none.
+  /// Returns a parameter of this solid that excludes joints; empty: there is none.
   virtual std::string unjointable(int solid) const = 0;
 };
 
-/// What inverses of C can be built on.
+/// Near null spaces of C, on which its multigrid inverses are built.
 template <int dim>
 class NearNullSpaces {
  public:
@@ -92,7 +93,7 @@ class NearNullSpaces {
   virtual RigidMotions near_null_space() const = 0;
 };
 
-/// What only pictures and tables show.
+/// Frames and figures that only pictures and tables show.
 template <int dim>
 class SolidOutput {
  public:
@@ -103,7 +104,7 @@ class SolidOutput {
   /// Elements whose implicit forces were changed to keep C definite, in the last step that used
   /// them; for the history. Global, local call.
   virtual GlobalIndex n_clamped_elements() const { return 0; }
-  /// What the last `limit_motion` left undone: stretch beyond its limit, in the worst place [1].
+  /// Largest stretch beyond its limit that the last `limit_motion` left [1].
   virtual double stretch_beyond_limit() const { return 0; }
 };
 

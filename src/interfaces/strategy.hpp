@@ -6,8 +6,8 @@
 
 namespace lockstep {
 
-/// What a solve has to reach: each block's residual, scaled to that block's own right-hand side (or
-/// to the largest term of its rows, if that is larger), at most `tolerance`.
+/// Accuracy that a solve has to reach: the residual of each block is at most `tolerance` times the
+/// norm of that block's right-hand side (or the largest term of its rows, if that is larger).
 struct SolveRequest {
   std::string name;  ///< "S1", "F2", "S2": for messages
   double tolerance = 1e-8;
@@ -15,7 +15,7 @@ struct SolveRequest {
   /// reached, the solve is done, even where every term of these rows vanishes and `tolerance` has
   /// nothing to scale with.
   double negligible_pressure_residual = 0;
-  long long step = 0;  ///< of which it is one, counted as in history.csv; 0: of none
+  long long step = 0;  ///< number of the step, counted as in history.csv; 0: outside of steps
 };
 
 struct SolveReport {
@@ -27,7 +27,7 @@ struct SolveReport {
   int preconditioner_builds = 0, preconditioner_reuses = 0;
   long stored_nonzeros = 0;  ///< of matrices that the strategy assembled; 0 if it does not count
 
-  /// Adds what another solve has cost, whose solution this one's stands for.
+  /// Adds the cost of another solve whose solution this one replaces.
   void add_work(const SolveReport& other) {
     iterations += other.iterations;
     solid_iterations += other.solid_iterations;

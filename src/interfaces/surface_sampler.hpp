@@ -11,10 +11,10 @@ template <int dim>
 class SurfaceSampler {
  public:
   virtual ~SurfaceSampler() = default;
-  /// From each point [m] to the free surface at the end of the last step, negative in the liquid
-  /// [m], linear between the centres of cells, cut off a few cells away; 1e300 where nothing is
-  /// stored. The same on all ranks. Of a fluid that has a surface (LiquidFluid). Collective; all
-  /// ranks ask for the same points.
+  /// Returns the signed distance from each point [m] to the free surface at the end of the last
+  /// step, negative in the liquid [m]: linear between the centres of cells, cut off at the edge of
+  /// the narrow band; 1e300 where nothing is stored. The same on all ranks. The fluid must have a
+  /// free surface (LiquidFluid). Collective; all ranks ask for the same points.
   virtual std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const = 0;
 };
 

@@ -9,8 +9,8 @@ namespace lockstep {
 template <int dim>
 class SolidSystem;
 
-/// A viscous bond from a free velocity to the solid: it pulls with
-/// coefficient * (u_row - v_solid) [N] on both, equal and opposite.
+/// A viscous coupling between a free velocity and the solid: a force coefficient * (u_row -
+/// v_solid) [N] on both, equal and opposite.
 template <int dim>
 struct ViscousLink {
   int row = -1;             ///< local row of `ViscousSystem::stiffness`
@@ -49,10 +49,10 @@ class ViscousFluid {
   virtual ~ViscousFluid() = default;
   /// False: inviscid in this scene, the two functions below are never called. Local.
   virtual bool is_viscous() const = 0;
-  /// The viscous solve must read the pressure that the forces on u* call for, which is one more
-  /// solve. False: the last step's will do. Local.
+  /// True if the viscous solve must read the pressure that balances the forces on u*, at the price
+  /// of one more solve. False: the last step's will do. Local.
   virtual bool wants_present_pressure() const { return false; }
-  /// Of the present u*. Collective.
+  /// Returns the viscous system of the present u*. Collective.
   virtual std::unique_ptr<ViscousSystem<dim>> viscous_system() const = 0;
   /// Returns the impulse of walls, open sides and the internal couple of the scheme over dt, each
   /// computed from the tractions of `solution`, global; u* := `velocity` on free velocities, which
@@ -62,7 +62,7 @@ class ViscousFluid {
                                        double dt) = 0;
 };
 
-/// Null for inviscid fluids.
+/// Returns the viscous side of a fluid; null if it is inviscid.
 template <int dim>
 ViscousFluid<dim>* viscosity_of(FluidDiscretization<dim>& fluid) {
   auto* viscous = side_of<ViscousFluid<dim>>(fluid);
@@ -82,13 +82,14 @@ struct LinkRow {
   int solid = -1;                            ///< the one with the largest share
 };
 
-/// A side interface of couplings: what viscous links pull on. A viscous fluid among solids needs
-/// it.
+/// A side interface of couplings: the solid end of viscous couplings. A viscous fluid among solids
+/// needs it.
 template <int dim>
 class ViscousCoupling {
  public:
   virtual ~ViscousCoupling() = default;
-  /// `assemble` and the surface it was given must still be valid. Local.
+  /// Computes the row of one coupling; `assemble` and the surface it was given must still be valid.
+  /// Local.
   virtual void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
                         LinkRow<dim>& row) const = 0;
 };

@@ -18,8 +18,8 @@ namespace {
 using Row = std::vector<Entry>;
 using Component = std::set<GlobalIndex>;  // sorted, so that all ranks invert it in the same order
 
-/// Which rows of this rank have a nonzero beside the diagonal, in the row or in its column: the
-/// others, all of them where masses are lumped, are blocks of their own. Collective.
+/// Marks the rows of this rank with a nonzero beside the diagonal, in the row or in its column. The
+/// others, which are all of them where masses are lumped, are blocks of their own. Collective.
 std::vector<char> find_tied_rows(const CrsMatrix& matrix) {
   const auto rows = matrix.getRowMap(), columns = matrix.getColMap();
   std::vector<char> tied(rows->getNodeNumElements(), 0);

@@ -11,7 +11,7 @@ inline constexpr int largest_dense_block = 24;
 
 struct BlockDiagonalInverse {
   RCP<const CrsMatrix> inverse;
-  /// Whether it is the exact inverse: no block was larger than the limit.
+  /// True if the inverse is exact: no block was larger than the limit.
   bool exact = false;
 };
 
@@ -22,8 +22,8 @@ struct BlockDiagonalInverse {
 BlockDiagonalInverse block_diagonal_inverse(const RCP<const CrsMatrix>& matrix, int largest_block,
                                             const std::string& name);
 
-/// Whether no block of a symmetric matrix, as above, has more than `largest_block` rows; its values
-/// do not matter. Collective.
+/// True if no block of a symmetric matrix, in the sense of `block_diagonal_inverse`, has more than
+/// `largest_block` rows; values do not matter. Collective.
 bool has_small_blocks(const RCP<const CrsMatrix>& matrix, int largest_block);
 
 /// The sentence for a C = M̃ - dt D without a Cholesky factor; `name` is its name in messages.
@@ -31,7 +31,8 @@ std::string not_positive_definite(const std::string& name);
 
 /// One over the diagonal. Throws SolveError if an entry is not positive. Collective.
 RCP<Vector> inverse_diagonal(const CrsMatrix& matrix, const std::string& name);
-/// The same as a matrix. Throws SolveError if an entry is not positive. Collective.
+/// Returns the inverse diagonal as a matrix. Throws SolveError if an entry is not positive.
+/// Collective.
 RCP<const CrsMatrix> jacobi_inverse(const CrsMatrix& matrix, const std::string& name);
 
 }  // namespace lockstep

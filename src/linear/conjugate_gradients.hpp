@@ -27,9 +27,9 @@ struct ConjugateGradientsRequest {
   double preconditioned_target = 0;
 };
 
-/// What an iteration does to its vectors, in as few passes over memory as the operators allow. The
-/// preconditioned residual z and the direction d belong to the kernels. All sums are global, all
-/// calls collective.
+/// : The vector operations of an iteration, in as few passes over memory as the operators allow.
+/// The preconditioned residual z and the direction d belong to the kernels. All sums are global,
+/// all calls collective.
 class ConjugateGradientKernels {
  public:
   virtual ~ConjugateGradientKernels() = default;
@@ -52,7 +52,7 @@ class ConjugateGradientKernels {
 int conjugate_gradients(ConjugateGradientKernels& kernels, Vector& r, Vector& x,
                         const ConjugateGradientsRequest& request);
 
-/// The same from two operators; the request's null vectors are projected out of z.
+/// Iterates with kernels made of two operators; the request's null vectors are projected out of z.
 int conjugate_gradients(const Action& op, const Action& preconditioner, const Vector& rhs,
                         Vector& x, const ConjugateGradientsRequest& request);
 

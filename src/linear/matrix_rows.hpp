@@ -43,8 +43,8 @@ std::vector<int> own_columns(const CrsMatrix& matrix);
 /// The diagonal of a square matrix. Collective.
 RCP<Vector> diagonal_of(const CrsMatrix& matrix);
 
-/// What an entry, or a combination of columns, of this coupling matrix is at most by round-off
-/// alone, where the terms that make it cancel. Collective.
+/// Bound of the round-off in an entry, or in a combination of columns, of this coupling matrix
+/// where the terms that make it cancel. Collective.
 double round_off_of_sums(const CrsMatrix& coupling_transposed);
 
 /// The map behind an operator's domain. Throws InputError if the space is not Tpetra's.

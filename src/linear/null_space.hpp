@@ -27,7 +27,8 @@ struct RowRegions {
 /// Orthonormal vectors that are constant on regions: a few numbers each, instead of one a row.
 class NullSpace {
  public:
-  /// What a vector is on all rows of a region; it is zero on the regions that it does not name.
+  /// Value of a vector on all rows of a region; the vector is zero on the regions that it does not
+  /// name.
   struct Part {
     int region;
     double value;
@@ -41,13 +42,13 @@ class NullSpace {
   bool empty() const { return vectors_.empty(); }
   const RowRegions& regions() const { return *regions_; }  ///< of a space that is not empty
   const std::vector<std::vector<Part>>& vectors() const { return vectors_; }
-  /// One of them, row by row. Local.
+  /// Returns one vector, row by row. Local.
   RCP<Vector> vector(std::size_t k) const;
-  /// Other vectors on the same regions.
+  /// Returns other vectors on the same regions.
   NullSpace with(std::vector<std::vector<Part>> vectors) const {
     return {regions_, std::move(vectors)};
   }
-  /// The same vectors on other rows of the same rank: row r stands in row `place[r]` of `map`.
+  /// Returns these vectors on other rows of this rank: row r stands in row `place[r]` of `map`.
   NullSpace moved_to(const RCP<const Map>& map, const std::vector<int>& place) const;
 
  private:
@@ -64,7 +65,8 @@ NullSpace null_space_of(const std::vector<RCP<const Vector>>& vectors);
 /// over ranks, and two passes over x. Collective.
 double project_out(const NullSpace& space, Vector& x);
 
-/// The same, relative to the norm of x before (0 for x = 0). Collective.
+/// Removes from x its components along the vectors, and returns the norm of what was removed
+/// relative to the norm of x before (0 for x = 0). Collective.
 double relative_part_removed(const NullSpace& space, Vector& x);
 
 }  // namespace lockstep

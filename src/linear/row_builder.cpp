@@ -84,7 +84,7 @@ std::size_t RowBuilder::add_at(int column, double value) {
   return size_++;
 }
 
-/// By column; entries of one column keep their order.
+/// Sorts the entries by column; entries of one column keep their order.
 void RowBuilder::sort(std::size_t begin, std::size_t end) {
   constexpr std::size_t short_row = 32;
   if (std::is_sorted(columns_ + begin, columns_ + end))

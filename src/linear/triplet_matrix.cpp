@@ -120,7 +120,7 @@ RCP<CrsMatrix> assemble_triplets(std::vector<Triplet> triplets, const RCP<const 
     triplets = send_to_owners(triplets, *row_map);
     sort_and_merge(triplets);
   }
-  // Of each local row the first of its triplets.
+  // first triplet of each local row
   const int n_rows = static_cast<int>(row_map->getNodeNumElements());
   std::vector<std::size_t> first(n_rows, triplets.size());
   for (std::size_t i = triplets.size(); i-- > 0;)

@@ -42,7 +42,7 @@ struct Top {
       const double moved = change.norm();
       if (!(moved < 1e100 * size))
         return false;
-      // Where changes get no smaller any more they are round-off.
+      // Changes that get no smaller are round-off.
       if (moved <= 1e-16 * size || (moved <= 1e-9 * size && moved >= 0.5 * before)) {
         turn_by(step * (inverse_inertia * middle));
         return true;
@@ -69,7 +69,7 @@ Point<3> turn_in_steps(const Eigen::Matrix3d& inverse_inertia, const Point<3>& a
   constexpr double a = 0.784513610477560, b = 0.235573213359357, c = -1.17767998417887;
   constexpr double parts[] = {a, b, c, 1 - 2 * (a + b + c), c, b, a};
   const Point<3> omega = inverse_inertia * angular_momentum;
-  // With its energy it turns nowhere faster than about the axis of the least inertia.
+  // A body of this energy turns nowhere faster than about the axis of its least inertia.
   const double fastest = std::sqrt(omega.dot(angular_momentum) * inverse_inertia.norm());
   if (!std::isfinite(fastest))
     return dt * omega;

@@ -18,7 +18,7 @@ template <int dim>
 AngularVector<dim> free_turn(const InertiaTensor<dim>& inertia,
                              const AngularVector<dim>& angular_momentum, double dt);
 
-/// Of the rotation vectors that turn alike the one nearest to another.
+/// Returns the rotation vector of the same rotation as `turn` that is nearest to `near`.
 template <int dim>
 AngularVector<dim> nearest_turn(const AngularVector<dim>& turn, const AngularVector<dim>& near);
 

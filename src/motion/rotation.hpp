@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// How a body is turned out of its reference position: an angle in 2D, a unit quaternion in 3D.
+/// Rotation of a body out of its reference position: an angle in 2D, a unit quaternion in 3D.
 template <int dim>
 using Orientation =
     std::conditional_t<dim == 2, Eigen::Rotation2D<double>, Eigen::Quaternion<double>>;

@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// What every checkpoint says about itself.
+/// Properties that every checkpoint says about itself.
 struct CheckpointHeader {
   long long step = 0;
   double time = 0;         ///< [s]

@@ -9,7 +9,7 @@
 
 namespace lockstep {
 
-/// How floating point numbers are stored in a file.
+/// Size of floating point numbers in a file.
 enum class Precision { single_precision, double_precision };
 
 /// A box of cells, in x, y, z order (in 2D lower[2] = 0 and size[2] = 1).
@@ -18,7 +18,7 @@ struct CellBlock {
   std::array<int, 3> size;
 };
 
-/// How a box of cells is stored.
+/// Layout of a box of cells in a file.
 struct BoxStorage {
   Precision precision = Precision::single_precision;
   /// 0 (none) to 9, deflate. On one rank only; several ranks write uncompressed.
@@ -41,7 +41,7 @@ struct BoxStorage {
 class Hdf5File {
  public:
   static Hdf5File create(const Communicator& comm, const std::string& path);
-  /// For reading only.
+  /// Opens a file for reading only.
   static Hdf5File open(const Communicator& comm, const std::string& path);
   Hdf5File(Hdf5File&& other) noexcept;
   Hdf5File& operator=(Hdf5File&&) = delete;
@@ -49,7 +49,7 @@ class Hdf5File {
 
   /// Forces everything to disk and gives the file its final name.
   void close();
-  /// The same, with a checksum at its end (output/checksum.hpp).
+  /// Closes the file with a checksum at its end (output/checksum.hpp).
   void close_with_checksum();
 
   const std::string& path() const { return path_; }

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-/// For the .cpp files of this room: owners of HDF5 identifiers, and HDF5's error text.
+/// Owners of HDF5 identifiers, and HDF5's error text, for the .cpp files of this room.
 namespace lockstep::hdf5 {
 
 /// Owns one HDF5 identifier and closes it with the function of its kind.

@@ -18,7 +18,7 @@ std::string without_padding(const std::string& text) {
   return text.substr(0, std::min(text.find('\0'), text.size()));
 }
 
-/// Why values of a stored type cannot be read as T, or "".
+/// Reason why values of a stored type cannot be read as T, or "".
 template <typename T>
 std::string wrong_kind(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);

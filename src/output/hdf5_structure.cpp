@@ -19,7 +19,7 @@ namespace {
 
 constexpr long long page_size = SparseBytes::page_size;
 
-/// What HDF5 knows of the file: its own part first.
+/// An open file as HDF5's driver for files in memory sees it; `head`, HDF5's own part, comes first.
 struct MemoryFile {
   H5FD_t head{};
   SparseBytes* bytes = nullptr;

@@ -12,7 +12,7 @@ namespace lockstep {
 void set_from_command_line(Document& document, const std::string& assignment,
                            const ParameterList& valid);
 
-/// The same without a schema: the type comes from the entry that is there, or from the text.
+/// Sets an entry without a schema: the type comes from the entry that is there, or from the text.
 void set_unchecked(Document& document, const std::string& assignment);
 
 /// The number that an option was given, at least 1. Throws InputError.

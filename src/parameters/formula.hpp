@@ -18,7 +18,7 @@ struct Formula {
 bool operator==(const Formula& a, const Formula& b);
 std::ostream& operator<<(std::ostream& out, const Formula& formula);
 
-/// Whether a value of this type written like this is a formula. Brackets in strings are text.
+/// True if a value of this type written like this is a formula. Brackets in strings are text.
 bool is_formula(ValueType type, const std::string& text);
 
 /// The type that an entry has, or will have once its formula is evaluated.

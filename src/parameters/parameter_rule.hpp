@@ -6,7 +6,7 @@
 
 #include "parameters/parameter_list.hpp"
 
-/// What a valid list knows about its entries beyond default and docstring: carried as the Teuchos
+/// Properties of an entry of a valid list beyond default and docstring: carried as the Teuchos
 /// validator of each entry, so that lists can be copied and merged freely.
 namespace lockstep {
 
@@ -29,10 +29,11 @@ class Rule : public Teuchos::ParameterEntryValidator {
   /// Throws InputError if `violation` finds one.
   void validate(const ParameterEntry& entry, const std::string& name,
                 const std::string& list_name) const override;
-  /// What is allowed, for the reference: "> 0", "one of a, b"; empty if anything is.
+  /// Returns the allowed values for the reference: "> 0", "one of a, b"; empty if anything is
+  /// allowed.
   virtual std::string allowed() const = 0;
-  /// What is wrong with the value, as the predicate of a sentence ("is -1, but must be ..."); empty
-  /// if nothing is.
+  /// Returns the fault of the value as the predicate of a sentence ("is -1, but must be ...");
+  /// empty if it has none.
   virtual std::string violation(const ParameterEntry& entry) const = 0;
 };
 

@@ -59,7 +59,7 @@ class Registry {
 
   bool contains(const std::string& name) const { return find(name) != nullptr; }
   const std::string& kind() const { return kind_; }
-  /// In order of registration.
+  /// Iterates in order of registration.
   auto begin() const { return plugins_.begin(); }
   auto end() const { return plugins_.end(); }
 

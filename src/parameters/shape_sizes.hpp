@@ -14,7 +14,7 @@ struct ShapeSizes {
   int least_dimension = 2;
 };
 
-/// Those that there are in 2D or in 3D.
+/// Returns the names of the shapes that exist in this dimension.
 std::vector<std::string> shape_names(const std::vector<ShapeSizes>& shapes, int dimension);
 
 /// Throws InputError if `geometry` lacks a size that its "Shape" needs, or has one that only others

@@ -17,7 +17,7 @@ namespace lockstep {
 
 namespace {
 
-/// What walks through lists calls itself for each that is in another.
+/// Functions that walk through lists recurse into nested ones, so that the depth is bounded.
 constexpr std::size_t most_nested = 100;
 
 using Attributes = std::map<std::string, std::string>;

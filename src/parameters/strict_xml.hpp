@@ -6,8 +6,8 @@
 
 namespace lockstep {
 
-/// What becomes of a number that is written as a formula in brackets, value="[2*R]": a mistake, or
-/// kept for `evaluate_formulas`.
+/// Treatment of a number that is written as a formula in brackets, value="[2*R]": refused as a
+/// mistake, or kept for `evaluate_formulas`.
 enum class FormulaPolicy { refused, kept };
 
 /// Reads a Teuchos-style XML parameter list strictly. Collective: rank 0 reads the file, every rank
@@ -17,7 +17,7 @@ enum class FormulaPolicy { refused, kept };
 Document read_xml(const std::string& file, const Communicator& comm,
                   FormulaPolicy formulas = FormulaPolicy::refused);
 
-/// The same from memory, on this rank alone; `name` stands for the file in messages.
+/// Reads a document from memory, on this rank alone; `name` stands for the file in messages.
 Document read_xml_string(const std::string& text, const std::string& name,
                          FormulaPolicy formulas = FormulaPolicy::refused);
 

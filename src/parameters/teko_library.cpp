@@ -52,7 +52,7 @@ const std::vector<std::string>& unchecked_types() {
   return types;
 }
 
-/// What "Explicit Velocity Inverse Type" may name besides an inverse.
+/// Values of "Explicit Velocity Inverse Type" besides the names of inverses.
 const std::vector<std::string> diagonal_types = {"Diagonal", "Lumped", "AbsRowSum", "BlkDiag"};
 
 /// "Inverse Type 3" -> "Inverse Type #".

@@ -119,7 +119,7 @@ class Copier {
       add_copy(name, written, static_cast<int>(i) + 1, places[i]);
   }
 
-  /// Of a solid of which copies are made.
+  /// A solid of which copies are made.
   struct Written {
     const ParameterList& solid;
     const ParameterList& overrides;
@@ -186,7 +186,7 @@ class Copier {
                             copies.get<int>("Seed"), where);
   }
 
-  /// What is written of a copy: its own overrides before all else; `place` where they have none.
+  /// Returns the list of a copy: its own overrides before all else; `place` where they have none.
   Document own_list(const Written& written, int number,
                     const std::vector<double>& place = {}) const {
     const std::string key = std::to_string(number);

@@ -19,8 +19,8 @@ namespace {
 /// The least scale of the pressure rows, as a part of what the fluxes would be without that: with
 /// it the usual tolerances stay above round-off.
 constexpr double least_flux = 1e-6;
-/// The same of solids, whose elastic forces cancel where they move rigidly, and on which pressures
-/// cancel where the flow is the same on both sides.
+/// Least scale of the solids' rows, likewise: elastic forces cancel where solids move rigidly, and
+/// pressures where the flow is the same on both sides.
 constexpr double least_force = 1e-6;
 
 /// |diag(C) V|, which is what elastic forces would be if they did not cancel; 0 if C is no matrix.

@@ -23,13 +23,14 @@ struct SolidResidual {
   double scale = 0;    ///< as in BlockResidual
 };
 
-/// Of a system with solid. Collective.
+/// Residual of row 2 in a system with solid. Collective.
 SolidResidual solid_row_residual(const BlockSystem& system, const BlockVector& rhs,
                                  const BlockVector& solution);
 /// Collective.
 BlockResidual block_residual(const BlockSystem& system, const BlockVector& rhs,
                              const BlockVector& solution);
-/// The same in the vectors of an earlier residual of a system with the same maps, if it has any.
+/// Computes the residual in the vectors of an earlier residual of a system with the same maps, if
+/// it has any.
 void find_block_residual(const BlockSystem& system, const BlockVector& rhs,
                          const BlockVector& solution, BlockResidual& result);
 

@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// Which system to write, and where.
+/// System to write, and the file for it.
 struct DumpRequest {
   long long step = 1;  ///< counted as in history.csv
   std::string solve;   ///< "S1", "F2" or "S2"

@@ -11,7 +11,8 @@ namespace lockstep {
 /// with a suggestion. Also refuses direct solvers that are wrong on several ranks.
 void check_solver_list(const Teuchos::ParameterList& list);
 
-/// The same for the own list of one package, "Ifpack2" or "MueLu"; `where` is for messages.
+/// Holds the list of one package, "Ifpack2" or "MueLu", against the names that it knows; `where` is
+/// for messages.
 void check_package_list(const std::string& package, const Teuchos::ParameterList& list,
                         const std::string& where);
 

@@ -38,7 +38,7 @@ class SpdBlockDiagonal : public Teko::BlockPreconditionerFactory {
   }
 
  private:
-  /// What survives from one system to the next.
+  /// Inverses that survive from one system to the next.
   struct State : Teko::BlockPreconditionerState {
     Teko::InverseLinearOp pressure_inverse, solid_inverse;
   };

@@ -40,7 +40,7 @@ class StoredStencil final : public StencilOperator {
   FaceCoefficients coefficients_;
 };
 
-/// What the lattice_group holds of all unknowns, in the order of the file.
+/// Contents of the lattice_group for all unknowns, in the order of the file.
 struct Stored {
   std::vector<long long> places, cells;            ///< unknown; its cell, three numbers each
   std::vector<double> lower, dirichlet, diagonal;  ///< three each; one; one, 0 where not stiff
@@ -149,7 +149,7 @@ class LatticeReader {
     return begin;
   }
 
-  /// Whether no two unknowns are in one cell; on all ranks, so that all of them refuse the file.
+  /// True if no two unknowns are in one cell; on all ranks, so that all of them refuse the file.
   void check_cells() const {
     std::vector<std::array<long long, n_axes>> cells(stored_.places.size());
     for (std::size_t i = 0; i < cells.size(); ++i)
@@ -198,7 +198,7 @@ class LatticeReader {
     }
   }
 
-  /// Its number among this rank's cells; -1 if it is another's.
+  /// Number of the unknown's cell among this rank's cells; -1 if the cell is another rank's.
   long long own_cell(std::size_t i) const {
     const auto block = local_.find(block_of(i));
     if (block == local_.end())

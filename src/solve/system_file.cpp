@@ -243,8 +243,8 @@ void write_soft_nodes(Hdf5File& file, const SoftNodes& nodes) {
   file.write_slices(path + "/mass", masses);
 }
 
-/// Which body each row of C belongs to; empty: the file knows of no soft solids. Throws InputError
-/// if the tables of the group do not fit each other.
+/// Reads the body of each row of C; empty: the file knows of no soft solids. Throws InputError if
+/// the tables of the group do not fit each other.
 std::vector<long long> read_bodies(const Hdf5File& file, GlobalIndex n) {
   const std::string path = soft_group;
   if (!file.exists(soft_group))

@@ -29,7 +29,7 @@ void collect_texts(const ParameterList& list, std::vector<std::string>& texts) {
   }
 }
 
-/// Those in a parameter file; none if it is something else.
+/// Returns the texts in a parameter file; none if the file is something else.
 std::vector<std::string> texts_in(const std::string& content, const std::string& file) {
   std::vector<std::string> texts;
   try {

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t longest_message = 1500;
 
-/// What identifies the executable: its version, and when and how large it was built.
+/// Identifies the executable by its version, the time of its build and its size.
 std::string executable_key(const std::string& simulate) {
   std::error_code error;
   const auto size = fs::file_size(simulate, error);
@@ -41,7 +41,7 @@ std::string case_key(const StudyCase& study_case, const std::string& common) {
   return key + common + checksums_of_inputs(study_case);
 }
 
-/// Whether the frames that the run's index names are there still.
+/// True if the frames that the run's index names still exist.
 bool frames_are_there(const fs::path& directory) {
   const std::string index = read_whole_file(directory / "frames.xmf");
   const std::string begin = "frames/frame-";
@@ -58,7 +58,8 @@ bool frames_are_there(const fs::path& directory) {
 
 constexpr const char* at_a_time = "runs at a time: ";
 
-/// How many runs went at a time when this case was run; none if it was not, or was another.
+/// Returns the number of simultaneous runs at the time this case was run; none if it was not run,
+/// or was another case.
 std::optional<int> finished_with(const std::string& directory, const std::string& key) {
   for (const char* file : {"case.txt", "summary.json", "used-parameters.xml", "history.csv",
                            "bodies.csv", "frames.xmf"}) {
@@ -118,7 +119,8 @@ std::string complaint(const std::string& error_file) {
   return text.empty() ? "it said nothing" : text;
 }
 
-/// What is removed for a new run must not lie elsewhere.
+/// Refuses links below the output folder: a new run removes old files, which must not lie
+/// elsewhere.
 void check_no_link(const std::string& output_directory, const fs::path& below) {
   fs::path path = output_directory;
   for (const fs::path& part : below) {

@@ -15,7 +15,7 @@ struct RunnerOptions {
   double seconds_to_wait = 10;   ///< for runs that a killed study has left behind
 };
 
-/// How a case went.
+/// Outcome of a case.
 struct CaseOutcome {
   bool done = false;  ///< false also for cases not started after bad input
   bool reused = false;

@@ -54,7 +54,7 @@ class ListedChild {
   std::atomic<pid_t>* place_ = nullptr;
 };
 
-/// What a child needs, made before the fork: nothing may be allocated after it.
+/// Arguments of a child process, made before the fork: nothing may be allocated after it.
 struct ChildPlan {
   char* const* arguments;
   char* const* environment;

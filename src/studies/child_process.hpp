@@ -4,7 +4,7 @@
 
 namespace lockstep {
 
-/// How a child ended: its exit code, or 128 + the signal that ended it.
+/// End of a child process: its exit code, or 128 + the signal that ended it.
 struct ChildResult {
   int exit_code = 0;
   double wall_seconds = 0;

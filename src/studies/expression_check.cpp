@@ -72,7 +72,7 @@ Variables names_of_run(const Study& study, const StudyCase& study_case) {
   return variables;
 }
 
-/// Whether a name is "OBSERVER.column" or "OBSERVER.2.column".
+/// True if a name is "OBSERVER.column" or "OBSERVER.2.column".
 bool is_observed(const std::string& name, const std::set<std::string>& observers) {
   const std::size_t point = name.rfind('.');
   if (point == std::string::npos || point == 0 || point + 1 == name.size())
@@ -118,7 +118,7 @@ void add_columns(const std::string& formula, const Bodies& bodies, Variables& va
   }
 }
 
-/// What the formula names of summary.json is only known after a run.
+/// Adds the names of summary.json in the formula, with any value: they are known after a run only.
 void add_summary(const std::string& formula, Variables& variables) {
   for (const std::string& name : names_in(formula)) {
     if (name.rfind("summary.", 0) == 0)

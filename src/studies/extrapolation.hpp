@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// What the values of a series tend to as its abscissa vanishes.
+/// Limit of the values of a series as its abscissa vanishes.
 struct Extrapolation {
   double order = 0;
   double limit = 0;

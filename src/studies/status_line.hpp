@@ -9,7 +9,8 @@
 
 namespace lockstep {
 
-/// What the log of a run says last: "step 120, eta 3m10s"; "starting" before its first step.
+/// Returns the last message in the log of a run, "step 120, eta 3m10s"; "starting" before its first
+/// step.
 std::string state_of_run(const std::string& log);
 
 /// Tells how a study goes on: a line for every case that has ended and, on a terminal, one below
@@ -25,7 +26,7 @@ class StatusLine {
 
   /// `log_file`: where the run writes what it has to say.
   void started(const std::string& name, const std::string& log_file);
-  /// Also of cases that did not have to be started.
+  /// Reports the end of a case, also of one that did not have to be started.
   void ended(const std::string& name, const std::string& outcome, bool failed);
 
  private:

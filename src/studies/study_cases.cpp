@@ -13,13 +13,14 @@ namespace {
 
 void add_constants(Variables& variables, const Formulas& formulas, const Formulas& replacements,
                    const std::string& where) {
-  // Of several the last one counts, as it does for assignments.
+  // the last of several counts, as for assignments
   const auto in = [](const Formulas& list, const std::string& name) {
     const auto last = std::find_if(list.rbegin(), list.rend(),
                                    [&](const auto& formula) { return formula.first == name; });
     return last == list.rend() ? list.end() : std::prev(last.base());
   };
-  // Those of the series come first, unless they stand for one of the study's in its order.
+  // The constants of the series come first, unless they replace one of the study, which keeps its
+  // place.
   for (const auto& [name, formula] : replacements) {
     if (in(formulas, name) == formulas.end())
       variables[name] = evaluate(formula, variables, where);

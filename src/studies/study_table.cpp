@@ -21,7 +21,7 @@ struct Rung {
   int n_at_a_time = 1;
 };
 
-/// What a case has to say; none, and a sentence, if that cannot be read.
+/// Reads the results of a case; none, and a sentence, if they cannot be read.
 std::optional<std::pair<RunResults, Variables>> read_case(
     const Study& study, const StudyCase& one, const CaseOutcome& outcome,
     const std::function<void(const std::string&)>& tell) {
@@ -108,7 +108,8 @@ StudyRow make_row(const Study& study, const Quantity& quantity, const Rung& rung
   return row;
 }
 
-/// Of `rows`, one of each of `rungs`. `is_whole`: the last of them is the last of the series.
+/// Adds the errors of `rows`, which belong to `rungs` one by one. `is_whole`: the last rung is the
+/// last of the series.
 void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
                 const std::vector<const Rung*>& rungs, bool is_whole) {
   if (quantity.reference.empty() || rows.empty())

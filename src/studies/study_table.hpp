@@ -35,7 +35,8 @@ std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCas
 /// A name inside a CSV field: no commas, quotes or line breaks.
 std::string without_separators(std::string name);
 
-/// With a commented header that tools/plot-study reads. Numbers that do not exist are left empty.
+/// Returns the table with a commented header that tools/plot-study reads. Numbers that do not exist
+/// are left empty.
 std::string table_csv(const Study& study, const std::vector<StudyRow>& rows);
 /// For people: fewer digits, one table a quantity.
 std::string table_markdown(const Study& study, const std::vector<StudyRow>& rows);

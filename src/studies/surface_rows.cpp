@@ -13,7 +13,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Of one frame; in 2D z = 0.
+/// Surface of one frame; in 2D z = 0.
 struct Surface {
   std::vector<Vector> vertices;
   int corners = 0;  ///< of a simplex: 2 or 3
@@ -65,7 +65,7 @@ void add_sizes(const Surface& surface, const Vector& point, Variables& row) {
   row["area"] = area;
 }
 
-/// Of the box around the surface.
+/// Adds the extents of the box around the surface.
 void add_extents(const Surface& surface, Variables& row) {
   Eigen::AlignedBox3d box;
   for (const Vector& vertex : surface.vertices)

@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// What a series pays for an error.
+/// Cost of a series at a given error.
 struct TargetCost {
   enum class Found {
     between_rungs,  ///< interpolated

@@ -8,7 +8,7 @@ namespace lockstep {
 /// into small blocks. Collective.
 RCP<const CrsMatrix> assembled_schur(const BlockSystem& system);
 
-/// The same with diag(C): A + B diag(C)^-1 B^T.
+/// Returns A + B diag(C)^-1 B^T as a matrix.
 RCP<const CrsMatrix> schur_with_diagonal(const BlockSystem& system);
 
 }  // namespace lockstep

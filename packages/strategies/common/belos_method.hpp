@@ -27,8 +27,8 @@ class BelosMethod {
   explicit BelosMethod(const Teuchos::ParameterList& list);
   ~BelosMethod();
 
-  /// Whether it takes symmetric positive definite preconditioners alone, and goes by a recurrence
-  /// that presumes them exact: MINRES and conjugate gradients.
+  /// True for MINRES and conjugate gradients, which take symmetric positive definite
+  /// preconditioners alone and go by a recurrence that presumes them exact.
   bool is_symmetric() const;
   /// Writes p̂ of an approximate solution; returns the number of iterations. An iteration that ends
   /// early is no failure: the caller looks at what is left. `preconditioner` acts on blocked

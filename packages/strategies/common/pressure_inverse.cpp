@@ -204,12 +204,12 @@ RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
   auto op = system.pressure_block();
   if (const auto a = assembled(op); !a.is_null()) {
     const std::string type = type_of(list);
-    // These solve exactly, or nearly so, what cannot be solved where A is singular.
+    // types that solve exactly, or nearly so, which fails for a singular A
     const bool factors = type == "Incomplete Cholesky" || type == "Ifpack2" || type == "Direct" ||
                          type == "Exact" || type == "Conjugate Gradients";
-    // Its coarsest level is factored: what comes out of a singular one the iteration can project
-    // out if it is a null vector of the system too, but not in pockets that a soft shell closes;
-    // and a pocket of a few cells can come down to a row of zeros, of which nothing finite comes.
+    // MueLu factors its coarsest level. If that is singular, the iteration can project out null
+    // vectors that are also those of the system, but not those of regions that a soft shell closes;
+    // and a region of a few cells can come down to a row of zeros, whose inverse is not finite.
     const bool has_pockets = system.pressure_null_space.size() > system.null_space.size() ||
                              system.pressure_null_space.size() > 1;
     const auto regular =

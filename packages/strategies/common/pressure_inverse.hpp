@@ -15,17 +15,17 @@ void declare_pressure_inverse(Teuchos::ParameterList& list, const std::string& d
 /// The list given, checked, or `standard` if there is none. Throws InputError.
 Teuchos::ParameterList pressure_inverse_list(const Teuchos::ParameterList& list,
                                              const std::string& standard_type);
-/// The same for strategies whose standard is incomplete Cholesky.
+/// Returns the list for a strategy whose standard is incomplete Cholesky.
 Teuchos::ParameterList incomplete_cholesky_list(const Teuchos::ParameterList& list);
 
-/// Whether the list asks for the multigrid, of this system.
+/// True if the list asks for the multigrid of this system.
 bool is_multigrid(const Teuchos::ParameterList& list, const BlockSystem& system);
 MultigridOptions multigrid_options(const Teuchos::ParameterList& list);
 /// The multigrid's cycle on pressures in the fluid's own order. Collective.
 RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,
                                                    const MultigridOptions& options);
 
-/// Whether some cell's row of A is empty, all of its faces being mixed: then the inverse of A
+/// True if some cell's row of A is empty, all of its faces being mixed: then the inverse of A
 /// depends on C. Collective.
 bool leaves_rows_empty(const RCP<const LinearOperator>& pressure_block);
 

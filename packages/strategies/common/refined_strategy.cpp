@@ -25,10 +25,10 @@ constexpr double least_progress = 0.5;
 /// afresh: what C^-1 is asked for then is relative to what is left of an error, not to the
 /// solution. V_S is taken along to these parts of r_2, and to round-off in the end.
 constexpr double of_a_stage = 1e-2, of_stage_velocity = 1e-3, of_first_velocity = 1e-5;
-/// What a Krylov method with short recurrences may reduce a residual by before the round-off of an
-/// inverse of A in single precision, 1e-7 of the first vectors, is felt.
+/// Strongest reduction of the residual by a Krylov method with short recurrences before the
+/// round-off of an inverse of A in single precision, 1e-7 of the first vectors, is felt [1].
 constexpr double strongest_single_reduction = 1e-5;
-/// Of C^-1 where only a size is asked for.
+/// Tolerance of C^-1 where only a size is asked for [1].
 constexpr double rough = 1e-3;
 
 struct Refinement {

@@ -13,8 +13,8 @@
 
 namespace lockstep {
 
-/// What every strategy here has in common: the caching of what depends on the operators, and a loop
-/// of iterative refinement that judges convergence by the true residual of each block.
+/// : The common part of all strategies: the caching of what depends on the operators, and a loop of
+/// iterative refinement that judges convergence by the true residual of each block.
 ///
 /// V_S is always back-substituted from row 2, V_S = C^-1 (solid rhs - B^T p̂), so that momentum is
 /// exact; what is left of an error sits in row 1, the divergence, and a correction solves Eq. 16
@@ -59,9 +59,9 @@ class RefinedStrategy : public SolverStrategy {
   /// False if, at unchanged operators, something is missing for this system (with or without
   /// solid).
   virtual bool is_built_for(const BlockSystem&) const { return true; }
-  /// Whether the strategy uses the layout's approximate inverse of A + B C^-1 B^T.
+  /// True if the strategy uses the layout's approximate inverse of A + B C^-1 B^T.
   virtual bool inverts_schur() const { return false; }
-  /// Whether `correct` iterates on C so often that it should aim at a part of what is asked only,
+  /// True if `correct` iterates on C so often that it should aim at a part of the reduction only,
   /// and be called again.
   virtual bool works_in_stages() const { return false; }
   /// Entries of the matrices that the strategy has assembled for itself; 0 if it does not count.
@@ -76,7 +76,7 @@ class RefinedStrategy : public SolverStrategy {
   /// The layout that `build` and `correct` work in, which holds A and this inverse as kernels; null
   /// if the inverse is another.
   PressureLayout* layout() const { return layout_.get(); }
-  /// How it may differ from symmetry: round-off of the precision it works in.
+  /// Relative asymmetry that the inverse may have: round-off of the precision it works in.
   double symmetry_tolerance() const { return is_single_precision_ ? 1e-5 : 1e-8; }
   /// The null vectors that an iteration must project out of every preconditioned residual; none
   /// where the inverse of A leaves them harmless.
@@ -86,11 +86,12 @@ class RefinedStrategy : public SolverStrategy {
                   Vector& correction) const;
   /// C^-1 to round-off; null without a solid block.
   const RCP<const LinearOperator>& solid_inverse() const { return solid_.exact(); }
-  /// The same, and what "Solid Inverse" names to stand for it.
+  /// C^-1 to round-off and the inverse that "Solid Inverse" names to stand for it.
   const SolidInverse& solid() const { return solid_; }
   bool check_symmetry() const { return check_symmetry_; }
-  /// The same request for a Krylov method on both blocks. One that presumes a linear, symmetric
-  /// inverse of A asks for no more than what single precision allows before a fresh start.
+  /// : Makes the request of a Krylov method on both blocks from that of a correction. One that
+  /// presumes a linear, symmetric inverse of A asks for no more than what single precision allows
+  /// before a fresh start.
   enum class Presumes { nothing, symmetry };
   BlockKrylovRequest block_krylov(const BlockSystem& system, const CorrectionRequest& request,
                                   Presumes presumes);
@@ -107,7 +108,7 @@ class RefinedStrategy : public SolverStrategy {
     return layout_ ? (system.has_solid() ? relaid_ : relaid_pressure_) : system;
   }
   void build_pressure_inverse(const BlockSystem& system);
-  /// For another C on the same geometry; returns whether the inverse is another now.
+  /// Updates the inverse for another C on the same geometry; returns true if it is another now.
   bool update_pressure_inverse(const BlockSystem& system);
   void relay(const BlockSystem& system);
   SolveReport refine(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,

@@ -118,7 +118,7 @@ void SolidInverse::build_automatic(const BlockSystem& system) {
     exact_ = split_->with({});
 }
 
-/// In a preconditioner of the outer iteration it counts to be close to C.
+/// Chooses an inverse close to C, because the outer iteration is preconditioned with it.
 const RCP<const LinearOperator>& SolidInverse::approximate() const {
   if (!approximate_.is_null() || exact_.is_null())
     return approximate_;

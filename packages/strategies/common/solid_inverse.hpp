@@ -18,10 +18,10 @@ namespace lockstep {
 /// or one of solve/preconditioner.hpp.
 void declare_solid_inverse(ParameterList& list);
 
-/// C^-1 and what stands for it in preconditioners.
+/// C^-1 and its approximation in preconditioners.
 class SolidInverse {
  public:
-  /// Of no solid.
+  /// Makes the inverse of a system without solid.
   SolidInverse() = default;
   /// `list` has "Solid Inverse" or leaves it out. Throws InputError for a bad sublist.
   explicit SolidInverse(const ParameterList& list);
@@ -30,15 +30,15 @@ class SolidInverse {
   void build(const BlockSystem& system);
   void reset();
   bool is_built() const { return !exact_.is_null(); }
-  /// Whether C^-1 is an iteration, whose cost depends on what it is asked for.
+  /// True if C^-1 is an iteration, whose cost depends on the tolerance.
   bool iterates() const { return !iterated_.empty(); }
 
   /// C^-1 to round-off. Null before `build`.
   const RCP<const LinearOperator>& exact() const { return exact_; }
   /// C^-1 to this relative residual, where it must iterate; else to round-off.
   RCP<const LinearOperator> to(double tolerance) const;
-  /// What the list names: symmetric positive definite and, unless it iterates itself, linear.
-  /// Built when first asked for, which is collective then.
+  /// Returns the inverse that the list names: symmetric positive definite and, unless it iterates
+  /// itself, linear. Built when first asked for, which is collective then.
   const RCP<const LinearOperator>& approximate() const;
   /// "Automatic" and nothing more.
   bool is_automatic() const { return type_ == "Automatic"; }

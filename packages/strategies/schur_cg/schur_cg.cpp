@@ -13,9 +13,10 @@ namespace lockstep {
 
 namespace {
 
-/// What the elimination of V_S adds to A: B C^-1 B^T. Where C^-1 iterates, its tolerance follows
-/// the outer residual r: an error of C^-1 relative to what it is applied to may be the larger, the
-/// nearer |r| is to its target (Simoncini and Szyld 2003). What is left is refined away.
+/// Term that the elimination of V_S adds to A: B C^-1 B^T. Where C^-1 iterates, its tolerance
+/// follows the outer residual r: an error of C^-1 relative to the vector it is applied to may be
+/// the larger, the nearer |r| is to its target (Simoncini and Szyld 2003). Refinement removes the
+/// rest.
 class Eliminated {
  public:
   Eliminated(const BlockSystem& system, const SolidInverse& solid, double target)

@@ -62,7 +62,7 @@ std::string next_towards_pressure(const std::string& type, const ParameterList& 
   return "";
 }
 
-/// Whether a type of Teko is an inverse of all blocks, none of one block.
+/// True if a type of Teko is an inverse of all blocks and not of one.
 bool is_of_all_blocks(const std::string& type) {
   return type == "SPD Block Diagonal" || type.rfind("Block ", 0) == 0 || type.rfind("NS ", 0) == 0;
 }

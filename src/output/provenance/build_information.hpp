@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// What this executable was built from and with.
+/// Sources and tools that this executable was built from.
 struct BuildInformation {
   std::string version;
   std::string git_hash;  ///< with "-dirty" if there were changes; "unknown" outside a repository

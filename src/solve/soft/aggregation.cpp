@@ -24,7 +24,7 @@ std::vector<int> nodes_of_columns(const CrsMatrix& matrix, const RowsOfNodes& no
   return result;
 }
 
-/// Of each node those that its first row is tied to, with the node itself.
+/// Returns for each node the nodes that its first row is tied to, with the node itself.
 std::vector<std::vector<int>> neighbors_of_nodes(const CrsMatrix& matrix,
                                                  const RowsOfNodes& nodes) {
   const std::vector<int> node_of_column = nodes_of_columns(matrix, nodes);

@@ -85,7 +85,7 @@ std::size_t hash_of(const MultifrontalCholesky::Matrix& matrix) {
 /// same places, and an analysis takes as long as the factors.
 class Analyses {
  public:
-  /// Not yet factored.
+  /// Returns an analysis of the matrix, without numerical factors.
   const MultifrontalCholesky& of(const MultifrontalCholesky::Matrix& matrix) {
     const std::size_t hash = hash_of(matrix);
     const auto [begin, end] = places_.equal_range(hash);

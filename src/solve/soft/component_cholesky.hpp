@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// Of a symmetric positive definite matrix the inverse on those components whose factors are cheap.
+/// Inverse of a symmetric positive definite matrix on the components whose factors are cheap.
 struct ComponentCholesky {
   RCP<const LinearOperator> inverse;  ///< the rows of other components become 0
   std::vector<bool> is_factored;      ///< by local row

@@ -42,7 +42,7 @@ class ColumnSets {
   std::vector<GlobalIndex> lowest_;
 };
 
-/// How often each of these ids occurs on all ranks, in the same order.
+/// Returns the number of occurrences of each of these ids on all ranks, in the same order.
 std::vector<GlobalIndex> occurrences(const std::vector<GlobalIndex>& ids,
                                      const RCP<const Map>& row_map) {
   std::vector<GlobalIndex> unique = ids;

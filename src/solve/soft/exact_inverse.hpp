@@ -24,7 +24,8 @@ struct InnerSolve {
 /// reached. Collective, and so is every application.
 RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOperator>& op,
                                                      const InnerSolve& inner);
-/// The same with the diagonal as preconditioner (none for a matrix-free operator).
+/// Inverse by conjugate gradients with the diagonal as preconditioner (none for a matrix-free
+/// operator).
 RCP<const LinearOperator> conjugate_gradient_inverse(const RCP<const LinearOperator>& op,
                                                      double tolerance, int maximum_iterations,
                                                      const std::string& name);

@@ -221,7 +221,7 @@ void MultifrontalCholesky::analyze(const Matrix& lower) {
     reach[k] = std::move(below);
   }
 
-  // The same by rows.
+  // triplets by rows instead of columns
   std::vector<int> begin_of(n + 1, 0);
   for (int k = 0; k < n; ++k)
     begin_of[k + 1] = begin_of[k] + first[order[k] + 1] - first[order[k]];

@@ -24,7 +24,7 @@ class DeflatedMotions {
         n_bodies_(n_bodies) {
     MultiVector image(motions->getMap(), n_motions_);
     c.apply(*motions, image);
-    // Of the coupling between bodies this keeps what falls on the diagonal blocks.
+    // The diagonal blocks suffice: couplings between bodies are dropped.
     std::vector<double> energies(std::size_t(n_bodies) * n_motions_ * n_motions_, 0);
     for (int j = 0; j < n_motions_; ++j) {
       const std::vector<double> column = products(*image.getVector(j));

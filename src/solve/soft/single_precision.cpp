@@ -122,7 +122,7 @@ RCP<const LinearOperator> copy_in_blocks(const RCP<const CrsMatrix>& matrix) {
                          [copy](const Vector& x, Vector& y) { copy->apply(x, y); });
 }
 
-/// Of the nodes' rows, the largest C_ii over the mass. Collective.
+/// Largest ratio C_ii / mass of the nodes' rows [1]. Collective.
 double largest_stiffness(const CrsMatrix& c, const SoftNodes& space) {
   const RCP<const Vector> diagonal = diagonal_of(c);
   const auto mass = space.mass->getData(), entry = diagonal->getData();
