@@ -44,8 +44,8 @@ Articulation<dim>::Articulation(std::vector<JointedBody<dim>> bodies,
   set_gains();
 }
 
-/// Of the joint alone, with all others held: what resists its coordinates is the inertia of the
-/// tree, less what a free root yields.
+/// Sets the gains of oscillators from the inertia of each joint alone, with all others held: its
+/// coordinates are resisted by the inertia of the tree, less what a free root yields.
 template <int dim>
 void Articulation<dim>::set_gains() {
   const std::vector<BodyPose<dim>> poses = this->poses();

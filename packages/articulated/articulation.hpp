@@ -38,9 +38,9 @@ class Articulation {
 
   /// Present poses, by body.
   std::vector<BodyPose<dim>> poses() const;
-  /// Where prescribed bodies are at a time; those of others are not meant to be read.
+  /// Poses of prescribed bodies at a time; those of other bodies are not meant to be read.
   std::vector<BodyPose<dim>> prescribed_poses(double time) const;
-  /// Mean twist of a prescribed body between two times; at equal times that of the instant.
+  /// Mean twist of a prescribed body between two times; at equal times the twist then.
   TwistVector<dim> prescribed_twist(int body, double begin, double end) const;
   std::vector<MotionBasis<dim>> motion_bases() const;
   /// The fastest turning jointed body [rad/s].
@@ -105,7 +105,7 @@ class JointConstraints : public ConstraintModel,
     std::vector<BodyMotion<dim>> solved, motions;  ///< before contact; after it, then as they go
     std::vector<TwistVector<dim>> corrections, later, drift;  ///< see ClosedFlight
   };
-  /// By the mechanism's own numbers (LoneMechanism).
+  /// Free motions of a mechanism, by its own numbers (LoneMechanism).
   struct FoundFlights {
     Flight<dim> free, pushed;  ///< without contact; with what it did
   };

@@ -27,7 +27,7 @@ TwistVector<dim> twist_to(const BodyPose<dim>& from, const BodyPose<dim>& to, do
 
 namespace {
 
-/// How the rotation that `turn` [rad] makes changes with it: exp(turn + d) = exp(result d)
+/// Derivative of the rotation exp(turn) with respect to `turn` [rad]: exp(turn + d) = exp(result d)
 /// exp(turn).
 Eigen::Matrix<double, 1, 1> change_of_rotation(const AngularVector<2>&) {
   return Eigen::Matrix<double, 1, 1>::Identity();
@@ -63,7 +63,8 @@ class Rows {
   }
 
   int n_columns() const { return n_columns_; }
-  /// Of gaps, with bodies as far away as they are; a slider may let go of a body without end.
+  /// Round-off of gaps, for bodies as far away as they are; a slider may let go of a body without
+  /// end.
   double round_off() const {
     double farthest = 0;
     for (const int body : problem_.mechanism.bodies)
@@ -133,7 +134,7 @@ class Impulses {
     impulses_ *= scale_.asDiagonal();
   }
 
-  /// Of all bodies, those that change what `rows` read by `values`; the smallest ones.
+  /// Returns the smallest impulses on all bodies that change the values of `rows` by `values`.
   Eigen::VectorXd that_change(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values) const {
     constexpr double dependent = 1e-9;
     return impulses_ * least_squares(scale_.asDiagonal() * rows * response_,
@@ -153,7 +154,7 @@ class Impulses {
   Eigen::VectorXd scale_;
 };
 
-/// Of momenta that `before` had not.
+/// Finds the twists of bodies whose momenta have changed since `before`.
 template <int dim>
 void find_twists(const ClosingProblem<dim>& problem, Answer answer,
                  const std::vector<BodyMotion<dim>>& before,

@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// Of a dynamic body, at its present pose. Its reference point is its centre of mass.
+/// Mass of a dynamic body at its present pose. Its reference point is its centre of mass.
 template <int dim>
 struct BodyMass {
   using Matrix = Eigen::Matrix<double, n_twist<dim>, n_twist<dim>>;
@@ -14,7 +14,7 @@ struct BodyMass {
 template <int dim>
 BodyMass<dim> mass_of(const typename BodyMass<dim>::Matrix& matrix);
 
-/// How a body moves in a step.
+/// Motion of a body in a step.
 template <int dim>
 struct BodyMotion {
   TwistVector<dim> momentum = TwistVector<dim>::Zero();  ///< with which it sets out
@@ -32,7 +32,7 @@ struct ClosingProblem {
   double dt = 0;
 };
 
-/// Whether bodies answer impulses as free ones, whose mean twist is that of their momentum
+/// Response of bodies to impulses: as free ones, whose mean twist is that of their momentum
 /// (`free_twist`), or each twist just changes by M^-1 times the impulse.
 enum class Answer { free, straight };
 
@@ -61,14 +61,14 @@ void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& cha
 template <int dim>
 std::vector<BodyPose<dim>> poses_after(const ClosingProblem<dim>& problem,
                                        const std::vector<BodyMotion<dim>>& motions);
-/// Where a body is after dt.
+/// Pose of a body after dt.
 template <int dim>
 BodyPose<dim> moved(const BodyPose<dim>& pose, const TwistVector<dim>& twist, double dt);
 /// The twist that takes a body there in dt.
 template <int dim>
 TwistVector<dim> twist_to(const BodyPose<dim>& from, const BodyPose<dim>& to, double dt);
 
-/// How far from the middle of a body its joints are at most; 1 if all are there [m].
+/// Largest distance of a body's joints from its middle [m]; 1 if all are there.
 template <int dim>
 double reach(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints);
 /// The largest gap of a joint: of lengths in `unit` [m], of angles in rad.

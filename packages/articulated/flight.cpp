@@ -67,7 +67,7 @@ class Flyer {
     return true;
   }
 
-  /// At its present place.
+  /// Makes the joints hold at the present place.
   void hold() { let_joints_hold(part_of(0), motions_); }
 
   const std::vector<BodyMotion<dim>>& motions() const { return motions_; }
@@ -88,7 +88,7 @@ class Flyer {
   }
 
  private:
-  /// Of all bodies together; they do not turn as one.
+  /// Mean velocity of all bodies together, which do not turn as one.
   TwistVector<dim> mean_velocity() const {
     TwistVector<dim> mean = TwistVector<dim>::Zero();
     double mass = 0;
@@ -133,7 +133,7 @@ std::optional<Flight<dim>> fly(const ClosingProblem<dim>& problem, const FlightS
   double left = problem.dt;
   for (int n = 0; n < most; ++n) {
     double dt = left / std::max(double(steps.least - n), flyer.n_parts(left, steps.longest));
-    // What is light between others may be flung round faster than it turns as yet.
+    // A light body between others may be flung round faster than it turns as yet.
     while (!flyer.advance(dt)) {
       dt /= 2;
       if (steps.least == 1 || dt < shortest * problem.dt)

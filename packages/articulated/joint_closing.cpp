@@ -1,4 +1,4 @@
-// How bodies move so that their joints stay closed.
+// Closing of joints: changes the motion of bodies so that their joints stay closed.
 #include <fmt/format.h>
 
 #include <Tpetra_Vector.hpp>
@@ -10,7 +10,7 @@
 
 namespace lockstep {
 
-/// So that q goes to the end of a flight (see `advanced`).
+/// Sets the rates with which q goes to the end of a flight (see `advanced`).
 template <int dim>
 void JointConstraints<dim>::set_rates(const Mechanism& mechanism,
                                       const std::vector<Eigen::VectorXd>& coordinates, double dt,
@@ -64,7 +64,7 @@ double largest_turn(const ClosingProblem<dim>& problem,
   return turn;
 }
 
-/// Whether the twists of a mechanism's bodies take them elsewhere.
+/// True if the two sets of twists take a mechanism's bodies to different places.
 template <int dim>
 bool differ(const ClosingProblem<dim>& problem, const std::vector<BodyMotion<dim>>& motions,
             const std::vector<BodyMotion<dim>>& others) {
@@ -141,7 +141,8 @@ void JointConstraints<dim>::follow(const ClosingProblem<dim>& problem,
     check_closed(problem, motions);
 }
 
-/// Those of the bodies that are combinations, less what the root's part of them carries along.
+/// Velocity beside the terms of those bodies that are combinations, less the part that the root
+/// carries along.
 template <int dim>
 RCP<Vector> JointConstraints<dim>::drift(const std::vector<TwistVector<dim>>& change,
                                          const RCP<const Map>& map) const {

@@ -51,7 +51,7 @@ void oscillate(double frequency, double ratio, double dt, double& x, double& v) 
   v = (even - decay * odd) * v - frequency * frequency * odd * before;
 }
 
-/// Whether a target was written that is not the default one, as for a joint of `n` coordinates.
+/// True if a target was written that is not the default one, as for a joint of `n` coordinates.
 bool has_target(const ParameterList& list) {
   const ParameterList& target = list.sublist("Target");
   if (target.get<std::string>("Type") != "constant")
@@ -62,7 +62,7 @@ bool has_target(const ParameterList& list) {
   return std::any_of(values.begin(), values.end(), [](double value) { return value != 0; });
 }
 
-/// What control of this type would not read must not seem to act.
+/// Refuses parameters that a control of this type would not read: they must not seem to act.
 void check_used(const ParameterList& list, const std::string& type, const std::string& name) {
   const bool has_springs = type == "proportional derivative";
   const bool oscillates = has_springs || type == "prescribed rate";

@@ -13,11 +13,11 @@ namespace lockstep {
 /// prescribed_rate: the rates of such an oscillator, whatever they take. prescribed: the target.
 enum class ControlType { free, proportional_derivative, prescribed_rate, prescribed };
 
-/// What acts on a coordinate of a joint.
+/// Control of one coordinate of a joint.
 struct CoordinateControl {
   ControlType type = ControlType::free;
-  /// Of the oscillator [rad/s], [1]; gains are that times the inertia that the joint has at the
-  /// start. Without it, gains are given.
+  /// Natural frequency of the oscillator [rad/s], which with the damping ratio [1] gives gains
+  /// times the inertia that the joint has at the start. Without it, gains are given.
   std::optional<double> natural_frequency;
   double damping_ratio = 1;
   double stiffness = 0, damping = 0;  ///< gains [N m/rad, N/m], times s
@@ -31,12 +31,12 @@ struct CoordinateControl {
   bool acts() const { return type == ControlType::proportional_derivative; }
 };
 
-/// Of all coordinates of a joint. Those of a ball are alike.
+/// Control of all coordinates of a joint. Those of a ball are alike.
 struct JointControl {
   std::vector<CoordinateControl> coordinates;
   JointTarget target;  ///< of all that have none of their own; may be null, if there are none
 
-  /// Of all; what it says of free ones means nothing.
+  /// Target of all coordinates; it has no meaning for free ones.
   TargetValue target_at(double time) const;
   bool free(int k) const { return coordinates[k].free(); }
   bool given(int k) const { return coordinates[k].given(); }
@@ -47,16 +47,15 @@ struct JointControl {
 
 /// Declares what acts on n coordinates alike.
 void declare_control(ParameterList& list, int n);
-/// The list of what one coordinate has instead; k: from 0.
+/// Name of the list of one coordinate's own control; k: from 0.
 std::string coordinate_list(int k);
-/// Of a validated joint; `place`: see `read_target`. Throws InputError.
+/// Reads the control of a validated joint; `place`: see `read_target`. Throws InputError.
 template <int dim>
 JointControl read_control(const ParameterList& joint, const std::string& name,
                           const JointKind& kind,
                           const std::function<double(const ParameterArray<double>&)>& place);
 
-/// Where the given coordinates of a joint are to be after dt, and how fast; of the others what it
-/// says means nothing.
+/// Values and rates of a joint's given coordinates after dt; the entries of others have no meaning.
 template <int dim>
 TargetValue given_motion(const JointKind& kind, const JointControl& control,
                          const TargetValue& present, double time, double dt);
@@ -66,14 +65,15 @@ struct ControlLaw {
   Eigen::VectorXd constant, slope;
   std::vector<char> limited;  ///< by the largest torque: then no slope
 };
-/// Where in a step springs and dampers act.
+/// Times in a step at which springs and dampers act.
 struct ControlTimes {
   double time = 0, dt = 0;  ///< its begin and length [s]
   double middle = 0.5;      ///< the part of it after which the spring is taken [1]
   double implicit = 1;      ///< part of the damper [1]
 };
-/// Of the second order: the spring is that of the middle of the step; in S1 the damper is implicit,
-/// in S2 half of it. Fully implicit: both are those of the end.
+/// Linearises springs and dampers over a step. Second order: the spring is that of the middle of
+/// the step; in S1 the damper is implicit, in S2 half of it. Fully implicit: both are those of the
+/// end.
 template <int dim>
 ControlLaw control_law(const JointKind& kind, const JointControl& control,
                        const TargetValue& present, const ControlTimes& times);

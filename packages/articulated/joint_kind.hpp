@@ -28,8 +28,9 @@ struct Screw {
 /// of the second side.
 enum class JointTurn { none, axis, two_axes, any };
 
-/// What a joint lets go. Its coordinates q are displacements along the axes it slides on, then
-/// angles: about the axis, about the two axes one after the other, or a rotation vector.
+/// : The degrees of freedom of a joint. Its coordinates q are displacements along the axes it
+/// slides on, then angles: about the axis, about the two axes one after the other, or a rotation
+/// vector.
 struct JointKind {
   std::string name;
   std::vector<int> slides;  ///< axes
@@ -46,7 +47,7 @@ std::vector<DescribedKind> joint_kinds();
 
 template <int dim>
 int n_rates(const JointKind& kind);
-/// Whether it has several coordinates that mean something one by one, unlike those of a rotation
+/// True if a joint has several coordinates with a meaning one by one, unlike those of a rotation
 /// vector.
 template <int dim>
 bool has_separate_coordinates(const JointKind& kind);
@@ -61,7 +62,7 @@ std::vector<Screw<dim>> rate_rows(const JointKind& kind, const RelativePose<dim>
 template <int dim>
 std::vector<Screw<dim>> held_rows(const JointKind& kind, const RelativePose<dim>& pose);
 
-/// How far the sides are from a place that the joint allows [m, rad]: one for each of `held_rows`,
+/// Distances of the sides from a place that the joint allows [m, rad]: one for each of `held_rows`,
 /// whose values are their rates of change where they are zero.
 template <int dim>
 Eigen::VectorXd gap(const JointKind& kind, const RelativePose<dim>& pose);
@@ -80,7 +81,7 @@ Eigen::VectorXd advanced(const JointKind& kind, const Eigen::VectorXd& q,
 template <int dim>
 Eigen::VectorXd change_to(const JointKind& kind, const Eigen::VectorXd& q,
                           const Eigen::VectorXd& goal);
-/// What is left to go from a pose to q: the coordinates of `change` that does, to first order.
+/// Change of the coordinates that leads from a pose to q, to first order.
 template <int dim>
 Eigen::VectorXd distance_to(const JointKind& kind, const RelativePose<dim>& pose,
                             const Eigen::VectorXd& q);

@@ -18,7 +18,8 @@ bool turns_about_any(const JointKind& kind) {
   return kind.turn == JointTurn::any && n_rotations<dim> > 1;
 }
 
-/// Of all coordinates, those that one has alone before those of all; `absent` where there is none.
+/// Returns the bounds of all coordinates, where a coordinate's own list comes before that of all;
+/// `absent` where there is none.
 Eigen::VectorXd bounds(const ParameterList& joint, const std::string& name, const std::string& side,
                        int n, double absent) {
   Eigen::VectorXd values = Eigen::VectorXd::Constant(n, absent);

@@ -9,12 +9,12 @@
 
 namespace lockstep {
 
-/// How far the coordinates of a joint may go. Empty: as far as they like.
+/// Range of the coordinates of a joint. Empty: unlimited.
 struct JointLimits {
   Eigen::VectorXd lower, upper;  ///< by coordinate [rad, m]; infinite: none
-  /// Of a ball, from the start about any axis [rad]; infinite: none.
+  /// Largest turn of a ball joint from the start about any axis [rad]; infinite: no limit.
   double largest_turn = std::numeric_limits<double>::infinity();
-  /// Whether coordinate k has one.
+  /// True if coordinate k has a limit.
   bool bounds(int k) const {
     return std::isfinite(largest_turn) ||
            (lower.size() > 0 && (std::isfinite(lower[k]) || std::isfinite(upper[k])));
@@ -25,9 +25,9 @@ struct JointLimits {
 /// Declares them in the list of a joint of this kind.
 template <int dim>
 void declare_limits(ParameterList& joint, const JointKind& kind);
-/// Of n coordinates alike.
+/// Declares the limits of n coordinates alike.
 void declare_limit_pair(ParameterList& list, int n);
-/// Of a validated joint. Throws InputError.
+/// Reads the limits of a validated joint. Throws InputError.
 template <int dim>
 JointLimits read_limits(const ParameterList& joint, const std::string& name, const JointKind& kind);
 
@@ -42,7 +42,7 @@ template <int dim>
 std::vector<RateLimit> rate_limits(const JointKind& kind, const JointLimits& limits,
                                    const Eigen::VectorXd& q, const Eigen::VectorXd& rates,
                                    double dt);
-/// Whether a coordinate is at one of its limits, or beyond; `k`: its number.
+/// True if coordinate k is at one of its limits, or beyond.
 bool at_limit(const JointLimits& limits, const Eigen::VectorXd& q, int k);
 
 }  // namespace lockstep

@@ -14,8 +14,8 @@ namespace {
 
 const std::string name_of_space = "space";
 
-/// Of the ball with as much surface as a solid, 0 if it has none: about what it has to push,
-/// shells too, and the same however it lies [m^dim].
+/// Volume of the ball with as much surface as a solid, 0 if it has none [m^dim]: about the volume
+/// of fluid that the solid pushes, shells too, and independent of its orientation.
 template <int dim>
 double volume_pushed(const SurfaceMesh<dim>& surface, const SolidDescription& solid) {
   double area = 0;
@@ -50,7 +50,7 @@ class BodyFinder {
   }
   const std::vector<JointedBody<dim>>& bodies() const { return bodies_; }
 
-  /// Of the bodies found so far. Collective.
+  /// Finds out which of the bodies found so far carry nodes. Collective.
   void find_carriers() {
     std::vector<double> carries(bodies_.size(), 0);
     for (const auto& model : setting_.models) {
@@ -114,7 +114,7 @@ JointKind kind_of(const std::string& name) {
   return {};
 }
 
-/// Which of its axes a kind of joint names. In 2D hinges turn about the one across.
+/// True if a kind of joint names an axis. In 2D hinges turn about the one across.
 template <int dim>
 bool has_axis(const JointKind& kind) {
   return !kind.slides.empty() ||

@@ -13,7 +13,7 @@ std::vector<TypedSchema> joint_schemas();
 /// Schema of what all joints share.
 ParameterList articulation_parameters();
 
-/// From validated lists (see above) and the names of the joints. Throws InputError. Local.
+/// Reads the joints from validated lists (see above) and their names. Throws InputError. Local.
 template <int dim>
 std::shared_ptr<Articulation<dim>> read_joints(const ParameterList& shared,
                                                const NamedLists& joints,

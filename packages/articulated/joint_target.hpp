@@ -10,12 +10,13 @@ namespace lockstep {
 struct TargetValue {
   Eigen::VectorXd q, rate;
 };
-/// By the time [s].
+/// Target of a joint by the time [s].
 using JointTarget = std::function<TargetValue(double time)>;
 
 /// Declares the list "Target" of a joint with n coordinates.
 void declare_target(ParameterList& joint, int n);
-/// Of a validated joint; `place`: its point at the start along the way that waves go [m].
+/// Reads the target of a validated joint; `place`: its point at the start along the way that waves
+/// go [m].
 JointTarget read_target(const ParameterList& joint, int n,
                         const std::function<double(const ParameterArray<double>&)>& place,
                         const std::string& name);

@@ -14,7 +14,7 @@ struct LoneMechanism {
   /// prescribed ones.
   std::vector<int> bodies;
 
-  /// Of what all bodies have, that of these.
+  /// Returns the values of this mechanism's bodies, from the values of all bodies.
   template <typename Value>
   std::vector<Value> of_bodies(const std::vector<Value>& all) const {
     std::vector<Value> own;
@@ -25,7 +25,7 @@ struct LoneMechanism {
   }
 };
 
-/// Its bodies and joints as they are at present. Local.
+/// Copies the bodies and joints of a mechanism as they are at present. Local.
 template <int dim>
 LoneMechanism<dim> alone(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints);
 

@@ -1,4 +1,4 @@
-// How the bodies of a mechanism move with its dofs.
+// Motion of a mechanism's bodies with its dofs.
 #include "articulated/mechanism.hpp"
 
 #include <Eigen/QR>
@@ -86,7 +86,7 @@ class TreeMotion {
     }
   }
 
-  /// Of a body of the tree, a prescribed one, or space.
+  /// Twists of a body of the tree, of a prescribed one, or of space.
   Twists<dim> twists(int body) const {
     if (const auto place = place_of_body_.find(body); place != place_of_body_.end())
       return basis_.twists[place->second];
@@ -128,14 +128,15 @@ class TreeMotion {
 
   const std::vector<Joint<dim>>& joints_;
   const std::vector<BodyPose<dim>>& poses_;
-  // Of this mechanism alone: there may be as many as bodies.
+  // numbers of this mechanism alone, since there may be as many mechanisms as bodies
   std::unordered_map<int, int> place_of_body_, rate_columns_;
   std::vector<std::pair<int, int>> ground_columns_;
   MotionBasis<dim> basis_;
 };
 
-/// What loops hold, over the columns of the tree. Lengths count in `unit`. `size`: of the motions
-/// of sides that rows compare; where a loop says nothing new these cancel to round-off.
+/// Constraints of the loops, over the columns of the tree. Lengths count in `unit`. `size`:
+/// magnitude of the motions of sides that rows compare; for a redundant loop these cancel to
+/// round-off.
 template <int dim>
 Eigen::MatrixXd loop_rows(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints,
                           const std::vector<BodyPose<dim>>& poses, const TreeMotion<dim>& tree,

@@ -62,7 +62,7 @@ struct Joint {
   bool wants_rates() const { return control.any() || limits.any(); }
 };
 
-/// Where a joint and its two sides are in space.
+/// Place of a joint and of its two sides in space.
 template <int dim>
 struct JointPlace {
   Point<dim> point;        ///< of the second side
@@ -101,7 +101,8 @@ BodyPose<dim> pose_of(const std::vector<BodyPose<dim>>& poses, int body) {
 template <int dim>
 JointPlace<dim> place_of(const Joint<dim>& joint, const std::vector<BodyPose<dim>>& poses);
 
-/// What the row of a screw between the sides reads off the twist of the body of one of them.
+/// Covector by which the row of a screw between the sides reads the twist of the body of one of
+/// them.
 template <int dim>
 TwistVector<dim> row_on_side(const Screw<dim>& row, const JointPlace<dim>& place, int side,
                              const Point<dim>& reference);
@@ -118,7 +119,7 @@ struct MotionBasis {
   std::vector<std::pair<int, Eigen::RowVectorXd>> dependent;
 };
 
-/// Of the dofs of `joints` and prescribed bodies in the stack.
+/// Numbers of the dofs of joints and prescribed bodies in the stack.
 struct RateDofs {
   GlobalIndex first_rate = 0;              ///< of all joints' rates
   std::vector<GlobalIndex> first_of_body;  ///< of prescribed bodies: their twist

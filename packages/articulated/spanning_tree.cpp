@@ -1,4 +1,4 @@
-// Which joints form trees, and which close loops in them.
+// Spanning trees of the joints, and the joints that close loops in them.
 #include "articulated/mechanism.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ bool is_ground(const std::vector<JointedBody<dim>>& bodies, int body) {
   return body == space || bodies[body].prescribed();
 }
 
-/// Which joints are in the trees.
+/// Marks the joints that are in the trees.
 template <int dim>
 std::vector<char> tree_joints(const std::vector<JointedBody<dim>>& bodies,
                               const std::vector<Joint<dim>>& joints) {
@@ -130,7 +130,7 @@ std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodi
   const std::vector<std::vector<int>> of_body = joints_by_body(bodies, joints, in_tree);
   std::vector<char> reached(bodies.size(), 0);
   std::vector<Mechanism> mechanisms;
-  // Those on the ground first: what hangs on it is not free.
+  // joints on the ground first, since a mechanism on it is not free
   for (const bool on_ground : {true, false}) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const int first = joints[j].sides[0].body, second = joints[j].sides[1].body;

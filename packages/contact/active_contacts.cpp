@@ -1,4 +1,4 @@
-// Which contacts and limits act: found round by round.
+// Active set of contacts and joint limits, found round by round.
 #include <algorithm>
 
 #include "base/interruption.hpp"

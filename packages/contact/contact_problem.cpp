@@ -6,11 +6,11 @@
 namespace lockstep {
 
 namespace {
-/// What surfaces that would have met keep between them, and the overlap of skins that is left
-/// alone, over the sum of their half thicknesses.
+/// Gap that surfaces keep between them where they would have met, and overlap of skins that is left
+/// alone, both as a part of the sum of their half thicknesses [1].
 constexpr double clearance = 0.25;
 
-/// The same for equal places.
+/// Hash of a place, the same for equal places.
 template <int dim>
 std::size_t hash_of(const Point<dim>& place) {
   std::size_t hash = 0;
@@ -201,7 +201,7 @@ bool ContactProblem<dim>::prepare(const std::vector<double>& before,
     add_candidates(motion, motion_before);
   if (const ConstraintModel* joints = system_.joints()) {
     for (JointLimit& limit : joints->limits(dt_, velocity)) {
-      // What is beyond comes back as positions, not with a speed of its own.
+      // An excess over a limit is corrected in the positions, without a speed of its own.
       const double room = phase_ == ContactPhase::position ? limit.room : std::max(limit.room, 0.);
       auto resolved = shapes_.resolved(limit.terms);
       limits_.push_back({std::move(limit), std::move(resolved), -room / dt_});

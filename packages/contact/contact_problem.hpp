@@ -33,7 +33,7 @@ class ContactProblem {
   double deepest_overlap() const;
   /// See `SurfacePath`: of the velocities given to `prepare`; empty where it does not matter.
   const std::vector<Point<dim>>& unheld() const { return unheld_; }
-  /// Of limits of joints, by dof of a coordinate.
+  /// Returns the impulses of joint limits, each with the dof of its coordinate.
   std::vector<std::pair<GlobalIndex, double>> limit_impulses(
       const ImpulseSolver<dim>& solver) const;
 
@@ -43,7 +43,7 @@ class ContactProblem {
     double target = 0;    ///< least normal velocity [m/s]
     bool active = false;  ///< or nothing moves along it
   };
-  /// Of a coordinate of a joint.
+  /// A limit of a coordinate of a joint.
   struct Limit {
     JointLimit limit;
     std::vector<std::pair<GlobalIndex, double>> resolved;  ///< the same by dofs that others follow
@@ -59,7 +59,7 @@ class ContactProblem {
   };
   using Pair = std::pair<int, int>;
 
-  /// For these velocities.
+  /// Returns how far the search has to look for a motion.
   ContactReach reach(const SolidMotion<dim>& motion) const;
   /// The largest violation, not less than 0 [m/s]. Keeps no candidates.
   double worst_violation(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
@@ -76,14 +76,14 @@ class ContactProblem {
               const std::optional<double>& of_walls) const;
   double friction(const Contact<dim>& contact) const;
   double slop(const Contact<dim>& contact) const;
-  /// What surfaces of solids that are not both rigid keep between them [m].
+  /// Gap that surfaces of solids which are not both rigid keep between them [m].
   double clearance_between(int solid, int other) const;
   bool any_bends(const Pair& pair) const;
-  /// Of what is not active.
+  /// Returns the largest violation of inactive contacts and limits [m/s].
   double largest_violation(const SolidMotion<dim>& motion,
                            const std::vector<double>& velocity) const;
   void find_scale(const SolidMotion<dim>& motion, const std::vector<double>& velocity);
-  /// What nothing moves along takes no part in anything: no impulse would change it.
+  /// Leaves out contacts and limits along which nothing can move: no impulse would change them.
   void leave_out_immovable(ImpulseSolver<dim>& solver);
   /// False if nothing moves along it.
   bool activate(Candidate& candidate, ImpulseSolver<dim>& solver) const;
@@ -94,12 +94,12 @@ class ContactProblem {
   /// Activates those limits of joints that are violated; returns how many.
   int activate_limits(const std::vector<double>& velocity, double tolerance,
                       ImpulseSolver<dim>& solver);
-  /// At most so many sweeps; returns how many.
+  /// Does at most `most` sweeps; returns their number.
   int sweep(ImpulseSolver<dim>& solver, int most) const;
   /// Looks again if the solution moves solids farther than the search had looked.
   void extend_search(const std::vector<double>& velocity);
   bool follows_impacts() const;
-  /// What must hold against the impacts that these velocities lead to.
+  /// Returns the contacts that prevent the impacts to which these velocities lead.
   std::vector<Contact<dim>> impacts_of(const std::vector<double>& velocity) const;
   /// Returns the number of sweeps.
   int stop_impacts(ImpulseSolver<dim>& solver) const;

@@ -11,8 +11,9 @@ namespace lockstep {
 
 namespace {
 
-/// What constraints gave to the solids while contact acted, of which later solves do not know: what
-/// these hear of it, `told`, and contact itself did not give. Null `told`: M_S dV. Collective.
+/// Generalized reactions of constraints while contact acted, of which later solves do not know: the
+/// impulse that these solves know, `told`, less the impulse of contact. Null `told`: M_S dV.
+/// Collective.
 template <int dim>
 RCP<const Vector> reactions_of(const SolidSystem<dim>& solids, const Vector& impulse,
                                const RCP<const Vector>& told, const Vector& change) {
@@ -25,7 +26,7 @@ RCP<const Vector> reactions_of(const SolidSystem<dim>& solids, const Vector& imp
   return reactions;
 }
 
-/// What dofs that are combinations have beside their terms. Collective.
+/// Returns the velocities that combinations have beside their terms. Collective.
 template <int dim>
 RCP<Vector> drift_of(const SolidSystem<dim>& solids, const Vector& velocity) {
   const auto drift = rcp(new Vector(velocity, Teuchos::Copy));
@@ -144,7 +145,7 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   }
   RCP<Vector> change = distributed(solids, resolved);
   if (response) {
-    // What impact zones change, and of the impulses all that they move.
+    // the change by impact zones, and all that the impulses move
     change->update(-1, *distributed(solids, solver.velocity()), 1);
     Vector reduced(*report.impulse, Teuchos::Copy);
     solids.reduction().restrict(reduced);

@@ -16,7 +16,7 @@ template <int dim>
 void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& rest,
                      DeformableBody<dim>& body);
 
-/// By which the body is turned at the start.
+/// Rotation of the body at the start.
 template <int dim>
 Eigen::Matrix<double, dim, dim> start_rotation(const ParameterList& list);
 

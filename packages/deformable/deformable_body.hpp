@@ -10,7 +10,7 @@
 
 namespace lockstep {
 
-/// How the forces of a body enter the step (design: Eq. 16's D).
+/// Time integration of a body's forces (docs/method.md: D in Eq. 16).
 enum class TimeIntegration {
   explicit_forces,  ///< D = 0: elasticity and damping at the present state
   semi_implicit,    ///< D = -B: elasticity at the present positions, implicit damping
@@ -41,7 +41,8 @@ struct DeformableBody {
   std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
   /// Simplices of even mass. Nodes of none (the anchors of tethers) must be locked.
   ElementCorners mass_elements;
-  /// Of each of them: volume (cloth: area) as meshed [m^dim, m^(dim-1)]; times density its mass.
+  /// Measure of each element as meshed: volume, or area of cloth [m^dim, m^(dim-1)]; times density
+  /// it is its mass.
   std::vector<double> element_measure;
 
   std::vector<LimitedEdge> limited_edges;  ///< that may not stretch further

@@ -23,7 +23,7 @@ void append_symmetric(std::vector<double>& values, const Eigen::Matrix3d& tensor
   }
 }
 
-/// What a rank sends of one element: its corners, energy density, stress and strain.
+/// Numbers of one element in a message: its corners, energy density, stress and strain.
 constexpr int n_tensor = 6, n_numbers = 1 + 2 * n_tensor;
 
 std::vector<double> packed(const ElementStates& states, int n_corners,

@@ -34,7 +34,8 @@ MeshNames names_of_boundary(const MeshNames& volume, const std::vector<int>& ver
   return names;
 }
 
-/// At rest as it is turned at the start. Other laws see no rotation; small ones count from there.
+/// Returns the mesh at rest in the orientation of the start, for laws of small rotations, which
+/// count from there; other laws see no rotation.
 template <int dim>
 VolumeMesh<dim> turned_at_start(VolumeMesh<dim> mesh, const ParameterList& list) {
   const Eigen::Matrix<double, dim, dim> rotation = start_rotation<dim>(list);

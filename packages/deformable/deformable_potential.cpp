@@ -53,7 +53,8 @@ std::vector<ComputedEnergy> DeformableSolids<dim>::unlinear_energies(double dt,
   return energies;
 }
 
-/// Of what `explicit_momentum` and D give; what limits stretch is elastic.
+/// Works of the forces in `explicit_momentum` and D; the work of the stretch limit counts as
+/// elastic.
 template <int dim>
 SolidWork DeformableSolids<dim>::solid_work(double, double dt, const Vector& velocity,
                                             const Vector& mean) const {

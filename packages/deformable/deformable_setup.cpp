@@ -1,4 +1,4 @@
-// How the bodies of a scene become the model of one rank.
+// Set-up: makes the model of one rank from the bodies of a scene.
 #include <algorithm>
 #include <numeric>
 

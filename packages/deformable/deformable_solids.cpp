@@ -311,7 +311,7 @@ void DeformableSolids<dim>::update_states() {
   const auto q = make_vector(space_.dof_map());
   apply(*mass_, *velocity_, *q);
   const Nodes momentum = space_.owned(*q), velocity = space_.owned(*velocity_);
-  // Of a massless body the means are those of its surface.
+  // A massless body has the means of its surface.
   const auto is_massless = [this](int i) { return bodies_[body_of_node_[i]].mass == 0; };
   const auto weight = [&](int i) { return is_massless(i) ? node_share_[i] : node_mass_[i]; };
   const auto weighted = [&](int i) -> Point<dim> {

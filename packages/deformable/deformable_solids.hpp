@@ -79,7 +79,8 @@ class DeformableSolids : public SolidModel<dim>,
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return states_; }
   void add_frames(std::vector<SurfaceFrame>& frames) const override;
-  /// Of linear elasticity of turned bodies, means over sub-steps, and the stretch limit of S1.
+  /// Angular impulse of linear elasticity of turned bodies, of means over sub-steps, and of the
+  /// stretch limit of S1.
   AngularVector<dim> inner_angular_impulse(double dt) const override;
   double largest_stable_step() const override { return largest_stable_step_; }
 
@@ -102,7 +103,7 @@ class DeformableSolids : public SolidModel<dim>,
 
  private:
   using Nodes = std::vector<Point<dim>>;
-  /// What stays of a body, on this rank.
+  /// Constant properties of a body, on this rank.
   struct Body {
     std::string name;
     bool closed = true, consistent_mass = false;
@@ -138,10 +139,10 @@ class DeformableSolids : public SolidModel<dim>,
   void bound_frequencies();
   void soften(double dt);
   double least_mass(int node) const;  ///< a bound of the eigenvalues of M_S [kg]
-  /// Elastic forces for a step: averaged over sub-steps where it is longer than a body's stable
-  /// one, once for all who ask at the same positions.
+  /// Elastic forces for a step: averaged over sub-steps where the step is longer than a body's
+  /// stable one; computed once for the same positions.
   const Nodes& averaged_forces() const;
-  /// Those of bodies with these sub-steps.
+  /// Averages the elastic forces of bodies with these sub-steps.
   void average_forces(const std::vector<int>& bodies, const SubSteps& steps, Nodes& force) const;
   void check_finite(const Nodes& averaged) const;
   /// The local nodes of a body: owned ones, ghosts.

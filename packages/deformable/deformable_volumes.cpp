@@ -1,4 +1,4 @@
-// What surfaces sweep in S1, see VolumeSweeper.
+// Volumes swept by surfaces in S1, see VolumeSweeper.
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ Corners<dim> advanced(Corners<dim> corners, const Corners<dim>& step, double sha
   return corners;
 }
 
-/// What a simplex sweeps along its normal when its corners take straight steps: its area vector is
-/// of second order in the time, so that Simpson's rule is exact.
+/// Volume that a simplex sweeps along its normal when its corners take straight steps: its area
+/// vector is of second order in the time, so that Simpson's rule is exact.
 template <int dim>
 double swept(const Corners<dim>& corners, const Corners<dim>& step) {
   const Point<dim> area = area_vector<dim>(corners) +
@@ -129,7 +129,7 @@ std::vector<char> DeformableSolids<dim>::can_sweep(const Box<dim>& domain) const
   return can;
 }
 
-/// Of each vertex: its share of the area vectors around it.
+/// Returns for each vertex its share of the area vectors around it.
 template <int dim>
 std::vector<Point<dim>> DeformableSolids<dim>::area_shares() const {
   Nodes shares(surface_.vertices.size(), Point<dim>::Zero());

@@ -12,7 +12,8 @@ template <int dim>
 struct NodeHold {
   std::vector<int> nodes;
   std::array<bool, dim> axes{};  ///< of space, along which they are held
-  /// Their displacement and turn; the start of the run is where the nodes are. Empty: at rest.
+  /// Displacement and turn of the held nodes; the start of the run is where the nodes are. Empty:
+  /// at rest.
   MotionScript<dim> script;
   Point<dim> origin = Point<dim>::Zero();  ///< what turns are about [m]
   double release_time = 1e300;             ///< [s]
@@ -46,7 +47,7 @@ class HeldNodes {
     int dof = 0, hold = -1;
     Point<dim> start;
   };
-  /// Where a hold has taken its nodes.
+  /// Place to which a hold has taken its nodes.
   struct Pose {
     Point<dim> displacement, velocity;
     Eigen::Matrix<double, dim, dim> rotation;

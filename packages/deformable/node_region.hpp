@@ -35,7 +35,8 @@ struct Tether {
   Point<dim> offset = Point<dim>::Zero();  ///< of the anchor from where the node starts [m]
   double stiffness = 0;                    ///< [N/m]
 };
-/// Their stiffness is spread over the nodes in proportion to `node_measure`.
+/// Reads the tethers of a body, whose stiffness is spread over the nodes in proportion to
+/// `node_measure`.
 template <int dim>
 std::vector<Tether<dim>> read_tethers(const ParameterList& body,
                                       const std::vector<Point<dim>>& nodes,

@@ -28,7 +28,7 @@ class NodeSpace {
   int n_local() const { return static_cast<int>(originals_.size()); }
   int original(int local) const { return originals_[local]; }
   RCP<const Map> dof_map() const { return map_; }
-  /// Of a local dof, dim * local + axis.
+  /// Global number of a local dof, dim * local + axis.
   GlobalIndex global_dof(int local_dof) const { return overlap_map_->getGlobalElement(local_dof); }
 
   /// Vectors on `dof_map` as one point a node: of the owned nodes, and (collective) of all local

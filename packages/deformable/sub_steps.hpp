@@ -2,12 +2,12 @@
 
 namespace lockstep {
 
-/// How many sub-steps of which length [s] average the elastic forces of a step.
+/// Number and length [s] of the sub-steps that average the elastic forces of a step.
 struct SubSteps {
   int n = 1;
   double length = 0;
 
-  /// Of the forces at the k-th place of the path [1]; all add up to one.
+  /// Weight of the forces at the k-th place of the path [1]; all weights add up to one.
   double weight(int k) const;
 };
 

@@ -176,7 +176,7 @@ template <int dim>
 void RigidBodies<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
   const auto values = momentum.getDataNonConst();
   for_each_own([&](const RigidBody<dim>& body, int first_row) {
-    // What fluid sees does not answer its load alone: light, it would turn as often as it likes.
+    // A body in the fluid does not respond to its load alone: a light one would turn without bound.
     RigidVector<dim> start = body.momentum;
     if (!body.seen_by_fluid)
       start += load_impulse(body, dt);

@@ -78,7 +78,7 @@ class RigidBodies : public SolidModel<dim>,
   /// Sets (or adds) f(body) in the rows of this rank.
   template <typename Function>
   void for_each_own(const Function& f) const;
-  /// Of gravity and of the body's constant loads, about its reference point.
+  /// Impulse of gravity and of the body's constant loads, about its reference point.
   RigidVector<dim> load_impulse(const RigidBody<dim>& body, double dt) const;
   void describe();
   void update_surface();

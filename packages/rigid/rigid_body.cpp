@@ -20,7 +20,7 @@ Inertia<dim> inertia_of_offset(double mass, const Point<dim>& c) {
   }
 }
 
-/// Whether the mass matrix is the same in every orientation.
+/// True if the mass matrix is the same in every orientation.
 template <int dim>
 bool turns_without_effect(const RigidBody<dim>& body) {
   if (!body.center_of_mass.isZero(0))

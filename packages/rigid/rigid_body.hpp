@@ -27,8 +27,8 @@ struct RigidPose {
   Orientation<dim> orientation = rotation_of<dim>(AngularVector<dim>::Zero());
 };
 
-/// What never changes of a body. Its coordinates have their origin at the reference point: the
-/// centre of mass, or the pivot.
+/// : Properties of a body that never change. Its coordinates have their origin at the reference
+/// point: the centre of mass, or the pivot.
 template <int dim>
 struct RigidBodyConstants {
   std::string name;

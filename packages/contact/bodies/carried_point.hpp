@@ -12,11 +12,12 @@ std::array<Eigen::Matrix<double, dim, dim>, dim> linear_motion(
     const std::array<Point<dim>, dim>& corners, const SurfacePoint<dim>& point,
     const Point<dim>& x);
 
-/// The same if the surface point carries x along as on a rod, which keeps its length: along the rod
-/// the velocity is the surface point's own, across it that of `linear_motion`. Every rigid motion
-/// of the corners is reproduced, so that an impulse at x, transposed onto the corners, keeps its
-/// linear and angular momentum. One along the rod, as that of contact without friction, acts at the
-/// surface point itself: whichever simplex a point on an edge is counted to, on the same vertices.
+/// Factors M_i of the velocity of x if the surface point carries x along as on a rod, which keeps
+/// its length: along the rod the velocity is the surface point's own, across it that of
+/// `linear_motion`. Every rigid motion of the corners is reproduced, so that an impulse at x,
+/// transposed onto the corners, keeps its linear and angular momentum. An impulse along the rod, as
+/// that of contact without friction, acts at the surface point itself: whichever simplex a point on
+/// an edge is counted to, on the same vertices.
 template <int dim>
 std::array<Eigen::Matrix<double, dim, dim>, dim> carried_point(
     const std::array<Point<dim>, dim>& corners, const SurfacePoint<dim>& point,

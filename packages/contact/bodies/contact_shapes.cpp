@@ -121,7 +121,7 @@ void ContactShapes<dim>::find_combinations() {
         static_cast<GlobalIndex>(all[k + 1]), all[k + 2]);
 }
 
-/// Which vertices the attached nodes are, all ranks know, too.
+/// Finds the carriers of attached nodes, so that all ranks know them.
 template <int dim>
 void ContactShapes<dim>::find_carriers() {
   if (!system_.reduction().has_combinations())

@@ -16,7 +16,8 @@ struct SurfaceEdge {
   std::array<int, 2> simplices{-1, -1};  ///< the second is -1 at the rim of a shell
 };
 
-/// What does not change while the solids move: who shares a vertex, which edges are sharp.
+/// Connectivity of the surfaces, which does not change while the solids move: simplices around a
+/// vertex, edges, sharp edges.
 template <int dim>
 class ContactTopology {
  public:
@@ -32,12 +33,12 @@ class ContactTopology {
   const int* end(int vertex) const { return around_.data() + begin_[vertex + 1]; }
   /// True if the vertices are those of one edge.
   bool connected(int vertex, int other) const;
-  /// Of one solid; none in 2D, where a corner is a vertex.
+  /// Edges of one solid; none in 2D, where a corner is a vertex.
   const std::vector<SurfaceEdge>& edges(int solid) const { return edges_[solid]; }
-  /// Those at which the surface bends by more than the mesh of a smooth body does, or ends.
+  /// Edges at which the surface bends by more than the mesh of a smooth body does, or ends.
   const std::vector<SurfaceEdge>& sharp_edges(int solid) const { return sharp_edges_[solid]; }
-  /// In which the boxes of a solid's vertices, simplices and edges stood in the last trees of them:
-  /// those that follow are mostly as good in the same one.
+  /// Orders of the boxes of a solid's vertices, simplices and edges in their last trees: the next
+  /// boxes are mostly as good in the same order.
   std::array<BoxOrder, 3>& orders(int solid) const { return orders_[solid]; }
 
  private:
@@ -47,8 +48,8 @@ class ContactTopology {
   mutable std::vector<std::array<BoxOrder, 3>> orders_;
 };
 
-/// The surfaces of all solids at one instant, with the numbers of `SolidSystem::snapshot`, and what
-/// contacts ask of them. The same on all ranks.
+/// The surfaces of all solids at one instant, with the numbers of `SolidSystem::snapshot`, and the
+/// geometric queries of contacts. The same on all ranks.
 template <int dim>
 class ContactShapes {
  public:
@@ -62,16 +63,16 @@ class ContactShapes {
 
   const Box<dim>& bounds(int simplex) const { return bounds_[simplex]; }
   const Box<dim>& bounds_of_solid(int solid) const { return solid_bounds_[solid]; }
-  /// What moves a point of a surface: dofs that are unknowns or given, those of combinations
-  /// replaced by the ones that they are made of.
+  /// Makes the row of a point of a surface over dofs that are unknowns or given: combinations are
+  /// replaced by the dofs that they are made of.
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                     VelocityRow<dim>& row) const;
   /// The velocity of a point of a rigid solid that is not prescribed, with a surface or without.
   Point<dim> rigid_velocity(int solid, const Point<dim>& x,
                             const std::vector<double>& velocity) const;
-  /// What moves that point.
+  /// Makes the row of a point of a rigid solid that is not prescribed, with a surface or without.
   void rigid_row(int solid, const Point<dim>& x, VelocityRow<dim>& row) const;
-  /// The dofs that move it.
+  /// Returns the dofs that move a rigid solid.
   std::vector<GlobalIndex> rigid_dofs(int solid) const;
   /// The rigid solid that this vertex is attached to; -1: none.
   int carrier(int vertex) const { return carriers_.empty() ? -1 : carriers_[vertex]; }
@@ -83,14 +84,15 @@ class ContactShapes {
   /// a point, if that is so of a vertex that moves it.
   bool hangs_on(int vertex, int solid) const;
   bool hangs_on(const SurfacePoint<dim>& point, int solid) const;
-  /// The same for a combination of dofs.
+  /// Returns a combination of dofs with those that are combinations themselves replaced by the dofs
+  /// that they are made of.
   std::vector<std::pair<GlobalIndex, double>> resolved(
       const std::vector<std::pair<GlobalIndex, double>>& terms) const;
-  /// Those that others are combinations of.
+  /// Returns the dofs that others are combinations of.
   std::vector<GlobalIndex> leading_dofs() const;
-  /// What dofs that are combinations have beside their terms (`ClosedMotion::drift`), by id.
+  /// Sets the velocities that combinations have beside their terms (`ClosedMotion::drift`), by id.
   void set_drift(std::vector<double> drift) { drift_ = std::move(drift); }
-  /// The velocity that a point has of it.
+  /// Returns the part of a point's velocity that is due to `set_drift`.
   Point<dim> drift(const SurfacePoint<dim>& point, const Point<dim>& x) const;
   Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const {
     return system_.prescribed_velocity(point, x);
@@ -109,7 +111,7 @@ class ContactShapes {
   bool inside(const std::vector<int>& simplices, const Point<dim>& x, double radius) const;
 
  private:
-  /// Of those that for_each_simplex(look) looks at.
+  /// True if x is on the inner side of the simplices that for_each_simplex(look) looks at.
   template <typename ForEach>
   bool inside_of(const ForEach& for_each_simplex, const Point<dim>& x, double radius) const;
 

@@ -38,7 +38,7 @@ Point<dim> point_velocity(const ContactShapes<dim>& shapes, bool prescribed,
   return sum;
 }
 
-/// What rigid solids turn about when they move. Of others, zero.
+/// Returns the centres about which rigid solids turn; zero for others.
 template <int dim>
 std::vector<Point<dim>> centers_of(const SolidSystem<dim>& system) {
   std::vector<Point<dim>> centers(system.solids().size(), Point<dim>::Zero());

@@ -15,17 +15,17 @@ class SolidMotion {
   SolidMotion(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
               const std::vector<double>& velocity);
 
-  /// Of x [m/s], a point of a rigid solid or one that the simplex of `point` carries along (see
-  /// `carried_point`).
+  /// Velocity of x [m/s], a point of a rigid solid or one that the simplex of `point` carries along
+  /// (see `carried_point`).
   Point<dim> at(int solid, const SurfacePoint<dim>& point, const Point<dim>& x) const;
-  /// Of a vertex [m/s].
+  /// Velocity of a vertex [m/s].
   Point<dim> of_vertex(int solid, int vertex) const;
   /// Where a vertex, or a point fixed to a rigid solid, is after dt: straight on, but with a rigid
   /// solid that turns about its reference point if it has one, else about its centre of mass; with
   /// such a one that carries it, too [m].
   Point<dim> end_of_vertex(int solid, int vertex, double dt) const;
   Point<dim> end_of_point(int rigid_solid, const Point<dim>& x, double dt) const;
-  /// What a rigid solid turns about, and how fast [rad/s].
+  /// Centre about which a rigid solid turns [m], and its angular velocity [rad/s].
   const Point<dim>& center(int rigid_solid) const { return motions_[rigid_solid].center; }
   AngularVector<dim> spin(int rigid_solid) const;
   /// Componentwise bounds of the velocity over the solid [m/s].

@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// What impact zones did.
+/// Result of `join_impact_zones`.
 template <int dim>
 struct ZonedMotion {
   int n_left = 0;  ///< impacts, where prescribed solids or locked nodes squeeze others

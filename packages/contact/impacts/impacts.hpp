@@ -30,8 +30,9 @@ template <int dim>
 std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
                                            const SurfacePath<dim>& path, bool self);
 
-/// What the velocities must satisfy so that the primitives end `clearance` apart (but at most half
-/// of what they are apart at the start): its gap over dt is the largest normal speed of approach.
+/// Makes the contact that keeps the primitives of an impact `clearance` apart at the end (but at
+/// most half of their distance at the start): its gap over dt is the largest normal speed of
+/// approach.
 template <int dim>
 Contact<dim> impact_contact(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
                             const SurfacePath<dim>& path, const FoundImpact<dim>& found,

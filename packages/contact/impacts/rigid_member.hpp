@@ -12,7 +12,8 @@ using MemberMotion = Eigen::Matrix<double, dim + n_rotations<dim>, 1>;
 template <int dim>
 using MemberMass = Eigen::Matrix<double, dim + n_rotations<dim>, dim + n_rotations<dim>>;
 
-/// A dynamic rigid solid that is to move as one with others: what its dofs make of a twist. Local.
+/// A dynamic rigid solid that is to move as one with others: maps between its dofs and twists.
+/// Local.
 template <int dim>
 class RigidMember {
  public:
@@ -21,13 +22,14 @@ class RigidMember {
               const Point<dim>& center);
 
   const Point<dim>& center() const { return center_; }
-  /// That are free.
+  /// The solid's free dofs.
   const std::vector<GlobalIndex>& dofs() const { return dofs_; }
-  /// Of twists of `about`, and the momentum dual to them that it has at these velocities.
+  /// Mass matrix for twists about `about`, and the momentum dual to these twists at given
+  /// velocities.
   MemberMass<dim> mass(const Point<dim>& about) const;
   MemberMotion<dim> momentum(const Point<dim>& about, const std::vector<double>& velocity) const;
-  /// Gives it this twist of its centre, or what is nearest of those its dofs can; false in that
-  /// case.
+  /// Gives the solid this twist of its centre, or the nearest one that its dofs can make; returns
+  /// false in that case.
   bool move(const MemberMotion<dim>& twist, std::vector<double>& velocity) const;
 
  private:

@@ -13,7 +13,7 @@ int ImpulseSolver<dim>::activate(int dof) {
   return id;
 }
 
-/// Of active dofs, whose responses are kept as they are.
+/// Finds the response of active dofs, whose columns are stored.
 template <int dim>
 void ImpulseSolver<dim>::find_response(const Row& row, Compliance& compliance,
                                        double& of_parts) const {
@@ -43,7 +43,7 @@ void ImpulseSolver<dim>::extend_limits() {
   }
 }
 
-/// Of all dofs: sweeps have followed the active ones alone.
+/// Computes the velocities of all dofs: sweeps have followed the active ones alone.
 template <int dim>
 void ImpulseSolver<dim>::find_velocity() {
   std::vector<double> of_active(active_.size(), 0);

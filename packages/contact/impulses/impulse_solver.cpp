@@ -181,7 +181,8 @@ bool ImpulseSolver<dim>::can_move(const Contact<dim>& contact) {
   return row.normal_response > 0;
 }
 
-/// Without a response if nothing of it can move; `least` is what held dofs leave of zero.
+/// Makes the row of a joint limit, without a response if nothing of it can move; `least` accounts
+/// for held dofs.
 template <int dim>
 LimitImpulses::Row ImpulseSolver<dim>::row_of(const Terms& terms) {
   LimitImpulses::Row row;

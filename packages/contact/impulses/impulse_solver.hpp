@@ -26,7 +26,7 @@ class ImpulseSolver {
   /// below `least`. Returns its number; -1, and adds nothing, if no impulse on it changes that sum.
   /// Collective if the mobility is.
   int add(const Terms& terms, double least);
-  /// Whether `add` would add it. Collective if the mobility is.
+  /// True if `add` would add it. Collective if the mobility is.
   bool can_move(const Contact<dim>& contact);
   bool can_move(const Terms& terms);
   /// Sweeps until no velocity at a contact changes by more than `tolerance` [m/s]; returns the
@@ -34,14 +34,14 @@ class ImpulseSolver {
   /// [m/s].
   int iterate(int maximum_sweeps, double tolerance, double negligible = 0);
 
-  /// With limits of joints.
+  /// Number of contacts and joint limits.
   int n_contacts() const { return static_cast<int>(rows_.size()) + limits_.size(); }
   const std::vector<double>& velocity() const { return velocity_; }
-  /// What the limit with this number gave: times the weights, on their dofs.
+  /// Impulse of the limit with this number: times the weights it acts on their dofs.
   double limit_impulse(int number) const { return limits_.impulse(number); }
   /// J^T impulses, by id: on the dofs of the surfaces themselves, combinations or not.
   std::vector<double> generalized_impulse() const;
-  /// What walls and prescribed solids gave to the others.
+  /// Impulse of walls and prescribed solids on the others.
   Momentum<dim> external_impulse() const;
 
  private:

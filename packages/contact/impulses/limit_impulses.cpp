@@ -35,7 +35,8 @@ Eigen::VectorXd solved_for(const std::vector<char>& pushes, const Eigen::MatrixX
   return x;
 }
 
-/// By exchange of all rows that are wrong at once; false if that leads nowhere.
+/// Solves the complementarity problem by exchange of all wrong rows at once; returns false if that
+/// makes no progress.
 bool exchange_blocks(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   constexpr int most_idle = 10;  // rounds without progress
   constexpr double round_off = 1e-13;
@@ -63,8 +64,9 @@ bool exchange_blocks(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, Eigen::
   return false;
 }
 
-/// Of 1/2 x.A x + b.x over x >= 0, by the active sets of Lawson and Hanson: one row after the other
-/// joins those that push, and those leave that would pull, so the sum falls in every round.
+/// Minimises 1/2 x.A x + b.x over x >= 0 by the active sets of Lawson and Hanson: one row after the
+/// other joins those that push, and rows that would pull leave, so that the sum falls in every
+/// round.
 Eigen::VectorXd descend(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   constexpr double round_off = 1e-12;
   const auto n = static_cast<int>(b.size());

@@ -62,7 +62,8 @@ class Mobility {
   int active_dof(int number) const { return active_[number]; }
   /// Velocities of all active dofs that a unit impulse on one of them makes.
   const GrowingColumn& column(int number) const { return columns_[number]; }
-  /// Of all dofs, for impulses on all dofs of which held ones take none. Collective.
+  /// Returns the velocities of all dofs for impulses on all dofs, of which held ones take none.
+  /// Collective.
   std::vector<double> velocities(std::vector<double> impulses) const;
 
  private:

@@ -7,16 +7,16 @@
 
 namespace lockstep {
 
-/// How far the vertices of a primitive, or of many, move within a step.
+/// Motion of the vertices of one or many primitives within a step.
 template <int dim>
 struct PrimitiveMotion {
   Box<dim> moves;  ///< [m]
-  /// Of a point beside it, which it carries along (`carried_point`), per distance from the
-  /// primitive, besides the primitive's own move [1]; the largest.
+  /// Largest motion of a point beside the primitive, which carries it along (`carried_point`), per
+  /// distance from the primitive, besides the primitive's own move [1].
   double turn = 0;
 };
 
-/// Of both together.
+/// Returns the motion of both primitives together.
 template <int dim>
 PrimitiveMotion<dim> merged(const PrimitiveMotion<dim>& one, const PrimitiveMotion<dim>& other) {
   return {one.moves.merged(other.moves), std::max(one.turn, other.turn)};
@@ -28,14 +28,14 @@ template <int dim>
 bool may_close(const PrimitiveMotion<dim>& one, const PrimitiveMotion<dim>& other, double apart,
                double thickness);
 
-/// How far parts of one solid that is not rigid come closer to each other within a step, at most:
-/// what its motion leaves side by side need not be looked at closely. Local.
+/// Upper bound of how much closer parts of one solid that is not rigid come to each other within a
+/// step: parts that its motion leaves side by side need no close search. Local.
 template <int dim>
 class Approach {
  public:
   Approach(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion, int solid, double dt);
 
-  /// Of the primitive with these vertices, [begin, end), held by that simplex.
+  /// Motion of the primitive with these vertices, [begin, end), held by that simplex.
   PrimitiveMotion<dim> of(const int* begin, const int* end, int simplex) const;
   /// `lockstep::may_close` of a pair of this solid.
   bool may_close(const PrimitivePair<dim>& pair, double apart, double thickness) const;

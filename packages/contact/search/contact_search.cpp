@@ -9,7 +9,7 @@ namespace lockstep {
 
 namespace {
 
-/// What a solid may touch: its box and where it moves, with all margins.
+/// Returns the box that a solid may touch things in: its bounds and their motion, with all margins.
 template <int dim>
 Box<dim> reached_box(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
                      const ContactReach& reach, int solid) {

@@ -31,7 +31,7 @@ struct HalfSpace {
   Point<3> velocity = Point<3>::Zero();  ///< along itself, in the first dim components [m/s]
 };
 
-/// How far the search for contacts looks.
+/// Distances and motions that the search for contacts covers.
 struct ContactReach {
   double near = 0;                     ///< gaps up to this are contacts whatever the motion [m]
   double depth = 0;                    ///< deepest overlap that is recognised [m]
@@ -40,8 +40,8 @@ struct ContactReach {
   bool swept = true;                   ///< also what the motion over dt meets beyond `near`
   bool self = true;                    ///< also solids that are not rigid against themselves
   bool unheld = true;                  ///< nothing has acted on the motion: see `touching_side`
-  /// Of a solid against itself, leave out what may neither overlap nor be violated by the motion:
-  /// most of a sheet that is flat, whose parts lie side by side.
+  /// True: a solid against itself is searched only where it may overlap or where the motion
+  /// violates a contact, which leaves out most of a flat sheet, whose parts lie side by side.
   bool violated_only = false;
 };
 

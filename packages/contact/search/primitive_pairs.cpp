@@ -56,7 +56,7 @@ class PairFinder {
   PairFinder(const ContactShapes<dim>& shapes, double margin, const Box<dim>& region, bool self,
              const UsePrimitivePairs<dim>& use)
       : shapes_(shapes), margin_(margin), region_(region), self_(self), use_(use) {}
-  /// Of the solid with itself, from now on.
+  /// Leaves out pairs of the solid with itself from now on that `approach` rules out.
   void leave_out(const Approach<dim>& approach, double thickness) {
     approach_ = &approach;
     thickness_ = thickness;

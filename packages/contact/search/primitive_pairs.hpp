@@ -26,9 +26,10 @@ class PrimitivePairs {
   /// closer than `margin` in every direction; what contact cannot move is left out. The order does
   /// not depend on the ranks.
   void for_each(double margin, int solid, int other, const UsePrimitivePairs<dim>& use);
-  /// The same of one solid with itself, where its motion may bring primitives to `thickness`: pairs
-  /// of edges of which it rules out that, and vertices of which it does so with all simplices that
-  /// no edge connects with them, are left out. The vertices' boxes must hold their points alone.
+  /// Goes through the pairs of one solid with itself that its motion may bring to `thickness`:
+  /// pairs of edges of which it rules that out, and vertices of which it does so with all simplices
+  /// that no edge connects with them, are left out. The vertices' boxes must hold their points
+  /// alone.
   void for_each_closing(double margin, int solid, const Approach<dim>& approach, double thickness,
                         const UsePrimitivePairs<dim>& use);
 

@@ -28,7 +28,7 @@ class SurfaceContacts {
                   std::vector<Contact<dim>>& contacts)
       : shapes_(shapes), motion_(motion), reach_(reach), approach_(approach), contacts_(contacts) {}
 
-  /// Of one first primitive.
+  /// Adds the contacts of one first primitive.
   void add(const std::vector<PrimitivePair<dim>>& pairs) {
     if (pairs.front().kind == PrimitiveKind::vertex_simplex) {
       add_vertex(pairs);
@@ -74,7 +74,7 @@ class SurfaceContacts {
 
   double range(const NearPair<dim>& near) const { return reach_.near + thickness(*near.pair); }
 
-  /// So near that the points tell no direction.
+  /// True if the points are so near that they tell no direction.
   bool touches(const NearPair<dim>& near) const {
     return near.closest.distance <= 1e-9 * range(near);
   }
@@ -109,8 +109,9 @@ class SurfaceContacts {
            outward(near.points[1]).dot(near.arm) < 0;
   }
 
-  /// Of simplices that are equally near but for round-off, as all around a node below the vertex,
-  /// the first: friction acts on its corners, which must be the same on any number of ranks.
+  /// Chooses among simplices that are equally near but for round-off, as all around a node below
+  /// the vertex, the first: friction acts on its corners, which must be the same on any number of
+  /// ranks.
   std::size_t nearest_of(const std::vector<NearPair<dim>>& near) const {
     double least = near.front().closest.distance;
     for (const NearPair<dim>& one : near)

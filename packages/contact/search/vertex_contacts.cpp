@@ -164,8 +164,8 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
       inner_.push_back(candidate);
     if (point.distance > nearest + tie)
       continue;
-    // Of simplices that share the closest point the one that faces x decides on which side x is,
-    // and for x on the surface the one that faces the vertex.
+    // Among simplices that share the closest point, the one that faces x decides on which side x
+    // is, and for x on the surface the one that faces the vertex.
     const double facing = point.distance > on_surface ? std::abs(height) / point.distance
                                                       : -candidate.normal.dot(normal);
     if (point.distance < nearest - tie || facing > best) {

@@ -67,9 +67,9 @@ std::array<Point<dim>, dim + 1> corner_positions(const Hinge<dim>& hinge,
   return corners;
 }
 
-/// The same of the hinge at the positions x. Where a side has collapsed the angle turns at once
-/// when a node moves by nothing: there its gradient is bounded, all of it by one factor, so that
-/// forces still have neither sum nor torque.
+/// : Angle of the hinge at the positions x. Where a side has collapsed the angle turns at once when
+/// a node moves by nothing: there its gradient is bounded, all of it by one factor, so that forces
+/// still have neither sum nor torque.
 template <int dim>
 HingeAngle<dim> angle_of(const Hinge<dim>& hinge, const std::vector<Point<dim>>& x) {
   HingeAngle<dim> bent = hinge_angle(corner_positions(hinge, x));

@@ -3,8 +3,8 @@
 
 namespace lockstep {
 
-/// What all kinds share: a list of elements, each with an array `corners`. `Derived` is the kind
-/// itself, which is copied for another selection of elements.
+/// : Base of all kinds of elements: a list of elements, each with an array `corners`. `Derived` is
+/// the kind itself, which is copied for another selection of elements.
 template <int dim, typename Element, typename Derived>
 class ElementList : public ElementGroup<dim> {
  public:

@@ -212,7 +212,8 @@ class SurfaceTensionElements
     }
     return energy;
   }
-  /// That of Dirichlet's energy on the present surface, which bounds the area's from above.
+  /// Adds the stiffness of Dirichlet's energy on the present surface, which bounds the area's from
+  /// above.
   int add_stiffness(const Nodes& x, NodeMatrix<dim>& stiffness) const override {
     for (const auto& element : elements_) {
       const double area = area_vector<dim>(points_of<dim>(element.corners, x)).norm();

@@ -18,9 +18,10 @@ template <int dim>
 std::unique_ptr<ElementGroup<dim>> membrane_elements(const SurfaceMesh<dim>& mesh,
                                                      const SheetMaterial& sheet, double stretch);
 
-/// The same stiffness by springs: one along each edge, of the stiffness of the area beside it
-/// (Van Gelder 1998), and in 3D one across each edge between the corners opposite to it, of
-/// `shear_ratio` times that stiffness, which resists shear. In 2D edges are the segments.
+/// Membrane of springs with the stiffness of the sheet: one along each edge, of the stiffness of
+/// the area beside it (Van Gelder 1998), and in 3D one across each edge between the corners
+/// opposite to it, of `shear_ratio` times that stiffness, which resists shear. In 2D edges are the
+/// segments.
 template <int dim>
 std::unique_ptr<ElementGroup<dim>> membrane_springs(const SurfaceMesh<dim>& mesh,
                                                     const SheetMaterial& sheet, double stretch,

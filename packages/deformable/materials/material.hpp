@@ -61,8 +61,9 @@ std::unique_ptr<Material<dim>> st_venant_kirchhoff(const LameConstants& lame);
 template <int dim>
 std::unique_ptr<Material<dim>> neo_hookean(const LameConstants& lame);
 
-/// The same with a `stiffness` [Pa] against stretches beyond four: nodes inside a body too soft for
-/// its weight have nothing else that keeps them from falling out of it. Itself if that is 0.
+/// Adds a `stiffness` [Pa] against stretches beyond four to a material: nodes inside a body too
+/// soft for its weight have nothing else that keeps them from falling out of it. Returns the
+/// material itself if that is 0.
 template <int dim>
 std::unique_ptr<Material<dim>> held_together(std::unique_ptr<Material<dim>> material,
                                              double stiffness);
@@ -77,7 +78,7 @@ struct MaterialKind {
 template <int dim>
 const std::vector<MaterialKind<dim>>& material_kinds();
 
-/// By name; throws InputError for an unknown one.
+/// Makes a material by its name; throws InputError for an unknown one.
 template <int dim>
 std::unique_ptr<Material<dim>> make_material(const std::string& name, const LameConstants& lame);
 

@@ -6,8 +6,7 @@
 
 namespace lockstep {
 
-/// What a mesh file holds of one kind of simplex: with dim corners a surface, with one more a
-/// volume.
+/// Simplices of one kind in a mesh file: with dim corners a surface, with one more a volume.
 template <int dim, int n_corners>
 struct Simplices {
   std::vector<Point<dim>> vertices;

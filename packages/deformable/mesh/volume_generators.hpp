@@ -25,7 +25,7 @@ VolumeMesh<dim> cylinder_volume(double radius, double length, double spacing);
 template <int dim>
 VolumeMesh<dim> torus_volume(double radius, double tube, double spacing);
 
-/// How high and wide a body along x is at some places of its length, straight between them.
+/// Heights and widths of a body along x at some places of its length, linear between them.
 struct SpindleShape {
   std::vector<double> stations;                   ///< ascending, two or more [m]
   std::vector<double> half_heights, half_widths;  ///< along y and, in 3D, z [m]

@@ -102,7 +102,7 @@ double element_quality(const VolumeMesh<dim>& mesh, int element) {
   const double edge = std::sqrt(sum / n_edges);
   if (edge == 0)
     return 0;
-  // Of the regular simplex of edge one: sqrt(3)/4 and sqrt(2)/12.
+  // volume of the regular simplex of edge one: sqrt(3)/4 and sqrt(2)/12
   const double regular = dim == 2 ? 0.43301270189221932 : 0.11785113019775792;
   return element_volume(mesh, element) / (regular * std::pow(edge, dim));
 }

@@ -17,7 +17,7 @@ struct VolumeMesh {
   std::vector<Element> elements;
 };
 
-/// Of a generated mesh, for messages.
+/// Names of a generated mesh, for messages.
 inline MeshNames element_names() {
   MeshNames names;
   names.simplex_word = "element";
@@ -37,10 +37,10 @@ double element_quality(const VolumeMesh<dim>& mesh, int element);
 template <int dim>
 double mesh_volume(const VolumeMesh<dim>& mesh);
 
-/// What a mesh file may get wrong: throws InputError naming the first bad element, and how many
-/// there are, if a corner is missing, a vertex is not finite or belongs to no element, or an
-/// element's quality is below `worst_quality`. A mesh whose every element is inverted is turned
-/// around; a mixture is an error. `name` is used in the message, with what the file calls things.
+/// : Checks a mesh from a file: throws InputError naming the first bad element, and how many there
+/// are, if a corner is missing, a vertex is not finite or belongs to no element, or an element's
+/// quality is below `worst_quality`. A mesh whose every element is inverted is turned around; a
+/// mixture is an error. `name` is used in the message, with what the file calls things.
 template <int dim>
 void check_volume_mesh(VolumeMesh<dim>& mesh, const std::string& name, double worst_quality = 1e-4,
                        const MeshNames& names = element_names());

@@ -221,7 +221,7 @@ void MultifrontalCholesky::analyze(const Matrix& lower) {
     reach[k] = std::move(below);
   }
 
-  // triplets by rows instead of columns
+  // from vertices to the rows of the matrix that each stands for
   std::vector<int> begin_of(n + 1, 0);
   for (int k = 0; k < n; ++k)
     begin_of[k + 1] = begin_of[k] + first[order[k] + 1] - first[order[k]];
