@@ -2,7 +2,7 @@
 
 namespace lockstep {
 
-/// What sums over the small systems of the suites are off by, relative to their terms.
+/// Round-off of sums over the small systems of the suites, relative to their terms [1].
 inline constexpr double round_off = 1e-11;
 inline constexpr double dt = 1e-2;  ///< [s], of impulses
 

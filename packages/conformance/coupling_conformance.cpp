@@ -51,7 +51,8 @@ void check_divergence(const Coupling<dim>& coupling, const FluidDiscretization<d
                "add_prescribed_divergence: not that of the velocities of prescribed solids");
 }
 
-/// What pressures and lumped fluid give the solids is what the faces and the fluid lose.
+/// Checks that the impulse of pressures and lumped fluid on the solids is what the faces and the
+/// fluid lose.
 template <int dim>
 void check_exchange(const Coupling<dim>& coupling, const FluidDiscretization<dim>& fluid,
                     const SolidSystem<dim>& solids, Violations& found) {

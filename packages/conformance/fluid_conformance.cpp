@@ -19,7 +19,7 @@ double size(const Momentum<dim>& momentum) {
   return momentum.linear.norm() + momentum.angular.norm();
 }
 
-/// Of the operator, by its action on a fixed vector.
+/// Size of the operator, by its action on a fixed vector.
 double size(const LinearOperator& op, const RCP<const Map>& map) {
   const auto x = make_vector(map), y = make_vector(map);
   pseudo_random(*x, 1);
@@ -172,7 +172,7 @@ void check_viscosity(FluidDiscretization<dim>& fluid, Violations& found) {
   expect_true(found, sum_all(comm, bad) == 0, "viscous_system: a mass or a link that cannot be");
 }
 
-/// Of u^n what the interface shows on this rank.
+/// Returns the part of u^n that the interface shows on this rank.
 template <int dim>
 std::vector<double> velocity_of(FluidDiscretization<dim>& fluid) {
   fluid.begin_prediction();

@@ -11,7 +11,7 @@
 
 namespace lockstep {
 
-/// What the small coupled problem below looks like.
+/// Parameters of the small coupled problem below.
 struct SaddleOptions {
   int n = 16;                 ///< cells a side of the unit square
   bool open_top = true;       ///< p = 0 at the top

@@ -24,7 +24,8 @@ std::string described(const SaddleOptions& options) {
       options.elastic_wall ? ", a piston" : "");
 }
 
-/// What the action threw; empty if it went through. A refusal is the same on all ranks.
+/// Returns the message that the action threw; empty if it went through. A refusal is the same on
+/// all ranks.
 std::string refusal_of(const std::function<void()>& action) {
   try {
     action();

@@ -80,7 +80,7 @@ void add_segment_flux(const FaceColumn<3>& column, const InPlane& from, const In
   }
 }
 
-/// Where an edge crosses the plane of the face; both simplices at the edge get the same numbers.
+/// Crossing of an edge with the plane of the face; both simplices at the edge get the same numbers.
 template <int dim>
 InPlane crossing(const FaceColumn<dim>& column, const Point<dim>& below, const Point<dim>& above) {
   const double t =
@@ -112,7 +112,7 @@ void add_section(const FaceColumn<dim>& column, const std::array<Point<dim>, dim
   if constexpr (dim == 3) {
     add_segment_flux(column, exit, entry, sum);
   } else {
-    // Of a segment that runs up, the normal (dy, -dx) points to -y of axis 0, to +x of axis 1.
+    // For a segment that runs up, the normal (dy, -dx) points to -y of axis 0, to +x of axis 1.
     const double sign = is_above[1] == (column.axis == 1) ? 1 : -1;
     const Area value = column_field(column, entry);
     sum += {sign * value.area, sign * value.along, 0};

@@ -39,9 +39,9 @@ void add_face(const ControlVolume<dim>& volume, const FluxShare<dim>& share,
   }
 }
 
-/// By axis, of the plane of water at rest: what turns a force of the pressure into a volume that is
-/// weighed by that component of gravity, wherever the plane of moving water lies. 0 along level
-/// axes, and without gravity.
+/// Returns -g/|g|, the slope of a free surface at rest: a hydrostatic force along an axis, divided
+/// by rho |g| and by this component, is the displaced volume, wherever the plane of moving water
+/// lies. 0 along level axes, and without gravity.
 template <int dim>
 Point<dim> slope_at_rest(const Point<dim>& gravity) {
   Point<dim> slope = gravity.isZero(0) ? gravity : Point<dim>(-gravity.normalized());
@@ -51,8 +51,8 @@ Point<dim> slope_at_rest(const Point<dim>& gravity) {
   return slope;
 }
 
-/// The same of a body that sticks out of the water: the pressure is the depth below the plane of
-/// the free surface, 0 where there is none. Not along level axes.
+/// Adds a face of a body that sticks out of the water: the hydrostatic pressure is the depth below
+/// the plane of the free surface, 0 above it. Not along level axes.
 template <int dim>
 void add_wet_face(const ControlVolume<dim>& volume, const FluxShare<dim>& share,
                   const WetBody<dim>& body, const Point<dim>& at_rest, Displaced<dim>& sum) {
@@ -142,7 +142,7 @@ std::vector<DisplacedExcess<dim>> displaced_excess(
               ? wet[s].at_side[a] || wet[s].volume <= 0 || at_rest[a] == 0 || wet[s].slope.isZero(0)
               : std::abs(d.open_area) > 1e-6 * d.area)
         continue;
-      // Of a partly wet body the pressure pushes along the slope of its water.
+      // On a partly wet body the pressure pushes along the slope of its water.
       const double wanted = is_partly_wet(s) ? wet[s].slope[a] / at_rest[a] : 1;
       all.push_back({s, a, bodies[s].centroid, density * (d.volume - wanted * bodies[s].volume),
                      density * d.moment});

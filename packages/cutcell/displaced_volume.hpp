@@ -7,11 +7,12 @@
 
 namespace lockstep {
 
-/// Of every closed solid and axis; but not along axes on which a body reaches a wall, where it is
-/// not lifted. Of a body that sticks out of `domain` only the part inside counts, of one that
-/// sticks out of the water, by `wet` (empty: the fluid has no surface), what is below the plane of
-/// the free surface around it, whichever way that lies; `gravity` is what the excess will be
-/// weighed by. Every rank gets all. Collective.
+/// Returns the excess of displaced volume of every closed solid along every axis, but not along
+/// axes on which a body reaches a wall, where it is not lifted. Of a body that sticks out of
+/// `domain` only the part inside counts; of one that sticks out of the water, by `wet` (empty: the
+/// fluid has no surface), the part below the plane of the free surface around it, whichever way
+/// that lies. `gravity` is the acceleration that will multiply the excess. Every rank gets all.
+/// Collective.
 template <int dim>
 std::vector<DisplacedExcess<dim>> displaced_excess(
     const std::vector<ControlVolume<dim>>& volumes, const std::vector<FaceShares<dim>>& shares,

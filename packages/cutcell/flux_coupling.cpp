@@ -190,8 +190,8 @@ std::vector<Momentum<dim>> FluxCoupling<dim>::prescribed_impulses(
   return impulses;
 }
 
-/// What prescribed thin parts give to the fluid lumped on them; where several solids share it, by
-/// their shares.
+/// Adds the impulses of prescribed thin parts on the fluid lumped on them; where several solids
+/// share it, by their shares.
 template <int dim>
 void FluxCoupling<dim>::add_thin_impulses(std::size_t f, double velocity_before,
                                           std::vector<Momentum<dim>>& impulses) const {

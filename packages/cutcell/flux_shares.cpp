@@ -158,7 +158,8 @@ Box<dim> face_of(const ControlVolume<dim>& volume) {
   return face;
 }
 
-// The same half-open decision as for the crossings of the lattice of cell centres.
+// Finds the thin parts between the pressure points, by the half-open decision that the crossings of
+// the lattice of cell centres use.
 template <int dim>
 std::vector<int> thin_between(const ControlVolume<dim>& volume,
                               const SurfaceSnapshot<dim>& surface) {

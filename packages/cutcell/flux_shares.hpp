@@ -19,7 +19,7 @@ struct FluxShare {
   Point<dim> center = Point<dim>::Zero();  ///< [m]
 };
 
-/// What of a face counts as closed.
+/// Measure of a face's closed part.
 enum class FaceWeights {
   areas,   ///< its own area inside the solids (Ng, Min and Gibou 2009)
   volumes  ///< the volume of its dual cell inside them (Batty et al. 2007)
@@ -50,11 +50,11 @@ template <int dim>
 Point<dim> open_center_of(const ControlVolume<dim>& volume,
                           const std::vector<FluxShare<dim>>& shares);
 
-/// What the coupling knows of one face with open_fraction < 1.
+/// Shares of solids in one face with open_fraction < 1.
 template <int dim>
 struct FaceShares {
   std::vector<FluxShare<dim>> all;  ///< of the closed part; weights sum to one
-  /// Of thin parts between the pressure points, as in the mixed-face coupling.
+  /// Shares of thin parts between the pressure points, as in the mixed-face coupling.
   std::vector<SurfaceShare<dim>> of_thin;
   double thin_part = 0;  ///< of the face: its fluid moves with the thin parts and is lumped on them
 };

@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// How the fluid of mixed dual cells is lumped onto the solids.
+/// Lumping of the fluid of mixed dual cells onto the solids.
 enum class Lumping {
   diagonal,       ///< node dofs: row sums of W^T M_F; rigid bodies: their full block (the default)
   consistent,     ///< W^T M_F W (Section 5)

@@ -5,9 +5,10 @@
 
 namespace lockstep {
 
-/// On one axis the pressure of a fluid at rest lifts what the grid takes for a body, not quite its
-/// own volume; and it lifts it at another place. The difference, less the fluid lumped on the body,
-/// in masses of fluid: times gravity it is the force that the pressure gives too much.
+/// Excess of the displaced mass on the grid, along one axis. Hydrostatic pressure lifts the volume
+/// that the grid takes for a body, which is not quite its own, and at another place. The
+/// difference, less the fluid lumped on the body, in masses of fluid: times gravity it is the
+/// excess force.
 template <int dim>
 struct DisplacedExcess {
   int solid = -1;                          ///< closed; index in the snapshot
@@ -24,8 +25,8 @@ struct AxisForce {
   std::vector<double> values;
 };
 
-/// What a dynamic solid takes: a rigid body the force and its moment, a deformable one the force,
-/// over its surface.
+/// Generalized force on a dynamic solid: a rigid body takes the force and its moment, a deformable
+/// one the force, over its surface.
 template <int dim>
 AxisForce force_of(const DisplacedExcess<dim>& excess, const SolidSystem<dim>& solids,
                    const SurfaceSnapshot<dim>& surface);
@@ -35,7 +36,7 @@ template <int dim>
 void add_forces(const std::vector<AxisForce>& forces, const Point<dim>& acceleration, double dt,
                 Vector& momentum);
 
-/// What these give prescribed solids in dt, one per solid of the snapshot. Local.
+/// Impulses of these excesses on prescribed solids in dt, one per solid of the snapshot. Local.
 template <int dim>
 std::vector<Momentum<dim>> impulses_on(std::size_t n_solids,
                                        const std::vector<DisplacedExcess<dim>>& excesses,

@@ -10,9 +10,9 @@
 
 namespace lockstep {
 
-/// A coupling in which what is closed of a face moves with the solids at W V_S + W_k V_k, and
-/// pushes fluid out of one pressure and into the next: B^T, divergences and pressure forces follow
-/// from W and the closed areas. Who derives from it says what W and the areas are.
+/// A coupling in which the closed part of a face moves with the solids at W V_S + W_k V_k, and
+/// pushes fluid out of one cell and into the next: B^T, divergences and pressure forces follow from
+/// W and the closed areas, which derived classes define.
 template <int dim>
 class FaceCoupling : public Coupling<dim>,
                      public AuditedCoupling<dim>,
@@ -37,27 +37,27 @@ class FaceCoupling : public Coupling<dim>,
   /// Starts anew with the fluid's coupled volumes: no solids, masses and velocities zero.
   /// Collective.
   void take_volumes(const FluidDiscretization<dim>& fluid, const SurfaceSnapshot<dim>& surface);
-  /// What of a face moves with solids [m^(dim-1)].
+  /// Area of the part of a face that moves with solids [m^(dim-1)].
   virtual double closed_area(const ControlVolume<dim>& volume) const = 0;
-  /// The same as the lower or upper pressure sees it: outflow counts negative on the lower cell,
-  /// positive above, for B = V G_c^T W with G^T = -div.
+  /// Signed closed area as the lower or upper pressure sees it: outflow counts negative on the
+  /// lower cell, positive above, for B = V G_c^T W with G^T = -div.
   double push(std::size_t face, int side) const {
     return side == 0 ? -closed_area_[face] : closed_area_[face];
   }
   /// B^T from `weights_`. Collective.
   void assemble_coupling(const SolidSystem<dim>& solids);
-  /// What p̂, and that of the pockets of gas, pushes on the closed part of each face, along its axis
-  /// [kg m/s]. Collective.
+  /// Impulse of p̂, and of the bubbles' p̂, on the closed part of each face, along its axis [kg
+  /// m/s]. Collective.
   std::vector<double> pushes(const Vector& scaled_pressure,
                              const std::vector<double>& gas_pressure) const;
-  /// Momentum that the dynamic solids took in a solve: of the fluid lumped on them before, less
-  /// what they hold of it after, and of pressures. Collective.
+  /// Momentum that the dynamic solids took in a solve: from the fluid lumped on them before, less
+  /// the part lumped after it, and from pressures. Collective.
   Momentum<dim> taken_by_solids(const SolidSystem<dim>& solids,
                                 const std::vector<double>& velocity_before,
                                 const BlockVector& solution,
                                 const std::vector<double>& gas_pressure) const;
-  /// Of the fluid at the coupled faces, wherever one has them; else in the middle of a solid, of
-  /// which there must be one. Collective.
+  /// Density of the fluid at the coupled faces, wherever one has them; else in the middle of a
+  /// solid, of which there must be one. Collective.
   double density_around(const FluidDiscretization<dim>& fluid, const Communicator& comm) const;
 
   const SurfaceSnapshot<dim>* surface_ =
@@ -71,7 +71,7 @@ class FaceCoupling : public Coupling<dim>,
   RCP<Import> pressure_import_;  ///< pressure map -> unknowns beside this rank's coupled volumes
 
  private:
-  /// result[f] += what pockets of gas of these p̂ push, with the sign of `pushes`; empty: nothing.
+  /// result[f] += push of gas bubbles with these p̂, with the sign of `pushes`; empty: nothing.
   void add_pushes_of_gas(const std::vector<double>& scaled_pressure,
                          std::vector<double>& result) const;
 

@@ -116,7 +116,8 @@ void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point
 
 namespace {
 
-/// Of the shares with one local rotation: where it is taken to, x less their points, by weights.
+/// Returns for each local rotation among the shares the arm at which it acts: the sum of x less
+/// their points, by weights.
 template <int dim>
 std::vector<std::pair<const LocalRotation<dim>*, Point<dim>>> arms_of_rotations(
     const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x) {

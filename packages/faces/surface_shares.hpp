@@ -10,7 +10,7 @@
 
 namespace lockstep {
 
-/// How much of a mixed face follows one surface point; the shares of a face sum to one.
+/// Share of a mixed face that follows one surface point; the shares of a face sum to one.
 template <int dim>
 struct SurfaceShare {
   double weight = 0;
@@ -53,13 +53,14 @@ void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point
                   std::vector<GlobalIndex>& dofs, std::vector<double>& values);
 
 /// The velocity along `direction` at x that the shares of a face make, as entries of the solid map:
-/// those of each share by its weight, and for each local rotation what it adds to them, once.
+/// the entries of each share by its weight, and once the contribution of each local rotation.
 using RowEntries = std::vector<std::pair<GlobalIndex, double>>;
 template <int dim>
 void add_carried_row(const SolidSystem<dim>& solids, const std::vector<SurfaceShare<dim>>& shares,
                      const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
                      RowEntries& row);
-/// The same of the effective velocities [m/s].
+/// The velocity along `direction` at x that the shares of a face make of the effective velocities
+/// [m/s].
 template <int dim>
 double carried_effective_velocity(const SolidSystem<dim>& solids,
                                   const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x,

@@ -25,7 +25,7 @@ template <int dim>
 ParameterList level_set_parameters();
 template <int dim>
 ParameterList particle_level_set_parameters();
-/// Of either.
+/// Reads the parameters of either kind.
 LevelSetParameters read_level_set_parameters(const ParameterList& list);
 
 /// phi as a signed distance at cell centres, carried along rays and made a distance again; where
@@ -72,10 +72,10 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   void fill_voids();
   void seed(KeptSurface<dim>& kept, bool all);
   void add_sources(const InterfaceStep<dim>& step);
-  /// Of particles that no cell shows.
+  /// Makes drops of particles that no cell shows.
   void release_drops(const InterfaceStep<dim>& step, const TransportFrame<dim>& frame);
   void collect_drops(const InterfaceStep<dim>& step);
-  /// Sets all ghosts of phi, and what it is in solids from what it is around them.
+  /// Sets all ghosts of phi, and extrapolates it into solids.
   void settle();
 
   const MacDomain<dim>& domain_;

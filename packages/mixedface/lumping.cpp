@@ -117,7 +117,7 @@ struct MassFactor {
   bool solvable;
   Eigen::Matrix<double, dim, 1> excess;  ///< lumped minus wanted mass and its moments
 
-  /// Of a face's mass, less one.
+  /// Change of a face's mass as a part of it [1].
   double at(const Point<dim>& x) const { return factor.dot(moments_of<dim>(x - center, axis)); }
 };
 
@@ -159,7 +159,8 @@ void scale_masses(const std::vector<ControlVolume<dim>>& volumes,
   }
 }
 
-/// What the discrete pressure lifts of a body that is partly wet, along an axis.
+/// Volume of a partly wet body that the discrete hydrostatic pressure lifts along an axis, and its
+/// moments.
 template <int dim>
 Eigen::Matrix<double, dim, 1> displaced_by(const WetBody<dim>& body, const Point<dim>& center,
                                            int axis) {
@@ -172,8 +173,8 @@ Eigen::Matrix<double, dim, 1> displaced_by(const WetBody<dim>& body, const Point
   return displaced;
 }
 
-/// What would balance each closed solid, along every axis on which its columns close. The masses of
-/// prescribed ones need no factor: they only want to know what is missing.
+/// Computes the corrections that balance each closed solid, along every axis on which its columns
+/// close. The masses of prescribed solids need no factor: only their excess is used.
 template <int dim>
 std::vector<MassFactor<dim>> corrections_of(const std::vector<SolidDescription>& solids,
                                             const std::vector<SolidBalance<dim>>& balances,

@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// Which control volumes the coupling takes (design: it decides the accuracy).
+/// Rule by which the coupling takes control volumes (docs/method.md: it decides the accuracy).
 enum class MixedRule {
   voxel,  ///< the segment between the two cell centres is blocked, or one centre alone is inside
   every_cut_cell  ///< any dual cell that the surface cuts

@@ -13,7 +13,7 @@ struct BookColumn {
   double EnergyBook::*value;
 };
 
-/// In the order of the table and of checkpoints.
+/// Columns in the order of the table and of checkpoints.
 std::vector<BookColumn> book_columns() {
   return {
       {{"joints", "J", "work of what controls joints, as joints.csv has it"}, &EnergyBook::joints},

@@ -8,8 +8,8 @@ namespace lockstep {
 template <int dim>
 ParameterList gauge_parameters();
 
-/// How much of a straight line is in the liquid, as a wire that is held into it measures: samples
-/// half of the fluid's h apart, linear between them.
+/// Wet length of a straight line, as a wire gauge measures it: samples half of the fluid's h apart,
+/// linear between them.
 template <int dim>
 class Gauge : public Observer<dim> {
  public:

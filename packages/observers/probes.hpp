@@ -8,8 +8,7 @@
 
 namespace lockstep {
 
-/// What the fluid is like at the points [m]. Throws InputError, naming `observer`, if it cannot be
-/// asked. Collective.
+/// Returns the fluid's sampler. Throws InputError, naming `observer`, if the fluid has none.
 template <int dim>
 const FieldSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid,
                                     const std::string& observer);

@@ -70,7 +70,7 @@ void Continuation<dim>::find_layers(const MacDomain<dim>& domain, const SolidCel
   }
 }
 
-/// What a neighbour leads to, along the axis from it to the cell.
+/// Extrapolates phi linearly from a neighbour, along the axis from it to the cell [m].
 template <int dim>
 double Continuation<dim>::led_to(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
                                  const CellField& phi, int other, int axis, int side,

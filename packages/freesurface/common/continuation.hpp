@@ -9,8 +9,8 @@ namespace lockstep {
 /// Cells into solids over which phi is continued.
 inline constexpr int depth_in_solids = 4;
 
-/// Continues phi into solids over some cells, as a plane: layer by layer, a cell takes what its
-/// neighbours along the axes, seen from the fluid, lead to, in the mean.
+/// Extrapolates phi linearly into solids over some cells: layer by layer, a cell takes the mean of
+/// the extrapolations from its neighbours along the axes that are seen from the fluid.
 template <int dim>
 class Continuation {
  public:

@@ -6,7 +6,7 @@
 namespace lockstep {
 
 namespace {
-/// How far from owned cells sight lines lead [cells].
+/// Distance from owned cells that sight lines reach [cells].
 constexpr int sight = 6;
 /// To both sides, for gradients [cells].
 constexpr double difference_step = 0.5;

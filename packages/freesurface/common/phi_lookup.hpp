@@ -22,8 +22,8 @@ class PhiLookup {
 
   /// Copies phi around an owned tile.
   void enter(int tile);
-  /// For what asks for no phi: the places and surfaces around an owned tile. False if no surface
-  /// comes within two cells of its points: none may be hidden.
+  /// Prepares the places and surfaces around an owned tile, without phi. Returns false if no
+  /// surface comes within two cells of its points: none may be hidden.
   bool approach(int tile);
   /// None if nothing is visible from there.
   std::optional<double> value(const Point<dim>& x) const {
@@ -31,15 +31,15 @@ class PhiLookup {
       return visible_->scalar(place(x), phi_.data());
     return plain_value(x);
   }
-  /// The same with what `values` has found there.
+  /// phi at a point for which `values` has already found `plain`, its value without surfaces.
   std::optional<double> value(const Point<dim>& x, double plain) const {
     if (may_be_hidden(x) || !is_complete_)
       return visible_->scalar(place(x), phi_.data());
     return plain;
   }
-  /// As if there were no surface [phi / cells].
+  /// Gradient as if there were no surface [phi / cells].
   Point<dim> gradient(const Point<dim>& x) const;
-  /// Of several points at once, as if there were no surface; of use where all samples exist.
+  /// Values at several points at once, as if there were no surface; of use where all samples exist.
   RowValues<dim> values(const RowPoints<dim>& x) const;
   /// 0 where a sample does not exist.
   RowPoints<dim> gradients(const RowPoints<dim>& x) const;
@@ -49,7 +49,7 @@ class PhiLookup {
   bool may_be_hidden(const Point<dim>& x) const {
     return is_near_surface_ && is_within_two_cells(x);
   }
-  /// In lattice units.
+  /// Place of a point of the tile in lattice units.
   Point<dim> place(const Point<dim>& x) const { return x + begin_; }
 
  private:

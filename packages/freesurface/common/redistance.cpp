@@ -25,7 +25,7 @@ double slope_across(double across, double other) {
   return mean + share * std::max(0.0, std::abs(across) - mean);
 }
 
-/// What keeps its share of the distance: |phi| / |grad phi| at a cell beside the interface.
+/// Scaled distance |phi| / |grad phi| at a cell beside the interface.
 template <int dim>
 double scaled(const TiledGrid<dim>& grid, const SolidCells<dim>& solids, const CellField& phi,
               int cell) {
@@ -116,7 +116,7 @@ class March {
   double distance(int cell) const { return distance_[cell]; }
 
  private:
-  /// To the neighbours on the same side of the interface that are seen; 0 where there is none.
+  /// Neighbours on the same side of the interface that are seen; 0 where there is none.
   using Ways = std::array<int, 2 * dim>;
 
   void set_ways(int cell, NearCells near_cells) {

@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// What is done with phi beside the surface.
+/// Treatment of phi beside the surface.
 enum class NearCells {
   scale,  ///< it becomes a distance, as the slope there has it
   keep    ///< it is one already

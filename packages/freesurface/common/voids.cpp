@@ -10,7 +10,7 @@ namespace lockstep {
 namespace {
 /// Cells deeper in the void than this belong to one that is too large to be closed [cells].
 constexpr double deep = 3;
-/// How deep a filled cell becomes, at least and at most [cells].
+/// Least and largest depth of a filled cell [cells].
 constexpr double least_depth = 1e-3, most_depth = 0.1;
 }  // namespace
 

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// Whether a cell lies at a side of the domain through which liquid may leave.
+/// True if a cell lies at a side of the domain through which liquid may leave.
 template <int dim>
 bool at_open_side(const MacDomain<dim>& domain, int cell);
 

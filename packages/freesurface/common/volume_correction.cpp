@@ -10,7 +10,8 @@ namespace lockstep {
 namespace {
 /// Layers of dry cells beside the liquid that are shifted with it.
 constexpr int shifted_layers = 3;
-/// What bodies may be off their targets together before others stand in for them [1].
+/// Total volume defect, as a part of the components' targets, above which other components take it
+/// over [1].
 constexpr double negligible_share_owed = 1e-6;
 }  // namespace
 
@@ -117,7 +118,7 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
     double n_changed = 0;
     domain_.grid.for_each_owned_cell([&](int cell) {
       const int body = shifted.of_cell[cell];
-      // What is far from the surface stays so: shifted, all deep water would be near it.
+      // cells far from the surface stay far: shifted, all deep water would be near it
       if (body < 0 || !solids.is_fluid(cell) || std::abs(phi[cell]) >= cut_off)
         return;
       const bool was_wet = phi[cell] < 0;

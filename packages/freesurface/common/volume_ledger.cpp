@@ -9,7 +9,7 @@
 namespace lockstep {
 
 namespace {
-/// How far a body that vanishes looks for one to give its volume to [cells].
+/// Distance in which a liquid component that vanishes looks for one to give its volume to [cells].
 constexpr int giving_reach = 3;
 
 template <int dim>
@@ -34,7 +34,7 @@ void for_each_cell_at_side(const TiledGrid<dim>& grid, int axis, int end, const 
   }
 }
 
-/// How often each pair (new group, old group) occurs in one cell, over all ranks.
+/// Number of cells, over all ranks, in which each pair (new group, old group) occurs.
 using Overlaps = std::map<std::pair<int, int>, double>;
 
 Overlaps gather(const Communicator& comm, const Overlaps& mine) {
@@ -110,7 +110,7 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
       if (type != SideType::open && type != SideType::inflow)
         continue;
       for_each_cell_at_side(grid, axis, end, [&](int cell) {
-        // Also of cells that the surface is below the centre of: else the flow leaps as it passes.
+        // cells count whose centre is above the surface, too: else the flux jumps as it passes
         const double wet = std::clamp(0.5 - phi[cell] / h, 0.0, 1.0);
         const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
         const double open = wet > 0 ? step.open_part(axis, face) : 0;
@@ -125,7 +125,7 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
     }
   sum_all(grid.comm(), out.data(), groups_.n);
   for (int group = 0; group < groups_.n; ++group) {
-    // In a long step more may pass than a small body has.
+    // a long step may let out more than a small component has
     double& target = targets_.of_group[group];
     target -= std::min(out[group], std::max(target, 0.0));
   }
@@ -136,7 +136,8 @@ void VolumeLedger<dim>::inherit(const SolidCells<dim>& before, const SolidCells<
                                 const CellField& phi, const std::vector<char>& swept, int reach) {
   measure_.prepare(solids, phi);
   regroup(before, solids, phi, swept, reach);
-  // What no cell showed at the start follows no flow: it belongs to no body that could have it.
+  // Liquid that no cell showed at the start follows no flow: it belongs to no component that could
+  // take it.
   const double gone = std::max(targets_.loose - volumes_.loose, 0.0);
   targets_.loose -= gone;
   targets_.lost += gone;
@@ -175,7 +176,7 @@ void VolumeLedger<dim>::regroup(const SolidCells<dim>& before, const SolidCells<
   for (const auto& [pair, n] : overlaps)
     has_ancestor[pair.first] = 1;
   if (std::count(has_ancestor.begin(), has_ancestor.end(), 0) > 0) {
-    // What moves over more than its size comes from the nearest body there was.
+    // A component that moves by more than its size comes from the nearest one before.
     domain_.halo.fill(ancestor);
     spread_labels(domain_, solids, phi, reach, ancestor);
     overlaps.merge(overlaps_of([&](int group) { return !has_ancestor[group]; }));

@@ -13,7 +13,7 @@ enum class VolumeCorrection {
   none
 };
 
-/// How the volume of a liquid is kept.
+/// Parameters of volume conservation.
 struct VolumeParameters {
   VolumeCorrection correction = VolumeCorrection::component;
   double largest_shift = 0.2;  ///< of the surface in a step in which nothing crosses a cell [cells]
@@ -23,19 +23,19 @@ struct VolumeParameters {
 void declare_volume_correction(ParameterList& list);
 VolumeParameters read_volume_correction(const ParameterList& list);
 
-/// What the ledger must keep from step to step.
+/// State that the ledger keeps from step to step.
 struct VolumeTargets {
-  std::vector<double> of_group;  ///< what each body of liquid should have [m^dim]
-  double loose = 0;  ///< what is left of the start's liquid that is beside no liquid cell [m^dim]
+  std::vector<double> of_group;  ///< target volume of each liquid component [m^dim]
+  double loose = 0;  ///< remainder of the start's liquid that is beside no liquid cell [m^dim]
   double lost = 0, shift = 0;  ///< [m^dim]
 };
 
-/// By how much phi has been lowered in owned cells on and beside bodies [m]; empty: nowhere.
+/// Decrease of phi in owned cells on and beside liquid components [m]; empty: nowhere.
 using VolumeShift = CellField;
 
-/// Keeps account of the volume of each body of liquid and sees to it that phi has it. A body's
-/// target changes by known fluxes only; where bodies merge it is added, where one parts it is
-/// shared in proportion to the volumes.
+/// Conserves the volume of each liquid component. The target of a component changes by known fluxes
+/// only; where components merge the targets add up, where one breaks up its target is shared in
+/// proportion to the volumes.
 template <int dim>
 class VolumeLedger {
  public:
@@ -52,9 +52,9 @@ class VolumeLedger {
   /// from [cells]. Collective.
   void inherit(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
                const std::vector<char>& swept, int reach);
-  /// Takes what a sink has left into the targets. Collective.
+  /// Takes the change by a sink into the targets. Collective.
   void remove(const SolidCells<dim>& solids, const CellField& phi);
-  /// Takes what a source has made of `before` into the targets. Collective.
+  /// Takes the change by a source since `before` into the targets. Collective.
   void create(const SolidCells<dim>& solids, const CellField& before, const CellField& phi);
   /// Takes a volume [m^dim] for a drop at each of these owned cells off the body nearest to it, or,
   /// where none is within a few cells, off all in the same closed space. Returns the parts of them
@@ -65,19 +65,21 @@ class VolumeLedger {
   void give_drops(const std::vector<int>& cells, const std::vector<double>& volumes);
   /// Volume that is lost for good, on this rank. Collective.
   void lose(double volume) { targets_.lost += sum_all(domain_.grid.comm(), volume); }
-  /// Shifts phi until bodies have their targets, over at most `largest_shift` max(1, cfl) cells.
-  /// `phi`, known up to `cut_off`, on the halo of width 1, which is set on return. `settle()` sets
-  /// its ghosts, and it goes on into solids then, as it must before all calls: boxes that solids
-  /// cut are measured with it. Returns what it has done, empty: nothing. Collective.
+  /// Shifts phi until liquid components have their target volumes, by at most `largest_shift`
+  /// max(1, cfl) cells. `phi`, known up to `cut_off`, on the halo of width 1, which is set on
+  /// return. `settle()` sets its ghosts, and it goes on into solids then, as it must before all
+  /// calls: boxes that solids cut are measured with it. Returns what it has done, empty: nothing.
+  /// Collective.
   VolumeShift correct(const SolidCells<dim>& solids, double cfl, double cut_off,
                       const std::function<void()>& settle, CellField& phi);
 
   LiquidLedger state() const;
-  /// What of the measured bodies is in some cells (1), and which part of their targets. Collective.
+  /// Measures the part of the liquid components in some cells (1) and that part of their targets.
+  /// Collective.
   WatchedLiquid in_cells(const CellField& phi, const std::vector<char>& cells) const;
   const CellGroups& groups() const { return groups_; }
   const VolumeTargets& targets() const { return targets_; }
-  /// Of a restart: groups are found anew. Collective.
+  /// Restores the targets at a restart; groups are found anew. Collective.
   void restore(const SolidCells<dim>& solids, const CellField& phi, const VolumeTargets& targets);
 
  private:
@@ -93,11 +95,12 @@ class VolumeLedger {
   void give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
                        const CellGroups& groups, const std::vector<int>& places,
                        std::vector<char> homeless, std::vector<double>& target);
-  /// The targets of those that have no heir near go to all bodies in the same closed space.
+  /// Gives the targets of vanished components without another one near to all components in the
+  /// same closed space.
   void share_out(const SolidCells<dim>& solids, const CellGroups& groups,
                  const std::vector<int>& places, const std::vector<char>& homeless,
                  std::vector<double>& target);
-  /// The group that each body is in: a closed space, or what it was before.
+  /// Returns the group that each component is in: a closed space, or an earlier component.
   std::vector<int> places_among(const CellGroups& spaces, const CellGroups& bodies) const;
   std::vector<double> wanted_shifts(const GroupVolumes& now) const;
   std::vector<double> limited_shifts(const SolidCells<dim>& solids,

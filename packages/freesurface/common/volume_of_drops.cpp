@@ -7,7 +7,7 @@
 namespace lockstep {
 
 namespace {
-/// How far from a drop the body is that it has left [cells].
+/// Distance from a drop to the liquid component that it has left, at most [cells].
 constexpr int leaving_reach = 3;
 
 /// The part of what is wanted that there is.

@@ -17,7 +17,7 @@ double fraction_below(const CellPlane<dim>& plane);
 /// The plane with this normal, of any length but 0, that leaves `fraction` of the cell below it.
 template <int dim>
 CellPlane<dim> plane_of_fraction(const Point<dim>& normal, double fraction);
-/// What of the liquid is in the slab of that width (at most 1) beside the lower (0) or upper (1)
+/// Volume of the liquid in the slab of that width (at most 1) beside the lower (0) or upper (1)
 /// side normal to `axis` [cells].
 template <int dim>
 double liquid_in_slab(const CellPlane<dim>& plane, int axis, int side, double width);

@@ -9,14 +9,14 @@
 namespace lockstep {
 
 namespace {
-/// How far a body looks for what it is owed [cells].
+/// Distance in which a liquid component takes up volume defects [cells].
 constexpr int reach = 3;
 /// Debts below this wait for others [cells].
 constexpr double negligible_debt = 1e-13;
 /// Below this no other body stands in [cells].
 constexpr double negligible_left = 1e-6;
 
-/// Whether a fluid cell among those around one, corners included, is wet (or is not, as what is
+/// True if a fluid cell among those around one, corners included, is wet (or is not, like the air
 /// beyond open sides).
 template <int dim>
 bool touches(const MacDomain<dim>& domain, const SolidCells<dim>& solids, const CellField& liquid,
@@ -91,8 +91,8 @@ class Books {
   }
 
  private:
-  /// How much more of liquid a cell takes (or gives) when the surface moves by a cell: as much as
-  /// there is of the surface in it, roughly.
+  /// Capacity of a cell: the liquid it takes (or gives) per cell that the surface moves, roughly
+  /// the area of the surface in it [1].
   double willingness(int cell, bool takes) const {
     const double liquid = fractions_.liquid[cell];
     if (is_mixed(liquid))
@@ -129,7 +129,7 @@ class Books {
     if (!space_of_body_.empty())
       return;
     spaces_ = find_closed_spaces(domain_, solids_);
-    // Of each body cells, and the sum of their spaces' numbers.
+    // for each component its number of cells, and the sum of their spaces' numbers
     std::vector<double> sums(2 * n_, 0.0);
     grid.for_each_owned_cell([&](int cell) {
       const int space = spaces_.of_cell[cell], body = body_[cell];
@@ -143,7 +143,7 @@ class Books {
       space_of_body_.push_back(
           static_cast<int>(std::lround(sums[n_ + body] / std::max(sums[body], 1.0))));
   }
-  /// What is owed beside no body goes to those in the same closed space.
+  /// Shares defects beside no component among the components in the same closed space.
   void share_out() {
     find_spaces();
     owed_in_space_.assign(spaces_.n, 0.0);
@@ -270,7 +270,7 @@ double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   if (sum_all(grid.comm(), n_leaving) == 0)
     return 0;
   const CellGroups& spaces = find_closed_spaces(domain, solids);
-  // What each space is to take, and the liquid there; the last: of no space.
+  // the defect that each space takes, and the liquid there; the last: of no space
   std::vector<double> sums(2 * (spaces.n + 1), 0.0);
   const auto takes = [&](int cell) {
     return !is_going(cell) && spaces.of_cell[cell] >= 0 && fractions.liquid[cell] > 0.5;

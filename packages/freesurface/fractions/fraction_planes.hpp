@@ -20,11 +20,11 @@ class FractionPlanes {
  public:
   explicit FractionPlanes(const MacDomain<dim>& domain) : domain_(domain) {}
 
-  /// Of the mixed cells of the flagged owned tiles, and on the halo of width 1; `fraction` is known
-  /// there. Collective.
+  /// Finds the planes of the mixed cells of the flagged owned tiles, and on the halo of width 1;
+  /// `fraction` is known there. Collective.
   void find(const SolidCells<dim>& solids, const std::vector<char>& tiles,
             const CellField& fraction);
-  /// Of a mixed cell.
+  /// Plane of a mixed cell.
   CellPlane<dim> operator()(int cell) const {
     CellPlane<dim> plane;
     for (int a = 0; a < dim; ++a)
@@ -40,8 +40,8 @@ class FractionPlanes {
 
  private:
   Point<dim> normal(const SolidCells<dim>& solids, const CellField& fraction, int cell) const;
-  /// Of the point at `offset` cells from the lower corner of a mixed cell to its liquid's surface
-  /// [cells].
+  /// Distance from the point at `offset` cells from the lower corner of a mixed cell to its
+  /// liquid's surface [cells].
   double distance_to(int cell, const Point<dim>& offset) const;
 
   const MacDomain<dim>& domain_;

@@ -11,7 +11,7 @@ namespace lockstep {
 namespace {
 /// Cells that a surface may sweep over at once, one behind the other.
 constexpr int deepest_sweep = 8;
-/// From a surface that takes liquid along [cells].
+/// Largest distance of liquid from a surface that takes it along [cells].
 constexpr double farthest_taken = 16;
 
 /// Calls f(other) for the fluid cells beside one that a closed solid holds.
@@ -31,7 +31,7 @@ struct Arrival {
   double liquid = 0, owed = 0;
 };
 
-/// What all ranks have sent, in their order, on every rank.
+/// Gathers the arrivals of all ranks, in their order, on every rank.
 template <int dim>
 std::vector<Arrival<dim>> gather_arrivals(const Communicator& comm,
                                           const std::vector<Arrival<dim>>& mine) {
@@ -174,7 +174,7 @@ std::vector<TakenLiquid> give_up_cells(const MacDomain<dim>& domain, const Solid
                                        std::vector<char>& leaves, Fractions& fractions) {
   const TiledGrid<dim>& grid = domain.grid;
   domain.halo.fill(leaves);
-  // How many cells the nearest one is away that stays.
+  // distance in cells to the nearest cell that stays
   std::vector<int> layer(leaves.size(), 0), donors;
   grid.for_each_stored_cell([&](int cell) {
     if (!leaves[cell])

@@ -78,7 +78,7 @@ typename FractionTransport<dim>::Inflow FractionTransport<dim>::through(
   if (!at_side)
     return {0, false, false};  // at the rim of the stored tiles liquid waits for others
   const bool is_open = domain_.boundary.side(axis, side).type == SideType::open;
-  // What comes in from outside is void, unless it is made to flow in.
+  // air comes in from outside, unless the boundary condition is an inflow of liquid
   return {is_open && passed > 0 ? 0 : like_here, true, true};
 }
 

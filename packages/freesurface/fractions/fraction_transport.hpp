@@ -5,47 +5,46 @@
 
 namespace lockstep {
 
-/// What a cell keeps of the liquid.
+/// Liquid of the cells.
 struct Fractions {
   CellField liquid;  ///< the part of a cell that is liquid, on stored cells; goes on into solids
-  /// Liquid that a cell should have beside that: what has come to it but finds no room in it, less
-  /// what is in it but has come from nowhere [cells]. Of stored cells.
+  /// Volume defect of a stored cell [cells]: liquid that has come to it but finds no room in it,
+  /// less liquid in it that has come from nowhere.
   CellField owed;
   CellField open;  ///< the part of a cell that closed solids leave; empty: 1 everywhere
 
   double open_part(int cell) const { return open.empty() ? 1 : open[cell]; }
-  /// Changes the liquid of a cell; the difference is owed.
+  /// Changes the liquid of a cell; the difference goes to its defect.
   void set(int cell, double fraction) {
     owed[cell] += (liquid[cell] - fraction) * open_part(cell);
     liquid[cell] = fraction;
   }
 };
 
-/// Moves fractions axis after axis, each by what is in the slabs that pass its faces (Weymouth &
-/// Yue 2010): no liquid is made or lost, and where the velocity has no divergence no fraction
-/// leaves [0, 1]. Nothing passes what a surface of solids blocks; along with it liquid moves as it
-/// does.
+/// Advects fractions axis by axis with the liquid in the slabs that pass the faces (Weymouth & Yue
+/// 2010): volume is conserved, and where the velocity has no divergence no fraction leaves [0, 1].
+/// Nothing passes a surface of solids; beside a moving one liquid moves with it.
 template <int dim>
 class FractionTransport {
  public:
   explicit FractionTransport(const MacDomain<dim>& domain) : domain_(domain), planes_(domain) {}
 
-  /// The sum of |u| dt / h over the axes, at most, over the flagged owned tiles within `cut_off` of
-  /// the surface, over all ranks. Throws SolveError if a velocity is not finite. Collective.
+  /// Largest sum of |u| dt / h over the axes, on the flagged owned tiles within `cut_off` of the
+  /// surface, over all ranks. Throws SolveError if a velocity is not finite. Collective.
   double courant_number(const SolidCells<dim>& solids, const std::vector<char>& tiles,
                         const CellField& phi, double cut_off, const FaceField<dim>& velocity,
                         double dt) const;
   /// One step with a Courant number of at most 1/2 on the flagged owned tiles, `first_axis` first.
   /// `is_solved`: cells in which the velocity has no divergence. Sets the halo of width 1 of the
-  /// fractions, which must be set. `open`: as in InterfaceStep. Returns what has left the domain
-  /// less what has come in [cells], on this rank. Collective.
+  /// fractions, which must be set. `open`: as in InterfaceStep. Returns the outflow from the domain
+  /// less the inflow [cells], on this rank. Collective.
   double advance(const SolidCells<dim>& solids, const std::vector<char>& tiles,
                  const std::vector<char>& is_solved, const FaceField<dim>& velocity, double dt,
                  int first_axis, const std::function<double(int axis, int cell)>& open,
                  Fractions& fractions);
 
  private:
-  /// What passes one face of a cell into it, and whether it has come from other liquid.
+  /// Volume that passes one face of a cell into it, and its origin.
   struct Inflow {
     double liquid = 0;
     bool is_real = true, is_at_side = false;
@@ -55,8 +54,8 @@ class FractionTransport {
   double in_slab(const CellField& liquid, int cell, int axis, int side, double width) const;
   void sweep(const SolidCells<dim>& solids, const std::vector<char>& tiles,
              const FaceField<dim>& velocity, double dt, int axis, CellField& liquid);
-  /// What flows out of cells whose centres a solid holds, where it leaves their faces open in part:
-  /// they owe it.
+  /// Counts the outflow of cells whose centres a solid holds, where it leaves their faces open in
+  /// part, as a defect of these cells.
   void leave_covered_cells(const SolidCells<dim>& solids, const std::vector<char>& tiles,
                            const FaceField<dim>& velocity, double dt, Fractions& fractions);
   double open_part(int axis, int face) const { return open_ ? open_(axis, face) : 1; }

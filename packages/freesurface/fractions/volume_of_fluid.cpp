@@ -17,7 +17,7 @@ namespace lockstep {
 namespace {
 /// Boxes along each axis into which a cell is cut where a shape is measured.
 constexpr int n_cuts = 4;
-/// Of a step, whose sweeps are about twice as many; more no run takes that is as it should be.
+/// Courant number above which a run has become unstable; its sweeps are about twice as many [1].
 constexpr double largest_courant_number = 100;
 }  // namespace
 

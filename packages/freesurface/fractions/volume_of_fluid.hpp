@@ -55,7 +55,7 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   /// Solids go on to the end of the step; cells that change sides do so without their liquid.
   /// True if surfaces have taken liquid along, on any rank.
   bool move_solids(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
-  /// Of owned fluid cells: 1 where no ray could be followed, or no fluid was.
+  /// Marks owned fluid cells: 1 where no ray could be followed, or no fluid was.
   InvalidSamples<dim> find_swept(const InterfaceStep<dim>& step,
                                  const std::vector<char>& tiles) const;
   void add_sources(const InterfaceStep<dim>& step);

@@ -6,7 +6,7 @@
 namespace lockstep {
 
 namespace {
-/// What a particle wants phi to be at a cell.
+/// Correction of phi at a cell that a particle asks for.
 struct Wish {
   int cell = 0;
   int side = 0;
@@ -45,7 +45,7 @@ class Wishes {
       }
     });
   }
-  /// Those for cells of this rank.
+  /// Returns the wishes for cells of this rank.
   const std::vector<Wish>& collect() {
     if (grid_.comm()->getSize() > 1) {
       const std::vector<double> arrived = messages_.exchange();

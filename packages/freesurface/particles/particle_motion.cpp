@@ -7,8 +7,8 @@
 namespace lockstep {
 
 namespace {
-/// How near to a closed side a particle may come; nearer to another it has left: rays end on sides
-/// but for round-off [cells].
+/// Least distance of a particle from a closed side; at another side a particle this near has left,
+/// because rays end on sides but for round-off [cells].
 constexpr double nearest_to_side = 1e-3;
 /// Cells farther from the surface have no particle that a shift would make escape [cells].
 constexpr double shifted_band = 2;

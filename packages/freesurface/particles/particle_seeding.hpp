@@ -10,7 +10,7 @@ template <int dim>
 void set_radii(const MacDomain<dim>& domain, const SolidCells<dim>& solids, KeptSurface<dim>& kept,
                const CellField& phi, ParticleTiles<dim>& tiles);
 
-/// Which cells are to have particles.
+/// Cells that get particles.
 enum class Seeding {
   new_cells,  ///< those that have come into the band and have none
   all_cells   ///< all of the band, up to their number; surplus ones and those beyond it go

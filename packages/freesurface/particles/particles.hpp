@@ -47,8 +47,8 @@ struct Particle {
   }
 };
 
-/// Those in each owned tile. Nothing may depend on their order: it is not the same on any number of
-/// ranks.
+/// Particles in each owned tile. Nothing may depend on their order: it is not the same on any
+/// number of ranks.
 template <int dim>
 using ParticleTiles = std::vector<std::vector<Particle<dim>>>;
 
