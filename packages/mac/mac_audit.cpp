@@ -1,4 +1,4 @@
-// What MacFluid says about all of its fluid at once.
+// Audit of a MacFluid: momentum and energy of all of its fluid.
 #include <algorithm>
 #include <cmath>
 

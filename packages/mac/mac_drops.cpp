@@ -1,4 +1,4 @@
-// What a fluid does with drops that its grid does not show.
+// Drops that the grid of a fluid does not resolve.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -49,7 +49,7 @@ void MacFluid<dim>::give_back_momentum() {
     in_cell.mass += mass;
     in_cell.momentum += mass * drop.velocity;
   }
-  // What coupled faces hold is lumped with the solids.
+  // The momentum of coupled faces is lumped with the solids.
   const auto is_free = [&](int axis, int face) {
     return face >= 0 && geometry_.state.faces[axis][face] == FaceState::free;
   };

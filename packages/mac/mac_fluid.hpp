@@ -139,7 +139,7 @@ class MacFluid : public FluidDiscretization<dim>,
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell
   /// included.
   std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const override;
-  /// Of faces, multilinear between them.
+  /// Samples flows through faces, multilinear between them.
   std::vector<FlowSample> flow_across(int axis,
                                       const std::vector<Point<dim>>& points) const override;
   std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const override;
@@ -163,25 +163,25 @@ class MacFluid : public FluidDiscretization<dim>,
     return state == FaceState::free || state == FaceState::coupled;
   }
   void set_prescribed(double time, FaceField<dim>& velocity) const;
-  /// What is prescribed jumped in the step that ends now.
+  /// True if a boundary condition jumped in the step that ends now.
   bool jumped() const;
   /// Other tiles: all fields move; what else was made of the grid waits for `freeze`.
   void regrid(const TileOwners& owners);
   void rest_at_rim();
   typename MovingTiles<dim>::Present present(const MacState<dim>& state, double time,
                                              double dt) const;
-  /// What the pressure beyond the stored tiles does to the faces there in dt: that of fluid at rest
-  /// under this acceleration. Of this rank.
+  /// Impulse of the pressure beyond the stored tiles on the faces there in dt: that of fluid at
+  /// rest under this acceleration. This rank's part.
   Momentum<dim> push_at_rim(const Point<dim>& force, double dt);
   /// Tiles for the first surface, before any step.
   void make_room_for(const Surface& surface);
   bool share_work();
-  /// Of the liquid; null: its interface cannot live on other tiles.
+  /// Returns the liquid's interface; null: it cannot live on other tiles.
   MigratingInterface<dim>* migrating_interface();
   void save_tiles(CheckpointWriter& checkpoint) const;
   void load_tiles(const CheckpointReader& checkpoint);
-  /// What partly open faces of this rank add to an angular momentum, because their fluid moves
-  /// beside their centres; velocity(axis, cell).
+  /// Angular momentum of this rank's partly open faces that is due to their fluid moving beside
+  /// their centres; velocity(axis, cell).
   using FaceFunction = std::function<double(int axis, int cell)>;
   AngularVector<dim> moment_of_shifts(const FaceFunction& velocity) const;
   Momentum<dim> push_sources(double time);

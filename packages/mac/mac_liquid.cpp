@@ -1,4 +1,4 @@
-// What a fluid with a free surface does besides.
+// The free surface of a MacFluid.
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 

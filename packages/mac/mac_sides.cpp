@@ -1,4 +1,4 @@
-// What the sides of the domain let in.
+// Fluxes through the sides of the domain.
 #include <cmath>
 
 #include "base/errors.hpp"

@@ -1,4 +1,4 @@
-// How the grid of a MacFluid follows what happens in it.
+// Moving tiles: the grid of a MacFluid follows its fluid.
 #include "grid/tile_migration.hpp"
 #include "mac/mac_fluid.hpp"
 #include "output/checkpoint.hpp"
@@ -18,7 +18,7 @@ Point<dim> origin_of_pressure(const MacDomain<dim>& domain, const Box<dim>& boun
   return origin;
 }
 
-/// At surfaces that of this rank's tiles alone.
+/// Work of the tiles; at surfaces that of this rank's tiles alone.
 template <int dim>
 TileWork work_of_tiles(const TiledGrid<dim>& grid, const TileOwners& owners,
                        const SurfaceSnapshot<dim>* surface) {
@@ -47,8 +47,8 @@ TileWork work_of_tiles(const TiledGrid<dim>& grid, const TileOwners& owners,
   return work;
 }
 
-/// Of a liquid, that of this rank's tiles: in the place of the cells those that are wet, and what
-/// its surface adds within so far of it.
+/// Replaces the work of cells by that of wet cells on this rank's tiles, and adds the work of the
+/// liquid's surface within `band` of it.
 template <int dim>
 void add_liquid(const TiledGrid<dim>& grid, const TileOwners& owners, const CellField& distance,
                 double band, TileWork& work) {
@@ -76,7 +76,7 @@ void add_liquid(const TiledGrid<dim>& grid, const TileOwners& owners, const Cell
   }
 }
 
-/// On rank 0; the others keep theirs.
+/// Sums values on rank 0; the other ranks keep theirs.
 void sum_on_root(const Communicator& comm, std::vector<GlobalIndex>& values) {
   MPI_Reduce(is_root(comm) ? MPI_IN_PLACE : values.data(), values.data(),
              static_cast<int>(values.size()), MPI_LONG_LONG, MPI_SUM, 0, raw_communicator(comm));

@@ -21,8 +21,8 @@ void for_each_sublist(const ParameterList& list, const Function& f) {
     f(list.sublist(list.name(it)));
 }
 
-/// What a value must differ by from that at rest, if `largest` is the largest difference of all.
-/// Round-off is no difference.
+/// Least difference of a value from that at rest that counts, if `largest` is the largest
+/// difference of all; round-off does not.
 double least_difference(double threshold, double largest, double ambient) {
   return std::max(threshold * largest, 1e-9 * (1e-3 + std::abs(ambient)));
 }
@@ -182,7 +182,7 @@ std::optional<TileOwners> MovingTiles<dim>::change(const Present& present) const
   int reach = static_cast<int>(std::ceil(fastest * present.dt / grid.spacing())) + 4;
   int margin = margin_;
   if (present.distance) {
-    // What looks around tiles that a surface passes finds all of those beside them.
+    // Tiles beside those that a surface passes must exist, since stencils there reach into them.
     reach = std::max(reach, tile_width<dim>);
     margin = std::max(margin, reach + 4);
   }

@@ -9,9 +9,9 @@
 
 namespace lockstep {
 
-/// Which tiles a fluid needs: those where it moves or carries something, or that a liquid with a
-/// free surface fills, those near solids, and those where something enters or was asked for. Read
-/// once from the fluid's list.
+/// Choice of the tiles that a fluid needs: those where it moves or carries something, or that a
+/// liquid with a free surface fills, those near solids, and those where something enters or was
+/// asked for. Read once from the fluid's list.
 template <int dim>
 class MovingTiles {
  public:
@@ -25,7 +25,7 @@ class MovingTiles {
     const CellField& values;
     double ambient;
   };
-  /// What is there at the beginning of a step.
+  /// State at the beginning of a step.
   struct Present {
     const TiledGrid<dim>& grid;
     const TileOwners& owners;  ///< of its tiles
@@ -35,7 +35,7 @@ class MovingTiles {
     std::vector<Carried> scalars;
     double time, dt;     ///< [s]
     double solid_speed;  ///< of the fastest solid [m/s]
-    /// Of a liquid, else null: it is needed where this is less than `band` [m].
+    /// phi of a liquid, else null: tiles are needed where it is less than `band` [m].
     const CellField* distance = nullptr;
     double band = 0;
     bool is_start = false;  ///< before the first step: what is asked for at the start counts

@@ -33,7 +33,7 @@ struct BoundarySide {
   double temperature = 0;               ///< carried by the inflow [K]
 
   bool closed() const { return type == SideType::wall || type == SideType::slip_wall; }
-  /// Whether fluid may come in or leave at a given velocity, or a wall move.
+  /// True if fluid may come in or leave at a given velocity, or a wall move.
   bool moves() const { return wave || velocity != Point<dim>::Zero(); }
   bool prescribed() const { return closed() || type == SideType::inflow; }
   /// The part of `velocity` at a time.
@@ -43,7 +43,7 @@ struct BoundarySide {
     return ramp_time > 0 && time < ramp_time ? std::max(time, 0.0) / ramp_time
                                              : 1;  // time may be < 0
   }
-  /// Whether the velocity jumps in [begin, end); at `end_time` it still is what it was.
+  /// True if the velocity jumps in [begin, end); at `end_time` itself it has not jumped yet.
   bool jumps(double begin, double end) const {
     return velocity != Point<dim>::Zero() && begin <= end_time && end_time < end &&
            ramp(end_time) > 0;

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// Whether a cell of the domain touches one of those sides for which is_such(side) is true.
+/// True if a cell of the domain touches one of the sides for which is_such(side) is true.
 template <int dim, typename Choice>
 bool at_side(const MacDomain<dim>& domain, int cell, const Choice& is_such) {
   const Index<dim> place = domain.grid.coordinates(cell);

@@ -2,7 +2,7 @@
 
 namespace lockstep {
 
-/// What fills a cell, judged at its centre.
+/// Content of a cell, judged at its centre.
 enum class CellState : char {
   outside,  ///< beyond the domain
   fluid,    ///< carries a pressure

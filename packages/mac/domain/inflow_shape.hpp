@@ -4,7 +4,7 @@
 
 namespace lockstep {
 
-/// Where and how an inflow enters through a side of the domain.
+/// Opening of a side of the domain, and profile of the inflow through it.
 template <int dim>
 struct InflowShape {
   Box<dim> opening;        ///< along the side's axis everything [m]

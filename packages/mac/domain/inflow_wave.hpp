@@ -24,13 +24,15 @@ struct InflowWave {
   double frequency() const { return 2 * M_PI / period; }  ///< omega [1/s]
   double speed() const { return frequency() / number; }   ///< of a crest [m/s]
 
-  /// At a point of the side; `share` of the height is there yet. Above the still water as at it.
+  /// Velocity at a point of the side [m/s]; `share` of the height has grown. Above the still water
+  /// it is that at its level.
   Point<dim> velocity_at(const Point<dim>& x, double time, double share) const;
   /// The mean over a box that reaches over some height.
   Point<dim> mean_velocity(const Box<dim>& box, double time, double share) const;
 
  private:
-  /// From the parts cosh(k (z + depth)) / sinh(k depth) and sinh of it.
+  /// Velocity from cosh(k (z + depth)) / sinh(k depth) along the side and the same with sinh
+  /// upwards [m/s].
   Point<dim> velocity(double along, double up_part, double time, double share) const;
 };
 
@@ -39,10 +41,10 @@ double wave_number(double frequency, double gravity, double depth);
 
 /// Declares the list "Wave" of a side.
 void declare_inflow_wave(ParameterList& side);
-/// Of a validated side normal to `axis`, at its upper end if `end` is 1; none if it has no "Wave".
-/// `fluid`: the validated list. Throws InputError, naming `where`, for a side that is no inflow, a
-/// fluid without a surface, gravity that is not along an axis of the side, and waves that cannot
-/// be.
+/// Reads the wave of a validated side normal to `axis`, at its upper end if `end` is 1; none if it
+/// has no "Wave". `fluid`: the validated list. Throws InputError, naming `where`, for a side that
+/// is no inflow, a fluid without a surface, gravity that is not along an axis of the side, and
+/// waves that cannot be.
 template <int dim>
 std::optional<InflowWave<dim>> read_inflow_wave(const ParameterList& side,
                                                 const ParameterList& fluid, const Box<dim>& domain,

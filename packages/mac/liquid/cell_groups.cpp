@@ -11,7 +11,7 @@
 namespace lockstep {
 
 namespace {
-/// How many cells of a tile are members.
+/// Part of a tile's cells that are members.
 enum class Membership { none, some, all };
 
 template <int dim>
@@ -71,7 +71,7 @@ class Joiner {
       else
         join_side(tile, i);
   }
-  /// Of a full tile.
+  /// Joins a full tile with what is beyond its side i.
   void join_side(int tile, int i) {
     const int shift = log_tile_width<dim> * (i / 2);
     const int layer = i % 2 == 0 ? 0 : tile_width<dim> - 1;
@@ -85,7 +85,7 @@ class Joiner {
       join_cells(begin, i,
                  [&](int offset) { return (offset >> shift & (tile_width<dim> - 1)) == layer; });
   }
-  /// With the neighbours there of those cells of the tile for which `counts` holds.
+  /// Joins the cells of a tile for which `counts` holds with their neighbours there.
   template <typename Function>
   void join_cells(int begin, int i, const Function& counts) {
     for (int cell = begin; cell < begin + tile_volume<dim>; ++cell) {

@@ -18,7 +18,7 @@ struct Drop {
   double volume = 0;                         ///< [m^dim]
 };
 
-/// Drops that fly through the void as stones do, each on the rank whose tile it is in; where no
+/// Drops that fall through the air without drag, each on the rank whose tile it is in; where no
 /// tile is, on any. They know no density: momenta are volume times velocity.
 template <int dim>
 class Drops {
@@ -38,12 +38,12 @@ class Drops {
   /// velocity, before gravity has changed it. Local.
   void take(const Condition& has_fallen);
   void remove(const Condition& goes);  ///< for good; local
-  /// Those of this step on this rank.
+  /// Drops of this rank that have fallen in this step.
   const std::vector<Drop<dim>>& fallen() const { return state_.fallen; }
   /// Gives drops that have flown their new velocities; returns the change of momentum [m^dim m/s],
   /// on this rank. Local.
   Momentum<dim> speed_up();
-  /// What those of this rank gave to solids in this step, as volume times velocity.
+  /// Impulses of this rank's drops on solids in this step, as volume times velocity.
   const std::vector<SurfaceImpulse<dim>>& pushes() const { return state_.pushes; }
 
   Momentum<dim> momentum() const;  ///< on this rank [m^dim m/s]
@@ -52,7 +52,7 @@ class Drops {
   /// Over all ranks, after `count`.
   const DropsReport& report() const { return state_.report; }
   void count();  ///< collective
-  /// To the ranks whose tiles they are on; after these have changed. Collective.
+  /// Sends drops to the ranks whose tiles they are on, after these have changed. Collective.
   void redistribute();
   void clear() { state_ = {}; }
 
@@ -76,8 +76,8 @@ class Drops {
   /// left through another side.
   bool stop_at_sides(Point<dim>& place, Point<dim>& velocity) const;
   enum class Fate { stays, leaves, has_no_room };
-  /// The same with solids that stand on the way `to` a place, maybe before a side; `fate` where
-  /// none does.
+  /// Stops a drop at solids on the way `to` a place, maybe before a side; returns `fate` where
+  /// there is none.
   Fate stop_at_solids(const MovingSurface<dim>& surface, double reach, Fate fate, Drop<dim>& drop,
                       Point<dim>& to);
   /// Keeps those of `drops` that are on this rank's tiles, or on no one's and `holder` says this.

@@ -28,7 +28,7 @@ void flood(const MacDomain<dim>& domain, std::vector<int> front, const MayPass& 
       }
     }
     domain.halo.fill(marked);
-    // On from where other ranks came.
+    // goes on from cells that other ranks have marked
     grid.for_each_owned_cell([&](int cell) {
       for (int side = 0; side < 2 * dim && !marked[cell]; ++side) {
         const int other = grid.neighbor(cell, side / 2, side % 2);

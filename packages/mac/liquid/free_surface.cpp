@@ -3,8 +3,8 @@
 namespace lockstep {
 
 namespace {
-/// Of a pressure from a pocket of gas [cells]: how gas answers is found from differences of what it
-/// drives through its faces, which must not be lost in their round-off.
+/// Least distance of a pressure from a gas bubble [cells]: the answer of the gas is a difference of
+/// flows through its faces, which must not be lost in their round-off.
 constexpr double least_distance_from_gas = 1e-3;
 }  // namespace
 

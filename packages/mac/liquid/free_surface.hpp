@@ -9,7 +9,7 @@ namespace lockstep {
 template <int dim>
 class GasPockets;
 
-/// What pressures and faces know of the free surface at one instant. Above it is void: p = 0.
+/// The free surface at one instant, as pressures and faces see it: ghost fluid with p = 0 above it.
 template <int dim>
 struct FreeSurface {
   /// phi on all stored cells [m]: negative in the liquid, carried on into solids.
@@ -23,18 +23,19 @@ struct FreeSurface {
   GasPockets<dim>* gas = nullptr;  ///< null: no void is closed
 
   bool wet(int cell) const { return (*distance)[cell] < 0; }
-  /// w of the face between them, h over the distance of the pressure from the surface.
+  /// Distance factor w = 1/theta of the face between them, h over the distance of the pressure from
+  /// the surface.
   double closeness(int wet, int dry, double least = 0) const {
     return at_true_place ? 1 / std::max({crossing(wet, dry), smallest_distance, least}) : 1;
   }
 };
 
-/// What is not below the free surface is void. Local.
+/// Marks cells that are not below the free surface as air. Local.
 template <int dim>
 void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_surface,
                      std::vector<CellState>& cells);
-/// Pressures beside the void are as near to it as the free surface is: of owned faces, and of the
-/// upper ones of owned cells. Local.
+/// Sets the distance factor 1/theta of faces beside air (ghost fluid: p = 0 at the free surface),
+/// for owned faces and the upper ones of owned cells. Local.
 template <int dim>
 void set_closeness_to_void(const MacDomain<dim>& domain, const FreeSurface<dim>& free_surface,
                            MacGeometry<dim>& geometry);

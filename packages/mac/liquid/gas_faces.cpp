@@ -54,7 +54,7 @@ void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>&
       cell = CellState::fluid;
   voids.blocked = marks.blocked;
   voids.near = geometry.near;
-  // Of cut cells every open part is a way, also past a body that hides one centre from the other.
+  // In cut cells every open part connects, also past a body that hides one centre from the other.
   for (int axis = 0; axis < dim; ++axis)
     for (std::size_t face = 0; face < fractions[axis].size(); ++face) {
       const int bit = 1 << axis, others = voids.blocked[face] & ~bit;

@@ -16,11 +16,11 @@ struct GasFace {
   double area = 0;         ///< open [m^(dim-1)]
 };
 
-/// By the cells that this rank owns. Local.
+/// Finds the faces between pressure unknowns and gas, by the cells that this rank owns. Local.
 template <int dim>
 std::vector<GasFace> find_gas_faces(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
-/// Whether a pocket of gas is on one side of a face, and neither fluid nor the same pocket on the
+/// True if a gas bubble is on one side of a face, and neither fluid nor the same bubble on the
 /// other. `pocket` may be empty.
 bool only_gas_beside(const std::vector<CellState>& cells, const std::vector<int>& pocket,
                      const FaceCells& face);

@@ -10,8 +10,8 @@
 namespace lockstep {
 
 namespace {
-/// Of the volume that a pocket lacks, what a step gives back: less than all, so that the round-off
-/// of a surface that moves does not become pressure.
+/// Part of a bubble's volume defect that a step gives back [1]: less than all, so that the
+/// round-off of a surface that moves does not become pressure.
 constexpr double part_made_good = 0.1;
 /// Gas is not compressed or spread beyond this factor of its volume at the start.
 constexpr double most_compressed = 100;
@@ -170,7 +170,7 @@ void GasPockets<dim>::inherit(const CellField& phi) {
   const int n_before = static_cast<int>(max_all(grid.comm(), most_number));
   const bool is_start = sum_all(grid.comm(), n_known) == 0;
 
-  // How many cells went from each pocket (or the atmosphere, the last) to each (the same).
+  // number of cells that went from each bubble (or the atmosphere, the last) to each (likewise)
   std::vector<double> went((n_before + 1) * (n + 1), 0.0), before(2 * n_before + 1, -1e300);
   grid.for_each_owned_cell([&](int cell) {
     const int from = number_[cell] < 0 ? n_before : static_cast<int>(number_[cell]) - 1;

@@ -9,7 +9,7 @@
 
 namespace lockstep {
 
-/// What gas does that is trapped.
+/// Model of trapped gas.
 enum class TrappedAir { none, ideal_gas, constant_volume };
 
 template <int dim>
@@ -21,11 +21,12 @@ struct GasParameters {
   std::vector<Point<dim>> atmosphere;    ///< what can be reached from here is not trapped
 };
 
-/// The pockets of void that nothing joins to the atmosphere: what open sides and the points given
-/// reach, and without such points what touches the side of the domain against gravity. Of more than
-/// `most` the largest are pockets. An ideal gas has p + p_atm = p_atm (V_0 / V)^gamma, V_0 its
-/// volume at the pressure of the atmosphere. V_0 is handed on to what has the same cells a step
-/// later: a merger adds, a split shares, an opening loses.
+/// Gas bubbles: components of the air that nothing joins to the atmosphere, which is the air that
+/// open sides and the given points reach, and without such points the air at the side of the domain
+/// against gravity. Of more than `most` components the largest are bubbles. An ideal gas has p +
+/// p_atm = p_atm (V_0 / V)^gamma, V_0 its volume at the pressure of the atmosphere. V_0 is
+/// inherited by the bubble with the same cells a step later: a merger adds, a split shares, an
+/// opening loses.
 template <int dim>
 class GasPockets {
  public:
@@ -35,12 +36,14 @@ class GasPockets {
   GasPockets(const MacDomain<dim>& domain, GasParameters<dim> parameters,
              const Point<dim>& gravity);
 
-  /// The pockets of an instant. `voids`: which cells are not solid, and what comes between them;
-  /// `phi` on the halo of width 1. Collective.
+  /// Finds the bubbles of an instant. `voids`: the cells that are not solid, and the surfaces
+  /// between them; `phi` on the halo of width 1. Collective.
   void find(const SolidCells<dim>& voids, const CellField& phi);
-  /// What is in them and how they push. Again at the same instant it changes nothing. Collective.
+  /// Computes the volumes and pressures of the bubbles. A second call at the same instant changes
+  /// nothing. Collective.
   void settle(const CellField& phi);
-  /// What surfaces pass over as they move says nothing of who follows whom. Before `find`. Local.
+  /// Leaves out the cells that surfaces pass over as they move, which do not tell which bubble
+  /// follows which. Called before `find`. Local.
   void pass_over(const MovingSurface<dim>& surface);
   const std::vector<int>& of_cell() const { return of_cell_; }  ///< of stored cells; -1: none
   const std::vector<GasPocket>& all() const { return pockets_; }
@@ -69,8 +72,8 @@ class GasPockets {
   std::vector<GasPocket> pockets_;
   std::vector<double> amounts_;  ///< V_0 by pocket [m^dim]
   std::vector<double> scaled_pressure_, accepted_pressure_;
-  /// Of each cell: the number of its pocket from 1, -1 in the atmosphere, 0 elsewhere; V_0 and the
-  /// last pressure of that.
+  /// Number of each cell's bubble, from 1; -1 in the atmosphere, 0 elsewhere; V_0 and last pressure
+  /// of that bubble.
   CellField number_, amount_, last_pressure_;
 };
 

@@ -20,13 +20,13 @@ namespace lockstep {
 template <int dim>
 using SignedDistance = std::function<double(const Point<dim>&)>;
 
-/// Where the liquid's volume has gone [m^dim], over all ranks.
+/// Volume balance of the liquid [m^dim], over all ranks.
 struct LiquidLedger {
-  double volume = 0;  ///< of the liquid outside solids
-  double target = 0;  ///< what known fluxes have left of the initial volume
-  double shift = 0;   ///< what corrections have added and taken away since the start, both positive
-  double lost = 0;    ///< of bodies that vanished and left no other in their closed space
-  int n_components = 0;  ///< bodies of liquid
+  double volume = 0;     ///< of the liquid outside solids
+  double target = 0;     ///< initial volume plus known fluxes
+  double shift = 0;      ///< sum of the magnitudes of all corrections since the start
+  double lost = 0;       ///< of components that vanished and left no other in their closed space
+  int n_components = 0;  ///< connected liquid components
 };
 
 /// Stored cells (1) with liquid, owned and of the halo of width 1.
@@ -35,7 +35,7 @@ struct LiquidCells {
   std::vector<char> hidden;  ///< owned: such a drop is in a gap that no centre of a cell sees
 };
 
-/// What moves an interface over one step.
+/// Input of an interface's motion over one step.
 template <int dim>
 struct InterfaceStep {
   /// u_ADV [m/s] on all owned faces that are not inside solids, extended from the liquid over
@@ -55,8 +55,8 @@ struct InterfaceStep {
   double open_part(int axis, int cell) const { return open ? open(axis, cell) : 1; }
 };
 
-/// The surface of a liquid: where it is, how it moves. A plug-in kind; a model knows no pressure.
-/// The liquid is where `distance` is negative. Nothing of it passes through a surface of solids.
+/// The interface of a liquid and its motion. A plug-in kind; a model knows no pressure. The liquid
+/// is where `distance` is negative. Nothing of it passes through a surface of solids.
 template <int dim>
 class InterfaceModel : public PlugIn {
  public:
@@ -79,11 +79,11 @@ class InterfaceModel : public PlugIn {
   /// Cells around the liquid's surface over which phi is known and a velocity is wanted, for a step
   /// in which nothing moves over more than so many cells. Local.
   virtual int band(double largest_displacement) const = 0;
-  /// At the present time. Local.
+  /// Volumes at the present time. Local.
   virtual LiquidLedger ledger() const = 0;
-  /// Liquid that has left the interface for the time being; null: none ever does. Local.
+  /// Drops that have left the interface; null: none ever does. Local.
   virtual Drops<dim>* drops() const { return nullptr; }
-  /// Where there is liquid among the present solids. Collective. Default: the wet cells.
+  /// Marks the cells with liquid among the present solids. Collective. Default: the wet cells.
   virtual LiquidCells cells_with_liquid(const Surface&, KeptSurface<dim>&) {
     const CellField& phi = distance();
     LiquidCells cells{std::vector<char>(phi.size()), std::vector<char>(phi.size(), 0)};
@@ -91,8 +91,8 @@ class InterfaceModel : public PlugIn {
       cells.seen[cell] = phi[cell] < 0;
     return cells;
   }
-  /// What of the liquid is in some stored cells (1), and should be; after a step. Collective.
-  /// Default: throws InputError.
+  /// Measures the volume and target of the liquid in some stored cells (1); after a step.
+  /// Collective. Default: throws InputError.
   virtual WatchedLiquid liquid_in(const std::vector<char>& /*cells*/) const {
     throw InputError(fmt::format(
         "The interface \"{}\" cannot tell how much is where; leave out \"Watch\".", this->name()));

@@ -14,7 +14,7 @@ namespace lockstep {
 
 namespace {
 constexpr int most_watches = 30;
-/// What is told of a place that no cell is left of.
+/// Reported value of a place of which no cell is left.
 constexpr double not_told = std::numeric_limits<double>::quiet_NaN();
 constexpr WatchedLiquid not_watched{not_told, not_told, not_told};
 

@@ -9,15 +9,15 @@
 
 namespace lockstep {
 
-/// Sees to it that liquid comes to watched places on open ways only. In each step
+/// Checks that liquid comes to watched places on open ways only. In each step
 /// - every cell there that holds liquid, or is in sight of a drop of it, must be in reach of one
 ///   that did so before the step, from cell to cell without crossing a surface of solids. A cell
 ///   whose centre a surface has passed over is none of these: its liquid went ahead of the surface;
 /// - a place without a way out must keep the volume that it should have;
 /// - no two neighbours that a surface without rim parted may see each other after the step, unless
 ///   the surface passed over one of them.
-/// It uses nothing that moves the liquid but phi and particles as they are before and after.
-/// A place whose point sees the centre of no cell, as in a solid or in a gap, is what is left of it
+/// It uses nothing that moves the liquid but phi and particles as they are before and after. A
+/// place whose point sees the centre of no cell, as in a solid or in a gap, is what is left of it
 /// as it was; once nothing is, it is not watched until its point sees a cell again.
 template <int dim>
 class LeakAudit {
@@ -27,8 +27,8 @@ class LeakAudit {
   /// `domain` must outlive this.
   LeakAudit(const MacDomain<dim>& domain, std::vector<Watch<dim>> watches);
 
-  /// At the start of a run. Throws InputError for a point outside of the domain, in a solid or in
-  /// sight of no cell's centre. Collective.
+  /// Finds the watched places at the start of a run. Throws InputError for a point outside of the
+  /// domain, in a solid or in sight of no cell's centre. Collective.
   void begin(const Surface& surface);
   /// Before the interface moves. Collective.
   void open(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface);
@@ -81,17 +81,17 @@ class LeakAudit {
                        std::vector<int>& cells) const;
   bool gap_leads_to(int cell, const std::vector<char>& marked, const Near& near, int reach) const;
   void add_sources(const InterfaceStep<dim>& step, std::vector<char>& marked) const;
-  /// Where surfaces have pushed the liquid of cells that they passed over.
+  /// Marks the cells to which surfaces have pushed the liquid of cells that they passed over.
   void add_pushed(const InterfaceStep<dim>& step, const std::vector<int>& swept, const Look& now,
                   std::vector<char>& marked) const;
   std::optional<SurfacePoint<dim>> swept(const InterfaceStep<dim>& step, int cell) const;
   void check_sides(const InterfaceStep<dim>& step, const Look& now) const;
-  /// Whether the place reaches to volumes of solids: the liquid of cells that these cut, and what
-  /// is owed to it, is told of no place, so that targets change a little. Collective.
+  /// True if the place reaches to volumes of solids: the liquid of cells that these cut, and their
+  /// volume defects, belong to no place, so that targets change a little. Collective.
   bool holds_solids(const Look& now, const std::vector<char>& cells) const;
   /// True if nothing has come or gone between the place and the rest of the domain.
   bool stayed_closed(const InterfaceStep<dim>& step, const Look& now, std::size_t watch) const;
-  /// Of a place that stayed closed the target may not change.
+  /// Checks that the target of a place that stayed closed has not changed.
   void check_target(const InterfaceStep<dim>& step, std::size_t watch, double target,
                     double lost) const;
   int parting_solid(const SurfaceSnapshot<dim>& surface, int axis, int cell) const;

@@ -128,7 +128,7 @@ template <int dim>
 bool LeakAudit<dim>::stayed_closed(const InterfaceStep<dim>& step, const Look& now,
                                    std::size_t watch) const {
   const TiledGrid<dim>& grid = domain_.grid;
-  // What flies is not the liquid's, and goes where it likes.
+  // drops do not count as liquid, and fly freely
   bool open =
       has_drops_ || !step.sources.empty() || !step.sinks.empty() || watches_[watch].radius < 1e300;
   for (int axis = 0; axis < dim; ++axis)

@@ -27,10 +27,10 @@ class Liquid {
   /// Before all else on the present tiles. The first call fills the liquid in, outside of the
   /// solids. Collective.
   void begin(const Surface& surface);
-  /// At the present time; valid while this is.
+  /// Returns the free surface at the present time; valid while this object is.
   FreeSurface<dim> surface();
-  /// Carries u_ADV and u^n on into the void, marks those faces in `geometry`, and moves the
-  /// interface. Halos must be valid, and are so afterwards. Collective.
+  /// Extends u_ADV and u^n into the air, marks those faces in `geometry`, and moves the interface.
+  /// Halos must be valid, and are so afterwards. Collective.
   void advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
                FaceField<dim>& advection_velocity, FaceField<dim>& velocity);
 
@@ -43,9 +43,9 @@ class Liquid {
   std::vector<StoredField> fields();
   /// The interface's; the fields are set. Collective.
   void load(const CheckpointReader& checkpoint);
-  /// What was found out about the liquid on other tiles, or of another instant. Local.
+  /// Forgets data of other tiles, or of another instant. Local.
   void forget();
-  /// No liquid is given: sources are to bring it.
+  /// True if no liquid is given: sources are to bring it.
   bool starts_empty() const { return starts_empty_; }
   GasPockets<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
   const GasPockets<dim>* gas() const { return gas_.get(); }
@@ -56,7 +56,7 @@ class Liquid {
   double distance(const Point<dim>& x) const;
   LiquidReport report() const;
   std::vector<std::string> watch_names() const;
-  /// Takes back what `advance` does.
+  /// Returns a function that undoes `advance`.
   std::function<void()> undo();
 
  private:
@@ -64,7 +64,8 @@ class Liquid {
   FreeSurfaceParameters parameters_;
   double acceleration_ = 0;  ///< by gravity and body force [m/s^2]
   bool starts_empty_ = false;
-  CellField lead_;  ///< by how much the pressure's phi is ahead of the interface's [m]
+  CellField
+      lead_;  ///< interface filter: distance of the pressure's phi ahead of the interface's [m]
   std::optional<SampleLattice<dim>> lattice_;  ///< of the tiles since the last `begin`
   std::vector<SignedDistance<dim>> sinks_;
   std::vector<Point<dim>> dry_points_;

@@ -30,7 +30,8 @@ class MeshBuilder {
   }
 
  private:
-  /// Of a cell, or as if a wall that the liquid touches were the surface: beyond the domain.
+  /// phi of a cell; beyond the domain its magnitude, as if a wall that the liquid touches were the
+  /// surface.
   double value(Index<dim> c) const {
     bool beyond = false;
     for (int a = 0; a < dim; ++a) {
@@ -70,7 +71,7 @@ class MeshBuilder {
     }
   }
 
-  /// Of the dual cube with its lowest corner in the centre of that cell.
+  /// Number of the vertex in the dual cube whose lowest corner is the centre of that cell.
   int vertex(const Index<dim>& base) {
     const auto [place, is_new] = number_.emplace(base, static_cast<int>(mesh_.vertices.size()));
     if (is_new)

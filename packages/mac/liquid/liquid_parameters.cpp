@@ -209,7 +209,7 @@ SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gr
 }
 
 namespace {
-/// Of an optional array, a component an axis, one after the other.
+/// Reads the points of an optional array, the components of one after the other.
 template <int dim>
 std::vector<Point<dim>> read_points(const ParameterList& list, const char* name) {
   if (!list.isParameter(name))

@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// What a scene says of its free surface, beside its interface model.
+/// Parameters of a free surface, beside those of its interface model.
 struct FreeSurfaceParameters {
   double smallest_distance = 1e-5;  ///< see FreeSurface
   int pressure_order = 2;
@@ -18,13 +18,13 @@ template <int dim>
 void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterList& fluid);
 /// Validated list "Free Surface".
 FreeSurfaceParameters read_free_surface(const ParameterList& list);
-/// Of the liquids of a validated list "Fluid" with a "Free Surface", united; of a tank that sources
-/// are to fill, far away. Throws InputError if there is neither liquid nor a source of it, or a
-/// level without gravity.
+/// Reads the union of the liquids of a validated list "Fluid" with a "Free Surface"; for a tank
+/// that sources are to fill it is far away. Throws InputError if there is neither liquid nor a
+/// source of it, or a level without gravity.
 template <int dim>
 SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gravity);
-/// What trapped air does, of a validated list "Fluid". Throws InputError if numbers are missing, or
-/// tiles move.
+/// Reads the parameters of trapped air from a validated list "Fluid". Throws InputError if numbers
+/// are missing, or tiles move.
 template <int dim>
 GasParameters<dim> read_gas(const ParameterList& fluid);
 /// Throws InputError if numbers are missing.

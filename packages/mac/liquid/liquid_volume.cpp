@@ -17,8 +17,8 @@ constexpr double far = 2.5;
 /// The shift of phi that shows the area [cells].
 constexpr double probe = 1e-3;
 
-/// Of closed solids in a box that may reach beyond the upper ends of periodic axes. Solids are not
-/// repeated there: what of them is at the lower end belongs to it, too.
+/// Volume of closed solids in a box that may reach beyond the upper ends of periodic axes. Solids
+/// are not repeated there: the part of them at the lower end counts, too.
 template <int dim>
 double solid_volume_across_sides(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface,
                                  const Box<dim>& box) {
@@ -39,7 +39,7 @@ double solid_volume_across_sides(const MacDomain<dim>& domain, const SurfaceSnap
   return volume;
 }
 
-/// What shells are in a cell, taken as a plane.
+/// Shells in a cell, taken as a plane.
 template <int dim>
 struct PlaneOfShell {
   Point<dim> normal, point;

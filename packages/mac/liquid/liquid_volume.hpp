@@ -6,11 +6,11 @@
 
 namespace lockstep {
 
-/// Of each group of liquid cells, over all ranks.
+/// Volumes of the groups of liquid cells, over all ranks.
 struct GroupVolumes {
   std::vector<double> volume;  ///< [m^dim]
-  std::vector<double> area;    ///< of its surface: what volume gains as phi sinks [m^(dim-1)]
-  double loose = 0;            ///< liquid beside no liquid cell [m^dim]
+  std::vector<double> area;  ///< area of its surface: volume gained per decrease of phi [m^(dim-1)]
+  double loose = 0;          ///< liquid beside no liquid cell [m^dim]
 
   double total() const;
 };
@@ -30,7 +30,7 @@ class LiquidVolume {
   /// Lists the boxes that the liquid's surface or solids may cut. Then phi may change by 0.5 h
   /// before the list is made anew. `phi` on the halo of width 1. Collective.
   void prepare(const SolidCells<dim>& solids, const CellField& phi);
-  /// What of the listed liquid is beside no cell of a group is loose. Collective.
+  /// Measures the groups; the listed liquid that is beside no cell of a group is loose. Collective.
   GroupVolumes measure(const CellField& phi, const CellGroups& groups) const;
 
  private:
@@ -53,10 +53,10 @@ class LiquidVolume {
   double volume_of_cell(int cell) const;
   void list_full(int cell);
   void list_beyond_shells(const SolidCells<dim>& solids, const CellField& phi);
-  /// Gives what of a cell is beyond the shell in it, taken as a plane, to the cell there.
+  /// Gives the part of a cell beyond the shell in it, taken as a plane, to the cell there.
   void list_beyond_shell(const SolidCells<dim>& solids, const CellField& phi, int cell,
                          std::vector<int>& touching);
-  /// Neither it nor a cell around it will have liquid before the list is made anew.
+  /// True if neither the cell nor one around it will have liquid before the list is made anew.
   bool stays_dry(const CellField& phi, int cell) const;
   void list_divided_cells(const SolidCells<dim>& solids);
   /// phi at a corner of a box.

@@ -10,10 +10,10 @@
 namespace lockstep {
 
 namespace {
-/// How far from a place of the surface those lie that say how it is bent [cells].
+/// Reach of the fit around a place of the surface [cells].
 template <int dim>
 constexpr int reach = dim == 2 ? 4 : 3;
-/// How many of them count, in the main [cells].
+/// Width of the fit's weights, a bell around the place [cells].
 template <int dim>
 constexpr double bell = dim == 2 ? 1.2 : 1.0;
 template <int dim>
@@ -140,7 +140,7 @@ double curvature(const MacDomain<dim>& domain, const CellField& phi, int wet, in
       const double below = around[k], above = around[k + Around::stride(a)];
       if ((below < 0) == (above < 0))
         continue;
-      // Not what bounds another side of a thin sheet.
+      // skips crossings that bound another side of a thin sheet
       if ((above - below) * slope[a] < -0.3 * std::abs(above - below) * steepness)
         continue;
       Point<dim> x;

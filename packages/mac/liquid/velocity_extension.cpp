@@ -6,7 +6,7 @@
 namespace lockstep {
 
 namespace {
-/// Of sources that are no nearer: they count where there are no others [cells].
+/// Weight of sources that are no nearer to the fluid: they count where there are no others [cells].
 constexpr double least_weight = 1e-12;
 /// Distances that differ by less are equal, so that round-off does not order faces [cells].
 constexpr double same_distance = 1e-9;
@@ -26,9 +26,9 @@ VelocityExtension<dim>::VelocityExtension(const MacDomain<dim>& domain, const Ce
   }
 }
 
-/// On a plateau no face would be nearer to the fluid than another. Across a cell's corner a
-/// distance of h leads over as many cells as there are axes; so no cell within the band is left
-/// out.
+/// Extends the distance from cell to cell where it is cut off: on a plateau no face would be nearer
+/// to the fluid than another. Across a cell's corner a distance of h leads over as many cells as
+/// there are axes; so no cell within the band is left out.
 template <int dim>
 void VelocityExtension<dim>::go_on(double known, double band, const MacState<dim>& state) {
   const TiledGrid<dim>& grid = domain_.grid;
@@ -63,7 +63,7 @@ void VelocityExtension<dim>::go_on(double known, double band, const MacState<dim
   }
 }
 
-/// Whether a surface comes between the centres of a cell and its neighbour.
+/// True if a surface comes between the centres of a cell and its neighbour.
 template <int dim>
 bool VelocityExtension<dim>::is_hidden(int cell, int axis, int side) const {
   const int other = domain_.grid.neighbor(cell, axis, side);

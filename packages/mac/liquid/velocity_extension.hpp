@@ -7,13 +7,13 @@
 
 namespace lockstep {
 
-/// Carries velocities on into the void above a free surface, over the faces of a band, so that the
-/// surface and the fluid behind it can move up there. A face takes the mean of its neighbours along
-/// the axes that are nearer to the fluid than itself and that it sees, each counted by how much
-/// nearer it is: the velocity goes on at right angles to the surface. Never through a surface of a
-/// solid, nor into a solid. Beside the fluid it goes on as the velocity there changes, in so far as
-/// that is steady over three faces (minmod): or else the surface of a wave of number k would lag by
-/// kh/4. What a solid or a closed side shuts moves as they do.
+/// Extends velocities into the air above a free surface, over the faces of a narrow band, so that
+/// the surface and the fluid behind it can move up there. A face takes the mean of its neighbours
+/// along the axes that are nearer to the fluid than itself and that it sees, weighted with how much
+/// nearer they are: the velocity is extended along the normal of the surface. Never through a
+/// surface of a solid, nor into a solid. Beside the fluid it goes on as the velocity there changes,
+/// in so far as that is steady over three faces (minmod): or else the surface of a wave of number k
+/// would lag by kh/4. What a solid or a closed side shuts moves as they do.
 ///
 /// Since only nearer neighbours count, the values depend neither on an order nor on the ranks.
 template <int dim>
@@ -46,7 +46,7 @@ class VelocityExtension {
     std::vector<Face> all;  ///< owned, each behind its sources on this rank
     std::vector<Source> sources;
   };
-  /// The distance where it is cut off at `known`.
+  /// Extends the distance where it is cut off at `known`.
   void go_on(double known, double band, const MacState<dim>& state);
   bool is_hidden(int cell, int axis, int side) const;
   void find_faces(double band, MacState<dim>& state);
@@ -54,7 +54,7 @@ class VelocityExtension {
   void find_sources(int axis, const MacState<dim>& state);
   /// `rank`: of owned faces that are extended.
   void find_sources_of(Face& face, int axis, const CellField& rank, const MacState<dim>& state);
-  /// Whether the fluid goes on steadily beyond a source.
+  /// True if the fluid goes on steadily beyond a source.
   bool goes_on(int axis, int source, int side, const MacState<dim>& state) const;
   /// Smallest where fluid is nearest, a whole number.
   double rank_of_face(int axis, int cell, const MacState<dim>& state) const;
@@ -62,9 +62,9 @@ class VelocityExtension {
   double mean_of_sources(int axis, const Face& face, const CellField& velocity) const;
   template <typename Set>
   void extend_across_ranks(int axis, const Set& set, CellField& velocity) const;
-  /// Of a face beyond a source.
+  /// Extrapolated velocity of a face beyond a source [m/s].
   double carried_on(const Source& source, const CellField& velocity) const;
-  /// Of a face that no fluid reaches.
+  /// Velocity of a face that no fluid reaches [m/s].
   double given(int axis, int cell, double time,
                const std::function<Point<dim>(const SurfacePoint<dim>&)>& on_surface) const;
 

@@ -17,7 +17,7 @@ constexpr double largest_lead = 0.05;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// Of cells near the surface, or unknown.
+/// Values of cells near the surface, or `unknown`.
 template <int dim>
 struct NearSurface {
   const MacDomain<dim>& domain;
@@ -25,7 +25,8 @@ struct NearSurface {
 
   NearSurface(const MacDomain<dim>& domain_in, const std::vector<char>& tiles)
       : domain(domain_in), values(tiles, unknown) {}
-  /// That of the cell itself where the neighbour has none, as if mirrored in a wall.
+  /// Value of a neighbour, or of the cell itself where the neighbour has none, as if mirrored in a
+  /// wall.
   double beside(int cell, int axis, int end) const {
     const int other = domain.grid.neighbor(cell, axis, end);
     const double value = other >= 0 ? values[other] : unknown;
@@ -51,7 +52,7 @@ std::vector<char> tiles_within(const TiledGrid<dim>& grid, const CellField& dist
   return tiles;
 }
 
-/// Of phi, one-sided where a neighbour is missing.
+/// Normal of phi, one-sided where a neighbour is missing.
 template <int dim>
 Point<dim> normal(const TiledGrid<dim>& grid, const CellField& distance, int cell) {
   Point<dim> gradient;

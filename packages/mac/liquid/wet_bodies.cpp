@@ -7,7 +7,7 @@
 namespace lockstep {
 
 namespace {
-/// Of bodies, within which the surface around them is looked for [cells].
+/// Distance from bodies in which the free surface around them is searched [cells].
 constexpr int reach_of_planes = 2;
 
 /// The part of the way between two cells that is wet, phi being linear there.
@@ -130,8 +130,9 @@ class WetBodyFinder {
     return Box<dim>(box.min() - margin, box.max() + margin);
   }
 
-  /// Those with void where their planes are looked for: where it meets liquid there, one is found.
-  /// Not asked is phi, which deep in solids is what it was when they were elsewhere.
+  /// Finds the bodies with air where their planes are searched: where it meets liquid there, a
+  /// plane is found. phi is not used, since deep in solids it is that of an earlier place of the
+  /// solid.
   void find_partly_wet() {
     std::vector<double> partly(bodies_.size(), 0);
     for (std::size_t s = 0; s < bodies_.size(); ++s)

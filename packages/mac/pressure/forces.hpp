@@ -13,7 +13,7 @@ struct ForceParameters {
   double reference_temperature = 0;         ///< T0, where buoyancy vanishes [K]
   double smoke_weight = 0;                  ///< relative excess density of smoke of density 1 [1]
 
-  /// What a fluid without scalars feels.
+  /// Acceleration of a fluid without scalars [m/s^2].
   Point<dim> uniform() const { return gravity + body; }
 };
 
@@ -25,9 +25,9 @@ class ForceField {
   ForceField(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
              const ForceParameters<dim>& parameters, const Scalars<dim>& scalars);
   double operator()(int axis, int cell) const;
-  /// Where all scalars are ambient.
+  /// Acceleration where all scalars are ambient [m/s^2].
   Point<dim> of_surroundings() const;
-  /// The same at all faces of an axis.
+  /// True if the acceleration is the same at all faces of an axis.
   bool is_uniform() const { return temperature_ == nullptr && smoke_ == nullptr; }
   /// True if the fluid feels nothing along `axis`, anywhere.
   bool vanishes(int axis) const {

@@ -19,7 +19,7 @@ double rounded_for_sums(double value) {
   return value > largest_exact ? value : std::round(value * steps) / steps;
 }
 
-/// Whether all faces of a row of cells are regular and lead to fluid.
+/// True if all faces of a strip of cells are regular and lead to fluid.
 template <int dim>
 bool is_among_fluid(const MacGeometry<dim>& geometry, const CellRow<dim>& row) {
   const auto& cells = geometry.state.cells;
@@ -115,7 +115,7 @@ class MacPressureOperator final : public StencilOperator {
   /// Calls f(row, neighbours, coefficients of the faces to them) for a cell.
   template <typename Function>
   void with_faces(int cell, const std::array<int, 2 * dim>& neighbors, const Function& f) const;
-  /// Whether a whole row of cells are unknowns, with cells on all sides.
+  /// True if a whole strip of cells are unknowns, with cells on all sides.
   bool is_whole(const CellRow<dim>& cells) const;
   /// A x over the unit coefficient for such a row.
   RowValues<dim> product(const CellRow<dim>& cells) const;
@@ -238,7 +238,7 @@ RCP<const CrsMatrix> MacPressureOperator<dim>::assembled() const {
       diagonal += face[side];
       rows.add(unknown[neighbors[side]], -coefficients_.unit * face[side]);
     };
-    // In the order of the ids within a tile.
+    // in the order of the ids within a tile
     for (int axis = dim - 1; axis >= 0; --axis)
       add(2 * axis);
     const std::size_t middle = rows.add(unknown[cell], 0);

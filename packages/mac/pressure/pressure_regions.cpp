@@ -8,7 +8,7 @@
 namespace lockstep {
 
 namespace {
-/// What one rank knows of the components in its cells.
+/// Components of one rank's cells.
 struct LocalComponents {
   std::vector<GlobalIndex> label;  ///< of each stored cell: lattice number of the component's first
                                    ///< cell on its rank, or no_index

@@ -6,7 +6,7 @@ namespace lockstep {
 
 namespace {
 
-/// What flows out of a row of cells whose faces are all regular, per area.
+/// Outflow of a strip of cells whose faces are all regular, per area.
 template <int dim>
 RowValues<dim> outflow_of_row(const FaceField<dim>& velocity, const CellRow<dim>& cells) {
   const RowValues<dim> along = row_of<dim>(velocity[0].data(), cells.begin);
@@ -135,7 +135,7 @@ Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeome
   const GlobalIndex first_unknown =
       values.size() > 0 ? geometry.pressure_map->getMinGlobalIndex() : 0;
   Momentum<dim> impulse = whole_side_impulse(domain, geometry, values.getRawPtr(), first_unknown);
-  // What solids cover of a side they push on themselves; only the rest is the side's.
+  // Where solids cover a side, its pressure acts on them; only the rest is the side's.
   for (std::size_t i = geometry.coupled.size(); i < geometry.coupled_volumes.size(); ++i) {
     const ControlVolume<dim>& volume = geometry.coupled_volumes[i];
     if (!volume.at_prescribed_side)

@@ -83,7 +83,7 @@ class FaceMoments {
   int axis_;
   int row_ = -1, tile_ = -1;
   Row in_row_ = Row::Zero();
-  /// Of whole rows: their sum, and along the other axes weighted with their place.
+  /// Sums over whole strips, and along the other axes these weighted with their place.
   int tile_of_rows_ = -1;
   std::array<Row, dim> rows_;
   double sum_ = 0;

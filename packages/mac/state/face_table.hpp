@@ -6,21 +6,22 @@
 
 namespace lockstep {
 
-/// What a face is worth to the fluid that flows through it: three numbers, and what follows.
+/// Coefficients of a face: three given ones, and those that follow from them.
 struct FaceWorth {
-  double open = 1;       ///< alpha: the part of its area that no solid covers
-  double closeness = 1;  ///< w: h over the distance of the pressures at both sides
-  double density = 0;    ///< of the fluid in its dual cell [kg/m^dim]
+  double open = 1;  ///< aperture alpha: the part of its area that no solid covers [1]
+  double closeness =
+      1;  ///< distance factor w = 1/theta: h over the distance of the pressures at both sides [1]
+  double density = 0;  ///< of the fluid in its dual cell [kg/m^dim]
 
   double mass = 0;         ///< of that fluid, rho V alpha / w [kg]
-  double coefficient = 1;  ///< of A, alpha w rho_0 / rho: in parts of that of a regular face
-  double gradient = 0;     ///< what a unit of p̂ across it takes from its velocity, w / (rho h)
+  double coefficient = 1;  ///< of A, alpha w rho_0 / rho, relative to a regular face [1]
+  double gradient = 0;     ///< change of its velocity by a unit of p̂ across it, w / (rho h)
 };
 
-/// All that pressure, momentum, energy, viscosity and coupling must agree on about faces: made once
-/// a geometry. Between two cells of plain fluid a face is regular: all of it is open and its
-/// pressures lie h apart. Only tiles that hold another face store theirs. At an open side w is 2,
-/// and the dual cell half as long.
+/// Coefficients of all faces, on which pressure, momentum, energy, viscosity and coupling must
+/// agree: made once a geometry. Between two cells of fluid without a surface a face is regular: all
+/// of it is open and its pressures lie h apart. Only tiles that hold another face store theirs. At
+/// an open side w is 2, and the dual cell half as long.
 template <int dim>
 class FaceTable {
  public:
@@ -28,12 +29,12 @@ class FaceTable {
   /// All faces regular. Local.
   FaceTable(const MacDomain<dim>& domain, double density);
 
-  /// Of any stored face, whatever its state.
+  /// Coefficients of any stored face, whatever its state.
   const FaceWorth& operator()(int axis, int cell) const {
     const int block = block_of_tile_[axis][TiledGrid<dim>::tile_of(cell)];
     return block < 0 ? regular_ : special_[axis][place(block, cell)];
   }
-  /// Whether all faces normal to `axis` of the tile of this cell are regular.
+  /// True if all faces normal to `axis` of the tile of this cell are regular.
   bool is_regular_tile(int axis, int cell) const {
     return block_of_tile_[axis][TiledGrid<dim>::tile_of(cell)] < 0;
   }
@@ -42,7 +43,7 @@ class FaceTable {
 
   const FaceWorth& regular() const { return regular_; }
   double area() const { return area_; }  ///< of a whole face [m^(dim-1)]
-  /// What a unit of `FaceWorth::coefficient` is in A: area / (rho_0 h).
+  /// Entry of A for a unit of `FaceWorth::coefficient`: area / (rho_0 h).
   double unit_coefficient() const { return area_ * regular_.gradient; }
   std::size_t n_stored() const;  ///< faces that are not taken from the regular one
 

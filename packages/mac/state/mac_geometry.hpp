@@ -18,7 +18,7 @@ struct MacGeometry : FluidGeometry<dim> {
   MacState<dim> state;
   /// Pressure unknown of each owned cell and its neighbours, or no_index.
   std::vector<GlobalIndex> unknown;
-  /// Of owned faces and the upper ones of owned cells.
+  /// Coefficients of owned faces and the upper ones of owned cells.
   FaceTable<dim> face_table;
   /// Cells so near to a surface that a link from their faces may meet it; empty without surface.
   std::vector<char> near;
@@ -40,19 +40,19 @@ struct MacGeometry : FluidGeometry<dim> {
     return face == FaceState::free || face == FaceState::prescribed ? face_table(axis, cell).open
                                                                     : 0;
   }
-  /// Of the free fluid that moves with a face [kg].
+  /// Mass of the free fluid that moves with a face [kg].
   double mass(int axis, int cell) const {
     return state.faces[axis][cell] == FaceState::free ? face_table(axis, cell).mass : 0;
   }
-  /// Whether the lower faces of a whole row of cells, from that one on, are free and regular ones.
+  /// True if the lower faces of a whole strip of cells, from that one on, are free and regular.
   bool has_regular_faces(int axis, int first) const {
     return face_table.is_regular_tile(axis, first) &&
            is_row_of<dim>(FaceState::free, state.faces[axis].data() + first);
   }
-  /// The same for all faces of a row of cells, which then are fluid.
+  /// True if all faces of a strip of cells are free and regular, and the cells fluid.
   bool has_regular_faces(const CellRow<dim>& row) const;
   bool in_pocket(int cell) const { return !pocket.empty() && pocket[cell] >= 0; }
-  /// Of an owned cell: its tile.
+  /// True if the tile of an owned cell is regular.
   bool is_plain(int cell) const { return plain[TiledGrid<dim>::tile_of(cell)] != 0; }
   bool near_surface(int cell) const { return !near.empty() && near[cell] != 0; }
 };

@@ -9,7 +9,7 @@
 
 namespace lockstep {
 
-/// What a face velocity is.
+/// Kinds of face velocities.
 enum class FaceState : char {
   inactive,    ///< no fluid on either side
   free,        ///< changed by pressure: interior or open side

@@ -21,11 +21,11 @@ Eigen::Map<const RowValues<dim>> row_of(const double* field, int first) {
   return Eigen::Map<const RowValues<dim>>(field + first);
 }
 
-/// So many values of a row as one instruction takes.
+/// Values of a strip that one instruction takes.
 using RowPart [[gnu::vector_size(EIGEN_MAX_ALIGN_BYTES), gnu::may_alias]] = double;
 constexpr int row_part_size = EIGEN_MAX_ALIGN_BYTES / sizeof(double);
 
-/// Those from value i on.
+/// Returns the values from value i on.
 template <int n>
 RowPart& part_of(Eigen::Array<double, n, 1>& row, int i) {
   return *reinterpret_cast<RowPart*>(row.data() + i);
@@ -66,7 +66,7 @@ RowValues<dim> row_behind(const RowValues<dim>& row, double first) {
   return result;
 }
 
-/// Whether a whole row of states, from there on, is this one.
+/// True if a whole strip of states, from there on, is this one.
 template <int dim, typename State>
 bool is_row_of(State state, const State* states) {
   static_assert(sizeof(State) == 1 && tile_width<dim> % 8 == 0);

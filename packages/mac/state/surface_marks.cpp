@@ -43,7 +43,7 @@ void mark_blocked(const MacDomain<dim>& domain, int axis,
       continue;
     Index<dim> coordinates = line.cell;
     coordinates[axis] = cell_above(crossing.coordinate, lower, h);
-    // What lies beyond a periodic side must not wrap round to faces inside the domain.
+    // A crossing beyond a periodic side must not wrap round to faces inside the domain.
     if (coordinates[axis] < 0 || coordinates[axis] > n)
       continue;
     // Beyond the last centre, only the half segment to a side is inside the domain.

@@ -7,11 +7,11 @@
 
 namespace lockstep {
 
-/// What makes advection second order in time: how fast velocities on faces that stay free, or that
-/// sides of the domain prescribe, changed in the last step. Zero elsewhere, and in steps whose
-/// change may be an impulse: the first one, and those in which what is prescribed jumps. Without
-/// solids u + dt/2 du/dt is as free of divergence as u^n and u^{n-1} were. Ghost faces included.
-/// Local.
+/// Rate of change of velocities in the last step, which makes advection second order in time: of
+/// faces that stay free, or that sides of the domain prescribe [m/s^2]. Zero elsewhere, and in
+/// steps whose change may be an impulse: the first one, and those in which a boundary condition
+/// jumps. Without solids u + dt/2 du/dt is as free of divergence as u^n and u^{n-1} were. Ghost
+/// faces included. Local.
 template <int dim>
 class VelocityHistory {
  public:

@@ -30,14 +30,14 @@ class BoxBins {
   int n_used() const { return static_cast<int>(start_.size()) - 1; }
   /// True if the bins that this box touches are empty.
   bool clear(const Box<dim>& box) const { return !any_set(used_, range(box)); }
-  /// The same of all boxes, whether they count or not.
+  /// True if the bins that this box touches hold no box at all, whether it counts or not.
   bool clear_of_boxes(const Box<dim>& box) const { return !any_set(boxed_, range(box)); }
   /// True if a box touches a bin that lies within this one.
   bool box_within(const Box<dim>& box) const;
   /// Calls f(list) for the bins that this box touches.
   template <typename Function>
   void visit(const Box<dim>& box, const Function& f) const;
-  /// What is in the bin at a place: indices, ascending.
+  /// Returns the content of the bin at a place: indices, ascending.
   List at(const Point<dim>& x) const;
   /// Calls f(list, fraction of the segment where it enters the bin) for the bins on the
   /// way from a to b in their order, until f returns true. Bins that only a

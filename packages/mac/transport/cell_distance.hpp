@@ -5,8 +5,8 @@
 
 namespace lockstep {
 
-/// How many cells lie between a cell and the nearest that some box touches (maximum norm), as far
-/// as it matters: one lookup tells most places from those near a surface.
+/// Number of cells between a cell and the nearest that some box touches (maximum norm), up to a
+/// limit: one lookup tells most places from those near a surface.
 template <int dim>
 class CellDistance {
  public:

@@ -35,7 +35,7 @@ int row_in_tile(int id) {
   return (id & (tile_volume<dim> - 1)) / tile_width<dim>;
 }
 
-/// What the centre of a cell is in, or `outside` if its state does not tell.
+/// Returns the state at the centre of a cell, or `outside` if its state does not tell.
 template <int dim>
 CellState state_of_center(const MacState<dim>& state, int cell) {
   return state.has_cut_cells ? CellState::outside : state.cells[cell];

@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// One field being carried, and what MacCormack remembers of the way there.
+/// One advected field, and the data of MacCormack's first half.
 template <int dim>
 struct Passenger {
   AdvectionScheme scheme = AdvectionScheme::semi_lagrangian;
@@ -21,12 +21,12 @@ struct Passenger {
   /// is kept where the result will be.
   double* low = nullptr;
   std::unique_ptr<double[]> high;
-  /// Of the rows of a tile near surfaces that is carried by rows.
+  /// Rays of the strips of a tile near surfaces that is advected by strips.
   std::vector<RowRays<dim>> back, forth;
 
   bool cubic() const { return scheme == AdvectionScheme::cubic; }
   bool corrects() const { return scheme == AdvectionScheme::maccormack; }
-  /// Where the semi-Lagrangian values go.
+  /// Target of the semi-Lagrangian values.
   CellField& carried() { return corrects() ? half_way : *result; }
   void forbid_correction(int id) {
     if (corrects()) {
@@ -37,8 +37,8 @@ struct Passenger {
   bool may_correct(int id) const { return corrects() && low[id] <= high[id]; }
 };
 
-/// Carries fields along the rays of one frame: whole tiles by rows, and what those cannot do, near
-/// surfaces and inflow sides and where rays are long, one sample at a time.
+/// Advects fields along the rays of one frame: whole tiles by strips; near surfaces and inflow
+/// sides, and where rays are long, one sample at a time.
 template <int dim>
 class FieldCarrier {
  public:
@@ -64,18 +64,20 @@ class FieldCarrier {
   /// A partly open face whose centre a solid holds or passes keeps its own value and takes the
   /// change where its fluid is; false: it is no such face.
   bool carry_open_part(Passenger<dim>& passenger, int id, const Point<dim>& x);
-  /// Semi-Lagrangian there and back again shows the error, half of which is taken off.
+  /// Corrects by half of the error that semi-Lagrangian advection there and back again shows
+  /// (MacCormack).
   void correct(std::vector<Passenger<dim>>& passengers);
   bool correct_rows(std::vector<Passenger<dim>>& passengers,
                     const std::vector<const double*>& carried, int tile);
   void correct_single(Passenger<dim>& passenger, const double* carried, int id,
                       const Point<dim>& x) const;
 
-  /// Whether a sample is moved by transport; if not, whether it has a value nevertheless.
+  /// True if transport advects a sample; if not, `has_value` says whether it has a value
+  /// nevertheless.
   bool is_carried(SampleKind kind, int id, bool& has_value) const;
-  /// Whether a solid may hold the place of a sample that is carried.
+  /// True if a solid may hold the place of a sample that is advected.
   bool may_hold_center(SampleKind kind, int id) const;
-  /// Whether these are free faces, all carried.
+  /// True if these are free faces, all advected.
   bool all_free(SampleKind kind, int first, int n) const;
   /// Leaves a sample as it was.
   void keep(Passenger<dim>& passenger, int id, bool has_value) const;

@@ -62,7 +62,8 @@ void NearbySurface<dim>::list_near() {
   });
 }
 
-/// What has left through a periodic side is not repeated inside of the other.
+/// True if an image is outside: what has left through a periodic side is not repeated inside of the
+/// other.
 template <int dim>
 bool NearbySurface<dim>::lies_beyond(const Box<dim>& bounds, const Point<dim>& shift) const {
   for (int a = 0; a < dim; ++a)

@@ -32,7 +32,7 @@ class NearbySurface {
   bool empty() const { return !snapshot_; }
   const SurfaceSnapshot<dim>& snapshot() const { return *snapshot_; }
   double tolerance() const { return tolerance_; }  ///< [m], a millionth of h
-  /// Where answers are fast [m]; may be empty.
+  /// Box in which answers are fast [m]; may be empty.
   const Box<dim>& reached() const { return reached_; }
 
   /// Cells between this one and the nearest that the box of a simplex touches: 0 if it is touched;
@@ -59,8 +59,8 @@ class NearbySurface {
     Point<dim> normal = Point<dim>::Zero();
     double offset = 0;
   };
-  /// How far inside the rim opposite to a corner a point of the simplex' plane is, and the corner
-  /// [m].
+  /// Edge opposite to a corner: as a plane that gives the distance of a point inside of it, and the
+  /// corner's distance `height` [m].
   struct Rim : Plane {
     double height = 0;
   };
@@ -82,7 +82,7 @@ class NearbySurface {
     int near = -1;
   };
   void list_near();
-  /// Of the bounds of a simplex and the shift of its image.
+  /// True if the image of a simplex with these bounds and this shift lies beyond the domain.
   bool lies_beyond(const Box<dim>& bounds, const Point<dim>& shift) const;
   Near picture(int simplex, const Point<dim>& shift) const;
   std::array<Point<dim>, dim> corners(const Near& near) const;

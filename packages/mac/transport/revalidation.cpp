@@ -11,7 +11,7 @@ namespace lockstep {
 
 namespace {
 
-/// How far beyond owned cells the neighbours that are looked at lie, at most [cells].
+/// Largest distance of the neighbours beyond owned cells that are read [cells].
 constexpr int sight = 2;
 
 /// A sample that waits for a value, and those of its neighbours that it can see.

@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// What a revalidation did, over all ranks.
+/// Result of populating uncovered cells, over all ranks.
 struct RevalidationReport {
   GlobalIndex n_invalid = 0;    ///< samples in the fluid that had no value
   GlobalIndex n_left_over = 0;  ///< of them: no valid sample in sight, directly or over others
@@ -21,7 +21,7 @@ RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchan
                                     const MacState<dim>& after, const MovingSurface<dim>& surface,
                                     KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
                                     FaceField<dim>& u);
-/// The same for a cell-centred scalar; what is left over gets `ambient`.
+/// Populates the invalid cells of a scalar; those left over get `ambient`.
 template <int dim>
 RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                      const MacState<dim>& after, const MovingSurface<dim>& surface,

@@ -130,7 +130,7 @@ class RowStencil {
       }
     }
   }
-  /// Of the lowest sample of a point.
+  /// Place of the lowest sample of a point.
   int place_of(int i) const {
     double place = splits_[0]->below[i];
     for (int a = 1; a < dim; ++a)
@@ -164,7 +164,7 @@ class RowStencil {
                                    splits_[axis]->weight_of_other);
     }
   }
-  /// The same for the range of the samples.
+  /// Computes the range of the samples, likewise.
   template <int axis, int mixed>
   [[gnu::always_inline]] Range range(const double* c) const {
     if constexpr (axis < 0) {
@@ -180,7 +180,7 @@ class RowStencil {
               most(upper.high, chosen(is_ahead, last.high, lower.high))};
     }
   }
-  /// The same for point i of the row alone.
+  /// Interpolates at point i of the strip alone.
   template <int axis>
   double single(const double* c, int i) const {
     if constexpr (axis < 0)

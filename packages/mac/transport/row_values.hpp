@@ -37,7 +37,7 @@ Values samples_at(const double* c) {
     return Eigen::Map<const Values>(c);
 }
 
-/// Those at given places.
+/// Returns the values at given places.
 template <int n>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> gathered(
     const double* c, const Eigen::Array<int, n, 1>& places) {
@@ -54,7 +54,7 @@ template <int n>
   return values;
 }
 
-/// Whether some value is not 0.
+/// True if some value is not 0.
 template <int n>
 [[gnu::always_inline]] inline bool has_nonzero(const Eigen::Array<double, n, 1>& values) {
 #ifdef __AVX512F__

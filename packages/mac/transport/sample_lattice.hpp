@@ -9,7 +9,8 @@
 
 namespace lockstep {
 
-/// Which samples of the staggered grid: the faces normal to an axis (0 .. dim-1), or cell centres.
+/// Kind of a sample of the staggered grid: on the faces normal to an axis (0 .. dim-1), or at cell
+/// centres.
 using SampleKind = int;
 constexpr SampleKind cell_centers = -1;
 
@@ -101,7 +102,7 @@ class SampleLattice {
 
   /// Samples around x: periodic axes wrap, others stop at their last sample.
   Stencil<dim> locate(SampleKind kind, const Point<dim>& x) const;
-  /// The same for all components of a velocity.
+  /// Samples around x of all components of a velocity.
   std::array<Stencil<dim>, dim> locate_faces(const Point<dim>& x) const;
   /// The samples of a cubic around x, which is moved between the outermost samples of axes that are
   /// not periodic; beside them, of a parabola.
@@ -123,7 +124,7 @@ class SampleLattice {
     int offset = 0;             ///< share of the first place's offset in the tile
     bool at_wall = false;
   };
-  /// Of `width` places from `begin`; `on_faces`: of faces normal to the axis.
+  /// Finds the runs of `width` places from `begin`; `on_faces`: places of faces normal to the axis.
   std::vector<Run> find_runs(int axis, bool on_faces, int begin, int width) const;
   /// Copies the samples of a box of cells, x fastest, in rows and planes of `stride`; runs[axis]
   /// are those of the box. False if any sample is missing.

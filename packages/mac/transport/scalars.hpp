@@ -50,7 +50,7 @@ class Scalars {
   /// Feeds the fluid cells inside the sources that are active at `time`, over dt. Sets owned cells.
   /// Local.
   void feed(const MacGeometry<dim>& geometry, double time, double dt);
-  /// Of the shapes that are filled with liquid at `time`, the distance from each [m].
+  /// Distance functions [m] of the shapes that are filled with liquid at `time`.
   std::vector<std::function<double(const Point<dim>&)>> liquid_sources(double time) const;
   /// True if a source that is active at `time` sets the velocity.
   bool sources_push(double time) const;

@@ -10,9 +10,9 @@ namespace lockstep {
 
 namespace {
 
-/// How far before a surface a ray stops [cells].
+/// Distance before a surface at which a ray stops [cells].
 constexpr double stand_off = 1e-3;
-/// How far from a surface what is followed stays [cells].
+/// Distance from a surface that followed points keep [cells].
 constexpr double clearance_of_rays = 0.1;
 
 }  // namespace
@@ -26,7 +26,7 @@ SurfaceTransport<dim>::SurfaceTransport(
       tracer_(tracer),
       surface_(surface),
       surface_displacement_(largest_move(surface) / grid.spacing()),
-      // What a ray crosses, and the samples around it, must be clear of surfaces.
+      // The way of a ray, and the samples around it, must be clear of surfaces.
       near_reach_(cells_reached(largest_displacement + stencil_reach + surface_displacement_)),
       interpolation_(grid, lattice, usable, surface, friction_speed,
                      kept.of(surface.before, grid, near_reach_ + 2)) {

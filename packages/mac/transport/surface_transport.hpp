@@ -14,9 +14,9 @@ template <int dim>
 struct CarriedField {
   SampleKind kind = cell_centers;
   const double* values = nullptr;
-  /// Of a velocity component: itself among the others, which surfaces mix.
+  /// All components of the velocity that an advected component belongs to, which surfaces mix.
   std::array<const double*, dim> velocity{};
-  /// Its value where a ray leaves through an inflow side.
+  /// Value of the field where a ray leaves through an inflow side.
   std::function<double(const Ray<dim>&)> inflow;
   /// Instead, where it is what the side's distance makes of the value `inside`, at the ray's end.
   std::function<double(const Ray<dim>&, double inside)> enters = nullptr;
@@ -38,7 +38,7 @@ class SurfaceTransport {
   /// True if a surface may come into the way of a ray from the sample, forth or back, or sweep over
   /// it.
   bool is_near(const Point<dim>& x) const { return within(x, near_reach_); }
-  /// The same of some sample of the tile that begins there.
+  /// True if some sample of the tile that begins there may be near a surface.
   bool is_near_tile(const Index<dim>& tile_begin) const;
   /// False if no surface comes into the sample's cell during the step.
   bool may_be_swept(const Point<dim>& x) const {
@@ -46,7 +46,7 @@ class SurfaceTransport {
   }
   /// The sample changes sides or has none: swept over, or on a surface at t^n or t^{n+1}.
   bool swept(const Point<dim>& x) const;
-  /// Of a face that is carried, of a cell in this state: its centre is inside a closed solid at
+  /// True if the centre of an advected face or of a cell in this state is inside a closed solid at
   /// t^n.
   bool inside(const Point<dim>& x, CellState cell) const;
   /// True if no surface touches the points and their surroundings of `reach` cells, at t^n or, with

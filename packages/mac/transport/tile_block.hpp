@@ -37,7 +37,7 @@ class TileBlock {
   /// samples of the loaded field with these coordinates within the tile (x is ignored).
   /// `cubic`: the velocity is interpolated by cubics.
   RowRays<dim> trace(const Index<dim>& in_tile, double direction, bool cubic = false) const;
-  /// The same from any points of the tile, relative to the block; linear alone.
+  /// Follows rays from any points of the tile, relative to the block; linear alone.
   RowRays<dim> follow(const RowPoints<dim>& start, double direction) const;
   /// Where points, in cells from the lower corner of the tile, are in the block.
   int margin(int axis) const { return margin_[axis]; }
@@ -50,7 +50,7 @@ class TileBlock {
   }
   /// The loaded field at a row of points.
   void look_up(const RowPoints<dim>& points, RowValues<dim>& values) const;
-  /// The same, and the range of the samples used there.
+  /// Interpolates at these points, and finds the range of the samples used there.
   void look_up(const RowPoints<dim>& points, RowValues<dim>& values, RowValues<dim>& low,
                RowValues<dim>& high) const;
   /// The first by cubics, within the range of the 4^dim samples around each point.

@@ -10,10 +10,11 @@ namespace lockstep {
 namespace {
 
 constexpr double largest_sensible_displacement = 1e6;  // [cells]
-/// How near to an inflow side a ray may end for the side to bound a distance: beyond the samples
-/// beside which the surface comes to lie [cells].
+/// Largest distance from an inflow side at the end of a ray for which the side bounds a distance
+/// function: beyond the samples beside which the surface comes to lie [cells].
 constexpr double bounded_depth = 3;
-/// Of a cell and its slip: up to this one the fluid comes to rest at a surface within the cell.
+/// Reynolds number of a cell and its slip up to which the fluid comes to rest at a surface within
+/// the cell [1].
 constexpr double resolved_reynolds_number = 4;
 
 /// Along an axis, over all ranks, in cells.

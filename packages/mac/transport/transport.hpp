@@ -20,8 +20,8 @@ enum class AdvectionScheme {
   cubic             ///< semi-Lagrangian with cubics, third order in space; with lines near surfaces
 };
 
-/// What rays find that leave the domain through one of its sides. Where nothing flows in, the ray
-/// slides along the side: walls let nothing pass, open sides have zero gradient.
+/// Boundary condition for rays that leave the domain through a side. Where nothing flows in, the
+/// ray slides along the side: walls let nothing pass, open sides have zero gradient.
 template <int dim>
 struct TransportSide {
   bool inflow = false;
@@ -33,7 +33,7 @@ struct TransportSide {
 template <int dim>
 using SideValues = std::array<std::array<double, 2>, dim>;
 
-/// What transport sees of the world at t^n. The referenced objects must outlive the Transport.
+/// Input of transport at t^n. The referenced objects must outlive the Transport.
 template <int dim>
 struct TransportSetting {
   const TiledGrid<dim>& grid;
@@ -58,15 +58,15 @@ struct InvalidSamples {
   std::vector<char> cells;
 };
 
-/// Carries fields over one step along u_ADV (F3), without anything passing through a surface: a ray
-/// from a sample back to where its fluid came from stops at the first surface it meets, and what it
-/// finds there is interpolated from samples that are visible from that point alone. Of a velocity a
-/// hidden sample has what the surface that hides it makes of the visible ones: the normal part is
-/// the surface's, the tangential part theirs, less friction.
+/// Advects fields over one step along u_ADV (F3), without anything passing through a surface: a ray
+/// from a sample back to where its fluid came from stops at the first surface it meets, and the
+/// value there is interpolated from samples that are visible from that point. A hidden sample of a
+/// velocity takes its normal part from the surface that hides it, and its tangential part from the
+/// visible samples, less friction.
 ///
 /// Constant fields stay exactly constant. A scalar never leaves the range of the field and the
-/// inflow values, a velocity grows no longer than the fastest of field, surfaces and inflows.
-/// In tiles that do not exist fluid is at rest. Results do not depend on the number of ranks.
+/// inflow values, a velocity grows no longer than the fastest of field, surfaces and inflows. In
+/// tiles that do not exist fluid is at rest. Results do not depend on the number of ranks.
 template <int dim>
 class Transport {
  public:
@@ -91,12 +91,12 @@ class Transport {
   void advect_distance(const CellField& distance, double cut_off, const std::vector<char>& tiles,
                        CellField& result);
 
-  /// What the calls so far could not give a value. Faces after `advect_faces`, cells after
-  /// `advect_scalar` (the same for every scalar).
+  /// Samples to which the calls so far could not give a value: faces after `advect_faces`, cells
+  /// after `advect_scalar` (the same for every scalar).
   const InvalidSamples<dim>& invalid() const;
   /// The largest displacement along an axis over all ranks, in cells.
   double largest_displacement() const;
-  /// For those who carry something else along the same rays.
+  /// Returns the frame, for callers that advect something else along the same rays.
   TransportFrame<dim>& frame();
 
  private:

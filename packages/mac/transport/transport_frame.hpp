@@ -9,13 +9,13 @@
 
 namespace lockstep {
 
-/// How the samples of a tile are carried.
+/// Way in which the samples of a tile are advected.
 struct TilePlan {
   bool by_rows = false;  ///< short rays, far from inflow sides: first as if no surface was near
   bool near_surface = false;  ///< a surface may be in the way of some
 };
 
-/// What all fields carried in one step have in common.
+/// Data that all fields advected in one step share.
 template <int dim>
 struct TransportFrame {
   TransportSetting<dim> setting;

@@ -9,12 +9,12 @@
 
 namespace lockstep {
 
-/// Which samples may be interpolated from, by id on the sample grid (0: not).
+/// Marks the samples that may be interpolated from, by id on the sample grid (0: not).
 template <int dim>
 struct UsableSamples {
   std::array<const char*, dim> faces;
   const char* cells = nullptr;
-  /// Of lower sides: whether no velocity goes through. Upper ones have their samples only if it
+  /// True for lower sides through which no velocity goes. Upper ones have their samples only if it
   /// does (Stencil::wall_sample).
   std::array<bool, dim> closed_below{};
 };
@@ -79,7 +79,7 @@ class VisibleInterpolation {
     double weight = 0;
     SurfacePoint<dim> hit;
   };
-  /// Of the samples of one component around a point.
+  /// Visibility of the samples of one component around a point.
   struct Sight {
     WeightedMean visible;
     std::vector<Hidden> hidden;
@@ -88,7 +88,8 @@ class VisibleInterpolation {
   /// The value of a component; if some of its samples are hidden, all components have been looked
   /// at.
   std::optional<double> seen_velocity(int axis) const;
-  /// What a surface makes of a velocity `seen` before it: no longer than the two together.
+  /// Returns the velocity that a surface makes of a velocity `seen` before it: no longer than the
+  /// two together.
   double slipping(int axis, const Point<dim>& seen, const SurfacePoint<dim>& hit) const;
 
   const TiledGrid<dim>& grid_;

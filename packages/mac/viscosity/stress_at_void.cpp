@@ -45,7 +45,7 @@ bool StressAtVoid<dim>::is_definite() const {
   return max_all(grid.comm(), found) == 0;
 }
 
-/// On this rank.
+/// True if fluid is at an open side on this rank.
 template <int dim>
 bool StressAtVoid<dim>::fluid_at_open_side() const {
   const TiledGrid<dim>& grid = domain_.grid;

@@ -5,15 +5,16 @@
 
 namespace lockstep {
 
-/// What makes the viscous form that of the symmetric stress beside a void, where nothing may pull:
-/// sum over the cells of 2 mu (d_a u_a)^2, over the edges all of whose faces have fluid of
-/// mu (d_b u_a + d_a u_b)^2. The bonds of the Laplacian have half of the first, and the squares of
-/// the second. In the middle of the fluid, and beside a side whose velocity is known, the rest
-/// cancels, pair by pair of faces at right angles to each other, each of which shares a cell and an
-/// edge; in 3D but for mu (div u)^2, without which the form would not be positive.
-///
-/// Where solids are near, the form is that of the bonds alone. What cancels in the middle leaves a
-/// term of either sign where that ends: only for what `is_definite` says is safe.
+/// Terms that make the viscous form that of the symmetric stress beside air, where the surface is
+/// free of traction: the form is the sum over the cells of 2 mu (d_a u_a)^2, and over the edges all
+/// of whose faces have fluid of mu (d_b u_a + d_a u_b)^2. The viscous couplings of the Laplacian
+/// have half of the first, and the squares of the second. In the middle of the fluid, and beside a
+/// side whose velocity is known, the rest cancels, pair by pair of faces at right angles to each
+/// other, each of which shares a cell and an edge; in 3D but for mu (div u)^2, without which the
+/// form would not be positive.
+/// Where solids are near, the form is that of the couplings alone. The terms that cancel in the
+/// middle leave one of either sign where that ends: they may be used only where `is_definite` says
+/// so.
 template <int dim>
 class StressAtVoid {
  public:
@@ -21,12 +22,12 @@ class StressAtVoid {
   struct Partner {
     FaceId face;  ///< free, or prescribed at an inflow
     double coefficient = 0;
-    /// Of that, what comes from outside of the fluid: what is not mu (div u)^2, and that too where
+    /// Part of the coefficient from outside of the fluid: all but mu (div u)^2, and that too where
     /// the cell's other face, which gives as much back, is a side's.
     double from_outside = 0;
   };
 
-  /// For fluids with a free surface. References must outlive this. Collective.
+  /// Makes the terms of a fluid with a free surface. References must outlive this. Collective.
   StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
   /// False if fluid beside the void has a solid near it, or fluid stands at an open side, on any
@@ -34,9 +35,9 @@ class StressAtVoid {
   /// Collective.
   bool is_definite() const;
 
-  /// True if a face and its neighbour across have the void beside them: no bond.
+  /// True if a face and its neighbour across have air beside them: they are not coupled.
   bool parts(const FaceId& face, int across, int end) const;
-  /// Bonds along a velocity's own axis, through this cell, count so much more: 0 or 1.
+  /// Extra weight of couplings along a velocity's own axis, through this cell: 0 or 1.
   double extra_bond(int cell) const {
     return dim == 3 && is_fluid(cell) && is_far_from_solids_[cell] ? 1 : 0;
   }
@@ -61,8 +62,8 @@ class StressAtVoid {
   /// marked, as they are.
   std::vector<char> with_marked_surroundings(std::vector<char> marked) const;
   bool fluid_at_open_side() const;
-  /// Of the two faces of a cell normal to that axis, whether this one can move freely. None is
-  /// stored at an upper wall.
+  /// True if this one of a cell's two faces normal to that axis can move freely. None is stored at
+  /// an upper wall.
   bool is_free(int axis, int cell, int end) const {
     const int face = end == 0 ? cell : domain_.grid.neighbor(cell, axis, 1);
     return face >= 0 && geometry_.state.faces[axis][face] == FaceState::free;

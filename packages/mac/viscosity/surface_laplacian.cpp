@@ -53,7 +53,7 @@ bool SurfaceLaplacian<dim>::look(int axis, const Index<dim>& lowest, double& del
   return true;
 }
 
-/// Of its volume: half along each axis on which it is about a side.
+/// Part of a cube's volume in the domain: half along each axis on which it is about a side.
 template <int dim>
 double SurfaceLaplacian<dim>::part_in_domain(int axis, const Index<dim>& lowest) const {
   double part = 1;

@@ -10,9 +10,9 @@ namespace lockstep {
 /// The surface Laplacian of each component of the velocity in its weak form,
 ///   sum of V delta(phi) grad_s u . grad_s v,
 /// over the cubes that 2^dim velocities of an axis are the corners of: delta is a cosine that ends
-/// 1.5 h off the surface, grad_s what of the gradient is along it. Only free velocities have a
-/// part: where others are missing, as in the void, what is left says how u changes along the
-/// surface. So the form is symmetric, not negative, and zero where u is constant.
+/// 1.5 h off the surface, grad_s the tangential part of the gradient. Only free velocities have a
+/// part: where others are missing, as in the air, the rest tell how u changes along the surface. So
+/// the form is symmetric, not negative, and zero where u is constant.
 template <int dim>
 class SurfaceLaplacian {
  public:
@@ -61,16 +61,16 @@ class SurfaceLaplacian {
     Eigen::Matrix<double, n_corners, n_corners> form;
   };
 
-  /// Whether a face of the cell may be a corner of a cube that has a form.
+  /// True if a face of the cell may be a corner of a cube that has a form.
   bool is_near(int cell) const { return std::abs(distance_[cell]) <= 3 * domain_.spacing(); }
-  /// Null if it has none.
+  /// Returns the cube; null if it has no form.
   const Cube* cube_at(int axis, const Index<dim>& lowest);
-  /// False if it has none.
+  /// Makes a cube; returns false if it has no form.
   bool make_cube(int axis, const Index<dim>& lowest, Cube& cube) const;
   /// delta [1/m] and the surface's normal in its middle; false far from the surface.
   bool look(int axis, const Index<dim>& lowest, double& delta, Point<dim>& normal) const;
   double distance_at(Index<dim> cell) const;
-  /// Whether velocities of neighbouring cells tell how u changes between them.
+  /// True if the velocities of neighbouring cells tell how u changes between them.
   bool is_bonded(int axis, int lower, int upper, int along) const;
   double part_in_domain(int axis, const Index<dim>& lowest) const;
 

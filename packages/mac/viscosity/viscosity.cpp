@@ -58,7 +58,7 @@ double Viscosity<dim>::side_velocity(const SideLink& side, double time) const {
   return domain_.boundary.side(side.axis, side.end).mean_velocity(side.axis, volume, time)[axis];
 }
 
-/// What comes in through a prescribed face.
+/// Velocity of the inflow through a prescribed face [m/s].
 template <int dim>
 double Viscosity<dim>::inflow_velocity(const FaceId& face, double time) const {
   const int below = domain_.grid.neighbor(face.cell, face.axis, 0);
@@ -106,7 +106,7 @@ Momentum<dim> Viscosity<dim>::tension_impulse(const FaceField<dim>& velocity, do
   return sum_over_ranks(sum_of(tension_pulls_, velocity, dt), domain_.grid.comm());
 }
 
-/// Of this rank.
+/// Sums the impulses of pulls over dt, on this rank.
 template <int dim>
 Momentum<dim> Viscosity<dim>::sum_of(const std::vector<CrossPull>& pulls,
                                      const FaceField<dim>& velocity, double dt) const {

@@ -28,7 +28,7 @@ class Viscosity {
   /// the couple of parallel forces between neighbours. The halo of `velocity` must be valid.
   /// Collective.
   Momentum<dim> impulse(const FaceField<dim>& velocity, double time, double dt) const;
-  /// That of implicit surface tension over dt: a couple, as it holds back what turns. The halo of
+  /// Impulse of implicit surface tension over dt: a couple, as it resists rotation. The halo of
   /// `velocity` must be valid. Collective.
   Momentum<dim> tension_impulse(const FaceField<dim>& velocity, double dt) const;
 

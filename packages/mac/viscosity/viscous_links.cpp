@@ -76,7 +76,7 @@ class Builder {
     const int n = static_cast<int>(result_.faces.size());
     for (row_ = 0; row_ < n; ++row_) {
       start_row(result_.faces[row_]);
-      // In the order of the ids within a tile.
+      // in the order of the ids within a tile
       for (int across = dim - 1; across >= 0 && is_viscous(); --across)
         add_link(across, 0, rows);
       const std::size_t middle = rows.add(ids_[face_.axis][face_.cell], 0);
@@ -310,7 +310,7 @@ class Builder {
   ViscousLinks<dim> result_;
   std::array<std::vector<GlobalIndex>, dim> ids_;
   std::vector<Coupled> coupled_;
-  // Of the present row.
+  // the present row
   int row_ = 0;
   FaceId face_;
   FaceCells cells_;

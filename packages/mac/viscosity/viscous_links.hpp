@@ -10,7 +10,7 @@ struct ViscosityParameters {
   bool has_void = false;  ///< above a free surface: the form is that of the symmetric stress there
 };
 
-/// What surface tension that is implicit adds: sigma dt times the surface Laplacian.
+/// Implicit surface tension: sigma dt times the surface Laplacian.
 struct ImplicitTension {
   double strength = 0;                  ///< sigma dt [N s/m]; 0: none
   const CellField* distance = nullptr;  ///< phi on all stored cells [m]
