@@ -1,5 +1,6 @@
-// The same two plug-ins, an observer and an interface model, under names of their own in scene
-// files: simulate SCENE.xml OUTPUT_FOLDER [--set "List/Name=value"]... [--restart CHECKPOINT]
+// A program with two plug-ins of its own, an observer and an interface model, under names of their
+// own in scene files: simulate SCENE.xml OUTPUT_FOLDER [--set "List/Name=value"]... [--restart
+// CHECKPOINT]
 #include <CLI/CLI.hpp>
 #include <Tpetra_Core.hpp>
 #include <iostream>

@@ -1,5 +1,5 @@
-// What interface models lose in flows that should bring a body of liquid back, and what they cost:
-// one line a run, comma-separated. interfaces CASE..., with CASE one of zalesak, vortex-64,
+// Measures the losses and costs of interface models in flows that should bring a liquid component
+// back: one line a run, comma-separated. interfaces CASE..., with CASE one of zalesak, vortex-64,
 // vortex-128, deformation-32, deformation-64.
 #include <Tpetra_Core.hpp>
 #include <cstdio>

@@ -55,7 +55,7 @@ Outcome lockstep_multigrid(const Problem& problem, double tolerance) {
   StrategyRegistry strategies("solver strategy");
   register_strategies(strategies);
   const auto strategy = strategies.create("schur-cg", strategies.valid_parameters("schur-cg"));
-  // What depends on the grid alone is kept from one geometry to the next.
+  // Parts that depend on the grid alone are kept from one geometry to the next.
   strategy->prepare(system);
   ++system.geometry_stamp;
   Outcome outcome;

@@ -1,5 +1,5 @@
 #pragma once
-// What the solvers of peers.cpp have in common.
+// Common parts of the solvers of peers.cpp.
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <array>

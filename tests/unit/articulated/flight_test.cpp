@@ -135,7 +135,8 @@ TEST(Flight, IsOfSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / half), 2, 0.15);
 }
 
-/// What no energy can drift away from: with momenta turned round it goes back the way it came.
+/// A flight is reversible, so that no energy can drift: with momenta turned round it goes back the
+/// way it came.
 TEST(Flight, GoesBackTheWayItCame) {
   Chain chain;
   const std::vector<BodyPose<3>> start = chain.poses();

@@ -53,7 +53,8 @@ struct Linkage {
   }
 };
 
-/// What all joints hold, read off the twists of the basis: zero, or they let go what they must not.
+/// Largest velocity that joints should hold, read off the twists of the basis: zero, or they let go
+/// too much.
 template <int dim>
 double largest_violation(const Linkage<dim>& linkage, const Mechanism& mechanism,
                          const MotionBasis<dim>& basis) {
@@ -233,8 +234,8 @@ TEST(Closing, FitsAllJointsAndKeepsMomentum) {
   }
 }
 
-/// Of two mechanisms whose bodies and joints alternate, a loop and a chain on a prescribed body,
-/// each under its own numbers goes where it goes among all.
+/// Two mechanisms whose bodies and joints alternate, a loop and a chain on a prescribed body, move
+/// each under its own numbers as they do among all.
 TEST(Closing, AMechanismAloneIsTheSameBitForBit) {
   Linkage<2> linkage;
   const Point<2> corners[] = {{0, 0}, {2, 0}, {2.5, 1}, {0.5, 1}};

@@ -157,7 +157,7 @@ Violations violations_of_solid(bool moving) {
   return check_solid<2>(solid);
 }
 
-/// Of solids at rest too: the suite sets them in motion.
+/// Solids at rest are tested, too: the suite sets them in motion.
 TEST(Conformance, FindsSolidsThatBreakAPromise) {
   for (const bool moving : {true, false}) {
     EXPECT_THAT(violations_of_solid<FakeSolid<2>>(moving), ::testing::IsEmpty());

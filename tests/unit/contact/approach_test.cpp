@@ -158,7 +158,7 @@ TYPED_TEST(Approaches, LayersThatMeetAreFoundAndOthersAreNot) {
   }
 }
 
-// What moves is one simplex of many, so that few of the boxes that hold it move as a whole.
+// One simplex of many moves, so that few of the boxes that hold it move as a whole.
 TYPED_TEST(Approaches, OneSimplexThatMovesIsFoundWhereverItIs) {
   constexpr int dim = TypeParam::value;
   constexpr double gap = 0.3 * h, thickness = 0.1 * h;  // that of Search

@@ -143,7 +143,7 @@ TYPED_TEST(Contacts, ABoxOnAnInclineSticksOrSlides) {
   }
 }
 
-/// Of a plate that lay with this side up at the start.
+/// Normal of a plate that lay with this side up at the start.
 template <int dim>
 Point<dim> plate_normal(const SolidSystem<dim>& solids, int plate) {
   const auto surface = solids.snapshot();

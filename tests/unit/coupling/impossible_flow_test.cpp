@@ -1,4 +1,4 @@
-// What may not be pushed into a closed region, and what is only the grid's inaccuracy.
+// Fluxes that may not be pushed into a closed region, and inaccuracies of the grid that may.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
@@ -21,7 +21,7 @@ struct Tank {
   std::string judge(const PrescribedFluxes& fluxes, GlobalIndex smallest = 9) const {
     return impossible_flow(null_space_of({level}), fluxes, smallest, 0, "m^2/s");
   }
-  /// On rank 0 alone; the last unknown is another rank's.
+  /// Makes a source on rank 0 alone; the last unknown is another rank's.
   PrescribedFlux source(const std::string& name, const std::vector<double>& rates) const {
     PrescribedFlux flux{name, {}};
     for (std::size_t k = 0; k < rates.size() && is_root(comm); ++k)

@@ -215,7 +215,7 @@ TEST(Reduction, CarriedNodesTakeNoMomentum) {
   const Momentum<2> of_carried = solids.momentum(*carried);
   EXPECT_LT(of_carried.linear.norm(), 1e-13);
   EXPECT_LT(of_carried.angular.norm(), 1e-13);
-  // What holds the plate along y acts on it from outside.
+  // The constraint that holds the plate along y acts on it from outside.
   values[1] = 5;
   const auto held = distributed(values, solids.map());
   reduction_of(solids.map(), node, {1}).keep_reactions(*held);

@@ -36,7 +36,7 @@ FakeBody<2> loose_thread() {
   return body;
 }
 
-/// What every solid model must write, and nothing more.
+/// A solid model with the functions that every one must write, and nothing more.
 class BareSolid : public SolidModel<2> {
  public:
   explicit BareSolid(const FakeBody<2>& body) : inner_({body}, {}, Tpetra::getDefaultComm()) {}

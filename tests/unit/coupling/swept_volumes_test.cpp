@@ -1,4 +1,4 @@
-// Which rates soft solids are told to sweep, beside bodies that share faces with them.
+// Swept rates of soft solids, beside bodies that share faces with them.
 #include "coupling/swept_volumes.hpp"
 
 #include <gtest/gtest.h>
@@ -37,8 +37,8 @@ class SoftLoop : public FakeSolid<2>, public VolumeSweeper<2> {
   void sweep(double, const std::vector<double>&, Vector&) const override {}
 };
 
-/// What a loop at rest is told to sweep: in it, beside its left side, a body moves to the right; a
-/// second one, if there is one, has no surface.
+/// Rate that a loop at rest gets to sweep: in it, beside its left side, a body moves to the right;
+/// a second one, if there is one, has no surface.
 double rate_of_loop(bool with_unseen) {
   FakeBox<2> box;
   box.n_cells = {8, 8};
@@ -58,7 +58,7 @@ double rate_of_loop(bool with_unseen) {
   return rates.at(1).at(0);
 }
 
-/// What the body's part of shared faces makes is the loop's to sweep.
+/// The loop sweeps the body's part of shared faces.
 TEST(SweptVolumes, WhatNoFluidSeesChangesNoShares) {
   const double alone = rate_of_loop(false);
   EXPECT_GT(std::abs(alone), 0.01);

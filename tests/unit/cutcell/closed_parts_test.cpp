@@ -1,4 +1,4 @@
-// How much of a face lies inside a solid, and where.
+// Area and centroid of the part of a face inside a solid.
 #include "cutcell/closed_parts.hpp"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST(ClosedParts, SectionsOfATetrahedron) {
     expected[axis] = 0.5;
     EXPECT_NEAR((parts[0].center - expected).norm(), 0, 1e-14);
   }
-  // Of the triangle (0, 0) (0.5, 0) (0, 0.5), the corner beyond 0.25.
+  // The triangle (0, 0) (0.5, 0) (0, 0.5) has only the corner beyond 0.25 in this face.
   const auto corner = closed_parts<3>(surface, {Point<3>(0.25, 0, 0.5), Point<3>(1, 1, 0.5)}, 2);
   EXPECT_NEAR(corner[0].area, 0.25 * 0.25 / 2, 1e-14);
   EXPECT_NEAR((corner[0].center - Point<3>(0.25 + 0.25 / 3, 0.25 / 3, 0.5)).norm(), 0, 1e-14);

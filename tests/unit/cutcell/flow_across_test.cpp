@@ -1,4 +1,4 @@
-// What goes through planes that solids cover in part.
+// Flow through planes that solids cover in part.
 #include <gtest/gtest.h>
 
 #include "cutcell/flux_coupling.hpp"

@@ -242,7 +242,7 @@ TEST(Flux, OfAFluidAtRestLiftsThePartInTheTank) {
   }
 }
 
-// What nodes take with other levers than the fluid gives it is named, to round-off.
+// The torque error of nodes, whose levers are not the fluid's, is in the ledger, to round-off.
 TEST(Flux, NamesTheLeversOfNodes) {
   FakeBody<2> body = ball<2>(0.23, {0.52, 0.47}, 0.03), plate;
   body.kind = plate.kind = FakeBody<2>::Kind::nodal;

@@ -70,7 +70,7 @@ struct ViscousCase {
   std::unique_ptr<CoupledSystem<dim>> system;
 };
 
-/// What the transposed gradient gives a ball in dt.
+/// Impulse of the transposed gradient on a ball in dt.
 template <int dim>
 double couple_scale(double radius) {
   const double volume = dim == 2 ? M_PI * radius * radius : 4. / 3 * M_PI * std::pow(radius, 3);

@@ -1,4 +1,4 @@
-// What the pressure of water with a plane surface gives a body too much, for any gravity.
+// Excess of the hydrostatic force of water with a plane surface on a body, for any gravity.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>

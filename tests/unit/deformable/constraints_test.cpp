@@ -54,7 +54,7 @@ TEST(Constraints, ScriptedNodesFollowTheirScript) {
           Point<2>(3, 1 + 0.2 * s) + Eigen::Rotation2Dd(0.3 * s) * (start[v] - Point<2>(3, 1));
       EXPECT_LE((alone.solids.surface().vertices[v] - expected).norm(), 1e-13);
     }
-    // At the end of the step they have the velocity of that instant.
+    // The nodes have the velocity of that instant at the end of the step.
     const double rate = 2 * M_PI * std::cos(2 * M_PI * alone.time + 0.7);
     SurfacePoint<2> point;
     for (std::size_t k = 0; k < alone.solids.surface().simplices.size(); ++k) {
@@ -168,7 +168,8 @@ TEST(Constraints, StrainIsLimited) {
   EXPECT_LE(lowest, -0.3);
 }
 
-/// What is held apart stays longer than it may, and the model says by how much.
+/// A sheet that is held apart stays longer than its limit allows, and the model reports by how
+/// much.
 TEST(Constraints, StrainThatCannotBeLimitedIsTold) {
   const ParameterList given =
       scene_list(geometry("sheet", numbers("Size", "1, 1, 0") + text("Normal", "z") +

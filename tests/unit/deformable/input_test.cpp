@@ -1,4 +1,4 @@
-// What a scene may get wrong.
+// Errors that a scene may contain.
 #include <filesystem>
 #include <fstream>
 

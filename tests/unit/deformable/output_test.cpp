@@ -1,4 +1,4 @@
-// What solvers and frames are told of soft bodies.
+// Data of soft bodies for solvers and frames.
 #include <Tpetra_MultiVector.hpp>
 #include <Tpetra_Vector.hpp>
 

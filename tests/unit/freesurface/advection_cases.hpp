@@ -11,7 +11,7 @@ inline ParameterList uncorrected() {
   return list;
 }
 
-/// What a body of liquid has come to in a flow that should bring it back: parts of its volume.
+/// Errors of a liquid component in a flow that should bring it back, as parts of its volume.
 struct Return {
   double loss = 0;    ///< of volume
   double shape = 0;   ///< volume that is wet or dry though it should not be

@@ -27,7 +27,7 @@ DomainDescription<dim> open_cube(int n, double length = 1) {
   return description;
 }
 
-/// The same with walls.
+/// A cube with walls on all sides.
 template <int dim>
 DomainDescription<dim> closed_cube(int n) {
   DomainDescription<dim> description;
@@ -101,7 +101,7 @@ struct Bath {
   struct Areas {
     double liquid = 0, wrong = 0;  ///< of {phi < 0}; of points whose sign is not that of `exact`
   };
-  /// By s^dim samples a cell.
+  /// Measures with s^dim samples a cell.
   Areas measure(const CellField& phi, const SignedDistance<dim>& exact, int s = 4) const {
     std::array<double, 2> sum{};
     const double h = domain.spacing();

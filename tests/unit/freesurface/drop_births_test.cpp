@@ -21,7 +21,7 @@ struct Torn {
   explicit Torn(const Communicator& comm) : bath(closed_cube<dim>(n), comm) {
     const Point<dim> up = Point<dim>::Unit(1), middle = Point<dim>::Constant(0.5);
     bath.set_velocity([&](const Point<dim>& x) {
-      // Without divergence; at rest in the pool.
+      // The flow has no divergence, and is at rest in the pool.
       const double above = std::max(x[1] - 0.3, 0.0);
       Point<dim> u = Point<dim>::Zero();
       u[0] = 6 * (x[0] - 0.5) * above;
@@ -42,8 +42,8 @@ struct Torn {
   std::unique_ptr<InterfaceModel<dim>> model;
 };
 
-/// What the liquid should have and the drops have is the same volume all the time, to round-off;
-/// there are drops in between, and in the end all have fallen into the pool.
+/// The target volume of the liquid and the volume of the drops add up to the same all the time, to
+/// round-off; there are drops in between, and in the end all have fallen into the pool.
 template <int dim>
 void expect_volume(const Communicator& comm, std::vector<double>& history) {
   Torn<dim> torn(comm);

@@ -11,7 +11,7 @@
 namespace lockstep::test {
 namespace {
 
-/// The same by samples, from the values on the simplex that holds each.
+/// Fraction by samples, from the values on the simplex that holds each.
 template <int dim>
 double sampled_fraction(const std::array<double, 1 << dim>& phi, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -185,8 +185,8 @@ TEST(LiquidVolume, LeavesOutSolidsAtPeriodicSides) {
   expect_solid_at_periodic_sides<3>();
 }
 
-/// What a closed shell holds, air around it, wherever its cells' centres are; beside it what whole
-/// cells would hold, which changes as the shell goes over the grid. Mean squares.
+/// Checks the liquid in a closed shell, air around it, wherever its cells' centres are, against the
+/// volume of whole cells, which changes as the shell goes over the grid. Mean squares.
 template <int dim>
 void expect_volume_in_shell(int n, double part) {
   Bath<dim> bath(open_cube<dim>(n));

@@ -233,7 +233,7 @@ void expect_shell_in_pool(bool half_full) {
       const bool is_wet = model->distance()[c] < 0;
       if (distance < -0.2 / n)
         inside += is_wet;
-      // Of the pool and the inside one is dry.
+      // Liquid is either in the pool or inside, never in both.
       if (is_wet && std::abs(distance) > 0.2 / n) {
         ASSERT_EQ(distance < 0, half_full)
             << "step " << i << " at " << bath.domain.grid.center(c).transpose();

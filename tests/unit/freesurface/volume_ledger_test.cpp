@@ -94,7 +94,7 @@ TEST(VolumeLedger, KnowsWhatSourcesSinksAndSidesDo) {
   expect_known_fluxes("volume of fluid");
 }
 
-/// Of faces at a side that are open in part so much flows out.
+/// A face at a side that is partly open lets out in proportion to its aperture.
 TEST(VolumeLedger, LosesWhatOpenPartsOfFacesLetThrough) {
   for (const char* const name : {"level set", "volume of fluid"}) {
     Bath<2> bath(open_cube<2>(40));

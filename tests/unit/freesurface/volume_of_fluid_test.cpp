@@ -30,7 +30,7 @@ void expect_planes() {
     const int axis = i % dim;
     const double width = 0.5 + 0.5 * uniform(random);
     const double low = liquid_in_slab(plane, axis, 0, width);
-    // But for slopes of less than 1e-6, which count as none.
+    // Slopes of less than 1e-6 count as none.
     EXPECT_NEAR(low + liquid_in_slab(plane, axis, 1, 1 - width), fraction, 1e-6);
     int n_wet = 0;
     constexpr int n = 4000;
@@ -216,7 +216,7 @@ void expect_shell_takes_liquid_along(double distance) {
     bath.step(*model, i * dt, dt);
     before = after;
     EXPECT_NEAR(model->ledger().lost, 0, 1e-14) << i;
-    // In a ball of a hundred cells debts wait longer than a step.
+    // In a ball of a hundred cells volume defects last longer than a step.
     EXPECT_NEAR(model->ledger().volume, start, (dim == 2 ? 0.1 : 0.5) * start) << i;
     std::vector<char> inside(bath.domain.grid.n_stored_cells(), 0);
     bath.domain.grid.for_each_stored_cell(

@@ -64,7 +64,7 @@ void expect_what_all_boxes_say() {
     const auto boxes = random_boxes<dim>(n, random);
     const BoxTree<dim> tree(boxes);
     expect_what_all_boxes_say<dim>(tree, boxes, random);
-    // In an order that has nothing to do with where they are.
+    // an order that has nothing to do with where they are
     const auto others = random_boxes<dim>(n, random);
     expect_what_all_boxes_say<dim>(BoxTree<dim>(others, tree.order()), others, random);
   }

@@ -186,7 +186,7 @@ TEST(CheckSurface, NamesTheDefect) {
   EXPECT_THAT(message_of([&] { check_surface(flat, false, "hull"); }), HasSubstr("vertex 2"));
 }
 
-/// As if read from a file.
+/// Message for a mesh as if it was read from a file.
 template <int dim>
 std::string message_of(SurfaceMesh<dim> mesh) {
   MeshNames names;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double unset = -7;
 
-/// Whether an owned lattice cell lies within `width` of the cell, by looking at every cell of the
+/// True if an owned lattice cell lies within `width` of the cell, by looking at every cell of the
 /// box.
 template <int dim>
 bool near_owned(const TiledGrid<dim>& grid, int cell, int width) {
@@ -122,7 +122,8 @@ TEST(HaloExchange, SumToOwnerIsTheAdjointOfFill) {
   EXPECT_NEAR(dot(filled, y), dot(x, summed), 1e-10);
   for (int c = grid.n_owned_cells(); c < grid.n_stored_cells(); ++c)
     EXPECT_EQ(summed[c], 0.0);
-  // How often a cell is held by others: the corners of a rank's region more often than its middle.
+  // Counts the ranks that hold a cell: the corners of a rank's region are held more often than its
+  // middle.
   CellField ones(in_halo);
   halo.sum_to_owner(ones);
   const double copies = dot(ones, CellField(ones.size(), 1.0)) - 64.0 * 64.0;

@@ -57,7 +57,7 @@ void check_divergence_and_projection_agree() {
   // V G^T (u* - G p̂ / rho) = V G^T u* - A p̂
   apply(*fluid.pressure_block(), *pressure, *before, -1, 1);
   EXPECT_LT((dense(*before) - dense(*after)).norm(), 1e-13);
-  // What the free faces gained came from the walls.
+  // The gain of the free faces came from the walls.
   Momentum<dim> gained = fluid.momentum() - start;
   gained -= fluid.boundary_pressure_impulse(*pressure);
   EXPECT_LT(gained.linear.norm(), 1e-13);

@@ -13,7 +13,7 @@ namespace lockstep::test {
 
 namespace {
 
-/// What rank `rank` contributes: unsorted, to rows of every rank, to some places twice.
+/// Contribution of rank `rank`: unsorted, to rows of every rank, to some places twice.
 std::vector<Triplet> triplets_of(int rank, int n_triplets, GlobalIndex n_rows) {
   std::mt19937 random(7 + rank);
   std::uniform_int_distribution<GlobalIndex> id(0, n_rows - 1);

@@ -166,7 +166,7 @@ TEST(Drops, GiveSolidsWhatTheyLose) {
   }
 }
 
-/// What stands before an open side stops a drop whose step would end beyond it; a drop that a solid
+/// A solid before an open side stops a drop whose step would end beyond it; a drop that a solid
 /// pushes out through the side has left, as any other.
 TEST(Drops, MeetSolidsBeforeOpenSides) {
   const MacDomain<2> domain(box_of_drops<2>(16, SideType::open), world());
@@ -225,7 +225,7 @@ TEST(Drops, AreSavedAndComeBack) {
     again.load(CheckpointReader(world(), latest_checkpoint(folder)));
     EXPECT_EQ(numbers_of(domain, again), numbers_of(domain, drops));
     EXPECT_EQ(again.report().n, any ? 20 : 0);
-    // On one rank what several have written.
+    // reads on one rank what several have written
     const MacDomain<3> alone(box_of_drops<3>(16, SideType::open),
                              Teuchos::rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF)));
     Drops<3> mine(alone);

@@ -133,8 +133,8 @@ TEST(Fluid, HistoryByHand) {
     field[1] = field[0];
     return field;
   };
-  // In steps of 0.1 s from 1 to 3 m/s, 2.5 of it advected; before that an impulse, which is left
-  // out.
+  // The velocity goes from 1 to 3 m/s in steps of 0.1 s, 2.5 of it advected; the impulse before
+  // that is left out.
   history.set_advected(constant(-50));
   history.accept(constant(-100), constant(1), state, 0.1);
   FaceField<2> untouched = constant(1);
@@ -145,7 +145,7 @@ TEST(Fluid, HistoryByHand) {
   FaceField<2> middle = constant(3), start = constant(3);
   history.extrapolate(0.2, middle);
   history.add_acceleration(0.1, start);
-  // What jumps has no rate, nor has the next step one that begins before the jump.
+  // A jump has no rate, nor has the next step one that begins before the jump.
   history.accept(constant(3), constant(9), state, 0.1, true);
   FaceField<2> after_jump = constant(9);
   history.extrapolate(0.2, after_jump);

@@ -79,7 +79,7 @@ TEST(FreeSurface, FacesOfAColumnByHand) {
   EXPECT_NEAR(geometry.face_table(1, dry).gradient, 2.5 / (2 * 0.5), 1e-12);
 }
 
-/// What the free faces gain is what the walls give: p = 0 at the surface gives nothing.
+/// The gain of the free faces is the impulse of the walls: p = 0 at the surface gives none.
 template <int dim>
 void expect_surface_impulses_telescope() {
   Case<dim> scene(cube<dim>(20), 0.05);
@@ -127,7 +127,7 @@ TEST(FreeSurface, PressureBlockIsSymmetricPositive) {
   expect_symmetric_positive<3>();
 }
 
-/// What the pressure lifts of a box that water goes halfway up, and what of it is in the water.
+/// Compares the volume that the pressure lifts of a box half under water with its wet volume.
 template <int dim>
 void expect_wet_part_of_a_box() {
   const double h = 0.05;
@@ -148,7 +148,7 @@ void expect_wet_part_of_a_box() {
   EXPECT_TRUE(body.partly);
   const double bottom = 0.49 - 0.205, depth = 0.5 + 0.3 * h - bottom;
   EXPECT_NEAR(body.volume, std::pow(0.41, dim - 1) * depth, 1e-12);
-  // Of cells that the box cuts, the middle counts.
+  // The middle counts for cells that the box cuts.
   EXPECT_NEAR(body.centroid.dot(up), bottom + 0.5 * depth, 0.03 * h);
   EXPECT_NEAR(body.centroid[0], 0.49, 0.03 * h);
   // Eight columns: from the centre of the wet cell under the box to the surface.
@@ -208,7 +208,7 @@ TEST(FreeSurface, TheInsideOfAHullIsDry) {
   EXPECT_THROW(volume_around(numbers({1.6, 20.0})), InputError);
 }
 
-/// What is on both sides of a wall on a bottom is one room where the axis across it is periodic.
+/// Both sides of a wall on a bottom are one room where the axis across it is periodic.
 TEST(FreeSurface, DryRoomsGoOnBeyondPeriodicSides) {
   Case<2> scene({48, 48}, 0.1);
   scene.side("x lower", "periodic").side("x upper", "periodic");

@@ -181,7 +181,7 @@ TEST(Geometry, TheFaceTableStoresOnlyWhatIsNotRegular) {
       open_area += face.open;
     });
   }
-  // What leaves a cell through its upper face, perhaps another rank's, enters the next.
+  // Flow out of a cell through its upper face, perhaps another rank's, enters the next.
   grid.for_each_owned_cell([&](int cell) {
     const int above = grid.neighbor(cell, 1, 1);
     leak += (above < 0 ? 0 : geometry.open_fraction(1, above)) - geometry.open_fraction(1, cell);

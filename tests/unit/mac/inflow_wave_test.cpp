@@ -1,4 +1,4 @@
-// What a side that sends waves into a tank prescribes, against linear theory.
+// Velocity of a side that sends waves into a tank, against linear theory.
 #include "mac/domain/inflow_wave.hpp"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(InflowWave, MeansOverFacesAreIntegrals) {
   }
 }
 
-/// Without the return flow g a^2 / 2c would come in.
+/// Without the return flow g a^2 / 2c would come in, and the tank would fill.
 TEST(InflowWave, NeitherFillsNorEmptiesTheTank) {
   const InflowWave<2> w = wave(0.002);
   EXPECT_LT(std::abs(mean_flow(w)), 0.01 * g * 1e-6 / (2 * w.speed()));

@@ -38,7 +38,7 @@ struct Harbour {
     result.begin(surface.before);
     return result;
   }
-  /// What the audit says of liquid that was here and is there; empty: nothing.
+  /// Message of the audit for liquid that was here and is there; empty: there is none.
   std::string verdict(const SignedDistance<2>& here, const SignedDistance<2>& there) {
     LeakAudit<2> result = audit(Point<2>(2.4, 1.5));
     const InterfaceStep<2> step{velocity, surface, ray_halo, kept, 0, 0.01, {}, {}};
@@ -141,7 +141,7 @@ struct Place {
     audit = std::make_unique<LeakAudit<2>>(domain, std::vector<Watch<2>>{watch});
     audit->begin(start);
   }
-  /// How many cells are watched once the solids have come to this place.
+  /// Number of cells that are watched once the solids have come to this place.
   double cells_after(const Surface& next) {
     const MovingSurface<2> surface{now, next, {}};
     const InterfaceStep<2> step{velocity, surface, ray_halo, kept, 0, 0.01, {}, {}};

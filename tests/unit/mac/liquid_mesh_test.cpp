@@ -17,7 +17,7 @@ struct Totals {
   int euler_number = 0;  ///< of a mesh of triangles that is whole on one rank
 };
 
-/// Of the surface where a distance is 0, in n^dim cells of the unit box.
+/// Totals of the surface where a distance is 0, in n^dim cells of the unit box.
 template <int dim>
 Totals measure(int n, const std::function<double(const Point<dim>&)>& distance,
                const Communicator& comm) {

@@ -17,7 +17,7 @@ inline ParameterArray<double> numbers(std::initializer_list<double> values) {
   return ParameterArray<double>(values.begin(), values.end());
 }
 
-/// So many cells along every axis.
+/// Index with the same number of cells along every axis.
 template <int dim>
 Index<dim> cube(int n) {
   Index<dim> cells;

@@ -131,7 +131,7 @@ TEST(MovingTiles, PressureBeyondTheRimCarriesTheWeight) {
   EXPECT_NEAR(given.linear[1], 0, 1e-10);
 }
 
-/// What moves is kept and gets room, what has come to rest is forgotten.
+/// Moving fluid is kept and gets room, fluid that has come to rest is forgotten.
 TEST(MovingTiles, FollowTheFluid) {
   Case<2> scene = tall_tank({3, 1}, {5, 2});
   const auto fluid = scene.make();

@@ -47,7 +47,7 @@ struct BallInTank {
       x[a] = place(engine);
     return x;
   }
-  /// What is there in an image: of those below, nothing that lies beyond the upper side.
+  /// The surface in an image: images below have nothing that lies beyond the upper side.
   const SurfaceSnapshot<dim>& image_of(int image) const { return image < 0 ? *inside : *snapshot; }
   /// All images that matter, one by one.
   std::optional<SurfacePoint<dim>> expected_hit(const Point<dim>& a, const Point<dim>& b) const {

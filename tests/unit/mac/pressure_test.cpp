@@ -83,7 +83,7 @@ TEST(Pressure, SymmetricWithoutRowSums3D) {
   expect_symmetric_without_row_sums<3>();
 }
 
-/// What the free faces gain and what the coupled ones would is what the sides give.
+/// The gain of the free faces and of the coupled ones is the impulse of the sides.
 template <int dim>
 void expect_impulses_telescope() {
   Case<dim> scene(cube<dim>(20), 0.05);

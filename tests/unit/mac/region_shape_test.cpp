@@ -16,7 +16,7 @@ RegionShape<3> shape_of(ParameterList list) {
   return read_shape<3>(list);
 }
 
-/// Of radius 1, 4 long, about (1, 2, 3), along the diagonal of x and y.
+/// A cylinder of radius 1, 4 long, about (1, 2, 3), along the diagonal of x and y.
 ParameterList oblique_cylinder() {
   ParameterList list("Region");
   list.set("Shape", "cylinder").set("Radius", 1.0).set("Length", 4.0);

@@ -99,7 +99,7 @@ TEST(SurfaceTension, ARoundDropRests) {
   expect_jump<3>(0.08);
 }
 
-/// What implicit tension takes from a velocity, u . dt K u over sigma dt^2, and its couple.
+/// Work that implicit tension takes from a velocity, u . dt K u over sigma dt^2, and its couple.
 template <int dim>
 struct Held {
   double work = 0, asymmetry = 0;

@@ -104,7 +104,7 @@ TEST(Transport, CubicsDampLeast) {
             0.5 * error_in_shear(AdvectionScheme::maccormack, 48));
 }
 
-/// What lies beside a side is carried by parabolas of samples inside: exact where the field is one.
+/// Fields beside a side are advected by parabolas of samples inside: exact where the field is one.
 TEST(Transport, CubicsKeepParabolasBesideSides) {
   GridDescription<2> description = cube<2>(16, false);
   FullTank<2> tank(description, world());

@@ -37,7 +37,7 @@ TEST(Viscosity, TaylorGreenDecaysAtItsRate) {
   EXPECT_LT(impulse.linear.norm(), 1e-12);
 }
 
-// What an inflow pulls along is what comes in, wherever within faces its opening ends.
+// An inflow pulls by the velocity that comes in, wherever within faces its opening ends.
 TEST(Viscosity, AnOpeningPullsByWhatComesIn) {
   const auto pull = [](double lower, double upper) {
     Case<2> scene({8, 8}, 1. / 8);
@@ -92,7 +92,7 @@ TEST(Viscosity, InviscidFluidHasNoSystem) {
   EXPECT_EQ(fluid->viscous_system(), nullptr);
 }
 
-/// What the fluid loses to the solids, at rest, in a step.
+/// Impulse of the fluid on the solids, at rest, in a step.
 template <int dim>
 Momentum<dim> impulse_of_links(const MacFluid<dim>& fluid, const ViscousSystem<dim>& system,
                                double dt) {

@@ -1,4 +1,4 @@
-// What of bodies lies in a liquid, near the surface and at periodic sides.
+// Wet parts of bodies, near the surface and at periodic sides.
 #include <gtest/gtest.h>
 
 #include "liquid_cases.hpp"
@@ -14,8 +14,7 @@ Case<dim> unit_cube_of_water(const Point<dim>& gravity, double height) {
   return scene;
 }
 
-/// Whether a ball that the surface comes nearer to is partly in the liquid; if so, it is known how
-/// much of it.
+/// True if a ball that the surface comes nearer to is partly wet; then its wet volume is checked.
 template <int dim>
 bool is_partly_wet(const Point<dim>& gravity, double height) {
   Case<dim> scene = unit_cube_of_water<dim>(gravity, height);

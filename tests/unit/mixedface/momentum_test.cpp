@@ -1,4 +1,4 @@
-// What solids and lumped fluid exchange is equal and opposite.
+// Momentum exchanged by solids and lumped fluid: equal and opposite.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -145,7 +145,7 @@ std::pair<double, double> lumping_defect(Lumping lumping, int seed) {
   Eigen::VectorXd velocity = Eigen::VectorXd::Zero(solids.map()->getGlobalNumElements());
   for (int k = 0; k < dim + n_rotations<dim>; ++k)
     velocity[k] = 2 * unit(random) - 1;
-  // What the solve conserves: M̃ V, about the body's centre.
+  // The solve conserves M̃ V, about the body's centre.
   const Eigen::VectorXd conserved =
       (dense(solids.mass()) + dense(RCP<const CrsMatrix>(added))) * velocity;
   Point<dim> linear = body.mass * velocity.head(dim);

@@ -117,9 +117,9 @@ TEST(GatheredLevels, ACycleIsThatOfWholeLevels) {
   }
 }
 
-/// The same for a fluid with a plate, behind which cells move to other coarse cells, and to those
-/// of other ranks. The smoothest part of a rough right-hand side weighs n^2 times its roughest in
-/// the solution, and so does round-off in it.
+/// Compares with the cycle of whole levels for a fluid with a plate, behind which cells move to
+/// other coarse cells, and to those of other ranks. The smoothest part of a rough right-hand side
+/// weighs n^2 times its roughest in the solution, and so does round-off in it.
 template <int dim>
 void expect_the_cycle_of_whole_levels(const Problem<dim>& problem, double round_off) {
   for (const bool is_w_cycle : {false, true}) {

@@ -155,7 +155,8 @@ TEST(Multigrid, OddSizes) {
   expect_few_iterations(Problem<3>(scene, ball<3>(1.0 / 32)), 10, 12);
 }
 
-/// Without moving the cells behind the plate this takes twice as many.
+/// A cycle that leaves the cells behind the plate in their coarse cells takes twice as many
+/// iterations.
 TEST(Multigrid, APlateOnOddFaces) {
   Case<3> scene(cube<3>(32), 1.0 / 32);
   expect_few_iterations(Problem<3>(scene, plate<3>(1.0 / 32, 13.1 / 32)), 12, 12);

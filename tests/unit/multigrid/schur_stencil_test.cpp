@@ -1,4 +1,4 @@
-// What the multigrid knows of soft solids.
+// Soft solids in the multigrid.
 #include <gtest/gtest.h>
 
 #include <Tpetra_CrsMatrix.hpp>

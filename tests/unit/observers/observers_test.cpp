@@ -106,7 +106,7 @@ TEST(Flow, ThroughTheOpenPartOfAWindow) {
   // At y = 1, x from 0 to 2: squares of 0.5 in the middle of which half lie in the fluid.
   Flow<2> upwards(box(0, 1, 2, 1));
   EXPECT_THAT(upwards.observe({1, 0.1, fluid, no_solids}), ElementsAre(ElementsAre(2, 1, 15)));
-  // At x = 1.5: the integral of y over 0..2, which the midpoint rule has exactly.
+  // At x = 1.5 the flow is the integral of y over 0..2, which the midpoint rule has exactly.
   Flow<2> right(box(1.5, 0, 1.5, 2));
   EXPECT_THAT(right.observe({1, 0.1, fluid, no_solids}), ElementsAre(ElementsAre(2, 2, 15)));
   EXPECT_THROW(Flow<2>(box(0, 0, 1, 1)), InputError);

@@ -61,7 +61,8 @@ void expect_all_entities(const Communicator& comm, const std::string& path) {
   EXPECT_THAT(reader.file().read_all<double>("pose"), ElementsAre(1, 2, 3));
 }
 
-/// In pieces of three as at once; rank r sends 5 r + k numbers to rank k.
+/// Messages in pieces of three arrive as those sent at once; rank r sends 5 r + k numbers to rank
+/// k.
 TEST(Exchange, LongMessagesGoInPieces) {
   const Communicator comm = Tpetra::getDefaultComm();
   const int rank = comm->getRank(), n_ranks = comm->getSize();

@@ -84,7 +84,7 @@ TEST(Hdf5File, LeavesLinksAlone) {
               HasSubstr("file.h5.part' is in the way"));
   EXPECT_EQ(read_whole_file(folder + "/precious"), "text");
   comm->barrier();
-  // What a killed run has left is no obstacle.
+  // Files that a killed run has left are no obstacle.
   if (is_root(comm)) {
     std::filesystem::remove(path + ".part");
     std::ofstream(path + ".part") << "half a file";

@@ -1,4 +1,4 @@
-// What surrounds a run: progress, banner, timers, signals and the record of its input.
+// Surroundings of a run: progress, banner, timers, signals and the record of its input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

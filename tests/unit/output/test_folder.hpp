@@ -20,7 +20,7 @@ inline std::string fresh_folder(const std::string& name) {
   return path;
 }
 
-/// What `action` says when it throws a Failure of this type; "" if it throws nothing.
+/// Message of `action` when it throws a Failure of this type; "" if it throws nothing.
 template <typename Kind, typename Action>
 std::string message_of(const Action& action) {
   try {

@@ -27,7 +27,7 @@ TEST(FreeMotion, TumblingBoxKeepsMomentumAndEnergy) {
   EXPECT_LE(lowest_spin, -0.9);  // it did turn over
 }
 
-/// Where a body-fixed direction points after one second. With a lock, though none that its turning
+/// Direction of a body-fixed vector after one second. With a lock, though none that its turning
 /// feels, bodies move by the velocity at the middle of the step.
 Point<3> direction_after(int n_steps, bool corrected, const std::string& lock = "x") {
   RigidBody<3> b = tumbling_box(numbers("Velocity", "0, 0, 0") + texts("Locked", lock));
@@ -43,7 +43,7 @@ Point<3> direction_after(int n_steps, bool corrected, const std::string& lock = 
   return b.pose.orientation * Point<3>(1, 0, 0);
 }
 
-/// The same by RK4 on Euler's equations in small steps.
+/// Direction after one second by RK4 on Euler's equations in small steps.
 Point<3> exact_direction() {
   const RigidBody<3> b = tumbling_box();
   const AngularVector<3> momentum = b.inertia * Point<3>(2, 3, -1);
@@ -73,7 +73,7 @@ TEST(FreeMotion, SpinIsOfSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.15);
   // Nothing but the pivot, or nothing at all: exact.
   EXPECT_LE((direction_after(20, true, "x, y, z") - exact).norm(), 1e-8);
-  // Without the correction of S1 it would be of first order.
+  // Without the correction of S1 the error would be of first order.
   EXPECT_GE((direction_after(40, false) - exact).norm(), 5 * fine);
 }
 
@@ -83,7 +83,7 @@ TEST(FreeMotion, BallNeedsNoCorrection) {
   EXPECT_EQ(midpoint_correction(b, b.momentum, 0.1).norm(), 0);
 }
 
-/// With a pivot that nothing holds the motion is that of the centre of mass.
+/// A pivot that nothing holds leaves the motion that of the centre of mass.
 template <int dim>
 void expect_free_pivot(const std::string& common, const std::string& pivot,
                        const RigidVector<dim>& spin) {

@@ -1,4 +1,4 @@
-// What a scene may not say of a rigid body.
+// Scenes of rigid bodies that are refused.
 #include "base/errors.hpp"
 #include "support.hpp"
 

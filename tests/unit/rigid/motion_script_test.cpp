@@ -32,7 +32,7 @@ TEST(Script, Sinusoid) {
       geometry(round_shape, radius) +
       motion("sinusoid", numbers("Amplitude", "0.5, 0") + number("Angular Amplitude", "0.25") +
                              number("Frequency", "0.5") + number("Phase", "0.2")));
-  // At 0.5 - 0.2/pi seconds the phase is a quarter period.
+  // The phase is a quarter period at 0.5 - 0.2/pi seconds.
   const auto top = b.script(0.5 - 0.2 / pi);
   EXPECT_NEAR(top.displacement[0], 0.5, 1e-14);
   EXPECT_NEAR(top.turn[0], 0.25, 1e-14);

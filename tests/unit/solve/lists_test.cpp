@@ -1,4 +1,5 @@
-// What the lists of Stratimikos, Teko and the sub-block inverses may hold, and what they build.
+// Contents of the lists of Stratimikos, Teko and the sub-block inverses, and the operators built of
+// them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -121,7 +122,7 @@ TEST(Preconditioner, UnsymmetricSmootherIsCaught) {
   EXPECT_THROW(check_symmetric_positive(*forward, "test"), SolveError);
 }
 
-/// Where a solid fills the whole domain.
+/// A solid that fills the whole domain leaves no unknowns.
 TEST(Preconditioner, NoUnknownsNeedNoFactors) {
   const auto none = rcp(new Map(0, 0, Tpetra::getDefaultComm()));
   const auto direct = gathered_direct(matrix_from_rows(none, {}), "nothing");

@@ -1,4 +1,4 @@
-// What iterations on a soft solid stand on: its matrix in single precision, and coarse levels.
+// Foundations of iterations on a soft solid: its matrix in single precision, and coarse levels.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
@@ -27,7 +27,7 @@ namespace lockstep::test {
 
 namespace {
 
-/// Without the lone dof.
+/// The nodes without the lone dof.
 struct Nodes {
   Nodes(int n, double k) {
     const Lattice solid(n, k);
@@ -90,7 +90,7 @@ TEST(SoftSolid, IterationOnARoundedMatrixReachesRoundOff) {
     EXPECT_LT(error_of(*inverse, *solid.c), 2 * tolerance);
     return static_cast<double>(*count);
   };
-  // What is lost where the residual is replaced is less than what an iteration gains.
+  // The loss where the residual is replaced is less than the gain of an iteration.
   const auto rounded = single_precision_copy(solid.c, solid.space);
   ASSERT_FALSE(rounded.is_null());
   for (const double tolerance : {1e-2, 1e-5, 1e-9, 1e-13})
@@ -101,7 +101,7 @@ TEST(SoftSolid, IterationOnARoundedMatrixReachesRoundOff) {
 }
 
 TEST(SoftSolid, WhatIsRoundedTooMuchIsFinishedWithTheMatrixItself) {
-  // At .4 C the true residual grows by half with every correction.
+  // At 0.4 C the true residual grows by half with every correction.
   const Nodes solid(12, 10);
   const auto op = as_operator(solid.c);
   const auto far_off = action_operator(solid.c->getRowMap(),
@@ -150,7 +150,7 @@ TEST(SoftSolid, CoarseLevelsSaveIterations) {
   const Lattice soft(60, 20), stiff(60, 1e3);  // stiffness numbers of 79 and 3900
   EXPECT_LT(iterations(soft, "Additive Multilevel"), 0.65 * iterations(soft, "Jacobi"));
   EXPECT_LT(iterations(stiff, "Additive Multilevel"), 0.4 * iterations(stiff, "Jacobi"));
-  // Of one node alone it is the inverse.
+  // The multigrid of one node alone is the inverse.
   const Lattice one(1, 1);
   const auto inverse =
       preconditioner_from_list(as_operator(one.c), type("Additive Multilevel"), "solid", one.space);

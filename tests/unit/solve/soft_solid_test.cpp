@@ -178,7 +178,7 @@ TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
   EXPECT_LT(error_of(*inverse, *solid.c), 1e-11);
 }
 
-/// What moves in the plane of a flat cloth and what moves out of it is tied by nothing but nodes.
+/// Motions in the plane of a flat cloth and out of it are coupled only by their nodes.
 TEST(SoftSolid, NodesAreNotTornApart) {
   const Lattice solid(40, 10);
   const Map& map = *solid.c->getRowMap();
@@ -234,7 +234,7 @@ TEST(SoftSolid, LargePartsAreIteratedOnOneByOne) {
   EXPECT_LT(error_of(*inverse, *both), 1e-11);
 }
 
-/// What elastic forces leave when they cancel is round-off, and no strategy can do better.
+/// Elastic forces that cancel leave round-off, and no strategy can do better.
 TEST(SoftSolid, ResidualsAreNotMeasuredBelowRoundOff) {
   for (const double k : {1e2, 1e10}) {
     const Lattice solid(12, k);

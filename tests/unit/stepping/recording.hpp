@@ -12,7 +12,7 @@
 
 namespace lockstep::test {
 
-/// What the step asked of its partners, in order: "who: what", with the time it is over where that
+/// Calls of the step to its partners, in order: "who: what", with the time it is over where that
 /// matters.
 using Calls = std::vector<std::string>;
 

@@ -1,4 +1,4 @@
-// What a scene and its solver file make together.
+// A scene and its solver file, merged.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>

@@ -1,4 +1,4 @@
-// How long steps are.
+// Sizes of steps.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
@@ -25,7 +25,7 @@ TEST(StepSize, NothingPassesMoreCellsThanTheCflNumber) {
   const FakeFluid<2> resting(box, Tpetra::getDefaultComm());
   EXPECT_EQ(wanted_step(until(10), resting.suggested_step(0.5, 0)), 0.1);
   EXPECT_DOUBLE_EQ(wanted_step(until(10), resting.suggested_step(0.5, 2)), 0.005);
-  // What gravity adds within the step counts as well.
+  // The velocity that gravity adds within the step counts as well.
   box.gravity = {0, -14};
   FakeFluid<2> fluid(box, Tpetra::getDefaultComm());
   double dt = fluid.suggested_step(0.5, 0);

@@ -139,7 +139,7 @@ TEST(Stratimikos, FactoriesOfTeko) {
   }
 }
 
-/// Those of ours, by their parameters: in an open and a closed tank, and where a piston closes it.
+/// Our inverses, by their parameters: in an open and a closed tank, and where a piston closes it.
 TEST(Stratimikos, InversesOfOurs) {
   std::vector<ParameterList> lists(5, shipped_list("minres-teko"));
   library_of(lists[0]).sublist("Multigrid").set("Sweeps", 3);  // which MueLu does not know
@@ -201,7 +201,7 @@ TEST(Stratimikos, WithoutAPreconditioner) {
   expect_exact(list, SaddleProblem(world(), {}));
 }
 
-/// What the strategy pressure-schur does, said as a list.
+/// The strategy pressure-schur as a list gives the same solve.
 TEST(Stratimikos, MinresWithTekoIsPressureSchur) {
   ParameterList by_name;
   by_name.set("Type", "pressure-schur");

@@ -116,7 +116,7 @@ TEST_F(Runs, TablesOfObservers) {
   EXPECT_THAT(told_[0], testing::HasSubstr("Probes.3.p"));
 }
 
-/// Without its finest run a series has nothing to be compared with.
+/// A series without its finest run has nothing to be compared with.
 TEST_F(Runs, ASeriesIsItsOwnReferenceByItsLastRungAlone) {
   study_.quantities[0].reference = "self";
   study_.assignments.push_back("Fake/Fail=[n == 16 ? 3 : 0]");

@@ -1,4 +1,4 @@
-// What an error costs, and what a ladder tends to, on tables made by hand.
+// Costs of an error, and limits of a ladder, on tables made by hand.
 #include "studies/work_precision.hpp"
 
 #include <gmock/gmock.h>
@@ -105,7 +105,7 @@ TEST(Extrapolation, ACleanOrderGivesTheLimit) {
   ASSERT_TRUE(second);
   EXPECT_NEAR(second->order, 2, 1e-12);
   EXPECT_NEAR(second->limit, 2, 1e-12);
-  // Of order 1.5: believed if four rungs say so, not from three.
+  // An order of 1.5 is believed if four rungs show it, not from three.
   const std::vector<double> odd{1, std::pow(0.5, 1.5), std::pow(0.25, 1.5), std::pow(0.125, 1.5)};
   EXPECT_NEAR(extrapolate(halvings(odd))->limit, 0, 1e-12);
   EXPECT_FALSE(extrapolate(halvings({odd.begin(), odd.begin() + 3})));
