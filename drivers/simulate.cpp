@@ -34,10 +34,10 @@ namespace {
 struct Arguments {
   RunOptions run;
   std::vector<std::string> settings;
-  std::vector<std::string> dump_system;  // which, file
+  std::vector<std::string> dump_system;  // solve and file
   bool validate = false, explain = false, parameters = false, list_plugins = false;
   std::string format = "text";
-  int dimension = 3;  // of --parameters
+  int dimension = 3;  // dimension of --parameters
   bool quiet = false;
 };
 

@@ -58,7 +58,8 @@ class ColumnFluid : public lockstep::FluidDiscretization<2>, public lockstep::Au
   Options options_;
   double h_;
   lockstep::Communicator comm_;
-  std::vector<double> velocity_, predicted_;  ///< of all faces, 0 at x = 0
+  std::vector<double> velocity_, predicted_;  ///< velocities of all faces, 0 at x = 0
   std::vector<char> coupled_at_;              ///< per face
-  lockstep::FluidGeometry<2> frozen_;         ///< of coupled volumes those whose lower cell is here
+  lockstep::FluidGeometry<2>
+      frozen_;  ///< geometry with the coupled volumes whose lower cell is here
 };

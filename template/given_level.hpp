@@ -31,7 +31,7 @@ class GivenLevel : public InterfaceModel<2> {
 
   Options options_;
   const MacDomain<2>& domain_;
-  double level_;  ///< of the surface at present [m]
+  double level_;  ///< level of the surface at present [m]
   CellField phi_;
 };
 

@@ -11,7 +11,7 @@ class Piston : public lockstep::SolidModel<2>, public lockstep::AuditedSolids<2>
  public:
   struct Options {
     double position = 0.7;  ///< along x [m]
-    double width = 0.5;     ///< of the channel, from y = 0 [m]
+    double width = 0.5;     ///< width of the channel, from y = 0 [m]
     double mass = 100;      ///< [kg/m]
     double force = 50;      ///< along x [N/m]
   };

@@ -15,7 +15,7 @@ struct ArticulationOptions {
   /// where it ends.
   bool two_halves = true;
   bool fully_implicit = false;  ///< springs and dampers, not of the middle of the step
-  double largest_turn = 0.2;    ///< of a jointed body in a step [rad]
+  double largest_turn = 0.2;    ///< largest turn of a jointed body in a step [rad]
 };
 
 /// The joints of a scene, what they connect, and where they are. Everything is replicated.
@@ -132,7 +132,7 @@ class JointConstraints : public ConstraintModel,
   Communicator comm_;
   Eigen::VectorXd torque_, limit_torque_;  ///< by rate, of the last step
   std::vector<char> limited_;              ///< likewise: by the largest torque
-  double dt_ = 0;                          ///< of the last step [s]; 0: there was none
+  double dt_ = 0;                          ///< length of the last step [s]; 0: there was none
   std::vector<char> two_halves_;           ///< by joint, likewise
 };
 

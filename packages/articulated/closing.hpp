@@ -26,9 +26,9 @@ template <int dim>
 struct ClosingProblem {
   const Mechanism& mechanism;
   const std::vector<Joint<dim>>& joints;
-  const std::vector<BodyPose<dim>>& poses;   ///< of all bodies, at present
-  const std::vector<BodyPose<dim>>& ends;    ///< of prescribed ones, after the step
-  const std::vector<BodyMass<dim>>& masses;  ///< of dynamic ones
+  const std::vector<BodyPose<dim>>& poses;   ///< present poses of all bodies
+  const std::vector<BodyPose<dim>>& ends;    ///< poses of prescribed bodies after the step
+  const std::vector<BodyMass<dim>>& masses;  ///< masses of dynamic bodies
   double dt = 0;
 };
 

@@ -28,7 +28,7 @@ class Flyer {
   /// turn farther, as far as joints are sure to close.
   double n_parts(double time, double longest) const {
     constexpr double farthest = 0.5;     // rad
-    constexpr double negligible = 0.01;  // of the energy
+    constexpr double negligible = 0.01;  // part of the energy [1]
     const TwistVector<dim> drift = mean_velocity();
     std::vector<double> energies, turns;
     double sum = 0;
@@ -127,7 +127,7 @@ template <int dim>
 std::optional<Flight<dim>> fly(const ClosingProblem<dim>& problem, const FlightSteps& steps,
                                const std::vector<BodyMotion<dim>>& motions) {
   constexpr int most = 2000;
-  constexpr double negligible = 1e-12, shortest = 1e-6;  // of the step
+  constexpr double negligible = 1e-12, shortest = 1e-6;  // parts of the step [1]
   Flyer<dim> flyer(problem, motions);
   std::vector<BodyMotion<dim>> first;
   double left = problem.dt;

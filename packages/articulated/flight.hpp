@@ -13,13 +13,13 @@ struct Flight {
   /// Impulses of the joints, the first one included, but not the impulse that the end of the step
   /// still needs: by body, about its reference point, which has moved meanwhile.
   std::vector<TwistVector<dim>> given;
-  std::vector<Eigen::VectorXd> coordinates;  ///< of all joints, at the end
+  std::vector<Eigen::VectorXd> coordinates;  ///< coordinates of all joints, at the end
 };
 
 /// Resolution of a mechanism's own motion.
 struct FlightSteps {
-  int least = 1;           ///< so many parts at least
-  double longest = 1e300;  ///< and none that turns a body by more [rad]
+  int least = 1;           ///< least number of parts
+  double longest = 1e300;  ///< largest turn of a body in a part [rad]
 };
 
 /// Free bodies and their joints alone for a step (RATTLE, each body by Euler's equations):

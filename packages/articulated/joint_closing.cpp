@@ -68,7 +68,7 @@ double largest_turn(const ClosingProblem<dim>& problem,
 template <int dim>
 bool differ(const ClosingProblem<dim>& problem, const std::vector<BodyMotion<dim>>& motions,
             const std::vector<BodyMotion<dim>>& others) {
-  constexpr double negligible = 1e-9;  // of the mechanism's reach, rad
+  constexpr double negligible = 1e-9;  // part of the mechanism's reach [1], and angle [rad]
   const double unit = reach(problem.mechanism, problem.joints);
   return std::any_of(
       problem.mechanism.bodies.begin(), problem.mechanism.bodies.end(), [&](int body) {
@@ -85,9 +85,11 @@ template <int dim>
 std::optional<FlightSteps> JointConstraints<dim>::flight_steps(const Mechanism& mechanism,
                                                                double turn, bool touched) const {
   constexpr double farthest_turn = 0.5;  // rad, where joints are closed in one part
-  constexpr double finest_turn = 0.1;    // of a part, where nothing else is in the way
+  constexpr double finest_turn =
+      0.1;  // largest turn of a part where nothing else is in the way [rad]
   constexpr int least = 4;
-  constexpr double negligible = 1e-3;  // of a body's mass: what fluid it has to push
+  constexpr double negligible =
+      1e-3;  // negligible part of a body's mass [1]: fluid that it has to push
   const auto& bodies = articulation_->bodies();
   const auto& joints = articulation_->joints();
   const bool far = turn > farthest_turn;

@@ -31,7 +31,7 @@ Eigen::VectorXd rates_of(const JointKind& kind, const JointControl& control, dou
 /// x and its rate of x'' + 2 ratio frequency x' + frequency^2 x = 0 after dt.
 void oscillate(double frequency, double ratio, double dt, double& x, double& v) {
   const double decay = ratio * frequency;
-  const double square = frequency * frequency - decay * decay;  // of the damped frequency
+  const double square = frequency * frequency - decay * decay;  // square of the damped frequency
   const double root = std::sqrt(std::abs(square)), phase = root * dt;
   // Both of e^(-decay dt) times cos, sin/root; where nothing oscillates cosh, sinh/root.
   double even, odd;

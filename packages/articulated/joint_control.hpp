@@ -22,7 +22,7 @@ struct CoordinateControl {
   double damping_ratio = 1;
   double stiffness = 0, damping = 0;  ///< gains [N m/rad, N/m], times s
   double largest_torque = std::numeric_limits<double>::infinity();  ///< [N m, N]
-  JointTarget own_target;  ///< of this coordinate alone; null: it has that of the joint
+  JointTarget own_target;  ///< target of this coordinate alone; null: it has that of the joint
 
   bool free() const { return type == ControlType::free; }
   bool given() const {
@@ -34,7 +34,8 @@ struct CoordinateControl {
 /// Control of all coordinates of a joint. Those of a ball are alike.
 struct JointControl {
   std::vector<CoordinateControl> coordinates;
-  JointTarget target;  ///< of all that have none of their own; may be null, if there are none
+  JointTarget
+      target;  ///< target of all coordinates without their own; may be null if there are none
 
   /// Target of all coordinates; it has no meaning for free ones.
   TargetValue target_at(double time) const;

@@ -35,7 +35,7 @@ JointLimits read_limits(const ParameterList& joint, const std::string& name, con
 struct RateLimit {
   Eigen::VectorXd weights;  ///< by rate of the joint
   double room = 0;          ///< [rad, m]
-  bool turns = false;       ///< of an angle
+  bool turns = false;       ///< true for an angle
 };
 /// At coordinates q, for a motion with about these rates over dt.
 template <int dim>

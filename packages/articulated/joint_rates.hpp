@@ -58,8 +58,8 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public Wor
   SurfaceMesh<dim> surface_;
   RCP<const Map> map_;
   RCP<const LinearOperator> mass_;
-  double time_;                     ///< of the present positions [s]
-  double begin_ = 0, step_dt_ = 0;  ///< of the present step [s]
+  double time_;                     ///< time of the present positions [s]
+  double begin_ = 0, step_dt_ = 0;  ///< begin and length of the present step [s]
   bool moved_ = false;              ///< in the present step
 };
 

@@ -184,7 +184,7 @@ MotionBasis<dim> motion_basis(const Mechanism& mechanism,
                               const std::vector<Joint<dim>>& joints,
                               const std::vector<BodyPose<dim>>& poses, const RateDofs& dofs,
                               const std::vector<char>& given) {
-  constexpr double dependent = 1e-9;  // of the motions that are compared
+  constexpr double dependent = 1e-9;  // part of the motions that are compared [1]
   TreeMotion<dim> tree(mechanism, bodies, joints, poses, dofs);
   MotionBasis<dim>& basis = tree.basis();
   if (mechanism.loops.empty())

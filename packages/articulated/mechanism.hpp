@@ -24,8 +24,9 @@ struct JointedBody {
   int solid = -1;                    ///< its number there
   GlobalIndex first_dof = no_index;  ///< in the stack of all solids; no_index: prescribed
   double mass = 0;                   ///< [kg]
-  double fluid_mass = 0;             ///< that it has to push, about; 0 if none sees it [kg]
-  bool carries_nodes = false;        ///< of deformable solids
+  double fluid_mass =
+      0;  ///< mass of fluid that the body has to push, about; 0 if no fluid sees it [kg]
+  bool carries_nodes = false;  ///< true if it carries nodes of deformable solids
   bool prescribed() const { return first_dof == no_index; }
   /// About what resists its motion [kg].
   double weight() const { return mass + fluid_mass; }
@@ -33,7 +34,7 @@ struct JointedBody {
 
 template <int dim>
 struct BodyPose {
-  Point<dim> position = Point<dim>::Zero();  ///< of the reference point [m]
+  Point<dim> position = Point<dim>::Zero();  ///< position of the reference point [m]
   Axes<dim> rotation = Axes<dim>::Identity();
 };
 
@@ -56,7 +57,7 @@ struct Joint {
   JointLimits limits;
   int first_rate = -1;   ///< among those of all joints; -1: it closes a loop and has none
   Eigen::VectorXd q;     ///< present coordinates
-  TargetValue at_begin;  ///< of the step: coordinates and rates
+  TargetValue at_begin;  ///< coordinates and rates at the begin of the step
   TargetValue goal;      ///< where given coordinates are at the step's end
 
   bool wants_rates() const { return control.any() || limits.any(); }
@@ -65,9 +66,9 @@ struct Joint {
 /// Place of a joint and of its two sides in space.
 template <int dim>
 struct JointPlace {
-  Point<dim> point;        ///< of the second side
-  Axes<dim> axes;          ///< of the first side
-  RelativePose<dim> pose;  ///< of the second side against the first
+  Point<dim> point;        ///< point of the second side
+  Axes<dim> axes;          ///< axes of the first side
+  RelativePose<dim> pose;  ///< pose of the second side against the first
 };
 
 /// Bodies that joints connect, as a tree and joints that close loops in it.
@@ -121,8 +122,8 @@ struct MotionBasis {
 
 /// Numbers of the dofs of joints and prescribed bodies in the stack.
 struct RateDofs {
-  GlobalIndex first_rate = 0;              ///< of all joints' rates
-  std::vector<GlobalIndex> first_of_body;  ///< of prescribed bodies: their twist
+  GlobalIndex first_rate = 0;              ///< first rate of all joints
+  std::vector<GlobalIndex> first_of_body;  ///< first dof of the twist of prescribed bodies
 };
 
 /// `given`: whether the rates of all joints are, so that loops cannot make them combinations.

@@ -35,7 +35,7 @@ class FakeFluid : public FluidDiscretization<dim>,
     FaceKind kind = FaceKind::inactive;
     int owner = 0;       ///< rank of its first active cell
     bool open = false;   ///< on the open side
-    Index<dim> index{};  ///< of the cell above it
+    Index<dim> index{};  ///< index of the cell above it
     ControlVolume<dim> volume;
   };
 
@@ -109,8 +109,8 @@ class FakeFluid : public FluidDiscretization<dim>,
   std::array<int, dim + 1> first_face_{};
   std::vector<double> velocity_, predicted_;
   Surface surface_;
-  std::vector<GlobalIndex> unknown_;  ///< of each cell, no_index inside solids
-  std::vector<int> solid_;            ///< of each cell, -1 in the fluid
+  std::vector<GlobalIndex> unknown_;  ///< unknown of each cell, no_index inside solids
+  std::vector<int> solid_;            ///< solid of each cell, -1 in the fluid
   std::vector<int> rank_of_unknown_;
   FluidGeometry<dim> frozen_;
 };

@@ -16,7 +16,7 @@ struct FakeBody {
   double mass = 1;     ///< [kg]; nodes share it equally
   double inertia = 1;  ///< about `center`, the same for every axis [kg m^2]; rigid only
   Point<dim> center = Point<dim>::Zero();    ///< centre of mass and of rotation [m]
-  Point<dim> velocity = Point<dim>::Zero();  ///< of the centre, or of every node [m/s]
+  Point<dim> velocity = Point<dim>::Zero();  ///< velocity of the centre, or of every node [m/s]
   AngularVector<dim> angular_velocity = AngularVector<dim>::Zero();  ///< [rad/s]
   std::vector<int> locked;  ///< its own dofs that are held: translations, then rotations; or
                             ///< dim * node + axis
@@ -78,10 +78,10 @@ class FakeSolid : public SolidModel<dim>, public AuditedSolids<dim> {
   Communicator comm_;
   std::vector<SolidDescription> solids_;
   SurfaceMesh<dim> surface_;
-  std::vector<int> first_dof_;         ///< of each body
+  std::vector<int> first_dof_;         ///< first dof of each body
   std::vector<double> masses_;         ///< the diagonal of M_S, all dofs
   std::vector<double> velocity_;       ///< V_S, all dofs
-  std::vector<double> last_velocity_;  ///< of the last `move`
+  std::vector<double> last_velocity_;  ///< velocity of the last `move`
   RCP<const Map> map_;
   RCP<const LinearOperator> mass_;
 };

@@ -41,14 +41,14 @@ class ContactProblem {
   struct Candidate {
     Contact<dim> contact;
     double target = 0;    ///< least normal velocity [m/s]
-    bool active = false;  ///< or nothing moves along it
+    bool active = false;  ///< true also if nothing moves along it
   };
   /// A limit of a coordinate of a joint.
   struct Limit {
     JointLimit limit;
-    std::vector<std::pair<GlobalIndex, double>> resolved;  ///< the same by dofs that others follow
+    std::vector<std::pair<GlobalIndex, double>> resolved;  ///< terms by dofs that others follow
     double target = 0;                                     ///< least value of its combination [m/s]
-    bool active = false;                                   ///< or nothing moves it
+    bool active = false;                                   ///< true also if nothing moves it
     int number = -1;                                       ///< in the solver
     double value(const std::vector<double>& velocity) const {
       double sum = 0;
@@ -112,7 +112,7 @@ class ContactProblem {
   double spacing_;
   ContactPhase phase_;
   double dt_;
-  std::vector<double> half_thickness_;  ///< of the skin of each solid [m]
+  std::vector<double> half_thickness_;  ///< half thickness of the skin of each solid [m]
   std::vector<double> before_;
   std::vector<Point<dim>> unheld_;
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed

@@ -19,18 +19,18 @@ using SolidPairs = std::set<std::pair<int, int>>;
 
 /// Lengths are in units of the grid spacing h.
 struct GaussSeidelOptions {
-  int sweeps = 200;              ///< of projected Gauss-Seidel over the final set of contacts
-  double tolerance = 1e-4;       ///< change of velocities over the largest one wanted [1]
-  double margin = 0.1;           ///< gaps that are watched whatever the motion [h]
-  double slop = 0.05;            ///< overlap that is left alone [h]
-  double shell_thickness = 0.1;  ///< of shells and of the skins of deformable bodies [h]
+  int sweeps = 200;         ///< sweeps of projected Gauss-Seidel over the final set of contacts
+  double tolerance = 1e-4;  ///< change of velocities over the largest one wanted [1]
+  double margin = 0.1;      ///< gaps that are watched whatever the motion [h]
+  double slop = 0.05;       ///< overlap that is left alone [h]
+  double shell_thickness = 0.1;  ///< thickness of shells and of the skins of deformable bodies [h]
   double deepest = 0.5;          ///< overlap that is recognised [h]
   double push_rate = 0.2;        ///< part of an overlap that one step removes [1]
   double bounce_speed = 1e-3;    ///< no restitution below this speed of approach [m/s]
   std::map<std::string, double> thickness_of;              ///< instead, by name of the solid [m]
   std::vector<std::pair<std::string, std::string>> apart;  ///< pairs that do not touch, by name
-  bool self_contact = true;                                ///< of solids that are not rigid
-  std::optional<double> wall_friction, wall_restitution;   ///< default: those of the solid
+  bool self_contact = true;  ///< true if solids that are not rigid touch themselves
+  std::optional<double> wall_friction, wall_restitution;  ///< default: those of the solid
 };
 
 /// Speculative contacts solved by projected Gauss-Seidel through M_S. A contact with gap g must
@@ -79,8 +79,8 @@ class GaussSeidelContact : public ContactModel<dim> {
   double time_ = 0;  ///< at the beginning of the step [s]
   ContactTopology<dim> topology_;
   SolidPairs apart_;                  ///< `GaussSeidelOptions::apart` by number, in both orders
-  std::vector<std::string> numbers_;  ///< of solids with these names
-  RCP<const LinearOperator> known_inverse_;  ///< of which `inverse_mass_` is the copy
+  std::vector<std::string> numbers_;  ///< numbers of solids with these names
+  RCP<const LinearOperator> known_inverse_;  ///< inverse of which `inverse_mass_` is the copy
   InverseMass inverse_mass_;
   std::vector<FoundImpact<dim>> held_back_;  ///< by impact zones, in the positions of this step
   /// By phase, whether there was something to act on last time; results do not depend on it.

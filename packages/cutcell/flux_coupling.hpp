@@ -77,8 +77,8 @@ class FluxCoupling : public FaceCoupling<dim> {
 
   FluxOptions options_;
   std::vector<FaceShares<dim>> shares_;
-  CouplingWeights thin_weights_;                   ///< of thin parts; `weights_` are of all shares
-  std::vector<double> prescribed_thin_velocity_;   ///< of the prescribed ones of thin parts
+  CouplingWeights thin_weights_;  ///< weights of thin parts; `weights_` are of all shares
+  std::vector<double> prescribed_thin_velocity_;   ///< velocity of prescribed thin parts
   RCP<Import> thin_solid_import_;                  ///< solid map -> `thin_weights_.dofs`
   std::vector<AxisForce> excess_;                  ///< on dynamic solids
   std::vector<DisplacedExcess<dim>> held_excess_;  ///< on prescribed ones

@@ -92,7 +92,7 @@ struct SolidCrossing {
 /// are one, and where they meet nothing is left.
 std::vector<std::pair<std::vector<int>, int>> joined_crossings(std::vector<SolidCrossing> all,
                                                                double length) {
-  constexpr double touching = 1e-9;  // of the segment
+  constexpr double touching = 1e-9;  // part of the segment [1]
   std::sort(all.begin(), all.end(), [](const SolidCrossing& a, const SolidCrossing& b) {
     return std::tie(a.coordinate, a.solid) < std::tie(b.coordinate, b.solid);
   });

@@ -53,10 +53,11 @@ Point<dim> open_center_of(const ControlVolume<dim>& volume,
 /// Shares of solids in one face with open_fraction < 1.
 template <int dim>
 struct FaceShares {
-  std::vector<FluxShare<dim>> all;  ///< of the closed part; weights sum to one
+  std::vector<FluxShare<dim>> all;  ///< shares of the closed part; weights sum to one
   /// Shares of thin parts between the pressure points, as in the mixed-face coupling.
   std::vector<SurfaceShare<dim>> of_thin;
-  double thin_part = 0;  ///< of the face: its fluid moves with the thin parts and is lumped on them
+  double thin_part =
+      0;  ///< part of the face whose fluid moves with the thin parts and is lumped on them [1]
 };
 template <int dim>
 FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,

@@ -156,7 +156,7 @@ void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   before_.reset();
   moved_ = false;
   linearisation_ = Teuchos::null;
-  implicit_force_ = Teuchos::null;  // that of S1 is another one
+  implicit_force_ = Teuchos::null;  // S1 needs another one
   if (linearised_)
     update_forces();
   update_states();

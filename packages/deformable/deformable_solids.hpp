@@ -111,12 +111,12 @@ class DeformableSolids : public SolidModel<dim>,
     int most_sub_steps = 1;
     double elastic_step = 1e300;       ///< stable at the present positions, without sub-steps [s]
     double stiffest_rate = 0;          ///< a bound of the frequencies at the start [1/s]
-    double softening = 1;              ///< that elastic forces are multiplied with in this step
+    double softening = 1;              ///< factor of the elastic forces in this step [1]
     double mass = 0, measure = 0;      ///< [kg]; volume (cloth: area) as meshed
-    double fluid_mass = 0;             ///< that it carries along, about [kg]
+    double fluid_mass = 0;             ///< mass of fluid that it carries along, about [kg]
     int node_begin = 0, node_end = 0;  ///< original numbers
     std::vector<std::unique_ptr<ElementGroup<dim>>> elements;
-    double elastic_energy = 0;  ///< of all ranks
+    double elastic_energy = 0;  ///< energy on all ranks
   };
 
   void add_body(DeformableBody<dim>& body, int node_begin);
@@ -127,7 +127,7 @@ class DeformableSolids : public SolidModel<dim>,
   void distribute_surface(const std::vector<DeformableBody<dim>>& bodies);
   /// After the positions have changed: surface, forces, linearisation, states.
   void update_geometry();
-  void update_within_surface();  ///< the same but for the surface
+  void update_within_surface();  ///< updates all but the surface
   void update_forces();
   /// The time after which the elastic forces that the coming solve solves for are taken, over that
   /// of the solve: in S1 the end of the step, two halves of it, in S2 its end or its middle; 0
@@ -164,9 +164,9 @@ class DeformableSolids : public SolidModel<dim>,
   Point<dim> gravity_;
   std::vector<Body> bodies_;
   NodeSpace<dim> space_;
-  std::vector<int> body_of_node_;   ///< of the local nodes
+  std::vector<int> body_of_node_;   ///< body of the local nodes
   std::vector<double> node_mass_;   ///< lumped, of the owned nodes [kg]
-  std::vector<double> node_share_;  ///< of the owned nodes in their body's measure, sum 1
+  std::vector<double> node_share_;  ///< share of the owned nodes in their body's measure, sum 1
   Nodes node_force_;                ///< constant loads on them [N]
   HeldNodes<dim> held_;
   std::vector<std::pair<int, std::string>> attached_;  ///< owned nodes and their carriers
@@ -176,23 +176,23 @@ class DeformableSolids : public SolidModel<dim>,
   std::vector<GlobalIndex> surface_node_;       ///< global number of each vertex
   std::vector<int> own_surface_vertices_;       ///< local nodes, in the order of gathering
   std::vector<int> gathered_surface_vertices_;  ///< the vertex of each gathered value
-  Nodes surface_velocity_;                      ///< of the last move [m/s]
+  Nodes surface_velocity_;                      ///< velocity of the last move [m/s]
   std::vector<int> rim_nodes_;                  ///< owned ones, where shells end
 
   StrainLimit<dim> strain_limit_;
   double stretch_beyond_limit_ = 0;
-  Nodes limiting_impulse_;  ///< of the last `limit_motion`, until S2 has used it [kg m/s]
+  Nodes limiting_impulse_;  ///< impulse of the last `limit_motion`, until S2 has used it [kg m/s]
 
   RCP<const LinearOperator> mass_;
   NodeMatrix<dim> stiffness_, damping_;
-  mutable RCP<const LinearOperator> implicit_force_;  ///< of these; null: not asked for yet
+  mutable RCP<const LinearOperator> implicit_force_;  ///< null: not asked for yet
   mutable double implicit_force_dt_ = 0;              ///< [s]
-  Nodes x_;                                           ///< of all local nodes [m]
+  Nodes x_;                                           ///< positions of all local nodes [m]
   /// From `move` to the end of the step, if bodies are of second order: x_, theirs at the start
   /// [m]. Null on all ranks or on none, with nodes or without.
   std::optional<Nodes> before_;
-  Nodes elastic_force_;                          ///< of the owned nodes [N]
-  mutable std::optional<Nodes> averaged_force_;  ///< of these; none: not asked for yet
+  Nodes elastic_force_;                          ///< force on the owned nodes [N]
+  mutable std::optional<Nodes> averaged_force_;  ///< none: not asked for yet
   RCP<const Vector> velocity_;
   std::vector<SolidState<dim>> states_;
   Momentum<dim> load_;  ///< gravity and loads, of all ranks [N]

@@ -55,7 +55,7 @@ void DeformableSolids<dim>::find_rims() {
   for (const SolidDescription& solid : solids_) {
     if (solid.closed)
       continue;
-    std::map<std::vector<int>, int> sides;  // of simplices, by their vertices
+    std::map<std::vector<int>, int> sides;  // sides of simplices, by their vertices
     for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
       for (int k = 0; k < dim; ++k) {
         std::vector<int> side(surface_.simplices[s].begin(), surface_.simplices[s].end());

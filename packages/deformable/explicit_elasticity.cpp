@@ -16,7 +16,7 @@ template <int dim>
 void DeformableSolids<dim>::update_largest_stable_step() {
   constexpr double safety = 0.9;
   const int n_bodies = static_cast<int>(bodies_.size());
-  std::vector<double> rates(2 * n_bodies, 0);  // of each body: elastic, viscous [1/s]
+  std::vector<double> rates(2 * n_bodies, 0);  // rates of each body: elastic, viscous [1/s]
   for (int i = 0; i < space_.n_owned(); ++i) {
     const int b = body_of_node_[i];
     const TimeIntegration integration = bodies_[b].integration;

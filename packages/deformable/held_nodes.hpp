@@ -11,11 +11,11 @@ namespace lockstep {
 template <int dim>
 struct NodeHold {
   std::vector<int> nodes;
-  std::array<bool, dim> axes{};  ///< of space, along which they are held
+  std::array<bool, dim> axes{};  ///< axes of space along which they are held
   /// Displacement and turn of the held nodes; the start of the run is where the nodes are. Empty:
   /// at rest.
   MotionScript<dim> script;
-  Point<dim> origin = Point<dim>::Zero();  ///< what turns are about [m]
+  Point<dim> origin = Point<dim>::Zero();  ///< centre of turns [m]
   double release_time = 1e300;             ///< [s]
 };
 

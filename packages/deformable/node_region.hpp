@@ -32,7 +32,7 @@ std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<
 template <int dim>
 struct Tether {
   int node = -1;
-  Point<dim> offset = Point<dim>::Zero();  ///< of the anchor from where the node starts [m]
+  Point<dim> offset = Point<dim>::Zero();  ///< offset of the anchor from where the node starts [m]
   double stiffness = 0;                    ///< [N/m]
 };
 /// Reads the tethers of a body, whose stiffness is spread over the nodes in proportion to

@@ -52,7 +52,7 @@ class NodeSpace {
   std::vector<int> originals_;
   RCP<const Map> map_, overlap_map_;
   RCP<const Import> import_;
-  mutable RCP<const CrsMatrix> pattern_;  ///< of the last matrix, reused by the next
+  mutable RCP<const CrsMatrix> pattern_;  ///< pattern of the last matrix, reused by the next
   Numbers numbers_;
 };
 

@@ -43,9 +43,9 @@ class StrainLimit {
   /// change.
   struct Color {
     std::vector<LimitedEdge> edges;
-    RCP<const Import> import;  ///< of the ghosts' velocities; null: one rank
+    RCP<const Import> import;  ///< import of the ghosts' velocities; null: one rank
     std::vector<int> ghosts;   ///< in the order of the import
-    std::vector<int> owned;    ///< that may be ghosts of others
+    std::vector<int> owned;    ///< owned nodes that may be ghosts of others
   };
   void prepare_exchange(Color& color, const std::vector<char>& is_changed,
                         const NodeSpace<dim>& space) const;

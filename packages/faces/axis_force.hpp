@@ -12,10 +12,11 @@ namespace lockstep {
 template <int dim>
 struct DisplacedExcess {
   int solid = -1;                          ///< closed; index in the snapshot
-  int axis = 0;                            ///< of the acceleration that it is weighed by
+  int axis = 0;                            ///< axis of the acceleration that multiplies it
   Point<dim> center = Point<dim>::Zero();  ///< the solid's centroid [m]
   double mass = 0;                         ///< at the centroid [kg]
-  Point<dim> moment = Point<dim>::Zero();  ///< of mass about the centroid, across the axis [kg m]
+  Point<dim> moment =
+      Point<dim>::Zero();  ///< moment of mass about the centroid, across the axis [kg m]
 };
 
 /// The generalized force per unit of acceleration along one axis [kg], as entries of the solid map.

@@ -61,7 +61,7 @@ class FaceCoupling : public Coupling<dim>,
   double density_around(const FluidDiscretization<dim>& fluid, const Communicator& comm) const;
 
   const SurfaceSnapshot<dim>* surface_ =
-      nullptr;  ///< of the last `assemble`; the caller keeps it alive
+      nullptr;  ///< snapshot of the last `assemble`; the caller keeps it alive
   std::vector<ControlVolume<dim>> volumes_;
   CouplingWeights weights_;                  ///< W
   std::vector<double> masses_;               ///< M_F

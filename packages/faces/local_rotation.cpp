@@ -25,7 +25,7 @@ LocalRotation<dim>::LocalRotation(const Box<dim>& box, double arm, std::vector<i
 
 template <int dim>
 bool LocalRotation<dim>::invert(double arm) {
-  constexpr double least_ratio = 1e-2;  // of the moments of inertia
+  constexpr double least_ratio = 1e-2;  // ratio of the moments of inertia [1]
   constexpr double most_amplified = 3;  // arm over the radius of gyration
   const Eigen::SelfAdjointEigenSolver<Inertia> eigen(inertia());
   const auto& moments = eigen.eigenvalues();

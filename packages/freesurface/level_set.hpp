@@ -88,9 +88,9 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   ParticleTiles<dim> particles_;
   std::vector<char> in_band_;          ///< owned cells that have been given particles
   std::unique_ptr<Drops<dim>> drops_;  ///< null: there are never any
-  long long n_restored_ = 0;           ///< how often phi has been made a distance
+  long long n_restored_ = 0;           ///< number of redistancings of phi
   GlobalIndex n_lost_ = 0;
-  std::optional<VolumeTargets> loaded_;  ///< of a checkpoint, until the solids are known
+  std::optional<VolumeTargets> loaded_;  ///< targets of a checkpoint, until the solids are known
 };
 
 }  // namespace lockstep

@@ -48,7 +48,7 @@ class NeededTiles {
   const TileLattice<dim>& lattice_;
   int reach_, margin_;
   std::vector<GlobalIndex> in_reach_, wanted_;
-  std::array<Index<dim>, 4> last_place_{};  ///< of the last thing: tiles at its ends, both ways
+  std::array<Index<dim>, 4> last_place_{};  ///< tiles at the ends of the last thing, both ways
 };
 
 template <int dim>

@@ -35,7 +35,7 @@ class TileField {
   const Value& at_place(int place) const { return values_[place]; }
 
  private:
-  std::vector<int> slot_;      ///< of stored tiles, the place of the first cell
+  std::vector<int> slot_;      ///< place of the first cell of stored tiles
   std::vector<Value> values_;  ///< first a tile for all that have none
 };
 

@@ -11,7 +11,7 @@ namespace lockstep {
 /// Existing tiles of the domain and their owners: the same on every rank.
 struct TileOwners {
   std::vector<GlobalIndex> tiles;  ///< numbers, ascending
-  std::vector<int> ranks;          ///< of each
+  std::vector<int> ranks;          ///< owner of each tile
 };
 
 /// Collective: divides tiles (ascending, the same on all ranks) among the ranks (see

@@ -8,8 +8,8 @@ namespace lockstep {
 /// The work of tiles, in those of a cell. The two are done in parts of a step that wait for each
 /// other, so that each is to be shared evenly.
 struct TileWork {
-  std::vector<GlobalIndex> everywhere;   ///< of each tile, at least 1 is taken
-  std::vector<GlobalIndex> at_surfaces;  ///< what surfaces add in each; empty: nothing
+  std::vector<GlobalIndex> everywhere;   ///< work of each tile, at least 1 is taken
+  std::vector<GlobalIndex> at_surfaces;  ///< work that surfaces add in each tile; empty: none
 };
 
 /// Divides tiles among `n_parts` ranks so that the work is even and the cut small: of some ways the

@@ -22,7 +22,7 @@ class WideHalo {
 
  private:
   int n_owned_cells_ = 0;
-  int n_stored_cells_ = 0;  ///< of the wide grid
+  int n_stored_cells_ = 0;  ///< stored cells of the wide grid
   HaloExchange<dim> exchange_;
 };
 

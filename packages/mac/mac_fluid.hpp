@@ -33,7 +33,7 @@ struct MacParameters {
   ViscosityParameters viscosity;
   ForceParameters<dim> forces;
   AdvectionScheme advection = AdvectionScheme::semi_lagrangian;
-  int order_in_time = 1;  ///< of the splitting of advection from all else
+  int order_in_time = 1;  ///< order of the splitting of advection from all else
 };
 
 /// Schema of the "Fluid" list, without "Type"; without interface models it knows no free surface.
@@ -186,14 +186,15 @@ class MacFluid : public FluidDiscretization<dim>,
   AngularVector<dim> moment_of_shifts(const FaceFunction& velocity) const;
   Momentum<dim> push_sources(double time);
   bool tension_is_implicit() const { return liquid_ && liquid_->tension_is_implicit(); }
-  Momentum<dim> speed_up_drops();  ///< of this rank
+  Momentum<dim> speed_up_drops();  ///< change of momentum on this rank
   Momentum<dim> momentum_of_drops() const;
   double energy_of_drops() const;
-  void give_back_momentum();  ///< of drops that have fallen into the liquid
+  void give_back_momentum();  ///< gives the liquid the momentum of drops that have fallen into it
   SurfaceFrame frame_of_drops() const;
-  void push_surface(double dt);                    ///< by surface tension
-  void settle_gas();                               ///< for the frozen geometry
-  void bound_pressure(CellField& pressure) const;  ///< of the last step, beside the void
+  void push_surface(double dt);  ///< by surface tension
+  void settle_gas();             ///< for the frozen geometry
+  void bound_pressure(
+      CellField& pressure) const;  ///< bounds the pressure of the last step beside air
   /// Over the faces of the pockets of gas, the sum of value(face) for each pocket. Collective.
   template <typename Value>
   std::vector<double> sum_of_pockets(const Value& value) const;
@@ -202,10 +203,10 @@ class MacFluid : public FluidDiscretization<dim>,
 
   MacDomain<dim> domain_;
   std::optional<MovingTiles<dim>> moving_tiles_;  ///< none: all tiles exist, always
-  TileOwners owners_;                             ///< of the tiles; empty: as at the start
+  TileOwners owners_;                             ///< owners of the tiles; empty: as at the start
   int steps_since_regrid_ = 2;                    ///< accepted; 2: or more
   int steps_to_sharing_ = 0;                      ///< before work is next compared between ranks
-  TileWork compared_work_;                        ///< of this rank's tiles, then
+  TileWork compared_work_;                        ///< work of this rank's tiles, then
   bool has_room_ = false;                         ///< for the first surface
   bool has_begun_ = false;                        ///< with a geometry: sinks may empty it later
   MacParameters<dim> parameters_;
@@ -219,19 +220,21 @@ class MacFluid : public FluidDiscretization<dim>,
   std::vector<GasFace> gas_faces_;
   std::unique_ptr<Viscosity<dim>> viscosity_;
 
-  FaceField<dim> velocity_, prediction_;         ///< u^n, u*
-  std::vector<FaceField<dim>> stages_;           ///< u* between what acts on it; of `works` only
-  mutable std::optional<double> largest_speed_;  ///< of this velocity and geometry, once asked for
+  FaceField<dim> velocity_, prediction_;  ///< u^n, u*
+  std::vector<FaceField<dim>> stages_;    ///< u* between what acts on it; of `works` only
+  mutable std::optional<double>
+      largest_speed_;  ///< speed of this velocity and geometry, once asked for
   std::optional<VelocityHistory<dim>> history_;  ///< none: first order in time
-  CellField scaled_pressure_;                    ///< of the last projection
-  CellField accepted_pressure_;                  ///< of the last accepted step
-  std::vector<CellState> accepted_cells_;        ///< which cells had one
+  CellField scaled_pressure_;                    ///< pressure of the last projection
+  CellField accepted_pressure_;                  ///< pressure of the last accepted step
+  std::vector<CellState> accepted_cells_;        ///< cells that had an accepted pressure
   double accepted_step_ = 0;                     ///< its dt
   std::vector<StoredField> fields_;              ///< all that are kept from step to step
   InvalidSamples<dim> invalid_;
-  double time_ = 0;                ///< of walls and inflows
-  Momentum<dim> surface_impulse_;  ///< of surface tension in the last forces and viscous solve
-  double last_step_ = 0;           ///< dt of the last forces, for p = p̂ / dt in pictures
+  double time_ = 0;  ///< time of walls and inflows
+  Momentum<dim>
+      surface_impulse_;   ///< impulse of surface tension in the last forces and viscous solve
+  double last_step_ = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures
 };
 
 }  // namespace lockstep

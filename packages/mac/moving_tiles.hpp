@@ -28,13 +28,13 @@ class MovingTiles {
   /// State at the beginning of a step.
   struct Present {
     const TiledGrid<dim>& grid;
-    const TileOwners& owners;  ///< of its tiles
+    const TileOwners& owners;  ///< owners of its tiles
     const MacState<dim>& state;
     const FaceField<dim>& velocity;
     double largest_speed;  ///< [m/s]
     std::vector<Carried> scalars;
     double time, dt;     ///< [s]
-    double solid_speed;  ///< of the fastest solid [m/s]
+    double solid_speed;  ///< speed of the fastest solid [m/s]
     /// phi of a liquid, else null: tiles are needed where it is less than `band` [m].
     const CellField* distance = nullptr;
     double band = 0;

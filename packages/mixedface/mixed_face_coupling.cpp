@@ -224,7 +224,8 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
   }
   VelocityRow<dim> scratch;
   RowEntries entries;
-  add_carried_row<dim>(solids, shares, x, direction, scratch, entries);  // of dynamic solids
+  add_carried_row<dim>(solids, shares, x, direction, scratch,
+                       entries);  // entries of dynamic solids
   for (const auto& [dof, value] : entries)
     end.add_entry(dof, value);
   end.finish();

@@ -26,7 +26,7 @@ struct Transfer {
 
 struct CoarseningFactors {
   float unit = 1;       ///< coupling through a regular face of the fine level
-  float dirichlet = 1;  ///< of the sum of fine Dirichlet parts
+  float dirichlet = 1;  ///< factor of the sum of fine Dirichlet parts [1]
 };
 
 /// The coarse stencil: a coarse face is the sum of its fine faces, each in series with half a

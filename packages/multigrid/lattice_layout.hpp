@@ -104,7 +104,7 @@ class LatticeLayout {
   struct Stage {
     std::shared_ptr<const LatticeBlocks> blocks;
     int first = 0;
-    int rank_stride = 1;  ///< of the ranks that hold blocks
+    int rank_stride = 1;  ///< stride of the ranks that hold blocks
     std::vector<NearBlock> near_blocks;
   };
   void replicate(int level);

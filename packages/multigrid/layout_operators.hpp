@@ -56,7 +56,7 @@ class LayoutOperator : public Base {
 
 /// A coefficient on the diagonal that A has besides those of the stencil.
 struct DiagonalRest {
-  int row = 0;  ///< of cells along x, 2 * (j + n_y k) + colour
+  int row = 0;  ///< row of cells along x, 2 * (j + n_y k) + colour
   std::ptrdiff_t slot = 0;
   double value = 0;
 };
@@ -213,7 +213,7 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
 struct EmptyRow {
   int entry = 0;
   double inverse = 0;
-  double z = 0;  ///< of the last cycle
+  double z = 0;  ///< value of the last cycle
 };
 
 /// One cycle as an approximate inverse of A.

@@ -23,7 +23,7 @@ struct LevelGrid {
   int margin = 0;                 ///< slots before the first and after the last of a row
   std::ptrdiff_t row_stride = 0;  ///< in slots
   std::ptrdiff_t plane_stride = 0;
-  std::ptrdiff_t n_slots = 0;  ///< of one colour
+  std::ptrdiff_t n_slots = 0;  ///< slots of one colour
   std::ptrdiff_t first = 0;    ///< slot of (m, j, k) = 0
 
   std::array<std::ptrdiff_t, 3> natural_stride{1, 0, 0};

@@ -92,7 +92,7 @@ class LevelHalo {
   template <typename Value>
   struct Field {
     const Parts* parts;
-    Value *owned, *ghosts;  ///< the same array, or of two grids
+    Value *owned, *ghosts;  ///< one array, or arrays of two grids
 
     Value* source(bool to_owner) const { return to_owner ? ghosts : owned; }
     Value* target(bool to_owner) const { return source(!to_owner); }

@@ -95,7 +95,7 @@ class Multigrid {
   std::vector<StencilLevel<dim>> stencils_;
   std::vector<Transfer> transfers_;
   std::vector<Work> work_, landed_;             ///< `landed_` of gathered levels only
-  std::vector<std::ptrdiff_t> coarsest_slots_;  ///< of its unknowns: colour * n_slots + slot
+  std::vector<std::ptrdiff_t> coarsest_slots_;  ///< slots of its unknowns: colour * n_slots + slot
   Eigen::MatrixXd coarsest_inverse_;
   Eigen::VectorXd coarsest_rhs_, coarsest_solution_;
   std::vector<float> row_, coarse_rows_;  ///< residual of a row; sums of a coarse slab, naturally

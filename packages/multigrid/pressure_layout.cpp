@@ -123,7 +123,7 @@ class PressureLayoutOf final : public PressureLayout {
   bool schur_depends_on_solid_block_ = false;
   std::vector<int> empty_rows_;  ///< local rows that A leaves empty
   RCP<const LayoutStencil<dim>> stencil_;
-  RCP<Vector> direction_;  ///< of both kernels; zero where neither has an unknown
+  RCP<Vector> direction_;  ///< direction of both kernels; zero where neither has an unknown
   Preconditioned own_, of_schur_;
 };
 

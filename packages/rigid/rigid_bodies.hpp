@@ -32,7 +32,7 @@ class RigidBodies : public SolidModel<dim>,
 
   std::string name() const override { return "rigid body"; }
   const std::vector<RigidBody<dim>>& bodies() const { return bodies_; }
-  double time() const { return time_; }  ///< of the present positions [s]
+  double time() const { return time_; }  ///< time of the present positions [s]
 
   const std::vector<SolidDescription>& solids() const override { return solids_; }
   const SurfaceMesh<dim>& surface() const override { return surface_; }
@@ -62,7 +62,8 @@ class RigidBodies : public SolidModel<dim>,
   GlobalIndex first_dof(int solid) const override { return first_dof_[solid]; }
   std::string unjointable(int solid) const override;
   void set_load(int solid, const Point<dim>& force, const AngularVector<dim>& torque) override;
-  void add_frames(std::vector<SurfaceFrame>& frames) const override;  ///< of what no fluid sees
+  void add_frames(
+      std::vector<SurfaceFrame>& frames) const override;  ///< surfaces of solids that no fluid sees
 
   std::function<void()> undo() override;
   /// Bit for bit. Throws InputError if the checkpoint holds other bodies.
@@ -91,7 +92,7 @@ class RigidBodies : public SolidModel<dim>,
   std::vector<RigidBody<dim>> bodies_;
   std::vector<int> dynamic_;         ///< indices of the dynamic bodies
   int own_begin_ = 0, own_end_ = 0;  ///< this rank's part of `dynamic_`
-  std::vector<int> first_dof_;       ///< of each body; -1 if prescribed
+  std::vector<int> first_dof_;       ///< first dof of each body; -1 if prescribed
   std::vector<SolidDescription> solids_;
   std::vector<int> body_of_simplex_;
   SurfaceMesh<dim> surface_;

@@ -23,7 +23,7 @@ using Inertia = Eigen::Matrix<double, n_rotations<dim>, n_rotations<dim>>;
 
 template <int dim>
 struct RigidPose {
-  Point<dim> position = Point<dim>::Zero();  ///< of the reference point [m]
+  Point<dim> position = Point<dim>::Zero();  ///< position of the reference point [m]
   Orientation<dim> orientation = rotation_of<dim>(AngularVector<dim>::Zero());
 };
 
@@ -45,7 +45,7 @@ struct RigidBodyConstants {
   AngularVector<dim> torque = AngularVector<dim>::Zero();  ///< constant load [N m]
   double restitution = 0, friction = 0;
   MotionScript<dim> script;     ///< empty: dynamic
-  RigidPose<dim> initial_pose;  ///< of the script
+  RigidPose<dim> initial_pose;  ///< initial pose of the script
 };
 
 /// One rigid body.
@@ -53,8 +53,8 @@ template <int dim>
 struct RigidBody : RigidBodyConstants<dim> {
   RigidPose<dim> pose;
   RigidVector<dim> velocity = RigidVector<dim>::Zero();
-  RigidVector<dim> momentum = RigidVector<dim>::Zero();  ///< of a dynamic body
-  Twist<dim> last_move;                                  ///< that of the last `move`
+  RigidVector<dim> momentum = RigidVector<dim>::Zero();  ///< momentum of a dynamic body
+  Twist<dim> last_move;                                  ///< twist of the last `move`
   RigidPose<dim> pose_before;                            ///< the last `move`
 
   bool dynamic() const { return !this->script; }

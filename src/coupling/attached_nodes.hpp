@@ -20,8 +20,8 @@ struct ModelBegin {
 template <int dim>
 struct AttachedNode {
   std::array<GlobalIndex, dim> dofs;
-  int model = -1;       ///< that it belongs to
-  int solid = -1;       ///< that carries it
+  int model = -1;       ///< model of the node
+  int solid = -1;       ///< solid that carries it
   Point<dim> position;  ///< present [m]
 };
 

@@ -23,7 +23,7 @@ constexpr double closed_in = 1e-12;
 struct Answer {
   int pocket = 0;
   BlockVector unknowns;
-  std::vector<double> rates;  ///< of all pockets [m^dim/s]
+  std::vector<double> rates;  ///< opening rates of all bubbles [m^dim/s]
 };
 
 /// Returns the rate at which the bubble's push opens it if solids move by the diagonal of their

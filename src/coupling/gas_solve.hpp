@@ -13,7 +13,7 @@ struct GasProblem {
   std::vector<double> conductance;  ///< GasFluid::gas_conductance
   /// GasCoupling::gas_push_size, where a pocket without conductance pushes on solids.
   std::vector<double> push_size;
-  double dt = 0;       ///< of p̂ [s]
+  double dt = 0;       ///< step of p̂ [s]
   double step_dt = 0;  ///< over which the solution moves the pockets' sides [s]
   /// False: only pockets that keep their volume have a pressure (F2).
   bool with_springs = true;

@@ -307,7 +307,7 @@ std::vector<std::vector<NullSpace::Part>> kernel_of(const Triangles& triangles, 
 /// Sends the vectors from rank 0 to all.
 void broadcast(std::vector<std::vector<NullSpace::Part>>& vectors, const Communicator& comm) {
   const MPI_Comm mpi = raw_communicator(comm);
-  std::vector<double> flat;  // of each vector its length, then regions and values
+  std::vector<double> flat;  // each vector as its length, then regions and values
   for (const auto& parts : vectors) {
     flat.push_back(static_cast<double>(parts.size()));
     for (const NullSpace::Part& part : parts)

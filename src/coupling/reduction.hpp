@@ -88,8 +88,8 @@ class Reduction {
   std::vector<int> given_, combined_;  ///< local rows, ascending
   bool has_given_ = false;
   RCP<const CrsMatrix> combinations_;  ///< resolved; rows of other dofs are empty
-  RCP<const CrsMatrix> terms_;         ///< the same as they were handed in
-  int n_levels_ = 0;                   ///< of combinations of combinations
+  RCP<const CrsMatrix> terms_;         ///< terms as they were handed in
+  int n_levels_ = 0;                   ///< depth of combinations of combinations
   RCP<const Vector> unknowns_, offset_;
 };
 

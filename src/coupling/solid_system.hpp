@@ -102,7 +102,7 @@ class SolidSystem {
   /// dt D V: what the implicit forces give in a step. Its sum is zero, but not its torque: forces
   /// linearised at x act at x + dt V. Collective.
   RCP<Vector> implicit_impulse(double dt, const Vector& velocity) const;
-  AngularVector<dim> inner_angular_impulse(double dt) const;  ///< of all models [kg m^2/s]
+  AngularVector<dim> inner_angular_impulse(double dt) const;  ///< sum over all models [kg m^2/s]
   Momentum<dim> external_impulse(double time, double dt) const;
   bool linearise(double dt, const Vector& velocity);
   /// Nonlinear implicit forces: true if any model has them; the linearisation of all models; the
@@ -119,7 +119,7 @@ class SolidSystem {
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;
   Momentum<dim> momentum(const Vector& generalized_momentum) const;
   double largest_stable_step() const;
-  GlobalIndex n_clamped_elements() const;  ///< of all models, see SolidOutput
+  GlobalIndex n_clamped_elements() const;  ///< sum over all models, see SolidOutput
   double stretch_beyond_limit() const;     ///< in the worst place of all models, see SolidOutput
   /// True if all models tell their momentum (AuditedSolids).
   bool is_audited() const;
@@ -144,16 +144,16 @@ class SolidSystem {
   std::vector<std::unique_ptr<SolidModel<dim>>> models_;
   std::unique_ptr<ConstraintModel> joints_;
   std::vector<SolidDescription> solids_;
-  mutable BoxOrder order_;  ///< of snapshots
+  mutable BoxOrder order_;  ///< order of boxes in snapshots
   RCP<const Map> map_;
-  std::vector<ModelBegin> begin_;  ///< of each model
+  std::vector<ModelBegin> begin_;  ///< begin of each model
   GlobalIndex n_unknowns_ = 0;
   int n_padding_ = 0;                        ///< local
   std::vector<char> carried_;                ///< models with attached nodes, on any rank
-  std::vector<AttachedNode<dim>> attached_;  ///< of this rank, at the present positions
+  std::vector<AttachedNode<dim>> attached_;  ///< this rank's nodes, at the present positions
   Reduction reduction_;
   mutable RCP<const LinearOperator> mass_inverse_;            ///< null: not asked for yet
-  mutable std::vector<RCP<const LinearOperator>> of_masses_;  ///< of the models
+  mutable std::vector<RCP<const LinearOperator>> of_masses_;  ///< mass operators of the models
 };
 
 }  // namespace lockstep

@@ -38,10 +38,10 @@ class SpinCouples {
 
   Communicator comm_;
   bool empty_ = true;
-  std::vector<int> solid_;                    ///< of each link, among those that turn; -1: none
+  std::vector<int> solid_;  ///< solid of each coupling, among those that turn; -1: none
   std::vector<AngularVector<dim>> spin_;      ///< column of S of each link [1/m]
   std::vector<AngularVector<dim>> strength_;  ///< 2 mu V about each axis [kg m^2/s], of these
-  std::vector<Point<dim>> center_;            ///< of the ends of each solid's links [m]
+  std::vector<Point<dim>> center_;            ///< centre of the ends of each solid's couplings [m]
   mutable std::vector<double> rates_;         ///< Omega of each of these
 };
 

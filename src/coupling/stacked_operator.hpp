@@ -12,8 +12,8 @@ struct StackedPart {
   RCP<const LinearOperator> mass;
   RCP<const LinearOperator> implicit_force;  ///< D, or null
   RCP<const Map> map;
-  GlobalIndex id_begin = 0;  ///< of the part's ids in those of the stack
-  int local_begin = 0;       ///< of its rows among this rank's
+  GlobalIndex id_begin = 0;  ///< first id of the part among those of the stack
+  int local_begin = 0;       ///< first row of the part among this rank's
 };
 
 /// Rows of the identity in an operator on the stack: of dofs that are no unknowns, and padding.

@@ -28,7 +28,7 @@ struct Push {
 /// of the regions.
 struct Pushes {
   int n_regions = 0, n_solids = 0;
-  std::vector<Push> of;            ///< of solids with regions that they meet, in this order
+  std::vector<Push> of;            ///< pushes of solids with regions that they meet, in this order
   std::vector<std::size_t> begin;  ///< [solid], in `of`; then its size
   std::vector<double> others;      ///< [region], rate of all other solids [m^dim/s]
   std::vector<double> norm;        ///< [solid], of what the surface sweeps, squared
@@ -250,8 +250,8 @@ bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
 /// is what it pushes out of the regions on one of its sides, if these are all closed and it is all
 /// of that side.
 double rate_of(const Pushes& pushes, const PressureRegions& regions, int s, bool is_closed) {
-  constexpr double least_part = 0.5;   // of the side: 1 on a fine grid
-  constexpr double round_off = 1e-12;  // of terms that cancel
+  constexpr double least_part = 0.5;   // part of a shell's side [1]: 1 on a fine grid
+  constexpr double round_off = 1e-12;  // round-off of terms that cancel [1]
   for (const int sign : {1, -1}) {
     bool all_closed = true;
     double along = 0, size = 0, rate = 0;

@@ -10,7 +10,7 @@ namespace lockstep {
 /// Order of boxes in which neighbours in the list are near each other in space.
 struct SortedBoxes {
   std::vector<int> places;  ///< in a balanced binary tree
-  double extent = 0;        ///< of the tree's nodes together when they were sorted [m]
+  double extent = 0;        ///< sum over the tree's nodes when they were sorted [m]
 };
 using BoxOrder = std::shared_ptr<const SortedBoxes>;
 

@@ -9,8 +9,7 @@ namespace lockstep {
 template <int dim>
 struct ClippedSimplex {
   double measure = 0;  ///< length (2D) or area (3D) of the part inside [m, m^2]
-  Barycentric<dim> barycentric =
-      Barycentric<dim>::Zero();  ///< of the part's centroid; zero if empty
+  Barycentric<dim> barycentric = Barycentric<dim>::Zero();  ///< centroid of the part; zero if empty
   Point<dim> centroid = Point<dim>::Zero();
 };
 

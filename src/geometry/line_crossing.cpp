@@ -11,7 +11,7 @@ namespace {
 /// high.v.
 struct EdgeCrossing {
   double u = 0;       ///< first coordinate
-  double weight = 0;  ///< of the high end
+  double weight = 0;  ///< weight of the high end
 };
 
 /// Not inlined: both neighbours of an edge must execute the very same instructions, or a fused

@@ -14,7 +14,7 @@ struct MeshNames {
   std::string simplex_word;               ///< "facet", "cell"; empty: "triangle" and the like
   std::string vertex_word = "vertex";     ///< "node", "point"
   std::vector<long> vertices, simplices;  ///< numbers in the file; empty: it does not number them
-  std::vector<long> simplex_lines;        ///< of the file, from 1; empty: not known
+  std::vector<long> simplex_lines;        ///< line numbers in the file, from 1; empty: not known
 };
 
 /// "segment", "triangle" or "tetrahedron".

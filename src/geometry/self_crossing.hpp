@@ -6,8 +6,8 @@ namespace lockstep {
 /// Crossings of a surface with itself.
 template <int dim>
 struct SelfCrossing {
-  int n_pairs = 0;                        ///< of simplices that cross
-  int first = -1, second = -1;            ///< those of the first pair
+  int n_pairs = 0;                        ///< pairs of simplices that cross
+  int first = -1, second = -1;            ///< simplices of the first pair
   Point<dim> place = Point<dim>::Zero();  ///< where they cross [m]
 };
 

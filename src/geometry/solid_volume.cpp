@@ -238,7 +238,7 @@ PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
     within.keep(0, lower[0], +1);
     ConvexPart<dim, false> beyond = within;
     within.keep(0, upper[0], -1);
-    bool any_beyond = false;  // what lies in the plane of the exit counts once
+    bool any_beyond = false;  // simplices in the plane of the exit count once
     for (int i = 0; i < beyond.n_vertices(); ++i)
       any_beyond |= beyond.position(i)[0] > upper[0];
     add_below<dim>(within, lower[0], upper[0], sum);

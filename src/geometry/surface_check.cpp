@@ -28,7 +28,7 @@ struct Places {
 
 /// Rims at which the surface is not closed.
 struct OpenRims {
-  Places lone, crowded, opposed;  ///< of one simplex, of more than two, of two that disagree
+  Places lone, crowded, opposed;  ///< edges of one simplex, of more than two, of two that disagree
   int n_holes = 0;                ///< connected runs of lone rims (3D)
   bool none() const { return lone.n + crowded.n + opposed.n == 0; }
 };

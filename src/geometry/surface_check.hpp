@@ -6,7 +6,7 @@ namespace lockstep {
 
 /// Demands on a surface, and its names in messages.
 struct SurfaceDemand {
-  std::string name;          ///< of the solid
+  std::string name;          ///< name of the solid
   bool closed = true;        ///< it must enclose a volume
   bool can_be_shell = true;  ///< "Thin Shell" would make an open one right
 };

@@ -33,8 +33,8 @@ template <int dim>
 struct SurfacePart {
   std::vector<int> simplices;
   bool closed = false;  ///< all its rims join two simplices
-  double volume = 0;    ///< of a closed one, negative if it faces inwards [m^dim]
-  int depth = 0;        ///< of a closed one: how many other closed ones enclose it
+  double volume = 0;    ///< volume of a closed part, negative if it faces inwards [m^dim]
+  int depth = 0;        ///< number of other closed parts that enclose a closed one
   /// A part inside an odd number of others bounds a hole, and faces into it.
   bool faces_right() const { return (depth % 2 == 0) == (volume > 0); }
 };

@@ -15,7 +15,7 @@ struct SolidDescription {
   bool prescribed = false;  ///< kinematic or static: contributes velocities, not unknowns
   bool rigid = true;        ///< all its velocity rows are those of one rigid motion
   double density = 0;       ///< [kg/m^dim], of a shell [kg/m^(dim-1)]; for reports
-  double restitution = 0;   ///< of contacts: speed after over speed before [1]
+  double restitution = 0;   ///< restitution in contacts: speed after over speed before [1]
   double friction = 0;      ///< Coulomb's coefficient [1]
   int model = 0;            ///< index of its SolidModel in the SolidSystem
   int index_in_model = 0;   ///< its place in that model's `solids()`

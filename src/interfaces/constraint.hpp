@@ -26,22 +26,22 @@ struct ClosedMotion {
 
 /// A coordinate of a joint after a step, for joints.csv: an angle [rad] or a displacement [m].
 struct JointState {
-  std::string name;    ///< of the joint
+  std::string name;    ///< name of the joint
   int coordinate = 0;  ///< from 1; 0 if it has one alone, or none
   double q = 0, rate = 0, target = 0;
   double torque = 0;        ///< mean over the step, of control on the second solid [N m, N]
-  double power = 0;         ///< of control, mean over the step [W]
+  double power = 0;         ///< power of the control, mean over the step [W]
   double limit_torque = 0;  ///< mean over the step, of limits on the second solid [N m, N]
-  double gap = 0;           ///< of the joint [m, rad]
+  double gap = 0;           ///< gap between the sides of the joint [m, rad]
   bool two_halves = false;  ///< half of its impulse acted where the step began
-  bool at_limit = false;    ///< or beyond
+  bool at_limit = false;    ///< true also beyond a limit
 };
 
 /// A limit of a joint's coordinate: over a step of dt, sum_k weight_k V_k >= -room / dt. The
 /// weights make the sum the speed [m/s] of a point as far from the joint as the solids reach.
 struct JointLimit {
   std::vector<std::pair<GlobalIndex, double>> terms;  ///< dof and weight
-  double room = 0;  ///< how far the coordinate may still go [m]; negative: it is beyond
+  double room = 0;  ///< way that the coordinate may still go [m]; negative: it is beyond
 };
 
 /// Generalized impulses of the joints in one step.
@@ -55,7 +55,7 @@ struct JointImpulses {
 
 /// Dofs whose velocities are given.
 struct GivenMotion {
-  std::string name;  ///< of what moves them, as messages have it
+  std::string name;  ///< name of their cause, as messages have it
   std::vector<GlobalIndex> dofs;
 };
 

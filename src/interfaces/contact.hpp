@@ -15,9 +15,9 @@ class SolidSystem;
 /// Result of one resolution of contacts.
 template <int dim>
 struct ContactReport {
-  int n_contacts = 0;  ///< and limits of joints
+  int n_contacts = 0;  ///< number of contacts and joint limits
   int iterations = 0;
-  int n_crossings = 0;             ///< of surfaces that are not rigid, which could not be prevented
+  int n_crossings = 0;  ///< crossings of surfaces that are not rigid, which could not be prevented
   double deepest_overlap = 0;      ///< before resolution; 0 where nothing is resolved [m]
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global
   RCP<const Vector> impulse;  ///< generalized, on the free dofs, if there was a `ContactResponse`

@@ -28,8 +28,8 @@ class EnergyFluid {
 struct SolidWork {
   double elastic = 0;
   double damping = 0;  ///< hardly ever above 0
-  double control = 0;  ///< of springs and dampers of joints
-  double loads = 0;    ///< of gravity and loads
+  double control = 0;  ///< work of springs and dampers of joints
+  double loads = 0;    ///< work of gravity and loads
 };
 
 /// Side interface of solids with other forces than loads.
@@ -50,7 +50,7 @@ struct EnergyBook {
   double joints = 0;  ///< work of their control, as joints.csv has it
   double loads = 0;   ///< work of gravity, loads, contact and drops
   // Change of what is stored.
-  double kinetic_change = 0;  ///< of fluid and solids
+  double kinetic_change = 0;  ///< change for fluid and solids
   double elastic_change = 0;
   // Sinks, friction first.
   double fluid_friction = 0;  ///< by viscosity, from fluid and solids

@@ -26,8 +26,9 @@ struct PressureSide {
   SideKind kind = SideKind::open;
   GlobalIndex unknown = no_index;          ///< id in `pressure_map` if the kind is `unknown`
   Point<dim> center = Point<dim>::Zero();  ///< where the pressure lives [m]
-  int solid = -1;   ///< which one (index in the snapshot) if the kind is `solid`, or -1
-  int pocket = -1;  ///< of gas, if the kind is `empty` and it is one (interfaces/gas.hpp), or -1
+  int solid = -1;                          ///< index in the snapshot if the kind is `solid`, or -1
+  int pocket =
+      -1;  ///< gas bubble (interfaces/gas.hpp) if the kind is `empty` and it is in one, or -1
 };
 
 /// The control volume of one staggered velocity (a dual cell). Its momentum balance is
@@ -42,8 +43,8 @@ struct ControlVolume {
   int direction = 0;                            ///< axis of its velocity
   Point<dim> center = Point<dim>::Zero();       ///< R_f [m]
   Box<dim> box;                                 ///< the dual cell; half of it at an open side
-  double density = 0;                           ///< of its fluid [kg/m^3]
-  double area = 0;                              ///< of the face, V |G| [m^(dim-1)]
+  double density = 0;                           ///< density of its fluid [kg/m^3]
+  double area = 0;                              ///< area of the face, V |G| [m^(dim-1)]
   std::array<PressureSide<dim>, 2> sides;       ///< lower, upper along `direction`
   double open_fraction = 1;                     ///< alpha_f, as the coupling's rule answered
   Point<dim> open_center = Point<dim>::Zero();  ///< where its fluid moves: R_f unless partly open
@@ -105,14 +106,14 @@ struct FluidGeometry {
   /// semidefinite.
   RCP<const LinearOperator> pressure_block;
   PressureRegions regions;
-  double volume = 0;  ///< of the fluid [m^dim], global
+  double volume = 0;  ///< volume of the fluid [m^dim], global
 };
 
 /// Momentum that the explicit forces of a step gave to the fluid.
 template <int dim>
 struct ForceImpulse {
   Momentum<dim> impulse;               ///< given to the free velocities, global
-  std::vector<double> coupled_change;  ///< of each coupled control volume's u* [m/s]
+  std::vector<double> coupled_change;  ///< change of each coupled control volume's u* [m/s]
 };
 
 /// A fluid on its own discretization. Geometry is frozen between two calls of `set_geometry`.

@@ -9,7 +9,7 @@
 namespace lockstep {
 
 struct BoxFrame;      // output/frames.hpp
-struct SurfaceFrame;  // the same
+struct SurfaceFrame;  // output/frames.hpp
 
 // Side interfaces of fluids (`side_of`): what audits, solvers and outputs want. Viscosity is
 // another (interfaces/viscosity.hpp), and so are the fluxes of the sides (prescribed_flux.hpp) and
@@ -20,8 +20,10 @@ template <int dim>
 class AuditedFluid {
  public:
   virtual ~AuditedFluid() = default;
-  virtual Momentum<dim> momentum() const = 0;  ///< of u* on free faces, global. Collective.
-  virtual double kinetic_energy() const = 0;   ///< of u* on free faces [J], global. Collective.
+  virtual Momentum<dim> momentum()
+      const = 0;  ///< momentum of u* on free faces, global. Collective.
+  virtual double kinetic_energy()
+      const = 0;  ///< energy of u* on free faces [J], global. Collective.
   /// Impulse of walls and open sides through their own pressure [kg m/s], global. Collective.
   virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
 };

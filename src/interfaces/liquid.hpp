@@ -15,7 +15,7 @@ namespace lockstep {
 /// The liquid of a watched place. Global.
 struct WatchedLiquid {
   double volume = 0;  ///< [m^dim]
-  double target = 0;  ///< what it should be [m^dim]
+  double target = 0;  ///< target volume [m^dim]
   double leak =
       0;  ///< part of the difference that came through solids; with a leak a step fails [m^dim]
 };
@@ -23,7 +23,7 @@ struct WatchedLiquid {
 /// The gas that is trapped. Global.
 struct GasReport {
   long long n_pockets = 0;
-  double volume = 0;  ///< of all of them [m^dim]
+  double volume = 0;  ///< volume of all bubbles [m^dim]
   double pressure =
       0;  ///< in the largest bubble, above the pressure of the air, in the last step [Pa]
 };
@@ -31,24 +31,24 @@ struct GasReport {
 /// The drops that fly beside the liquid. Global.
 struct DropsReport {
   long long n = 0;
-  double volume = 0;  ///< of all of them; no part of the liquid's, nor of its target [m^dim]
+  double volume = 0;  ///< volume of all drops; no part of the liquid's, nor of its target [m^dim]
 };
 
 /// An impulse on a surface, that of a drop that hits it.
 template <int dim>
 struct SurfaceImpulse {
-  SurfacePoint<dim> point;                  ///< of the snapshot at the end of the step
+  SurfacePoint<dim> point;                  ///< point of the snapshot at the end of the step
   Point<dim> place = Point<dim>::Zero();    ///< where it acts [m]
   Point<dim> impulse = Point<dim>::Zero();  ///< [kg m/s]
 };
 
 /// Volume balance of the liquid. Global.
 struct LiquidReport {
-  double volume = 0;  ///< [m^dim]
-  double target = 0;  ///< what it should be: of the start, with all that flowed in and out [m^dim]
-  double shift = 0;   ///< volume that corrections have moved so far [m^dim]
-  double lost = 0;    ///< volume that vanished with drops below the grid's resolution [m^dim]
-  long long n_bodies = 0;              ///< connected liquid components
+  double volume = 0;       ///< [m^dim]
+  double target = 0;       ///< initial volume plus net inflow [m^dim]
+  double shift = 0;        ///< volume that corrections have moved so far [m^dim]
+  double lost = 0;         ///< volume that vanished with drops below the grid's resolution [m^dim]
+  long long n_bodies = 0;  ///< connected liquid components
   std::vector<WatchedLiquid> watches;  ///< in the order of their names
   std::optional<GasReport> gas;        ///< if any may be trapped
   std::optional<DropsReport> drops;    ///< if there may be any

@@ -21,7 +21,7 @@ using NamedLists = std::vector<std::pair<std::string, ParameterList>>;
 /// Properties of the scene that a solid model may know.
 template <int dim>
 struct SolidSetting {
-  double smallest_length = 1;               ///< that the fluid resolves, h [m]
+  double smallest_length = 1;               ///< h, the shortest length that the fluid resolves [m]
   Point<dim> gravity = Point<dim>::Zero();  ///< [m/s^2]
   double start_time = 0;                    ///< [s]
   Communicator comm;
@@ -34,8 +34,8 @@ struct ContactSetting {
   Box<dim> domain;  ///< [m]
   std::array<std::array<bool, 2>, dim>
       closed_sides{};               ///< [axis][lower, upper] is a wall for solids
-  WallVelocity<dim> wall_velocity;  ///< of these; empty: they are at rest
-  double smallest_length = 1;       ///< that the fluid resolves, h [m]
+  WallVelocity<dim> wall_velocity;  ///< velocity of these walls; empty: they are at rest
+  double smallest_length = 1;       ///< h, the shortest length that the fluid resolves [m]
   Communicator comm;
   std::vector<std::string> solids;  ///< their names
   /// Pairs of solids that joints connect, by name.
@@ -47,7 +47,7 @@ template <int dim>
 struct JointSetting {
   const std::vector<std::unique_ptr<SolidModel<dim>>>& models;  ///< in the order of their stack
   double start_time = 0;                                        ///< [s]
-  double largest_turn = 0;                                      ///< of a body in a step [rad]
+  double largest_turn = 0;  ///< largest turn of a body in a step [rad]
   Communicator comm;
   double fluid_density = 0;  ///< [kg/m^dim]
 };

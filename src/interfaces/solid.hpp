@@ -24,7 +24,7 @@ template <int dim>
 struct SolidState {
   std::string name;
   Point<dim> center_of_mass = Point<dim>::Zero();  ///< [m]
-  Point<dim> velocity = Point<dim>::Zero();        ///< of the centre of mass [m/s]
+  Point<dim> velocity = Point<dim>::Zero();        ///< velocity of the centre of mass [m/s]
   AngularVector<dim> angular_velocity = AngularVector<dim>::Zero();  ///< [rad/s]
   double mass = 0;                                                   ///< [kg]; 0 if prescribed
   double volume = 0;                                                 ///< [m^dim]; 0 for shells

@@ -63,7 +63,7 @@ class UnlinearSolids {
 template <int dim>
 struct RigidFrame {
   static constexpr int n = dim + n_rotations<dim>;
-  Point<dim> position = Point<dim>::Zero();  ///< of the reference point [m]
+  Point<dim> position = Point<dim>::Zero();  ///< position of the reference point [m]
   Orientation<dim> orientation = rotation_of<dim>(AngularVector<dim>::Zero());
   Eigen::Matrix<double, n, 1> velocity = Eigen::Matrix<double, n, 1>::Zero();
   Eigen::Matrix<double, n, n> mass = Eigen::Matrix<double, n, n>::Zero();  ///< 0 if prescribed

@@ -25,7 +25,8 @@ struct SolveReport {
   double solid_residual = 0;     ///< ||r_2|| / scale_2
   double setup_seconds = 0, solve_seconds = 0;
   int preconditioner_builds = 0, preconditioner_reuses = 0;
-  long stored_nonzeros = 0;  ///< of matrices that the strategy assembled; 0 if it does not count
+  long stored_nonzeros =
+      0;  ///< nonzeros of matrices that the strategy assembled; 0 if it does not count
 
   /// Adds the cost of another solve whose solution this one replaces.
   void add_work(const SolveReport& other) {

@@ -21,7 +21,7 @@ struct ViscousLink {
   int direction = 0;
   double coefficient = 0;  ///< [kg/s]
   Point<dim> position =
-      Point<dim>::Zero();  ///< of the free velocity: where the link pulls on the fluid [m]
+      Point<dim>::Zero();  ///< place of the free velocity, where the link pulls on the fluid [m]
   /// The other end [m]: a rigid solid is taken to move there as it does everywhere, even if its
   /// surface is a little nearer or farther. Across periodic sides where the solid is, not beside
   /// the velocity.

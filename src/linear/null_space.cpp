@@ -91,7 +91,7 @@ NullSpace NullSpace::moved_to(const RCP<const Map>& map, const std::vector<int>&
 NullSpace null_space_of(const std::vector<RCP<const Vector>>& vectors) {
   if (vectors.empty())
     return {};
-  using Values = std::vector<double>;  // of all vectors in one row
+  using Values = std::vector<double>;  // values of all vectors in one row
   const RCP<const Map> map = vectors.front()->getMap();
   const std::size_t n_rows = map->getNodeNumElements();
   std::vector<Values> of_row(n_rows);

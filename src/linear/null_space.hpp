@@ -20,7 +20,7 @@ struct RowRegions {
                                                 const std::vector<int>& region_of_row);
   /// The sum of x over each region. Collective.
   std::vector<double> sums_of(const Vector& x) const;
-  std::vector<double> n_rows() const;  ///< of each region. Collective.
+  std::vector<double> n_rows() const;  ///< number of rows of each region. Collective.
   RCP<Vector> numbers() const;         ///< the region of each row, -1 where it is in none
 };
 
@@ -40,7 +40,7 @@ class NullSpace {
 
   std::size_t size() const { return vectors_.size(); }
   bool empty() const { return vectors_.empty(); }
-  const RowRegions& regions() const { return *regions_; }  ///< of a space that is not empty
+  const RowRegions& regions() const { return *regions_; }  ///< regions of a space that is not empty
   const std::vector<std::vector<Part>>& vectors() const { return vectors_; }
   /// Returns one vector, row by row. Local.
   RCP<Vector> vector(std::size_t k) const;

@@ -14,7 +14,7 @@ namespace lockstep {
 /// blocks.
 struct LatticeBlocks {
   int dimension = 3;
-  std::array<int, 3> n_cells{1, 1, 1};  ///< of the lattice; 1 beyond `dimension`
+  std::array<int, 3> n_cells{1, 1, 1};  ///< cells of the lattice; 1 beyond `dimension`
   std::array<bool, 3> periodic{};
   int width = 8;                           ///< a power of two
   std::vector<std::array<int, 3>> begins;  ///< lattice coordinates, multiples of `width`
@@ -30,7 +30,7 @@ struct LatticeBlocks {
 /// operator.
 struct FaceCoefficients {
   std::shared_ptr<const LatticeBlocks> blocks;
-  RCP<const Map> map;  ///< of the rows
+  RCP<const Map> map;  ///< map of the rows
   double unit = 1;
   std::vector<int> row;  ///< by cell: its local row, or -1
   /// By cell: coefficient of the face to its lower neighbour along each axis, 0 without coupling.

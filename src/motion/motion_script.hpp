@@ -11,9 +11,9 @@ namespace lockstep {
 /// Where something prescribed is at some time, relative to its start, and how it moves there.
 template <int dim>
 struct ScriptedMotion {
-  Point<dim> displacement = Point<dim>::Zero();          ///< of the reference point [m]
+  Point<dim> displacement = Point<dim>::Zero();  ///< displacement of the reference point [m]
   AngularVector<dim> turn = AngularVector<dim>::Zero();  ///< rotation vector [rad]
-  Point<dim> velocity = Point<dim>::Zero();              ///< of the reference point [m/s]
+  Point<dim> velocity = Point<dim>::Zero();              ///< velocity of the reference point [m/s]
   AngularVector<dim> angular_velocity = AngularVector<dim>::Zero();  ///< [rad/s]
 };
 

@@ -28,8 +28,8 @@ struct BoxFrame {
   std::array<double, 3> origin{};   ///< lower corner of the box [m]
   std::array<double, 3> spacing{};  ///< cell size [m]
   std::array<int, 3> n_cells{1, 1, 1};
-  std::vector<CellBlock> blocks;  ///< of this rank
-  std::vector<BoxField> fields;   ///< the same list on every rank
+  std::vector<CellBlock> blocks;  ///< blocks of this rank
+  std::vector<BoxField> fields;   ///< fields; the same list on every rank
 };
 
 /// A field on the vertices or the simplices of a surface.

@@ -141,7 +141,7 @@ class Hdf5File {
   bool writing_ = false;
   std::int64_t id_ = -1;  // while reading: an hid_t, spelt out to keep hdf5.h out of this header
   hdf5::Structure structure_;  // while writing, on rank 0
-  int descriptor_ = -1;        // of the part file, for this rank's numbers
+  int descriptor_ = -1;        // descriptor of the part file, for this rank's numbers
 };
 
 }  // namespace lockstep

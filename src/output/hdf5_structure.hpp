@@ -14,7 +14,7 @@ struct SparseBytes {
   static constexpr long long page_size = 4096;
   std::map<long long, std::array<char, page_size>> pages;  // by offset over page_size
   long long end = 0;                                       // behind the last byte written
-  long long length = 0;                                    // of the file once it is closed
+  long long length = 0;                                    // length of the file once it is closed
 };
 
 /// An HDF5 file in memory that holds all of a file but its large tables: HDF5 breaks, as late as in

@@ -8,7 +8,7 @@ namespace lockstep {
 bool Schedule::reach(double time, double dt) {
   if (interval_ == 0)
     return true;
-  constexpr double drift = 1e-6;  // of a step: what times added up are off by
+  constexpr double drift = 1e-6;  // error of times that are added up, in steps [1]
   const double n = std::floor((time - start_ + drift * dt) / interval_);
   const bool is_another = n > n_reached_;
   n_reached_ = std::max(n, n_reached_);

@@ -12,7 +12,7 @@ namespace lockstep {
 /// "{[R], 0.5}". A list that was read with FormulaPolicy::kept holds it in place of the value until
 /// `evaluate_formulas` puts the value there.
 struct Formula {
-  ValueType type;    ///< of the value: real, integer, reals or integers
+  ValueType type;    ///< type of the value: real, integer, reals or integers
   std::string text;  ///< as written
 };
 bool operator==(const Formula& a, const Formula& b);

@@ -22,8 +22,8 @@ struct CaseOutcome {
   int exit_code = 0;
   int n_at_a_time = 1;    ///< runs of the study, at most, while this one went; seconds know it
   double seconds = 0;     ///< from its start to its end; 0 if reused
-  std::string directory;  ///< of its output
-  std::string message;    ///< what the child complained about
+  std::string directory;  ///< folder of its output
+  std::string message;    ///< complaint of the child
 };
 
 /// Runs every case that has no finished run of the same scene, files that it names, assignments,

@@ -33,7 +33,7 @@ std::vector<std::string> names_in(const std::string& formula) {
 struct Bodies {
   std::set<std::string> names;
   std::set<std::string> observers;   ///< only their runs know the columns
-  std::vector<std::string> watches;  ///< of the liquid
+  std::vector<std::string> watches;  ///< watched places of the liquid
   bool has_water = false;            ///< a liquid with a surface, which frames have like a solid's
   bool complete = false;
 };

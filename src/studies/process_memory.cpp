@@ -23,7 +23,7 @@ double memory_line(const std::string& name) {
 }  // namespace
 
 double restart_peak_memory() {
-  malloc_trim(0);  // what is free but kept would hide what is taken next
+  malloc_trim(0);  // returns free memory, which would hide new allocations
   std::ofstream("/proc/self/clear_refs") << "5";
   return memory_line("VmRSS");
 }

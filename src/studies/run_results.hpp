@@ -17,7 +17,7 @@ struct RunResults {
   Variables summary;     ///< "summary.name", "summary.iterations.s1.median", ...
   ParameterList scene;   ///< used-parameters.xml
   double spacing = 0;    ///< h, the smallest length that the fluid resolves [m]
-  double n_cells = 0;    ///< of the boxes in frames
+  double n_cells = 0;    ///< cells of the boxes in frames
   double mean_step = 0;  ///< [s]
 };
 

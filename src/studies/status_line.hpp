@@ -36,7 +36,7 @@ class StatusLine {
 
   std::ostream *stream_, *errors_;
   std::size_t n_cases_, width_, n_ended_ = 0;
-  std::map<std::string, std::string> logs_;  // of the runs that go on, by name
+  std::map<std::string, std::string> logs_;  // logs of the present runs, by name
   Clock::time_point start_ = Clock::now();
   std::mutex mutex_;
   std::condition_variable end_;

@@ -20,7 +20,7 @@ struct Series {
   std::string scene_file;
   Formulas constants;
   std::vector<std::string> assignments;  ///< "Path=value" with [formulas]
-  std::vector<double> values;            ///< of this series' own ladder; empty: the study's
+  std::vector<double> values;            ///< ladder of this series; empty: the study's
   int ranks = 1;
 };
 
@@ -32,10 +32,10 @@ struct Quantity {
   std::string name;
   From from = From::tables;
   std::string expression;  ///< over the rows of a run, or exact value of the field
-  Over over = Over::last;  ///< how the rows of a run become one number
+  Over over = Over::last;  ///< reduction of the rows of a run to one number
   double from_time = std::numeric_limits<double>::lowest();  ///< rows before do not count [s]
   std::string solid;                                         ///< whose surface
-  std::array<double, 3> point{};  ///< that picks a vertex of the surface, or of the line [m]
+  std::array<double, 3> point{};  ///< point that picks a vertex of the surface, or of the line [m]
   int axis = 0;                   ///< along which the line runs
   std::string field;              ///< dataset of the last frame
   int component = 0;
@@ -50,7 +50,7 @@ struct Quantity {
 struct Curve {
   std::string name;
   std::string expression;  ///< over the columns of history and bodies
-  std::string exact;       ///< the same of what it should be; may be empty
+  std::string exact;       ///< exact value, likewise; may be empty
 };
 
 /// A study file: which scene is run with which changes, and what is measured.

@@ -193,7 +193,7 @@ std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCas
   std::vector<StudyRow> table;
   for (int s = 0; s < static_cast<int>(study.series.size()); ++s) {
     const std::vector<Rung> rungs = read_rungs(study, s, cases, outcomes, tell);
-    int last_rung = 0;  // of those that were asked for
+    int last_rung = 0;  // last rung that was asked for
     for (const StudyCase& one : cases)
       last_rung = one.series == s ? std::max(last_rung, one.rung) : last_rung;
     for (const Quantity& quantity : study.quantities) {

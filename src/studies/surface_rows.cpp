@@ -16,7 +16,7 @@ using Vector = Eigen::Vector3d;
 /// Surface of one frame; in 2D z = 0.
 struct Surface {
   std::vector<Vector> vertices;
-  int corners = 0;  ///< of a simplex: 2 or 3
+  int corners = 0;  ///< corners of a simplex: 2 or 3
   std::vector<int> simplices;
 };
 

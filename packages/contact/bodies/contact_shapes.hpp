@@ -128,7 +128,7 @@ class ContactShapes {
   std::vector<Box<dim>> bounds_, solid_bounds_;
   std::unordered_map<GlobalIndex, std::vector<std::pair<GlobalIndex, double>>> combinations_;
   std::vector<double> drift_;  ///< empty: none
-  std::vector<int> carriers_;  ///< of each vertex; empty: no node is attached
+  std::vector<int> carriers_;  ///< carrier of each vertex; empty: no node is attached
   std::vector<bool> held_;
 };
 

@@ -34,7 +34,7 @@ class SolidMotion {
  private:
   struct Motion {
     bool rigid = true;
-    Point<dim> center, velocity;  ///< that it turns about
+    Point<dim> center, velocity;  ///< centre that it turns about, and the velocity there
     Eigen::Matrix<double, dim, dim> gradient;
     Box<dim> range;
   };

@@ -322,10 +322,10 @@ class ImpactZones {
   const InverseMass& inverse_mass_;
   double dt_;
   std::vector<double>& velocity_;
-  DisjointSets sets_;  ///< of vertices that move together
+  DisjointSets sets_;  ///< vertices that move together
   std::vector<int> solid_of_;
   std::set<int> members_;
-  std::vector<FoundImpact<dim>> impacts_;  ///< that made the zones
+  std::vector<FoundImpact<dim>> impacts_;  ///< impacts that made the zones
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ class RigidMember {
   std::vector<GlobalIndex> dofs_;
   Eigen::MatrixXd rows_;     ///< velocities of the centre and of points beside it, of the dofs
   Eigen::MatrixXd inverse_;  ///< least dofs for such velocities
-  Eigen::MatrixXd mass_;     ///< of the dofs
+  Eigen::MatrixXd mass_;     ///< mass of the dofs
 };
 
 }  // namespace lockstep

@@ -83,7 +83,7 @@ void ImpulseSolver<dim>::add_entries(Row& row, const SurfacePoint<dim>& point, c
       continue;
     }
     if (row.friction == 0 && row.contact.normal.dot(coefficient) == 0)
-      continue;  // what goes along the surface is not asked for
+      continue;  // without friction the tangential part has no effect
     if (mobility_.is_held(dof))
       row.prescribed += velocity_[dof] * coefficient;
     else

@@ -40,7 +40,7 @@ Eigen::VectorXd solved_for(const std::vector<char>& pushes, const Eigen::MatrixX
 bool exchange_blocks(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   constexpr int most_idle = 10;  // rounds without progress
   constexpr double round_off = 1e-13;
-  constexpr double solved = 1e-9;  // what a block that is nearly singular may be off by
+  constexpr double solved = 1e-9;  // error of a block that is nearly singular [1]
   const auto n = static_cast<int>(b.size());
   const double scale = b.cwiseAbs().maxCoeff();
   std::vector<char> pushes(n, 0);

@@ -70,7 +70,7 @@ class Mobility {
   const InverseMass& inverse_mass_;
   const SolidSystem<dim>* system_ = nullptr;
   RCP<const LinearOperator> response_;
-  std::vector<int> number_;  ///< of each dof; -1: not active
+  std::vector<int> number_;  ///< number of each dof; -1: not active
   std::vector<int> active_;
   std::vector<GrowingColumn> columns_;
 };

@@ -42,8 +42,8 @@ class Approach {
 
  private:
   int first_vertex_, first_simplex_;
-  std::vector<Point<dim>> moves_;  ///< of vertices over the step [m]
-  std::vector<double> turns_;      ///< of simplices
+  std::vector<Point<dim>> moves_;  ///< moves of vertices over the step [m]
+  std::vector<double> turns_;      ///< turns of simplices
 };
 
 }  // namespace lockstep

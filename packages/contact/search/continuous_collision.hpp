@@ -47,7 +47,8 @@ template <int dim>
 struct Impact {
   double time = 0;  ///< part of the motion [0, 1]
   PrimitiveWeights<dim> weights = PrimitiveWeights<dim>::Zero();
-  Point<dim> normal = Point<dim>::Zero();  ///< of the second primitive, to the first one's side
+  Point<dim> normal =
+      Point<dim>::Zero();  ///< normal of the second primitive, to the first one's side
 };
 /// The side of the second primitive on which the first one is, where they lie on each other at the
 /// start: a direction, or zero if nothing tells.

@@ -10,8 +10,8 @@ namespace lockstep {
 template <int dim>
 struct PrimitivePair {
   PrimitiveKind kind = PrimitiveKind::vertex_simplex;
-  int solid = -1, other = -1;            ///< of the first and of the second primitive
-  int simplex = -1, other_simplex = -1;  ///< that hold them
+  int solid = -1, other = -1;            ///< solids of the first and of the second primitive
+  int simplex = -1, other_simplex = -1;  ///< simplices that hold them
   std::array<int, dim + 1> vertices{};   ///< in the order of `PrimitivePoints`
 };
 

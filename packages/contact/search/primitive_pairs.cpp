@@ -133,7 +133,7 @@ class PairFinder {
           found.push_back(j);
         return false;
       });
-      if (any)  // which simplex is the nearest to a vertex, all of them tell
+      if (any)  // all simplices are needed to find the nearest to a vertex
         find_touching(i);
       else
         std::sort(found.begin(), found.end());
@@ -177,7 +177,7 @@ class PairFinder {
   const UsePrimitivePairs<dim>& use_;
   const Approach<dim>* approach_ = nullptr;  ///< null: nothing is left out
   double thickness_ = 0;
-  std::vector<PrimitivePair<dim>> pairs_;  ///< of one first primitive
+  std::vector<PrimitivePair<dim>> pairs_;  ///< pairs of one first primitive
 };
 
 }  // namespace

@@ -44,7 +44,8 @@ class PrimitivePairs {
 
   const ContactShapes<dim>& shapes_;
   std::vector<Box<dim>> vertex_boxes_;
-  std::vector<std::unique_ptr<const Trees>> trees_;  ///< of each solid; null: not asked for yet
+  std::vector<std::unique_ptr<const Trees>>
+      trees_;  ///< trees of each solid; null: not asked for yet
 };
 
 /// True if an edge of their mesh leads from one to the other.

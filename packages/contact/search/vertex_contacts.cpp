@@ -123,7 +123,7 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::closest(
   double nearest = farthest_;
   double best = -2;
   std::optional<Hit> hit;
-  std::optional<bool> is_inside;  // of the other solid, when it matters
+  std::optional<bool> is_inside;  // true inside the other solid; set when it matters
   for (int s : simplices_) {
     const double range = std::max(nearest, near_) + tie;
     if (shapes_.bounds(s).squaredExteriorDistance(x) > range * range)

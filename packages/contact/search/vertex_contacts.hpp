@@ -17,7 +17,7 @@ class VertexContacts {
  private:
   struct Hit {
     SurfacePoint<dim> point;
-    Point<dim> normal = Point<dim>::Zero();  ///< of the surface, towards the vertex
+    Point<dim> normal = Point<dim>::Zero();  ///< normal of the surface, towards the vertex
     double distance = 0;                     ///< signed [m]
   };
 
@@ -39,7 +39,7 @@ class VertexContacts {
   bool solid_closed_, other_closed_;
   double thickness_;  ///< half thicknesses of both
   double near_;       ///< including the thickness
-  double farthest_;   ///< that a simplex may be, on either side of it
+  double farthest_;   ///< largest distance of a simplex, on either side of it
   std::vector<int> simplices_;
   Box<dim> simplices_box_;
   std::vector<Hit> inner_;

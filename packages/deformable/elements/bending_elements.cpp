@@ -161,7 +161,7 @@ std::vector<Hinge<2>> hinges_of(const SurfaceMesh<2>& mesh, double stiffness) {
 }
 
 std::vector<Hinge<3>> hinges_of(const SurfaceMesh<3>& mesh, double stiffness) {
-  std::map<std::array<int, 2>, int> opposite;  // of each directed edge
+  std::map<std::array<int, 2>, int> opposite;  // opposite corner of each directed edge
   for (const auto& t : mesh.simplices) {
     for (int k = 0; k < 3; ++k)
       opposite[{t[(k + 1) % 3], t[(k + 2) % 3]}] = t[k];

@@ -8,7 +8,7 @@ namespace lockstep {
 
 /// Stress and strain of elements, for output. In 2D the entries of z are zero.
 struct ElementStates {
-  std::vector<int> corners;             ///< those of an element together
+  std::vector<int> corners;             ///< corners, those of an element together
   std::vector<Eigen::Matrix3d> stress;  ///< Cauchy's, of forces beside the damping [Pa]
   std::vector<Eigen::Matrix3d> strain;  ///< Green's; of sheets turned into their planes [1]
   std::vector<double> energy_density;   ///< per volume at rest [J/m^3]

@@ -17,8 +17,9 @@ using SurfaceGradient = Eigen::Matrix<double, dim, dim - 1>;
 template <int dim>
 struct MembraneElement {
   std::array<int, dim> corners;
-  Eigen::Matrix<double, dim - 1, dim> gradients;  ///< of the shape functions in the sheet [1/m]
-  double volume;                                  ///< area at rest times thickness
+  Eigen::Matrix<double, dim - 1, dim>
+      gradients;  ///< gradients of the shape functions in the sheet [1/m]
+  double volume;  ///< area at rest times thickness
 };
 
 /// Gradients of the shape functions of a simplex of space in an orthonormal basis of its plane.

@@ -102,7 +102,7 @@ std::unique_ptr<ElementGroup<dim>> membrane_springs(const SurfaceMesh<dim>& mesh
     }
   } else {
     struct Edge {
-      double area = 0;  ///< of its triangles, as the mesh has it
+      double area = 0;  ///< area of its triangles, as the mesh has it
       std::vector<int> opposite;
     };
     std::map<std::array<int, 2>, Edge> edges;

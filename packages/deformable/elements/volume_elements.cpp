@@ -14,8 +14,9 @@ namespace {
 template <int dim>
 struct VolumeElement {
   std::array<int, dim + 1> corners;
-  Eigen::Matrix<double, dim, dim + 1> gradients;  ///< of the shape functions at rest [1/m]
-  double volume;                                  ///< at rest [m^dim]
+  Eigen::Matrix<double, dim, dim + 1>
+      gradients;  ///< gradients of the shape functions at rest [1/m]
+  double volume;  ///< at rest [m^dim]
 };
 
 template <int dim>

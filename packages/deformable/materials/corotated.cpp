@@ -49,7 +49,7 @@ class Corotated : public Material<dim> {
     const double rotation_factor = lame_.lambda * (svd.sigma.sum() - dim) - 2 * lame_.mu;
     return matrix_of<dim>([&](const Tensor<dim>& d) -> Tensor<dim> {
       const Tensor<dim> m = svd.u.transpose() * d * svd.v;
-      Tensor<dim> turn;  // of R, in the basis of the singular vectors
+      Tensor<dim> turn;  // turn of R, in the basis of the singular vectors
       for (int i = 0; i < dim; ++i) {
         for (int j = 0; j < dim; ++j)
           turn(i, j) = i == j ? 0 : (m(i, j) - m(j, i)) / bounded(svd.sigma[i] + svd.sigma[j]);

@@ -62,7 +62,7 @@ VolumeMesh<dim> round_cones(const SurfaceMesh<dim>& polyhedron, int n) {
       return i[0] <= n && std::is_sorted(i.rbegin(), i.rend()) && i[dim - 1] >= 0;
     };
     const auto vertex = [&](const Index<dim>& i) {
-      std::map<int, int> weights;  // of the corners; the rest belongs to the origin
+      std::map<int, int> weights;  // weights of the corners; the rest belongs to the origin
       Point<dim> x = Point<dim>::Zero();
       for (int k = 0; k < dim; ++k) {
         const int weight = k + 1 < dim ? i[k] - i[k + 1] : i[k];

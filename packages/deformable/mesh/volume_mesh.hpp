@@ -49,7 +49,7 @@ void check_volume_mesh(VolumeMesh<dim>& mesh, const std::string& name, double wo
 template <int dim>
 struct BoundarySurface {
   SurfaceMesh<dim> surface;   ///< outward normals; only the vertices that it needs
-  std::vector<int> vertices;  ///< of each of its vertices the number in the volume mesh
+  std::vector<int> vertices;  ///< number of each of its vertices in the volume mesh
 };
 
 /// The sides that belong to one element only. Throws InputError naming the elements if more than

@@ -36,7 +36,7 @@ class Continuation {
   int n_layers_;
   std::shared_ptr<const SurfaceSnapshot<dim>> surface_;  ///< whose layers these are
   std::vector<std::vector<LayerCell>> layers_;           ///< owned cells
-  std::vector<char> layer_of_;  ///< of stored cells: 0 in the fluid, 1 in the first layer
+  std::vector<char> layer_of_;  ///< layer of stored cells: 0 in the fluid, 1 in the first layer
 };
 
 }  // namespace lockstep

@@ -91,7 +91,7 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
     return {};
   const double most = parameters_.largest_shift * domain_.spacing() * std::max(1.0, cfl);
   VolumeShift done;
-  CellGroups shifted;  // what the cells on and beside bodies belong to
+  CellGroups shifted;  // components that the cells on and beside them belong to
   std::vector<double> left(groups_.n, most);
   bool has_regrouped = true;
   // A second time for what is not linear in the shift.

@@ -16,7 +16,8 @@ enum class VolumeCorrection {
 /// Parameters of volume conservation.
 struct VolumeParameters {
   VolumeCorrection correction = VolumeCorrection::component;
-  double largest_shift = 0.2;  ///< of the surface in a step in which nothing crosses a cell [cells]
+  double largest_shift =
+      0.2;  ///< largest shift of the surface in a step in which nothing crosses a cell [cells]
 };
 
 /// Declares "Volume Correction" and "Largest Shift".

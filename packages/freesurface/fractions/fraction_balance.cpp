@@ -220,9 +220,9 @@ class Books {
   const CellField& phi_;
   Fractions& fractions_;
   int n_ = 0;
-  std::vector<int> body_;                     ///< of stored cells: the one beside them, or -1
-  std::vector<double> owed_, share_;          ///< of each body; beside it, and from afar
-  std::vector<double> ratio_;                 ///< how far its surface shifts [cells]
+  std::vector<int> body_;             ///< component beside each stored cell, or -1
+  std::vector<double> owed_, share_;  ///< defect beside each component, and its share from afar
+  std::vector<double> ratio_;         ///< shift of its surface [cells]
   std::array<std::vector<double>, 2> rooms_;  ///< for giving and for taking
   double homeless_ = 0;                       ///< amounts owed beside no body
   CellGroups spaces_;

@@ -51,7 +51,7 @@ std::vector<Arrival<dim>> gather_arrivals(const Communicator& comm,
 
 struct SeenCell {
   int cell = -1;
-  double distance = 0;  ///< of its centre [m]
+  double distance = 0;  ///< distance of its centre [m]
   int number = 0;       ///< among those around: decides between equals on any number of ranks
 };
 

@@ -64,7 +64,8 @@ class FractionTransport {
   FractionPlanes<dim> planes_;
   std::vector<char> grows_;  ///< cells that swell where the velocity does, along one axis
   CellField before_, swept_, arrived_;  ///< at the start; after an axis; real inflow so far
-  std::function<double(int axis, int cell)> open_;  ///< of faces at sides; null: all of them
+  std::function<double(int axis, int cell)>
+      open_;  ///< aperture of faces at sides; null: all are open
   double left_ = 0;
 };
 

@@ -11,7 +11,7 @@ namespace lockstep {
 /// The numbers of a volume of fluid.
 struct VolumeOfFluidParameters {
   int band = 6;                ///< cells around the surface in which phi is known
-  bool removes_crumbs = true;  ///< what is too thin for the grid goes back to its body
+  bool removes_crumbs = true;  ///< true: fragments too thin for the grid go back to their component
   double largest_shift = 0.1;  ///< see VolumeParameters [cells]
 };
 
@@ -72,10 +72,10 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   Continuation<dim> continuation_;
   FractionTransport<dim> transport_;
   FractionPlanes<dim> planes_;
-  double courant_ = 0;      ///< of the last step
-  long long n_sweeps_ = 0;  ///< so far: which axis comes first
+  double courant_ = 0;      ///< Courant number of the last step
+  long long n_sweeps_ = 0;  ///< sweeps so far: they decide which axis comes first
   int n_bodies_ = 0;
-  double volume_ = 0, target_ = 0, paid_ = 0, lost_ = 0;  ///< of all ranks [cells]
+  double volume_ = 0, target_ = 0, paid_ = 0, lost_ = 0;  ///< sums over all ranks [cells]
 };
 
 }  // namespace lockstep

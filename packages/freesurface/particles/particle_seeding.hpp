@@ -12,7 +12,7 @@ void set_radii(const MacDomain<dim>& domain, const SolidCells<dim>& solids, Kept
 
 /// Cells that get particles.
 enum class Seeding {
-  new_cells,  ///< those that have come into the band and have none
+  new_cells,  ///< cells that have come into the band and have none
   all_cells   ///< all of the band, up to their number; surplus ones and those beyond it go
 };
 

@@ -13,7 +13,7 @@ struct ParticleParameters {
   int per_cell = 16;
   int band = 3;        ///< cells on both sides of the surface in which they are
   int interval = 20;   ///< steps between two reseedings
-  bool drops = false;  ///< those of the liquid that no cell shows fly as drops
+  bool drops = false;  ///< true: particles of the liquid that no cell shows fly as drops
 };
 
 /// Declares "Particles per Cell", "Particle Band", "Reseed Interval" and "Drops".
@@ -57,7 +57,8 @@ template <int dim>
 struct ParticleBatch {
   std::array<int, tile_width<dim>> places;  ///< in the tile's list, ascending
   int n = 0;
-  std::array<Eigen::Array<double, tile_width<dim>, 1>, dim> x;  ///< of `n`, and of the last again
+  std::array<Eigen::Array<double, tile_width<dim>, 1>, dim>
+      x;  ///< coordinates of `n` particles, then of the last again
 };
 
 /// Calls f(batch) for all particles for which `counts` holds.

@@ -24,7 +24,8 @@ enum class SideType {
 template <int dim>
 struct BoundarySide {
   SideType type = SideType::wall;
-  Point<dim> velocity = Point<dim>::Zero();  ///< of the wall (tangential only) or the inflow [m/s]
+  Point<dim> velocity =
+      Point<dim>::Zero();   ///< velocity of the wall (tangential only) or the inflow [m/s]
   double ramp_time = 0;     ///< the velocity grows linearly from 0 during this time [s]; 0: at once
   double end_time = 1e300;  ///< after it the velocity is 0 [s]
   InflowShape<dim> shape;

@@ -12,17 +12,17 @@ namespace lockstep {
 /// less the mean flow of that wave, so that the tank neither fills nor empties.
 template <int dim>
 struct InflowWave {
-  double height = 0;                       ///< from trough to crest [m]
-  double period = 0;                       ///< [s]
-  double depth = 0;                        ///< of the still water [m]
-  double level = 0;                        ///< of the still water, along `up` from the origin [m]
-  double gravity = 0;                      ///< [m/s^2]
-  Point<dim> up = Point<dim>::Zero();      ///< against gravity; along an axis
+  double height = 0;                   ///< from trough to crest [m]
+  double period = 0;                   ///< [s]
+  double depth = 0;                    ///< depth of the still water [m]
+  double level = 0;                    ///< level of the still water, along `up` from the origin [m]
+  double gravity = 0;                  ///< [m/s^2]
+  Point<dim> up = Point<dim>::Zero();  ///< against gravity; along an axis
   Point<dim> inward = Point<dim>::Zero();  ///< normal of the side
   double number = 0;                       ///< k, of omega^2 = g k tanh(k depth) [1/m]
 
   double frequency() const { return 2 * M_PI / period; }  ///< omega [1/s]
-  double speed() const { return frequency() / number; }   ///< of a crest [m/s]
+  double speed() const { return frequency() / number; }   ///< speed of a crest [m/s]
 
   /// Velocity at a point of the side [m/s]; `share` of the height has grown. Above the still water
   /// it is that at its level.

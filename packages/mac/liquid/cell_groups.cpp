@@ -108,7 +108,7 @@ class Joiner {
   const SolidCells<dim>& solids_;
   const std::vector<char>& is_member_;
   DisjointSets sets_;
-  std::vector<Membership> members_;  ///< of owned tiles
+  std::vector<Membership> members_;  ///< members in owned tiles
   std::vector<std::pair<int, int>> across_;
 };
 

@@ -7,7 +7,8 @@ namespace lockstep {
 
 /// Cells that hang together, over all ranks.
 struct CellGroups {
-  std::vector<int> of_cell;  ///< of each stored cell of the halo of width 1 or owned; -1: no member
+  std::vector<int>
+      of_cell;  ///< group of each cell that is owned or in the halo of width 1; -1: no member
   int n = 0;
 };
 

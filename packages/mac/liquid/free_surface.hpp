@@ -17,7 +17,7 @@ struct FreeSurface {
   /// Part of the way from the centre of a wet cell to that of a dry neighbour at which the surface
   /// is, in (0, 1]. Local.
   std::function<double(int wet, int dry)> crossing;
-  double smallest_distance = 1e-5;  ///< of a pressure from the surface [cells]
+  double smallest_distance = 1e-5;  ///< least distance of a pressure from the surface [cells]
   /// True: p = 0 where the surface is. False: at the centre of the dry cell, first order.
   bool at_true_place = true;
   GasPockets<dim>* gas = nullptr;  ///< null: no void is closed

@@ -9,10 +9,10 @@ namespace lockstep {
 /// A free face between a cell that carries a pressure and a pocket of gas.
 struct GasFace {
   int pocket = 0;
-  int row = 0;  ///< of the pressure, among this rank's
+  int row = 0;  ///< row of the pressure, among this rank's
   FaceId face;
   double outward = 1;      ///< 1: the pocket is above the face, -1: below
-  double coefficient = 0;  ///< what a unit of p̂ between them drives through it, as in A
+  double coefficient = 0;  ///< flow through it by a unit of p̂ between them, as in A
   double area = 0;         ///< open [m^(dim-1)]
 };
 

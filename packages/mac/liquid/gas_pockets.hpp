@@ -18,7 +18,8 @@ struct GasParameters {
   double atmospheric_pressure = 101325;  ///< [Pa]
   double exponent = 1.4;                 ///< gamma
   double pressure_at_start = 0;          ///< above the atmosphere's [Pa]
-  std::vector<Point<dim>> atmosphere;    ///< what can be reached from here is not trapped
+  std::vector<Point<dim>>
+      atmosphere;  ///< points of the atmosphere: air connected to one of them is not trapped
 };
 
 /// Gas bubbles: components of the air that nothing joins to the atmosphere, which is the air that
@@ -45,7 +46,9 @@ class GasPockets {
   /// Leaves out the cells that surfaces pass over as they move, which do not tell which bubble
   /// follows which. Called before `find`. Local.
   void pass_over(const MovingSurface<dim>& surface);
-  const std::vector<int>& of_cell() const { return of_cell_; }  ///< of stored cells; -1: none
+  const std::vector<int>& of_cell() const {
+    return of_cell_;
+  }  ///< bubble of stored cells; -1: none
   const std::vector<GasPocket>& all() const { return pockets_; }
 
   /// Gives the cells of the pockets these pressures p̂; empty: zero. Local.
@@ -67,7 +70,7 @@ class GasPockets {
   GasParameters<dim> parameters_;
   Point<dim> gravity_;
   LiquidVolume<dim> measure_;
-  std::vector<char> is_void_;  ///< and not solid, of stored cells
+  std::vector<char> is_void_;  ///< stored cells that are air and not solid
   std::vector<int> of_cell_;
   std::vector<GasPocket> pockets_;
   std::vector<double> amounts_;  ///< V_0 by pocket [m^dim]

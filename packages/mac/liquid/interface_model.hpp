@@ -22,10 +22,10 @@ using SignedDistance = std::function<double(const Point<dim>&)>;
 
 /// Volume balance of the liquid [m^dim], over all ranks.
 struct LiquidLedger {
-  double volume = 0;     ///< of the liquid outside solids
-  double target = 0;     ///< initial volume plus known fluxes
-  double shift = 0;      ///< sum of the magnitudes of all corrections since the start
-  double lost = 0;       ///< of components that vanished and left no other in their closed space
+  double volume = 0;  ///< volume of the liquid outside solids
+  double target = 0;  ///< initial volume plus known fluxes
+  double shift = 0;   ///< sum of the magnitudes of all corrections since the start
+  double lost = 0;  ///< volume of components that vanished and left no other in their closed space
   int n_components = 0;  ///< connected liquid components
 };
 
@@ -42,7 +42,7 @@ struct InterfaceStep {
   /// `band()` cells; what it is beyond does not matter.
   const FaceField<dim>& advection_velocity;
   const MovingSurface<dim>& surface;
-  RayHalo<dim>& ray_halo;  ///< of the domain's grid
+  RayHalo<dim>& ray_halo;  ///< ray halo of the domain's grid
   KeptSurface<dim>& kept;
   double time = 0;  ///< t^n [s]
   double dt = 0;    ///< [s]

@@ -105,13 +105,14 @@ class LeakAudit {
   Look before_;
   std::optional<Look> last_;  ///< after the last step
   CellField places_;          ///< the bits of `Look::watched` as they were last found
-  double lost_ = 0;           ///< of the ledger before the step [m^dim]
+  double lost_ = 0;           ///< `lost` of the ledger before the step [m^dim]
   bool has_drops_ = false;
   std::shared_ptr<const Near> near_before_;  ///< the surface before the step; null between steps
-  double motion_ = 0;                        ///< of surfaces in this step, at most [m]
+  double motion_ = 0;                        ///< largest motion of surfaces in this step [m]
   std::vector<WatchedLiquid> report_;
   std::vector<char> holds_solids_;  ///< by watch, after the last step
-  bool has_report_ = false;         ///< of the step before; not at the start or after a restart
+  bool has_report_ =
+      false;  ///< true with a report of the step before; not at the start or after a restart
 };
 
 }  // namespace lockstep

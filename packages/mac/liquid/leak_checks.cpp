@@ -100,7 +100,7 @@ template <int dim>
 void LeakAudit<dim>::check_sides(const InterfaceStep<dim>& step, const Look& now) const {
   const auto is_empty = [](const auto& surface) { return !surface || surface->empty(); };
   if (is_empty(step.surface.before) || is_empty(step.surface.after))
-    return;  // the same on all ranks, also on those without cells
+    return;  // all ranks agree, also those without cells
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<int> leaked;
   grid.for_each_owned_cell([&](int cell) {

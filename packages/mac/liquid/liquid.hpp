@@ -34,7 +34,7 @@ class Liquid {
   void advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
                FaceField<dim>& advection_velocity, FaceField<dim>& velocity);
 
-  double tension() const { return parameters_.tension; }  ///< of the surface [N/m]
+  double tension() const { return parameters_.tension; }  ///< surface tension [N/m]
   bool tension_is_implicit() const {
     return parameters_.tension > 0 && parameters_.tension_is_implicit;
   }
@@ -66,7 +66,7 @@ class Liquid {
   bool starts_empty_ = false;
   CellField
       lead_;  ///< interface filter: distance of the pressure's phi ahead of the interface's [m]
-  std::optional<SampleLattice<dim>> lattice_;  ///< of the tiles since the last `begin`
+  std::optional<SampleLattice<dim>> lattice_;  ///< lattice of the tiles since the last `begin`
   std::vector<SignedDistance<dim>> sinks_;
   std::vector<Point<dim>> dry_points_;
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in

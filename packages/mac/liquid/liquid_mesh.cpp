@@ -107,7 +107,7 @@ class MeshBuilder {
   const TiledGrid<dim>& grid_;
   const CellField& distance_;
   SurfaceMesh<dim> mesh_;
-  std::map<Index<dim>, int> number_;  ///< of the vertex by dual cube
+  std::map<Index<dim>, int> number_;  ///< number of the vertex by dual cube
 };
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace lockstep {
 struct FreeSurfaceParameters {
   double smallest_distance = 1e-5;  ///< see FreeSurface
   int pressure_order = 2;
-  double tension = 0;  ///< of the surface [N/m]
+  double tension = 0;  ///< surface tension [N/m]
   bool tension_is_implicit = false;
 };
 

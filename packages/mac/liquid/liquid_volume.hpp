@@ -71,11 +71,11 @@ class LiquidVolume {
   /// Owned cells one behind the other whose boxes are all full.
   struct Run {
     int begin = 0, n = 0;
-    double volume = 0;  ///< of each
+    double volume = 0;  ///< volume of each cell [m^dim]
   };
   std::vector<Run> full_;
   std::vector<DividedCell> divided_;
-  CellField shares_;  ///< of stored cells [m^dim]
+  CellField shares_;  ///< shares of stored cells [m^dim]
 };
 
 }  // namespace lockstep

@@ -35,7 +35,7 @@ class VelocityExtension {
  private:
   struct Source {
     int face = -1;
-    int side = -1;      ///< of the source, on which the fluid's own next two are, if they are known
+    int side = -1;  ///< side of the source on which the fluid's own next two are, if they are known
     double weight = 0;  ///< by how much it is nearer to the fluid [cells], or next to nothing
   };
   struct Face {
@@ -73,7 +73,8 @@ class VelocityExtension {
   const std::vector<char>& near_;
   const NearbySurface<dim>& surface_;
   std::array<Faces, dim> faces_;
-  std::array<std::vector<char>, dim> known_;  ///< of stored faces: the fluid's own; of more ranks
+  std::array<std::vector<char>, dim>
+      known_;  ///< faces of the fluid's own velocity, also on other ranks
 };
 
 }  // namespace lockstep

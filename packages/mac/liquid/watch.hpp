@@ -14,7 +14,7 @@ struct Watch {
   std::string name;  ///< as columns have it
   Point<dim> point = Point<dim>::Zero();
   std::string solid;      ///< the point moves with it; empty: with none
-  double radius = 1e300;  ///< what is farther from the point is not watched [m]
+  double radius = 1e300;  ///< distance from the point beyond which nothing is watched [m]
 };
 
 /// Declares the list "Watch".
@@ -38,7 +38,7 @@ class Anchor {
 
   Point<dim> point_;  ///< at the start
   int solid_ = -1;    ///< none: the point does not move
-  Places start_;      ///< of the solid's vertices
+  Places start_;      ///< places of the solid's vertices at the start
 };
 
 }  // namespace lockstep

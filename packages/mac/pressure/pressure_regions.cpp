@@ -10,8 +10,8 @@ namespace lockstep {
 namespace {
 /// Components of one rank's cells.
 struct LocalComponents {
-  std::vector<GlobalIndex> label;  ///< of each stored cell: lattice number of the component's first
-                                   ///< cell on its rank, or no_index
+  std::vector<GlobalIndex> label;  ///< label of each stored cell: lattice number of the component's
+                                   ///< first cell on its rank, or no_index
   std::vector<GlobalIndex> labels;  ///< all labels here
   std::vector<GlobalIndex> fixed;   ///< labels whose pressure level is fixed
   std::vector<std::pair<GlobalIndex, GlobalIndex>> joined;  ///< across ranks
@@ -159,7 +159,7 @@ LocalComponents local_components(const MacDomain<dim>& domain, const MacGeometry
 
 /// The lists of all ranks, one after the other.
 struct SharedComponents {
-  std::vector<GlobalIndex> labels, fixed, joined;  ///< of `joined` two a pair
+  std::vector<GlobalIndex> labels, fixed, joined;  ///< `joined` has two numbers a pair
 };
 
 /// In one exchange: each rank sends how long its lists are, and the lists.

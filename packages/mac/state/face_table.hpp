@@ -11,11 +11,12 @@ struct FaceWorth {
   double open = 1;  ///< aperture alpha: the part of its area that no solid covers [1]
   double closeness =
       1;  ///< distance factor w = 1/theta: h over the distance of the pressures at both sides [1]
-  double density = 0;  ///< of the fluid in its dual cell [kg/m^dim]
+  double density = 0;  ///< density of the fluid in its dual cell [kg/m^dim]
 
-  double mass = 0;         ///< of that fluid, rho V alpha / w [kg]
-  double coefficient = 1;  ///< of A, alpha w rho_0 / rho, relative to a regular face [1]
-  double gradient = 0;     ///< change of its velocity by a unit of p̂ across it, w / (rho h)
+  double mass = 0;  ///< mass of that fluid, rho V alpha / w [kg]
+  double coefficient =
+      1;                ///< coefficient in A, alpha w rho_0 / rho, relative to a regular face [1]
+  double gradient = 0;  ///< change of its velocity by a unit of p̂ across it, w / (rho h)
 };
 
 /// Coefficients of all faces, on which pressure, momentum, energy, viscosity and coupling must
@@ -42,7 +43,7 @@ class FaceTable {
   void set_closeness(int axis, int cell, double closeness);
 
   const FaceWorth& regular() const { return regular_; }
-  double area() const { return area_; }  ///< of a whole face [m^(dim-1)]
+  double area() const { return area_; }  ///< area of a whole face [m^(dim-1)]
   /// Entry of A for a unit of `FaceWorth::coefficient`: area / (rho_0 h).
   double unit_coefficient() const { return area_ * regular_.gradient; }
   std::size_t n_stored() const;  ///< faces that are not taken from the regular one

@@ -28,7 +28,7 @@ struct MacGeometry : FluidGeometry<dim> {
   std::vector<FaceId> coupled;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows beside fluid
   std::vector<FaceId> rim;         ///< owned free faces to fluid at rest beyond the stored tiles
-  std::vector<int> pocket;         ///< of gas, of stored cells, or -1; empty: gas is not trapped
+  std::vector<int> pocket;         ///< gas bubble of stored cells, or -1; empty: gas is not trapped
 
   /// The part of a face through which free fluid flows.
   double open_fraction(int axis, int cell) const {

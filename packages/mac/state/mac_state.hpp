@@ -32,7 +32,7 @@ template <int dim>
 struct MacState {
   std::shared_ptr<const SurfaceSnapshot<dim>> surface;
   std::vector<CellState> cells;
-  std::array<std::vector<FaceState>, dim> faces;  ///< of the lower face of each cell
+  std::array<std::vector<FaceState>, dim> faces;  ///< state of the lower face of each cell
   /// Surfaces may leave faces open in part: cells are fluid wherever their centres are. The same on
   /// all ranks.
   bool has_cut_cells = false;

@@ -12,7 +12,7 @@ namespace lockstep {
 /// the state of a fluid cannot forget one.
 struct StoredField {
   std::string name;                    ///< in checkpoints
-  std::vector<CellField*> components;  ///< of a velocity on faces one an axis, else one
+  std::vector<CellField*> components;  ///< fields, one an axis for a velocity on faces, else one
   double at_rest = 0;                  ///< value in tiles that are new
 };
 

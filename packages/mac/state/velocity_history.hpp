@@ -40,7 +40,7 @@ class VelocityHistory {
   static void add(double scale, const FaceField<dim>& change, FaceField<dim>& u);
 
   FaceField<dim> acceleration_, rate_;  ///< [m/s^2]
-  FaceField<dim> advected_;             ///< of the present step [m/s]
+  FaceField<dim> advected_;             ///< velocity of the present step [m/s]
   FaceField<dim> free_;  ///< 1 on faces that were free or prescribed at the end of the last step
 };
 

@@ -15,7 +15,7 @@ class BoxBins {
  public:
   struct List {
     const int *first = nullptr, *last = nullptr;
-    int place = -1;  ///< of the bin among those that are not empty
+    int place = -1;  ///< place of the bin among those that are not empty
     const int* begin() const { return first; }
     const int* end() const { return last; }
   };
@@ -79,7 +79,7 @@ class BoxBins {
 
   Point<dim> lower_ = Point<dim>::Zero();
   double per_width_ = 0;  ///< bins a metre
-  Index<dim> count_{};    ///< of bins along each axis; 0: there are no boxes
+  Index<dim> count_{};    ///< bins along each axis; 0: there are no boxes
   int words_in_row_ = 0;
   /// A bit for each bin along axis 0, rows start a word: bins that are not empty, and that a box
   /// touches.

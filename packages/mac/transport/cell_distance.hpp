@@ -29,7 +29,7 @@ class CellDistance {
   void spread(int axis);
 
   int limit_ = 0;
-  Index<dim> begin_{}, count_{};         ///< of the cells that are not farther than the limit
+  Index<dim> begin_{}, count_{};         ///< range of the cells that are not farther than the limit
   std::vector<unsigned char> nearness_;  ///< limit + 1 - distance, x fastest
 };
 

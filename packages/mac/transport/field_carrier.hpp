@@ -15,7 +15,7 @@ struct Passenger {
   CellField* result = nullptr;
   std::vector<char>* invalid = nullptr;
   double beyond = 0;   ///< the field where no tile exists
-  CellField storage;   ///< of field.values
+  CellField storage;   ///< storage of field.values
   CellField half_way;  ///< MacCormack's first half: the result of semi-Lagrangian transport
   /// Range of the samples used, of owned cells; empty (low > high): not to be corrected. The first
   /// is kept where the result will be.

@@ -103,13 +103,13 @@ class NearbySurface {
   double spacing_, tolerance_;
   Box<dim> reached_;        ///< where all simplices are listed; empty if there is no such place
   std::vector<Near> near_;  ///< ascending by image and simplex
-  std::vector<Box<dim>> bounds_;        ///< of the images, widened by twice the tolerance
-  bool small_simplices_ = false;        ///< bins are smaller than half a cell
-  BoxBins<dim> patch_bins_;             ///< of middles, of half cells; for small simplices alone
-  std::vector<Patch> patches_;          ///< of those bins
-  double patch_reach_ = 0;              ///< of a simplex beyond the bin of its middle [m]
-  BoxBins<dim> bins_;                   ///< of `near_`; every half cell is one or several bins
-  CellDistance<dim> distance_;          ///< to `bounds_`
+  std::vector<Box<dim>> bounds_;  ///< bounds of the images, widened by twice the tolerance
+  bool small_simplices_ = false;  ///< bins are smaller than half a cell
+  BoxBins<dim> patch_bins_;       ///< bins of middles, half a cell wide; for small simplices alone
+  std::vector<Patch> patches_;    ///< patches of those bins
+  double patch_reach_ = 0;        ///< reach of a simplex beyond the bin of its middle [m]
+  BoxBins<dim> bins_;             ///< bins of `near_`; every half cell is one or several bins
+  CellDistance<dim> distance_;    ///< to `bounds_`
   mutable std::vector<unsigned> seen_;  ///< the question that each simplex last came up for
   mutable unsigned question_ = 0;
 };

@@ -16,8 +16,8 @@ struct Ray {
   bool clipped = false;  ///< it would have left the domain
   int inflow_axis = -1;  ///< it left through the inflow side of this axis, or ends beside it
   int inflow_side = 0;
-  double inflow_share = 0;  ///< what the inflow contributes at its end: 1 if it left
-  double past = -1e300;     ///< how far beyond that side it would have ended; < 0: inside
+  double inflow_share = 0;  ///< share of the inflow in its end: 1 if it left
+  double past = -1e300;     ///< distance beyond that side at which it would have ended; < 0: inside
 };
 
 /// Follows the advection velocity over one step with the midpoint rule, away from surfaces.

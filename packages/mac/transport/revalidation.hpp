@@ -7,9 +7,10 @@ namespace lockstep {
 
 /// Result of populating uncovered cells, over all ranks.
 struct RevalidationReport {
-  GlobalIndex n_invalid = 0;    ///< samples in the fluid that had no value
-  GlobalIndex n_left_over = 0;  ///< of them: no valid sample in sight, directly or over others
-  int n_fronts = 0;             ///< sweeps until nothing changed
+  GlobalIndex n_invalid = 0;  ///< samples in the fluid that had no value
+  GlobalIndex n_left_over =
+      0;             ///< invalid samples without a valid one in sight, directly or over others
+  int n_fronts = 0;  ///< sweeps until nothing changed
 };
 
 /// Collective, after the geometry of t^{n+1} is set: gives the invalid velocities the mean of their

@@ -29,7 +29,7 @@ struct RowSplit {
   RowValues<dim> below, weight;
   int first;      ///< sample of the first point, or one less if that is ahead of others
   bool is_mixed;  ///< not all points keep step
-  bool by_rows;   ///< those who do not are one sample ahead
+  bool by_rows;   ///< true for a point by rows; others are one sample ahead
   /// Where mixed: 1 or 0, and the weight of the first or third of three samples.
   RowValues<dim> is_ahead, weight_of_other;
 

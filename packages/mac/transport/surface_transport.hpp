@@ -20,7 +20,8 @@ struct CarriedField {
   std::function<double(const Ray<dim>&)> inflow;
   /// Instead, where it is what the side's distance makes of the value `inside`, at the ray's end.
   std::function<double(const Ray<dim>&, double inside)> enters = nullptr;
-  double inflow_depth = 0.5;  ///< how near to an inflow side rays may end that it concerns [cells]
+  double inflow_depth =
+      0.5;  ///< distance from an inflow side within which rays may end that it concerns [cells]
 };
 
 /// Transport of single samples near surfaces. Points and boxes are in lattice units.

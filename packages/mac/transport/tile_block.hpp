@@ -81,13 +81,13 @@ class TileBlock {
   int stencil_reach_;
   Index<dim> begin_{};                         ///< first cell of the block
   std::array<std::array<Runs, 2>, dim> runs_;  ///< [axis][of faces normal to it]
-  std::array<int, dim> stride_{};              ///< of neighbours in the block
+  std::array<int, dim> stride_{};              ///< strides of neighbours in the block
   std::array<double, dim> lower_{}, upper_{};  ///< where rays may go, relative to the block
   std::array<Values, dim> velocity_;
-  SampleKind kind_ = cell_centers;  ///< of the loaded field
-  Point<dim> offset_;               ///< of its samples in their cells
+  SampleKind kind_ = cell_centers;  ///< kind of the loaded field
+  Point<dim> offset_;               ///< offset of its samples in their cells
   const double* field_ = nullptr;   ///< its samples
-  Values storage_;                  ///< of them, unless they are those of the velocity
+  Values storage_;  ///< storage of its values, unless they are those of the velocity
 };
 
 }  // namespace lockstep

@@ -25,8 +25,9 @@ enum class AdvectionScheme {
 template <int dim>
 struct TransportSide {
   bool inflow = false;
-  bool closed = false;                                    ///< no velocity through it
-  std::function<Point<dim>(const Point<dim>&)> velocity;  ///< of the inflow, at a point of the side
+  bool closed = false;  ///< no velocity through it
+  std::function<Point<dim>(const Point<dim>&)>
+      velocity;  ///< velocity of the inflow, at a point of the side
 };
 
 /// A scalar on each side of the domain: [axis][0 lower, 1 upper].
@@ -40,12 +41,12 @@ struct TransportSetting {
   const MacState<dim>& state;                ///< geometry at t^n
   const MovingSurface<dim>& surface;         ///< null or empty snapshots: no solids
   const FaceField<dim>& advection_velocity;  ///< u_ADV on all faces that are not inactive [m/s]
-  RayHalo<dim>& halo;                        ///< of `grid`
+  RayHalo<dim>& halo;                        ///< ray halo of `grid`
   KeptSurface<dim>& kept;                    ///< for calls on `grid` alone
   std::array<std::array<TransportSide<dim>, 2>, dim> sides;  ///< [axis][0 lower, 1 upper]
   double dt = 0;                                             ///< [s]
   double kinematic_viscosity = 0;                            ///< [m^2/s]
-  int stencil_reach = 1;                                     ///< of what is carried: 2 for cubics
+  int stencil_reach = 1;  ///< reach of the stencils: 2 for cubics
 };
 
 /// Samples without a meaningful value after transport, by cell id (1: invalid): inactive or inside

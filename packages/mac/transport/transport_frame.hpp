@@ -24,7 +24,7 @@ struct TransportFrame {
   std::unique_ptr<RayTracer<dim>> tracer;
   std::unique_ptr<SurfaceTransport<dim>> near_surface;
   std::unique_ptr<TileBlock<dim>> block;  ///< null if the rays are too long for it
-  std::vector<TilePlan> plans;            ///< of owned tiles
+  std::vector<TilePlan> plans;            ///< plans of owned tiles
   InvalidSamples<dim> invalid;
 
   /// Calls f(id, position in lattice units) for the samples of that kind of an owned tile, within

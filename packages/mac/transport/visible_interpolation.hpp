@@ -98,7 +98,7 @@ class VisibleInterpolation {
   const MovingSurface<dim>& surface_;
   double friction_speed_;  ///< friction takes so much off the speed at which fluid slips [m/s]
   std::shared_ptr<const NearbySurface<dim>> nearby_;
-  std::array<Sight, dim> sight_;  ///< of each component, from the point looked at last
+  std::array<Sight, dim> sight_;  ///< sight of each component, from the point looked at last
 };
 
 }  // namespace lockstep

@@ -57,7 +57,7 @@ class SurfaceLaplacian {
   struct Cube {
     bool is_empty = false;
     std::array<int, n_corners>
-        cells;  ///< of its faces; corner k is upper along a where bit a is set
+        cells;  ///< cells of its faces; corner k is upper along a where bit a is set
     Eigen::Matrix<double, n_corners, n_corners> form;
   };
 
@@ -77,7 +77,7 @@ class SurfaceLaplacian {
   const MacDomain<dim>& domain_;
   const MacGeometry<dim>& geometry_;
   const CellField& distance_;
-  int axis_ = -1;  ///< of the cubes made so far, by their lowest corner
+  int axis_ = -1;  ///< axis of the cubes made so far, by their lowest corner
   std::unordered_map<std::int64_t, Cube> cubes_;
 };
 

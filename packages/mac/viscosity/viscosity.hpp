@@ -40,7 +40,7 @@ class Viscosity {
 
   const MacDomain<dim>& domain_;
   RCP<const Map> map_;
-  std::vector<FaceId> faces_;  ///< of the rows
+  std::vector<FaceId> faces_;  ///< faces of the rows
   RCP<const CrsMatrix> stiffness_;
   RCP<Vector> mass_;
   std::vector<ViscousLink<dim>> links_;

@@ -5,8 +5,9 @@
 namespace lockstep {
 
 struct ViscosityParameters {
-  double viscosity = 0;                 ///< dynamic, mu [Pa s]
-  double smallest_link_fraction = 0.2;  ///< of h: a link to a surface is never taken shorter
+  double viscosity = 0;  ///< dynamic, mu [Pa s]
+  double smallest_link_fraction =
+      0.2;                ///< part of h [1]: a link to a surface is never taken shorter
   bool has_void = false;  ///< above a free surface: the form is that of the symmetric stress there
 };
 
@@ -42,14 +43,14 @@ struct CrossPull {
 
 /// A prescribed velocity pulls likewise, in part from outside of the fluid.
 struct InflowPull : CrossPull {
-  double from_outside = 0;  ///< of the coefficient [kg/s]
+  double from_outside = 0;  ///< part of the coefficient [kg/s]
 };
 
 /// Everything that free velocities are viscously tied to.
 template <int dim>
 struct ViscousLinks {
   RCP<const Map> map;
-  std::vector<FaceId> faces;  ///< of the local rows
+  std::vector<FaceId> faces;  ///< faces of the local rows
   RCP<const CrsMatrix> stiffness;
   RCP<Vector> mass;
   std::vector<ViscousLink<dim>> links;

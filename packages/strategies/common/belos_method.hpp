@@ -11,9 +11,9 @@ namespace lockstep {
 /// One correction by a Krylov method on Eq. 16: right-hand side (rhs, 0), zero guess.
 struct BlockKrylovRequest {
   std::string name;         ///< for messages
-  double target = 0;        ///< of |r_1|
-  double solid_target = 0;  ///< of |r_2|, so small that B C^-1 r_2, which back-substitution of V_S
-                            ///< adds to r_1, is no larger than `target`
+  double target = 0;        ///< target of |r_1|
+  double solid_target = 0;  ///< target of |r_2|, so small that B C^-1 r_2, which back-substitution
+                            ///< of V_S adds to r_1, is no larger than `target`
   int maximum_iterations = 0;
 };
 
@@ -42,7 +42,7 @@ class BelosMethod {
   struct Trilinos;
 
   std::string solver_;
-  double tolerance_ = 0;        ///< of the list; 0: none
+  double tolerance_ = 0;        ///< tolerance of the list; 0: none
   int maximum_iterations_ = 0;  ///< likewise
   std::unique_ptr<Trilinos> trilinos_;
 };

@@ -46,8 +46,8 @@ class RefinedStrategy : public SolverStrategy {
     std::string name;        ///< for messages
     Vector* residual;        ///< r_1, free of null vectors; may be overwritten
     double residual_norm;    ///< |r_1|
-    double target;           ///< what |r_1| should become
-    double solid_round_off;  ///< what |r_2| cannot be asked to fall below
+    double target;           ///< target of |r_1|
+    double solid_round_off;  ///< round-off below which |r_2| cannot fall
     int maximum_iterations;
     /// `target` for the solution that this correction would give: the scales move with it.
     std::function<double(const Vector& correction)> update_target;

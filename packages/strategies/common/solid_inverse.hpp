@@ -51,9 +51,9 @@ class SolidInverse {
   /// C, or a part of it that is not cheap.
   struct Iterated {
     RCP<const LinearOperator> op;
-    RCP<const LinearOperator> preconditioner;  ///< of that; null: none
+    RCP<const LinearOperator> preconditioner;  ///< preconditioner of `op`; null: none
     RCP<const LinearOperator> rounded;         ///< it in single precision; null: not had
-    std::string preconditioner_type;           ///< of "Automatic"
+    std::string preconditioner_type;           ///< type that "Automatic" has chosen
     SoftNodes motions;
     double stiffness = 1;
   };
@@ -67,9 +67,10 @@ class SolidInverse {
   std::string type_ = "Automatic";
   RCP<const LinearOperator> exact_;
   mutable RCP<const LinearOperator> approximate_;
-  std::optional<InverseByCost> split_;  ///< of "Automatic" and "Exact"
+  std::optional<InverseByCost> split_;  ///< split by "Automatic" and "Exact"
   InverseByCost::Costly costly_;
-  std::vector<Iterated> iterated_;  ///< of "Automatic" and "Exact" in the order of their rests
+  std::vector<Iterated>
+      iterated_;  ///< parts that "Automatic" and "Exact" iterate on, in the order of their rests
   std::string name_;
   std::shared_ptr<long> iterations_ = std::make_shared<long>(0);
 };

@@ -75,7 +75,7 @@ class Woodbury {
   RCP<const CrsMatrix> coupling_;
   RCP<const LinearOperator> pressure_inverse_;
   Eigen::MatrixXd solid_block_;          ///< C
-  Eigen::LLT<Eigen::MatrixXd> factors_;  ///< of Ŝ
+  Eigen::LLT<Eigen::MatrixXd> factors_;  ///< factors of Ŝ
   RCP<MultiVector> columns_;             ///< M B
   RCP<Vector> rest_, of_solid_;          ///< work vectors
 };

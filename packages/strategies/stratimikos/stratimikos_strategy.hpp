@@ -56,8 +56,8 @@ class StratimikosStrategy : public RefinedStrategy, private BlockInverses {
   std::unique_ptr<Trilinos> trilinos_;
   const BlockSystem* system_ = nullptr;       ///< while something is built
   RCP<const BlockedOperator> set_up_;         ///< lives as long as what Teko made for it
-  RCP<const LinearOperator> preconditioner_;  ///< of the whole; null without one
-  RCP<const LinearOperator> fluid_inverse_;   ///< of A alone
+  RCP<const LinearOperator> preconditioner_;  ///< preconditioner of the whole; null without one
+  RCP<const LinearOperator> fluid_inverse_;   ///< inverse of A alone
   std::unique_ptr<FlatSystem> flat_;          ///< null: not built for solids
 };
 

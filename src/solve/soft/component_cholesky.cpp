@@ -67,7 +67,7 @@ struct Analysis {
            std::equal(rows.begin(), rows.end(), matrix.innerIndexPtr());
   }
   std::vector<int> begin, rows;
-  std::size_t hash = 0;          ///< of these
+  std::size_t hash = 0;          ///< hash of `begin` and `rows`
   MultifrontalCholesky factors;  ///< without values
 };
 

@@ -189,7 +189,7 @@ void MultifrontalCholesky::analyze(const Matrix& lower) {
   for (int k = 0; k < n; ++k)
     if (parent[k] >= 0)
       children[parent[k]].push_back(k);
-  std::vector<std::vector<int>> reach(n);  // of a vertex that ends a supernode
+  std::vector<std::vector<int>> reach(n);  // rows below a vertex that ends a supernode
   for (int k = 0; k < n; ++k) {
     std::vector<int> below;
     for (idx_t e = graph.begin[order[k]]; e < graph.begin[order[k] + 1]; ++e)

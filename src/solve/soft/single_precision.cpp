@@ -34,8 +34,8 @@ class NodeBlocks {
 
   RCP<const CrsMatrix> matrix_;     ///< whose import is used
   RCP<Vector> on_columns_;          ///< x with what other ranks own; null: x itself
-  std::vector<std::size_t> begin_;  ///< of each row's blocks
-  std::vector<int> columns_;        ///< of blocks
+  std::vector<std::size_t> begin_;  ///< first block of each row
+  std::vector<int> columns_;        ///< columns of the blocks
   std::vector<float> values_;       ///< column by column; one beyond the last may be read
   std::vector<int> place_;          ///< while building: by column of blocks
   std::size_t n_entries_ = 0;

@@ -50,7 +50,7 @@ struct Sheet {
 template <int dim>
 struct Search {
   std::vector<Contact<dim>> all, violated_only;
-  std::vector<double> normal_velocity;  ///< of all
+  std::vector<double> normal_velocity;  ///< normal velocities of all contacts
 
   Search(Sheet<dim>& sheet, const std::vector<double>& velocity) {
     const ContactShapes<dim> shapes(*sheet.solids, sheet.topology);
@@ -141,7 +141,7 @@ TYPED_TEST(Approaches, AFlatSheetThatMovesAsAWholeHasNone) {
 
 TYPED_TEST(Approaches, LayersThatMeetAreFoundAndOthersAreNot) {
   constexpr int dim = TypeParam::value;
-  constexpr double gap = 0.3 * h, thickness = 0.1 * h;  // that of Search
+  constexpr double gap = 0.3 * h, thickness = 0.1 * h;  // thickness of Search
   for (const double part_of_gap : {0.99, 1.01}) {
     const SurfaceMesh<dim> mesh = layers_of<dim>(h, (gap + thickness) * Point<dim>::Unit(dim - 1));
     const int n = static_cast<int>(mesh.vertices.size()) / 2;
@@ -161,7 +161,7 @@ TYPED_TEST(Approaches, LayersThatMeetAreFoundAndOthersAreNot) {
 // One simplex of many moves, so that few of the boxes that hold it move as a whole.
 TYPED_TEST(Approaches, OneSimplexThatMovesIsFoundWhereverItIs) {
   constexpr int dim = TypeParam::value;
-  constexpr double gap = 0.3 * h, thickness = 0.1 * h;  // that of Search
+  constexpr double gap = 0.3 * h, thickness = 0.1 * h;  // thickness of Search
   Point<dim> apart = Point<dim>::Constant(0.1 * h);     // no vertex below another
   apart[dim - 1] = gap + thickness;
   const SurfaceMesh<dim> mesh = layers_of<dim>(1.5 * h, apart);

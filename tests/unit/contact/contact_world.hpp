@@ -134,7 +134,7 @@ class World {
 
   std::unique_ptr<SolidSystem<dim>> solids;
   GaussSeidelContact<dim> contact;
-  Momentum<dim> contact_change;  ///< of the solids by contact in S2
+  Momentum<dim> contact_change;  ///< change of the solids' momentum by contact in S2
   ContactReport<dim> position_report, velocity_report;
   double time = 0;
 };

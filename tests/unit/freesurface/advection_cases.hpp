@@ -13,12 +13,12 @@ inline ParameterList uncorrected() {
 
 /// Errors of a liquid component in a flow that should bring it back, as parts of its volume.
 struct Return {
-  double loss = 0;    ///< of volume
+  double loss = 0;    ///< loss of volume
   double shape = 0;   ///< volume that is wet or dry though it should not be
-  double ledger = 0;  ///< how far the ledger's volume is from its start
+  double ledger = 0;  ///< difference of the ledger's volume from its start
   int n_components = 0;
   int n_steps = 0;
-  double seconds = 0;     ///< of processor time in the model's steps
+  double seconds = 0;     ///< processor time in the model's steps
   double band_cells = 0;  ///< with |phi| below its cut-off, summed over the steps
 };
 

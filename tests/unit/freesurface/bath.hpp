@@ -99,7 +99,8 @@ struct Bath {
     return value;
   }
   struct Areas {
-    double liquid = 0, wrong = 0;  ///< of {phi < 0}; of points whose sign is not that of `exact`
+    double liquid = 0,
+           wrong = 0;  ///< area of {phi < 0}; area of points whose sign is not that of `exact`
   };
   /// Measures with s^dim samples a cell.
   Areas measure(const CellField& phi, const SignedDistance<dim>& exact, int s = 4) const {

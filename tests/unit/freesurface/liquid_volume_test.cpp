@@ -144,7 +144,7 @@ void expect_solid_is_taken_off() {
     const auto solids = find_solid_cells<dim>(bath.domain, solid);
     const auto result =
         volumes<dim>(bath, solids, [&](const Point<dim>& x) { return x[dim - 1] - level; });
-    const double d = place[dim - 1] - level;  // of the centre above the level
+    const double d = place[dim - 1] - level;  // height of the centre above the level
     const double wet = dim == 2 ? r * r * std::acos(d / r) - d * std::sqrt(r * r - d * d)
                                 : pi * (r - d) * (r - d) * (2 * r + d) / 3;
     EXPECT_NEAR(result.total(), level - wet, 2e-3 * wet) << i;

@@ -115,7 +115,7 @@ void expect_small_voids_go_on_any_ranks() {
   const double h = 1.0 / n;
   Bath<dim> bath(closed_cube<dim>(n)), alone(bath.description, self());
   const SignedDistance<dim> distance = [&](const Point<dim>& x) {
-    Point<dim> middle;  // of the nearest
+    Point<dim> middle;  // middle of the nearest
     for (int a = 0; a < dim; ++a)
       middle[a] = h * (1 + width * std::clamp<long>(std::lround(x[a] / (width * h)), 1, 3));
     return std::max(x[dim - 1] - (n - 3) * h, 1.5 * h - (x - middle).norm());

@@ -182,7 +182,7 @@ void expect_solid_dips() {
     EXPECT_NEAR(model->ledger().lost, 0, 1e-14);
     worst = std::max(worst, std::abs(model->ledger().volume - start));
   }
-  EXPECT_LT(worst, 5e-3 * start);  // what a step has displaced is made good in the next
+  EXPECT_LT(worst, 5e-3 * start);  // a step makes good what the last one has displaced
   EXPECT_NEAR(model->ledger().volume, start, 1e-4 * start);
 }
 

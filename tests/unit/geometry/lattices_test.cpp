@@ -252,13 +252,13 @@ TEST(SolidVolume, HalfCutBoxes) {
     return solid_volume_in_box<3>(box, {lower, upper});
   };
   EXPECT_NEAR(in_box({0.4, 0, 0}, {0.6, .2, .2}), 0.004, 1e-15);    // half inside along x
-  EXPECT_NEAR(in_box({0, -.6, 0}, {.2, -.4, .2}), 0.004, 1e-15);    // and along y, below
+  EXPECT_NEAR(in_box({0, -.6, 0}, {.2, -.4, .2}), 0.004, 1e-15);    // part along y, below
   EXPECT_NEAR(in_box({.4, .4, .4}, {.6, .6, .6}), 0.001, 1e-15);    // a corner
   EXPECT_NEAR(in_box({-.1, -.1, -.1}, {.1, .1, .1}), .008, 1e-15);  // far inside
   EXPECT_NEAR(in_box({-2, -2, -2}, {2, 2, 2}), 1, 1e-14);           // all of it
   EXPECT_EQ(in_box({.5, 0, 0}, {.7, .2, .2}), 0);                   // touching from outside
   EXPECT_NEAR(in_box({.3, 0, 0}, {.5, .2, .2}), 0.008, 1e-15);      // touching from inside
-  EXPECT_NEAR(in_box({.3, 0, 0}, {.5, .7, .2}), 0.02, 1e-15);       // the same, cut across
+  EXPECT_NEAR(in_box({.3, 0, 0}, {.5, .7, .2}), 0.02, 1e-15);       // part cut across
   EXPECT_EQ(in_box({3, 0, 0}, {4, 1, 1}), 0);
   const auto shell = snapshot<3>({box_surface<3>({1, 1, 1}, 0.4)}, false);
   EXPECT_EQ(solid_volume_in_box<3>(shell, {Point<3>(0, 0, 0), Point<3>(1, 1, 1)}), 0);

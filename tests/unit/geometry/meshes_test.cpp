@@ -65,7 +65,7 @@ TEST(Generators, TubesAreOpenAndFaceOutwards) {
   const auto tube = tube_surface<3>(0.5, 2, 0.1);
   EXPECT_FALSE(is_closed(tube));
   EXPECT_NEAR(shell_properties(tube).measure, 2 * pi, 0.01);
-  double flux = 0, spread = 0;  // of the field (x, y, 0): twice the volume inside
+  double flux = 0, spread = 0;  // flux of the field (x, y, 0): twice the volume inside
   for (const auto& t : tube.simplices) {
     const std::array<Point<3>, 3> corners{tube.vertices[t[0]], tube.vertices[t[1]],
                                           tube.vertices[t[2]]};

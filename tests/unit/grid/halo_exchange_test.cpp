@@ -81,7 +81,7 @@ TEST(HaloExchange, WorksWithSparseTilesAndEmptyRanks) {
 TEST(HaloExchange, FillsAFieldOfSomeTilesWhereItHasValues) {
   const TiledGrid<3> grid(channel_40x32x10(), world());
   const HaloExchange<3> halo(grid, 2);
-  std::vector<char> tiles(grid.n_tiles());  // the same tiles on all ranks
+  std::vector<char> tiles(grid.n_tiles());  // same tiles on all ranks
   for (int t = 0; t < grid.n_tiles(); ++t)
     tiles[t] = (grid.tile_begin(t)[0] / tile_width<3>) % 2 == 0;
   TileField<3> field(tiles, unset);

@@ -290,7 +290,8 @@ TEST(Fluid, TellsHowFastItsWallsAre) {
 
 TEST(Fluid, AnOpeningThatEndsWithinFacesLetsInWhatWasAskedFor) {
   for (const char* const profile : {"uniform", "parabolic"}) {
-    for (const double upper : {0.45, 0.375, 0.3}) {  // of faces 0.125 m wide; the last within one
+    for (const double upper :
+         {0.45, 0.375, 0.3}) {  // ends of openings in faces 0.125 m wide; the last is within one
       Case<2> scene({16, 8}, 0.125);
       scene.side("x lower", "inflow", Point<2>(2, 0)).side("x upper", "open");
       ParameterList& jet = scene.domain.sublist("Sides").sublist("x lower");

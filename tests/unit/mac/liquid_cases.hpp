@@ -18,7 +18,7 @@ class FixedInterface : public InterfaceModel<dim> {
     grid.for_each_stored_cell(
         [&](int cell) { distance_[cell] = steepness * distance(grid.center(cell)); });
   }
-  static inline double steepness = 1;  ///< of phi; of no distance if not 1
+  static inline double steepness = 1;  ///< steepness of phi; it is no distance if not 1
   void advance(const InterfaceStep<dim>&) override {}
   const CellField& distance() const override { return distance_; }
   int band(double) const override { return 4; }

@@ -14,7 +14,7 @@ namespace {
 struct Totals {
   double volume = 0, area = 0, unclosed = 0;
   GlobalIndex n_simplices = 0;
-  int euler_number = 0;  ///< of a mesh of triangles that is whole on one rank
+  int euler_number = 0;  ///< number for a mesh of triangles that is whole on one rank
 };
 
 /// Totals of the surface where a distance is 0, in n^dim cells of the unit box.

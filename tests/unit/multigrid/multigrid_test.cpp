@@ -50,7 +50,7 @@ void expect_matvec_of_the_layout(const Problem<dim>& problem) {
   Vector in(layout->map()), out(layout->map()), ax(x->getMap()), by_matrix(x->getMap());
   layout->to_layout(*x, in);
   by_matrix.putScalar(1e3);
-  layout->to_layout(by_matrix, out);  // what was there must not matter
+  layout->to_layout(by_matrix, out);  // earlier content must not matter
   apply(*layout->pressure_block(), in, out);
   layout->from_layout(out, ax);
   const auto matrix = assembled(problem.system.pressure_block());

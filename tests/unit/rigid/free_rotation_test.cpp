@@ -15,7 +15,7 @@ const std::vector<double> turns{0.1, 0.2, 0.5, 1, 2, 4};  // rad a step
 
 struct Spun {
   Orientation<3> orientation = Orientation<3>::Identity();
-  double largest_change = 0;  ///< of the energy, relative
+  double largest_change = 0;  ///< relative change of the energy
 };
 
 /// `n_steps` of dt, from axes along those of space.

@@ -155,7 +155,7 @@ TEST(GasSolve, WhatAPocketLacksIsMadeGoodInTheStep) {
   const SaddleProblem problem(world(), options);
   const BlockSystem& blocks = problem.system;
   BlockVector rhs = problem.zero(), unknowns = problem.zero();
-  Vector beside(rhs.pressure->getMap());  // of one cell, a unit of area
+  Vector beside(rhs.pressure->getMap());  // flow beside one cell, a unit of area
   if (beside.getMap()->getMinAllGlobalIndex() == beside.getMap()->getMinGlobalIndex())
     beside.replaceLocalValue(0, 1.0);
 

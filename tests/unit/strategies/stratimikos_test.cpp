@@ -142,7 +142,7 @@ TEST(Stratimikos, FactoriesOfTeko) {
 /// Our inverses, by their parameters: in an open and a closed tank, and where a piston closes it.
 TEST(Stratimikos, InversesOfOurs) {
   std::vector<ParameterList> lists(5, shipped_list("minres-teko"));
-  library_of(lists[0]).sublist("Multigrid").set("Sweeps", 3);  // which MueLu does not know
+  library_of(lists[0]).sublist("Multigrid").set("Sweeps", 3);  // MueLu does not know this parameter
   library_of(lists[1]).sublist("Schur").set("Largest Solid", 1);
   library_of(lists[2]).sublist("Schur").set("Largest Solid", 1);
   library_of(lists[2]).sublist("Schur").set("Inverse Type", std::string("Incomplete Cholesky"));

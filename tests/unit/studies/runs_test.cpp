@@ -111,7 +111,7 @@ TEST_F(Runs, TablesOfObservers) {
   EXPECT_NEAR(rows[0].value, (5. + 7 + 7) / 3, 1e-14);
   EXPECT_EQ(rows[1].value, 3201);
   study_.quantities[1].expression = "Probes.3.p";
-  EXPECT_EQ(table().size(), 1u);  // what can be measured
+  EXPECT_EQ(table().size(), 1u);  // only one quantity can be measured
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_THAT(told_[0], testing::HasSubstr("Probes.3.p"));
 }
@@ -147,7 +147,7 @@ TEST_F(Runs, SurfacesInTheFrames) {
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_NEAR(rows[0].value, 2.5, 1e-12);
   EXPECT_NEAR(rows[1].value, 0.3, 1e-12);
-  EXPECT_NEAR(rows[2].value, 0.81 / 1.21, 1e-12);  // of a cone from outside the square
+  EXPECT_NEAR(rows[2].value, 0.81 / 1.21, 1e-12);  // value for a cone from outside the square
   EXPECT_NEAR(rows[3].value, 0.9 / 1.1 - 1, 1e-12);
   study_.quantities[0].solid = "Bell";
   EXPECT_EQ(table().size(), 3u);
@@ -188,7 +188,7 @@ TEST_F(Runs, MeanAndSpreadOverSamples) {
   const auto rows = table();
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_NEAR(*rows[0].error, 0, 1e-14);
-  EXPECT_NEAR(rows[0].spread, 1, 1e-14);  // of -1, 0, 1
+  EXPECT_NEAR(rows[0].spread, 1, 1e-14);  // spread of -1, 0, 1
   EXPECT_EQ(rows[0].n_samples, 3);
   study_.quantities[0].reference = "1 + h^2 + sample";  // another one for each of them
   EXPECT_NEAR(*table()[0].error, 0, 1e-14);
