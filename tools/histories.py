@@ -54,7 +54,7 @@ class Comparison:
         return max(self.differences, key=lambda found: found.size)
 
     def first(self):
-        """That above the limit first, of several the greatest; None if there is none."""
+        """The difference that is above the limit first, of several the greatest; None if there is none."""
         above = [found for found in self.differences if found.first is not None]
         return min(above, key=lambda found: (found.first, -found.first_size), default=None)
 
@@ -119,7 +119,7 @@ def scales(tables, table, units, of_scene):
 
 
 def is_count(pair, column):
-    """Whether all values in a column without unit are whole numbers."""
+    """True if all values in a column without unit are whole numbers."""
     return all(float(row[column]).is_integer() for one in pair for row in one.rows.values() if column in row)
 
 
@@ -160,7 +160,7 @@ def compare(tables, length, limit):
 
 
 def has_contact(scene):
-    """Whether a scene file leaves contact on, whose iteration then wants a tolerance as tight as the solves have."""
+    """True if a scene file leaves contact on, whose iteration then wants a tolerance as tight as the solves have."""
     contact = ElementTree.parse(scene).getroot().find("ParameterList[@name='Contact']/Parameter[@name='Type']")
     return contact is None or contact.get("value") != "none"
 

@@ -42,7 +42,7 @@ class Array:
 
     @property
     def path(self):
-        """Of the HDF5 file."""
+        """Path of the HDF5 file."""
         return self.folder / self.text.strip().rsplit(":", 1)[0]
 
 
@@ -52,24 +52,24 @@ class Grid:
     name: str
     is_box: bool
     dim: int
-    n_corners: int = 0                          # of a simplex
+    n_corners: int = 0                          # corners of a simplex
     fields: dict = field(default_factory=dict)  # name -> (Array, "Cell" or "Node", is a vector)
-    origin: numpy.ndarray = None                # of a box, in x, y, z order
+    origin: numpy.ndarray = None                # origin of a box, in x, y, z order
     spacing: numpy.ndarray = None
     n_cells: list = None                        # in x, y, z order; 1 along z in two dimensions
-    vertices: Array = None                      # of a surface
+    vertices: Array = None                      # vertices of a surface
     simplices: Array = None
 
     def points(self):
-        """Of a surface or volume: positions (n, 3) [m]; z is 0 in two dimensions."""
+        """Positions of a surface or volume (n, 3) [m]; z is 0 in two dimensions."""
         return self.vertices.read()
 
     def cells(self):
-        """Of a surface or volume: vertex numbers (n, corners)."""
+        """Vertex numbers of a surface or volume (n, corners)."""
         return self.simplices.read().astype(int).reshape(-1, self.n_corners)
 
     def centres(self):
-        """Of a box: the x, the y and the z of the cells' centres [m]."""
+        """Centres of a box's cells: their x, their y and their z [m]."""
         return [self.origin[axis] + self.spacing[axis] * (numpy.arange(n) + 0.5) for axis, n in enumerate(self.n_cells)]
 
     def values(self, name):
@@ -101,7 +101,7 @@ class Frame:
 
     @property
     def surfaces(self):
-        """Of all solids, one each: not the elements of deformable ones, whose surfaces are there too. And of water."""
+        """Surfaces of all solids, one each, and of water; not the elements of deformable solids, whose surfaces are there too."""
         return [grid for grid in self.grids if not grid.is_box and grid.n_corners > 1 and not self._is_elements(grid)]
 
     @property

@@ -1,4 +1,4 @@
-"""What the tools that measure have in common: the program of a build, runs on ranks and such as may fail, tables."""
+"""The common part of the tools that measure: the program of a build, runs on ranks and such as may fail, tables."""
 import csv
 import os
 import pathlib
@@ -43,7 +43,7 @@ def environment():
 
 
 def on_ranks(n):
-    """What stands before a command."""
+    """Words that stand before a command."""
     return ["mpirun", "--oversubscribe", "-n", str(n)] if n > 1 else []
 
 

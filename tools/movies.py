@@ -1,12 +1,12 @@
-"""What the movies of render and plot-frame share: one scale of colours for all frames, and the way to an MP4 file."""
+"""The common part of the movies of render and plot-frame: one scale of colours for all frames, and the way to an MP4 file."""
 import subprocess
 
 import numpy
 
 from lockstep_frames import FramesError
 
-MOST_PREVIEW_FRAMES = 50  # of a movie
-SHOWN = 0.999             # of a frame's values; one cell that is ten times as fast for one frame would leave all others dark
+MOST_PREVIEW_FRAMES = 50  # frames of a movie
+SHOWN = 0.999             # part of a frame's values; one cell that is ten times as fast for one frame would leave all others dark
 
 
 def range_of_colours(frames, is_magnitude, share=SHOWN):
@@ -24,7 +24,7 @@ def range_of_colours(frames, is_magnitude, share=SHOWN):
 
 
 def write_movie(folder, frame_rate, path):
-    """Of the pictures 000000.png, 000001.png, ... in the folder, all of one size; a rim of white makes odd sizes even, which MP4 wants."""
+    """Makes a movie of the pictures 000000.png, 000001.png, ... in the folder, all of one size; a rim of white makes odd sizes even, which MP4 wants."""
     command = ["ffmpeg", "-y", "-loglevel", "error", "-framerate", str(frame_rate), "-i", f"{folder}/%06d.png", "-c:v", "libx264",
                "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(path)]
     try:

@@ -11,7 +11,7 @@ simple._DisableFirstRenderCameraReset()
 SOLID_COLOURS = [(.80, .36, .25), (.30, .50, .72), (.87, .70, .30), (.45, .65, .42), (.58, .45, .68), (.55, .55, .55)]
 
 SMOKE_COLOUR = (.68, .7, .73)
-# Of a cloud of another field, from the smallest value to the largest: what is slow is hardly there, what is fast glows.
+# Colours of a cloud of another field, from the smallest value to the largest: slow fluid is hardly there, fast fluid glows.
 CLOUD_COLOURS = [(.76, .87, .95), (.30, .62, .85), (.16, .34, .66), (.55, .20, .50), (.93, .42, .20)]
 WATER, WATER_COLOUR = "water", (.24, .56, .86)
 
@@ -90,7 +90,7 @@ def show_solids(job, view):
         display.SetRepresentationType("Surface")
         display.ColorArrayName = ["POINTS", ""]  # ColorBy(display, None) fails on multiblock data
         display.AmbientColor = display.DiffuseColor = colour
-        if job["dim"] == 3:  # what faces away from the light is not black
+        if job["dim"] == 3:  # faces away from the light are not black
             display.Ambient, display.Diffuse = 0.25, 0.85
         display.LineWidth = 3
 

@@ -25,13 +25,13 @@ COUPLING_PACKAGES = {"mixed face": "mixedface", "flux": "cutcell"}
 class Page:
     name: str
     commands: list       # one after another, words of each; the first word is a path from the root
-    paths: list          # that the figures depend on
-    by_hand: str = ""    # why nobody but a person can make it again
+    paths: list          # paths that the figures depend on
+    by_hand: str = ""    # reason why nobody but a person can make it again
 
 
 @dataclasses.dataclass
 class Tool:
-    """How a page that is no study's is made, from which scenes, and what else it depends on."""
+    """The making of a page that is no study's: its commands, their scenes, and what else it depends on."""
     commands: list
     scenes: list = dataclasses.field(default_factory=list)
     paths: list = dataclasses.field(default_factory=list)
@@ -98,7 +98,7 @@ def settings_of(element, path=""):
 
 
 def assignments_of(study):
-    """What the "Set" of a study, its series, factors and samples say: "Coupling/Type", "flux"."""
+    """Assignments in the "Set" of a study, its series, factors and samples: "Coupling/Type", "flux"."""
     for path, value in settings_of(study):
         if path.split("/")[-1] == "Set":
             for assignment in value.split(";"):
@@ -155,7 +155,7 @@ def packages_of(settings, strategies):
 
 
 def paths_of_scenes(root, scenes, assignments=()):
-    """What runs of these scenes depend on, with these changes of them."""
+    """Paths that runs of these scenes depend on, with these changes of them."""
     all_files, packages = set(), set()
     for scene in scenes:
         settings, files = list(assignments), [beside(scene, value) for path, value in assignments if path.endswith("/File")]
@@ -179,13 +179,13 @@ def tool_page(root, name):
     tool = TOOL_PAGES[name]
     scenes = sorted(str(path.relative_to(root)) for pattern in tool.scenes for path in Path(root).glob(pattern))
     paths = paths_of_scenes(root, scenes) if scenes else [NOT_BUILD_FILES]
-    # What a tool names itself counts, also where its scenes leave it out.
+    # Paths that a tool names itself count, also where its scenes leave them out.
     paths = [path for path in paths if not (path.startswith(":(exclude)packages") and any("packages" in own for own in tool.paths))]
     return Page(name, [shlex.split(command) for command in tool.commands], [*tool.paths, *paths], tool.by_hand)
 
 
 def page_of(root, name):
-    """Of the page docs/results/NAME.md; None if nothing is known of it."""
+    """The page docs/results/NAME.md; None if nothing is known of it."""
     if (Path(root) / STUDIES / f"{name}.xml").exists():
         return study_page(root, name)
     return tool_page(root, name) if name in TOOL_PAGES else None
@@ -196,7 +196,7 @@ def names_of_pages(root):
 
 
 def seconds_of(root, name):
-    """That the page took when it was made, as far as its table or its text says so; else None."""
+    """Seconds that the page took when it was made, as far as its table or its text says so; else None."""
     text = (Path(root) / RESULTS / f"{name}.md").read_text()
     table = Path(root) / RESULTS / f"{name}.csv"
     rows = list(csv.DictReader(line for line in table.read_text().splitlines() if not line.startswith("#"))) if table.exists() else []

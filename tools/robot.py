@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy
 
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
-OUTSIDE = {"material", "gazebo", "transmission", "link", "joint"}  # of a robot: read, or of no meaning for its motion
+OUTSIDE = {"material", "gazebo", "transmission", "link", "joint"}  # elements of a robot that are read, or have no meaning for its motion
 
 
 class RobotError(Exception):
-    """What is wrong, where, and what to do."""
+    """An error in a robot: what is wrong, where, and what to do."""
 
 
 @dataclass
@@ -41,7 +41,7 @@ class Joint:
     axis: numpy.ndarray
     limits: tuple = ()
     damping: float = 0
-    has_actuator_limits: bool = False  # of effort or velocity
+    has_actuator_limits: bool = False  # limits of effort or velocity
 
 
 def required(element, name, where):
@@ -72,7 +72,7 @@ def numbers(text, n, where):
 
 
 def pose(element, where):
-    """Of the element's <origin>: turned by roll, pitch and yaw about the axes of space, then shifted."""
+    """Pose of the element's <origin>: turned by roll, pitch and yaw about the axes of space, then shifted."""
     origin = element.find("origin")
     result = numpy.eye(4)
     if origin is None:

@@ -1,4 +1,4 @@
-"""What a run's used-parameters.xml says: all parameters, and how its scene wants to be shown."""
+"""Contents of a run's used-parameters.xml: all parameters, and how its scene wants to be shown."""
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -52,6 +52,6 @@ def view_of(values):
 
 
 def read_view(folder):
-    """That of a run; of a folder without parameters, that of a scene which says nothing."""
+    """View of a run; of a folder without parameters, that of a scene which says nothing."""
     known = (Path(folder) / FILE).is_file()
     return view_of({name: value for name, value, _ in read_parameters(folder)} if known else {})

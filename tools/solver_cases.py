@@ -60,7 +60,7 @@ def row_of_balls(density):
 
 
 def pool(level, amplitude):
-    """Of the list `Fluid`: water up to about that height, with a standing wave, and void above."""
+    """Lists for the list `Fluid`: water up to about that height, with a standing wave, and air above."""
     return ['<ParameterList name="Free Surface"><ParameterList name="Liquid"><ParameterList name="Pool">',
             parameter("Type", "string", "level"), parameter("Height", "double", level), parameter("Amplitude", "double", amplitude),
             parameter("Wavelength", "double", 2), "</ParameterList></ParameterList></ParameterList>"]

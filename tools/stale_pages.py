@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Which pages of docs/results are older than what they depend on, and their remaking: the part of tools/results --stale."""
+"""Finds pages of docs/results that are older than what they depend on, and remakes them: the part of tools/results --stale."""
 import argparse
 import dataclasses
 import datetime
@@ -31,13 +31,13 @@ class Age:
 
 
 def git(root, *arguments):
-    """What it says, or None where it fails."""
+    """Output of git, or None where it fails."""
     done = subprocess.run(["git", "-C", str(root), *arguments], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return done.stdout.strip() if done.returncode == 0 else None
 
 
 def commit_of_tree(root=ROOT):
-    """What a page names: HEAD, with "-dirty" where the tree differs from it in more than the pages, on which no figure depends."""
+    """Commit that a page names: HEAD, with "-dirty" where the tree differs from it in more than the pages, on which no figure depends."""
     is_clean = git(root, "diff", "--quiet", "HEAD", "--", ".", f":(exclude){RESULTS}") is not None
     return (git(root, "rev-parse", "--short", "HEAD") or "unknown") + ("" if is_clean else "-dirty")
 

@@ -36,7 +36,7 @@ class VirtualScreen:
         raise ScreenError(f"Xvfb, which gives ParaView a screen, did not start, {TRIES} times.")
 
     def _starts(self, command):
-        """Whether it came up; where another server has the number, or a file of one that was killed, it ends at once."""
+        """True if the server came up; where another has the number, or a file of one that was killed, it ends at once."""
         ready, its_end = os.pipe()
         try:
             self.server = subprocess.Popen([*command, "-displayfd", str(its_end)], pass_fds=(its_end,), stdin=subprocess.DEVNULL,

@@ -1,4 +1,4 @@
-"""What can be checked of the documentation without reading it. Usage: test_docs.py ROOT
+"""Checks the documentation, as far as this can be done without reading it. Usage: test_docs.py ROOT
 
 - links between pages lead to files, and to headings that exist; pictures are there
 - code quoted from a file stands in it literally; a quotation begins with a comment line that names
@@ -79,7 +79,7 @@ class Docs(unittest.TestCase):
                 n_formulas += 1
                 with self.subTest(page=page.name, formula=formula[0]):
                     self.assertEqual(NOT_ON_GITHUB.findall(formula[0]), [])
-            for words in re.findall(r"\[([^\]]*)\]\(", text):  # of links, in which there is no formula
+            for words in re.findall(r"\[([^\]]*)\]\(", text):  # words of links, in which there is no formula
                 self.assertNotIn("$", words, page.name)
         self.assertGreater(n_formulas, 200)
 
@@ -129,7 +129,7 @@ class Docs(unittest.TestCase):
                     self.assertIn(one.get("name").replace(",", ";"), shown)
 
     def test_sizes_that_scenes_name_make_cubes(self):
-        """What the comment of a scene says of other sizes, "Domain/Cells={160, 240, 160}", and what PaperSize makes of it."""
+        """Sizes in the comment of a scene, "Domain/Cells={160, 240, 160}", and those that PaperSize makes are cubes."""
         n_sizes = 0
         for scene in sorted((ROOT / "xml-params/scenes").glob("*.xml")):
             text = scene.read_text()
@@ -164,7 +164,7 @@ class Docs(unittest.TestCase):
 
 
 def git(*arguments):
-    """What it says, or nothing where there is no repository."""
+    """Output of git, or nothing where there is no repository."""
     found = subprocess.run(["git", "-C", str(ROOT), *arguments], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return found.stdout.strip()
 

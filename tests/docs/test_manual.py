@@ -52,7 +52,7 @@ class Manual(unittest.TestCase):
         self.assertGreater(n_anchors, 300)
 
     def test_formulas_are_set(self):
-        """What is between dollar signs goes to the script that sets it, and the fonts are there."""
+        """Formulas between dollar signs go to the script that sets them, and the fonts are there."""
         for name in ("derivation", "method", "solvers", "water"):
             page = (self.site / f"docs/{name}.html").read_text()
             self.assertNotIn("$", re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL))

@@ -91,7 +91,7 @@ class Rows(unittest.TestCase):
 
 
 class Scenes(unittest.TestCase):
-    """What the files say, read without their structure."""
+    """Contents of the files, read without their structure."""
 
     DEFAULTS = {"Fluid": "mac", "Coupling": "mixed face", "Contact": "gauss seidel", "Solver/Strategy": "schur-cg",
                 "Free Surface/Interface": "particle level set", "Articulation": "reduced coordinates",

@@ -32,7 +32,7 @@ def is_resolution(rows):
 
 
 def rises(rows):
-    """Whether the last step raises the error; with "self" as reference the finest rung has none, and the one before it counts."""
+    """True if the last step raises the error; with "self" as reference the finest rung has none, and the one before it counts."""
     errors = [float(row["error"]) for row in rows if row["error"]]
     return len(errors) >= 2 and not (errors[-1] < ROUND_OFF or errors[-1] <= min(errors[-2], errors[0]))
 

@@ -1,9 +1,9 @@
-"""How a case of bad input is written: what differs from a good scene, and what the message must say."""
+"""Cases of bad input: the difference from a good scene, and the words that the message must contain."""
 from program import SCENE
 
 
 class Case:
-    """What differs from the good scene, and what the message must say."""
+    """A difference from the good scene, and the words that the message must contain."""
 
     def __init__(self, name, expected, change=(), sets=(), arguments=(), files=(), scene=None):
         self.name, self.expected = name, [expected] if isinstance(expected, str) else expected

@@ -36,7 +36,7 @@ def wave(*sets, **scene):
 
 
 def gauge(foot, head):
-    """What puts one into a scene."""
+    """Returns the change that puts a gauge into a scene."""
     time = '<ParameterList name="Time">'
     return time, ('<ParameterList name="Observers"> <ParameterList name="G">' + value("Type", "string", "gauge") +
                   value("Foot", "Array(double)", foot) + value("Head", "Array(double)", head) +

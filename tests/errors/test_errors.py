@@ -243,7 +243,7 @@ CASES = [
          change=(POSITION, POSITION + value("Locked", "Array(string)", "{x}") +
                  value("Velocity", "Array(double)", "{1, 0}"))),
 
-    # What watches.
+    # Observers.
     Case("a window beside the fluid", ["the window of a flow lies outside of the fluid", "along x it reaches from 1.5 to 1.5 m"],
          change=('  <ParameterList name="Time">', WINDOW)),
 
@@ -269,7 +269,7 @@ CASES = [
 
 
 def run(case):
-    """Why the program did not behave as the case wants; empty if it did."""
+    """Returns the reason why the program did not behave as the case wants; empty if it did."""
     with tempfile.TemporaryDirectory() as folder:
         for name, text in case.files.items():
             (Path(folder) / name).write_text(text)
@@ -314,7 +314,7 @@ class BadInput(unittest.TestCase):
         self.assertFalse(failures, "\n".join(failures))
 
     def test_links_lead_nowhere(self):
-        """What is in the way stays as it is, and so does what it points to."""
+        """Links in the way stay as they are, and so does what they point to."""
         for name, code in [("frames", 2), ("frames.h5.part", 4), ("history.csv.part", 4), ("input.xml.part", 4)]:
             with self.subTest(name=name), tempfile.TemporaryDirectory() as folder:
                 output, elsewhere = Path(folder) / "output", Path(folder) / "elsewhere"

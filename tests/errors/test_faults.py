@@ -20,7 +20,7 @@ SOFT = """<Parameter name="Density" type="double" value="500"/>
         <Parameter name="Young's Modulus" type="double" value="1e5"/>
       </ParameterList>
       <Parameter name="Time Integration" type="string" value="fully-implicit"/>"""
-N_STEPS = 50  # of the whole run
+N_STEPS = 50  # steps of the whole run
 CHECKPOINTS = ["--set", "Output/Checkpoint Interval=0.1"]
 
 
@@ -301,7 +301,7 @@ class Faults(unittest.TestCase):
             self.assertEqual(new, old[4:])
 
     def test_an_observer_that_cannot_see_leaves_an_earlier_run_alone(self):
-        """And --validate tells it."""
+        """--validate tells it, too."""
         blind = with_gauges("old").replace('value="points"', 'value="flow"').replace(
             '<Parameter name="Points" type="Array(double)" value="{.5, 1.5}"/>',
             '<Parameter name="Lower" type="Array(double)" value="{5, 0}"/><Parameter name="Upper" type="Array(double)" value="{5, 1}"/>')

@@ -36,7 +36,7 @@ time.sleep(300)
 
 
 def lives(process):
-    """Whether a process with this number works still; a dead one that nobody has waited for does not."""
+    """True if a process with this number still works; a dead one that nobody has waited for does not."""
     try:
         return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] not in ("Z", "X")
     except OSError:
@@ -78,7 +78,7 @@ class Studies(unittest.TestCase):
                 self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
 
     def test_what_cannot_be_read_leaves_the_rest(self):
-        """And what an earlier call wrote does not stay; a case without its frames is run anew."""
+        """Rows of an earlier call do not stay; a case without its frames is run anew."""
         study = STUDY.replace("Output/Frames=false", "Output/Frame Interval=0").replace(
             "    </ParameterList>\n  </ParameterList>\n</ParameterList>",
             """    </ParameterList>

@@ -105,7 +105,7 @@ class Systems(unittest.TestCase):
                               stderr=subprocess.PIPE, text=True, timeout=120)
 
     def complaint(self, path):
-        """Why `solve` did not refuse this file as it should; empty if it did."""
+        """Returns the reason why `solve` did not refuse this file as it should; empty if it did."""
         result = self.solve(path)
         good = result.returncode == 2 and result.stderr.startswith("lockstep: ")
         # A message of ours only: no stack of HDF5, no trace of MPI.

@@ -32,9 +32,10 @@ FORBIDDEN = {
 }
 CLASS = re.compile(r"^class (\w+)([^;{]*)\{(.*?)^\};", re.MULTILINE | re.DOTALL)
 MOST_PURE = 12  # functions that a new plug-in must write, its name among them
-MOST_FILES = 39  # of a folder of src, so that its room can be seen at a glance
+MOST_FILES = 39  # files of a folder of src, so that its room can be seen at a glance
 UNNAMED = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
-# Of what such a namespace defines at the start of a line: constants and types by name, functions by what they take, too.
+# Definitions of such a namespace at the start of a line: constants and types by name, functions with their parameter types,
+# too.
 CONSTANT_OR_TYPE = re.compile(r"^(?:(?:struct|class|enum class|enum)\s+(\w+)[^;{]*\{|(?:const|constexpr)\b[^=({\n]*?(\w+)(?:\[\w*\])?\s*[={])", re.MULTILINE)
 FUNCTION = re.compile(r"^(?!const\b[^(]*=)[A-Za-z][^;={}()#]*?\b(\w+)\(([^;{}]*?)\)(?: const)? \{", re.MULTILINE)
 CONSOLE = re.compile(r"\bstd::(cout|cerr)\b")
@@ -54,7 +55,7 @@ def rooms(root, floor):
 
 
 def include_violation(parts, include, packages):
-    """Why a file at these path parts may not include this, or None."""
+    """Reason why a file at these path parts may not include this, or None."""
     target = include.split("/")[0]
     floor, room = parts[0], parts[1] if len(parts) > 2 else ""
     if floor in ("src", "packages") and target == "drivers":
@@ -131,7 +132,7 @@ def folder_loops(root):
 
 
 def unnamed(text):
-    """What the unnamed namespaces of a file define."""
+    """Names that the unnamed namespaces of a file define."""
     for part in UNNAMED.findall(text):
         for match in CONSTANT_OR_TYPE.finditer(part):
             yield match.group(1) or match.group(2)

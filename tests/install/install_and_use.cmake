@@ -1,4 +1,4 @@
-# What a user of the installed library does, step by step.
+# Steps of a user of the installed library.
 include("${CMAKE_CURRENT_LIST_DIR}/steps.cmake")
 
 set(prefix "${WORK_DIR}/prefix")
@@ -21,7 +21,7 @@ run_step("The template's driver on 2 ranks" ${MPIEXEC} -np 2 "${copy}/build/driv
          "${copy}/minres-teko.xml")
 expect("2 ranks")
 
-# The same plug-ins in a scene: ten steps of 0.4 s, v = t F / (m + rho A L) = 4 * 50 / 1100 m/s.
+# Ten steps of 0.4 s of a scene with the same plug-ins: v = t F / (m + rho A L) = 4 * 50 / 1100 m/s.
 foreach(ranks 1 2)
   run_step("The template's scene on ${ranks} ranks" ${MPIEXEC} -np ${ranks} "${copy}/build/simulate"
            "${copy}/piston.xml" "${copy}/run-${ranks}")

@@ -9,7 +9,7 @@ INVERSE = np.linalg.inv(MASSES)
 
 
 def arms(turns):
-    """Of each hinge: body and arm, the next one's body and arm."""
+    """Returns for each hinge a body and its arm, and the next body and its arm."""
     half = [np.array([np.cos(a), np.sin(a)]) * LENGTH / 2 for a in turns]
     return [(0, half[0], 1, -half[1]), (1, half[1], 2, -half[2])]
 

@@ -20,7 +20,7 @@ def energies(history):
 
 
 def chain_changes(history):
-    """Of the energy, by step, over that with which the chain begins."""
+    """Relative change of the energy since the start, by step."""
     return energies(history) / free_chain.energy(free_chain.start()[1]) - 1
 
 

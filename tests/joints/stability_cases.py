@@ -32,13 +32,13 @@ def limits_of(kind):
 
 
 def limited(solids, joints):
-    """Of a loop one joint: it must leave one free."""
+    """Limits all joints of a loop but one, which it must leave free."""
     bounded = list(joints)[:-1] if len(joints) == len(solids) and "space" not in str(joints) else list(joints)
     return solids, {name: {**one, **limits_of(one["Type"])} if name in bounded else one for name, one in joints.items()}
 
 
 def with_mass(mass):
-    """Of the last body."""
+    """Returns the change that gives the last body this mass."""
     def change(solids, joints):
         last = list(solids)[-1]
         return {**solids, last: {**solids[last], "Mass": mass}}, joints
@@ -82,7 +82,7 @@ def momentum_error(history):
 
 
 def chain_of_cubes(step, n_steps):
-    """What their spins are worth does not ask how they lie."""
+    """Chain of cubes: the inertia of a cube does not depend on its orientation."""
     solids = {name: {**one, "Geometry": {"Shape": "box", "Size": (1., 1., 1.)}} for name, one in BALL_CHAIN[0].items()}
     return vacuum(solids, BALL_CHAIN[1], step, step * n_steps)
 

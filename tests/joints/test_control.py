@@ -24,7 +24,7 @@ class Control(unittest.TestCase):
             scene["Joints"]["H"]["Point"] = (0., 0.)  # the middle of the arm: nothing but the spring acts
             scene["Articulation"]["Time Integration"] = "fully-implicit"
             found = joints_of(scene)["H"][-1]["q"]
-            q = v = 0.  # of the oscillator alone: the torque is that of q + dt v' in both phases
+            q = v = 0.  # the oscillator alone: the torque is that of q + dt v' in both phases
             for _ in range(round(2 / step)):
                 middle = (v + step / 2 * (1 - q)) / (1 + step / 2 * (step + 2))
                 v = (v + step * (1 - q)) / (1 + step * (step + 2))
@@ -82,7 +82,7 @@ class Control(unittest.TestCase):
                 self.assertAlmostEqual(row["q"], exact, delta=1e-10)
 
     def test_prescribed_joints_are_where_they_are_told(self):
-        """And what their torque does is the energy that there is."""
+        """Prescribed joints follow their targets, and the work of their torque is the energy of the system."""
         swing = {"Type": "sinusoid", "Amplitude": .5, "Frequency": .25, "Phase": 0., "Ramp Time": 1.}
         defects = []
         for step in (.05, .025):

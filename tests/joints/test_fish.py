@@ -18,7 +18,7 @@ CLOSED = ("Domain/Sides/y upper/Type=wall", "Domain/Cells={48, 24}", "Solids/Fle
 
 
 def area(mesh):
-    """Of a closed curve."""
+    """Area of a closed curve."""
     points, ends = np.array(mesh.points()), np.array(mesh.cells())
     a, b = points[ends[:, 0]], points[ends[:, 1]]
     return abs((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) / 2
@@ -39,7 +39,7 @@ def swim(ranks, end, *settings, jointed=True):
 
 
 def power_defect(tables):
-    """What joints did less the energy of the flesh and of the fluid, over the largest of that energy."""
+    """Work of the joints less the energy of the flesh and of the fluid, over the largest energy."""
     history, work, time = tables["history"], 0., 0.
     defects, energies = [], []
     of_step = {}
@@ -75,7 +75,7 @@ class Fish(unittest.TestCase):
         self.assertLessEqual(jointed[1], free[1])
 
     def test_sub_steps(self):
-        """Of explicit flesh, whose own stable step is a tenth of the step, on bones that weigh less than it: it moves as
+        """Explicit flesh, whose own stable step is a tenth of the step, on bones that weigh less than it, moves as
         implicit flesh does, a little softer."""
         explicit = ("Solids/Flesh/Time Integration=semi-implicit", "Solids/Flesh/Most Sub-Steps=200")
         places, energies = [], []
@@ -94,7 +94,7 @@ class Fish(unittest.TestCase):
         self.assertGreater(energies[0], energies[1] / 2)
 
     def test_it_swims(self):
-        """And has no more energy than its joints put in. Its area goes with what the grid sees of its shape."""
+        """The fish swims, and has no more energy than its joints put in. Its area goes with the shape that the grid sees."""
         tables, areas = swim(1, 2.)
         places = [row["x"] for row in tables["bodies"] if row["name"] == "Flesh"]
         self.assertGreater(places[-1] - places[0], .01)

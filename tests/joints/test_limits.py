@@ -8,7 +8,7 @@ import numpy as np
 from jointed_scene import joint, joints_of, run, tank, unseen_box, vacuum
 
 GRAVITY = 9.8
-INERTIA = (1 + .2 ** 2) / 12 + .5 ** 2  # of an arm about its end
+INERTIA = (1 + .2 ** 2) / 12 + .5 ** 2  # inertia of an arm about its end
 
 
 def limited(solids, joints, step, end, gravity=0., **more):
@@ -50,7 +50,7 @@ class Limits(unittest.TestCase):
                 self.assertEqual(row["q"], other["q"])
                 speed = math.sqrt(2 * GRAVITY * .5 * math.sin(-row["q"]) / INERTIA)
                 self.assertAlmostEqual(-row["rate"], speed, delta=2 * step ** 2 * speed)
-            self.assertGreater(min(row["q"] for row in rows), -.8 - .25 * step ** 2)  # what closing leaves
+            self.assertGreater(min(row["q"] for row in rows), -.8 - .25 * step ** 2)  # error that closing leaves
             for row in rows[fallen + 1:]:
                 self.assertAlmostEqual(row["q"], -.8, delta=1e-9)
                 self.assertAlmostEqual(row["rate"], 0, delta=1e-9)

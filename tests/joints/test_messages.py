@@ -1,4 +1,4 @@
-"""What joints cannot do, and what a run says then."""
+"""Errors of joints, and their messages."""
 import tempfile
 import unittest
 from pathlib import Path
@@ -7,7 +7,7 @@ from jointed_scene import joint, simulation, tank, unseen_box, vacuum, xml
 
 
 def message(scene):
-    """Of a run that fails: exit code and text."""
+    """Exit code and text of a run that fails."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scene.xml"
         file.write_text(xml("Scene", scene))
@@ -43,7 +43,7 @@ class Messages(unittest.TestCase):
         self.assertNotIn("tail", text)
 
     def test_a_small_loop_that_motors_pull_apart(self):
-        """Of a finger's breadth, by less than a millimetre."""
+        """A loop of a finger's breadth is pulled apart by less than a millimetre."""
         code, text = message(vacuum(*square(.01, .02), .02, 1.))
         self.assertEqual(code, 3, text)
         self.assertIn("loop that cannot close", text)

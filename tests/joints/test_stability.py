@@ -26,7 +26,7 @@ class Stability(unittest.TestCase):
                     self.assertEqual(result["at_end"], 0)
 
     def test_mechanisms_and_a_body_alone(self):
-        """What nothing else acts on keeps its energy: a body to round-off, joints by their own small parts of a step. Limits
+        """Free mechanisms keep their energy: a body to round-off, joints by their own small parts of a step. Limits
         take energy; above half a radian all of a joint's impulse acts at the end of the step there."""
         self.check("a body alone", "free", {turn: 1e-11 for turn in (.5, 1., 4.)})
         for mechanism in MECHANISMS:
@@ -42,7 +42,7 @@ class Stability(unittest.TestCase):
         self.assertLess(max(row["solid_kinetic_energy"] for row in history), 1e-8)
 
     def test_angular_momentum_in_space(self):
-        """That of places and spins in bodies.csv: the ledger of each step takes over what the last one left."""
+        """Angular momentum of places and spins in bodies.csv stays: the ledger of each step takes over what the last one left."""
         _, bodies, at_end = flown(chain_of_cubes(2., 20))
         self.assertEqual(at_end, 0)
         moments = [moment(rows) for rows in zip(*bodies.values())]

@@ -11,7 +11,7 @@ HOLD = {"Control": "prescribed", "Target": {"Type": "constant", "Value": 0.}}
 
 
 def box(size, position, **more):
-    """Of 1 kg."""
+    """A box of 1 kg."""
     return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": size}, "Mass": 1., "Position": position, **more}
 
 
@@ -42,7 +42,7 @@ FIVE_BAR = [(0., 0.), (0., 1.), (.6, 1.8), (1.2, 1.), (1.2, 0.)]
 
 class Torques(unittest.TestCase):
     def test_a_motor_carries_what_rests_on_its_arm(self):
-        """Whether there is a spring elsewhere or not."""
+        """A motor carries a load, whether there is a spring elsewhere or not."""
         spring = joint("hinge", ("space", "B"), (.1, .8), **{"Control": "proportional derivative", "Natural Frequency": 5.})
         for more in ((), ({"B": box((.2, .1), (.2, .8))}, {"S": spring})):
             scene = arm(.01, .3, {"Brick": box((.1, .1), (.6, .5))}, GRAVITY, *more)

@@ -1,4 +1,4 @@
-"""What compares runs finds a number that is none in any row, where `max` and `>` would miss it."""
+"""The comparison of runs finds a nan in any row, where `max` and `>` would miss it."""
 import math
 import sys
 import unittest

@@ -50,7 +50,7 @@ def run(file, output, steps, ranks=1, restart=()):
 
 
 def put_drop(checkpoint, numbers):
-    """What a checkpoint holds of drops: ranks, then rank, place, velocity, volume of each."""
+    """Writes drops into a checkpoint: ranks, then rank, place, velocity, volume of each."""
     checkpoint.write_bytes(without_checksum(checkpoint.read_bytes()))
     with h5py.File(checkpoint, "a") as file:
         del file["fluid/drops"]

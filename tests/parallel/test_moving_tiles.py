@@ -44,7 +44,7 @@ def dam_break(tiles):
 
 
 def few_tiles(tiles):
-    """So small that some ranks have no tile at the start."""
+    """A plume so small that some ranks have no tile at the start."""
     return plume(tiles).replace('{96, 256}', '{24, 64}')
 
 
@@ -122,7 +122,7 @@ class MovingTiles(unittest.TestCase):
         stopped, checkpoint = self.root / "stopped", "checkpoint-000004.h5"
         begin = [SIMULATE, self.root / "soft-tiles.xml", "--output", stopped, "--quiet", "--restart"]
         endless = ("--set", "Solver/Newton Iterations=300000")
-        for folder in (self.root / "soft", stopped):  # of which the second begins on its new tiles
+        for folder in (self.root / "soft", stopped):  # the second begins on its new tiles
             with subprocess.Popen([*begin, folder / checkpoint, *endless]) as process:
                 time.sleep(1.5)
                 process.terminate()

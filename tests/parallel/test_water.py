@@ -77,7 +77,7 @@ class Faucet(unittest.TestCase):
                 file = Path(folder) / "scene.xml"
                 file.write_text(faucet(interface))
                 runs = {ranks: run(file, Path(folder) / str(ranks), 20, ranks) for ranks in (1, 2)}
-                # What leaves the shape of the source at 1 m/s and faster in .2 s, and what is in it.
+                # the source's content, and the flow out of its shape at 1 m/s and faster in .2 s
                 self.assertGreater(float(runs[1][0][-1]["liquid_volume"]), .02 + .8 * .2 * .2)
                 for history, bodies in runs.values():
                     for row in history:
@@ -132,7 +132,7 @@ class Water(unittest.TestCase):
         self.assertEqual(run(file, idle, len(whole[0]), 2, ("--restart", idle / checkpoint)), whole)
 
     def test_openings(self):
-        """What flows in flows out."""
+        """The inflow equals the outflow."""
         for interface in ("level set", "volume of fluid"):
             with tempfile.TemporaryDirectory() as folder:
                 file = Path(folder) / "scene.xml"

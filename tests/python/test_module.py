@@ -44,7 +44,7 @@ with lockstep.Run(sys.argv[1], sys.argv[2]) as run:
 
 
 def tank(dimension=2, solids=None, **more):
-    """Of one metre, with a lid."""
+    """A tank of one metre, with a lid."""
     down = (0., -GRAVITY, 0.)[:dimension]
     return {"Dimension": dimension, "Domain": {"Cells": (16,) * dimension},
             "Fluid": {"Density": DENSITY, "Gravity": down}, "Solids": solids or {}, "Solver": {"Tolerance": 1e-12},
@@ -57,7 +57,7 @@ def ball(dimension=2, density=500., **more):
 
 
 def unseen_box(dimension=2):
-    """Of 2 kg, which no fluid sees: it moves as in vacuum. Its moment of inertia is 2 (1 + .04) / 12 about z."""
+    """A box of 2 kg, which no fluid sees: it moves as in vacuum. Its moment of inertia is 2 (1 + .04) / 12 about z."""
     return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (1., .2, .2)[:dimension]}, "Mass": 2.,
             "Seen by Fluid": False, "Position": (.5, .5, .5)[:dimension]}
 
@@ -93,7 +93,7 @@ class Module(unittest.TestCase):
         self.assertIn('"done"', (self.root / "run" / "summary.json").read_text())
 
     def test_one_run_at_a_time_in_a_folder(self):
-        """Also in one program; a run that was closed, or has failed, leaves the folder to another."""
+        """Two runs in one program cannot share a folder; a run that was closed, or has failed, leaves it to another."""
         with self.open(tank()) as run:
             run.step()
             with self.assertRaisesRegex(lockstep.InputError, "Another run writes to"):
@@ -168,7 +168,7 @@ class Module(unittest.TestCase):
             slide, turn = run.joints()["Sleeve"]
             self.assertAlmostEqual(turn["q"], .7 * run.time, delta=1e-12)
             self.assertAlmostEqual(slide["q"], .2 * run.time, delta=1e-12)
-            run.set_target("Sleeve", (9., turn["q"]))  # that of the free one means nothing
+            run.set_target("Sleeve", (9., turn["q"]))  # the target of the free one has no meaning
 
     def test_a_run_that_failed_goes_no_further(self):
         with self.assertRaises(lockstep.InputError):
@@ -207,7 +207,7 @@ class Module(unittest.TestCase):
         self.assertEqual(summary["status"], "stopped by an exception")
 
     def test_paths_and_numbers_of_every_kind(self):
-        """What numpy and pathlib make: no texts, and numbers that are arrays without an axis."""
+        """Values of numpy and pathlib are taken: paths that are no texts, and numbers that are arrays without an axis."""
         scene = self.scene(tank(solids={"Box": unseen_box()}, Contact={"Type": "none"}, Fluid={"Density": 1.}))
         settings = {"Time/End": np.array(.02), "Time/Steps": np.int64(1), "Output/Frames": np.bool_(False),
                     "Domain/Cells": np.array((8, 8))}

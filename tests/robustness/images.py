@@ -25,7 +25,7 @@ def turn_axis(name, dimension):
 
 
 def turn_axes(names, dimension):
-    """Of names that end in one, as "rotation x"; "rotation" alone is that of 2D."""
+    """Turns the axes at the end of names, as in "rotation x"; "rotation" alone is that of 2D."""
     return [name if name == "rotation" else name[:-1] + turn_axis(name[-1], dimension) for name in names]
 
 
@@ -78,7 +78,7 @@ def turn_soft(body, dimension):
 
 
 def turn_list(content, name, dimension):
-    """What vectors of space a list holds, by the names of its parameters."""
+    """Turns the vectors of space in a list, by the names of its parameters."""
     for key, value in content.items():
         if isinstance(value, dict):
             turn_list(value, key, dimension)

@@ -1,4 +1,4 @@
-"""What holds for every valid scene. Each check gives sentences, `class: numbers`; none if all is well.
+"""Invariants of every valid scene. Each check gives sentences, `class: numbers`; none if all is well.
 
 | class | bound |
 |---|---|
@@ -34,10 +34,10 @@ CHAOS = 10
 GROWTH = 1.15 * 1.05
 GROWTH_EXPLICIT = 2.07 * 1.05
 ROUND_OFF = 1e-9
-# Of the energy that the scene gives the fluid at the start: a velocity that is no flow is carried for a step before it
+# Part of the energy that the scene gives the fluid at the start: a velocity that is no flow is advected for a step before it
 # becomes one, and leaves so much of itself.
 NO_FLOW = 1e-3
-# Where a number's size says nothing of an error.
+# Columns in which a number's size says nothing of an error.
 COUNTS = ("step", "time", "name", "wall_seconds", "contacts", "deepest_overlap", "clamped_elements")
 
 
@@ -69,7 +69,7 @@ class Tables:
 
 
 def scales(scene, tables):
-    """What positions, velocities, turns and energies of a scene are compared with."""
+    """Scales of positions, velocities, turns and energies of a scene."""
     domain = scene.content["Domain"]
     length = max(b - a for a, b in zip(domain["Lower"], domain["Upper"]))
     h = length / max(domain["Cells"])
@@ -93,7 +93,7 @@ def start_speed(scene, tables):
 
 
 def largest_void(scene):
-    """What closing a void may add in one step, for the steps after it to take back."""
+    """Volume that closing a void may add in one step, for the steps after it to take back."""
     domain, dimension = scene.content["Domain"], scene.content["Dimension"]
     h = (domain["Upper"][0] - domain["Lower"][0]) / domain["Cells"][0]
     return SMALLEST_VOID[dimension] * h**dimension

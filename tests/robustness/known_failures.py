@@ -33,5 +33,5 @@ KNOWN = {
 
 
 def reason(seed):
-    """Why this seed is known to fail, or nothing."""
+    """Reason why this seed is known to fail, or nothing."""
     return KNOWN.get(seed, "")

@@ -70,7 +70,7 @@ def soft_ball(**lists):
 
 
 def scene_case(rng):
-    scene = random_scene(1000 * rng.randrange(6) + rng.randrange(200))  # of each kind: full tanks, water, joints, gas...
+    scene = random_scene(1000 * rng.randrange(6) + rng.randrange(200))  # all kinds: full tanks, water, joints, gas...
     return Case(scene_files(scene), "scene.xml", [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML)
 
 
@@ -164,7 +164,7 @@ KINDS = [("scene, validated", scene_case, 7), ("scene, by hand", hand_written_ca
 
 
 def non_finite(folder):
-    """What of an output folder cannot be read or is not finite; nothing if all is well."""
+    """Returns the entries of an output folder that cannot be read or are not finite; nothing if all is well."""
     for table in ("history", "bodies"):
         path = folder / f"{table}.csv"
         for row in read_table(path) if path.exists() else []:
@@ -185,7 +185,7 @@ def non_finite(folder):
 
 
 def failure_of(case, result, folder):
-    """What is wrong with how a program ended; empty if nothing is."""
+    """Returns the fault in how a program ended; empty if there is none."""
     if result.timed_out or result.code < 0:
         return result.failure()
     if result.code not in (0, 2, 3, 4):

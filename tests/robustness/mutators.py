@@ -1,4 +1,4 @@
-"""What damages files. Each mutator is a pure function of a random generator and the bytes of a file."""
+"""Mutators, which damage files. Each is a pure function of a random generator and the bytes of a file."""
 import io
 import re
 import xml.etree.ElementTree as ElementTree

@@ -31,7 +31,7 @@ from parameter_list import to_xml
 from runs import program, run
 from scenes import random_scene
 
-# What a strategy or a scene may be refused for, in the program's words.
+# Reasons for which a strategy or a scene may be refused, in the program's words.
 MUELU = re.compile(r"MueLu\s+cannot\s+build\s+a\s+preconditioner\s+for\s+the\s+solid\s+block")
 INDEFINITE = re.compile(r"preconditioner\s+is\s+not\s+positive\s+definite")
 CRUSHED = re.compile(r"elastic forces of .* are\s+not finite")
@@ -144,11 +144,11 @@ class Result:
     failures: list
     refused: int  # runs
     core_seconds: float
-    build: str  # of which commit the program is
+    build: str  # commit of the program
 
 
 def lines_of(result):
-    """What failed, and whether that was known."""
+    """Lines of the failures of a seed, and whether they were known."""
     reason = known_failures.reason(result.seed)
     lines = [f"seed {result.seed}: {failure}" for failure in result.failures]
     if reason:

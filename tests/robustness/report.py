@@ -13,7 +13,7 @@ from runs import program
 from scenes import random_scene
 
 TITLE = "# robustness\n\nRandom scenes and damaged files, and whether what must hold for every one of them holds.\n"
-# What the seeds from a number on draw beside what those before them do; a family draws no feature of another.
+# Features that the seeds from a number on draw beside those of the seeds before them; a family draws no feature of another.
 FAMILIES = {
     "full domains": 0,
     "free surface": liquids.FIRST_SEED,
@@ -101,7 +101,7 @@ def ranges(seeds):
 
 
 def feature_rows(contents, failing):
-    """How many scenes of each family have a feature, and how many of these fail; "–" where none has it."""
+    """Number of scenes of each family that have a feature, and of these that fail; "–" where none has it."""
     families = [name for name in FAMILIES if any(family_of(seed) == name for seed in contents)]
     rows = []
     for name, has in [("anything", lambda content: True), *FEATURES.items()]:
@@ -115,7 +115,7 @@ def feature_rows(contents, failing):
 
 
 def write_scenes(page, seeds, results, quick):
-    """What was drawn, what failed, and the largest of what is bounded."""
+    """Writes the scenes drawn, the failures, and the largest values of the bounded quantities."""
     failures = collections.Counter()
     for result in results:
         failures.update({failure.partition(":")[0] for failure in result.failures})

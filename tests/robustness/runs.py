@@ -11,27 +11,27 @@ from pathlib import Path
 
 BUILD = Path(__file__).resolve().parents[2] / "build/release/drivers"
 MPIEXEC = os.environ.get("LOCKSTEP_MPIEXEC", "mpirun")
-MOST_BYTES = 6 << 30  # of address space, so that a wild size ends the run and not the machine
+MOST_BYTES = 6 << 30  # address space, so that a wild size ends the run and not the machine
 RANK_SETTINGS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1",
                  "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
                  "OMPI_MCA_hwloc_base_binding_policy": "none"}
 
 
 def program(name):
-    """Of the build, unless LOCKSTEP_NAME says otherwise."""
+    """Path of a program of the build, unless LOCKSTEP_NAME says otherwise."""
     return os.environ.get(f"LOCKSTEP_{name.upper()}", str(BUILD / name))
 
 
 @dataclasses.dataclass
 class Run:
-    code: int  # that of the program; -9 for SIGKILL, as subprocess has it
+    code: int  # exit code of the program; -9 for SIGKILL, as subprocess has it
     timed_out: bool
     output: str
     errors: str
     core_seconds: float
 
     def failure(self):
-        """Why it did not end well; empty if it did."""
+        """Returns the reason why the program did not end well; empty if it did."""
         if self.timed_out:
             return "hangs"
         if self.code < 0:

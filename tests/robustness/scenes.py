@@ -23,14 +23,14 @@ NAMES = ["Ball", "Body 2", "x,y 1", "A & B", "Körper", "Körper 2", "b-3", "Zel
 
 @dataclasses.dataclass
 class Facts:
-    """What the invariants must know of a scene."""
+    """Properties of a scene that the invariants use."""
     works: bool = False  # something besides gravity does work on it
     through_side: bool = False  # a body sticks through a side
     open_sides: bool = False
     inflow: bool = False
     periodic: bool = False
     explicit: bool = False  # elastic forces of the present positions
-    sub_steps: bool = False  # of elastic forces
+    sub_steps: bool = False  # elastic forces are averaged over sub-steps
     crushed: bool = False  # a material that gives way where it is crushed, at steps that crush it
     liquid: bool = False  # with a free surface
     soft: bool = False
@@ -40,8 +40,8 @@ class Facts:
     dynamic_rigid: bool = False
     exact_momentum: bool = True
     strategy: str = ""
-    pressure_by_muelu: bool = False  # of A + B C^-1 B^T, which Chebyshev's polynomials may take for smaller than it is
-    solid_by_muelu: bool = False  # which on several ranks cannot multiply matrices of which one holds no neighbours
+    pressure_by_muelu: bool = False  # A + B C^-1 B^T, which Chebyshev's polynomials may take for smaller than it is
+    solid_by_muelu: bool = False  # on several ranks MueLu cannot multiply matrices of which one holds no neighbours
     massless: bool = False  # a cloth, of which the fluid may leave nodes without any
     scalar_range: dict = dataclasses.field(default_factory=dict)  # smoke, temperature: [least, most]
     lightest: float = math.inf  # density of a solid over that of the fluid
@@ -81,7 +81,7 @@ class World:
         self.isolated = rng.random() < 0.3  # nothing but gravity does work: energy is bounded
 
     def vector(self, length):
-        """Of at most this length, in a random direction."""
+        """A vector of at most this length, in a random direction."""
         direction = [self.rng.gauss(0, 1) for _ in range(self.dimension)]
         scale = length * self.rng.uniform(0.2, 1) / math.hypot(*direction)
         return [scale * x for x in direction]
@@ -191,7 +191,7 @@ def scalars(world, fluid, side_lists):
             if side["Type"] == "inflow":
                 side[name] = rng.uniform(0, 1)
                 values.append(side[name])
-        values.append(0.0)  # what an open side lets in
+        values.append(0.0)  # speed of the inflow through an open side
         if rng.random() < 0.5:
             source = {**region(world), name: rng.uniform(0, 2)}
             values.append(source[name])

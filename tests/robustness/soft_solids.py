@@ -91,7 +91,7 @@ def pinned(world, geometry, reach):
 
 
 def held(world, geometry, reach):
-    """What holds and pulls a body, for a soft one whose origin lies inside it."""
+    """Constraints and loads of a soft body whose origin lies inside it."""
     rng, lists = world.rng, {}
     if rng.random() < 0.3:
         lists["Pinned"] = pinned(world, geometry, reach)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 TOLERANCE = 1e-10
 SOLVERS = Path(__file__).resolve().parents[2] / "xml-params/solvers"
-LISTS = {"minres-teko", "block-lu", "gauss-seidel", "simple", "uzawa"}  # of the strategy stratimikos, as files
+LISTS = {"minres-teko", "block-lu", "gauss-seidel", "simple", "uzawa"}  # lists of the strategy stratimikos, as files
 # Strategies that can solve every scene; the others are drawn where docs/solvers.md says they can.
 GENERAL_STRATEGIES = ["schur-cg"] * 8 + ["pressure-schur", "direct", "paper"]
 # In the place of schur-cg, in scenes of all kinds of solids and both couplings.

@@ -38,7 +38,7 @@ def inside(vertices, triangles):
 
 
 def smoke_of(frames):
-    """Of the frames: the most smoke outside in any, the smoke inside in the last one [cells]."""
+    """Largest amount of smoke outside in any frame, and smoke inside in the last one [cells]."""
     most, filled = 0, 0
     for path in sorted(frames.glob("frame-*.h5")):
         with h5py.File(path) as frame:

@@ -60,7 +60,7 @@ SCENE = """<ParameterList name="Scene">
 """
 
 
-# The same tank with 1.83 m of water, through which a line stands, and across which one lies.
+# Tank with 1.83 m of water, through which a line stands, and across which one lies.
 LEVEL = """    <ParameterList name="Free Surface"> <ParameterList name="Liquid"> <ParameterList name="Pool">
       <Parameter name="Type" type="string" value="level"/> <Parameter name="Height" type="double" value="1.83"/>
     </ParameterList> </ParameterList> </ParameterList>

@@ -1,4 +1,4 @@
-"""What each of the paper's figures shows does happen, in the shipped scenes on coarse grids."""
+"""The phenomena of the paper's figures happen, in the shipped scenes on coarse grids."""
 import math
 import sys
 import tempfile
@@ -14,7 +14,7 @@ from simulation import column, simulate, table  # noqa: E402
 
 
 class Run:
-    """Of a shipped scene with `settings`, and with `more` lists: what history.csv and bodies.csv say."""
+    """Run of a shipped scene with `settings`, and with `more` lists: the tables history.csv and bodies.csv."""
 
     def __init__(self, scene, cells, *settings, end, more=None):
         settings = [f"Domain/Cells={{{', '.join(map(str, cells))}}}", "Output/Frames=false", *settings]
@@ -35,7 +35,7 @@ class Run:
         return self.between(column([row for row in self.bodies if row["name"] == body], name), begin, end)
 
     def between(self, values, begin, end):
-        """Of the steps that end in that time [s]."""
+        """Values of the steps that end in that time [s]."""
         return numpy.array([value for time, value in zip(self.times, values) if begin < time <= end])
 
 
@@ -78,7 +78,7 @@ class Balls(unittest.TestCase):
 
         def floating(density):
             """Height of the centre: what is under water weighs as much as the ball."""
-            below, above = 0., 2 * radius  # how deep it is in
+            below, above = 0., 2 * radius  # bounds of its depth in the water
             for _ in range(50):
                 middle = (below + above) / 2
                 is_light = math.pi * middle**2 * (3 * radius - middle) / 3 > density / 1000 * volume
@@ -93,7 +93,7 @@ class Balls(unittest.TestCase):
 
 class TwentyFourBalls(unittest.TestCase):
     """Fig. 7: the light ones bob on the water, the heavy ones lie on its floor."""
-    LEVEL = .4 + 6 * 4 / 3 * math.pi * .1**3 * (.1 + .5 + .9 + 1) / 1.5  # of the water that all of them lift [m]
+    LEVEL = .4 + 6 * 4 / 3 * math.pi * .1**3 * (.1 + .5 + .9 + 1) / 1.5  # level of the water that all of them lift [m]
 
     @classmethod
     def setUpClass(cls):
@@ -138,7 +138,7 @@ def bag_settings(spacing, jet_end):
 class Bags(unittest.TestCase):
     """Figs. 10, 11: a bag holds what is poured, until it overflows; one that is lifted out of the water stays full."""
     CELLS = (28, 23, 11)
-    RADIUS, CAP = .4, .4 - math.sqrt(.4**2 - .3**2)  # of the ball; of what its opening cuts off
+    RADIUS, CAP = .4, .4 - math.sqrt(.4**2 - .3**2)  # radius of the ball; height of the cap that its opening cuts off
     POOL = 2.8 * 1.1 * .8  # [m^3] of water before the jet
     FULL = 4 / 3 * math.pi * RADIUS**3 - math.pi * CAP**2 * (3 * RADIUS - CAP) / 3  # [m^3] as long as nothing stretches it
 
@@ -158,7 +158,7 @@ class Bags(unittest.TestCase):
         held = run.history_of("watch_Left_volume")[-1]
         self.assertAlmostEqual(held / self.FULL, 1, delta=.15)  # half a cell below the rim is 6 %
         self.assertGreater(poured - held, .05 * self.FULL)
-        # What ran over is in the tank, so no water is lost.
+        # Water that ran over is in the tank, so none is lost.
         self.assertAlmostEqual(run.history_of("liquid_volume")[-1] / run.history_of("liquid_volume_target")[-1], 1, delta=.002)
 
 
@@ -199,7 +199,7 @@ class Balloon(unittest.TestCase):
     """Fig. 12: shoots up when it is let go, and passes through the open side without a jump in velocity."""
 
     def test_leaves_through_the_side(self):
-        """Of a lower box than the shipped one and without weight, because coarse cells brake the jet."""
+        """A lower box than the shipped one, without weight, because coarse cells brake the jet."""
         top = .6
         run = Run("balloon", (20, 12, 20), "Domain/Upper={0.5, 0.6, 0.5}", "Fluid/Gravity={0, 0, 0}",
                   "Domain/Sides/y lower/Velocity={0, 6, 0}", "Solids/Balloon/Geometry/Mesh Spacing=0.045", end=1.4)
@@ -226,7 +226,7 @@ class Fish(unittest.TestCase):
     JOINTS = "Head to Neck", "Neck to Trunk", "Trunk to Loin", "Loin to Tail"
 
     def way(self, *settings):
-        """Of its last two periods of 1 s [m]."""
+        """Distance swum in the last two periods of 1 s [m]."""
         x = Run("fish-2d", (48, 24), *settings, end=4).of("Flesh", "x", 2)
         return x[-1] - x[0]
 

@@ -49,7 +49,7 @@ class Flows(unittest.TestCase):
                         "Solids": disc(x), "Coupling": {"Type": coupling}, "Time": {"End": 1., "Fixed Step": .02}}, 10))
 
     def smoke_downstream(self, start, ramp):
-        """Of a strip of smoke behind a disc, after two steps."""
+        """Smoke of a strip behind a disc, after two steps."""
         inflow = {"Type": "inflow", "Velocity": (1., 0.), **({"Ramp Time": ramp} if ramp else {})}
         return self.run_scene({
             "Domain": {"Lower": (0., 0.), "Upper": (2., 1.), "Cells": (32, 16),

@@ -13,7 +13,7 @@ from scene_xml import xml  # noqa: E402
 from simulation import column, simulate, table, without_times  # noqa: E402
 
 N_STEPS = 1000 if os.environ.get("LOCKSTEP_LONG_STORM") else 60
-H = 1.5 / 36  # of the cells [m]
+H = 1.5 / 36  # spacing of the cells [m]
 # Beside the shell, whole cells come and go: those of half its length may be off.
 CELLS_BESIDE = H * 3.14 * .25 / (3.14 * .25**2)
 PADDLE = {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (0., .9), "Normal": "x"},

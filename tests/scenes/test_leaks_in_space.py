@@ -9,7 +9,7 @@ import unittest
 from test_leaks import Storm, xml
 
 N_STEPS = 1000 if os.environ.get("LOCKSTEP_LONG_STORM") else 20
-H = 1.5 / 24  # of the cells [m]
+H = 1.5 / 24  # spacing of the cells [m]
 PLACE = (1.2, .55, .5)
 INSIDE = {"Inside": {"Point": PLACE, "Solid": "Shell"}, "Outside": {"Point": (.5, .1, .5)}}
 # Beside a ball whole cells come and go: those of half its area may be off.

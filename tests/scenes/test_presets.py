@@ -67,7 +67,7 @@ class Presets(unittest.TestCase):
         return lambda *names: root.find("/".join([*(f"ParameterList[@name='{name}']" for name in names[:-1]), f"Parameter[@name='{names[-1]}']"])).get("value")
 
     def test_what_wins(self):
-        scene = ROOT / "xml-params/scenes/pendulum-in-water.xml"  # which names the coupling "flux"
+        scene = ROOT / "xml-params/scenes/pendulum-in-water.xml"  # names the coupling "flux"
         fast = PRESETS / "fast.xml"
         self.assertEqual(self.used(self.both(fast, scene))("Coupling", "Type"), "mixed face")
         self.assertEqual(self.used(self.both(scene, fast))("Coupling", "Type"), "flux")

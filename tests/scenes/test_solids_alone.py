@@ -1,4 +1,4 @@
-"""What a solid does is its own affair: neither what others do that do not touch it, nor the frame, changes it."""
+"""The motion of a solid depends neither on others that do not touch it, nor on the frame."""
 import sys
 import tempfile
 import unittest

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import make_frames
 
-N_STEPS = 5  # of 0.1 s
+N_STEPS = 5  # steps of 0.1 s
 
 
 def parameters(title, cells, view=""):

@@ -1,4 +1,4 @@
-"""What tools that measure say of builds that are not there and of runs that fail."""
+"""Messages of the measuring tools about builds that are not there and runs that fail."""
 import subprocess
 import sys
 import tempfile

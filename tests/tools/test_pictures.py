@@ -106,7 +106,7 @@ class PlotFrame(Pictures):
             self.assertEqual(plot_frame.without_fluid(box, polygon, 2, 0.0), value == 0)
 
     def test_a_thin_body_in_the_oblique_is_a_body(self):
-        """Of its cells all but the two that lie all in it are cut, and hold fluid; a shell there has fluid in those as well."""
+        """All cells of a thin body but the two that lie all in it are cut, and hold fluid; a shell there has fluid in those as well."""
         box = self.make(2)[0].boxes[0]                           # cells of 0.125 m from (1, 0) on
         polygon = numpy.array([(1.06, 0.21), (1.21, 0.06), (1.68, 0.53), (1.53, 0.68)])
         fluid = numpy.ones((6, 8))
@@ -157,7 +157,7 @@ class PlotFrame(Pictures):
         self.assertEqual(plot_frame.boundary(body).shape, (6, 3, 3))
 
     def test_lit_bodies_hide_their_far_side(self):
-        # Of a cube seen along each axis, the two triangles nearest the viewer come last and cover the others.
+        # The two triangles of a cube nearest the viewer come last along each axis and cover the others.
         low, high = numpy.array((0.0, 0.0, 0.0)), numpy.array((1.0, 1.0, 1.0))
         vertices = numpy.array([[(low, high)[k >> a & 1][a] for a in range(3)] for k in range(8)])
         tetrahedra = numpy.array([(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)])
@@ -183,7 +183,7 @@ class PlotFrame(Pictures):
             self.assertGreater(imread(Path(self.folder.name) / "frame.png").std(), 0.1)
 
     def test_parts_of_a_movie_hold_its_frames(self):
-        """Of a run with many bodies ParaView is given a few frames at a time, each once, with all that is in them."""
+        """ParaView is given a few frames of a run with many bodies at a time, each once, with all that is in them."""
         make_run.main(self.folder.name, 3)
         render, whole = load("render"), plot_frame.read_frames(self.folder.name)
         with unittest.mock.patch.object(sys, "argv", ["render", self.folder.name, "--movie"]):
@@ -225,7 +225,7 @@ class Render(Pictures):
             result = self.run_tool("render", "--size", "320x240")
             self.assertEqual(result.returncode, 0, result.stderr)
             picture = imread(Path(self.folder.name) / "render.png")[..., :3]
-            # Where neither axes nor the bar of colours are.
+            # pixels outside of axes and colour bar
             red, green, blue = numpy.moveaxis(picture[:, 150:170], -1, 0)
             heights.append(numpy.ptp(numpy.nonzero((red > 0.2) & (green < 0.65 * red) & (blue < 0.65 * red))[0]))
         self.assertGreater(heights[0], 20)
@@ -310,7 +310,7 @@ class Render(Pictures):
         self.assertGreater(numpy.abs(first - last).mean(), 0.2)
 
     def test_parts_of_a_movie_show_the_same(self):
-        """Of a run with many bodies ParaView is given a few frames at a time: in the same colours, from the same place."""
+        """ParaView is given a few frames of a run with many bodies at a time: in the same colours, from the same place."""
         make_run.main(self.folder.name, 3)
         render, movies = load("render"), []
         with unittest.mock.patch.object(sys, "argv", ["render", self.folder.name, "--movie", "--size", "160x120"]):

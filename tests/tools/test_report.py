@@ -1,4 +1,4 @@
-"""What tools/report writes of the folder of make_run.py and, given --simulate PROGRAM --scene FILE, of a real run."""
+"""Contents of tools/report's page of the folder of make_run.py and, given --simulate PROGRAM --scene FILE, of a real run."""
 import base64
 import json
 import re
@@ -45,7 +45,7 @@ class Pages(unittest.TestCase):
         return zlib.decompress(base64.b64decode(data["blobs"][name]))
 
     def points(self, data, packed):
-        """What the page does, in other words: sums of 16-bit differences, within a box."""
+        """Decodes points as the page does, in other words: sums of 16-bit differences, within a box."""
         differences = numpy.frombuffer(self.bytes_of(data, packed["blob"]), "<u2").reshape(3, packed["n"])
         sums = numpy.cumsum(differences, axis=1, dtype="<u2").T
         return packed["low"] + sums / 65535 * packed["size"]

@@ -65,7 +65,7 @@ class PageInBrowser(unittest.TestCase):
     def colour_at(self, picture, x, y):
         """In 2D: of the place (x, y) of the domain from (1, 0) to (2, 0.75), which fills the picture but for a rim."""
         height, width, _ = picture.shape
-        half = 0.54 * max(0.75, 1.0 * height / width)  # of the height that is seen [m]
+        half = 0.54 * max(0.75, 1.0 * height / width)  # half of the height that is seen [m]
         scale = height / (2 * half)
         return picture[round(height / 2 - (y - 0.375) * scale), round(width / 2 + (x - 1.5) * scale)]
 
@@ -133,7 +133,7 @@ class PageInBrowser(unittest.TestCase):
         self.browser.run("new Promise((done) => setTimeout(done, 150))")
 
     def drawn(self):
-        """What the player draws: colours and opacity [row][column][4], from 0 to 1, and where its camera is."""
+        """Picture of the player: colours and opacity [row][column][4], from 0 to 1, and where its camera is."""
         width, height, numbers, camera = self.browser.run("""(() => {
             const player = state.players[0], from = player.renderer.domElement, to = document.createElement("canvas");
             [to.width, to.height] = [from.width, from.height];
@@ -258,7 +258,7 @@ class PageInBrowser(unittest.TestCase):
         self.browser.wait_for("Boolean(document.getElementById('complaint'))", 20)
         self.browser.open("about:blank")
         self.browser.wait_for("location.protocol === 'about:'")
-        self.browser.complaints.clear()  # that the connection was refused
+        self.browser.complaints.clear()  # drops the complaint that the connection was refused
 
     def test_what_a_scene_says_is_text(self):
         self.open(2)

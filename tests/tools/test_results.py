@@ -1,4 +1,4 @@
-"""Which pages of docs/results tools/results --stale finds too old, and how it makes them again: in small repositories, with
+"""Tests of tools/results --stale: the pages of docs/results that are too old, and how they are made again, in small repositories with
 stand-ins for what makes pages; and whether the table of pages knows those that there are."""
 import contextlib
 import io
@@ -174,7 +174,7 @@ class Remake(Repository):
 
     def test_ends_in_time(self):
         self.study("slow")
-        self.page("slow", "0123456")   # of a commit that nobody knows: the oldest
+        self.page("slow", "0123456")   # made of a commit that nobody knows: the oldest
         self.commit()
         code, said = self.remake(hours=1 / 3600)
         self.assertEqual(code, 0)

@@ -1,4 +1,4 @@
-"""What ./run says and passes on, in a tree of its own with stand-ins for the set-up, the build and the program."""
+"""Messages of ./run and the arguments it passes on, in a tree of its own with stand-ins for the set-up, the build and the program."""
 import os
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""What tools/set-up says before it installs and after, with stand-ins for apt-get, dpkg-query and sudo: nothing is installed."""
+"""Messages of tools/set-up before it installs and after, with stand-ins for apt-get, dpkg-query and sudo: nothing is installed."""
 import os
 import shutil
 import subprocess
@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
-# As apt-get 2.6 writes it.
+# Messages in the form of apt-get 2.6.
 APT_SAYS = """Reading package lists...
 Building dependency tree...
 The following NEW packages will be installed:
@@ -26,7 +26,7 @@ case "$*" in
   *--print-uris*) cat "$FOLDER/says"; exit 0 ;;
   *update*) exit 0 ;;
 esac
-# What packages' scripts print must never find a pipe that is full.
+# Output of packages' scripts must never find a pipe that is full.
 if [[ ! -f /proc/$$/fd/1 ]]; then echo "E: I/O error"; exit 100; fi
 echo "dlstatus:1:20.5:Retrieving file 1 of 37" >&3
 echo "Unpacking cmake ..."

@@ -1,4 +1,4 @@
-"""What tools/watch tells of real runs that go on, end, fail and are killed. Usage: test_watch.py SIMULATE SCENE"""
+"""Messages of tools/watch about real runs that go on, end, fail and are killed. Usage: test_watch.py SIMULATE SCENE"""
 import contextlib
 import json
 import signal

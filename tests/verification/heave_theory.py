@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How a half-submerged disc swings that is let go off its draft, by linear theory of deep water: prints the numbers that
+"""Motion of a half-submerged disc that is let go off its draft, by linear theory of deep water: prints the numbers that
 the study heave-decay refers to, and fails if that file has others.
 
 Units of the disc's radius, gravity and the water's density. Added mass A and damping B of a heaving disc come from
@@ -59,7 +59,7 @@ def swing(end=9.0, dt=0.01):
 
 
 def main():
-    # What is known of A: logarithmic at low frequencies, pi/2 at high ones.
+    # Limits of A: logarithmic at low frequencies, pi/2 at high ones.
     assert abs(added_mass_and_damping(9.0)[0] - ADDED_MASS_AT_ONCE) < 0.01
     times, x = swing()
     numbers = {"first trough": x.min(), "first crest": x[times > 4].max(),

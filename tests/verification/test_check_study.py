@@ -1,4 +1,4 @@
-"""What the bounds of the studies' tests must catch; and that every study has such a test."""
+"""The bounds of the studies' tests catch wrong results; every study has such a test."""
 import re
 import unittest
 import xml.etree.ElementTree

@@ -37,7 +37,7 @@ class Page:
 
 
 def both(three, two):
-    """What holds in three dimensions and, if that is something else, in two."""
+    """Text for three dimensions and, if it differs, for two."""
     return three if three == two else f"{three or 'any'} (2D: {two or 'any'})"
 
 
@@ -59,7 +59,7 @@ def row_of(parameter, twin):
 
 
 def rows_of(three, two):
-    """Those of a list in 3D and of the same list in 2D, where either may be missing."""
+    """Rows of a list in 3D and of the same list in 2D, where either may be missing."""
     if not three or not two:
         return [row_of(parameter, parameter) for parameter in (three or two)["parameters"]]
     twins = {parameter["name"]: parameter for parameter in two["parameters"]}
@@ -120,7 +120,7 @@ def anchor(heading):
 
 
 def heading_of(page, section):
-    """Of a section on its page, where the page's own list goes without saying."""
+    """Heading of a section on its page, where the page's own list goes without saying."""
     root = page.sections[0].path if page.plug_in else ""
     return section.path[len(root):].lstrip("/")
 
@@ -167,7 +167,7 @@ def body(page):
 
 
 def links_to_types(section):
-    """Of a list whose types have pages of their own."""
+    """Links of a list whose types have pages of their own."""
     allowed = next(row[4] for row in section.rows if row[0] == "Type")
     return ", ".join(f"[{kind}]({KINDS[section.path][1]}-{slug(kind)}.md)" for kind in re.findall(r'"([^"]+)"', allowed))
 

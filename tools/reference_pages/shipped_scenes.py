@@ -1,4 +1,4 @@
-"""Which of the scenes and studies in xml-params/ use which plug-ins: for tools/update-parameters."""
+"""Uses of plug-ins by the scenes and studies in xml-params/: for tools/update-parameters."""
 import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path

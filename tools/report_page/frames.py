@@ -12,7 +12,7 @@ NOT_SHOWN = ("fluid", "phi")  # fields that say where fluid is
 MOST_FIELD_BYTES = 48_000_000
 CLOUDY = ("smoke", "temperature")  # fields that are shown as clouds; coarsely if they are too large
 MOST_CLOUD_BYTES = 24_000_000
-N_LAYERS = 3                  # of each axis, of a field that is too large
+N_LAYERS = 3                  # layers of each axis, of a field that is too large
 
 
 def written_at(frame):

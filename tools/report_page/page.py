@@ -7,7 +7,7 @@ from pathlib import Path
 from lockstep_frames import FramesError
 
 PARTS = Path(__file__).resolve().parent
-THREE = Path("/usr/share/javascript/three")  # of Debian's libjs-three
+THREE = Path("/usr/share/javascript/three")  # files of Debian's libjs-three
 LIBRARIES = [THREE / "build/three.min.js", THREE / "examples/js/controls/OrbitControls.js"]
 SCRIPTS = ["data.js", "colours.js", "geometry.js", "cloud.js", "player.js", "plots.js", "curves.js", "page.js"]
 

@@ -1,4 +1,4 @@
-"""What a run's folder says of it besides its frames: facts, tables and parameters."""
+"""Contents of a run's folder besides its frames: facts, tables and parameters."""
 import csv
 import json
 from pathlib import Path
@@ -11,7 +11,7 @@ from run_parameters import FILE, numbers, read_parameters, view_of
 from report_page.blobs import pack_numbers
 from report_page.state import progress_of, state_of
 
-MOST_ROWS = 20_000  # of a table; of longer ones every nth
+MOST_ROWS = 20_000  # rows of a table; of longer ones every nth
 HISTORY = "history.csv"
 
 
@@ -95,7 +95,7 @@ def read_table(path):
 
 
 def pack_tables(tables, blobs):
-    """Of a table that has several rows a time, told apart by a column `name`, one under `named` for each name."""
+    """Packs tables; one with several rows a time, told apart by a column `name`, as one table for each name under `named`."""
     packed = {}
     for file, table in tables.items():
         names = [column["name"] for column in table["columns"]]
@@ -129,7 +129,7 @@ def number(word):
 
 
 def facts(summary, values, history):
-    """What ran, as lines of a table."""
+    """Facts of a run, as lines of a table."""
     versions = summary.get("versions", {})
     last = last_row(history)
     n_cells = [int(n) for n in numbers(values["Domain/Cells"])] if "Domain/Cells" in values else None

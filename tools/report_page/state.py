@@ -1,4 +1,4 @@
-"""Whether a run goes on, how it ended, and how far it is."""
+"""State of a run: whether it goes on, how it ended, and how far it is."""
 import os
 import re
 import socket
@@ -8,7 +8,7 @@ RECENT = 20  # steps that tell how fast a run is
 
 
 def state_of(summary):
-    """What summary.json says, and whether the process that wrote "running" is still there."""
+    """State in summary.json, and whether the process that wrote "running" is still there."""
     status = summary.get("status", "not finished: no summary.json")
     if status in ("failed", "stopped by an exception"):
         return f"{status}: {summary.get('message', '')}"
@@ -35,7 +35,7 @@ def is_alive(process, started):
 
 
 def progress_of(summary, values, history):
-    """Of a run that is not done: which part is done and, if it goes on, for how long it still will."""
+    """Progress of a run that is not done: which part is done and, if it goes on, for how long it still will."""
     if summary.get("status") == "done" or not history or not history["rows"]:
         return None
     names = [column["name"] for column in history["columns"]]
