@@ -94,9 +94,9 @@ class FakeFluid : public FluidDiscretization<dim>,
   void assemble_pressure_block();
   double mass(const Face& face) const;
   bool owned(const Face& face) const { return face.owner == comm_->getRank(); }
-  /// Coefficient of a viscous bond [kg/s].
+  /// Coefficient of a viscous coupling [kg/s].
   double bond() const;
-  /// Calls `visit(neighbour, axis of the bond)` for the faces of the same axis beside it.
+  /// Calls `visit(neighbour, axis of the coupling)` for the faces of the same axis beside it.
   template <typename Visit>
   void for_each_neighbour(const Face& face, Visit visit) const;
   /// Every rank's values for its faces of this kind, into u* of all ranks. Collective.

@@ -1,4 +1,4 @@
-// The viscous bonds of FakeFluid: the 5-point (7-point) formula of every velocity component.
+// The viscous couplings of FakeFluid: the 5-point (7-point) formula of every velocity component.
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <cmath>
@@ -109,7 +109,7 @@ Momentum<dim> FakeFluid<dim>::accept_viscous(const Vector& solution, const Vecto
       if (other.kind == FaceKind::wall) {
         impulse.add(face.volume.center, axis, pull);
       } else if (other.kind == FaceKind::free && neighbour > static_cast<int>(f)) {
-        // The two ends of a bond lie apart: equal and opposite forces, but a couple.
+        // The two ends of a coupling lie apart: equal and opposite forces, but a couple.
         impulse.angular +=
             cross<dim>(face.volume.center - other.volume.center, pull * Point<dim>::Unit(axis));
       }

@@ -187,8 +187,7 @@ void LevelSet<dim>::fill_voids() {
         cells[other] = 1;
     }
   }
-  domain_.halo.sum_to_owner(
-      cells);  // particles left beside a void at a rank's border would reopen it
+  domain_.halo.sum_to_owner(cells);  // particles left beside air at a rank's border would reopen it
   remove_particles(1, cells, particles_);
 }
 

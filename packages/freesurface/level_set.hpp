@@ -15,7 +15,7 @@ struct TransportFrame;
 /// The numbers of a level set.
 struct LevelSetParameters {
   int band = 6;           ///< cells around the surface in which phi is known
-  int smallest_void = 0;  ///< cells of the largest void that is closed
+  int smallest_void = 0;  ///< cells of the largest air component that is filled
   VolumeParameters volume;
   std::optional<ParticleParameters> particles;  ///< none: phi alone
 };
@@ -68,7 +68,7 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   double carry(const InterfaceStep<dim>& step);
   /// Makes phi a distance again, as the particles know it. Sets the halo of width 1.
   void restore(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
-  /// Fills small voids and takes their particles out of them.
+  /// Fills small air components and takes their particles out of them.
   void fill_voids();
   void seed(KeptSurface<dim>& kept, bool all);
   void add_sources(const InterfaceStep<dim>& step);

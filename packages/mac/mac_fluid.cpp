@@ -102,7 +102,7 @@ void MacFluid<dim>::project(const Vector& scaled_pressure,
 
 template <int dim>
 void MacFluid<dim>::correct_pressure(const Vector& inflow) {
-  // Beside a void p = 0 leaves nothing to correct: it would feed on itself where nu dt > h^2 / 5.
+  // Beside air p = 0 leaves nothing to correct: it would feed on itself where nu dt > h^2 / 5.
   if (liquid_)
     return;
   const CellField field = pressure_field(domain_, geometry_, inflow);

@@ -43,7 +43,7 @@ template <int dim>
 MacParameters<dim> read_mac_parameters(const ParameterList& fluid);
 
 /// A single-phase fluid on a staggered Cartesian grid of tiles. Every cell whose centre is not
-/// inside a closed solid is fluid, or void where it is above a free surface. Momentum of free faces
+/// inside a closed solid is fluid, or air where it is above a free surface. Momentum of free faces
 /// counts M = rho V alpha, half of it at open sides. With periodic sides, angular momentum is not
 /// conserved: a torque has no common origin there.
 ///
@@ -195,7 +195,7 @@ class MacFluid : public FluidDiscretization<dim>,
   void settle_gas();             ///< for the frozen geometry
   void bound_pressure(
       CellField& pressure) const;  ///< bounds the pressure of the last step beside air
-  /// Over the faces of the pockets of gas, the sum of value(face) for each pocket. Collective.
+  /// Over the faces of the gas bubbles, the sum of value(face) for each bubble. Collective.
   template <typename Value>
   std::vector<double> sum_of_pockets(const Value& value) const;
   void move_liquid(double time, double dt, const MovingSurface<dim>& surface,

@@ -107,7 +107,7 @@ bool holds_shell(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surfa
 }
 
 /// Near the surface, the cells with an open face are fluid, wherever their centres are; and so are
-/// pockets between shells.
+/// gaps between shells.
 template <int dim>
 void open_cut_cells(const MacDomain<dim>& domain, const OpenFractions<dim>& fractions,
                     MacGeometry<dim>& geometry) {

@@ -11,11 +11,11 @@ namespace lockstep {
 struct GasProblem {
   std::vector<GasPocket> pockets;
   std::vector<double> conductance;  ///< GasFluid::gas_conductance
-  /// GasCoupling::gas_push_size, where a pocket without conductance pushes on solids.
+  /// GasCoupling::gas_push_size, where a bubble without conductance pushes on solids.
   std::vector<double> push_size;
   double dt = 0;       ///< step of p̂ [s]
-  double step_dt = 0;  ///< over which the solution moves the pockets' sides [s]
-  /// False: only pockets that keep their volume have a pressure (F2).
+  double step_dt = 0;  ///< over which the solution moves the bubbles' sides [s]
+  /// False: only bubbles that keep their volume have a pressure (F2).
   bool with_springs = true;
   /// rhs += push of these p̂ of the bubbles. Collective.
   std::function<void(const std::vector<double>& scaled_pressure, BlockVector& rhs)> push;

@@ -22,8 +22,8 @@ struct PrescribedFluxes {
 /// to change a volume if more than half of all that its faces push, in one direction and the other,
 /// is left in the sum, which is all of it for a piston and next to nothing for whatever turns or
 /// passes by; and then up to a tenth of it may be balanced by others not quite. Regions of no more
-/// cells than `smallest_region`, pockets that the grid makes, are let be, and so are changes of no
-/// more than `negligible` [m^dim/s]. Collective.
+/// cells than `smallest_region`, which the grid makes, are ignored, and so are changes of no more
+/// than `negligible` [m^dim/s]. Collective.
 std::string impossible_flow(const NullSpace& null_space, const PrescribedFluxes& fluxes,
                             GlobalIndex smallest_region, double negligible,
                             const std::string& unit);

@@ -24,7 +24,7 @@ Motions<dim> motions_at(const Point<dim>& arm, int direction, double length) {
   return motions;
 }
 
-/// mu area [kg m/s] of the bond: the weight of its end, as of a patch of surface.
+/// mu area [kg m/s] of the coupling: the weight of its end, as of a patch of surface.
 template <int dim>
 double weight_of(const ViscousLink<dim>& link) {
   return link.coefficient * link.reach.norm();

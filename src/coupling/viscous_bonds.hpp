@@ -19,11 +19,11 @@ class ViscousBonds {
   /// Velocities of the ends [m/s] for solid velocities V (null: none), prescribed velocities in or
   /// out. Collective.
   RCP<Vector> end_velocity(const RCP<const Vector>& solid, bool prescribed) const;
-  /// Pulls of the bonds [N] for fluid velocities u. Local.
+  /// Pulls of the couplings [N] for fluid velocities u. Local.
   RCP<Vector> pull(const Vector& u, const Vector& end_velocity) const;
   /// The couples as forces on the solids [N]. Collective.
   RCP<Vector> couple_pull(const Vector& end_velocity) const;
-  /// Adds the couples to the pulls of the bonds. Collective.
+  /// Adds the couples to the pulls of the couplings. Collective.
   void add_couples(const Vector& end_velocity, Vector& pull) const;
   /// fluid -= dt values, each link's in its row; `values` are per link and, with `weighted`, times
   /// its coefficient. Local.

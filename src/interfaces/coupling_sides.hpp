@@ -7,7 +7,7 @@ namespace lockstep {
 
 /// The impulses that go through the coupled volumes, for the ledger and for the forces that are
 /// reported. Without it a run has no `momentum_error` with prescribed or soft solids, and the
-/// forces on prescribed ones lack those of the pressure. `gas_pressure`: p̂ of the pockets of a
+/// forces on prescribed ones lack those of the pressure. `gas_pressure`: p̂ of the bubbles of a
 /// GasCoupling; empty without any.
 template <int dim>
 class AuditedCoupling {

@@ -15,7 +15,7 @@ namespace lockstep {
 enum class SideKind : char {
   unknown,  ///< a pressure that is solved for
   solid,    ///< the inside of a closed solid
-  empty,    ///< a void, p = 0
+  empty,    ///< air, p = 0
   open,     ///< an open side of the domain, p = 0
   closed    ///< a wall or an inflow, which takes any pressure
 };
@@ -98,8 +98,8 @@ struct PressureRegions {
 /// The frozen geometry, as `set_geometry` makes it.
 template <int dim>
 struct FluidGeometry {
-  /// Control volumes with open_fraction < 1 and at least one pressure unknown or pocket of gas,
-  /// owned here.
+  /// Control volumes with open_fraction < 1 and at least one pressure unknown or gas bubble, owned
+  /// here.
   std::vector<ControlVolume<dim>> coupled_volumes;
   RCP<const Map> pressure_map;
   /// A = V G_f^T rho^-1 G_f over free faces [m^dim s / kg * 1/m^2]; symmetric positive

@@ -36,7 +36,7 @@ struct BoxStorage {
 /// numbers straight to the place that HDF5 has reserved for them, and `close` adds the structure.
 /// HDF5's own MPI driver is avoided: with Open MPI 4.1 a collective write to a full disk hangs.
 ///
-/// What is read is held against what was asked for: another kind of number, another shape and a
+/// Contents that are read must match the request: another kind of number, another shape and a
 /// size that the file cannot hold are failures as well.
 class Hdf5File {
  public:

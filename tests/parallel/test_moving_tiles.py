@@ -142,7 +142,7 @@ class MovingTiles(unittest.TestCase):
         assert_close(history, other, FLUID, 1e-8)
 
     def test_water_does_not_feel_them(self):
-        """Beyond the tiles is void, where p = 0 holds."""
+        """Beyond the tiles is air, where p = 0 holds."""
         columns = ("fluid_momentum_x", "fluid_momentum_y", "fluid_kinetic_energy", "liquid_volume")
         history, _ = self.run_scene("dam-all", tiles=False, scene="dam")
         of_tiles, _ = self.run_scene("dam", scene="dam")

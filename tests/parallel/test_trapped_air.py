@@ -64,7 +64,7 @@ class TrappedAir(unittest.TestCase):
         for coupling in ("mixed face", "flux"):
             rows, _ = self.run_scene("constant volume", coupling)
             volumes = column(rows, "gas_volume")
-            # Void without gas loses half of it in that time.
+            # Air at constant pressure loses half of it in that time.
             self.assertLess(max(abs(v / volumes[0] - 1) for v in volumes), 0.02)
 
     def test_the_gas_under_a_shell_is_measured_up_to_it(self):

@@ -93,7 +93,7 @@ def start_speed(scene, tables):
 
 
 def largest_void(scene):
-    """Volume that closing a void may add in one step, for the steps after it to take back."""
+    """Volume that filling an air component may add in one step, for the steps after it to take back."""
     domain, dimension = scene.content["Domain"], scene.content["Dimension"]
     h = (domain["Upper"][0] - domain["Lower"][0]) / domain["Cells"][0]
     return SMALLEST_VOID[dimension] * h**dimension

@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
 from simulation import column, simulate, table  # noqa: E402
 
-# Elsewhere, so that the solids are in the void.
+# Elsewhere, so that the solids are in the air.
 LIQUID = {"Liquid": {"Drop": {"Type": "box", "Lower": (-1., -1.), "Upper": (1., -.875)}}}
 
 

@@ -98,7 +98,7 @@ class FramePacker:
 
     @staticmethod
     def _without_fluid(box):
-        """Cells without values: those in solids and, above a liquid's surface, in the void."""
+        """Cells without values: those in solids and, above a liquid's surface, in the air."""
         none = numpy.zeros(box.n_cells[::-1], bool)
         if "phi" in box.fields:
             none |= box.values("phi").reshape(none.shape) >= 0

@@ -29,7 +29,7 @@ bool may_be_kept_apart(const TiledGrid<dim>& grid, const SolidCells<dim>& solids
   return false;
 }
 
-/// Liquid may leave through the side, and void or liquid come in.
+/// Liquid may leave through the side, and air or liquid come in.
 template <int dim>
 bool lets_through(const BoundarySide<dim>& side) {
   return side.type == SideType::open || side.type == SideType::inflow;

@@ -8,7 +8,7 @@
 namespace lockstep {
 
 namespace {
-/// Cells deeper in the void than this belong to one that is too large to be closed [cells].
+/// Cells deeper in the air than this belong to a component that is too large to be filled [cells].
 constexpr double deep = 3;
 /// Least and largest depth of a filled cell [cells].
 constexpr double least_depth = 1e-3, most_depth = 0.1;

@@ -8,7 +8,7 @@
 namespace lockstep {
 
 enum class VolumeCorrection {
-  component,  ///< each body of liquid keeps its own volume
+  component,  ///< each liquid component keeps its own volume
   global,     ///< all of them together
   none
 };

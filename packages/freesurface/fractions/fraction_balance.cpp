@@ -11,7 +11,7 @@ namespace lockstep {
 namespace {
 /// Distance in which a liquid component takes up volume defects [cells].
 constexpr int reach = 3;
-/// Debts below this wait for others [cells].
+/// Defects below this wait for others [cells].
 constexpr double negligible_debt = 1e-13;
 /// Below this no other body stands in [cells].
 constexpr double negligible_left = 1e-6;
@@ -47,7 +47,7 @@ bool is_beside_other(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
   return false;
 }
 
-/// Bodies of liquid and what is owed to them [cells].
+/// Liquid components and their volume defects [cells].
 template <int dim>
 class Books {
  public:
@@ -198,7 +198,7 @@ class Books {
     });
   }
   void pay() {
-    std::vector<std::pair<int, double>> changes;  // a cell's willingness depends on its neighbours
+    std::vector<std::pair<int, double>> changes;  // a cell's capacity depends on its neighbours
     domain_.grid.for_each_owned_cell([&](int cell) {
       const int body = body_[cell];
       if (body < 0 || ratio_[body] == 0 || !solids_.is_fluid(cell))
@@ -224,7 +224,7 @@ class Books {
   std::vector<double> owed_, share_;  ///< defect beside each component, and its share from afar
   std::vector<double> ratio_;         ///< shift of its surface [cells]
   std::array<std::vector<double>, 2> rooms_;  ///< for giving and for taking
-  double homeless_ = 0;                       ///< amounts owed beside no body
+  double homeless_ = 0;                       ///< defects beside no component
   CellGroups spaces_;
   std::vector<double> owed_in_space_;
   std::vector<int> space_of_body_;

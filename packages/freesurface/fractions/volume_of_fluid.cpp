@@ -134,7 +134,7 @@ std::vector<char> VolumeOfFluid<dim>::carry(const InterfaceStep<dim>& step) {
               courant_, step.dt, largest_courant_number);
   const int n = std::max(1, static_cast<int>(std::ceil(2 * courant_)));
   std::vector<char> tiles = tiles_within(n + 1);
-  // Far below the surface, too, cells that solids cut must have in their books what passes by.
+  // Far below the surface, too, cells that solids cut must count the volume that passes by.
   domain_.grid.for_each_owned_cell([&](int cell) {
     if (!solids_.near.empty() && solids_.near[cell] && fractions_.liquid[cell] > 0)
       tiles[TiledGrid<dim>::tile_of(cell)] = 1;

@@ -19,9 +19,9 @@ struct VolumeOfFluidParameters {
 ParameterList volume_of_fluid_parameters();
 VolumeOfFluidParameters read_volume_of_fluid_parameters(const ParameterList& list);
 
-/// The part of each cell that is liquid, moved without loss; phi is made of the planes that these
-/// fractions stand for. What moving solids and crumbs cost or give is kept account of where it
-/// arises, and the bodies of liquid there get it back.
+/// The part of each cell that is liquid, advected without loss; phi is made of the planes that
+/// these fractions stand for. The volume defects of moving solids and removed fragments are kept
+/// where they arise, and the liquid components there take them back.
 template <int dim>
 class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim> {
  public:

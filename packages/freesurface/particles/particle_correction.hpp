@@ -20,10 +20,10 @@ void add_cells_seen(int side, const MacDomain<dim>& domain, const SolidCells<dim
                     KeptSurface<dim>& kept, const CellField& phi, const ParticleTiles<dim>& tiles,
                     std::vector<char>& cells, std::vector<char>& hidden);
 
-/// Takes out the particles of the void that a solid and liquid enclose: of the centres around, one
-/// at least does not see them or lies in a solid, and those that do are all wet. No cell could hold
-/// that void, and yet it would keep phi near zero around it, and follow the solid for good. `phi`
-/// on the halo of width 1. Local.
+/// Takes out the particles of air that a solid and liquid enclose: of the centres around, one at
+/// least does not see them or lies in a solid, and those that do are all wet. No cell could hold
+/// that air, and yet it would keep phi near zero around it, and follow the solid for good. `phi` on
+/// the halo of width 1. Local.
 template <int dim>
 void remove_trapped_air(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                         KeptSurface<dim>& kept, const CellField& phi, ParticleTiles<dim>& tiles);

@@ -20,7 +20,7 @@ struct FreeSurface {
   double smallest_distance = 1e-5;  ///< least distance of a pressure from the surface [cells]
   /// True: p = 0 where the surface is. False: at the centre of the dry cell, first order.
   bool at_true_place = true;
-  GasPockets<dim>* gas = nullptr;  ///< null: no void is closed
+  GasPockets<dim>* gas = nullptr;  ///< null: no air is closed in
 
   bool wet(int cell) const { return (*distance)[cell] < 0; }
   /// Distance factor w = 1/theta of the face between them, h over the distance of the pressure from

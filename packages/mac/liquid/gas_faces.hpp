@@ -6,12 +6,12 @@
 
 namespace lockstep {
 
-/// A free face between a cell that carries a pressure and a pocket of gas.
+/// A free face between a cell that carries a pressure and a gas bubble.
 struct GasFace {
   int pocket = 0;
   int row = 0;  ///< row of the pressure, among this rank's
   FaceId face;
-  double outward = 1;      ///< 1: the pocket is above the face, -1: below
+  double outward = 1;      ///< 1: the bubble is above the face, -1: below
   double coefficient = 0;  ///< flow through it by a unit of p̂ between them, as in A
   double area = 0;         ///< open [m^(dim-1)]
 };
@@ -25,13 +25,13 @@ std::vector<GasFace> find_gas_faces(const MacDomain<dim>& domain, const MacGeome
 bool only_gas_beside(const std::vector<CellState>& cells, const std::vector<int>& pocket,
                      const FaceCells& face);
 
-/// Finds the pockets among the empty cells. `fractions`: of owned faces and the upper ones of owned
-/// cells, closed ones being no way; without cut cells empty. Collective.
+/// Finds the gas bubbles among the air cells. `fractions`: of owned faces and the upper ones of
+/// owned cells, closed ones being no way; without cut cells empty. Collective.
 template <int dim>
 void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>& marks,
                   const std::array<CellField, dim>& fractions, MacGeometry<dim>& geometry);
 
-/// Impulse of the sides of the domain on the pockets of these p̂. Of this rank.
+/// Impulse of the sides of the domain on the bubbles of these p̂. Of this rank.
 template <int dim>
 Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                             const std::vector<double>& scaled_pressure);

@@ -51,7 +51,7 @@ class GasPockets {
   }  ///< bubble of stored cells; -1: none
   const std::vector<GasPocket>& all() const { return pockets_; }
 
-  /// Gives the cells of the pockets these pressures p̂; empty: zero. Local.
+  /// Gives the cells of the bubbles these pressures p̂; empty: zero. Local.
   void fill(const std::vector<double>& of_pockets, CellField& scaled_pressure);
   void accept(double dt);  ///< keeps the pressures last given, in a step of dt. Local.
   GasReport report() const;
@@ -60,7 +60,7 @@ class GasPockets {
 
  private:
   std::vector<char> open_groups(const CellGroups& groups, const CellField& phi) const;
-  /// The groups that become pockets, by their volumes.
+  /// The groups that become bubbles, by their volumes.
   std::vector<int> choose(const std::vector<char>& is_open,
                           const std::vector<double>& volumes) const;
   void inherit(const CellField& phi);
@@ -73,7 +73,7 @@ class GasPockets {
   std::vector<char> is_void_;  ///< stored cells that are air and not solid
   std::vector<int> of_cell_;
   std::vector<GasPocket> pockets_;
-  std::vector<double> amounts_;  ///< V_0 by pocket [m^dim]
+  std::vector<double> amounts_;  ///< V_0 by bubble [m^dim]
   std::vector<double> scaled_pressure_, accepted_pressure_;
   /// Number of each cell's bubble, from 1; -1 in the atmosphere, 0 elsewhere; V_0 and last pressure
   /// of that bubble.

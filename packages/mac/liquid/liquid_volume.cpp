@@ -275,8 +275,7 @@ void LiquidVolume<dim>::prepare(const SolidCells<dim>& solids, const CellField& 
   list_divided_cells(solids);
 }
 
-/// Void that comes in through an open side shows by phi rising towards it, before it is at a
-/// centre.
+/// Air that comes in through an open side shows by phi rising towards it, before it is at a centre.
 template <int dim>
 double LiquidVolume<dim>::at_corner(const CutBox& box, int corner, const CellField& phi) const {
   const int cell = box.corners[corner];

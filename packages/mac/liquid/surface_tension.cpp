@@ -19,7 +19,7 @@ constexpr double bell = dim == 2 ? 1.2 : 1.0;
 template <int dim>
 constexpr int width = 2 * reach<dim> + 1;
 
-/// phi around a cell, mirrored at the sides of the domain; beyond the stored tiles there is void.
+/// phi around a cell, mirrored at the sides of the domain; beyond the stored tiles there is air.
 template <int dim>
 class PhiAround {
  public:

@@ -20,7 +20,7 @@ template <int dim>
 class VelocityExtension {
  public:
   /// Finds the faces and marks them `extended` in `state`: those without fluid on either side and
-  /// with a void cell that has a distance below `band` [m] on one. Where `distance` is cut off at
+  /// with an air cell that has a distance below `band` [m] on one. Where `distance` is cut off at
   /// `known` [m] it goes on from cell to cell, by no more than it may grow. `near` as in
   /// MacGeometry, the surface at the same instant. References must outlive this object. Collective.
   VelocityExtension(const MacDomain<dim>& domain, const CellField& distance, double known,

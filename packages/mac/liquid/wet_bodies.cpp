@@ -158,7 +158,7 @@ class WetBodyFinder {
            !parted(solid, place, surface_.closest_on_solid(place, solid).position);
   }
 
-  /// Through where liquid meets void around it, in its sight.
+  /// Through where liquid meets air around it, in its sight.
   void find_planes() {
     if (gravity_.isZero(0))
       return;

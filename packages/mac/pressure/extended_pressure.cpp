@@ -45,7 +45,7 @@ CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<Cell
         behind.push_back(cell);
     }
     if (n_over_ranks(front.size()) == 0)
-      break;  // pockets that hold nothing but new fluid
+      break;  // regions that hold nothing but new fluid
     for (const auto& [cell, value] : front) {
       pressure[cell] = value;
       known[cell] = 1;

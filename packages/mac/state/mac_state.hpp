@@ -15,7 +15,7 @@ enum class FaceState : char {
   free,        ///< changed by pressure: interior or open side
   coupled,     ///< closed by the coupling: moves with the solids
   prescribed,  ///< wall or inflow
-  extended     ///< in the void near a free surface: carries on the velocity of the fluid
+  extended     ///< in the air near a free surface: carries on the velocity of the fluid
 };
 
 /// The velocity of fluid at the face itself.

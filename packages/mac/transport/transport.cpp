@@ -177,7 +177,7 @@ void Transport<dim>::advect_distance(const CellField& distance, double cut_off,
   passenger.invalid = &frame.invalid.cells;
   passenger.field.kind = cell_centers;
   passenger.field.inflow_depth = bounded_depth;
-  // The void beyond the side has its true distance. A surface along the side goes on to it from the
+  // The air beyond the side has its true distance. A surface along the side goes on to it from the
   // first two samples; one at right angles to it must not be pushed.
   passenger.field.enters = [&frame, &passenger](const Ray<dim>& ray, double inside) {
     const double h = frame.setting.grid.spacing(), past = ray.past;

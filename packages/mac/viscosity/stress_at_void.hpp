@@ -18,7 +18,7 @@ namespace lockstep {
 template <int dim>
 class StressAtVoid {
  public:
-  /// A part of the form: 2 coefficient u_own u_other, in units of that of a bond.
+  /// A part of the form: 2 coefficient u_own u_other, in units of that of a coupling.
   struct Partner {
     FaceId face;  ///< free, or prescribed at an inflow
     double coefficient = 0;
@@ -30,8 +30,8 @@ class StressAtVoid {
   /// Makes the terms of a fluid with a free surface. References must outlive this. Collective.
   StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
-  /// False if fluid beside the void has a solid near it, or fluid stands at an open side, on any
-  /// rank: there the form might not be positive, and is to be that of the bonds everywhere.
+  /// False if fluid beside the air has a solid near it, or fluid stands at an open side, on any
+  /// rank: there the form might not be positive, and is to be that of the couplings everywhere.
   /// Collective.
   bool is_definite() const;
 

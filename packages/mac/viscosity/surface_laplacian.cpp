@@ -124,7 +124,7 @@ bool SurfaceLaplacian<dim>::make_cube(int axis, const Index<dim>& lowest, Cube& 
             is_bonded(axis, cube.cells[lower], cube.cells[upper], a);
     }
   }
-  // The gradient is known best at the corners from which most bonds go.
+  // The gradient is known best at the corners from which most couplings go.
   std::array<int, n_corners> bonds{};
   int most = 0, n_used = 0;
   for (int corner = 0; corner < n_corners; ++corner) {
@@ -151,7 +151,7 @@ bool SurfaceLaplacian<dim>::make_cube(int axis, const Index<dim>& lowest, Cube& 
     }
     Eigen::Matrix<double, dim, dim> along =
         Eigen::Matrix<double, dim, dim>::Identity() - normal * normal.transpose();
-    // A single bond does not know how u changes across the surface: it is taken not to.
+    // A single coupling does not know how u changes across the surface: it is taken not to.
     if (most == 1)
       for (int a = 0; a < dim; ++a)
         along(a, a) = std::min(1.0, 2 * along(a, a));

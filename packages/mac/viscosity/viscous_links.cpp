@@ -175,7 +175,7 @@ class Builder {
     double coefficient = full_coefficient(across);
     if (across == face_.axis) {
       const int between = end == 0 ? cells_.lower : cells_.upper;
-      // Beyond an open side, and in a void, nothing pulls.
+      // Beyond an open side, and in air, nothing pulls.
       if (between < 0 || geometry_.state.cells[between] != CellState::fluid)
         return;
       if (at_void_)
@@ -272,7 +272,7 @@ class Builder {
   }
 
   /// The neighbour has no fluid, yet no surface was met on the way: the link ends on the nearest
-  /// one if the neighbour is inside a solid; a void does not pull.
+  /// one if the neighbour is inside a solid; air does not pull.
   void add_hidden_link(const FaceId& face, int across, int end, int other, double coefficient) {
     const FaceCells cells = cells_of_face(grid_, geometry_.state.cells, face.axis, other);
     const auto solid = [&](int cell) {

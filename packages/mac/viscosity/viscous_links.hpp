@@ -56,7 +56,7 @@ struct ViscousLinks {
   std::vector<ViscousLink<dim>> links;
   std::vector<SideLink> sides;
   std::vector<CoupleEnd> couples;
-  std::vector<CrossPull> cross_pulls;    ///< at right angles, of a void and of sides
+  std::vector<CrossPull> cross_pulls;    ///< at right angles, of air and of sides
   std::vector<InflowPull> inflow_pulls;  ///< at right angles
   std::vector<CrossPull> tension_pulls;  ///< all that implicit surface tension does
   double viscosity = 0;                  ///< [Pa s]

@@ -324,7 +324,8 @@ TEST(Flux, AddedMassOfADisc) {
   EXPECT_NEAR(mean, 1.11602780891, 1e-9);  // on any number of ranks
 }
 
-// A shell around the centre of one cell closes its four faces; the pocket keeps its pressure.
+// A shell around the centre of one cell closes its four faces; the region inside keeps its
+// pressure.
 TEST(Flux, KeepsPocketsBetweenShells) {
   FakeBody<2> shell;
   shell.surface = box_surface<2>({0.11, 0.11}, 0.11);

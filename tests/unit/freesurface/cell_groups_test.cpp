@@ -96,8 +96,8 @@ TEST(Voids, SmallOnesUnderWaterAreFilled) {
   EXPECT_EQ(n_left, 10);  // the longer one and the one at the open side
 }
 
-/// The last voids of a closed tank stay: without them nothing could take back what the correction
-/// of the volume adds.
+/// The last air components of a closed tank stay: without them nothing could take back what the
+/// correction of the volume adds.
 TEST(Voids, TheLastOfAClosedTankStay) {
   Bath<2> bath(closed_cube<2>(32));
   const auto solids = find_solid_cells<2>(bath.domain, nullptr);

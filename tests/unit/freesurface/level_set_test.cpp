@@ -59,7 +59,7 @@ TEST(Redistancing, ShowsTheDistanceToAnEllipse) {
   EXPECT_LT(fine[1], 0.3);
 }
 
-/// A slot of void two cells wide: the columns on either side of its middle show one step across the
+/// A slot of air two cells wide: the columns on either side of its middle show one step across the
 /// interface, and one that is 0 but for round-off of either sign.
 TEST(Redistancing, RoundOffDecidesNothingInTheMiddleOfASlot) {
   constexpr int n = 16;

@@ -107,8 +107,8 @@ TEST(Particles, AreTheSameOnAnyNumberOfRanks) {
   expect_same_on_any_ranks<3>();
 }
 
-/// Small voids in the lower corners of all tiles, so that some touch a border, wherever ranks meet:
-/// their particles go with them, those beyond the border too.
+/// Small air components in the lower corners of all tiles, so that some touch a border, wherever
+/// ranks meet: their particles go with them, those beyond the border too.
 template <int dim>
 void expect_small_voids_go_on_any_ranks() {
   constexpr int width = tile_width<dim>, n = 4 * width;
@@ -264,7 +264,7 @@ TEST(Particles, AClosedShellLetsNothingThrough) {
   }
 }
 
-/// Void that a solid and liquid enclose in a part of a cell goes; beside a void cell, away from
+/// Air that a solid and liquid enclose in a part of a cell goes; beside an air cell, away from
 /// solids, and of the liquid all stay.
 template <int dim>
 void expect_trapped_air_goes() {
@@ -274,7 +274,7 @@ void expect_trapped_air_goes() {
   const Point<dim> middle = Point<dim>::Constant(0.5);
   const auto surface = snapshot<dim>(ball_surface<dim>(radius, 0.5 * h), middle, true);
   const auto solids = find_solid_cells<dim>(bath.domain, surface);
-  // The upper half of space is void.
+  // The upper half of space is air.
   CellField phi(bath.domain.grid.n_stored_cells(), 1);
   bath.domain.grid.for_each_owned_cell(
       [&](int c) { phi[c] = bath.domain.grid.center(c)[dim - 1] - 0.5; });
@@ -310,7 +310,7 @@ void expect_trapped_air_goes() {
   add(middle + (radius + 0.1 * h) * Point<dim>::Unit(0), 1);
   remove_trapped_air(bath.domain, solids, bath.kept, phi, tiles);
   EXPECT_EQ(count(), 3U);
-  // Not the one of the liquid: it would have no company but those of the void.
+  // Not the one of the liquid: it would have no company but those of the air.
   int n_of_void = 0;
   for (const auto& tile : tiles)
     for (const Particle<dim>& particle : tile)

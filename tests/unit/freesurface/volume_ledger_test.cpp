@@ -196,7 +196,7 @@ TEST(VolumeLedger, ASinkTakesWhatNoCellShows) {
   EXPECT_EQ(film.ledger.state().lost, 0);
 }
 
-/// Void comes in through an open side as fast as the flow, from the first step on.
+/// Air comes in through an open side as fast as the flow, from the first step on.
 template <int dim>
 void expect_void_comes_in(const std::string& name, double per_step, int axis, int side) {
   const int n = dim == 2 ? 40 : 20, n_steps = 10;
@@ -233,7 +233,7 @@ TEST(VolumeLedger, VoidComesInThroughAnOpenSideWithTheFlow) {
     }
 }
 
-/// A domain that liquid fills drains below, and void comes in above.
+/// A domain that liquid fills drains below, and air comes in above.
 TEST(VolumeLedger, AFullDomainDrains) {
   for (const char* const name : {"level set", "particle level set", "volume of fluid"}) {
     Bath<2> bath(open_cube<2>(40));

@@ -246,7 +246,7 @@ void expect_lost_liquid_is_off_target() {
   const double start = model->ledger().volume;
   bath.move(before, after, 0.1);
   bath.step(*model, 0, 0.1);
-  EXPECT_GT(model->ledger().lost, 0.5 * start);  // the rest is owed to cells around
+  EXPECT_GT(model->ledger().lost, 0.5 * start);  // the rest is a defect of the cells around
   EXPECT_NEAR(model->ledger().target + model->ledger().lost, start, 1e-13);
 }
 
@@ -255,8 +255,8 @@ TEST(VolumeOfFluid, LostLiquidIsTakenOffTheTarget) {
   expect_lost_liquid_is_off_target<3>();
 }
 
-/// A crumb in the air over a pool, on a tile that goes: the pool is owed it, or, where none is
-/// left, the target knows that it is lost.
+/// A fragment in the air over a pool, on a tile that goes: it becomes a defect of the pool, or,
+/// where none is left, the target knows that it is lost.
 template <int dim>
 void expect_crumbs_of_gone_tiles_return(const std::string& crumbs, bool has_pool) {
   constexpr int n = 3 * tile_width<dim>;

@@ -51,7 +51,7 @@ TEST(FreeSurface, WaterRestsWithAPressureOfItsDepth) {
   expect_rest<2>({0, -9.81}, 0.5 + 0.37 / 20, 1e-12);
   expect_rest<3>({0, 0, -9.81}, 0.5 + 0.37 / 20, 1e-12);
 }
-/// Cells with several faces to the void have one pressure, and weights of any size.
+/// Cells with several faces to the air have one pressure, and weights of any size.
 TEST(FreeSurface, TiltedWaterRestsToo) {
   expect_rest<2>({3, -9}, 0.31, 1e-12);
   expect_rest<3>({2, -3, -9}, 0.37, 1e-12);

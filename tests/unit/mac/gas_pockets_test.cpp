@@ -66,7 +66,7 @@ TEST(GasPockets, SurfacesPassOverCellsBeyondAPeriodicSide) {
   expect_forgotten<3>(0.83, 1.02, 0.04);
 }
 
-/// A projection finds the pressure in a pocket that it is given with the others, and none of an
+/// A projection finds the pressure in a bubble that it is given with the others, and none of an
 /// earlier one.
 TEST(GasPockets, ProjectWithTheirOwnPressureOrNone) {
   Case<2> scene({16, 16}, 1.0 / 16);

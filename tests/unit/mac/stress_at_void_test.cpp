@@ -1,4 +1,4 @@
-// The viscous form beside a void: that of the symmetric stress.
+// The viscous form beside air: that of the symmetric stress.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -10,8 +10,8 @@
 namespace lockstep::test {
 namespace {
 
-/// A ball of liquid in a void: whatever moves as a solid is left alone, nothing gains energy, and
-/// the fluid has what the ledger says.
+/// A ball of liquid in air: whatever moves as a solid is left alone, nothing gains energy, and the
+/// fluid has what the ledger says.
 template <int dim>
 void expect_stress_of_a_blob() {
   Case<dim> scene(cube<dim>(16), 1.0 / 16);
@@ -137,9 +137,9 @@ TEST(StressAtVoid, NothingGainsEnergyNearBodies3D) {
   expect_definite_near_bodies<3>();
 }
 
-/// A jet comes in through an opening and flies on, all of it as fast: nothing pulls, though the
-/// void is beside it from the opening on. If it thins out instead, sides and fluid exchange what
-/// the ledger says.
+/// A jet comes in through an opening and flies on, all of it as fast: nothing pulls, though the air
+/// is beside it from the opening on. If it thins out instead, sides and fluid exchange what the
+/// ledger says.
 template <int dim>
 void expect_jet_to_fly_on() {
   Case<dim> scene(cube<dim>(12), 1.0 / 12);

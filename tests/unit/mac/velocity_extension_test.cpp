@@ -1,4 +1,4 @@
-// Velocities that are carried on into the void above a free surface.
+// Velocities that are carried on into the air above a free surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -207,7 +207,7 @@ TEST(VelocityExtension, ShortWavesAloneAreDamped) {
       [&](const Point<2>&, double found) { EXPECT_NEAR(found, 0, 1e-15); });
 }
 
-/// A thin shell between liquid and void: beyond it nothing is known of the liquid.
+/// A thin shell between liquid and air: beyond it nothing is known of the liquid.
 TEST(VelocityExtension, VelocitiesAreNotCarriedThroughAShell) {
   const double h = 0.05;
   Case<2> scene({20, 20}, h);

@@ -42,7 +42,7 @@ TEST(WetBodies, ThatTheSurfaceComesNearToAreWetToAKnownPart) {
   expect_balance_at_any_depth<3>(Point<3>(1, 1, 1).normalized());
 }
 
-/// Deep inside of a body phi is what it once was: that of a void, as when it still floated.
+/// Deep inside of a body phi is what it once was: that of air, as when it still floated.
 template <int dim>
 void expect_no_void_inside() {
   Case<dim> scene(cube<dim>(20), 0.05);

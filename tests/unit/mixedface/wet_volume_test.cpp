@@ -1,4 +1,4 @@
-// The liquid that a mixed face lumps where a free surface or a shell parts it from the void.
+// The liquid that a mixed face lumps where a free surface or a shell parts it from the air.
 #include "faces/wet_volume.hpp"
 
 #include <gtest/gtest.h>

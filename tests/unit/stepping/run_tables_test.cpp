@@ -18,7 +18,7 @@
 namespace lockstep::test {
 namespace {
 
-using Texts = std::map<std::string, std::string>;  ///< of a row, by the name of its column
+using Texts = std::map<std::string, std::string>;  ///< texts of a row, by the name of its column
 
 /// A liquid of which all is reported that there can be.
 template <int dim>

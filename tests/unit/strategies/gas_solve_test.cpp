@@ -1,4 +1,4 @@
-// Pockets of gas beside solids, with a strategy that solves what they answer.
+// Gas bubbles beside solids, with a strategy that solves what they answer.
 #include <gtest/gtest.h>
 
 #include <Tpetra_CrsMatrix.hpp>
@@ -56,7 +56,7 @@ TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
   }
 }
 
-/// All around the pocket is one rigid shell: what it pushes on that is round-off, and so is what
+/// All around the bubble is one rigid shell: what it pushes on that is round-off, and so is what
 /// that would open. No pressure may be made of their quotient.
 TEST(GasSolve, GasWithinOneShellPushesOnNothing) {
   SaddleOptions options;
@@ -108,7 +108,7 @@ class InexactStrategy : public SolverStrategy {
   SolverStrategy& exact_;
 };
 
-/// The pocket is the only void of a tank: liquid that cannot be compressed comes back from it as it
+/// The bubble is the only air of a tank: liquid that cannot be compressed comes back from it as it
 /// goes, but for what a solve leaves.
 TEST(GasSolve, TheOnlyVoidCannotOpen) {
   SaddleOptions options;
