@@ -216,7 +216,7 @@ targets set from here are not in it. quiet: no line a step. Raises InputError, a
   run.def_property_readonly(
       "dimension", [](const Run& self) { return self->dimension(); }, "2 or 3.");
   run.def_property_readonly(
-      "time", [](const Run& self) { return self->time(); }, "Of the present state [s].");
+      "time", [](const Run& self) { return self->time(); }, "Time of the present state [s].");
   run.def_property_readonly(
       "n_steps", [](const Run& self) { return self->n_steps(); },
       "Steps taken, those before a restart too.");

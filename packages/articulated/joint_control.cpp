@@ -152,23 +152,23 @@ std::string coordinate_list(int k) {
 void declare_control(ParameterList& list, int n) {
   declare_choice(
       list, "Control", "free", {"free", "proportional derivative", "prescribed rate", "prescribed"},
-      "What acts on the joint's coordinates. free: nothing; proportional derivative: a spring and "
-      "a "
+      "Control of the joint's coordinates. free: nothing; proportional derivative: a spring and a "
       "damper to \"Target\", which yields to loads; prescribed rate: the rates of a mass on such a "
       "spring, by whatever torque they take; prescribed: \"Target\" itself, likewise.");
   declare_optional<double>(
       list, "Natural Frequency",
-      "Of the oscillator that control makes of the joint, undamped [rad/s]. Springs are that "
-      "squared times the inertia that the joint has at the start without fluid.");
-  declare_optional<double>(list, "Damping Ratio",
-                           "1 is critical, with \"Natural Frequency\" [1]; default 1.");
-  declare_optional<double>(list, "Stiffness",
-                           "Of the spring, instead of a frequency [N m/rad, N/m].");
+      "Natural frequency of the oscillator that control makes of the joint, undamped [rad/s]. "
+      "Springs are its square times the inertia that the joint has at the start without fluid.");
   declare_optional<double>(
-      list, "Damping", "Of the damper beside \"Stiffness\" [N m s, N s/m]; default: no damper.");
+      list, "Damping Ratio",
+      "Damping ratio with \"Natural Frequency\", 1 is critical [1]; default 1.");
+  declare_optional<double>(list, "Stiffness",
+                           "Stiffness of the spring, instead of a frequency [N m/rad, N/m].");
+  declare_optional<double>(list, "Damping",
+                           "Damping beside \"Stiffness\" [N m s, N s/m]; default: no damper.");
   declare_optional<double>(list, "Largest Torque",
-                           "Of spring and damper together [N m, N]. Absent: none. What control "
-                           "does not use is refused.");
+                           "Largest torque of spring and damper together [N m, N]. Absent: none. "
+                           "Parameters that control does not use are refused.");
   for (const char* parameter : {"Natural Frequency", "Largest Torque"})
     set_positive(list, parameter);
   for (const char* parameter : {"Damping Ratio", "Stiffness", "Damping"})

@@ -48,9 +48,9 @@ template <int dim>
 void declare_limits(ParameterList& joint, const JointKind& kind) {
   const int n = n_rates<dim>(kind);
   if (turns_about_any<dim>(kind)) {
-    declare_optional<double>(joint, "Upper Limit",
-                             "How far it may turn from where it is at the start, about whatever "
-                             "axis [rad]. Absent: as far as it likes.");
+    declare_optional<double>(
+        joint, "Upper Limit",
+        "Largest turn from the start, about any axis [rad]. Absent: unlimited.");
     set_between(joint, "Upper Limit", 0, 3.14159);
     return;
   }
@@ -59,9 +59,9 @@ void declare_limits(ParameterList& joint, const JointKind& kind) {
 
 void declare_limit_pair(ParameterList& list, int n) {
   for (const auto& [side, least] :
-       {std::pair{"Lower Limit", "least"}, {"Upper Limit", "largest"}}) {
+       {std::pair{"Lower Limit", "Least"}, {"Upper Limit", "Largest"}}) {
     const std::string doc =
-        fmt::format("The {} that {} may be [rad, m]; 0 at the start. Absent: none.", least,
+        fmt::format("{} value of {} [rad, m]; 0 at the start. Absent: none.", least,
                     n == 1 ? "the coordinate" : "each of the coordinates");
     if (n == 1)
       declare_optional<double>(list, side, doc);

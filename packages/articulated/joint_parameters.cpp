@@ -155,16 +155,17 @@ ParameterList parameters_of(const JointKind& kind) {
   ParameterList list(kind.name);
   declare_required_vector<std::string>(
       list, "Solids", 2,
-      "The two that it connects: rigid bodies, dynamic or prescribed, or \"space\". The joint's "
-      "axes go with the first.");
-  declare_required_vector<double>(list, "Point", dim, "Where it is at the start, in space [m].");
+      "The two solids that the joint connects: rigid bodies, dynamic or prescribed, or \"space\". "
+      "The joint's axes go with the first.");
+  declare_required_vector<double>(list, "Point", dim,
+                                  "Place of the joint at the start, in space [m].");
   if (has_axis<dim>(kind))
     declare_required_vector<double>(list, "Axis", dim,
-                                    "Of the joint at the start, in space, of any length [1].");
+                                    "Axis of the joint at the start, in space, of any length [1].");
   if (kind.turn == JointTurn::two_axes)
     declare_required_vector<double>(
         list, "Second Axis", dim,
-        "The other one at the start, at right angles to \"Axis\", of any length [1].");
+        "Second axis at the start, at right angles to \"Axis\", of any length [1].");
   if (n_rates<dim>(kind) > 0) {
     declare_control(list, n_rates<dim>(kind));
     declare_limits<dim>(list, kind);
@@ -174,9 +175,10 @@ ParameterList parameters_of(const JointKind& kind) {
     ParameterList& own = declare_optional_list(
         list, coordinate_list(k),
         fmt::format(
-            "Of this {} alone. With a \"Control\" here nothing of the joint's own control acts on "
-            "it; a limit here takes the place of the joint's for it. What this list does not say "
-            "is as the joint has it.",
+            "Settings of this {} alone. With a \"Control\" here nothing of the joint's own control "
+            "acts on "
+            "it; a limit here takes the place of the joint's for it. The joint's own settings "
+            "hold where this list is silent.",
             slides ? "displacement" : "angle"));
     declare_control(own, 1);
     declare_limit_pair(own, 1);
@@ -255,15 +257,15 @@ std::vector<TypedSchema> joint_schemas() {
 
 ParameterList articulation_parameters() {
   ParameterList list("joints");
-  declare_choice(list, "Impulses", "two halves", {"two halves", "end of step"},
-                 "When the impulses of joints act. two halves: half of them where a step begins, "
-                 "half where it ends; second order, and hardly any energy is lost, for one more "
-                 "coupled solve a step. end of step: all of them there; loses energy at large "
-                 "steps.");
+  declare_choice(
+      list, "Impulses", "two halves", {"two halves", "end of step"},
+      "Times at which the impulses of joints act. two halves: half of them where a step begins, "
+      "half where it ends; second order, and hardly any energy is lost, for one more coupled solve "
+      "a step. end of step: all of them there; loses energy at large steps.");
   declare_choice(list, "Time Integration", "second-order", {"second-order", "fully-implicit"},
-                 "Of springs and dampers. second-order: the spring is that of the middle of the "
-                 "step, half of the damper explicit; fully-implicit: both at its end, of first "
-                 "order, and damps whatever the step does not resolve.");
+                 "Integration of springs and dampers. second-order: the spring is that of the "
+                 "middle of the step, half of the damper explicit; fully-implicit: both at its "
+                 "end, of first order, and damps whatever the step does not resolve.");
   return list;
 }
 

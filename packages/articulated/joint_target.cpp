@@ -35,7 +35,8 @@ JointTarget swinging(const Eigen::VectorXd& middle, const Eigen::VectorXd& ampli
 ParameterList swing_schema(int n) {
   ParameterList list;
   declare_per_coordinate(list, "Amplitude", n, 0, "Largest excursion [rad, m].");
-  declare_per_coordinate(list, "Middle", n, 0, "What it swings about [rad, m].");
+  declare_per_coordinate(list, "Middle", n, 0,
+                         "Coordinates about which the joint swings [rad, m].");
   declare_required_positive(list, "Frequency", "Oscillations per second [1/s].");
   declare(list, "Phase", 0.0,
           "The target is middle plus amplitude times sin(2 pi frequency time + phase) [rad].");
@@ -98,11 +99,11 @@ void declare_target(ParameterList& joint, int n) {
   declare_required_positive(wave, "Wave Length",
                             "Joints lag behind by a whole oscillation for each of it that they are "
                             "farther along \"Direction\" [m].");
-  declare_required<ParameterArray<double>>(wave, "Direction",
-                                           "The way that the wave goes, of any length [1].");
+  declare_required<ParameterArray<double>>(
+      wave, "Direction", "Direction in which the wave travels, of any length [1].");
   declare_typed_sublist(joint, "Target",
-                        "Where control wants the joint's coordinates: displacements along its "
-                        "axes, then angles; all 0 at the start.",
+                        "Target of the joint's coordinates: displacements along its axes, then "
+                        "angles; all 0 at the start.",
                         {{"constant", "Stays.", constant},
                          {"sinusoid", "Swings.", swing_schema(n)},
                          {"table", "Follows a table, and stays before and after.", table},

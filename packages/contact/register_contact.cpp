@@ -27,19 +27,21 @@ ParameterList contact_parameters() {
                    "[cells]. Surfaces that touch stay the mean of their thicknesses apart; of one "
                    "that touches itself it should be below half the spacing of the mesh.");
   ParameterList skin;
-  declare_required_positive(skin, "Thickness", "Instead of \"Shell Thickness\" [m].");
-  declare_named_sublists(list, "Skins", "By name of a solid: its own thickness for contact.", skin);
+  declare_required_positive(skin, "Thickness",
+                            "Thickness for contact instead of \"Shell Thickness\" [m].");
+  declare_named_sublists(list, "Skins", "Thickness for contact of single solids, by their names.",
+                         skin);
   declare_positive(list, "Deepest Overlap", usual.deepest,
-                   "How deep inside a solid a vertex is still recognised [cells].");
+                   "Largest depth inside a solid at which a vertex is recognised [cells].");
   declare_between(list, "Push Out Rate", usual.push_rate, 0.0, 1.0,
                   "Part of an overlap beyond the slop that one step removes [1].");
   declare_at_least(list, "Bounce Speed", usual.bounce_speed, 0.0,
-                   "No restitution below this speed of approach [m/s].");
+                   "Speed of approach below which there is no restitution [m/s].");
   declare(list, "Self-Contact", usual.self_contact,
-          "Whether deformable bodies and cloth touch themselves. Neighbours across one edge of a "
-          "mesh are kept from crossing, not apart.");
+          "Deformable bodies and cloth touch themselves. Neighbours across one edge of a mesh are "
+          "kept from crossing, not apart.");
   declare(list, "Between Jointed Solids", false,
-          "Whether solids that a joint connects touch each other. They may overlap there.");
+          "Solids that a joint connects touch each other; else they may overlap there.");
   declare_optional<double>(list, "Wall Friction",
                            "Coulomb's coefficient of the domain's walls [1]; without it that of "
                            "the solid counts. Two solids, or a solid and a wall, have the "

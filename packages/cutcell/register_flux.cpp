@@ -7,17 +7,15 @@ namespace {
 
 ParameterList valid_parameters() {
   ParameterList list;
-  declare_between(
-      list, "Smallest Open Fraction", FluxOptions().smallest_open_fraction, 1e-6, 0.5,
-      "Faces of which a smaller part than this [1] is open are closed; what they would have let "
-      "through is given to the solid in both neighbours.");
-  declare_choice(
-      list, "Weights", "face fractions", {"face fractions", "volume fractions"},
-      "What of a face is closed: its own area inside the solids (Ng, Min and Gibou 2009) "
-      "or the volume of its dual cell inside them (Batty et al. 2007).");
+  declare_between(list, "Smallest Open Fraction", FluxOptions().smallest_open_fraction, 1e-6, 0.5,
+                  "Aperture [1] below which faces are closed; the flux that they would have let "
+                  "through is given to the solid in both neighbours.");
+  declare_choice(list, "Weights", "face fractions", {"face fractions", "volume fractions"},
+                 "Measure of a face's closed part: its own area inside the solids (Ng, Min and "
+                 "Gibou 2009) or the volume of its dual cell inside them (Batty et al. 2007).");
   declare(list, "Correct Buoyancy", true,
-          "Correct the weight of every closed body, axis by axis, by what the grid displaces too "
-          "much, so that a neutrally buoyant one rests exactly.");
+          "Correct the weight of every closed body, axis by axis, by the excess of mass that the "
+          "grid displaces, so that a neutrally buoyant one rests exactly.");
   return list;
 }
 

@@ -66,20 +66,23 @@ void declare_deformable_geometry(ParameterList& body) {
                           "file: a mesh of triangles (2D) or "
                           "tetrahedra (3D).");
   declare_optional<double>(list, "Radius",
-                           "Of ball and cylinder, of the torus' centre line, outer one of hollow "
-                           "ball and tube [m].");
+                           "Radius of ball and cylinder, of the torus' centre line, and outer "
+                           "radius of hollow ball and tube [m].");
   declare_optional<double>(
-      list, "Length", "Of cylinder and tube, along z; in 2D a cylinder is a box, along y [m].");
-  declare_optional<double>(list, "Thickness", "Of the wall of hollow ball and tube [m].");
-  declare_optional<double>(list, "Tube Radius", "Of the section of a torus [m].");
+      list, "Length",
+      "Length of cylinder and tube, along z; in 2D a cylinder is a box, along y [m].");
+  declare_optional<double>(list, "Thickness", "Thickness of the wall of hollow ball and tube [m].");
+  declare_optional<double>(list, "Tube Radius", "Radius of the section of a torus [m].");
   declare_optional<ParameterArray<double>>(list, "Size", "Edges of a box [m].");
   set_length(list, "Size", dim);
   declare_optional<ParameterArray<double>>(list, "Stations",
                                            "Places along a spindle, ascending [m].");
   declare_optional<ParameterArray<double>>(
-      list, "Half Heights", "Of a spindle at its stations, along y, straight between them [m].");
-  declare_optional<ParameterArray<double>>(list, "Half Widths",
-                                           "The same along z; its sections are ellipses (3D) [m].");
+      list, "Half Heights",
+      "Half heights of a spindle at its stations, along y, linear between them [m].");
+  declare_optional<ParameterArray<double>>(
+      list, "Half Widths",
+      "Half widths of a spindle at its stations, along z; its sections are ellipses (3D) [m].");
   declare_optional<std::string>(list, "File",
                                 "Mesh: .msh of Gmsh (version 2.2 or 4.1) or legacy .vtk, both "
                                 "ASCII; relative to the folder of "

@@ -16,20 +16,21 @@ namespace {
 template <int dim>
 void declare_start(ParameterList& body) {
   declare_vector(body, "Position", ParameterArray<double>(dim, 0.0), dim,
-                 "Where the origin of the body's coordinates lies at the start [m].");
+                 "Position of the origin of the body's coordinates at the start [m].");
   if constexpr (dim == 2) {
     declare(body, "Rotation", 0.0,
             "Angle by which the body is turned about that origin at the start [rad].");
-    declare(body, "Angular Velocity", 0.0, "About that origin at the start [rad/s].");
+    declare(body, "Angular Velocity", 0.0,
+            "Angular velocity about that origin at the start [rad/s].");
   } else {
     declare_vector(body, "Rotation", {0.0, 0.0, 0.0}, 3,
                    "Rotation vector (axis times angle) by which the body is turned about that "
                    "origin at the start [rad].");
     declare_vector(body, "Angular Velocity", {0.0, 0.0, 0.0}, 3,
-                   "About that origin at the start [rad/s].");
+                   "Angular velocity about that origin at the start [rad/s].");
   }
   declare_vector(body, "Velocity", ParameterArray<double>(dim, 0.0), dim,
-                 "Of that origin at the start [m/s].");
+                 "Velocity of that origin at the start [m/s].");
   declare_vector(body, "Stretch", ParameterArray<double>(dim, 1.0), dim,
                  "Factors along the body's axes by which it is stretched at the start, before it "
                  "is turned [1].");

@@ -42,9 +42,9 @@ void declare_cloth_geometry(ParameterList& body) {
   set_length(list, "Size", dim);
   declare_optional<std::string>(list, "Normal", "Axis that a sheet is normal to.");
   set_choices(list, "Normal", axes);
-  declare_optional<double>(list, "Radius", "Of ball, open ball and tube [m].");
-  declare_optional<double>(list, "Opening Radius", "Of the hole of an open ball [m].");
-  declare_optional<double>(list, "Length", "Of a tube [m].");
+  declare_optional<double>(list, "Radius", "Radius of ball, open ball and tube [m].");
+  declare_optional<double>(list, "Opening Radius", "Radius of the hole of an open ball [m].");
+  declare_optional<double>(list, "Length", "Length of a tube [m].");
   declare_optional<std::string>(
       list, "File",
       "Surface mesh: .obj, .off, .msh of Gmsh, .vtk or (3D) .stl; relative to "
@@ -113,16 +113,16 @@ template <int dim>
 ParameterList cloth_parameters() {
   ParameterList list("cloth");
   declare_cloth_geometry<dim>(list);
-  declare_required_positive(list, "Young's Modulus", "Of the material [Pa].");
-  declare_between(list, "Poisson's Ratio", 0.3, -0.99, 0.5,
-                  "Of the material [1]. Springs in 3D behave like 1/3, whatever is given.");
+  declare_required_positive(list, "Young's Modulus", "Young's modulus of the material [Pa].");
+  declare_between(
+      list, "Poisson's Ratio", 0.3, -0.99, 0.5,
+      "Poisson's ratio of the material [1]. Springs in 3D behave like 1/3, whatever is given.");
   declare_required_positive(list, "Thickness",
-                            "Of the sheet [m]: membrane stiffness goes with it, bending stiffness "
-                            "with its cube.");
-  declare_required<double>(
-      list, "Surface Density",
-      "As meshed [kg/m^2] (2D: [kg/m]). 0: no mass but that of the fluid lumped "
-      "on it; then it must be fully implicit.");
+                            "Thickness of the sheet [m]: membrane stiffness goes with it, bending "
+                            "stiffness with its cube.");
+  declare_required<double>(list, "Surface Density",
+                           "Mass per area as meshed [kg/m^2] (2D: [kg/m]). 0: no mass but that of "
+                           "the fluid lumped on it; then it must be fully implicit.");
   set_at_least(list, "Surface Density", 0);
   ParameterList elements("finite element"), springs("mass-spring");
   declare_at_least(springs, "Shear Ratio", 0.5, 0.0,
@@ -136,10 +136,10 @@ ParameterList cloth_parameters() {
                  "Shape without bending moments: the mesh's own, or a flat one; none: no bending "
                  "stiffness.");
   declare_between(list, "Pre-Strain", 0.0, -0.9, 100.0,
-                  "By how much the mesh is longer than the sheet at rest, in all directions [1]; "
-                  "positive: under tension.");
+                  "Strain of the mesh against the sheet at rest, in all directions [1]; positive: "
+                  "under tension.");
   declare_at_least(list, "Surface Tension", 0.0, 0.0,
-                   "Besides the elastic stress, whatever the strain [N/m] (2D: [N]).");
+                   "Tension besides the elastic stress, whatever the strain [N/m] (2D: [N]).");
   declare_at_least(
       list, "Stretch Limit", 0.0, 0.0,
       "Most that an edge may be longer than at rest [1]: impulses along the edges keep "

@@ -61,9 +61,9 @@ ParameterList deformable_body_parameters() {
   ParameterList list("deformable body");
   declare_deformable_geometry<dim>(list);
   declare_material<dim>(list);
-  declare_required_positive(list, "Density", "At rest [kg/m^3] (2D: [kg/m^2]).");
+  declare_required_positive(list, "Density", "Density at rest [kg/m^3] (2D: [kg/m^2]).");
   declare_at_least(list, "Viscosity", 0.0, 0.0,
-                   "Of the material: shear stress over twice the strain rate [Pa s].");
+                   "Viscosity of the material: shear stress over twice the strain rate [Pa s].");
   declare_body_start<dim>(list);
   return list;
 }

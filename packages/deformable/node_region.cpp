@@ -66,10 +66,10 @@ void declare_loads_and_tethers(ParameterList& body) {
   declare_named_sublists(body, "Loads", "Forces on nodes, besides gravity.", load);
   declare_node_region<dim>(tether);
   declare_required_positive(tether, "Stiffness",
-                            "Of all the springs together, spread over the nodes in proportion to "
-                            "their masses [N/m] (2D: per unit depth).");
+                            "Stiffness of all springs together, spread over the nodes in "
+                            "proportion to their masses [N/m] (2D: per unit depth).");
   declare_vector(tether, "Offset", ParameterArray<double>(dim, 0.0), dim,
-                 "Of each anchor from where its node starts [m].");
+                 "Offset of each anchor from the start of its node [m].");
   declare_named_sublists(body, "Tethers",
                          "Nodes tied to fixed points of space by springs without rest length.",
                          tether);

@@ -14,8 +14,9 @@ template <int dim>
 std::vector<TypedSchema> motions() {
   ParameterList constant;
   declare_vector(constant, "Velocity", ParameterArray<double>(dim, 0.0), dim,
-                 "Of the origin of the body's coordinates [m/s].");
-  declare_rotation<dim>(constant, "Angular Velocity", "About that origin [rad/s].");
+                 "Velocity of the origin of the body's coordinates [m/s].");
+  declare_rotation<dim>(constant, "Angular Velocity",
+                        "Angular velocity about that origin [rad/s].");
   std::vector<TypedSchema> all{{"static", "The nodes rest.", ParameterList()},
                                {"constant velocity", "They keep a velocity.", constant}};
   for (const TypedSchema& timed : timed_motion_schemas<dim>())
@@ -62,12 +63,12 @@ void declare_pinned(ParameterList& body) {
           "Axes of space along which the nodes are held.");
   set_choices(pinned, "Directions", axes);
   declare_typed_sublist(pinned, "Motion",
-                        "How they move, from where they start; turns are about the origin of the "
-                        "body's coordinates where it lies at the start.",
+                        "Motion of the nodes from their start; turns are about the origin of the "
+                        "body's coordinates at the start.",
                         motions<dim>(), "static");
   declare_optional<double>(pinned, "Release Time",
-                           "When they are let go, with the velocity they have: at the begin of "
-                           "the first step at or after it [s]. Absent: never.");
+                           "Time at which the nodes are let go, with the velocity they have: at "
+                           "the begin of the first step at or after it [s]. Absent: never.");
   declare_named_sublists(body, "Pinned", "Nodes held at rest, or moved by a script.", pinned);
 }
 

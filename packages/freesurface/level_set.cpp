@@ -31,8 +31,8 @@ ParameterList level_set_parameters() {
   declare_between(list, "Band", 6, 4, 20,
                   "Cells on both sides of the surface in which its distance is known.");
   declare_at_least(list, "Smallest Void", dim == 2 ? 8 : 27, 0,
-                   "Voids of no more cells that liquid touches are filled: they would drain the "
-                   "liquid around them. 0: none is.");
+                   "Largest air pocket, in cells, that is filled if liquid touches it: it would "
+                   "drain the liquid around it. 0: none is.");
   declare_volume_correction(list);
   return list;
 }

@@ -34,8 +34,8 @@ void declare_moving_tiles(ParameterList& fluid) {
   ParameterList& list = declare_optional_list(
       fluid, "Moving Tiles",
       "Store and solve only where something moves or was asked for, in tiles of 16 x 16 cells (2D) "
-      "or 8 x 8 x 8 that come and go. With a free surface: where liquid is; what is left out is "
-      "void. Without, beyond them the fluid is taken to be at rest, with ambient "
+      "or 8 x 8 x 8 that come and go. With a free surface: where liquid is; the rest is "
+      "air. Without, beyond them the fluid is taken to be at rest, with ambient "
       "scalars and the pressure of fluid at rest, as in an unbounded surrounding: fluid flows in "
       "and out there freely, and what goes out is forgotten. docs/method.md, \"Moving tiles\", "
       "tells how far that is from the whole domain. Absent: all tiles are stored, always.");
@@ -43,9 +43,9 @@ void declare_moving_tiles(ParameterList& fluid) {
                    "Tiles are stored within so many cells of what moves, is solid or was asked for "
                    "[1]; at least 4 more than anything moves in a step.");
   declare_between(list, "Threshold", 0.01, 1e-6, 0.5,
-                  "What moves, without a free surface: fluid faster than this part of the fastest, "
-                  "and scalars that differ "
-                  "from their ambient value by more than this part of the largest difference [1].");
+                  "Threshold of motion without a free surface: fluid faster than this part of the "
+                  "fastest, and scalars that differ from their ambient value by more than this "
+                  "part of the largest difference [1].");
   ParameterList region;
   declare_shape<dim>(region);
   declare_named_sublists(list, "Keep", "Boxes and balls that are always stored.", region);

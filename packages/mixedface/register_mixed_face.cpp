@@ -9,11 +9,11 @@ ParameterList valid_parameters() {
   ParameterList list;
   declare_choice(
       list, "Mixed Rule", "voxel", {"voxel", "every cut cell"},
-      "Which dual cells move with the solid. 'voxel': those whose two cell centres the surface "
+      "Dual cells that move with the solid. 'voxel': those whose two cell centres the surface "
       "separates. 'every cut cell': all that the surface touches (much more added mass).");
   declare_choice(
       list, "Lumping", "diagonal", {"diagonal", "consistent", "paper diagonal"},
-      "How fluid mass is lumped on the solid: 'diagonal' row sums for nodes (the paper's choice; "
+      "Lumping of fluid mass on the solid: 'diagonal' row sums for nodes (the paper's choice; "
       "rigid bodies carry their full block), 'consistent' W^T M_F W, 'paper diagonal' the literal "
       "Eqs. 22-24 for rigid bodies, which lose momentum: for comparison.");
   declare_choice(list, "Soft Weights", "barycentric", {"barycentric", "rigid motions"},

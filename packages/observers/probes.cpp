@@ -50,8 +50,8 @@ std::vector<Point<dim>> lattice_points(const Box<dim>& box, const Index<dim>& co
 template <int dim>
 ParameterList points_parameters() {
   ParameterList list;
-  declare_required<ParameterArray<double>>(
-      list, "Points", "Where, a component an axis, one point after the other [m].");
+  declare_required<ParameterArray<double>>(list, "Points",
+                                           "Points, a component an axis, one after the other [m].");
   return list;
 }
 

@@ -20,13 +20,12 @@ void register_observers(ObserverRegistry<dim>& observers) {
   observers.add("flow", "Volume that flows through a window along an axis, and its mean pressure.",
                 flow_parameters<dim>,
                 [](const ParameterList& list) { return std::make_unique<Flow<dim>>(list); });
-  observers.add("gauge",
-                "How much of a line is in the liquid, as a wire that is held into it tells.",
+  observers.add("gauge", "Wet length of a line, as a wire gauge measures it.",
                 gauge_parameters<dim>,
                 [](const ParameterList& list) { return std::make_unique<Gauge<dim>>(list); });
-  observers.add(
-      "energy", "Where the energy of a run comes from and where it goes, from its start on.",
-      energy_parameters<dim>, [](const ParameterList&) { return std::make_unique<Energy<dim>>(); });
+  observers.add("energy", "Budget of the energy of a run, from its start on.",
+                energy_parameters<dim>,
+                [](const ParameterList&) { return std::make_unique<Energy<dim>>(); });
 }
 
 template void register_observers<2>(ObserverRegistry<2>&);

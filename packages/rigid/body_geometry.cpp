@@ -61,12 +61,12 @@ void declare_geometry(ParameterList& body) {
                           "ball, box, capsule, cylinder, torus: volumes. open box (no lid on top, "
                           "y is up), plate: thin "
                           "shells. file: what the file holds.");
-  declare_optional<double>(list, "Radius",
-                           "Of ball, capsule and cylinder, of the torus' centre line [m].");
+  declare_optional<double>(
+      list, "Radius", "Radius of ball, capsule and cylinder, and of the torus' centre line [m].");
   declare_optional<double>(list, "Length",
-                           "Of a cylinder (along z; in 2D it is a box, along y), of a capsule "
-                           "between the centres of its caps [m].");
-  declare_optional<double>(list, "Tube Radius", "Of the section of a torus [m].");
+                           "Length of a cylinder (along z; in 2D it is a box, along y), and of a "
+                           "capsule between the centres of its caps [m].");
+  declare_optional<double>(list, "Tube Radius", "Radius of the section of a torus [m].");
   declare_optional<ParameterArray<double>>(
       list, "Size", "Edges of box and open box, extent of a plate (along \"Normal\" ignored) [m].");
   set_length(list, "Size", dim);

@@ -15,8 +15,8 @@ void declare_motion(ParameterList& body) {
        "Keeps \"Velocity\" and \"Angular Velocity\"; \"Position\" is that of time 0.", nothing}};
   for (const TypedSchema& timed : timed_motion_schemas<dim>())
     schemas.push_back(timed);
-  declare_typed_sublist(body, "Motion", "Whether the body is moved by forces or by a script.",
-                        schemas, "dynamic");
+  declare_typed_sublist(body, "Motion", "Motion of the body, by forces or by a script.", schemas,
+                        "dynamic");
 }
 
 template <int dim>

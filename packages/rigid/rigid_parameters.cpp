@@ -20,11 +20,12 @@ std::vector<std::string> dof_names() {
 
 template <int dim>
 void declare_mass(ParameterList& list) {
-  declare_optional<double>(list, "Density",
-                           "Of a volume [kg/m^3] (2D: [kg/m^2]). A dynamic body needs one of "
-                           "density and mass.");
-  declare_optional<double>(list, "Surface Density",
-                           "Of a thin shell [kg/m^2] (2D: [kg/m]), instead of \"Density\".");
+  declare_optional<double>(
+      list, "Density",
+      "Density of a volume [kg/m^3] (2D: [kg/m^2]). A dynamic body needs one of density and mass.");
+  declare_optional<double>(
+      list, "Surface Density",
+      "Mass per area of a thin shell [kg/m^2] (2D: [kg/m]), instead of \"Density\".");
   declare_optional<double>(list, "Mass", "Mass [kg] (2D: per unit depth), spread evenly.");
   for (const char* name : {"Density", "Surface Density", "Mass"})
     set_positive(list, name);
@@ -33,7 +34,7 @@ void declare_mass(ParameterList& list) {
 template <int dim>
 void declare_pose(ParameterList& list) {
   declare_vector(list, "Position", ParameterArray<double>(dim, 0.0), dim,
-                 "Where the origin of the body's coordinates lies at the start [m].");
+                 "Position of the origin of the body's coordinates at the start [m].");
   if constexpr (dim == 2) {
     declare(list, "Orientation", 0.0,
             "Angle by which the body is turned about that origin at the start [rad].");
@@ -48,8 +49,8 @@ void declare_pose(ParameterList& list) {
     declare(list, "Rotation Angle", 0.0, "Turn about \"Rotation Axis\" at the start [rad].");
   }
   declare_vector(list, "Velocity", ParameterArray<double>(dim, 0.0), dim,
-                 "Of the reference point (centre of mass, or pivot) at the start [m/s].");
-  declare_rotation<dim>(list, "Angular Velocity", "At the start [rad/s].");
+                 "Velocity of the reference point (centre of mass, or pivot) at the start [m/s].");
+  declare_rotation<dim>(list, "Angular Velocity", "Angular velocity at the start [rad/s].");
   declare_optional<ParameterArray<double>>(
       list, "Pivot",
       "Reference point, in coordinates of the body [m]: what locked translations hold (a hinge) "
@@ -154,10 +155,9 @@ ParameterList rigid_body_parameters() {
   declare_vector(list, "Force", ParameterArray<double>(dim, 0.0), dim,
                  "Constant load at the centre of mass, besides gravity [N] (2D: [N/m]).");
   declare_rotation<dim>(list, "Torque", "Constant load, in axes of space [N m] (2D: [N]).");
-  declare(
-      list, "Seen by Fluid", true,
-      "Whether fluid and contact meet the body's surface. Without, it is a mass that joints and "
-      "attached nodes connect, as a bone inside flesh.");
+  declare(list, "Seen by Fluid", true,
+          "Fluid and contact meet the body's surface. Without, the body is a mass that joints and "
+          "attached nodes connect, as a bone inside flesh.");
   declare_between(list, "Restitution", 0.0, 0.0, 1.0,
                   "Speed after over speed before a collision [1].");
   declare_at_least(list, "Friction", 0.0, 0.0, "Coulomb's coefficient of contacts [1].");

@@ -8,19 +8,18 @@ void declare_viscous_solve(ParameterList& solver) {
   const ViscousOptions standard;
   declare_tolerance(solver, "Viscous Tolerance", standard.tolerance,
                     "Relative residual of the viscous solve [1].");
-  ParameterList& list = declare_list(
-      solver, "Viscous Solve",
-      "How implicit viscosity is solved, for the fluid and the solids together: "
-      "[M_f + dt K_ff, dt K_fs; dt K_sf, C + dt K_ss], symmetric positive definite, by "
-      "conjugate gradients.");
-  declare_positive(list, "Maximum Iterations", standard.maximum_iterations, "Of one solve.");
+  ParameterList& list =
+      declare_list(solver, "Viscous Solve",
+                   "Implicit viscosity of fluid and solids together: [M_f + dt K_ff, dt K_fs; dt "
+                   "K_sf, C + dt K_ss], symmetric positive definite, by conjugate gradients.");
+  declare_positive(list, "Maximum Iterations", standard.maximum_iterations,
+                   "Largest number of iterations of one solve [1].");
+  declare_inverse(list, "Fluid Inverse",
+                  "Approximate inverse of M_f + dt K_ff in the preconditioner. Default: Jacobi.");
   declare_inverse(
-      list, "Fluid Inverse",
-      "Stands for the inverse of M_f + dt K_ff in the preconditioner. Default: Jacobi.");
-  declare_inverse(list, "Solid Inverse",
-                  "Stands for the inverse of C in the preconditioner. Default: the diagonal of "
-                  "C + dt K_ss, and of solids that are stiff in this step a multigrid cycle or the "
-                  "factors of C.");
+      list, "Solid Inverse",
+      "Approximate inverse of C in the preconditioner. Default: the diagonal of C + dt K_ss, and "
+      "of solids that are stiff in this step a multigrid cycle or the factors of C.");
 }
 
 ViscousOptions viscous_options(const ParameterList& solver) {

@@ -137,7 +137,7 @@ ParameterList ListRule::type_declaration() const {
   for (const TypedSchema& schema : schemas)
     names.push_back(schema.type);
   ParameterList list;
-  const std::string doc = "Which of the types; it decides which other parameters there are.";
+  const std::string doc = "Type of this list, which decides its other parameters.";
   if (default_type.empty()) {
     declare_required_choice(list, "Type", names, doc);
   } else {

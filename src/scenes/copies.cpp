@@ -252,28 +252,29 @@ void declare_copies(ParameterList& solid, int dimension) {
                  "Copies along each axis; the first stands at the solid's own \"Position\".");
   set_between(lattice, "Count", 1, most_copies);
   declare_required_vector<double>(lattice, "Spacing", dimension,
-                                  "From one to the next along each axis [m].");
+                                  "Spacing from one copy to the next along each axis [m].");
   declare_required<ParameterArray<double>>(
       positions, "Positions",
-      "Where they stand, a component an axis, one copy after the other [m].");
-  declare_required<int>(random, "Number", "How many.");
+      "Positions of the copies, a component an axis, one after the other [m].");
+  declare_required<int>(random, "Number", "Number of copies.");
   set_between(random, "Number", 1, most_copies);
   declare_required_vector<double>(random, "Lower", dimension,
                                   "Corner of the box that holds their positions [m].");
   declare_required_vector<double>(random, "Upper", dimension,
                                   "Corner of the box that holds their positions [m].");
-  declare_optional<double>(random, "Smallest Distance",
-                           "Between two positions [m]; balls touch at most if it is left out.");
-  declare(random, "Seed", 1, "Another one gives other places.");
+  declare_optional<double>(
+      random, "Smallest Distance",
+      "Least distance between two positions [m]; balls touch at most if it is left out.");
+  declare(random, "Seed", 1, "Seed of the random positions.");
   declare_typed_sublist(
       solid, "Copies",
       "Makes many solids of one, named \"NAME 1\", \"NAME 2\" and so on. Formulas of the solid may "
       "use the number of the copy, `copy`. A list \"Overrides\" may hold lists \"1\", \"2\", ... "
       "with "
       "what is different in that copy.",
-      {{"lattice", "In rows.", lattice},
-       {"positions", "Where you say.", positions},
-       {"random", "At random places of a box that do not overlap with balls there.", random}});
+      {{"lattice", "Copies in rows, planes and lattices.", lattice},
+       {"positions", "Copies at given positions.", positions},
+       {"random", "Copies at random positions in a box, at a distance from each other.", random}});
 }
 
 void make_copies(Document& document, int dimension, const Variables& constants) {

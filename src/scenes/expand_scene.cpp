@@ -97,12 +97,12 @@ void declare_scene_language(ParameterList& scene, int dimension) {
       "Named numbers (double or int). Any number of the scene may be a formula of them in "
       "brackets, "
       "value=\"[2*R]\" or \"{[R], 0}\", in the syntax of muParser; a constant of those before it.");
-  declare_free_sublist(
-      scene, "Defaults",
-      "What holds for all solids that do not say otherwise; a list that bears the name of a type, "
-      "\"rigid body\", for those of that type.");
-  declare_copies(declare_list(scene, "(any solid)", "What every solid may have beside its own."),
-                 dimension);
+  declare_free_sublist(scene, "Defaults",
+                       "Values for all solids that do not say otherwise; a list that bears the "
+                       "name of a type, \"rigid body\", for those of that type.");
+  declare_copies(
+      declare_list(scene, "(any solid)", "Parameters that every solid may have beside its own."),
+      dimension);
 }
 
 }  // namespace lockstep

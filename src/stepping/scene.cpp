@@ -16,7 +16,7 @@ namespace lockstep {
 namespace {
 
 void declare_time(ParameterList& scene, bool has_joints) {
-  ParameterList& time = declare_list(scene, "Time", "When to start, how far to step.");
+  ParameterList& time = declare_list(scene, "Time", "Start, end and steps of the run.");
   declare(time, "Start", 0., "Start time [s].");
   declare(time, "End", 1., "End time [s].");
   declare_at_least(
@@ -37,15 +37,15 @@ void declare_time(ParameterList& scene, bool has_joints) {
         "contact in that step, or prescribed solids.");
   declare_choice(
       time, "Pressure Correction", "rotational", {"rotational", "incremental", "non-incremental"},
-      "Whether the viscous solve of a step reads the pressure of the last one. rotational: with "
-      "what viscosity adds to it, -mu div u; incremental: without, then it needs nu dt / h^2 steps "
-      "to settle; non-incremental: not at all, as in the paper; then fluid slips at walls and "
-      "solids by what pressure gradients make of it in a step. No difference without viscosity.");
+      "Pressure of the last step in the viscous solve. rotational: with the correction by "
+      "viscosity, -mu div u; incremental: without, then it needs nu dt / h^2 steps to settle; "
+      "non-incremental: not at all, as in the paper; then fluid slips at walls and solids by what "
+      "pressure gradients make of it in a step. No difference without viscosity.");
   declare_at_least(time, "Steps", 0, 0, "Stop after this many steps; 0: no limit.");
 }
 
 void declare_output(ParameterList& scene) {
-  ParameterList& output = declare_list(scene, "Output", "What is written.");
+  ParameterList& output = declare_list(scene, "Output", "Files that the run writes.");
   declare(output, "Frames", true, "Write frames.h5 and frames.xmf.");
   declare_at_least(output, "Frame Interval", 0., 0.,
                    "Simulated time between frames [s]: each comes with the first step at or past a "
@@ -54,13 +54,13 @@ void declare_output(ParameterList& scene) {
       output, "Checkpoint Interval", 0., 0.,
       "Simulated time between checkpoints [s], counted as that of frames; 0: only at the "
       "end and when stopped.");
-  declare_at_least(output, "Keep Checkpoints", 2, 1, "How many checkpoints are kept.");
-  declare_choice(output, "Precision", "single", {"single", "double"}, "Of the fields in frames.");
+  declare_at_least(output, "Keep Checkpoints", 2, 1, "Number of checkpoints that are kept.");
+  declare_choice(output, "Precision", "single", {"single", "double"},
+                 "Precision of the fields in frames.");
 }
 
 void declare_solver(ParameterList& scene, const StrategyRegistry& strategies) {
-  ParameterList& solver =
-      declare_list(scene, "Solver", "How the S1, F2 and S2 systems are solved.");
+  ParameterList& solver = declare_list(scene, "Solver", "Solution of the S1, F2 and S2 systems.");
   declare(solver, "File", "",
           "A solver file (xml-params/solvers), relative to the scene; what the scene itself says "
           "wins.");
@@ -87,7 +87,7 @@ void declare_observers(ParameterList& scene, const ObserverRegistry<dim>& observ
         "step.");
   }
   declare_named_sublists(scene, "Observers",
-                         "What is measured on the way: one sublist each, whose name is that of the "
+                         "Measurements during the run: one sublist each, whose name is that of the "
                          "table it fills, NAME.csv in the output folder.",
                          types);
 }
@@ -97,11 +97,11 @@ template <int dim>
 void declare_joints(ParameterList& scene, const Registries<dim>& registries) {
   if (registries.joints.empty())
     return;
-  declare_named_sublists(scene, "Joints",
-                         "Between solids, or solids and space: one sublist each, under a name of "
-                         "its own.",
-                         registries.joints.begin()->second());
-  declare_typed_sublist(scene, "Articulation", "What all joints share.",
+  declare_named_sublists(
+      scene, "Joints",
+      "Joints between solids, or solids and space: one sublist each, under a name of its own.",
+      registries.joints.begin()->second());
+  declare_typed_sublist(scene, "Articulation", "Settings that all joints share.",
                         registries.articulations.schemas(), registries.joints.begin()->first);
 }
 
@@ -216,7 +216,8 @@ ParameterList scene_parameters(const Registries<dim>& registries, const std::str
   declare_typed_sublist(scene, "Fluid", "The fluid.", registries.fluids.schemas(), usual_fluid);
   declare_named_sublists(scene, "Solids", "One sublist a body, under a name of its own.",
                          registries.solids.schemas());
-  declare_typed_sublist(scene, "Coupling", "How fluid and solids exchange momentum.",
+  declare_typed_sublist(scene, "Coupling",
+                        "Coupling of fluid and solids: their exchange of momentum.",
                         registries.couplings.schemas(), "mixed face");
   declare_joints(scene, registries);
   auto contacts = registries.contacts.schemas();

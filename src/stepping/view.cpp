@@ -7,11 +7,11 @@
 namespace lockstep {
 
 void declare_view(ParameterList& scene, int dim) {
-  ParameterList& view = declare_list(scene, "View",
-                                     "How tools/render, tools/report and tools/plot-frame show the "
-                                     "scene; the run takes no notice. "
-                                     "Up is against gravity, or y.");
-  declare_optional<double>(view, "Time", "Of the picture [s]; default the last frame.");
+  ParameterList& view =
+      declare_list(scene, "View",
+                   "View of the scene in tools/render, tools/report and tools/plot-frame; the run "
+                   "ignores it. Up is against gravity, or y.");
+  declare_optional<double>(view, "Time", "Time of the picture [s]; default the last frame.");
   declare_optional<std::string>(
       view, "Field",
       "A field of the fluid, such as smoke, velocity or pressure; default "
@@ -20,14 +20,14 @@ void declare_view(ParameterList& scene, int dim) {
     return;
   declare_optional<ParameterArray<double>>(
       view, "Direction",
-      "From the scene to the eye [1]; default from the front, the right and above.");
+      "Direction from the scene to the eye [1]; default from the front, the right and above.");
   declare_optional<ParameterArray<double>>(
       view, "Centre", "Middle of the picture [m]; default that of the domain.");
   set_length(view, "Direction", dim);
   set_length(view, "Centre", dim);
   declare_positive(view, "Zoom", 1., "1: all of the domain is in the picture; 2: half of it [1].");
   declare_choice(view, "Style", "slice", {"slice", "volume"},
-                 "How the field is shown: across a plane, or as a cloud.");
+                 "Style of the field: across a plane, or as a cloud.");
 }
 
 void check_view(const ParameterList& scene) {

@@ -52,18 +52,17 @@ void declare_targets(ParameterList& list) {
 }
 
 void declare_reference(ParameterList& list) {
-  declare(
-      list, "Reference", "",
-      "What the value is compared with: a formula of the constants and parameters, or \"self\": "
-      "the value at the last rung of the series. Empty: no error is reported.");
+  declare(list, "Reference", "",
+          "Reference value: a formula of the constants and parameters, or \"self\": the value at "
+          "the last rung of the series. Empty: no error is reported.");
   declare(list, "Relative", true, "Divide the error by the size of the reference, unless it is 0.");
 }
 
 void declare_reduction(ParameterList& list) {
   declare_choice(list, "Over", "last",
                  {"last", "first", "max", "min", "mean", "rms", "amplitude", "frequency"},
-                 "How the rows of a run become one number; every row counts the same. amplitude: "
-                 "half of max - min. frequency: of the rises through 0 [1/s].");
+                 "Reduction of the rows of a run to one number; every row counts the same. "
+                 "amplitude: half of max - min. frequency: of the rises through 0 [1/s].");
   declare_optional<double>(list, "From Time", "Rows before this time do not count [s].");
   declare_reference(list);
   declare_targets(list);
@@ -97,22 +96,23 @@ std::vector<TypedSchema> quantity_types() {
   declare_at_least(field, "Component", 0, 0, "Component of a vector: 0, 1, 2.");
   declare_required<std::string>(field, "Exact", "Formula of x, y, z, t, constants and parameters.");
   declare_choice(field, "Norm", "L2", {"L1", "L2", "max"},
-                 "Of the difference, per unit volume: mean of |e|, root of the mean of e^2, max "
-                 "|e|. It is value and error at once.");
+                 "Norm of the difference, per unit volume: mean of |e|, root of the mean of e^2, "
+                 "max |e|. It is value and error at once.");
   declare_targets(field);
   declare_required<std::string>(line, "Field", "Field of the last frame, such as \"velocity\".");
   declare_at_least(line, "Component", 0, 0, "Component of a vector: 0, 1, 2.");
-  declare_choice(line, "Axis", "x", {"x", "y", "z"}, "Along which the line runs.");
-  declare_required<ParameterArray<double>>(line, "Point", "That the line goes through [m].");
+  declare_choice(line, "Axis", "x", {"x", "y", "z"}, "Axis along which the line runs.");
+  declare_required<ParameterArray<double>>(line, "Point", "A point on the line [m].");
   declare_choice(
       line, "Over", "max", {"max", "min"},
       "The extremum wanted: of the parabola through three neighbouring centres of cells; "
       "across the line values are linear between cells.");
   declare_reference(line);
   declare_targets(line);
-  declare(line, "Extrapolate", false, "As for tables.");
-  return {{"table", "From the tables of a run.", table},
-          {"surface", "From a solid's surface in the frames of a run, one row a frame.", surface},
+  declare(line, "Extrapolate", false, "Report Richardson's extrapolation, as for tables.");
+  return {{"table", "A quantity from the tables of a run.", table},
+          {"surface", "A quantity from a solid's surface in the frames of a run, one row a frame.",
+           surface},
           {"field", "Difference of a cell-centred field to an exact solution.", field},
           {"line", "Extremum of a cell-centred field along a line parallel to an axis.", line}};
 }
@@ -121,7 +121,7 @@ ParameterList curve_parameters() {
   ParameterList curve;
   declare_required<std::string>(curve, "Expression",
                                 "Formula of the columns of the tables, as for a quantity.");
-  declare(curve, "Exact", "", "Formula of what it should be, of the same; drawn dashed.");
+  declare(curve, "Exact", "", "Formula of the exact value, of the same names; drawn dashed.");
   return curve;
 }
 
@@ -274,15 +274,15 @@ ParameterList study_parameters() {
                        "their own, and the path as string, \"Fluid/Density\" or, for a component, "
                        "\"Fluid/Gravity[1]\".");
   declare(study, "Set", "", assignments_doc);
-  ParameterList& ladder = declare_list(study, "Ladder", "What varies along each series.");
+  ParameterList& ladder = declare_list(study, "Ladder", "Constant that varies along each series.");
   declare(ladder, "Name", "n",
           "Name of the constant that takes the values. \"ranks\" also sets the MPI ranks.");
   declare_required<ParameterArray<double>>(ladder, "Values", "One rung each, the finest last.");
   declare_at_least(ladder, "Usual Rungs", 0, 0,
-                   "How many rungs are run unless --rungs says otherwise; 0: all.");
+                   "Number of rungs that are run unless --rungs says otherwise; 0: all.");
   declare(ladder, "Abscissa", "h",
-          "Formula of what errors are plotted against and orders are taken in, of constants, h, "
-          "dt, cells, ranks.");
+          "Formula of the abscissa, against which errors are plotted and orders are taken, of "
+          "constants, h, dt, cells, ranks.");
   declare_named_sublists(study, "Series", "The lines of the plot; without any there is one.",
                          series_parameters());
   declare_named_sublists(
@@ -296,11 +296,11 @@ ParameterList study_parameters() {
       "offset_y, offset_z in [-1/2, 1/2) are additive sequences of irrational steps, the same on "
       "every "
       "machine; sample is 0, 1, ...");
-  declare_between(samples, "Number", 1, 1, most_samples, "How many.");
+  declare_between(samples, "Number", 1, 1, most_samples, "Number of copies.");
   declare(samples, "Set", "", assignments_doc);
-  declare_named_sublists(study, "Quantities", "What is measured, one sublist each.",
+  declare_named_sublists(study, "Quantities", "Measured quantities, one sublist each.",
                          quantity_types(), "table");
-  declare_named_sublists(study, "Curves", "What is drawn over time, one picture each.",
+  declare_named_sublists(study, "Curves", "Curves over time, one picture each.",
                          curve_parameters());
   return study;
 }

@@ -17,12 +17,12 @@ constexpr double negligible_share_owed = 1e-6;
 
 void declare_volume_correction(ParameterList& list) {
   declare_choice(list, "Volume Correction", "component", {"component", "global", "none"},
-                 "Shifts the surface so that no volume is gained or lost. component: each body of "
-                 "liquid keeps its own, and nothing goes through a shell; global: all together; "
+                 "Shifts the surface so that no volume is gained or lost. component: each liquid "
+                 "component keeps its own, and nothing goes through a shell; global: all together; "
                  "none: volume is measured only.");
   declare_between(list, "Largest Shift", 0.2, 0.0, 1.0,
-                  "By which the correction may shift the surface in a step that carries it over no "
-                  "more than a cell; in longer steps as many times as much [cells].");
+                  "Largest shift of the surface by the correction in a step that carries it over "
+                  "no more than a cell; in longer steps as many times as much [cells].");
 }
 
 VolumeParameters read_volume_correction(const ParameterList& list) {

@@ -26,13 +26,13 @@ ParameterList volume_of_fluid_parameters() {
   declare_between(list, "Band", 6, 4, 20,
                   "Cells on both sides of the surface in which its distance is known.");
   declare_choice(list, "Crumbs", "return", {"return", "keep"},
-                 "What becomes of liquid and void too thin for a pressure: cells less than half "
-                 "full that touch no fuller one, and the reverse. return: it goes to the surface "
-                 "of the nearest body; keep: it goes on with the flow, where that is given.");
+                 "Treatment of liquid and air too thin for a pressure: cells less than half full "
+                 "that touch no fuller one, and the reverse. return: it goes to the surface of the "
+                 "nearest liquid component; keep: it goes on with the flow, where that is given.");
   declare_between(list, "Largest Shift", 0.1, 0.0, 1.0,
-                  "By which the surface may shift in a step that carries it over no more than a "
-                  "cell, to take up what crumbs and moving solids have displaced; in longer steps "
-                  "as many times as much [cells].");
+                  "Largest shift of the surface in a step that carries it over no more than a "
+                  "cell, to take up the volume that crumbs and moving solids have displaced; in "
+                  "longer steps as many times as much [cells].");
   return list;
 }
 

@@ -32,12 +32,12 @@ void declare_particles(ParameterList& list) {
   declare_positive(list, "Reseed Interval", 20,
                    "Steps after which particles are added where there are too few and taken away "
                    "where there are too many.");
-  declare_choice(list, "Drops", "none", {"none", "ballistic"},
-                 "Of particles of the liquid that no wet cell is around. none: they go with the "
-                 "velocity that is carried on into the void, and their volume is that of other "
-                 "liquid. ballistic: they leave with h^dim / \"Particles per Cell\" and the "
-                 "velocity there, fly and hit solids, and give volume and momentum back in the "
-                 "first wet cell.");
+  declare_choice(
+      list, "Drops", "none", {"none", "ballistic"},
+      "Particles of the liquid that no wet cell is around. none: they follow the velocity that is "
+      "extended into the air, and their volume is that of other liquid. ballistic: they leave with "
+      "h^dim / \"Particles per Cell\" and the velocity there, fly and hit solids, and give volume "
+      "and momentum back in the first wet cell.");
 }
 
 ParticleParameters read_particles(const ParameterList& list) {

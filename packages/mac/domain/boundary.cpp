@@ -71,7 +71,8 @@ ParameterList domain_parameters() {
   declare_vector(list, "Cells", filled_array(dim, 32), dim,
                  "Cells along each axis. The cells must come out as squares or cubes.");
   set_at_least(list, "Cells", 1);
-  ParameterList& sides = declare_list(list, "Sides", "What happens at each side of the domain.");
+  ParameterList& sides =
+      declare_list(list, "Sides", "Boundary conditions on the sides of the domain.");
   for (int a = 0; a < dim; ++a)
     for (int end = 0; end < 2; ++end) {
       ParameterList& side =

@@ -52,8 +52,8 @@ double InflowShape<dim>::mean_factor(int axis, const Box<dim>& face) const {
 template <int dim>
 void declare_inflow_shape(ParameterList& side) {
   declare_choice(side, "Profile", "uniform", {"uniform", "parabolic"},
-                 "Of an inflow over its opening; \"Velocity\" is the mean. parabolic: that of a "
-                 "channel, along each axis of the side.");
+                 "Profile of an inflow over its opening; \"Velocity\" is the mean. parabolic: that "
+                 "of a channel, along each axis of the side.");
   ParameterList& opening = declare_optional_list(
       side, "Opening",
       "The part of the side that an inflow enters through; the rest is a wall. "

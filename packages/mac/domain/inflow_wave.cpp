@@ -89,12 +89,13 @@ void declare_inflow_wave(ParameterList& side) {
       "An inflow sends a regular wave into a tank of liquid: at the side the water moves as below "
       "a wave of linear theory that goes inwards, less that wave's mean flow. It begins with a "
       "crest, and grows during \"Ramp Time\".");
-  declare_required_positive(wave, "Height", "From trough to crest [m].");
+  declare_required_positive(wave, "Height", "Height of the wave from trough to crest [m].");
   declare_required_positive(wave, "Period", "[s].");
-  declare_required<double>(wave, "Level",
-                           "Of the still water, measured against gravity from the origin [m].");
+  declare_required<double>(
+      wave, "Level", "Level of the still water, measured against gravity from the origin [m].");
   declare_optional<double>(
-      wave, "Depth", "Of the still water [m]. Absent: down to the side of the domain below it.");
+      wave, "Depth",
+      "Depth of the still water [m]. Absent: down to the side of the domain below it.");
   set_positive(wave, "Depth");
 }
 

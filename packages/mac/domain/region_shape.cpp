@@ -27,7 +27,7 @@ void declare_shape(ParameterList& list) {
   if (dim == 2)
     return;
   declare_point("Axis", "Direction of the cylinder's axis, of any length; default: y.");
-  declare_optional<double>(list, "Length", "Of the cylinder [m]; default 1.");
+  declare_optional<double>(list, "Length", "Length of the cylinder [m]; default 1.");
   set_positive(list, "Length");
 }
 

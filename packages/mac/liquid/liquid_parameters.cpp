@@ -83,12 +83,11 @@ SignedDistance<dim> mesh(const std::string& name, const ParameterList& list) {
 template <int dim>
 std::vector<TypedSchema> liquid_schemas() {
   ParameterList level, box, ball, mesh;
-  declare(level, "Height", 0.0, "Of the surface, measured against gravity from the origin [m].");
-  declare_at_least(level, "Amplitude", 0.0, 0.0, "Of waves on it [m].");
-  declare_positive(level, "Wavelength", 1.0, "Of these waves [m].");
-  declare(level, "Crest", 0.0,
-          "Where along the first axis across gravity one of them has its "
-          "crest [m].");
+  declare(level, "Height", 0.0,
+          "Height of the surface, measured against gravity from the origin [m].");
+  declare_at_least(level, "Amplitude", 0.0, 0.0, "Amplitude of waves on the surface [m].");
+  declare_positive(level, "Wavelength", 1.0, "Wavelength of these waves [m].");
+  declare(level, "Crest", 0.0, "Place of a crest along the first axis across gravity [m].");
   declare_vector(box, "Lower", filled_array(dim, 0.0), dim, "Lower corner [m].");
   declare_vector(box, "Upper", filled_array(dim, 1.0), dim, "Upper corner [m].");
   declare_vector(ball, "Center", filled_array(dim, 0.0), dim, "Centre [m].");
@@ -98,7 +97,7 @@ std::vector<TypedSchema> liquid_schemas() {
       "Closed surface: .obj, .off or (3D) .stl; relative to the folder of the scene.");
   declare_mesh_repair(mesh);
   declare_vector(mesh, "Position", filled_array(dim, 0.0), dim,
-                 "Where the origin of the file's coordinates lies [m].");
+                 "Position of the origin of the file's coordinates [m].");
   return {{"level", "All below a height.", level},
           {"box", "A box along the axes.", box},
           {"ball", "A ball (2D: a disc).", ball},
@@ -107,40 +106,38 @@ std::vector<TypedSchema> liquid_schemas() {
 
 void declare_trapped_air(ParameterList& list) {
   declare_choice(list, "Trapped Air", "void", {"void", "ideal gas", "constant volume"},
-                 "What is in closed pockets above the liquid: \"void\", p = 0, as in the "
+                 "Content of closed air pockets above the liquid: \"void\", p = 0, as in the "
                  "atmosphere; \"ideal gas\", whose pressure follows from its volume; \"constant "
                  "volume\", a gas that cannot be compressed. Of more than 8 pockets the largest "
                  "have gas. Pockets of at most \"Smallest Void\" cells are filled all the same.");
   declare_optional<ParameterArray<double>>(
       list, "Atmosphere",
-      "Points, a component an axis, one after the other [m]: void that can be reached from them or "
-      "from an open side is no pocket. Absent: nor is what touches the side of the domain that "
+      "Points, a component an axis, one after the other [m]: air that can be reached from them or "
+      "from an open side is no pocket. Absent: nor is air at the side of the domain that "
       "gravity points away from.");
   declare_positive(list, "Atmospheric Pressure", 101325.0,
-                   "Of an ideal gas that nothing pushes [Pa].");
+                   "Pressure of the atmosphere for an ideal gas [Pa].");
   declare_positive(list, "Gas Exponent", 1.4,
                    "gamma of an ideal gas, p V^gamma = const.: 1.4 for air without, 1 with time to "
                    "take the liquid's temperature [1].");
-  declare(
-      list, "Gas Pressure", 0.0,
-      "In pockets at the start, above that of the atmosphere [Pa]; for a gas of constant volume "
-      "a guess.");
+  declare(list, "Gas Pressure", 0.0,
+          "Gas pressure in pockets at the start, above that of the atmosphere [Pa]; for a gas of "
+          "constant volume a guess.");
 }
 }  // namespace
 
 template <int dim>
 void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterList& fluid) {
-  ParameterList& list = declare_optional_list(
-      fluid, "Free Surface",
-      "The fluid is a liquid with a free surface, above which is void (p = 0). Absent: the fluid "
-      "fills the domain.");
+  ParameterList& list =
+      declare_optional_list(fluid, "Free Surface",
+                            "The fluid is a liquid with a free surface, above which is air at p = "
+                            "0. Absent: the fluid fills the domain.");
   const std::string usual = "particle level set";
-  declare_typed_sublist(list, "Interface", "How the surface is kept and moved.",
+  declare_typed_sublist(list, "Interface", "Representation and advection of the free surface.",
                         interfaces.schemas(),
                         interfaces.contains(usual) ? usual : interfaces.begin()->name);
   declare_named_sublists(list, "Liquid",
-                         "Where the liquid is at the start: all of these together, "
-                         "outside of solids.",
+                         "Shapes of the liquid at the start: their union, outside of solids.",
                          liquid_schemas<dim>());
   declare_optional<ParameterArray<double>>(
       list, "Dry Points",
@@ -239,7 +236,7 @@ GasParameters<dim> read_gas(const ParameterList& fluid) {
   if (kind == "void")
     return gas;
   check_input(!fluid.isSublist("Moving Tiles"),
-              "\"Trapped Air\" is \"{}\", but with \"Moving Tiles\" not all of the void is there "
+              "\"Trapped Air\" is \"{}\", but with \"Moving Tiles\" not all of the air is there "
               "to be looked through; leave them out.",
               kind);
   gas.kind = kind == "ideal gas" ? TrappedAir::ideal_gas : TrappedAir::constant_volume;

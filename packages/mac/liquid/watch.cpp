@@ -12,19 +12,20 @@ namespace lockstep {
 template <int dim>
 void declare_watches(ParameterList& free_surface) {
   ParameterList watch;
-  declare_required_vector<double>(watch, "Point", dim,
-                                  "In what is watched, as the inside of a hull; at the start [m].");
+  declare_required_vector<double>(
+      watch, "Point", dim,
+      "A point in the watched place, as the inside of a hull, at the start [m].");
   declare(watch, "Solid", "",
           "The solid that the point moves with, with all of it, if it is soft. Empty: it "
           "stays.");
   declare_optional<double>(
       watch, "Radius",
-      "What is farther from the point is not watched, as what lies above the rim of a hull [m].");
+      "Distance from the point beyond which nothing is watched, as above the rim of a hull [m].");
   set_positive(watch, "Radius");
   declare_named_sublists(
       free_surface, "Watch",
-      "Places whose liquid history.csv shows: what can be reached from a point, through liquid and "
-      "void but not through solids. If liquid comes there through a solid the run ends.",
+      "Places whose liquid history.csv shows: all that can be reached from a point, through liquid "
+      "and air but not through solids. If liquid comes there through a solid the run ends.",
       watch);
 }
 

@@ -81,8 +81,9 @@ void declare_scalars(ParameterList& fluid) {
   declare_optional<ParameterArray<double>>(
       source, "Velocity", "Velocity given to the fluid inside at every step [m/s].");
   set_length(source, "Velocity", dim);
-  declare(source, "Begin Time", 0.0, "When the source starts [s].");
-  declare_optional<double>(source, "End Time", "When it stops [s]; never if it is left out.");
+  declare(source, "Begin Time", 0.0, "Time at which the source starts [s].");
+  declare_optional<double>(source, "End Time",
+                           "Time at which the source stops [s]; never if it is left out.");
   declare(
       source, "Liquid", false,
       "Fill it with liquid at every step, which its velocity carries away: a jet. For fluids with "
