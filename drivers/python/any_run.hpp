@@ -48,7 +48,8 @@ class AnyRun {
   virtual bool step() = 0;
   /// The last checkpoint and the summary.
   virtual void end() = 0;
-  /// In place of `end` after an exception of the script; see Simulation::stop. Not collective.
+  /// Ends the run in place of `end` after an exception of the script; see Simulation::stop. Not
+  /// collective.
   virtual void stop(const std::string& message) = 0;
 
   virtual int dimension() const = 0;                                              ///< Local.

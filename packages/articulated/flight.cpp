@@ -48,7 +48,8 @@ class Flyer {
     return n;
   }
 
-  /// False if the joints do not close. Momenta are then those after the impulse at its begin.
+  /// Moves the bodies over dt; returns false if the joints do not close. Momenta are then those
+  /// after the impulse at its begin.
   bool advance(double dt) {
     const ClosingProblem<dim> part = part_of(dt);
     if (!close_joints(part, Answer::free, motions_))

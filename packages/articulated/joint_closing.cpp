@@ -110,8 +110,8 @@ std::optional<FlightSteps> JointConstraints<dim>::flight_steps(const Mechanism& 
   return std::nullopt;
 }
 
-/// Empty: joints could not be closed about the motions as they were found, before contact and
-/// after it. `problem`: that of the mechanism alone.
+/// Finds the flights of a mechanism; empty if joints could not be closed about the motions as they
+/// were found, before contact and after it. `problem`: that of the mechanism alone.
 template <int dim>
 std::optional<typename JointConstraints<dim>::FoundFlights> JointConstraints<dim>::flights(
     const Mechanism& mechanism, const ClosingProblem<dim>& problem,

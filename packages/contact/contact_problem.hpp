@@ -85,7 +85,7 @@ class ContactProblem {
   void find_scale(const SolidMotion<dim>& motion, const std::vector<double>& velocity);
   /// Leaves out contacts and limits along which nothing can move: no impulse would change them.
   void leave_out_immovable(ImpulseSolver<dim>& solver);
-  /// False if nothing moves along it.
+  /// Activates a candidate; returns false if nothing moves along it.
   bool activate(Candidate& candidate, ImpulseSolver<dim>& solver) const;
   /// Activates up to `most` candidates of every pair, the most violated first, then those farthest
   /// from the others; returns how many.

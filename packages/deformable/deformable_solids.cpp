@@ -212,8 +212,8 @@ void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
   update_within_surface();
 }
 
-/// At the present positions; of second-order bodies that have moved, those of S2: halfway, for
-/// dt V / 2 = x - x(halfway) of the motion.
+/// Updates the forces at the present positions; for second-order bodies that have moved, those of
+/// S2: halfway, for dt V / 2 = x - x(halfway) of the motion.
 template <int dim>
 void DeformableSolids<dim>::update_forces() {
   linearised_ = before_.has_value();

@@ -18,7 +18,7 @@ void DeformableSolids<dim>::make_strain_limit(const std::vector<DeformableBody<d
   strain_limit_ = StrainLimit<dim>(edges, space_, comm_->getRank());
 }
 
-/// One over the mass along each axis; zero for what is held or carried.
+/// Returns one over the mass along each axis; zero for nodes that are held or carried.
 template <int dim>
 typename DeformableSolids<dim>::Nodes DeformableSolids<dim>::mobility() const {
   Nodes inverse(space_.n_owned());

@@ -123,7 +123,7 @@ double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
-      // Through an open side comes what is no liquid.
+      // An open side lets in air.
       setting.sides[axis][end].inflow = side.type == SideType::open;
       setting.sides[axis][end].closed = side.closed();
     }

@@ -117,7 +117,7 @@ class TiledGrid {
   bool in_domain(int cell) const;
   /// True if these coordinates, not wrapped, are in the domain; the tile need not exist.
   bool in_domain(const Index<dim>& coordinates) const;
-  /// False for padding.
+  /// True for cells of the lattice, false for padding.
   bool in_lattice(int cell) const;
   /// Lexicographic number in the lattice: the same for any number of ranks and choice of tiles. Of
   /// lattice cells only.

@@ -121,7 +121,7 @@ struct MassFactor {
   double at(const Point<dim>& x) const { return factor.dot(moments_of<dim>(x - center, axis)); }
 };
 
-/// By solid and axis; null: none.
+/// Corrections by solid and axis; null: none.
 template <int dim>
 using CorrectionTable = std::vector<const MassFactor<dim>*>;
 

@@ -10,7 +10,7 @@
 namespace lockstep {
 
 namespace {
-/// More samples than this are no gauge's.
+/// Largest number of samples of a gauge.
 constexpr double most_samples = 1e6;
 
 template <int dim>

@@ -5,7 +5,7 @@
 namespace lockstep {
 namespace {
 
-/// More points than this are a frame, not a probe.
+/// Largest number of points of a probe; more are a frame.
 constexpr double most_points = 1e6;
 
 template <int dim>

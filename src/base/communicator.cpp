@@ -31,7 +31,7 @@ template <typename T>
 std::vector<T> gather(const Communicator& comm, const std::vector<T>& values, MPI_Datatype type) {
   const MPI_Comm mpi = raw_communicator(comm);
   const int most = std::numeric_limits<int>::max();
-  // More than that of one rank stays more than that of all.
+  // A list that is too long on one rank stays too long in the sum over ranks.
   const int n = static_cast<int>(std::min<std::size_t>(values.size(), most));
   std::vector<int> counts(comm->getSize()), starts(comm->getSize(), 0);
   MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, mpi);

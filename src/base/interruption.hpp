@@ -45,7 +45,8 @@ class HeldSignals {
   sigset_t before_;
 };
 
-/// Between long pieces of work without such sums. Nothing outside of an Interruptible. Collective.
+/// Throws Interrupted after a signal, between long pieces of work without such sums; does nothing
+/// outside of an Interruptible. Collective.
 void poll_interruption(const Communicator& comm);
 
 }  // namespace lockstep

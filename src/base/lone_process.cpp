@@ -12,8 +12,9 @@ void expect_no_other_ranks() {
   if (std::any_of(of_launchers.begin(), of_launchers.end(),
                   [](const char* name) { return std::getenv(name) != nullptr; }))
     return;
-  // No daemon and no session folder. Several runs at a time would share that folder: some found it
-  // there where they had just not seen it, and did not start, others took it away too early.
+  // : Open MPI starts no daemon and makes no session folder. Several runs at a time would share
+  // that folder: some found it there where they had just not seen it, and did not start, others
+  // took it away too early.
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);

@@ -26,7 +26,7 @@ class SolidSystem {
   int n_models() const { return static_cast<int>(models_.size()); }
   SolidModel<dim>& model(int m) { return *models_[m]; }
   const SolidModel<dim>& model(int m) const { return *models_[m]; }
-  /// Any unknowns at all, on any rank?
+  /// True if there are any unknowns, on any rank.
   bool has_unknowns() const { return n_unknowns_ > 0; }
   bool empty() const { return solids_.empty(); }
   GlobalIndex n_unknowns() const { return n_unknowns_; }  ///< without padding

@@ -92,7 +92,7 @@ void BoxTree<dim>::sort(std::vector<int>& order, int begin_leaf, int end_leaf) c
   int axis = 0;
   if (!centers.isEmpty())
     centers.sizes().maxCoeff(&axis);
-  // Empty boxes last; ties by number.
+  // empty boxes come last; ties go by number
   const auto key = [&](int i) {
     const Box<dim>& box = boxes_[i];
     return box.isEmpty() ? std::numeric_limits<double>::infinity()

@@ -15,7 +15,7 @@ struct MeshRepair {
 /// Declares "Scale", "Weld" and "Orient", which belong to the shape "file" of a "Geometry".
 void declare_mesh_repair(ParameterList& geometry);
 MeshRepair read_mesh_repair(const ParameterList& geometry);
-/// Their names, for `ShapeSizes`.
+/// Names of the parameters of a repair, for `ShapeSizes`.
 const std::vector<std::string>& mesh_repair_parameters();
 
 /// Scales the vertices, then merges those closer than `weld` to an earlier one. Simplices that lose

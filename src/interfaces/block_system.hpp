@@ -44,8 +44,8 @@ class BlockSystem {
 
   /// [A, -B; -B^T, -C] or [A]; null before `set_blocks`. What solvers from lists are given.
   const RCP<const BlockedOperator>& op() const { return op_; }
-  /// Its blocks without their signs, for solvers that look inside. The last two are null without
-  /// solids.
+  /// Blocks of the operator without their signs, for solvers that look inside. The last two are
+  /// null without solids.
   const RCP<const LinearOperator>& pressure_block() const { return pressure_block_; }       ///< A
   const RCP<const CrsMatrix>& coupling_transposed() const { return coupling_transposed_; }  ///< B^T
   const RCP<const LinearOperator>& solid_block() const { return solid_block_; }             ///< C

@@ -67,8 +67,8 @@ class OpenFractionRule {
   /// `blocked`: the segment between its two pressure points meets the surface.
   virtual double open_fraction(const ControlVolume<dim>& volume, bool blocked,
                                const SurfaceSnapshot<dim>& surface) const = 0;
-  /// False: cells whose centre is inside a closed solid carry no pressure, and their faces are
-  /// closed. True: every cell with an open face does, wherever its centre is.
+  /// True if cells are cut: every cell with an open face carries a pressure, wherever its centre
+  /// is. False: cells whose centre is inside a closed solid carry none, and their faces are closed.
   virtual bool cuts_cells() const { return false; }
   /// Centroid of the open part of a face whose open fraction is between 0 and 1: there its momentum
   /// counts. Default: the centre of the face.

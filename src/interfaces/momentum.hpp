@@ -35,7 +35,7 @@ struct Momentum {
   friend Momentum operator-(Momentum a, const Momentum& b) { return a -= b; }
 };
 
-/// Each summed over all ranks, on every rank. Collective.
+/// Sums each momentum over all ranks, on every rank. Collective.
 template <int dim>
 void sum_over_ranks(std::vector<Momentum<dim>>& momenta, const Communicator& comm) {
   std::vector<double> values;

@@ -32,9 +32,10 @@ template <int dim>
 class Observer : public PlugIn {
  public:
   virtual std::vector<ObservedColumn> columns() const = 0;
-  /// Any number of rows, each as long as `columns`; those of rank 0 count. Throws InputError, at
-  /// the start of the run, if the fluid cannot answer. A run that is continued after its end
-  /// forgets the look there unless it was due: what adds up must do so in `follow`. Collective.
+  /// : Returns any number of rows, each as long as `columns`; those of rank 0 count. Throws
+  /// InputError, at the start of the run, if the fluid cannot answer. A run that is continued after
+  /// its end forgets the look there unless it was due: what adds up must do so in `follow`.
+  /// Collective.
   virtual std::vector<std::vector<double>> observe(const RunView<dim>& run) = 0;
   /// After every step, before `observe` if that is due: for what adds up. Collective.
   virtual void follow(const RunView<dim>&) {}

@@ -47,7 +47,8 @@ template <int dim>
 class ViscousFluid {
  public:
   virtual ~ViscousFluid() = default;
-  /// False: inviscid in this scene, the two functions below are never called. Local.
+  /// True if the fluid is viscous in this scene; else the two functions below are never called.
+  /// Local.
   virtual bool is_viscous() const = 0;
   /// True if the viscous solve must read the pressure that balances the forces on u*, at the price
   /// of one more solve. False: the last step's will do. Local.

@@ -29,7 +29,7 @@ bool has_small_blocks(const RCP<const CrsMatrix>& matrix, int largest_block);
 /// The sentence for a C = M̃ - dt D without a Cholesky factor; `name` is its name in messages.
 std::string not_positive_definite(const std::string& name);
 
-/// One over the diagonal. Throws SolveError if an entry is not positive. Collective.
+/// Returns one over the diagonal. Throws SolveError if an entry is not positive. Collective.
 RCP<Vector> inverse_diagonal(const CrsMatrix& matrix, const std::string& name);
 /// Returns the inverse diagonal as a matrix. Throws SolveError if an entry is not positive.
 /// Collective.

@@ -34,8 +34,8 @@ struct PartInverse {
   RCP<const LinearOperator> inverse;
 };
 
-/// Each of them on its own rows; together they are all rows of `map`. Where two have a row, the
-/// later one counts.
+/// Returns the operator of inverses that act each on its own rows; together these are all rows of
+/// `map`. Where two have a row, the later one counts.
 RCP<const LinearOperator> inverse_by_parts(const RCP<const Map>& map,
                                            const std::vector<PartInverse>& parts);
 

@@ -21,8 +21,9 @@ std::vector<std::size_t> begins_of_rows(const std::vector<Triplet>& triplets, Gl
   return begins;
 }
 
-/// By row and column; those of one place keep their order, so that sums do not depend on chance.
-/// Rows are counted into place, as long as there are not many more ids than triplets.
+/// Sorts triplets by row and column; those of one place keep their order, so that sums do not
+/// depend on chance. Rows are counted into place, as long as there are not many more ids than
+/// triplets.
 void sort(std::vector<Triplet>& triplets) {
   const auto by_row = [](const Triplet& a, const Triplet& b) { return a.row < b.row; };
   const auto by_column = [](const Triplet& a, const Triplet& b) { return a.column < b.column; };

@@ -16,7 +16,7 @@ namespace lockstep {
 std::unique_ptr<FolderLock> FolderLock::take(const std::string& folder, double seconds) {
   using Clock = std::chrono::steady_clock;
   const std::string file = folder + "/lock";
-  // Not closed on exec: children share the lock.
+  // The descriptor stays open on exec, so that children share the lock.
   const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK, 0666);
   const int reason = descriptor < 0 ? errno : 0;
   check_output(descriptor >= 0, "Cannot write '{}': {}.", file, std::strerror(reason));

@@ -74,7 +74,7 @@ herr_t read_object(hid_t file, const char* name, const H5O_info_t* info, void*) 
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   haddr_t end = 0;
   struct stat status {};
-  // More bytes than HDF5 has written: a checksum that is none any more.
+  // The file has more bytes than HDF5 has written: a checksum that is none any more.
   const bool done = file >= 0 && H5Fget_eoa(file, &end) >= 0 && stat(path.c_str(), &status) == 0 &&
                     static_cast<haddr_t>(status.st_size) <= end &&
                     H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, read_object, nullptr) >= 0;

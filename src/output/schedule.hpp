@@ -7,7 +7,7 @@ namespace lockstep {
 /// steps do not drift, and a run that was restarted keeps to the times of the straight one.
 class Schedule {
  public:
-  /// Both in [s]; an interval of 0: every step.
+  /// `start` and `interval` in [s]; an interval of 0: every step.
   Schedule(double start, double interval) : start_(start), interval_(interval) {}
   /// After each step in turn, of `dt` up to `time` [s]: whether something comes now. After a
   /// restart once for the last step before it.

@@ -11,8 +11,8 @@ namespace lockstep {
 /// The numbers a finished run left behind.
 struct RunResults {
   std::string directory;
-  /// One a step: history.csv; as BODY.column, bodies.csv; as OBSERVER.column or, where a look has
-  /// several rows, OBSERVER.row.column, the last looks of observers.
+  /// Rows of the run, one a step: history.csv; as BODY.column, bodies.csv; as OBSERVER.column or,
+  /// where a look has several rows, OBSERVER.row.column, the last looks of observers.
   std::vector<Variables> rows;
   Variables summary;     ///< "summary.name", "summary.iterations.s1.median", ...
   ParameterList scene;   ///< used-parameters.xml

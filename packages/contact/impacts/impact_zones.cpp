@@ -210,8 +210,8 @@ class ImpactZones {
       set_velocity(node, velocity);
   }
 
-  /// As the solids do that nothing moves; else as locked nodes do, without turning; else with the
-  /// momentum that all had.
+  /// Moves a zone as the solids do that nothing moves; else as locked nodes do, without turning;
+  /// else with the momentum that all had.
   void move_with_bodies(const Zone<dim>& zone, const SolidMotion<dim>& motion) {
     std::vector<int> given;
     std::vector<RigidMember<dim>> bodies;
@@ -284,7 +284,8 @@ class ImpactZones {
     return common;
   }
 
-  /// False if joints or locked dofs keep bodies from moving so.
+  /// Gives the bodies a common motion; returns false if joints or locked dofs keep them from moving
+  /// so.
   bool give(const CommonMotion& common, const Zone<dim>& zone,
             const std::vector<RigidMember<dim>>& bodies) {
     const Eigen::Matrix<double, dim, dim> rotation = rotation_by<dim>(dt_ * common.spin);

@@ -22,8 +22,8 @@ PrimitiveMotion<dim> merged(const PrimitiveMotion<dim>& one, const PrimitiveMoti
   return {one.moves.merged(other.moves), std::max(one.turn, other.turn)};
 }
 
-/// False if primitives that are at least so far `apart` are farther than `thickness`, and no normal
-/// velocity of a contact of theirs brings them to that within the step [m].
+/// Returns false if primitives that are at least so far `apart` are farther than `thickness`, and
+/// no normal velocity of a contact of theirs brings them to that within the step [m].
 template <int dim>
 bool may_close(const PrimitiveMotion<dim>& one, const PrimitiveMotion<dim>& other, double apart,
                double thickness);

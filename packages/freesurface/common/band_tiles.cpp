@@ -90,8 +90,8 @@ CellBox<dim> box_of_band(const MacDomain<dim>& domain, const SolidCells<dim>& so
   return box;
 }
 
-/// From a lattice coordinate to the first one of the next tile; the last tile of an axis may be
-/// short, and after it a periodic axis begins anew.
+/// Distance from a lattice coordinate to the first one of the next tile; the last tile of an axis
+/// may be short, and after it a periodic axis begins anew.
 template <int dim>
 int to_next_tile(const TiledGrid<dim>& grid, int axis, int place) {
   const int n = grid.n_cells()[axis];

@@ -5,7 +5,7 @@
 namespace lockstep {
 
 namespace {
-/// Beyond a shell that comes first lies other fluid than what is around the solid.
+/// Neighbours of solid cells. Fluid beyond a shell is other fluid than that around the solid.
 template <int dim>
 class Neighbors {
  public:

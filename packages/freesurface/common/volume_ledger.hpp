@@ -89,7 +89,8 @@ class VolumeLedger {
   /// `inherit` where the list of boxes is still good.
   void regroup(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
                const std::vector<char>& swept, int reach);
-  /// Where the vanished bodies were; of those that surfaces passed over, what was around.
+  /// Returns the places of vanished components; for those that surfaces passed over, the components
+  /// around.
   std::vector<int> places_of(const std::vector<char>& vanished, const SolidCells<dim>& before,
                              const CellField& phi, const std::vector<char>& swept) const;
   /// `places`: old bodies that have vanished.

@@ -13,7 +13,7 @@ namespace {
 constexpr int reach = 3;
 /// Defects below this wait for others [cells].
 constexpr double negligible_debt = 1e-13;
-/// Below this no other body stands in [cells].
+/// Rest of a shift below which no other component takes it over [cells].
 constexpr double negligible_left = 1e-6;
 
 /// True if a fluid cell among those around one, corners included, is wet (or is not, like the air

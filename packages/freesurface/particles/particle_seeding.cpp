@@ -158,7 +158,8 @@ class Seeder {
     const double radius = std::clamp(side * phi, least_radius, most_radius);
     post_.put(place, static_cast<float>(side * radius));
   }
-  /// Not between an open side and the first centres: there may be air that is on its way in.
+  /// True if phi is known at a place, which it is not between an open side and the first centres:
+  /// there may be air that is on its way in.
   bool knows_phi(const Point<dim>& place) const {
     for (int a = 0; a < dim; ++a)
       for (int end = 0; end < 2; ++end)

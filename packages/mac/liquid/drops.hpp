@@ -32,7 +32,7 @@ class Drops {
   /// leaves through an open side is gone. Velocities change with `speed_up`. Returns the volume on
   /// this rank that solids left no room for. Collective.
   double fly(const MovingSurface<dim>& surface, const Point<dim>& gravity, double dt);
-  /// One on a tile of this rank.
+  /// Adds a drop on a tile of this rank.
   void add(const Drop<dim>& drop) { state_.drops.push_back(drop); }
   /// Takes those out for which this holds; they wait in `fallen`, with what solids left of their
   /// velocity, before gravity has changed it. Local.

@@ -30,9 +30,10 @@ class LeakAudit {
   /// Finds the watched places at the start of a run. Throws InputError for a point outside of the
   /// domain, in a solid or in sight of no cell's centre. Collective.
   void begin(const Surface& surface);
-  /// Before the interface moves. Collective.
+  /// Looks at the liquid before the interface moves. Collective.
   void open(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface);
-  /// After it has moved over no more than so many cells. Throws SolveError for a leak. Collective.
+  /// Audits the liquid after the interface has moved over no more than `displacement` cells. Throws
+  /// SolveError for a leak. Collective.
   void close(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface, double displacement);
 
   /// Tiles or the liquid are others than after the last step. Local.

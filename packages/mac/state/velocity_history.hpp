@@ -26,7 +26,8 @@ class VelocityHistory {
   void add_acceleration(double scale, FaceField<dim>& u) const { add(scale, acceleration_, u); }
 
   void set_advected(const FaceField<dim>& u) { advected_ = u; }
-  /// After a step of dt from `before` to `after`; `jumped`: its change was an impulse.
+  /// Takes in the change of a step of dt from `before` to `after`; `jumped`: the change was an
+  /// impulse.
   void accept(const FaceField<dim>& before, const FaceField<dim>& after, const MacState<dim>& state,
               double dt, bool jumped = false);
 

@@ -40,7 +40,7 @@ class NearbySurface {
   int cells_to(const Index<dim>& cell) const { return distance_(cell); }
   /// True if the box of a simplex touches this box [m].
   bool touches(const Box<dim>& box) const;
-  /// False if a simplex may come into the box [m].
+  /// True if no simplex comes into the box [m].
   bool clear(const Box<dim>& box) const;
   /// The 2^dim corners of a box [m], by axis.
   using Corners = std::array<Eigen::Array<double, 1 << dim, 1>, dim>;

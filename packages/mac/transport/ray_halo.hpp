@@ -28,7 +28,7 @@ class RayHalo {
   template <typename Value>
   const std::vector<Value>& fetch(const std::vector<Value>& field, std::vector<Value>& storage,
                                   Value beyond) const;
-  /// After the tiles of the grid have changed.
+  /// Forgets the tiles, after those of the grid have changed.
   void forget();
 
  private:

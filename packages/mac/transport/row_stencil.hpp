@@ -137,7 +137,7 @@ class RowStencil {
       place += stride_[a] * splits_[a]->below[i];
     return static_cast<int>(place);
   }
-  /// From the lowest sample of a point to sample k; bit a of k: upper along axis a.
+  /// Offset from the lowest sample of a point to sample k; bit a of k: upper along axis a.
   int corner(int k) const {
     int step = 0;
     for (int a = 0; a < dim; ++a)

@@ -41,7 +41,7 @@ class SurfaceTransport {
   bool is_near(const Point<dim>& x) const { return within(x, near_reach_); }
   /// True if some sample of the tile that begins there may be near a surface.
   bool is_near_tile(const Index<dim>& tile_begin) const;
-  /// False if no surface comes into the sample's cell during the step.
+  /// True if a surface may come into the sample's cell during the step.
   bool may_be_swept(const Point<dim>& x) const {
     return within(x, cells_reached(surface_displacement_));
   }

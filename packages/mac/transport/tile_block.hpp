@@ -41,7 +41,7 @@ class TileBlock {
   RowRays<dim> follow(const RowPoints<dim>& start, double direction) const;
   /// Where points, in cells from the lower corner of the tile, are in the block.
   int margin(int axis) const { return margin_[axis]; }
-  /// One of a row of points, in lattice units.
+  /// Returns point i of a strip, in lattice units.
   Point<dim> place(const RowPoints<dim>& points, int i) const {
     Point<dim> x;
     for (int a = 0; a < dim; ++a)

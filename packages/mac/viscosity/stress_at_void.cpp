@@ -65,7 +65,7 @@ bool StressAtVoid<dim>::fluid_at_open_side() const {
   return found;
 }
 
-/// Beyond a side all is as before it.
+/// Fluid continues beyond a side as before it.
 template <int dim>
 typename StressAtVoid<dim>::Edge StressAtVoid<dim>::edge(const FaceId& face, int across,
                                                          int end) const {

@@ -216,7 +216,8 @@ class Builder {
     }
   }
 
-  /// No face, as above a closed side, or one between two cells of the layer above another side.
+  /// True for no face, as above a closed side, and for a face between two cells of the layer above
+  /// another side.
   bool beyond_domain(int face) const {
     if (face < 0)
       return true;

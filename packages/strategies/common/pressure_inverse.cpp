@@ -110,7 +110,7 @@ RCP<const CrsMatrix> regular_pressure_block(const BlockSystem& system,
 namespace {
 
 const std::string list_name = "Pressure Inverse";
-/// More smooth no better than another cycle.
+/// Largest number of sweeps: more smooth no better than another cycle.
 constexpr int most_sweeps = 100;
 
 std::string type_of(const Teuchos::ParameterList& list) {

@@ -206,7 +206,7 @@ BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
     solid_gain_ = gain(*system.coupling_transposed(), *solid_.to(rough));
     solid_.restart_count(counted);
   }
-  // Below round-off of row 2 nothing can be asked; what that leaves is for the next correction.
+  // No residual can be asked below the round-off of row 2; the next correction takes the rest.
   const double solid_target = std::max(
       solid_gain_ > 0 ? request.target / solid_gain_ : request.target, request.solid_round_off);
   const double least = presumes == Presumes::symmetry && is_single_precision_

@@ -56,8 +56,7 @@ class RefinedStrategy : public SolverStrategy {
   /// Builds what depends on the operators, beside the inverses of A and C. `geometry_changed` and
   /// `solid_changed` say what is new. Default: nothing.
   virtual void build(const BlockSystem&, bool /*geometry_changed*/, bool /*solid_changed*/) {}
-  /// False if, at unchanged operators, something is missing for this system (with or without
-  /// solid).
+  /// True if nothing is missing for this system (with or without solid) at unchanged operators.
   virtual bool is_built_for(const BlockSystem&) const { return true; }
   /// True if the strategy uses the layout's approximate inverse of A + B C^-1 B^T.
   virtual bool inverts_schur() const { return false; }

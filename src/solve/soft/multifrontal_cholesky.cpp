@@ -295,7 +295,7 @@ bool MultifrontalCholesky::factorize(const Matrix& lower) {
       in_front[i] = i - node.begin;
     for (int i = 0; i < n_below; ++i)
       in_front[node.below[i]] = n_columns + i;
-    // Above the diagonal anything may stand.
+    // Entries above the diagonal have no meaning.
     Eigen::MatrixXd& factor = node.factor;
     Eigen::MatrixXd& update = updates[s];
     factor.setZero(n_columns + n_below, n_columns);

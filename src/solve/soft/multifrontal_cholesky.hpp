@@ -16,7 +16,7 @@ class MultifrontalCholesky {
   void analyze(const Matrix& lower);
   /// Multiplications of `factorize`, known after `analyze`.
   double n_operations() const;
-  /// False if a pivot is not positive. A as it was analyzed, with other values.
+  /// Factorises A as it was analysed, with other values; returns false if a pivot is not positive.
   bool factorize(const Matrix& lower);
   /// x := A^-1 x.
   void solve(Eigen::VectorXd& x) const;
