@@ -35,7 +35,7 @@ std::string refusal_of(const std::function<void()>& action) {
   return "";
 }
 
-/// The solution is one, and the report tells the truth of it.
+/// Checks that the solution solves the problem, and that the report is true.
 void check_solution(const SaddleProblem& problem, const BlockVector& rhs,
                     const BlockVector& solution, const SolveReport& report,
                     const std::string& where, Violations& found) {

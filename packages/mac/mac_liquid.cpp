@@ -37,10 +37,10 @@ void MacFluid<dim>::push_surface(double dt) {
   surface_impulse_ = sum_over_ranks(mine, domain_.grid.comm());
 }
 
-/// Gravity and the shortest waves of a surface at rest: their pressure answers within a step up to
-/// about 1.3 times sqrt(h / g). Of surface tension the shortest waves must not go over more than
-/// their length (Brackbill et al. 1992, without air); implicit, it is stable to some 12 times that:
-/// beyond, waves reach deeper than the layer that is held back.
+/// Bounds the step by the shortest waves of a surface at rest. Gravity waves: their pressure
+/// answers within a step up to about 1.3 sqrt(h / g). Capillary waves must not travel farther than
+/// their length (Brackbill et al. 1992, without air); implicit surface tension is stable to some 12
+/// times that: beyond, waves reach deeper than the layer that is held back.
 template <int dim>
 double MacFluid<dim>::largest_stable_step() const {
   if (!liquid_)

@@ -9,7 +9,7 @@ namespace lockstep {
 /// empty if it can. Never waits.
 std::string refusal_to_read(const std::string& path);
 
-/// All bytes of a plain file; if it cannot be read, nothing, and `failure` says why.
+/// Reads all bytes of a plain file; if it cannot be read, nothing, and `failure` gets the reason.
 std::string read_regular_file(const std::string& path, std::string& failure);
 
 }  // namespace lockstep

@@ -12,7 +12,7 @@
 namespace lockstep {
 
 /// The stack of all solids: one surface, one space of generalized velocities. The models' dofs
-/// follow one another; which of them are unknowns of a solve `reduction` knows (locked dofs and
+/// follow one another; `reduction` says which of them are unknowns of a solve (locked dofs and
 /// those of nodes that rigid solids carry are not). Vectors are those of all dofs, but for what is
 /// said to be reduced. Every rank owns at least one row, if need be an inert padding dof (unit
 /// mass, never coupled), because empty ranks break Thyra's block vectors.
@@ -121,7 +121,7 @@ class SolidSystem {
   double largest_stable_step() const;
   GlobalIndex n_clamped_elements() const;  ///< sum over all models, see SolidOutput
   double stretch_beyond_limit() const;     ///< in the worst place of all models, see SolidOutput
-  /// True if all models tell their momentum (AuditedSolids).
+  /// True if all models are AuditedSolids.
   bool is_audited() const;
 
  private:

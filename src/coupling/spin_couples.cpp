@@ -39,7 +39,7 @@ struct SpinCouples<dim>::Fit {
   AngularVector<dim> strength = AngularVector<dim>::Zero();
   double length = 1;  ///< [m]
 
-  /// Do the ends of the links tell all rigid motions apart?
+  /// True if the ends of the couplings determine all rigid motions.
   bool determined() const {
     const Eigen::SelfAdjointEigenSolver<decltype(normal)> solver(normal, Eigen::EigenvaluesOnly);
     return solver.eigenvalues()[0] > 1e-6 * solver.eigenvalues()[n_motions<dim> - 1];

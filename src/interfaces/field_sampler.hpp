@@ -20,8 +20,8 @@ struct FlowSample {
   double pressure = 0;  ///< [Pa]
 };
 
-/// A side interface of fluids that can be asked at any place. Observers want it; a fluid without it
-/// runs all the same.
+/// A side interface of fluids that can be sampled at any point. Observers need it; a fluid without
+/// it runs all the same.
 template <int dim>
 class FieldSampler {
  public:

@@ -118,9 +118,9 @@ struct ForceImpulse {
 
 /// A fluid on its own discretization. Geometry is frozen between two calls of `set_geometry`.
 ///
-/// It keeps three velocity fields: the velocity u^n, the prediction u* on which all phases between
-/// `begin_prediction` and `accept` act, and the leak-proof advection velocity u_ADV. What audits,
-/// solvers and outputs want beyond this: interfaces/fluid_sides.hpp; viscosity: viscosity.hpp.
+/// It keeps three velocity fields: the velocity u^n, the prediction u* on which all stages between
+/// `begin_prediction` and `accept` act, and the leak-proof advection velocity u_ADV. Audits,
+/// solvers and outputs find more in interfaces/fluid_sides.hpp, the viscous solve in viscosity.hpp.
 /// All members are collective unless they say otherwise.
 template <int dim>
 class FluidDiscretization : public PlugIn {
@@ -155,8 +155,8 @@ class FluidDiscretization : public PlugIn {
 
   // The stages of a step.
 
-  /// A step from `time` to time + dt begins: room may be made where things will move. True if
-  /// u^n lives on other cells than when it was accepted, without being free of divergence there,
+  /// Begins a step from `time` to time + dt: tiles may be made where things will move. Returns true
+  /// if u^n lives on other cells than when it was accepted, without being free of divergence there,
   /// also where a step before this one had moved it and was not finished: then the geometry is to
   /// be frozen anew. `solid_speed`: that of the fastest solid [m/s]; collective, for those who want
   /// it. Default: the fluid always has room.

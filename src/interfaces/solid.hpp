@@ -42,8 +42,8 @@ struct NodeAttachment {
 /// and surfaces. Knows nothing of the fluid and nothing of other models.
 ///
 /// Generalized velocities V_S live on `dof_map` (one-to-one; ranks may be empty, SolidSystem pads).
-/// Prescribed (kinematic, static) solids have surfaces but no dofs. What audits, solvers and
-/// outputs want beyond this: interfaces/solid_sides.hpp.
+/// Prescribed (kinematic, static) solids have surfaces but no dofs. Audits, solvers and outputs
+/// find more in interfaces/solid_sides.hpp.
 template <int dim>
 class SolidModel : public PlugIn {
  public:

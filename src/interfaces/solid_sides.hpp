@@ -7,8 +7,8 @@ namespace lockstep {
 
 struct SurfaceFrame;  // output/frames.hpp
 
-// Side interfaces of solid models (`side_of`): what audits, solvers and outputs want. The
-// SolidSystem asks each of its models and does without.
+// Side interfaces of solid models (`side_of`) for audits, solvers and outputs. The SolidSystem asks
+// each of its models and does without.
 
 /// Momentum, for the ledger and for the forces that are reported. Without it a run has no
 /// `momentum_error`, and the forces on these solids are zero in its tables.

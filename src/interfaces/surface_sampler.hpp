@@ -5,8 +5,8 @@
 
 namespace lockstep {
 
-/// A side interface of fluids that can be asked anywhere how far it is to the liquid's surface. The
-/// observer "gauge" wants it; a fluid without it runs all the same.
+/// A side interface of fluids whose distance to the free surface can be sampled at any point. The
+/// observer "gauge" needs it; a fluid without it runs all the same.
 template <int dim>
 class SurfaceSampler {
  public:

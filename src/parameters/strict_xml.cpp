@@ -219,7 +219,7 @@ class Reader {
   std::string failure_;
 };
 
-/// All bytes of the file; `failure` says why not.
+/// Reads all bytes of the file; `failure` gets the reason if it cannot be read.
 std::string read_bytes(const std::string& file, std::string& failure) {
   std::string why;
   std::string text = read_regular_file(file, why);

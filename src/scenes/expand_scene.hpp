@@ -14,7 +14,7 @@ namespace lockstep {
 /// are gone then. Throws InputError. Collective.
 void expand_scene(Document& document, std::vector<std::string>& settings, const Communicator& comm);
 
-/// 2 or 3. Throws InputError if the scene says neither.
+/// Returns the dimension, 2 or 3. Throws InputError if the scene says neither.
 int scene_dimension(const Document& document);
 
 /// Adds to the schema of a scene, for the reference only, what `expand_scene` takes away.

@@ -41,7 +41,7 @@ void move_files(ParameterList& list, const std::string& included) {
   }
 }
 
-/// Says also which file includes what cannot be read.
+/// Reads an included file; messages name the file that includes it, too.
 Document read_included(const std::string& file, const std::string& place,
                        const Communicator& comm) {
   try {

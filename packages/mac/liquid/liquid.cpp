@@ -88,8 +88,8 @@ template <int dim>
 FreeSurface<dim> Liquid<dim>::surface() {
   FreeSurface<dim> surface;
   surface.distance = &interface_->distance();
-  // All that is about a wet cell's centre must be at the same place, or tension would drive what is
-  // between two such places, at the speed of its difference over next to no distance.
+  // All crossings about a wet cell's centre must be at one place, or the capillary force would
+  // drive the fluid between two such places, by its difference over next to no distance.
   surface.crossing = [this, &phi = interface_->distance()](int wet, int dry) {
     const double part = interface_->crossing(wet, dry);
     const double lead = (1 - part) * lead_[wet] + part * lead_[dry];

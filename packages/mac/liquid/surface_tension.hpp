@@ -13,9 +13,9 @@ template <int dim>
 double curvature(const MacDomain<dim>& domain, const CellField& phi, int wet, int axis, int side,
                  double place);
 
-/// Surface tension [N/m] as a known pressure p_s = sigma kappa where the surface crosses a face,
-/// explicit: what that does to the velocity of the faces within dt. Sets it on owned faces; the
-/// halo is not set. Returns its impulse on the liquid, of this rank. Local.
+/// Explicit capillary force: surface tension sigma [N/m] is a known pressure jump p_s = sigma kappa
+/// where the surface crosses a face (ghost fluid). Adds its change over dt to the velocity of owned
+/// faces; the halo is not set. Returns its impulse on the liquid, of this rank. Local.
 template <int dim>
 Momentum<dim> push_surface(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                            const FreeSurface<dim>& surface, double tension, double dt,
