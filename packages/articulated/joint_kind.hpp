@@ -28,7 +28,7 @@ struct Screw {
 /// of the second side.
 enum class JointTurn { none, axis, two_axes, any };
 
-/// : The degrees of freedom of a joint. Its coordinates q are displacements along the axes it
+/// The degrees of freedom of a joint. Its coordinates q are displacements along the axes it
 /// slides on, then angles: about the axis, about the two axes one after the other, or a rotation
 /// vector.
 struct JointKind {

@@ -27,7 +27,7 @@ struct RigidPose {
   Orientation<dim> orientation = rotation_of<dim>(AngularVector<dim>::Zero());
 };
 
-/// : Properties of a body that never change. Its coordinates have their origin at the reference
+/// Properties of a body that never change. Its coordinates have their origin at the reference
 /// point: the centre of mass, or the pivot.
 template <int dim>
 struct RigidBodyConstants {

@@ -14,7 +14,7 @@ class DisjointSets {
       i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// : Joins the sets of i and j; returns false if they are of one set already.
+  /// Joins the sets of i and j; returns false if they are of one set already.
   bool join(int i, int j) {
     i = root(i);
     j = root(j);

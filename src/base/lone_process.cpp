@@ -12,7 +12,7 @@ void expect_no_other_ranks() {
   if (std::any_of(of_launchers.begin(), of_launchers.end(),
                   [](const char* name) { return std::getenv(name) != nullptr; }))
     return;
-  // : Open MPI starts no daemon and makes no session folder. Several runs at a time would share
+  // Open MPI starts no daemon and makes no session folder. Several runs at a time would share
   // that folder: some found it there where they had just not seen it, and did not start, others
   // took it away too early.
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);

@@ -53,7 +53,8 @@ class MomentumLedger {
     const double defect = (after_.linear - before_.linear - total_impulse().linear).norm();
     return scale > 0 ? defect / scale : 0;
   }
-  /// : Relative defect of the angular momentum about the origin;
+  /// Relative defect of the angular momentum about the origin; `length` [m] turns linear into
+  /// angular scales, so that a motion without rotation is judged against the size of the domain.
   double angular_error(double length, double momentum_scale = 0) const {
     double scale = length * std::max({before_.linear.norm(), after_.linear.norm(), momentum_scale});
     double impulses = 0;

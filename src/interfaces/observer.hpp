@@ -32,7 +32,7 @@ template <int dim>
 class Observer : public PlugIn {
  public:
   virtual std::vector<ObservedColumn> columns() const = 0;
-  /// : Returns any number of rows, each as long as `columns`; those of rank 0 count. Throws
+  /// Returns any number of rows, each as long as `columns`; those of rank 0 count. Throws
   /// InputError, at the start of the run, if the fluid cannot answer. A run that is continued after
   /// its end forgets the look there unless it was due: what adds up must do so in `follow`.
   /// Collective.

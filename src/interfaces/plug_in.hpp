@@ -7,7 +7,7 @@ namespace lockstep {
 class CheckpointWriter;
 class CheckpointReader;
 
-/// : The base of all plug-ins. Parameters are declared where the plug-in is registered (see
+/// The base of all plug-ins. Parameters are declared where the plug-in is registered (see
 /// parameters/registry.hpp); state that must survive a restart goes through `save` and `load`,
 /// which a run calls for every one of its plug-ins.
 class PlugIn {

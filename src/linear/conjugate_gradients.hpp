@@ -27,7 +27,7 @@ struct ConjugateGradientsRequest {
   double preconditioned_target = 0;
 };
 
-/// : The vector operations of an iteration, in as few passes over memory as the operators allow.
+/// The vector operations of an iteration, in as few passes over memory as the operators allow.
 /// The preconditioned residual z and the direction d belong to the kernels. All sums are global,
 /// all calls collective.
 class ConjugateGradientKernels {

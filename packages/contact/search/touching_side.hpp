@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// : Direction from the second of two surfaces to the first where they coincide, so that their
+/// Direction from the second of two surfaces to the first where they coincide, so that their
 /// points do not tell: along `normal` or against it, or where edges of closed solids meet that are
 /// steep to it, between their normals; zero if nothing tells it. Closed solids are outside of each
 /// other; a shell is on the side that it is about to leave. Not for a solid with itself, whose

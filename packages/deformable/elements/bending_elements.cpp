@@ -67,7 +67,7 @@ std::array<Point<dim>, dim + 1> corner_positions(const Hinge<dim>& hinge,
   return corners;
 }
 
-/// : Angle of the hinge at the positions x. Where a side has collapsed the angle turns at once when
+/// Angle of the hinge at the positions x. Where a side has collapsed the angle turns at once when
 /// a node moves by nothing: there its gradient is bounded, all of it by one factor, so that forces
 /// still have neither sum nor torque.
 template <int dim>

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// : Base of all kinds of elements: a list of elements, each with an array `corners`. `Derived` is
+/// Base of all kinds of elements: a list of elements, each with an array `corners`. `Derived` is
 /// the kind itself, which is copied for another selection of elements.
 template <int dim, typename Element, typename Derived>
 class ElementList : public ElementGroup<dim> {

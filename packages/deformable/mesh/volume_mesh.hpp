@@ -37,7 +37,7 @@ double element_quality(const VolumeMesh<dim>& mesh, int element);
 template <int dim>
 double mesh_volume(const VolumeMesh<dim>& mesh);
 
-/// : Checks a mesh from a file: throws InputError naming the first bad element, and how many there
+/// Checks a mesh from a file: throws InputError naming the first bad element, and how many there
 /// are, if a corner is missing, a vertex is not finite or belongs to no element, or an element's
 /// quality is below `worst_quality`. A mesh whose every element is inverted is turned around; a
 /// mixture is an error. `name` is used in the message, with what the file calls things.

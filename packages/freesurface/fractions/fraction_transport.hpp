@@ -34,7 +34,7 @@ class FractionTransport {
   double courant_number(const SolidCells<dim>& solids, const std::vector<char>& tiles,
                         const CellField& phi, double cut_off, const FaceField<dim>& velocity,
                         double dt) const;
-  /// : Advances one step with a Courant number of at most 1/2 on the flagged owned tiles,
+  /// Advances one step with a Courant number of at most 1/2 on the flagged owned tiles,
   /// `first_axis` first. `is_solved`: cells in which the velocity has no divergence. Sets the halo
   /// of width 1 of the fractions, which must be set. `open`: as in InterfaceStep. Returns the
   /// outflow from the domain less the inflow [cells], on this rank. Collective.

@@ -24,7 +24,7 @@ class Liquid {
   Liquid(const ParameterList& fluid, const ForceParameters<dim>& forces,
          const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain);
 
-  /// : Prepares the liquid, before all else on the present tiles. The first call fills the liquid
+  /// Prepares the liquid, before all else on the present tiles. The first call fills the liquid
   /// in, outside of the solids. Collective.
   void begin(const Surface& surface);
   /// Returns the free surface at the present time; valid while this object is.

@@ -32,7 +32,7 @@ class RayTracer {
         velocity_(velocity),
         cells_per_velocity_(cells_per_velocity) {}
 
-  /// : Traces a ray from x against the flow (direction -1) or with it (+1). `cubic`: the velocity
+  /// Traces a ray from x against the flow (direction -1) or with it (+1). `cubic`: the velocity
   /// is interpolated by cubics.
   Ray<dim> trace(const Point<dim>& x, double direction, bool cubic = false) const;
   /// Cuts the segment x -> end at the domain: at an inflow side where it leaves, elsewhere it

@@ -13,7 +13,7 @@
 
 namespace lockstep {
 
-/// : The common part of all strategies: the caching of what depends on the operators, and a loop of
+/// The common part of all strategies: the caching of what depends on the operators, and a loop of
 /// iterative refinement that judges convergence by the true residual of each block.
 ///
 /// V_S is always back-substituted from row 2, V_S = C^-1 (solid rhs - B^T p̂), so that momentum is
@@ -88,7 +88,7 @@ class RefinedStrategy : public SolverStrategy {
   /// C^-1 to round-off and the inverse that "Solid Inverse" names to stand for it.
   const SolidInverse& solid() const { return solid_; }
   bool check_symmetry() const { return check_symmetry_; }
-  /// : Makes the request of a Krylov method on both blocks from that of a correction. One that
+  /// Makes the request of a Krylov method on both blocks from that of a correction. One that
   /// presumes a linear, symmetric inverse of A asks for no more than what single precision allows
   /// before a fresh start.
   enum class Presumes { nothing, symmetry };
