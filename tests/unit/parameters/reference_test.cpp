@@ -27,7 +27,7 @@ The fluid.
 The bodies.
 Holds any number of lists with names of your choice. The "Type" of each decides its parameters:
   Type : string = required  [one of "ball", "box"]
-      Which of the types; it decides which other parameters there are.
+      Type of this list, which decides its other parameters.
 
   [Solids (Type "ball")]
   A ball.
@@ -45,7 +45,7 @@ Holds any number of lists with names of your choice. The "Type" of each decides 
 Coupling weights.
 Its "Type" decides its parameters:
   Type : string = "area"  [one of "area", "closest"]
-      Which of the types; it decides which other parameters there are.
+      Type of this list, which decides its other parameters.
 
   [Weights (Type "area")]
   By area.

@@ -145,10 +145,9 @@ TEST(Validate, TypeChoosesTheSchema) {
   EXPECT_EQ(solid(type("bal")),
             "case.xml, line 4: in \"Solids/A\", \"Type\" is \"bal\", but must be one of \"ball\", "
             "\"box\"; did you mean \"ball\"?");
-  EXPECT_EQ(
-      solid(""),
-      "case.xml, line 3: in \"Solids/A\", the parameter \"Type\" (string, one of \"ball\", "
-      "\"box\") is required: Which of the types; it decides which other parameters there are.");
+  EXPECT_EQ(solid(""),
+            "case.xml, line 3: in \"Solids/A\", the parameter \"Type\" (string, one of \"ball\", "
+            "\"box\") is required: Type of this list, which decides its other parameters.");
   EXPECT_EQ(validating("<ParameterList name=\"Solids\">\n"
                        "<Parameter name=\"Radius\" type=\"double\" value=\"1\"/></ParameterList>"),
             "case.xml, line 3: in \"Solids\", \"Radius\" is a parameter, but this list holds lists "
