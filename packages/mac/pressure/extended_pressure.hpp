@@ -5,18 +5,18 @@
 
 namespace lockstep {
 
-/// A pressure of the last step on the cells that hold fluid now: those that had none take the mean
-/// of their neighbours, front after front, on top of the pressure of a fluid at rest.
-/// `before` tells which cells had one, `gradient` is that of the fluid at rest (rho g, times dt for
-/// p̂). Ghost values count and are set. Collective.
+/// Extends a pressure of the last step to the cells that hold fluid now: those that had none take
+/// the mean of their neighbours, front after front, on top of the hydrostatic pressure. `before`
+/// marks the cells that had one, `gradient` is the hydrostatic gradient (rho g, times dt for p̂).
+/// Ghost values count and are set. Collective.
 template <int dim>
 CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<CellState>& now,
                             const std::vector<CellState>& before, CellField pressure,
                             const Point<dim>& gradient);
 
-/// A pressure of the last step where the surface has come so near to it (by `closeness`, w > 10)
-/// that what it drives through the face would be out of all measure: takes it from the line between
-/// the cell opposite and the surface, which is exact for a fluid at rest. `at_surface`: the
+/// Bounds a pressure of the last step where the surface has come so near to it (distance factor w >
+/// 10) that the flux it drives through the face would diverge: takes it from the line between the
+/// cell opposite and the surface, which is exact for hydrostatic pressure. `at_surface`: the
 /// pressure there, of a wet cell and its dry neighbour at the end of an axis. Ghost values must be
 /// valid, and are set. Collective.
 template <int dim>

@@ -29,7 +29,7 @@ class ForceField {
   Point<dim> of_surroundings() const;
   /// True if the acceleration is the same at all faces of an axis.
   bool is_uniform() const { return temperature_ == nullptr && smoke_ == nullptr; }
-  /// True if the fluid feels nothing along `axis`, anywhere.
+  /// True if there is no acceleration along `axis`, anywhere.
   bool vanishes(int axis) const {
     return parameters_.gravity[axis] == 0 && parameters_.body[axis] == 0;
   }

@@ -14,7 +14,7 @@ template <int dim>
 void outflow_deficit(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                      const FaceField<dim>& velocity, Vector& rhs);
 
-/// The pressures on owned cells and their neighbours; zero elsewhere. Collective.
+/// Returns the pressures on owned cells and their neighbours; zero elsewhere. Collective.
 template <int dim>
 CellField pressure_field(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                          const Vector& scaled_pressure);

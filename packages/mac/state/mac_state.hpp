@@ -15,14 +15,14 @@ enum class FaceState : char {
   free,        ///< changed by pressure: interior or open side
   coupled,     ///< closed by the coupling: moves with the solids
   prescribed,  ///< wall or inflow
-  extended     ///< in the air near a free surface: carries on the velocity of the fluid
+  extended     ///< in the air near a free surface: extrapolates the velocity of the fluid
 };
 
-/// The velocity of fluid at the face itself.
+/// True if fluid has this velocity at the face itself.
 inline bool is_wet(FaceState face) {
   return face != FaceState::inactive && face != FaceState::extended;
 }
-/// Moved by transport.
+/// True if transport advects the velocity.
 inline bool is_carried(FaceState face) {
   return face == FaceState::free || face == FaceState::coupled || face == FaceState::extended;
 }
@@ -33,8 +33,8 @@ struct MacState {
   std::shared_ptr<const SurfaceSnapshot<dim>> surface;
   std::vector<CellState> cells;
   std::array<std::vector<FaceState>, dim> faces;  ///< state of the lower face of each cell
-  /// Surfaces may leave faces open in part: cells are fluid wherever their centres are. The same on
-  /// all ranks.
+  /// True if surfaces may leave faces partly open (cut cells): cells are then fluid wherever their
+  /// centres are. The same on all ranks.
   bool has_cut_cells = false;
   /// Where the fluid of partly open faces is, owned and ghost; their centres may lie in a solid.
   std::array<std::unordered_map<int, Point<dim>>, dim> open_centers;

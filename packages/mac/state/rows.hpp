@@ -7,11 +7,11 @@
 
 namespace lockstep {
 
-/// Values for one row of a tile, along x.
+/// Values for one strip of a tile, its cells along x.
 template <int dim>
 using RowValues = Eigen::Array<double, tile_width<dim>, 1>;
 
-/// The values of a row, of which there is storage for the whole.
+/// The values of a strip of a field, which must be stored as a whole.
 template <int dim>
 Eigen::Map<RowValues<dim>> row_of(double* field, int first) {
   return Eigen::Map<RowValues<dim>>(field + first);
@@ -35,8 +35,8 @@ const RowPart& part_of(const Eigen::Array<double, n, 1>& row, int i) {
   return *reinterpret_cast<const RowPart*>(row.data() + i);
 }
 
-/// The row that begins one place later; `last` comes after the row. Values set one by one would
-/// have to be waited for.
+/// The strip that begins one place later; `last` comes after the strip. A shuffle avoids the stall
+/// of values set one by one.
 template <int dim>
 RowValues<dim> row_ahead(const RowValues<dim>& row, double last) {
   using Places [[gnu::vector_size(EIGEN_MAX_ALIGN_BYTES)]] = long long;
@@ -51,7 +51,7 @@ RowValues<dim> row_ahead(const RowValues<dim>& row, double last) {
   }
   return result;
 }
-/// The row that begins one place earlier; `first` comes before the row.
+/// The strip that begins one place earlier; `first` comes before the strip.
 template <int dim>
 RowValues<dim> row_behind(const RowValues<dim>& row, double first) {
   using Places [[gnu::vector_size(EIGEN_MAX_ALIGN_BYTES)]] = long long;

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// Where a surface meets the grid, on all stored cells.
+/// Marks of a surface on the grid, on all stored cells.
 template <int dim>
 struct SurfaceMarks {
   /// Bit a: the segment between the two pressure points of the lower face normal to axis a meets

@@ -17,10 +17,10 @@ class VelocityHistory {
  public:
   explicit VelocityHistory(const TiledGrid<dim>& grid);
 
-  /// u^n to the middle of a step: u += dt/2 du/dt.
+  /// Extrapolates u^n to the middle of a step: u += dt/2 du/dt.
   void extrapolate(double dt, FaceField<dim>& u) const { add(dt / 2, rate_, u); }
-  /// u += scale a, with a what pressure, forces and viscosity made of the velocity that the last
-  /// step had advected [m/s^2]. The trapezoidal rule along a ray from x_d to x is
+  /// u += scale a, with a the acceleration by pressure, forces and viscosity in the last step
+  /// [m/s^2]. The trapezoidal rule along a ray from x_d to x is
   ///   u* = (u^n + dt/2 a)(x_d) + dt/2 a^{n+1}(x);
   /// since the rest of the step brings the whole of dt a^{n+1}, half of it is taken off at once.
   void add_acceleration(double scale, FaceField<dim>& u) const { add(scale, acceleration_, u); }
@@ -31,7 +31,7 @@ class VelocityHistory {
   void accept(const FaceField<dim>& before, const FaceField<dim>& after, const MacState<dim>& state,
               double dt, bool jumped = false);
 
-  /// All that a restart needs. Valid while this is neither moved nor copied.
+  /// Fields that a restart needs. Valid while this is neither moved nor copied.
   std::vector<StoredField> fields() {
     return {stored_faces<dim>("acceleration", acceleration_), stored_faces<dim>("rate", rate_),
             stored_faces<dim>("free", free_)};

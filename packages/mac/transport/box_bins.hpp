@@ -8,8 +8,8 @@
 
 namespace lockstep {
 
-/// Things in boxes listed by the bins of a uniform lattice, for questions about places much smaller
-/// than the whole. Empty bins take three bits each.
+/// Index of boxes by the bins of a uniform lattice, for queries of places much smaller than the
+/// whole. Empty bins take three bits each.
 template <int dim>
 class BoxBins {
  public:
@@ -19,9 +19,9 @@ class BoxBins {
     const int* begin() const { return first; }
     const int* end() const { return last; }
   };
-  /// Bins of `width` [m], one of whose corners is `origin`, over `region`; what lies beyond the
-  /// region is left out. Of the bins that box i touches, it counts to those of which
-  /// `counts(i, centre of the bin)` is true.
+  /// Bins of `width` [m], one of whose corners is `origin`, over `region`; boxes beyond the region
+  /// are left out. Box i is listed in those of the bins it touches for which `counts(i, centre of
+  /// the bin)` is true.
   template <typename Counts>
   void build(const std::vector<Box<dim>>& boxes, const Box<dim>& region, const Point<dim>& origin,
              double width, const Counts& counts);

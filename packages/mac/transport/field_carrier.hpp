@@ -17,8 +17,8 @@ struct Passenger {
   double beyond = 0;   ///< the field where no tile exists
   CellField storage;   ///< storage of field.values
   CellField half_way;  ///< MacCormack's first half: the result of semi-Lagrangian transport
-  /// Range of the samples used, of owned cells; empty (low > high): not to be corrected. The first
-  /// is kept where the result will be.
+  /// Range of the samples used, of owned cells; empty (low > high): no correction. `low` is kept
+  /// where the result will be.
   double* low = nullptr;
   std::unique_ptr<double[]> high;
   /// Rays of the strips of a tile near surfaces that is advected by strips.
@@ -43,26 +43,27 @@ template <int dim>
 class FieldCarrier {
  public:
   explicit FieldCarrier(TransportFrame<dim>& frame) : frame_(frame) {}
-  /// Collective. `tiles`: a flag for each owned tile, 0 where nothing is carried; null: all are.
+  /// Advects the fields. `tiles`: a flag for each owned tile, 0 where nothing is advected; null:
+  /// all are. Collective.
   void carry(std::vector<Passenger<dim>>& passengers, const std::vector<char>* tiles = nullptr);
 
  private:
   void begin(Passenger<dim>& passenger);
   bool carry_rows(std::vector<Passenger<dim>>& passengers, int tile);
   void carry_singles(Passenger<dim>& passenger, int tile);
-  /// The samples near surfaces; `by_rows`: all have been carried as if there were none.
+  /// Advects the samples near surfaces; `by_rows`: all have been advected as if there were none.
   void carry_near_surfaces(std::vector<Passenger<dim>>& passengers, int tile, bool by_rows);
-  /// The ray from a sample; `by_rows`: as carried by rows.
+  /// Returns the ray from a sample; `by_rows`: the one that advection by strips used.
   Ray<dim> trace(const Passenger<dim>& passenger, int id, const Point<dim>& x, double direction,
                  bool cubic, bool by_rows) const;
-  /// True of samples of a tile carried by rows that no surface concerns.
+  /// True for samples of a tile advected by strips that are far from all surfaces.
   bool is_far(const Passenger<dim>& passenger, int id, const Point<dim>& x) const;
-  /// `wide`: by cubics.
+  /// Advects one sample; `wide`: by cubics.
   void carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x, bool wide);
   void carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x, bool by_rows);
   void carry_seeing(Passenger<dim>& passenger, int id, const Point<dim>& x);
-  /// A partly open face whose centre a solid holds or passes keeps its own value and takes the
-  /// change where its fluid is; false: it is no such face.
+  /// Advects a partly open face whose centre a solid holds or passes: it keeps its own value and
+  /// takes the change where its fluid is. Returns false if it is no such face.
   bool carry_open_part(Passenger<dim>& passenger, int id, const Point<dim>& x);
   /// Corrects by half of the error that semi-Lagrangian advection there and back again shows
   /// (MacCormack).

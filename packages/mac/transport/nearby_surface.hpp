@@ -11,18 +11,18 @@
 
 namespace lockstep {
 
-/// A snapshot asked many times about places near the cells that a rank owns: there its simplices
-/// are listed by bins, so that an answer costs by the bins on the way and not by the mesh. Sight
-/// lines may leave a periodic domain: they then meet what lies at the other end, but what has left
-/// it is not met again inside. Touching counts as meeting, within `tolerance()`, so that nothing is
-/// ever seen through a surface by round-off.
+/// A snapshot with fast queries near the cells that a rank owns: there its simplices are listed by
+/// bins, so that the cost of a query depends on the bins on the way and not on the mesh. Sight
+/// lines may leave a periodic domain: they then meet the surfaces at the other end, but surfaces
+/// that have left it are not met again inside. Touching counts as meeting, within `tolerance()`, so
+/// that round-off never lets a ray see through a surface.
 template <int dim>
 class NearbySurface {
  public:
   using Snapshot = std::shared_ptr<const SurfaceSnapshot<dim>>;
 
-  /// The snapshot may be null: no surface. Fast within `reach` cells of owned ones, if that is no
-  /// more than `longest_reach`.
+  /// Indexes a snapshot, which may be null: no surface. Queries are fast within `reach` cells of
+  /// owned ones, if that is no more than `longest_reach`.
   NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid, int reach);
   NearbySurface(const NearbySurface&) = delete;
   NearbySurface& operator=(const NearbySurface&) = delete;
@@ -71,8 +71,8 @@ class NearbySurface {
     Plane plane;       ///< its own, [m]; zero if it is degenerate
     std::array<Rim, dim> rims;
   };
-  /// The simplices whose middles are in one bin, between two parallel planes: so far at most is a
-  /// point of theirs from this one [m].
+  /// The simplices whose middles are in one bin: all their points lie within `half_thickness` [m]
+  /// of `plane`.
   struct Patch {
     Plane plane;
     double half_thickness = 0;
@@ -92,7 +92,8 @@ class NearbySurface {
   /// until f returns true.
   template <typename Function>
   bool any_image(const Box<dim>& box, const Function& f) const;
-  /// The box without its rim: what touches that alone still reaches into this, by its bounds.
+  /// The box shrunk by the tolerance: bounds that touch only the box's boundary do not reach into
+  /// it.
   Box<dim> interior(const Box<dim>& box) const;
   /// Takes the hit on one simplex if it comes before the one found, or is as near and the simplex
   /// comes first.
@@ -114,8 +115,7 @@ class NearbySurface {
   mutable unsigned question_ = 0;
 };
 
-/// Keeps what was made of the last two surfaces, those before and after a step, while they are
-/// asked for again.
+/// Cache of the last two indexed surfaces, those before and after a step.
 template <int dim>
 class KeptSurface {
  public:
@@ -131,8 +131,8 @@ class KeptSurface {
     int reach = 0;
   };
   std::array<Entry, 2> entries_;  ///< the last one asked for first
-  /// The largest that was asked for since the last surface was made, and since the one before until
-  /// then: likely to come again.
+  /// Largest reach that was needed since the last surface was indexed, and between the one before
+  /// and it: it is likely to be needed again.
   int recent_reach_ = 0, earlier_reach_ = 0;
 };
 

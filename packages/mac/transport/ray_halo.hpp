@@ -16,15 +16,15 @@ class RayHalo {
  public:
   explicit RayHalo(const TiledGrid<dim>& grid) : grid_(grid) {}
 
-  /// Collective, with the same `reach` on all ranks: from now on `fetch` serves samples within so
-  /// many cells of owned ones. May replace `sample_grid()`.
+  /// Makes `fetch` serve samples within `reach` cells of owned ones from now on; the same `reach`
+  /// on all ranks. May replace `sample_grid()`. Collective.
   void require(int reach);
   /// The grid whose cell ids fetched fields have. Ids of owned cells are those of the base grid.
   const TiledGrid<dim>& sample_grid() const { return wide_ ? *wide_ : grid_; }
-  /// Collective: the field with all samples within reach; ghost values of `field` are not used.
-  /// Where tiles do not exist it has one more behind the others, all of whose samples are `beyond`,
-  /// the value there (SampleLattice). Returns `field` itself where nothing has to be brought, else
-  /// `storage`.
+  /// Returns the field with all samples within reach; ghost values of `field` are not used.
+  /// Collective. Where tiles do not exist it has one more behind the others, all of whose samples
+  /// are `beyond`, the value there (SampleLattice). Returns `field` itself where nothing has to be
+  /// brought, else `storage`.
   template <typename Value>
   const std::vector<Value>& fetch(const std::vector<Value>& field, std::vector<Value>& storage,
                                   Value beyond) const;

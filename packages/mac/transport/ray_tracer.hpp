@@ -39,10 +39,10 @@ class RayTracer {
   /// slides.
   void clip(const Point<dim>& x, Ray<dim>& ray) const;
 
-  /// Rays may end between an inflow side and the first samples, which lie half a cell inside: what
-  /// is found there is so much of the inflow, where fluid does enter. Samples of `kind` that lie on
-  /// the side itself have its values already. `depth`: how near rays must come to be told so, of
-  /// which the first half cell has a share.
+  /// Blends the inflow's value into rays that end between an inflow side and the first samples,
+  /// which lie half a cell inside, where fluid does enter. Samples of `kind` that lie on the side
+  /// itself have its values already. `depth`: distance from the side up to which rays are marked;
+  /// the first half cell of it has a share.
   void mix_inflow(SampleKind kind, Ray<dim>& ray, double depth = first_sample) const;
 
   bool flows_in(int axis, int side) const { return inflow_[axis][side]; }

@@ -13,10 +13,11 @@ struct RevalidationReport {
   int n_fronts = 0;  ///< sweeps until nothing changed
 };
 
-/// Collective, after the geometry of t^{n+1} is set: gives the invalid velocities the mean of their
-/// valid and visible neighbours along the axes, front after front (Guendelman et al. 2005). What is
-/// left over, and faces inside solids, gets the velocity of the nearest surface within three cells,
-/// or zero. `halo` has width 1 or more; ghost values of u are set on return.
+/// Populates uncovered faces after the geometry of t^{n+1} is set: invalid velocities get the mean
+/// of their valid and visible neighbours along the axes, front after front (Guendelman et al.
+/// 2005). Faces left over, and faces inside solids, get the velocity of the nearest surface within
+/// three cells, or zero. `halo` has width 1 or more; ghost values of u are set on return.
+/// Collective.
 template <int dim>
 RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                     const MacState<dim>& after, const MovingSurface<dim>& surface,

@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// The samples below a row of points along one axis, and the weights of those above. The points
+/// The samples below a strip of points along one axis, and the weights of those above. The points
 /// keep step if each lies one sample further than the one before it along x, and beside the same
 /// one along other axes. Where some are one sample ahead of that, the row is mixed.
 template <int dim>
@@ -147,8 +147,9 @@ class RowStencil {
 
   static RowValues<dim> row_at(const double* c) { return Eigen::Map<const RowValues<dim>>(c); }
 
-  /// Along the axes up to this one, from the lowest samples of the row. Of three samples along a
-  /// mixed axis the second is everybody's; who is ahead takes the third, others the first.
+  /// Interpolates along the axes up to this one, from the lowest samples of the strip. Of three
+  /// samples along a mixed axis all points use the second; those ahead use the third, others the
+  /// first.
   template <int axis, int mixed>
   [[gnu::always_inline]] RowValues<dim> between(const double* c) const {
     if constexpr (axis < 0) {

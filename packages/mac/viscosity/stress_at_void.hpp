@@ -31,9 +31,9 @@ class StressAtVoid {
   /// Makes the terms of a fluid with a free surface. References must outlive this. Collective.
   StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
-  /// False if fluid beside the air has a solid near it, or fluid stands at an open side, on any
-  /// rank: there the form might not be positive, and is to be that of the couplings everywhere.
-  /// Collective.
+  /// True if the form is positive. It might not be if fluid beside the air has a solid near it, or
+  /// fluid stands at an open side, on any rank: then the form is to be that of the couplings
+  /// everywhere. Collective.
   bool is_definite() const;
 
   /// True if a face and its neighbour across have air beside them: they are not coupled.

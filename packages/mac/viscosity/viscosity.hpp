@@ -6,8 +6,8 @@
 namespace lockstep {
 
 /// Implicit viscosity in the Laplacian form, component by component, but beside air: a velocity and
-/// its neighbour at distance d across an area pull on each other with mu area / d. What a velocity
-/// is tied to is found once per geometry, for the matrix as for the impulses.
+/// its neighbour at distance d across an area pull on each other with mu area / d. The couplings of
+/// a velocity are found once per geometry, for the matrix as for the impulses.
 ///
 /// A wall pulls from h/2 (its tangential velocities) or from the next face (its normal ones); slip
 /// walls and open sides do not pull. A neighbour behind a surface, or inside a solid, is replaced

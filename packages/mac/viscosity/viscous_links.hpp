@@ -24,10 +24,9 @@ struct SideLink {
   double coefficient = 0;  ///< [kg/s]
 };
 
-/// The end of a row of free velocities, side by side and joined by links: where the couple of those
-/// links does not cancel. The couple of a link between neighbours at distance h across their
-/// direction is h mu area / h (u_upper - u_lower), so that of a whole row is the difference of its
-/// ends.
+/// The end of a strip of coupled free velocities, where the couple of their links does not cancel.
+/// The couple of a link between neighbours at distance h across their direction is h mu area / h
+/// (u_upper - u_lower), so that of a whole strip is the difference of its ends.
 struct CoupleEnd {
   int row = 0;             ///< local
   int across = 0;          ///< axis along which the velocities stand side by side
@@ -46,7 +45,7 @@ struct InflowPull : CrossPull {
   double from_outside = 0;  ///< part of the coefficient [kg/s]
 };
 
-/// Everything that free velocities are viscously tied to.
+/// All viscous couplings of free velocities.
 template <int dim>
 struct ViscousLinks {
   RCP<const Map> map;
