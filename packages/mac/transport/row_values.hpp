@@ -9,11 +9,12 @@
 
 namespace lockstep {
 
-/// Positions of a row of samples, by axis, relative to a block's first cell.
+/// Positions of a strip of samples, by axis, relative to a block's first cell.
 template <int dim>
 using RowPoints = std::array<RowValues<dim>, dim>;
 
-// Not inlined, rows go through memory: twice the time of what is done with them.
+// Blends two strips. Always inlined: else strips go through memory, which takes twice the time of
+// the arithmetic.
 template <typename Values>
 [[gnu::always_inline]] inline Values blend(const Values& a, const Values& b, const Values& weight) {
   return a + weight * (b - a);
@@ -91,8 +92,8 @@ template <int n>
   return bits;
 }
 
-/// The lesser and the greater of each two; where one is not a number the second. As conditions they
-/// would take two instructions, one of them slow.
+/// Lesser and greater of each two values; the second if one is not a number. Written with
+/// conditions they would take two instructions, one of them slow.
 [[gnu::always_inline]] inline RowPart least_of(RowPart a, RowPart b) {
 #ifdef __AVX512F__
   return _mm512_min_pd(a, b);
@@ -123,7 +124,7 @@ template <int n, typename Function, typename... Rows>
   return result;
 }
 
-/// Where the flag is not 0 the first, else the second.
+/// Returns the first value where the flag is not 0, else the second.
 template <int n>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> chosen(
     const Eigen::Array<double, n, 1>& flag, const Eigen::Array<double, n, 1>& first,

@@ -14,7 +14,7 @@ namespace lockstep {
 using SampleKind = int;
 constexpr SampleKind cell_centers = -1;
 
-/// Where a sample lies in its cell, in cells from the cell's lower corner.
+/// Position of a sample in its cell, in cells from the cell's lower corner.
 template <int dim>
 Point<dim> sample_offset(SampleKind kind) {
   Point<dim> offset = Point<dim>::Constant(0.5);
@@ -40,7 +40,7 @@ struct Stencil {
   }
 };
 
-/// One of the samples around a point, for those who look at them one by one.
+/// One of the samples around a point, for loops over single samples.
 template <int dim>
 struct StencilCorner {
   int id = 0;
@@ -74,7 +74,8 @@ struct WideStencil {
   }
 };
 
-/// Within the range of the samples, so that constants stay exact; the stencil is complete.
+/// Cubic interpolation, clamped to the range of the samples, so that constants stay exact; the
+/// stencil is complete.
 template <int dim>
 double interpolate(const WideStencil<dim>& stencil, const double* field) {
   double sum = 0, low = std::numeric_limits<double>::infinity(), high = -low;
@@ -105,7 +106,7 @@ class SampleLattice {
   /// Samples around x of all components of a velocity.
   std::array<Stencil<dim>, dim> locate_faces(const Point<dim>& x) const;
   /// The samples of a cubic around x, which is moved between the outermost samples of axes that are
-  /// not periodic; beside them, of a parabola.
+  /// not periodic; beside these the samples of a parabola.
   WideStencil<dim> locate_wide(SampleKind kind, Point<dim> x) const;
   /// The samples around x with their weights and places.
   std::array<StencilCorner<dim>, (1 << dim)> corners(SampleKind kind, const Point<dim>& x) const;

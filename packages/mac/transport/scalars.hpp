@@ -54,9 +54,9 @@ class Scalars {
   std::vector<std::function<double(const Point<dim>&)>> liquid_sources(double time) const;
   /// True if a source that is active at `time` sets the velocity.
   bool sources_push(double time) const;
-  /// True if one does at `now` that did not yet `earlier`.
+  /// True if a source sets the velocity at `now` that did not yet `earlier`.
   bool begin_to_push(double earlier, double now) const;
-  /// Sets the velocity of owned free faces inside such sources. Local.
+  /// Sets the velocity of owned free faces inside sources that do so. Local.
   void push(const MacGeometry<dim>& geometry, double time, FaceField<dim>& velocity) const;
 
  private:

@@ -18,7 +18,8 @@ struct CarriedField {
   std::array<const double*, dim> velocity{};
   /// Value of the field where a ray leaves through an inflow side.
   std::function<double(const Ray<dim>&)> inflow;
-  /// Instead, where it is what the side's distance makes of the value `inside`, at the ray's end.
+  /// Value there instead if it depends on the distance from the side and on the value `inside`, at
+  /// the ray's end.
   std::function<double(const Ray<dim>&, double inside)> enters = nullptr;
   double inflow_depth =
       0.5;  ///< distance from an inflow side within which rays may end that it concerns [cells]
@@ -29,8 +30,8 @@ template <int dim>
 class SurfaceTransport {
  public:
   /// `largest_displacement` of a ray along an axis, in cells, and `stencil_reach` of the farthest
-  /// samples looked at from its end; `friction_speed` [m/s] is what friction takes off the speed at
-  /// which fluid slips. References must outlive this object.
+  /// samples used at its end; `friction_speed` [m/s]: decrease of the slip velocity by friction.
+  /// References must outlive this object.
   SurfaceTransport(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
                    const RayTracer<dim>& tracer, const UsableSamples<dim>& usable,
                    const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
@@ -45,7 +46,7 @@ class SurfaceTransport {
   bool may_be_swept(const Point<dim>& x) const {
     return within(x, cells_reached(surface_displacement_));
   }
-  /// The sample changes sides or has none: swept over, or on a surface at t^n or t^{n+1}.
+  /// True if the sample changes sides of a surface or is on one at t^n or t^{n+1}.
   bool swept(const Point<dim>& x) const;
   /// True if the centre of an advected face or of a cell in this state is inside a closed solid at
   /// t^n.
@@ -53,16 +54,17 @@ class SurfaceTransport {
   /// True if no surface touches the points and their surroundings of `reach` cells, at t^n or, with
   /// `during_step`, at any time of the step.
   bool clear(const Box<dim>& points, bool during_step, int reach = 1) const;
-  /// True if no surface comes between the sample at x, the way of its ray and all samples used on
-  /// it: they might as well be carried as if there were none. Possible where it is not clear.
+  /// True if no surface comes between the sample at x, the path of its ray and all samples used on
+  /// it, so that it can be advected as if there were none. Possible where `clear` is false.
   bool sees_all(SampleKind kind, const Point<dim>& x, const Ray<dim>& ray) const;
-  /// The value carried to the sample at x; none if it sees no valid sample.
+  /// Returns the value advected to the sample at x; none if it sees no valid sample.
   std::optional<double> carry(const CarriedField<dim>& field, const Point<dim>& x);
-  /// Where fluid at x goes in the step, or none if a surface would pass it: then it is kept a tenth
-  /// of a cell from the surface, on its side, and given up if there is no room.
+  /// Returns the place that fluid at x reaches in the step. Where a surface would pass it, it is
+  /// kept a tenth of a cell from the surface, on its side; none if there is no room.
   std::optional<Point<dim>> follow(const Point<dim>& x);
-  /// A velocity `own` of the sample whose fluid is at x, beside it: changes as what is seen at x
-  /// does, and becomes that as fluid passes, so that nothing gathers in it.
+  /// Advects a velocity `own` of a sample whose fluid is at x, beside it: it changes as the
+  /// velocity seen at x does, and relaxes to that as fluid passes, so that no error accumulates in
+  /// it.
   double carry_beside(const CarriedField<dim>& field, const Point<dim>& x, double own);
 
  private:
@@ -72,8 +74,7 @@ class SurfaceTransport {
   }
   /// True if a simplex comes within so many cells of the cell that holds x.
   bool within(const Point<dim>& x, int reach) const;
-  /// Where the fluid of x came from, as far as it can be seen; sets `hit` if a surface is in the
-  /// way.
+  /// Traces the fluid at x back, as far as it can be seen; sets `hit` if a surface is in the way.
   Ray<dim> trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit);
   /// The first surface that passes over a point that moves on a line during the step.
   std::optional<SurfacePoint<dim>> passage(const Point<dim>& from, const Point<dim>& to) const;

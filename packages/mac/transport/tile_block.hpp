@@ -15,20 +15,21 @@ struct RowRays {
   RowValues<dim> clipped;
 };
 
-/// A tile and its surroundings as dense arrays, in which short rays are followed a row at a time:
+/// A tile and its surroundings as dense arrays, in which short rays are followed a strip at a time:
 /// many times faster than one by one, with the same result up to round-off (positions are relative
-/// to the block). For tiles away from inflow sides; knows nothing of surfaces.
+/// to the block). For tiles away from inflow sides; surfaces are ignored.
 template <int dim>
 class TileBlock {
  public:
   /// Longer rays [cells] are better followed one by one.
   static constexpr int longest_reach = 6;
-  /// Rays reach `reach` cells along each axis, and what is looked up there `stencil_reach` farther:
-  /// 1, or 2 for cubics.
+  /// Rays reach `reach` cells along each axis, and their stencils `stencil_reach` farther: 1, or 2
+  /// for cubics.
   TileBlock(const SampleLattice<dim>& lattice, const RayTracer<dim>& tracer, int reach,
             int stencil_reach);
 
-  /// Copies the velocity around the tile. False if samples there are missing: not for this tile.
+  /// Copies the velocity around the tile. Returns false if samples there are missing: the block
+  /// cannot serve this tile.
   bool enter(const Index<dim>& tile_begin);
   /// Copies the field to be looked up around the same tile.
   void load(SampleKind kind, const double* field);
@@ -39,7 +40,7 @@ class TileBlock {
   RowRays<dim> trace(const Index<dim>& in_tile, double direction, bool cubic = false) const;
   /// Follows rays from any points of the tile, relative to the block; linear alone.
   RowRays<dim> follow(const RowPoints<dim>& start, double direction) const;
-  /// Where points, in cells from the lower corner of the tile, are in the block.
+  /// Offset of the tile in the block: points count in cells from the tile's lower corner.
   int margin(int axis) const { return margin_[axis]; }
   /// Returns point i of a strip, in lattice units.
   Point<dim> place(const RowPoints<dim>& points, int i) const {
@@ -53,7 +54,7 @@ class TileBlock {
   /// Interpolates at these points, and finds the range of the samples used there.
   void look_up(const RowPoints<dim>& points, RowValues<dim>& values, RowValues<dim>& low,
                RowValues<dim>& high) const;
-  /// The first by cubics, within the range of the 4^dim samples around each point.
+  /// Interpolates by cubics, within the range of the 4^dim samples around each point.
   void look_up_cubic(const RowPoints<dim>& points, RowValues<dim>& values) const;
 
  private:

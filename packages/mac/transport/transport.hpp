@@ -50,9 +50,8 @@ struct TransportSetting {
 };
 
 /// Samples without a meaningful value after transport, by cell id (1: invalid): inactive or inside
-/// a solid at t^n, on a surface, or swept over by one. `revalidate_*` fills those that hold fluid
-/// at t^{n+1}. Owned samples only; ghost entries are 0. Empty
-/// vectors: all are valid.
+/// a solid at t^n, on a surface, or passed by one. `revalidate_*` populates those that hold fluid
+/// at t^{n+1}. Owned samples only; ghost entries are 0. Empty vectors: all are valid.
 template <int dim>
 struct InvalidSamples {
   std::array<std::vector<char>, dim> faces;
@@ -71,24 +70,25 @@ struct InvalidSamples {
 template <int dim>
 class Transport {
  public:
-  /// Collective. Brings u_ADV and the sample states within reach of the rays and finds the tiles
-  /// near surfaces. Throws SolveError if u_ADV is not finite or carries over more than a million
-  /// cells.
+  /// Brings u_ADV and the sample states within reach of the rays and finds the tiles near surfaces.
+  /// Throws SolveError if u_ADV is not finite or advects over more than a million cells.
+  /// Collective.
   explicit Transport(const TransportSetting<dim>& setting);
   ~Transport();
 
-  /// Collective: `result` = u carried over dt. Prescribed and inactive faces keep their u. Ghost
-  /// values of u are not used, those of `result` not set. `result` may not be `u`.
+  /// Advects the velocity: `result` = u advected over dt. Prescribed and inactive faces keep their
+  /// u. Ghost values of u are not used, those of `result` not set. `result` may not be `u`.
+  /// Collective.
   void advect_faces(AdvectionScheme scheme, const FaceField<dim>& u, FaceField<dim>& result);
-  /// Collective: the same for a cell-centred scalar, given what it is on inflow sides and,
-  /// `beyond`, in tiles that do not exist. Cells without fluid keep their s. `tiles`: a flag for
-  /// each owned tile, 0 where `result` stays as it is (not with maccormack); null: all are carried.
+  /// Advects a cell-centred scalar, given its value on inflow sides and, `beyond`, in tiles that do
+  /// not exist. Cells without fluid keep their s. `tiles`: a flag for each owned tile, 0 where
+  /// `result` stays as it is (not with maccormack); null: all are advected. Collective.
   void advect_scalar(AdvectionScheme scheme, const CellField& s,
                      const SideValues<dim>& inflow_values, CellField& result,
                      const std::vector<char>* tiles = nullptr, double beyond = 0);
 
-  /// Collective: the same for the distance to the surface of a liquid [m], semi-Lagrangian, cut off
-  /// at `cut_off`, on all tiles with a flag. Beyond inflow sides is no liquid.
+  /// Advects the signed distance to a free surface [m], semi-Lagrangian, cut off at `cut_off`, on
+  /// all tiles with a flag. Beyond inflow sides is no liquid. Collective.
   void advect_distance(const CellField& distance, double cut_off, const std::vector<char>& tiles,
                        CellField& result);
 

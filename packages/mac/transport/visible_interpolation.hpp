@@ -48,9 +48,10 @@ class VisibleInterpolation {
         friction_speed_(friction_speed),
         nearby_(std::move(nearby)) {}
 
-  /// A velocity component of fluid that slips: samples hidden by a surface have the mean of the
-  /// visible ones with the part along the surface's normal replaced by its own; along it the two
-  /// differ by as much less as friction takes. None if nothing is visible and no surface in sight.
+  /// Returns a velocity component of fluid that slips: samples hidden by a surface take the mean of
+  /// the visible ones, with the normal part replaced by the surface's; the tangential parts of the
+  /// two differ by less, as friction reduces the slip. None if nothing is visible and no surface in
+  /// sight.
   std::optional<double> velocity(int axis, const Point<dim>& x, const Velocity& field);
   /// A scalar from the visible samples alone, their weights scaled to sum to one; none if there are
   /// no such samples.
@@ -85,8 +86,8 @@ class VisibleInterpolation {
     std::vector<Hidden> hidden;
   };
   void look(int axis, const Point<dim>& x, const double* field);
-  /// The value of a component; if some of its samples are hidden, all components have been looked
-  /// at.
+  /// Value of a component; if some of its samples are hidden, the sight of all components must be
+  /// known.
   std::optional<double> seen_velocity(int axis) const;
   /// Returns the velocity that a surface makes of a velocity `seen` before it: no longer than the
   /// two together.
@@ -96,7 +97,7 @@ class VisibleInterpolation {
   const SampleLattice<dim>& lattice_;
   const UsableSamples<dim>& usable_;
   const MovingSurface<dim>& surface_;
-  double friction_speed_;  ///< friction takes so much off the speed at which fluid slips [m/s]
+  double friction_speed_;  ///< decrease of the slip velocity by friction [m/s]
   std::shared_ptr<const NearbySurface<dim>> nearby_;
   std::array<Sight, dim> sight_;  ///< sight of each component, from the point looked at last
 };
