@@ -83,7 +83,7 @@ class MacFluid : public FluidDiscretization<dim>,
   void begin_prediction() override;
   bool begin_advection_velocity(double dt) override;
   ForceImpulse<dim> add_forces(double time, double dt) override;
-  /// Implicit surface tension wants the viscous solve, too.
+  /// True also for implicit surface tension, which is part of the viscous solve.
   bool is_viscous() const override {
     return parameters_.viscosity.viscosity > 0 || tension_is_implicit();
   }

@@ -97,7 +97,7 @@ ParameterList domain_parameters();
 template <int dim>
 DomainDescription<dim> read_domain(const ParameterList& list);
 
-/// Storage that the sides ask of the grid: faces at the upper end of open and inflow sides.
+/// Sets the storage that the sides need: faces at the upper end of open and inflow sides.
 template <int dim>
 void set_grid_flags(const Boundary<dim>& boundary, GridDescription<dim>& grid);
 

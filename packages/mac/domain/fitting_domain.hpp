@@ -4,8 +4,8 @@
 
 namespace lockstep {
 
-/// `read_domain`, and a look at whether its cells can fit into the memory of the machines: before
-/// any of them are stored. Throws InputError. Collective.
+/// Reads the domain (`read_domain`) and checks that its cells fit into the memory of the machines,
+/// before any of them are stored. Throws InputError. Collective.
 template <int dim>
 DomainDescription<dim> fitting_domain(const ParameterList& list, const Communicator& comm);
 

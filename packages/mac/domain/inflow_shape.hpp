@@ -12,8 +12,8 @@ struct InflowShape {
 
   /// Velocity at `x` on the side normal to `axis`, over the mean one.
   double factor(int axis, const Point<dim>& x) const;
-  /// Its mean over a face, whose part outside of the opening counts as zero: the flow through the
-  /// faces is that through the opening, wherever that ends.
+  /// Mean of `factor` over a face, whose part outside of the opening counts as zero: the flow
+  /// through the faces is that through the opening, wherever that ends.
   double mean_factor(int axis, const Box<dim>& face) const;
 };
 

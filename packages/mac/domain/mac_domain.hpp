@@ -6,7 +6,8 @@
 
 namespace lockstep {
 
-/// The grid of a fluid, its sides and its exchanges: what every part of the fluid works on.
+/// The grid of a fluid, its boundary conditions and its exchanges, which all parts of the fluid
+/// share.
 template <int dim>
 struct MacDomain {
   MacDomain(const DomainDescription<dim>& description, const Communicator& comm)
@@ -23,7 +24,8 @@ struct MacDomain {
         halo(grid, 1),
         full_halo(grid, grid.ghost_width()) {}
 
-  /// Other tiles; cell ids change, so all that was made of the grid must be made anew. Collective.
+  /// Replaces the tiles; cell ids change, so all that was made of the grid must be made anew.
+  /// Collective.
   void set_grid(TiledGrid<dim> other) {
     grid = std::move(other);
     halo = HaloExchange<dim>(grid, 1);

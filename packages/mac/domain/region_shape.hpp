@@ -50,7 +50,7 @@ struct RegionShape {
   }
 
  private:
-  /// The distance from what lies within bounds, by how far beyond each of them a point is.
+  /// Returns the distance from a region, given how far a point is beyond each of its bounds.
   template <int n>
   static double outside(const Point<n>& beyond) {
     return std::min(beyond.maxCoeff(), 0.0) + beyond.cwiseMax(0).norm();

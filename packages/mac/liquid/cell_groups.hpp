@@ -19,15 +19,15 @@ template <int dim>
 CellGroups find_groups(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                        const std::vector<char>& is_member);
 
-/// The spaces that surfaces of solids keep apart: all cells in which there may be liquid. One space
-/// without surfaces; what lies beyond the cells that are stored is open. Kept with the solids, and
-/// found at the first time. Collective.
+/// Finds the closed spaces: components of all cells that are not solid, kept apart by surfaces of
+/// solids. One space without surfaces; the space beyond the stored cells is open. Kept with the
+/// solids once it is found. Collective.
 template <int dim>
 const CellGroups& find_closed_spaces(const MacDomain<dim>& domain, const SolidCells<dim>& solids);
 
-/// Spreads labels >= 0 from seen neighbours over `layers` of fluid cells that have none, as far as
-/// |phi| is not much more than these are deep; of several neighbours from that which is nearest to
-/// the surface, whatever the axes' order. `phi` on the halo of width 1. Collective.
+/// Spreads labels >= 0 from visible neighbours over `layers` of fluid cells that have none, as far
+/// as |phi| is not much larger than the layers' depth; the neighbour nearest to the surface counts,
+/// whatever the axes' order. `phi` on the halo of width 1. Collective.
 template <int dim>
 void spread_labels(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                    const CellField& phi, int layers, std::vector<int>& label);

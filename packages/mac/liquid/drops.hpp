@@ -27,15 +27,15 @@ class Drops {
 
   explicit Drops(const MacDomain<dim>& domain) : domain_(domain) {}
 
-  /// Moves all over a step, to the ranks where they are then. At closed sides and solids they lose
-  /// the velocity that would take them through, and stay a tenth of a cell before solids; what
-  /// leaves through an open side is gone. Velocities change with `speed_up`. Returns the volume on
-  /// this rank that solids left no room for. Collective.
+  /// Moves all drops over a step, to the ranks where they are then. At closed sides and solids they
+  /// lose their normal velocity, and stay a tenth of a cell before solids; drops that leave through
+  /// an open side are gone. Velocities change with `speed_up`. Returns the volume on this rank that
+  /// solids left no room for. Collective.
   double fly(const MovingSurface<dim>& surface, const Point<dim>& gravity, double dt);
   /// Adds a drop on a tile of this rank.
   void add(const Drop<dim>& drop) { state_.drops.push_back(drop); }
-  /// Takes those out for which this holds; they wait in `fallen`, with what solids left of their
-  /// velocity, before gravity has changed it. Local.
+  /// Takes out the drops for which `has_fallen` is true; they wait in `fallen`, with the velocity
+  /// that solids left them, before gravity has changed it. Local.
   void take(const Condition& has_fallen);
   void remove(const Condition& goes);  ///< for good; local
   /// Drops of this rank that have fallen in this step.
@@ -72,15 +72,16 @@ class Drops {
         Point<dim>::Zero();  ///< the part of the step's change of velocity [m/s]
     DropsReport report;
   };
-  /// Puts a place to closed sides that it is beyond, and takes the velocity there; false if it has
-  /// left through another side.
+  /// Moves a place back to closed sides that it is beyond, and sets its normal velocity to zero;
+  /// returns false if it has left through another side.
   bool stop_at_sides(Point<dim>& place, Point<dim>& velocity) const;
   enum class Fate { stays, leaves, has_no_room };
   /// Stops a drop at solids on the way `to` a place, maybe before a side; returns `fate` where
   /// there is none.
   Fate stop_at_solids(const MovingSurface<dim>& surface, double reach, Fate fate, Drop<dim>& drop,
                       Point<dim>& to);
-  /// Keeps those of `drops` that are on this rank's tiles, or on no one's and `holder` says this.
+  /// Keeps those of `drops` that are on this rank's tiles, or on no rank's if `holder` names this
+  /// one.
   void hand_out(const std::vector<Drop<dim>>& drops, const std::vector<int>& holder);
 
   const MacDomain<dim>& domain_;

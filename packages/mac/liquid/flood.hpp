@@ -6,9 +6,9 @@
 
 namespace lockstep {
 
-/// Marks with 1 what can be reached from the cells of the front, which are marked, one neighbour
-/// after the other where may_pass(from, to), both of them cells of the domain. `marked`: of stored
-/// cells; its halo is set. Collective.
+/// Flood fill: marks with 1 the cells that can be reached from those of the front, which are
+/// marked, neighbour by neighbour where may_pass(from, to) is true, both of them cells of the
+/// domain. `marked`: of stored cells; its halo is set. Collective.
 template <int dim, typename MayPass>
 void flood(const MacDomain<dim>& domain, std::vector<int> front, const MayPass& may_pass,
            std::vector<char>& marked) {

@@ -12,13 +12,14 @@ class GasPockets;
 /// The free surface at one instant, as pressures and faces see it: ghost fluid with p = 0 above it.
 template <int dim>
 struct FreeSurface {
-  /// phi on all stored cells [m]: negative in the liquid, carried on into solids.
+  /// phi on all stored cells [m]: negative in the liquid, extrapolated into solids.
   const CellField* distance = nullptr;
   /// Part of the way from the centre of a wet cell to that of a dry neighbour at which the surface
   /// is, in (0, 1]. Local.
   std::function<double(int wet, int dry)> crossing;
   double smallest_distance = 1e-5;  ///< least distance of a pressure from the surface [cells]
-  /// True: p = 0 where the surface is. False: at the centre of the dry cell, first order.
+  /// True: p = 0 at the free surface, second order (ghost fluid). False: at the centre of the dry
+  /// cell, first order.
   bool at_true_place = true;
   GasPockets<dim>* gas = nullptr;  ///< null: no air is closed in
 

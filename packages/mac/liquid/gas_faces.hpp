@@ -25,13 +25,13 @@ std::vector<GasFace> find_gas_faces(const MacDomain<dim>& domain, const MacGeome
 bool only_gas_beside(const std::vector<CellState>& cells, const std::vector<int>& pocket,
                      const FaceCells& face);
 
-/// Finds the gas bubbles among the air cells. `fractions`: of owned faces and the upper ones of
-/// owned cells, closed ones being no way; without cut cells empty. Collective.
+/// Finds the gas bubbles among the air cells. `fractions`: apertures of owned faces and the upper
+/// ones of owned cells, closed ones being no connection; without cut cells empty. Collective.
 template <int dim>
 void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>& marks,
                   const std::array<CellField, dim>& fractions, MacGeometry<dim>& geometry);
 
-/// Impulse of the sides of the domain on the bubbles of these p̂. Of this rank.
+/// Impulse of the sides of the domain on the bubbles of these p̂, on this rank.
 template <int dim>
 Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                             const std::vector<double>& scaled_pressure);

@@ -39,14 +39,14 @@ struct LiquidCells {
 template <int dim>
 struct InterfaceStep {
   /// u_ADV [m/s] on all owned faces that are not inside solids, extended from the liquid over
-  /// `band()` cells; what it is beyond does not matter.
+  /// `band()` cells; values beyond are not used.
   const FaceField<dim>& advection_velocity;
   const MovingSurface<dim>& surface;
   RayHalo<dim>& ray_halo;  ///< ray halo of the domain's grid
   KeptSurface<dim>& kept;
   double time = 0;  ///< t^n [s]
   double dt = 0;    ///< [s]
-  /// Liquid is created inside these and removed inside those, at the end of the step.
+  /// Shapes inside which liquid is created and removed, at the end of the step.
   std::vector<SignedDistance<dim>> sources, sinks;
   Point<dim> gravity = Point<dim>::Zero();  ///< with any body force [m/s^2]; drops fall with it
   /// The part of a face at a side of the domain, the lower one of this cell normal to an axis,
@@ -62,13 +62,14 @@ class InterfaceModel : public PlugIn {
  public:
   using Surface = std::shared_ptr<const SurfaceSnapshot<dim>>;
 
-  /// Takes the liquid to be where `distance` is negative and outside the solids; near its surface
+  /// Initialises the liquid where `distance` is negative and outside the solids; near its surface
   /// it should be a distance. The volume found becomes the target. Collective.
   virtual void initialise(const SignedDistance<dim>& distance, const Surface& surface) = 0;
   /// Moves the interface from t^n to t^{n+1}, final for the surfaces at t^{n+1}. Throws SolveError
   /// if the velocity is not finite. Collective.
   virtual void advance(const InterfaceStep<dim>& step) = 0;
-  /// phi [m] on all stored cells, ghosts included, continued into solids; cut off at +- `band()` h.
+  /// phi [m] on all stored cells, ghosts included, extrapolated into solids; cut off at the edges
+  /// of the narrow band, +- `band()` h.
   virtual const CellField& distance() const = 0;
   /// The part of the way from the centre of a wet cell to that of its dry neighbour that is under
   /// water, in (0, 1]. Default: phi is linear between them.
@@ -76,8 +77,8 @@ class InterfaceModel : public PlugIn {
     const CellField& phi = distance();
     return phi[wet_cell] / (phi[wet_cell] - phi[dry_cell]);
   }
-  /// Cells around the liquid's surface over which phi is known and a velocity is wanted, for a step
-  /// in which nothing moves over more than so many cells. Local.
+  /// Half width of the narrow band: cells around the liquid's surface over which phi is known and a
+  /// velocity is needed, for a step in which nothing moves over more than so many cells. Local.
   virtual int band(double largest_displacement) const = 0;
   /// Volumes at the present time. Local.
   virtual LiquidLedger ledger() const = 0;
@@ -106,9 +107,8 @@ template <int dim>
 class MigratingInterface {
  public:
   virtual ~MigratingInterface() = default;
-  /// The tiles of the domain are about to change, between two steps; new ones are dry. Carries over
-  /// what lives on them, and returns what is to be done once the domain has its new grid.
-  /// Collective.
+  /// Moves the fields on the tiles of the domain, which are about to change between two steps; new
+  /// tiles are dry. Returns the action that is due once the domain has its new grid. Collective.
   virtual std::function<void()> migrate(const TileMigration<dim>&) = 0;
 };
 

@@ -36,7 +36,7 @@ class LeakAudit {
   /// SolveError for a leak. Collective.
   void close(const InterfaceStep<dim>& step, InterfaceModel<dim>& interface, double displacement);
 
-  /// Tiles or the liquid are others than after the last step. Local.
+  /// Forgets the last step: tiles or the liquid have changed since. Local.
   void forget() { last_ = {}; }
 
   const std::vector<Watch<dim>>& watches() const { return watches_; }
@@ -67,17 +67,18 @@ class LeakAudit {
   bool sees(const Look& look, int cell, int axis, int side) const;
   std::vector<int> seeds(const Point<dim>& point, const std::vector<CellState>& cells,
                          const Near& near) const;
-  /// Cells watched and owned now that hold liquid from nowhere.
+  /// Returns the watched and owned cells that hold liquid from nowhere.
   std::vector<int> find_from_nowhere(const InterfaceStep<dim>& step, const Look& now,
                                      double displacement);
-  /// Spreads over seen neighbours until all of these cells are marked or it has come so far.
+  /// Spreads marks over visible neighbours until all of these cells are marked, or over `reach`
+  /// cells.
   void explain(const Look& now, int reach, std::vector<char>& marked,
                std::vector<int>& cells) const;
-  /// Spreads on over cells that surfaces have passed over, which take what they see there.
+  /// Spreads marks on over cells that surfaces have passed over, from their visible neighbours.
   void explain_swept(const InterfaceStep<dim>& step, const Look& now, std::vector<char>& marked,
                      std::vector<int>& cells) const;
-  /// Takes off those that a way leads to which is narrower than cells: from a marked centre, or a
-  /// hidden drop of before.
+  /// Removes the cells that a way narrower than cells leads to: from a marked centre, or a drop
+  /// that was hidden before.
   void explain_by_gaps(const InterfaceStep<dim>& step, std::vector<char> marked, int reach,
                        std::vector<int>& cells) const;
   bool gap_leads_to(int cell, const std::vector<char>& marked, const Near& near, int reach) const;

@@ -14,7 +14,7 @@
 
 namespace lockstep {
 
-/// The liquid of a fluid that has a free surface: its interface, and what a step does with it.
+/// The liquid of a fluid that has a free surface: its interface and the stages of its step.
 template <int dim>
 class Liquid {
  public:
@@ -52,7 +52,8 @@ class Liquid {
   Drops<dim>* drops() const { return interface_->drops(); }  ///< null: there are never any
   InterfaceModel<dim>& interface() { return *interface_; }
   const InterfaceModel<dim>& interface() const { return *interface_; }
-  /// Linear between the centres of cells; near cells that this rank owns. After `begin`. Local.
+  /// phi at a point near cells that this rank owns, linear between the centres of cells [m]. Valid
+  /// after `begin`. Local.
   double distance(const Point<dim>& x) const;
   LiquidReport report() const;
   std::vector<std::string> watch_names() const;

@@ -33,8 +33,8 @@ std::vector<Point<dim>> read_dry_points(const ParameterList& list);
 /// Shapes whose liquid is taken away.
 template <int dim>
 std::vector<SignedDistance<dim>> read_sinks(const ParameterList& list);
-/// Throws InputError if the fluid's list asks for what does not go together with a free surface.
-/// `periodic`: the axes of the domain that are.
+/// Throws InputError if the fluid's list has parameters that exclude a free surface. `periodic`:
+/// the axes of the domain that are.
 template <int dim>
 void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
                         const std::array<bool, dim>& periodic);

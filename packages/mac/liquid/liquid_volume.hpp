@@ -16,12 +16,12 @@ struct GroupVolumes {
 };
 
 /// The volume of {phi < 0} outside solids: exact for phi linear on the simplices of the boxes
-/// between cell centres (to the sides of the domain phi is constant, to open ones it goes on where
-/// it rises); in boxes that closed solids
-/// reach into the solids' volume is taken off in proportion; in those that a surface divides, each
-/// corner has its share, and what of a cell lies beyond a shell counts with the cell there. Of such
-/// a share 1/2 - phi/h is liquid; that of a dry cell belongs to the deepest wet one that it sees
-/// beside it, so that volumes do not leap where cells become wet.
+/// between cell centres (towards sides of the domain phi is constant, towards open ones it is
+/// extrapolated where it rises); in boxes that closed solids reach into, the solids' volume is
+/// subtracted in proportion; in boxes that a surface divides, each corner has its share, and the
+/// part of a cell beyond a shell counts with the cell there. Of such a share 1/2 - phi/h is liquid;
+/// that of a dry cell belongs to the deepest wet one that it sees beside it, so that volumes do not
+/// jump where cells become wet.
 template <int dim>
 class LiquidVolume {
  public:

@@ -9,7 +9,7 @@ namespace lockstep {
 
 struct CellGroups;
 
-/// Where solids are at one instant, as cell centres see it.
+/// The solids at one instant, as cell centres see them.
 template <int dim>
 struct SolidCells {
   /// Cells are `fluid` (liquid or not), `solid` or `outside`; faces `free` beside a fluid cell,
@@ -22,7 +22,7 @@ struct SolidCells {
   mutable std::shared_ptr<const CellGroups> closed_spaces;  ///< once somebody has looked for them
 
   bool is_fluid(int cell) const { return state.cells[cell] == CellState::fluid; }
-  /// The fluid cell beside one of the fluid, if nothing comes between their centres, else -1.
+  /// Returns the fluid cell beside a fluid cell if no surface comes between their centres, else -1.
   int seen_neighbor(const TiledGrid<dim>& grid, int cell, int axis, int side) const {
     const int other = grid.neighbor(cell, axis, side);
     if (other < 0 || !is_fluid(other))

@@ -10,10 +10,10 @@ namespace lockstep {
 /// Extends velocities into the air above a free surface, over the faces of a narrow band, so that
 /// the surface and the fluid behind it can move up there. A face takes the mean of its neighbours
 /// along the axes that are nearer to the fluid than itself and that it sees, weighted with how much
-/// nearer they are: the velocity is extended along the normal of the surface. Never through a
-/// surface of a solid, nor into a solid. Beside the fluid it goes on as the velocity there changes,
-/// in so far as that is steady over three faces (minmod): or else the surface of a wave of number k
-/// would lag by kh/4. What a solid or a closed side shuts moves as they do.
+/// nearer they are: the velocity is extended along the normal of the surface. It is never extended
+/// through a surface of a solid, nor into a solid. Beside the fluid the extension is linear, in so
+/// far as the velocity's slope is steady over three faces (minmod): else the surface of a wave of
+/// number k would lag by kh/4. Faces that a solid or a closed side shuts move as these do.
 ///
 /// Since only nearer neighbours count, the values depend neither on an order nor on the ranks.
 template <int dim>
@@ -36,7 +36,7 @@ class VelocityExtension {
   struct Source {
     int face = -1;
     int side = -1;  ///< side of the source on which the fluid's own next two are, if they are known
-    double weight = 0;  ///< by how much it is nearer to the fluid [cells], or next to nothing
+    double weight = 0;  ///< difference of distances to the fluid [cells], or `least_weight`
   };
   struct Face {
     int cell = 0;

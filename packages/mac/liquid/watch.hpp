@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// A place whose liquid is measured, and into which none may come but on an open way.
+/// A place whose liquid is measured, and into which liquid may come on open ways only.
 template <int dim>
 struct Watch {
   std::string name;  ///< as columns have it
