@@ -10,7 +10,8 @@ namespace lockstep {
 /// One solid's share of the closed part of a face; the shares of a face sum to one. A rigid body
 /// moves its share with the velocity of its rigid motion at `center`, the centroid of its part of
 /// the face: as a rigid motion is free of divergence, what flows through the closed faces of a cell
-/// is then exactly what the surface inside the cell pushes out (design: the flux form).
+/// is then exactly what the surface inside the cell pushes out (docs/method.md, "The flux through
+/// cut cells").
 template <int dim>
 struct FluxShare {
   double weight = 0;
@@ -29,10 +30,10 @@ enum class FaceWeights {
 template <int dim>
 Box<dim> face_of(const ControlVolume<dim>& volume);
 
-/// The solids of which a thin part lies between the two pressure points, in ascending order:
-/// shells, and closed solids that the segment enters and leaves again, unless both points see the
-/// same open place of the face (a tip). No face fraction sees those: they would leak. Faces that
-/// they block are mixed faces.
+/// Returns the solids of which a thin part lies between the two pressure points, in ascending
+/// order: shells, and closed solids that the segment enters and leaves again, unless both points
+/// see the same open place of the face (a tip). No face fraction sees those: they would leak. Faces
+/// that they block are mixed faces.
 template <int dim>
 std::vector<int> thin_between(const ControlVolume<dim>& volume,
                               const SurfaceSnapshot<dim>& surface);
@@ -44,8 +45,8 @@ template <int dim>
 double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
                         double smallest, FaceWeights weights = FaceWeights::areas);
 
-/// Centroid of what the shares of a partly open face leave open: both together balance about the
-/// centre of the face, whatever was rounded.
+/// Centroid of the open part of a partly open face: both together balance about the centre of the
+/// face, whatever was rounded.
 template <int dim>
 Point<dim> open_center_of(const ControlVolume<dim>& volume,
                           const std::vector<FluxShare<dim>>& shares);

@@ -34,7 +34,7 @@ class FaceCoupling : public Coupling<dim>,
                                       bool with_prescribed) const override;
 
  protected:
-  /// Starts anew with the fluid's coupled volumes: no solids, masses and velocities zero.
+  /// Takes over the fluid's coupled volumes, with no solids, masses and velocities zero.
   /// Collective.
   void take_volumes(const FluidDiscretization<dim>& fluid, const SurfaceSnapshot<dim>& surface);
   /// Area of the part of a face that moves with solids [m^(dim-1)].

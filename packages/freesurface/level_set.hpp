@@ -28,8 +28,8 @@ ParameterList particle_level_set_parameters();
 /// Reads the parameters of either kind.
 LevelSetParameters read_level_set_parameters(const ParameterList& list);
 
-/// phi as a signed distance at cell centres, carried along rays and made a distance again; where
-/// there are particles, corrected by them (Enright et al. 2002).
+/// Level set: phi is a signed distance at cell centres, advected along rays and redistanced;
+/// particles, if there are any, correct it (Enright et al. 2002).
 template <int dim>
 class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
  public:
@@ -57,16 +57,16 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   }
 
   const ParticleTiles<dim>& particles() const { return particles_; }
-  /// Particles that surfaces have cost so far, on this rank.
+  /// Number of particles that surfaces have removed so far, on this rank.
   GlobalIndex n_particles_lost() const { return n_lost_; }
 
  private:
   double cut_off() const { return parameters_.band * domain_.spacing(); }
-  /// Returns those that there were, if they are others now.
+  /// Classifies cells for a surface; returns the solids before, if they have changed.
   std::optional<SolidCells<dim>> find_solids(const Surface& surface);
   /// Returns how far the fastest fluid goes [cells].
   double carry(const InterfaceStep<dim>& step);
-  /// Makes phi a distance again, as the particles know it. Sets the halo of width 1.
+  /// Redistances phi and corrects it by the particles. Sets the halo of width 1.
   void restore(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
   /// Fills small air components and takes their particles out of them.
   void fill_voids();

@@ -36,7 +36,7 @@ struct MacParameters {
   int order_in_time = 1;  ///< order of the splitting of advection from all else
 };
 
-/// Schema of the "Fluid" list, without "Type"; without interface models it knows no free surface.
+/// Schema of the "Fluid" list, without "Type"; without interface models it has no free surface.
 template <int dim>
 ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces = nullptr);
 template <int dim>
@@ -165,7 +165,8 @@ class MacFluid : public FluidDiscretization<dim>,
   void set_prescribed(double time, FaceField<dim>& velocity) const;
   /// True if a boundary condition jumped in the step that ends now.
   bool jumped() const;
-  /// Other tiles: all fields move; what else was made of the grid waits for `freeze`.
+  /// Changes the tiles: all fields move; everything else that depends on the grid waits for
+  /// `freeze`.
   void regrid(const TileOwners& owners);
   void rest_at_rim();
   typename MovingTiles<dim>::Present present(const MacState<dim>& state, double time,
@@ -195,7 +196,7 @@ class MacFluid : public FluidDiscretization<dim>,
   void settle_gas();             ///< for the frozen geometry
   void bound_pressure(
       CellField& pressure) const;  ///< bounds the pressure of the last step beside air
-  /// Over the faces of the gas bubbles, the sum of value(face) for each bubble. Collective.
+  /// Sums value(face) over the faces of each gas bubble. Collective.
   template <typename Value>
   std::vector<double> sum_of_pockets(const Value& value) const;
   void move_liquid(double time, double dt, const MovingSurface<dim>& surface,

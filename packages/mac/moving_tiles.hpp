@@ -17,10 +17,10 @@ class MovingTiles {
  public:
   MovingTiles(const ParameterList& fluid, const DomainDescription<dim>& domain);
 
-  /// Collective: those where something is asked for at the start.
+  /// Returns the tiles that are asked for at the start. Collective.
   TileOwners first(const Communicator& comm) const;
 
-  /// A scalar that is carried, and its value in fluid at rest.
+  /// An advected scalar, and its value in fluid at rest.
   struct Carried {
     const CellField& values;
     double ambient;
@@ -42,7 +42,7 @@ class MovingTiles {
   };
   /// Collective: other tiles, if they are needed.
   std::optional<TileOwners> change(const Present& present) const;
-  /// Collective: throws SolveError if a surface is where no tile is.
+  /// Throws SolveError if a surface is where no tile is. Collective.
   void check_room(const SurfaceSnapshot<dim>& surface, const TileOwners& owners,
                   const Communicator& comm) const;
 
@@ -77,8 +77,8 @@ template <int dim>
 MacDomain<dim> make_domain(const ParameterList& fluid, const ParameterList& domain,
                            const Communicator& comm);
 
-/// The domain's cells beside tiles that do not exist, of all stored cells: the fluid's state is
-/// known there, at rest. Empty if all tiles exist. Collective.
+/// Marks the domain's cells beside tiles that do not exist, among all stored cells: the fluid is at
+/// rest there. Empty if all tiles exist. Collective.
 template <int dim>
 std::vector<char> find_rim(const MacDomain<dim>& domain);
 /// Makes the fluid cells of the rim empty. Collective.

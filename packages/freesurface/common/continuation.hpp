@@ -21,7 +21,7 @@ class Continuation {
   void into_solids(const MacDomain<dim>& domain, const SolidCells<dim>& solids, double cut_off,
                    CellField& phi);
 
-  /// To be called when cells are others: tiles have come or gone.
+  /// Forgets the layers when tiles have come or gone.
   void forget_layers() { surface_ = nullptr; }
 
  private:

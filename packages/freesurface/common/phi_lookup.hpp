@@ -9,8 +9,8 @@
 
 namespace lockstep {
 
-/// phi at any point of one tile after the other: multilinear, near surfaces of solids from what is
-/// visible. Points are in cells from the lower corner of the tile.
+/// phi at any point of one tile after the other: multilinear, near surfaces of solids from the
+/// visible samples. Points are in cells from the lower corner of the tile.
 template <int dim>
 class PhiLookup {
  public:

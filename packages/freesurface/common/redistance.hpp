@@ -11,13 +11,13 @@ enum class NearCells {
   keep    ///< it is one already
 };
 
-/// Makes phi a distance again without moving its zero: cells with a seen neighbour of the other
-/// sign keep their share, |phi| / |grad phi| (after Russo & Smereka 2000), the others are reached
-/// from those in the order of their distance, first order, across ranks until nothing changes.
-/// Nothing is looked at across a surface of solids.
+/// Redistances phi without moving its zero: cells with a visible neighbour of the other sign become
+/// |phi| / |grad phi| (after Russo & Smereka 2000), the others follow in the order of their
+/// distance (fast marching, first order), across ranks until nothing changes. No value crosses a
+/// surface of solids.
 ///
-/// Changes the fluid cells of the flagged owned tiles, which hold all |phi| < cut_off there can
-/// be; the farther ones become +-cut_off [m]. Sets the halo of width 1, which must be set before.
+/// Changes the fluid cells of the flagged owned tiles, which hold all |phi| < cut_off there can be;
+/// the farther ones become +-cut_off [m]. Sets the halo of width 1, which must be set before.
 /// Collective.
 template <int dim>
 void redistance(const MacDomain<dim>& domain, const SolidCells<dim>& solids,

@@ -44,33 +44,32 @@ class VolumeLedger {
 
   /// Takes the present volumes as targets. Collective.
   void begin(const SolidCells<dim>& solids, const CellField& phi);
-  /// Takes off what flows out through the sides of the domain in a step; through open sides no
-  /// liquid comes in. Before phi is carried. Collective.
+  /// Subtracts the outflow through the sides of the domain in a step; through open sides no liquid
+  /// comes in. Called before phi is advected. Collective.
   void flow_out(const SolidCells<dim>& solids, const CellField& phi,
                 const InterfaceStep<dim>& step);
-  /// Hands the targets on to the bodies of the carried phi. `swept` (may be empty): cells that have
-  /// changed sides of a surface since `before`; `reach`: farther than any cell's content has come
-  /// from [cells]. Collective.
+  /// Hands the targets on to the components of the advected phi. `swept` (may be empty): cells that
+  /// have changed sides of a surface since `before`; `reach`: more than the displacement of any
+  /// cell's content [cells]. Collective.
   void inherit(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
                const std::vector<char>& swept, int reach);
   /// Takes the change by a sink into the targets. Collective.
   void remove(const SolidCells<dim>& solids, const CellField& phi);
   /// Takes the change by a source since `before` into the targets. Collective.
   void create(const SolidCells<dim>& solids, const CellField& before, const CellField& phi);
-  /// Takes a volume [m^dim] for a drop at each of these owned cells off the body nearest to it, or,
-  /// where none is within a few cells, off all in the same closed space. Returns the parts of them
-  /// that there were. Collective.
+  /// Takes a volume [m^dim] for a drop at each of these owned cells from the nearest component, or,
+  /// where none is within a few cells, from all in the same closed space. Returns the parts of
+  /// these volumes that were available. Collective.
   std::vector<double> take_drops(const SolidCells<dim>& solids, const CellField& phi,
                                  const std::vector<int>& cells, double volume);
-  /// Gives the volumes of drops to the bodies that these owned cells belong to. Collective.
+  /// Gives the volumes of drops to the components that these owned cells belong to. Collective.
   void give_drops(const std::vector<int>& cells, const std::vector<double>& volumes);
-  /// Volume that is lost for good, on this rank. Collective.
+  /// Books a volume of this rank as lost for good. Collective.
   void lose(double volume) { targets_.lost += sum_all(domain_.grid.comm(), volume); }
   /// Shifts phi until liquid components have their target volumes, by at most `largest_shift`
   /// max(1, cfl) cells. `phi`, known up to `cut_off`, on the halo of width 1, which is set on
-  /// return. `settle()` sets its ghosts, and it goes on into solids then, as it must before all
-  /// calls: boxes that solids cut are measured with it. Returns what it has done, empty: nothing.
-  /// Collective.
+  /// return. `settle()` sets its ghosts and extrapolates it into solids, as is needed before all
+  /// calls: boxes that solids cut are measured with it. Returns the shift, empty: none. Collective.
   VolumeShift correct(const SolidCells<dim>& solids, double cfl, double cut_off,
                       const std::function<void()>& settle, CellField& phi);
 

@@ -4,7 +4,7 @@
 
 namespace lockstep {
 
-/// Fractions nearer than this to 0 or 1 are taken for those.
+/// Fractions nearer than this to 0 or 1 count as 0 or 1.
 constexpr double negligible_fraction = 1e-10;
 
 inline bool is_mixed(double fraction) {
@@ -32,8 +32,8 @@ class FractionPlanes {
     plane.constant = numbers_[dim][cell];
     return plane;
   }
-  /// phi on the flagged tiles and its halo of width 1, from the planes of a cell and its
-  /// neighbours in sight: a distance where one of these has one, else +-cut_off. Negative where
+  /// Sets phi on the flagged tiles and its halo of width 1 from the planes of a cell and its
+  /// visible neighbours: a distance where one of these has a plane, else +-cut_off. Negative where
   /// the fraction is above 1/2. Collective.
   void set_distance(const SolidCells<dim>& solids, const std::vector<char>& tiles,
                     const CellField& fraction, double cut_off, CellField& phi) const;

@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// The part of each stored cell that closed solids leave; empty without a surface. Collective.
+/// Returns the part of each stored cell outside closed solids; empty without a surface. Collective.
 template <int dim>
 CellField open_parts(const MacDomain<dim>& domain, const SolidCells<dim>& solids);
 

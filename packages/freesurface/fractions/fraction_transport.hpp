@@ -7,11 +7,11 @@ namespace lockstep {
 
 /// Liquid of the cells.
 struct Fractions {
-  CellField liquid;  ///< the part of a cell that is liquid, on stored cells; goes on into solids
+  CellField liquid;  ///< liquid part of each stored cell, extrapolated into solids [1]
   /// Volume defect of a stored cell [cells]: liquid that has come to it but finds no room in it,
   /// less liquid in it that has come from nowhere.
   CellField owed;
-  CellField open;  ///< the part of a cell that closed solids leave; empty: 1 everywhere
+  CellField open;  ///< part of a cell outside closed solids; empty: 1 everywhere
 
   double open_part(int cell) const { return open.empty() ? 1 : open[cell]; }
   /// Changes the liquid of a cell; the difference goes to its defect.

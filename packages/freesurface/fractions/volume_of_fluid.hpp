@@ -48,12 +48,13 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
  private:
   double cut_off() const { return parameters_.band * domain_.spacing(); }
   void find_solids(const Surface& surface);
-  /// `arrived`: also of cells that are wet or dry since phi was made.
+  /// Flags the tiles near the surface; `arrived`: also cells that have become wet or dry since phi
+  /// was made.
   std::vector<char> tiles_within(int reach, bool arrived = false) const;
   /// Returns the flags of the tiles in which anything may have changed.
   std::vector<char> carry(const InterfaceStep<dim>& step);
-  /// Solids go on to the end of the step; cells that change sides do so without their liquid.
-  /// True if surfaces have taken liquid along, on any rank.
+  /// Moves solids to the end of the step; cells that change sides do so without their liquid.
+  /// Returns true if surfaces have taken liquid along, on any rank.
   bool move_solids(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
   /// Marks owned fluid cells: 1 where no ray could be followed, or no fluid was.
   InvalidSamples<dim> find_swept(const InterfaceStep<dim>& step,

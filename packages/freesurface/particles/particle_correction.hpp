@@ -28,7 +28,7 @@ template <int dim>
 void remove_trapped_air(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                         KeptSurface<dim>& kept, const CellField& phi, ParticleTiles<dim>& tiles);
 
-/// Takes those of a side out of the flagged owned cells. Local.
+/// Removes the particles of a side from the flagged owned cells. Local.
 template <int dim>
 void remove_particles(int side, const std::vector<char>& cells, ParticleTiles<dim>& tiles);
 

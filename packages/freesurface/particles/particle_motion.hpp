@@ -8,9 +8,10 @@
 
 namespace lockstep {
 
-/// Moves all with the flow of the frame, by the midpoint rule, to the tiles they are in then. What
-/// a surface of solids would pass stays on its side of it or goes, and so does what leaves through
-/// an open side. Returns how many a surface has cost on this rank. Collective.
+/// Moves all particles with the flow of the frame, by the midpoint rule, to the tiles they are in
+/// then. A particle that a surface of solids would pass stays on its side or is removed; one that
+/// leaves through an open side is removed, too. Returns the number that surfaces have removed on
+/// this rank. Collective.
 template <int dim>
 GlobalIndex move_particles(const MacDomain<dim>& domain, TransportFrame<dim>& frame,
                            const RayHalo<dim>& ray_halo, ParticleTiles<dim>& tiles);

@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// The numbers of the particles that watch over a level set.
+/// Parameters of the particles that correct a level set.
 struct ParticleParameters {
   int per_cell = 16;
   int band = 3;        ///< cells on both sides of the surface in which they are
@@ -20,8 +20,8 @@ struct ParticleParameters {
 void declare_particles(ParameterList& list);
 ParticleParameters read_particles(const ParameterList& list);
 
-/// Farther than this from a cell's centre no place in the cell is: phi beyond has one sign in it
-/// [cells].
+/// Largest distance of a place in a cell from its centre: where |phi| is larger, the cell has one
+/// sign [cells].
 inline constexpr double farthest_in_cell = 0.9;
 
 /// A ball that belongs to one side of the surface.
@@ -52,7 +52,7 @@ struct Particle {
 template <int dim>
 using ParticleTiles = std::vector<std::vector<Particle<dim>>>;
 
-/// Some of a tile's particles, as many as are looked at at once.
+/// Some of a tile's particles, as many as are processed at once.
 template <int dim>
 struct ParticleBatch {
   std::array<int, tile_width<dim>> places;  ///< in the tile's list, ascending
@@ -91,8 +91,8 @@ class ParticlePost {
   /// Particles reach tiles that `lookup` stores; ids of owned cells are those of the base grid.
   explicit ParticlePost(const TiledGrid<dim>& lookup) : grid_(lookup), messages_(lookup) {}
 
-  /// At a place in lattice units, within the domain; periodic axes wrap. Where no tile exists it is
-  /// lost.
+  /// Sends a particle to a place in lattice units, within the domain; periodic axes wrap. It is
+  /// lost where no tile exists.
   void put(const Point<dim>& place, float radius);
   /// Collective.
   void deliver(ParticleTiles<dim>& tiles);
