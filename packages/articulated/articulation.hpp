@@ -18,7 +18,8 @@ struct ArticulationOptions {
   double largest_turn = 0.2;    ///< largest turn of a jointed body in a step [rad]
 };
 
-/// The joints of a scene, what they connect, and where they are. Everything is replicated.
+/// The joints of a scene, the bodies that they connect, and their coordinates. Replicated on all
+/// ranks.
 template <int dim>
 class Articulation {
  public:
@@ -45,7 +46,7 @@ class Articulation {
   std::vector<MotionBasis<dim>> motion_bases() const;
   /// The fastest turning jointed body [rad/s].
   double fastest_turn() const;
-  /// A step begins: keeps where joints are, and finds where given ones go.
+  /// Begins a step: keeps the coordinates of joints, and finds those that given joints will have.
   void begin_step(double time, double dt);
   /// q after a move in which the rates times dt were `change`.
   void update_coordinates(const Eigen::VectorXd& change);

@@ -43,7 +43,7 @@ template <int dim>
 bool close_joints(const ClosingProblem<dim>& problem, Answer answer,
                   std::vector<BodyMotion<dim>>& motions);
 
-/// Takes from momenta what joints at the present poses do not let, by impulses J^T mu.
+/// Removes from momenta the part that joints do not allow at the present poses, by impulses J^T mu.
 template <int dim>
 void let_joints_hold(const ClosingProblem<dim>& problem, std::vector<BodyMotion<dim>>& motions);
 
@@ -51,13 +51,13 @@ void let_joints_hold(const ClosingProblem<dim>& problem, std::vector<BodyMotion<
 template <int dim>
 TwistVector<dim> free_twist(const BodyMass<dim>& mass, const TwistVector<dim>& momentum, double dt);
 
-/// The twists that take the bodies to where the root's twist and the rates of the tree's joints
-/// take them. `change`: rates times dt, of all joints. Local.
+/// Returns the twists that take the bodies to the poses given by the root's twist and the rates of
+/// the tree's joints. `change`: rates times dt, of all joints. Local.
 template <int dim>
 void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
                   std::vector<BodyMotion<dim>>& motions);
 
-/// Where the bodies of a mechanism are after the step, and prescribed ones.
+/// Returns the poses after the step of the bodies of a mechanism and of prescribed ones.
 template <int dim>
 std::vector<BodyPose<dim>> poses_after(const ClosingProblem<dim>& problem,
                                        const std::vector<BodyMotion<dim>>& motions);

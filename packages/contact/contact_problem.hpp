@@ -23,8 +23,8 @@ class ContactProblem {
 
   /// Contacts that act without friction, as if they touched, wherever they are; before `prepare`.
   void hold(std::vector<Contact<dim>> contacts) { held_ = std::move(contacts); }
-  /// Finds the candidates; false if there is nothing to act on. Where that is not `expected`, most
-  /// of what a solid that is not rigid has near itself is passed by at first.
+  /// Finds the candidates; false if there is nothing to act on. If none is `expected`, most of the
+  /// pairs of a solid that is not rigid with itself are skipped at first.
   bool prepare(const std::vector<double>& before, const std::vector<double>& velocity,
                bool expected);
   /// Solves; returns the number of sweeps.
@@ -63,7 +63,8 @@ class ContactProblem {
   ContactReach reach(const SolidMotion<dim>& motion) const;
   /// The largest violation, not less than 0 [m/s]. Keeps no candidates.
   double worst_violation(const SolidMotion<dim>& motion, const SolidMotion<dim>& before);
-  /// True for what does not touch: pairs that are kept so, and where one is glued to the other.
+  /// True for pairs that do not touch: those of `apart`, and those of which one is glued to the
+  /// other.
   bool is_apart(const Contact<dim>& contact) const;
   bool is_known(const Contact<dim>& contact) const;
   /// `unheld`: nothing has acted on the motion yet.
@@ -121,7 +122,7 @@ class ContactProblem {
   std::vector<Limit> limits_;
   std::map<Pair, std::vector<int>> pairs_;                      ///< candidates of each pair
   std::unordered_map<std::size_t, std::vector<int>> by_place_;  ///< candidates by hash_of
-  double scale_ = 0;    ///< largest violation at the start, of what can move [m/s]
+  double scale_ = 0;    ///< largest violation at the start, of movable contacts and limits [m/s]
   double deepest_ = 0;  ///< overlap of what is no candidate [m]
 };
 

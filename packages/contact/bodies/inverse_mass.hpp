@@ -8,7 +8,7 @@ namespace lockstep {
 
 /// (P^T M_S P)^-1 on the unknowns, replicated: rows of small blocks. Where the blocks of M_S are
 /// larger than those of rigid bodies, alone or tied together by joints (consistent mass matrices),
-/// lumped masses of nodes, the sums of its rows, stand in.
+/// lumped masses of nodes, the sums of its rows, replace them.
 struct InverseMass {
   bool exact = true;
   std::vector<std::vector<std::pair<int, double>>> rows;  ///< by id, without padding

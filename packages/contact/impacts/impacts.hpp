@@ -18,8 +18,8 @@ template <int dim>
 struct SurfacePath {
   SurfacePath(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion, double dt);
   std::vector<Point<dim>> before, after;
-  /// Where they would be if nothing held them, which tells the sides of what coincides before;
-  /// empty: `after`.
+  /// Places of the vertices if nothing held them, which tell the sides of primitives that coincide
+  /// before; empty: `after`.
   std::vector<Point<dim>> unheld;
 };
 

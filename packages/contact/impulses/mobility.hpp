@@ -34,10 +34,10 @@ class GrowingColumn {
 };
 
 /// The velocities that unit impulses on dofs make: M_S^-1, or the response of solids whose inner
-/// forces are implicit. Of those an impulse moves the whole body. Kept are responses between those
-/// dofs alone that contacts have asked for, which become *active* by that, in the order of asking:
-/// all other velocities take one solve for all impulses together. Replicated; every rank must ask
-/// for the same dofs in the same order.
+/// forces are implicit. An impulse on the latter moves the whole body. Responses are kept only
+/// between the dofs that contacts have asked for, which become *active* in the order of asking: all
+/// other velocities take one solve for all impulses together. Replicated; every rank must ask for
+/// the same dofs in the same order.
 template <int dim>
 class Mobility {
  public:

@@ -42,7 +42,7 @@ template <int dim>
 std::optional<ClosestPrimitives<dim>> closest_primitives(PrimitiveKind kind,
                                                          const PrimitivePoints<dim>& points);
 
-/// Where two primitives, whose points move linearly, first meet.
+/// First meeting of two primitives whose points move linearly.
 template <int dim>
 struct Impact {
   double time = 0;  ///< part of the motion [0, 1]
@@ -56,8 +56,8 @@ template <int dim>
 using SideAtStart =
     std::function<Point<dim>(const PrimitiveWeights<dim>&, const Point<dim>& normal)>;
 /// After Bridson et al. 2002: the points are coplanar (2D: collinear) at roots of a cubic (2D:
-/// quadratic) in time. Motion inside one plane is not an impact. What lies on each other at the
-/// start meets at once if it goes to the other side; without `side` it has none.
+/// quadratic) in time. Motion inside one plane is not an impact. Primitives that lie on each other
+/// at the start meet at once if they go to the other side; without `side` they do not meet.
 template <int dim>
 std::optional<Impact<dim>> first_impact(PrimitiveKind kind, const PrimitivePoints<dim>& before,
                                         const PrimitivePoints<dim>& after,

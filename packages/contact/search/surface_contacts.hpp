@@ -19,8 +19,8 @@ void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<di
                           PrimitivePairs<dim>& primitives, const ContactReach& reach, int solid,
                           int other, std::vector<Contact<dim>>& contacts);
 
-/// Where an impulse acts on both sides: on the surface that bends, for a rigid body carries any
-/// point exactly.
+/// Point at which an impulse acts on both sides: on the surface that bends, for a rigid body
+/// carries any point exactly.
 template <int dim>
 Point<dim> place_between(const ContactShapes<dim>& shapes, const Contact<dim>& contact) {
   if (shapes.solids()[contact.solid].rigid)
