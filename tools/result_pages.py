@@ -43,7 +43,7 @@ TOOL_PAGES = {
     "histories": Tool(["tools/compare-histories --against OTHER/simulate"], ["xml-params/scenes/*.xml"], by_hand=OTHER_PROGRAM),
     "histories-ranks": Tool(["tools/compare-histories --ranks 2"], ["xml-params/scenes/*.xml"]),
     "interfaces": Tool(["tools/measure-interfaces"], [], [
-        "tests/benchmarks/interfaces.cpp", "packages/freesurface", "packages/mac", "packages/grid", "src/base", "src/geometry"]),
+        "tests/benchmarks/interfaces.cpp", "packages/freesurface", "packages/mac", "packages/transport", "packages/grid", "src/base", "src/geometry"]),
     "joints": Tool(["tools/measure-joints"], [f"{STUDIES}/pendulum-scene.xml", "xml-params/scenes/fish-2d.xml"], ["tests/joints"]),
     "messages": Tool(["tools/count-messages"], [
         f"{STUDIES}/step-cost-scene.xml", "xml-params/scenes/hundred-balls.xml", "xml-params/scenes/cloth-in-stream.xml"],
@@ -141,7 +141,7 @@ def packages_of(settings, strategies):
     def types(where, otherwise):
         return {value for path, value in settings if re.fullmatch(where, path)} or {otherwise}
 
-    packages = {"grid", "mac", "multigrid", "strategies/common"} | {f"strategies/{name.replace('-', '_')}" for name in strategies}
+    packages = {"grid", "transport", "mac", "multigrid", "strategies/common"} | {f"strategies/{name.replace('-', '_')}" for name in strategies}
     if any(re.match("Solids/.", path) for path in paths):
         packages |= {SOLID_PACKAGES[name] for name in types("Solids/[^/]*/Type", "rigid body")}
         # The default always counts: one series may have it where another one says something else.

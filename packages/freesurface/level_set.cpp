@@ -13,9 +13,9 @@
 #include "freesurface/particles/particle_seeding.hpp"
 #include "freesurface/particles/particle_storage.hpp"
 #include "mac/state/stored_fields.hpp"
-#include "mac/transport/revalidation.hpp"
-#include "mac/transport/transport.hpp"
 #include "output/checkpoint.hpp"
+#include "transport/revalidation.hpp"
+#include "transport/transport.hpp"
 
 namespace lockstep {
 

@@ -9,20 +9,20 @@
 #include "interfaces/liquid.hpp"
 #include "interfaces/prescribed_flux.hpp"
 #include "interfaces/surface_sampler.hpp"
+#include "mac/forces/forces.hpp"
+#include "mac/forces/scalars.hpp"
 #include "mac/liquid/gas_faces.hpp"
 #include "mac/liquid/liquid.hpp"
 #include "mac/moving_tiles.hpp"
-#include "mac/pressure/forces.hpp"
 #include "mac/pressure/pressure_operator.hpp"
 #include "mac/pressure/pressure_system.hpp"
 #include "mac/state/stored_fields.hpp"
 #include "mac/state/velocity_history.hpp"
-#include "mac/transport/ray_halo.hpp"
-#include "mac/transport/revalidation.hpp"
-#include "mac/transport/scalars.hpp"
-#include "mac/transport/transport.hpp"
 #include "mac/viscosity/viscosity.hpp"
 #include "parameters/parameter_list.hpp"
+#include "transport/ray_halo.hpp"
+#include "transport/revalidation.hpp"
+#include "transport/transport.hpp"
 
 namespace lockstep {
 
@@ -168,7 +168,7 @@ class MacFluid : public FluidDiscretization<dim>,
   /// Other tiles: all fields move; what else was made of the grid waits for `freeze`.
   void regrid(const TileOwners& owners);
   void rest_at_rim();
-  typename MovingTiles<dim>::Present present(const MacState<dim>& state, double time,
+  typename MovingTiles<dim>::Present present(const GridState<dim>& state, double time,
                                              double dt) const;
   /// What the pressure beyond the stored tiles does to the faces there in dt: that of fluid at rest
   /// under this acceleration. Of this rank.

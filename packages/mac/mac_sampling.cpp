@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "mac/mac_fluid.hpp"
-#include "mac/transport/sample_lattice.hpp"
+#include "transport/sample_lattice.hpp"
 
 namespace lockstep {
 namespace {
@@ -57,7 +57,7 @@ template <int dim>
 std::vector<FluidSample<dim>> MacFluid<dim>::sample(const std::vector<Point<dim>>& points) const {
   const TiledGrid<dim>& grid = domain_.grid;
   const SampleLattice<dim> lattice(grid);
-  const MacState<dim>& state = geometry_.state;
+  const GridState<dim>& state = geometry_.state;
   const bool has_pressure = last_step_ > 0;
   constexpr int n_values = dim + 2;
   // Each rank answers for its own cells; the sum is everybody's answer.

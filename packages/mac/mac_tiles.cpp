@@ -85,7 +85,7 @@ void sum_on_root(const Communicator& comm, std::vector<GlobalIndex>& values) {
 }  // namespace
 
 template <int dim>
-typename MovingTiles<dim>::Present MacFluid<dim>::present(const MacState<dim>& state, double time,
+typename MovingTiles<dim>::Present MacFluid<dim>::present(const GridState<dim>& state, double time,
                                                           double dt) const {
   typename MovingTiles<dim>::Present present{domain_.grid, owners_, state, velocity_, 0, {},
                                              time,         dt,      0,     nullptr,   0, false};
@@ -158,7 +158,7 @@ bool MacFluid<dim>::share_work() {
 
 template <int dim>
 void MacFluid<dim>::make_room_for(const Surface& surface) {
-  MacState<dim> state;
+  GridState<dim> state;
   state.surface = surface;
   state.cells.assign(domain_.grid.n_stored_cells(), CellState::fluid);
   constexpr double any_step = 1;
@@ -300,8 +300,8 @@ void MacFluid<dim>::load_tiles(const CheckpointReader& checkpoint) {
   regrid(owners);
 }
 
-template MovingTiles<2>::Present MacFluid<2>::present(const MacState<2>&, double, double) const;
-template MovingTiles<3>::Present MacFluid<3>::present(const MacState<3>&, double, double) const;
+template MovingTiles<2>::Present MacFluid<2>::present(const GridState<2>&, double, double) const;
+template MovingTiles<3>::Present MacFluid<3>::present(const GridState<3>&, double, double) const;
 template bool MacFluid<2>::begin_step(double, double, const std::function<double()>&);
 template bool MacFluid<3>::begin_step(double, double, const std::function<double()>&);
 template MigratingInterface<2>* MacFluid<2>::migrating_interface();

@@ -208,7 +208,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   const TiledGrid<dim>& grid = domain.grid;
   MacGeometry<dim> geometry;
   geometry.face_table = FaceTable<dim>(domain, density);
-  MacState<dim>& state = geometry.state;
+  GridState<dim>& state = geometry.state;
   state.cells.assign(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { state.cells[cell] = CellState::fluid; });
   empty_rim(domain, state.cells);

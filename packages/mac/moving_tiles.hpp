@@ -5,7 +5,7 @@
 #include "mac/domain/mac_domain.hpp"
 #include "mac/domain/region_shape.hpp"
 #include "mac/liquid/liquid_parameters.hpp"
-#include "mac/state/mac_state.hpp"
+#include "transport/grid_state.hpp"
 
 namespace lockstep {
 
@@ -29,7 +29,7 @@ class MovingTiles {
   struct Present {
     const TiledGrid<dim>& grid;
     const TileOwners& owners;  ///< of its tiles
-    const MacState<dim>& state;
+    const GridState<dim>& state;
     const FaceField<dim>& velocity;
     double largest_speed;  ///< [m/s]
     std::vector<Carried> scalars;

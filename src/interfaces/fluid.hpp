@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/surface_snapshot.hpp"
+#include "geometry/moving_surface.hpp"
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
 #include "linear/types.hpp"
@@ -75,15 +75,6 @@ class OpenFractionRule {
                                  const SurfaceSnapshot<dim>&) const {
     return volume.center;
   }
-};
-
-/// The surfaces of one step, from t^n to t^{n+1}, and how fast they move.
-template <int dim>
-struct MovingSurface {
-  std::shared_ptr<const SurfaceSnapshot<dim>> before;  ///< at t^n
-  std::shared_ptr<const SurfaceSnapshot<dim>> after;   ///< at t^{n+1}
-  /// Velocity of a surface point [m/s] as F2 uses it: displacement over dt.
-  std::function<Point<dim>(const SurfacePoint<dim>&)> velocity;
 };
 
 /// Connected components of the pressure unknowns through free faces (regions, design: null space).

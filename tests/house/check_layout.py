@@ -12,8 +12,9 @@ TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".sh", "
 
 # The sibling packages that a package may include.
 SIBLINGS = {
-    "mac": {"grid"},
-    "freesurface": {"grid", "mac"},
+    "transport": {"grid"},
+    "mac": {"grid", "transport"},
+    "freesurface": {"grid", "transport", "mac"},
     "cutcell": {"faces"},
     "mixedface": {"faces"},
     "articulated": {"rigid", "deformable"},

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "mac/liquid/solid_cells.hpp"
-#include "mac/transport/row_values.hpp"
-#include "mac/transport/visible_interpolation.hpp"
+#include "transport/row_values.hpp"
+#include "transport/visible_interpolation.hpp"
 
 namespace lockstep {
 

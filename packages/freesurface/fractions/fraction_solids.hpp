@@ -3,7 +3,7 @@
 
 #include "freesurface/fractions/fraction_transport.hpp"
 #include "interfaces/fluid.hpp"
-#include "mac/transport/nearby_surface.hpp"
+#include "transport/nearby_surface.hpp"
 
 namespace lockstep {
 

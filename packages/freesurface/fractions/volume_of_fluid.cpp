@@ -9,8 +9,8 @@
 #include "freesurface/fractions/fraction_solids.hpp"
 #include "mac/liquid/wet_fraction.hpp"
 #include "mac/state/stored_fields.hpp"
-#include "mac/transport/revalidation.hpp"
 #include "output/checkpoint.hpp"
+#include "transport/revalidation.hpp"
 
 namespace lockstep {
 

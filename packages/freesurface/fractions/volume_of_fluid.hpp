@@ -3,8 +3,8 @@
 #include "freesurface/common/redistance.hpp"
 #include "freesurface/fractions/fraction_transport.hpp"
 #include "mac/liquid/interface_model.hpp"
-#include "mac/transport/transport.hpp"
 #include "parameters/parameter_list.hpp"
+#include "transport/transport.hpp"
 
 namespace lockstep {
 

@@ -2,7 +2,7 @@
 #include "freesurface/common/phi_lookup.hpp"
 #include "freesurface/particles/particles.hpp"
 #include "mac/liquid/drops.hpp"
-#include "mac/transport/transport_frame.hpp"
+#include "transport/transport_frame.hpp"
 
 namespace lockstep {
 

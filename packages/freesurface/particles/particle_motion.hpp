@@ -3,8 +3,8 @@
 #include "freesurface/common/volume_ledger.hpp"
 #include "freesurface/particles/particles.hpp"
 #include "mac/domain/mac_domain.hpp"
-#include "mac/transport/ray_halo.hpp"
-#include "mac/transport/transport_frame.hpp"
+#include "transport/ray_halo.hpp"
+#include "transport/transport_frame.hpp"
 
 namespace lockstep {
 

@@ -2,7 +2,7 @@
 #include "grid/halo_exchange.hpp"
 #include "grid/tiled_grid.hpp"
 #include "mac/domain/boundary.hpp"
-#include "mac/domain/cell_state.hpp"
+#include "transport/grid_state.hpp"
 
 namespace lockstep {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
-#include "mac/state/rows.hpp"
+#include "grid/rows.hpp"
 
 namespace lockstep {
 

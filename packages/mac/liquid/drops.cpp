@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mac/transport/largest_move.hpp"
+#include "transport/largest_move.hpp"
 
 namespace lockstep {
 

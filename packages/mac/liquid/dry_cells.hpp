@@ -1,7 +1,7 @@
 #pragma once
 #include "mac/domain/mac_domain.hpp"
 #include "mac/liquid/interface_model.hpp"
-#include "mac/transport/nearby_surface.hpp"
+#include "transport/nearby_surface.hpp"
 
 namespace lockstep {
 

@@ -10,9 +10,9 @@
 #include "interfaces/plug_in.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "mac/liquid/drops.hpp"
-#include "mac/transport/nearby_surface.hpp"
-#include "mac/transport/ray_halo.hpp"
 #include "parameters/registry.hpp"
+#include "transport/nearby_surface.hpp"
+#include "transport/ray_halo.hpp"
 
 namespace lockstep {
 

@@ -8,7 +8,7 @@
 #include "mac/liquid/flood.hpp"
 #include "mac/liquid/seen_cells.hpp"
 #include "mac/state/surface_marks.hpp"
-#include "mac/transport/largest_move.hpp"
+#include "transport/largest_move.hpp"
 
 namespace lockstep {
 

@@ -19,7 +19,7 @@ std::array<bool, dim> periodic_axes(const MacDomain<dim>& domain) {
 
 /// Along an axis, over all ranks [cells].
 template <int dim>
-double largest_displacement(const MacDomain<dim>& domain, const MacState<dim>& state,
+double largest_displacement(const MacDomain<dim>& domain, const GridState<dim>& state,
                             const FaceField<dim>& velocity, double dt) {
   double fastest = 0;
   for (int axis = 0; axis < dim; ++axis)
@@ -32,7 +32,7 @@ double largest_displacement(const MacDomain<dim>& domain, const MacState<dim>& s
 
 /// Beyond what is extended nothing moves: what the liquid once left there would count as motion.
 template <int dim>
-void stop_beyond(const MacState<dim>& state, FaceField<dim>& velocity) {
+void stop_beyond(const GridState<dim>& state, FaceField<dim>& velocity) {
   for (int axis = 0; axis < dim; ++axis)
     for (std::size_t cell = 0; cell < velocity[axis].size(); ++cell)
       if (state.faces[axis][cell] == FaceState::inactive)

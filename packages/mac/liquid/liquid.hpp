@@ -3,14 +3,14 @@
 #include <optional>
 
 #include "interfaces/liquid.hpp"
+#include "mac/forces/forces.hpp"
 #include "mac/liquid/free_surface.hpp"
 #include "mac/liquid/gas_pockets.hpp"
 #include "mac/liquid/interface_model.hpp"
 #include "mac/liquid/leak_audit.hpp"
 #include "mac/liquid/liquid_parameters.hpp"
 #include "mac/liquid/velocity_extension.hpp"
-#include "mac/pressure/forces.hpp"
-#include "mac/transport/sample_lattice.hpp"
+#include "transport/sample_lattice.hpp"
 
 namespace lockstep {
 

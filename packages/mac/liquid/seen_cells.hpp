@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "mac/domain/mac_domain.hpp"
-#include "mac/transport/nearby_surface.hpp"
+#include "transport/nearby_surface.hpp"
 
 namespace lockstep {
 

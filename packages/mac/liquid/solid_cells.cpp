@@ -9,7 +9,7 @@ namespace lockstep {
 namespace {
 /// Frees the faces of the fluid cells of a tile.
 template <int dim>
-void free_faces(const TiledGrid<dim>& grid, int tile, MacState<dim>& state) {
+void free_faces(const TiledGrid<dim>& grid, int tile, GridState<dim>& state) {
   const auto first = state.cells.begin() + tile * tile_volume<dim>;
   const bool is_full = std::all_of(first, first + tile_volume<dim>,
                                    [](CellState cell) { return cell == CellState::fluid; });
@@ -36,7 +36,7 @@ SolidCells<dim> find_solid_cells(const MacDomain<dim>& domain,
                                  const std::shared_ptr<const SurfaceSnapshot<dim>>& surface) {
   const TiledGrid<dim>& grid = domain.grid;
   SolidCells<dim> result;
-  MacState<dim>& state = result.state;
+  GridState<dim>& state = result.state;
   state.cells.assign(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { state.cells[cell] = CellState::fluid; });
   if (surface && !surface->empty()) {

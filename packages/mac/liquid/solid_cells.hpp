@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mac/domain/mac_domain.hpp"
-#include "mac/state/mac_state.hpp"
+#include "transport/grid_state.hpp"
 
 namespace lockstep {
 
@@ -14,7 +14,7 @@ template <int dim>
 struct SolidCells {
   /// Cells are `fluid` (liquid or not), `solid` or `outside`; faces `free` beside a fluid cell,
   /// else `inactive`.
-  MacState<dim> state;
+  GridState<dim> state;
   /// Bit a: a surface comes between the centres on both sides of the lower face normal to axis a.
   /// Empty without a surface.
   std::vector<char> blocked;

@@ -15,7 +15,7 @@ constexpr double same_distance = 1e-9;
 template <int dim>
 VelocityExtension<dim>::VelocityExtension(const MacDomain<dim>& domain, const CellField& distance,
                                           double known, double band, const std::vector<char>& near,
-                                          const NearbySurface<dim>& surface, MacState<dim>& state)
+                                          const NearbySurface<dim>& surface, GridState<dim>& state)
     : domain_(domain), distance_(distance), near_(near), surface_(surface) {
   if (band > known)
     go_on(known, band, state);
@@ -30,7 +30,7 @@ VelocityExtension<dim>::VelocityExtension(const MacDomain<dim>& domain, const Ce
 /// distance of h leads over as many cells as there are axes; so no cell within the band is left
 /// out.
 template <int dim>
-void VelocityExtension<dim>::go_on(double known, double band, const MacState<dim>& state) {
+void VelocityExtension<dim>::go_on(double known, double band, const GridState<dim>& state) {
   const TiledGrid<dim>& grid = domain_.grid;
   const double h = grid.spacing(), layer = h / std::sqrt(dim), unknown = band + 2 * h;
   std::vector<int> waiting, reached;
@@ -75,7 +75,7 @@ bool VelocityExtension<dim>::is_hidden(int cell, int axis, int side) const {
 }
 
 template <int dim>
-void VelocityExtension<dim>::find_faces(double band, MacState<dim>& state) {
+void VelocityExtension<dim>::find_faces(double band, GridState<dim>& state) {
   const TiledGrid<dim>& grid = domain_.grid;
   const auto in_band = [&](int cell) {
     return cell >= 0 && state.cells[cell] == CellState::empty && distance_[cell] < band;
@@ -98,7 +98,7 @@ void VelocityExtension<dim>::find_faces(double band, MacState<dim>& state) {
 
 template <int dim>
 bool VelocityExtension<dim>::is_shut(int axis, int cell, const FaceCells& cells,
-                                     const MacState<dim>& state) const {
+                                     const GridState<dim>& state) const {
   if (cells.at_side() && domain_.boundary.side(axis, cells.lower < 0 ? 0 : 1).prescribed())
     return true;
   for (const int side : {cells.lower, cells.upper})
@@ -112,7 +112,7 @@ bool VelocityExtension<dim>::is_shut(int axis, int cell, const FaceCells& cells,
 }
 
 template <int dim>
-double VelocityExtension<dim>::rank_of_face(int axis, int cell, const MacState<dim>& state) const {
+double VelocityExtension<dim>::rank_of_face(int axis, int cell, const GridState<dim>& state) const {
   const FaceCells cells = cells_of_face(domain_.grid, state.cells, axis, cell);
   const double lower = cells.lower < 0 ? distance_[cells.upper] : distance_[cells.lower];
   const double upper = cells.upper < 0 ? lower : distance_[cells.upper];
@@ -120,7 +120,7 @@ double VelocityExtension<dim>::rank_of_face(int axis, int cell, const MacState<d
 }
 
 template <int dim>
-void VelocityExtension<dim>::sort_faces(int axis, const MacState<dim>& state) {
+void VelocityExtension<dim>::sort_faces(int axis, const GridState<dim>& state) {
   struct Place {
     double rank;
     GlobalIndex id;
@@ -140,7 +140,7 @@ void VelocityExtension<dim>::sort_faces(int axis, const MacState<dim>& state) {
 }
 
 template <int dim>
-void VelocityExtension<dim>::find_sources(int axis, const MacState<dim>& state) {
+void VelocityExtension<dim>::find_sources(int axis, const GridState<dim>& state) {
   const TiledGrid<dim>& grid = domain_.grid;
   if (grid.comm()->getSize() > 1) {
     known_[axis].resize(grid.n_stored_cells());
@@ -158,7 +158,7 @@ void VelocityExtension<dim>::find_sources(int axis, const MacState<dim>& state) 
 
 template <int dim>
 void VelocityExtension<dim>::find_sources_of(Face& face, int axis, const CellField& rank,
-                                             const MacState<dim>& state) {
+                                             const GridState<dim>& state) {
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<Source>& sources = faces_[axis].sources;
   const bool shut = face.n_sources < 0;
@@ -193,7 +193,7 @@ void VelocityExtension<dim>::find_sources_of(Face& face, int axis, const CellFie
 /// `side` is that at which the source is seen.
 template <int dim>
 bool VelocityExtension<dim>::goes_on(int axis, int source, int side,
-                                     const MacState<dim>& state) const {
+                                     const GridState<dim>& state) const {
   const auto is_plain = [&](int face) {
     return face >= 0 && state.faces[axis][face] == FaceState::free &&
            (near_.empty() || !near_[face]);

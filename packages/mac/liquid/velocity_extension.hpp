@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mac/state/mac_geometry.hpp"
-#include "mac/transport/nearby_surface.hpp"
+#include "transport/nearby_surface.hpp"
 
 namespace lockstep {
 
@@ -25,7 +25,7 @@ class VelocityExtension {
   /// MacGeometry, the surface at the same instant. References must outlive this object. Collective.
   VelocityExtension(const MacDomain<dim>& domain, const CellField& distance, double known,
                     double band, const std::vector<char>& near, const NearbySurface<dim>& surface,
-                    MacState<dim>& state);
+                    GridState<dim>& state);
 
   /// Sets the velocity of those faces, ghosts included. `on_surface`: of a surface point; `time`:
   /// of the sides. Collective.
@@ -47,18 +47,18 @@ class VelocityExtension {
     std::vector<Source> sources;
   };
   /// The distance where it is cut off at `known`.
-  void go_on(double known, double band, const MacState<dim>& state);
+  void go_on(double known, double band, const GridState<dim>& state);
   bool is_hidden(int cell, int axis, int side) const;
-  void find_faces(double band, MacState<dim>& state);
-  void sort_faces(int axis, const MacState<dim>& state);
-  void find_sources(int axis, const MacState<dim>& state);
+  void find_faces(double band, GridState<dim>& state);
+  void sort_faces(int axis, const GridState<dim>& state);
+  void find_sources(int axis, const GridState<dim>& state);
   /// `rank`: of owned faces that are extended.
-  void find_sources_of(Face& face, int axis, const CellField& rank, const MacState<dim>& state);
+  void find_sources_of(Face& face, int axis, const CellField& rank, const GridState<dim>& state);
   /// Whether the fluid goes on steadily beyond a source.
-  bool goes_on(int axis, int source, int side, const MacState<dim>& state) const;
+  bool goes_on(int axis, int source, int side, const GridState<dim>& state) const;
   /// Smallest where fluid is nearest, a whole number.
-  double rank_of_face(int axis, int cell, const MacState<dim>& state) const;
-  bool is_shut(int axis, int cell, const FaceCells& cells, const MacState<dim>& state) const;
+  double rank_of_face(int axis, int cell, const GridState<dim>& state) const;
+  bool is_shut(int axis, int cell, const FaceCells& cells, const GridState<dim>& state) const;
   double mean_of_sources(int axis, const Face& face, const CellField& velocity) const;
   template <typename Set>
   void extend_across_ranks(int axis, const Set& set, CellField& velocity) const;

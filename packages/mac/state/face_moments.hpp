@@ -1,7 +1,7 @@
 #pragma once
+#include "grid/rows.hpp"
 #include "interfaces/momentum.hpp"
 #include "mac/domain/mac_domain.hpp"
-#include "mac/state/rows.hpp"
 
 namespace lockstep {
 

@@ -5,7 +5,7 @@ namespace lockstep {
 namespace {
 /// Revalidation looks from its own faces at the neighbours, which may be other ranks'.
 template <int dim>
-void share_open_centers(const MacDomain<dim>& domain, int axis, MacState<dim>& state) {
+void share_open_centers(const MacDomain<dim>& domain, int axis, GridState<dim>& state) {
   const TiledGrid<dim>& grid = domain.grid;
   auto& places = state.open_centers[axis];
   std::array<CellField, dim> shift;
@@ -28,7 +28,7 @@ void share_open_centers(const MacDomain<dim>& domain, int axis, MacState<dim>& s
 template <int dim>
 void complete_ghost_faces(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
   const TiledGrid<dim>& grid = domain.grid;
-  const MacState<dim>& state = geometry.state;
+  const GridState<dim>& state = geometry.state;
   for (int axis = 0; axis < dim; ++axis) {
     if (domain.boundary.side(axis, 1).type != SideType::open)
       continue;

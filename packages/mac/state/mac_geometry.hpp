@@ -2,11 +2,11 @@
 #include <memory>
 #include <vector>
 
+#include "grid/rows.hpp"
 #include "interfaces/fluid.hpp"
 #include "mac/domain/mac_domain.hpp"
 #include "mac/state/face_table.hpp"
-#include "mac/state/mac_state.hpp"
-#include "mac/state/rows.hpp"
+#include "transport/grid_state.hpp"
 
 namespace lockstep {
 
@@ -15,7 +15,7 @@ namespace lockstep {
 /// only gas pushes on.
 template <int dim>
 struct MacGeometry : FluidGeometry<dim> {
-  MacState<dim> state;
+  GridState<dim> state;
   /// Pressure unknown of each owned cell and its neighbours, or no_index.
   std::vector<GlobalIndex> unknown;
   /// Of owned faces and the upper ones of owned cells.

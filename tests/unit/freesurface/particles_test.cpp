@@ -7,8 +7,8 @@
 #include "freesurface/particles/particle_correction.hpp"
 #include "freesurface/particles/particle_motion.hpp"
 #include "geometry/generators.hpp"
-#include "mac/transport/transport.hpp"
 #include "output/checkpoint.hpp"
+#include "transport/transport.hpp"
 
 namespace lockstep::test {
 namespace {

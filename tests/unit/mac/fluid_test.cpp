@@ -124,7 +124,7 @@ TEST(Fluid, HistoryByHand) {
   Case<2> scene({4, 4}, 0.5);
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
-  const MacState<2>& state = fluid->geometry().state;
+  const GridState<2>& state = fluid->geometry().state;
   const TiledGrid<2>& grid = fluid->domain().grid;
   VelocityHistory<2> history(grid);
   const auto constant = [&](double value) {

@@ -15,7 +15,7 @@ namespace {
 template <int dim>
 struct Extended {
   FaceField<dim> velocity;
-  MacState<dim> state;
+  GridState<dim> state;
 };
 template <int dim>
 Extended<dim> extended(const MacFluid<dim>& fluid, const CellField& distance, double band,
