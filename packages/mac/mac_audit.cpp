@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "mac/mac_fluid.hpp"
-#include "mac/state/face_moments.hpp"
+#include "staggered/state/face_moments.hpp"
 
 namespace lockstep {
 

@@ -6,8 +6,8 @@
 #include "base/errors.hpp"
 #include "mac/make_geometry.hpp"
 #include "mac/pressure/extended_pressure.hpp"
-#include "mac/state/face_moments.hpp"
 #include "mac/state/initial_state.hpp"
+#include "staggered/state/face_moments.hpp"
 
 namespace lockstep {
 
@@ -34,7 +34,8 @@ MacFluid<dim>::MacFluid(const ParameterList& fluid, const ParameterList& domain,
     fields_.push_back({scalar.name, {&scalar.values}, scalar.ambient});
   fields_.push_back({"scaled_pressure", {&accepted_pressure_}});
   if (fluid.isSublist("Free Surface"))
-    liquid_ = std::make_unique<Liquid<dim>>(fluid, parameters_.forces, *interfaces, domain_);
+    liquid_ = std::make_unique<Liquid<dim>>(fluid, parameters_.forces.gravity,
+                                            parameters_.forces.uniform(), *interfaces, domain_);
   if (liquid_)
     for (StoredField& field : liquid_->fields())
       fields_.push_back(std::move(field));

@@ -2,8 +2,8 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
-#include "mac/liquid/surface_tension.hpp"
-#include "mac/liquid/wet_bodies.hpp"
+#include "liquid/surface/surface_tension.hpp"
+#include "liquid/surface/wet_bodies.hpp"
 #include "mac/mac_fluid.hpp"
 #include "mac/pressure/extended_pressure.hpp"
 

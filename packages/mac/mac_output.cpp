@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "grid/flagged_tiles.hpp"
-#include "mac/liquid/liquid_mesh.hpp"
+#include "liquid/surface/liquid_mesh.hpp"
 #include "mac/mac_fluid.hpp"
 #include "output/checkpoint.hpp"
 #include "output/frames.hpp"

@@ -1,8 +1,8 @@
 #include <map>
 
-#include "mac/domain/parameter_values.hpp"
 #include "mac/mac_fluid.hpp"
 #include "mac/state/initial_state.hpp"
+#include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
 

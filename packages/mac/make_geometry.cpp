@@ -3,12 +3,12 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 
-#include "mac/liquid/free_surface.hpp"
-#include "mac/liquid/gas_faces.hpp"
+#include "liquid/gas/gas_faces.hpp"
+#include "liquid/surface/free_surface.hpp"
 #include "mac/moving_tiles.hpp"
-#include "mac/state/covered_sides.hpp"
-#include "mac/state/ghost_faces.hpp"
-#include "mac/state/surface_marks.hpp"
+#include "staggered/state/covered_sides.hpp"
+#include "staggered/state/ghost_faces.hpp"
+#include "staggered/state/surface_marks.hpp"
 
 namespace lockstep {
 

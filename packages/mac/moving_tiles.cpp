@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "mac/domain/fitting_domain.hpp"
-#include "mac/domain/inflow_scalars.hpp"
-#include "mac/domain/parameter_values.hpp"
+#include "staggered/domain/fitting_domain.hpp"
+#include "staggered/domain/inflow_scalars.hpp"
+#include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
 

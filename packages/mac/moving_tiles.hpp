@@ -2,9 +2,9 @@
 #include <vector>
 
 #include "grid/needed_tiles.hpp"
-#include "mac/domain/mac_domain.hpp"
-#include "mac/domain/region_shape.hpp"
-#include "mac/liquid/liquid_parameters.hpp"
+#include "liquid/liquid_parameters.hpp"
+#include "staggered/domain/mac_domain.hpp"
+#include "staggered/domain/region_shape.hpp"
 #include "transport/grid_state.hpp"
 
 namespace lockstep {

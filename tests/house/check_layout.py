@@ -13,8 +13,9 @@ TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".sh", "
 # The sibling packages that a package may include.
 SIBLINGS = {
     "transport": {"grid"},
-    "mac": {"grid", "transport"},
-    "freesurface": {"grid", "transport", "mac"},
+    "staggered": {"grid", "transport"},
+    "liquid": {"grid", "transport", "staggered"},
+    "mac": {"grid", "transport", "staggered", "liquid"},
     "cutcell": {"faces"},
     "mixedface": {"faces"},
     "articulated": {"rigid", "deformable"},

@@ -56,12 +56,12 @@ class Rules(unittest.TestCase):
         def files(*includes):
             return {f"{name}{number}.cpp": f'#include "{include}"\n' for number, (name, include) in enumerate(includes)}
 
-        mac, floors = "packages/mac", [("packages/mac/a", "mac/state/x.hpp"), ("packages/mac/liquid/a", "mac/state/x.hpp"),
-                                       ("packages/mac/liquid/a", "mac/pressure/x.hpp"), ("packages/mac/pressure/a", "mac/state/x.hpp"),
+        mac, floors = "packages/mac", [("packages/mac/a", "mac/state/x.hpp"), ("packages/mac/viscosity/a", "mac/state/x.hpp"),
+                                       ("packages/mac/viscosity/a", "mac/pressure/x.hpp"), ("packages/mac/pressure/a", "mac/state/x.hpp"),
                                        ("packages/mac/state/a", "mac/state/x.hpp"), ("packages/mac/state/a", "base/x.hpp")]
         self.assertEqual(self.found(files(*floors)), [])
         for name, include, length in [(f"{mac}/state/a", "mac/x.hpp", 2), (f"{mac}/state/a", "mac/pressure/x.hpp", 2),
-                                      (f"{mac}/pressure/a", "mac/liquid/x.hpp", 2), (f"{mac}/state/a", "mac/liquid/x.hpp", 4)]:
+                                      (f"{mac}/pressure/a", "mac/viscosity/x.hpp", 2), (f"{mac}/state/a", "mac/viscosity/x.hpp", 4)]:
             with self.subTest(name=name, include=include):
                 self.assertEqual(len(self.found(files(*floors, (name, include)))), length)
         self.assertEqual(len(self.found(files(("src/solve/a", "solve/soft/x.hpp"), ("src/solve/soft/a", "solve/x.hpp")))), 2)

@@ -1,7 +1,7 @@
 #include "mac/forces/scalars.hpp"
 
 #include "base/errors.hpp"
-#include "mac/domain/parameter_values.hpp"
+#include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
 

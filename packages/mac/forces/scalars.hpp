@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "mac/domain/region_shape.hpp"
-#include "mac/state/mac_geometry.hpp"
 #include "parameters/parameter_list.hpp"
+#include "staggered/domain/region_shape.hpp"
+#include "staggered/state/mac_geometry.hpp"
 
 namespace lockstep {
 

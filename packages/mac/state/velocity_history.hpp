@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "grid/halo_exchange.hpp"
-#include "mac/state/stored_fields.hpp"
+#include "staggered/state/stored_fields.hpp"
 #include "transport/grid_state.hpp"
 
 namespace lockstep {

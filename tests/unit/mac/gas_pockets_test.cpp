@@ -1,4 +1,4 @@
-#include "mac/liquid/gas_pockets.hpp"
+#include "liquid/gas/gas_pockets.hpp"
 
 #include <gtest/gtest.h>
 

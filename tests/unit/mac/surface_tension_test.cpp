@@ -4,9 +4,9 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "liquid/liquid.hpp"
+#include "liquid/surface/surface_tension.hpp"
 #include "liquid_cases.hpp"
-#include "mac/liquid/liquid.hpp"
-#include "mac/liquid/surface_tension.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -208,7 +208,8 @@ TEST(SurfaceTension, ThePressuresSurfaceStaysBetweenCentres) {
   const auto fluid = make_liquid<2>(scene);
   const MacDomain<2>& domain = fluid->domain();
   const InterfaceRegistry<2> interfaces = fixed_interfaces<2>();
-  Liquid<2> liquid(scene.fluid, {}, interfaces, domain);
+  const Point<2> none = Point<2>::Zero();
+  Liquid<2> liquid(scene.fluid, none, none, interfaces, domain);
   liquid.begin(nullptr);
   const std::vector<StoredField> fields = liquid.fields();
   ASSERT_EQ(fields[0].name, "surface_lead");

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
+#include "liquid/surface/velocity_extension.hpp"
+#include "liquid/surface/wave_damping.hpp"
 #include "liquid_cases.hpp"
-#include "mac/liquid/velocity_extension.hpp"
-#include "mac/liquid/wave_damping.hpp"
 
 namespace lockstep::test {
 namespace {
