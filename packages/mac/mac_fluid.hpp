@@ -3,12 +3,9 @@
 #include <optional>
 
 #include "interfaces/energy.hpp"
-#include "interfaces/field_sampler.hpp"
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/gas.hpp"
 #include "interfaces/liquid.hpp"
-#include "interfaces/prescribed_flux.hpp"
-#include "interfaces/surface_sampler.hpp"
 #include "liquid/gas/gas_faces.hpp"
 #include "liquid/liquid.hpp"
 #include "mac/forces/forces.hpp"
@@ -51,15 +48,10 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid);
 template <int dim>
 class MacFluid : public FluidDiscretization<dim>,
                  public AuditedFluid<dim>,
-                 public BoundedFluid<dim>,
                  public EnergyFluid<dim>,
-                 public FieldSampler<dim>,
                  public FluidOutput<dim>,
                  public GasFluid<dim>,
                  public LiquidFluid<dim>,
-                 public PressureMemory<dim>,
-                 public SideFluxes,
-                 public SurfaceSampler<dim>,
                  public ViscousFluid<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
@@ -69,6 +61,12 @@ class MacFluid : public FluidDiscretization<dim>,
            const InterfaceRegistry<dim>* interfaces = nullptr);
 
   std::string name() const override { return "mac"; }
+  const AuditedFluid<dim>* audit() const override { return this; }
+  EnergyFluid<dim>* energy() const override { return const_cast<MacFluid*>(this); }
+  GasFluid<dim>* gas() override { return holds_gas() ? this : nullptr; }
+  const LiquidFluid<dim>* liquid() const override { return liquid_ ? this : nullptr; }
+  const FluidOutput<dim>* output() const override { return this; }
+  ViscousFluid<dim>* viscosity() override { return is_viscous() ? this : nullptr; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
 
@@ -84,9 +82,7 @@ class MacFluid : public FluidDiscretization<dim>,
   bool begin_advection_velocity(double dt) override;
   ForceImpulse<dim> add_forces(double time, double dt) override;
   /// Implicit surface tension wants the viscous solve, too.
-  bool is_viscous() const override {
-    return parameters_.viscosity.viscosity > 0 || tension_is_implicit();
-  }
+  bool is_viscous() const { return parameters_.viscosity.viscosity > 0 || tension_is_implicit(); }
   bool wants_present_pressure() const override { return tension_is_implicit(); }
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
   Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
@@ -99,10 +95,9 @@ class MacFluid : public FluidDiscretization<dim>,
   double largest_speed() const override;
   double largest_stable_step() const override;
   bool geometry_changes() const override { return liquid_ != nullptr; }
-  bool has_surface() const override { return liquid_ != nullptr; }
   double surface_distance(const Point<dim>& x) const override { return liquid_->distance(x); }
   std::vector<WetBody<dim>> wet_bodies() const override;
-  LiquidReport liquid() const override { return liquid_->report(); }
+  LiquidReport report() const override { return liquid_->report(); }
   bool traps_gas() const override { return holds_gas(); }
   bool has_drops() const override { return liquid_ && liquid_->drops(); }
   std::vector<SurfaceImpulse<dim>> impulses_on_solids() const override;
@@ -115,7 +110,7 @@ class MacFluid : public FluidDiscretization<dim>,
   double density(const Point<dim>&) const override { return parameters_.density; }
   RCP<Vector> last_scaled_pressure() const override;
   Point<dim> gravity() const override { return parameters_.forces.gravity; }
-  bool holds_gas() const override { return liquid_ && liquid_->gas(); }
+  bool holds_gas() const { return liquid_ && liquid_->gas(); }
   const std::vector<GasPocket>& gas_pockets() const override { return liquid_->gas()->all(); }
   void add_gas_push(const std::vector<double>& scaled_pressure, Vector& rhs) const override;
   std::vector<double> gas_conductance() const override;

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "interfaces/field_sampler.hpp"
+#include "interfaces/fluid_sides.hpp"
 #include "interfaces/observer.hpp"
 #include "parameters/parameter_list.hpp"
 
@@ -11,8 +11,8 @@ namespace lockstep {
 /// What the fluid is like at the points [m]. Throws InputError, naming `observer`, if it cannot be
 /// asked. Collective.
 template <int dim>
-const FieldSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid,
-                                    const std::string& observer);
+const FluidOutput<dim>& output_of(const FluidDiscretization<dim>& fluid,
+                                  const std::string& observer);
 
 /// Evenly spaced points of the box between two corners [m], `count` along each axis, ends included;
 /// one alone lies in the middle. x runs fastest.

@@ -9,7 +9,7 @@ namespace lockstep {
 // where an observer wants it. An impulse works on the mean of the velocities before and after: so
 // the works of all impulses of a step are, to round-off, the change of the kinetic energy.
 
-/// Side interface of fluids: the works of what acts on u* one after another, on free faces.
+/// A side of fluids: the works of what acts on u* one after another, on free faces.
 template <int dim>
 class EnergyFluid {
  public:

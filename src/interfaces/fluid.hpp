@@ -1,12 +1,14 @@
 #pragma once
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "geometry/moving_surface.hpp"
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
+#include "interfaces/prescribed_flux.hpp"
 #include "linear/types.hpp"
 
 namespace lockstep {
@@ -105,11 +107,24 @@ struct ForceImpulse {
   std::vector<double> coupled_change;  ///< of each coupled control volume's u* [m/s]
 };
 
+template <int dim>
+class AuditedFluid;  // interfaces/fluid_sides.hpp
+template <int dim>
+class EnergyFluid;  // interfaces/energy.hpp
+template <int dim>
+class FluidOutput;  // interfaces/fluid_sides.hpp
+template <int dim>
+class GasFluid;  // interfaces/gas.hpp
+template <int dim>
+class LiquidFluid;  // interfaces/liquid.hpp
+template <int dim>
+class ViscousFluid;  // interfaces/viscosity.hpp
+
 /// A fluid on its own discretization. Geometry is frozen between two calls of `set_geometry`.
 ///
 /// It keeps three velocity fields: the velocity u^n, the prediction u* on which all phases between
 /// `begin_prediction` and `accept` act, and the leak-proof advection velocity u_ADV. What audits,
-/// solvers and outputs want beyond this: interfaces/fluid_sides.hpp; viscosity: viscosity.hpp.
+/// solvers and outputs want beyond this it hands out as objects, its sides.
 /// All members are collective unless they say otherwise.
 template <int dim>
 class FluidDiscretization : public PlugIn {
@@ -191,6 +206,45 @@ class FluidDiscretization : public PlugIn {
   /// Density of the fluid at x [kg/m^dim], for the buoyancy of bodies too small for the grid to
   /// see. Default 0: such bodies feel none. Local.
   virtual double density(const Point<dim>&) const { return 0; }
+
+  // The box that it can be in. What of a solid lies beyond an open side or a wall displaces
+  // nothing.
+
+  /// Default: all of space. The same on every rank. Local. [m]
+  virtual Box<dim> bounds() const {
+    const Point<dim> far = Point<dim>::Constant(std::numeric_limits<double>::max());
+    return Box<dim>(-far, far);
+  }
+  /// [axis][lower, upper]: a wall, which solids cannot pass either. Local.
+  virtual std::array<std::array<bool, 2>, dim> closed_sides() const { return {}; }
+  /// Of the wall at an end (0 lower, 1 upper) of an axis, along itself [m/s]. Local.
+  virtual Point<dim> wall_velocity(int, int, double) const { return Point<dim>::Zero(); }
+  /// True if what leaves at one side comes in at another: then torques have no common origin.
+  /// Local.
+  virtual bool is_periodic() const { return false; }
+  /// What its sides let in at `time`, one by one, whether they do at that time or not: so that a
+  /// run can say whose motion closed fluid has no room for. Local.
+  virtual std::vector<PrescribedFlux> side_fluxes(double /*time*/) const { return {}; }
+
+  // The pressure of the last step: the initial guess of the solves, and what the viscous solve
+  // reads.
+
+  /// p̂ of the last accepted step on the present unknowns, carried on to those where there was none.
+  /// Default: zero, it is not kept.
+  virtual RCP<Vector> last_scaled_pressure() const { return make_vector(pressure_map()); }
+  /// Adds to the scaled pressure of the last `project` what `accept` keeps with it: of each unknown
+  /// `inflow` [Pa s m^dim] over the volume of its cell. Changes no velocity.
+  virtual void correct_pressure(const Vector& /*inflow*/) {}
+
+  // Sides: what else it can do, each an object of its own. Null: it cannot; the same in all of a
+  // run and on all ranks. Local.
+
+  virtual const AuditedFluid<dim>* audit() const { return nullptr; }
+  virtual EnergyFluid<dim>* energy() const { return nullptr; }
+  virtual GasFluid<dim>* gas() { return nullptr; }  ///< null: none is ever trapped
+  virtual const LiquidFluid<dim>* liquid() const { return nullptr; }  ///< null: no free surface
+  virtual const FluidOutput<dim>* output() const { return nullptr; }
+  virtual ViscousFluid<dim>* viscosity() { return nullptr; }  ///< null: inviscid in this scene
 
  protected:
   FluidDiscretization() = default;

@@ -16,13 +16,12 @@ struct GasPocket {
   double missing = 0;  ///< of its volume, to be made good within the step [m^dim]
 };
 
-/// Side interface of fluids with pockets of gas; those of the frozen geometry, in any step the same
+/// A side of fluids with pockets of gas; those of the frozen geometry, in any step the same
 /// on all ranks. What one number a pocket is in these calls is named by `PressureSide::pocket`.
 template <int dim>
 class GasFluid {
  public:
   virtual ~GasFluid() = default;
-  virtual bool holds_gas() const = 0;  ///< false: no pocket ever. Local.
   virtual const std::vector<GasPocket>& gas_pockets() const = 0;
   /// rhs += what scaled pressures of the pockets, p̂ = dt p, push out of the pressure unknowns
   /// beside them [m^dim/s]. Local.

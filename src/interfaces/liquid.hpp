@@ -75,18 +75,20 @@ struct WetBody {
   double depth(const Point<dim>& x) const { return std::max(0.0, level - slope.dot(x)); }
 };
 
-/// Side interface of fluids: a liquid with a free surface, above which nothing pushes.
+/// A side of fluids: a liquid with a free surface, above which nothing pushes.
 template <int dim>
 class LiquidFluid {
  public:
   virtual ~LiquidFluid() = default;
-  virtual bool has_surface() const = 0;  ///< false: the fluid fills the domain. Local.
   /// From x to the free surface, negative in the liquid [m]; linear between the centres of cells,
   /// carried on into solids, cut off a few cells away. Near cells that this rank owns. Local.
   virtual double surface_distance(const Point<dim>& x) const = 0;
+  /// The same from each point to the surface at the end of the last step, 1e300 where nothing is
+  /// stored. The same on all ranks. Collective; all ranks ask for the same points.
+  virtual std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const = 0;
   /// By solid of the frozen surface; those that are not closed have nothing. Collective.
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
-  virtual LiquidReport liquid() const = 0;
+  virtual LiquidReport report() const = 0;
   virtual bool traps_gas() const { return false; }  ///< reports have `gas`. Local.
   virtual bool has_drops() const { return false; }  ///< reports have `drops`. Local.
   /// What drops gave to solids in the last `advect`, on every rank; the forces after it take it
@@ -98,13 +100,6 @@ class LiquidFluid {
   /// Of the watched places, as columns have them. Local.
   virtual std::vector<std::string> watch_names() const { return {}; }
 };
-
-/// Null unless it is a liquid that has a free surface. Local.
-template <int dim, typename Fluid>
-const LiquidFluid<dim>* liquid_of(const Fluid& fluid) {
-  const auto* liquid = dynamic_cast<const LiquidFluid<dim>*>(&fluid);
-  return liquid && liquid->has_surface() ? liquid : nullptr;
-}
 
 /// The part of a box of the size of a cell in which `distance` of a point is negative, as a box:
 /// the surface there is taken to be across the axis that it is most nearly normal to, which keeps

@@ -14,21 +14,12 @@ struct PrescribedFlux {
   std::vector<std::pair<GlobalIndex, double>> into;
 };
 
-// Side interfaces (`side_of`) that let a run say whose motion closed fluid has no room for. What a
-// fluid or coupling without them prescribes is left out.
-
-/// Of a fluid.
-class SideFluxes {
- public:
-  virtual ~SideFluxes() = default;
-  /// What its sides let in at `time`, one by one, whether they do at that time or not. Local.
-  virtual std::vector<PrescribedFlux> side_fluxes(double time) const = 0;
-};
-
 template <int dim>
 class SolidSystem;
 
-/// Of a coupling.
+/// A side interface of couplings (`side_of`): lets a run say whose motion closed fluid has no room
+/// for, as `FluidDiscretization::side_fluxes` does. What a coupling without it prescribes is left
+/// out.
 template <int dim>
 class SolidFluxes {
  public:

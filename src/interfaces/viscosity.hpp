@@ -41,14 +41,11 @@ struct ViscousSystem {
   std::vector<ViscousLink<dim>> links;
 };
 
-/// A side interface of fluids: viscosity, taken implicitly together with the solids. Without it a
-/// fluid is inviscid.
+/// A side of fluids: viscosity, taken implicitly together with the solids.
 template <int dim>
 class ViscousFluid {
  public:
   virtual ~ViscousFluid() = default;
-  /// False: inviscid in this scene, the two functions below are never called. Local.
-  virtual bool is_viscous() const = 0;
   /// The viscous solve must read the pressure that the forces on u* call for, which is one more
   /// solve. False: the last step's will do. Local.
   virtual bool wants_present_pressure() const { return false; }
@@ -61,13 +58,6 @@ class ViscousFluid {
   virtual Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity,
                                        double dt) = 0;
 };
-
-/// Null for inviscid fluids.
-template <int dim>
-ViscousFluid<dim>* viscosity_of(FluidDiscretization<dim>& fluid) {
-  auto* viscous = side_of<ViscousFluid<dim>>(fluid);
-  return viscous && viscous->is_viscous() ? viscous : nullptr;
-}
 
 /// Row of the dynamic solids (ids of SolidSystem's map) and the prescribed velocity at a viscous
 /// link.
