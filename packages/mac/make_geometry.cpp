@@ -5,7 +5,7 @@
 
 #include "liquid/gas/gas_faces.hpp"
 #include "liquid/surface/free_surface.hpp"
-#include "mac/moving_tiles.hpp"
+#include "mac/tiles/moving_tiles.hpp"
 #include "staggered/state/covered_sides.hpp"
 #include "staggered/state/ghost_faces.hpp"
 #include "staggered/state/surface_marks.hpp"

@@ -58,9 +58,10 @@ void expect_impulse_is_known() {
   EXPECT_NEAR(fluid->largest_stable_step(), 0.28 * std::sqrt(3 * std::pow(0.05, 3) / tension),
               1e-12);
   fluid->begin_prediction();
-  const Momentum<dim> before = fluid->momentum();
+  const Momentum<dim> before = fluid->audit()->momentum();
   const ForceImpulse<dim> given = fluid->add_forces(0, dt);
-  const Momentum<dim> gained = fluid->momentum() - before, surface = fluid->surface_impulse();
+  const Momentum<dim> gained = fluid->audit()->momentum() - before,
+                      surface = fluid->liquid()->surface_impulse();
   EXPECT_LT((gained.linear - surface.linear).norm(), 1e-13);
   EXPECT_LT((gained.angular - surface.angular).norm(), 1e-13);
   EXPECT_EQ(given.impulse.linear, surface.linear);
@@ -85,13 +86,13 @@ void expect_jump(double tolerance) {
   fluid->set_geometry(nullptr, BlockedFaces<dim>());
   fluid->begin_prediction();
   fluid->add_forces(0, dt);
-  const double pushed = fluid->kinetic_energy();
+  const double pushed = fluid->audit()->kinetic_energy();
   const auto pressure = solve_and_project<dim>(*fluid);
   const double jump = dt * tension * (dim - 1) / radius;
   const auto values = pressure->getData();
   for (int i = 0; i < static_cast<int>(values.size()); ++i)
     EXPECT_NEAR(values[i], jump, tolerance * jump);
-  EXPECT_LT(fluid->kinetic_energy(), tolerance * tolerance * pushed);
+  EXPECT_LT(fluid->audit()->kinetic_energy(), tolerance * tolerance * pushed);
 }
 
 TEST(SurfaceTension, ARoundDropRests) {
@@ -124,7 +125,7 @@ Held<dim> held_back(int n, const std::function<void(Case<dim>&)>& add_liquid,
   fluid->begin_prediction();
   fluid->add_forces(0, dt);
   fluid->set_prediction(velocity);
-  const auto system = fluid->viscous_system();
+  const auto system = fluid->viscosity()->viscous_system();
   Vector force(system->map), other(system->map), reply(system->map);
   system->stiffness->apply(*system->velocity, force);
   for (int row = 0; row < static_cast<int>(other.getLocalLength()); ++row)
@@ -133,9 +134,9 @@ Held<dim> held_back(int n, const std::function<void(Case<dim>&)>& add_liquid,
   Held<dim> held;
   held.work = force.dot(*system->velocity) / (tension * dt);
   held.asymmetry = std::abs(force.dot(other) - reply.dot(*system->velocity)) / force.norm2();
-  const Momentum<dim> before = fluid->surface_impulse();
-  fluid->accept_viscous(*system->velocity, *system->velocity, dt);
-  held.impulse = fluid->surface_impulse() - before;
+  const Momentum<dim> before = fluid->liquid()->surface_impulse();
+  fluid->viscosity()->accept_viscous(*system->velocity, *system->velocity, dt);
+  held.impulse = fluid->liquid()->surface_impulse() - before;
   held.impulse.linear /= tension * dt * dt;
   held.impulse.angular /= tension * dt * dt;
   return held;

@@ -1,31 +1,31 @@
-// What a fluid does with drops that its grid does not show.
+#include "mac/parts/mac_drops.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "mac/mac_fluid.hpp"
 #include "output/frames.hpp"
 
 namespace lockstep {
 
 template <int dim>
-Momentum<dim> MacFluid<dim>::momentum_of_drops() const {
-  Momentum<dim> mine = liquid_->drops()->momentum();
-  mine.linear *= parameters_.density;
-  mine.angular *= parameters_.density;
+Momentum<dim> momentum_of_drops(const MacFlow<dim>& flow) {
+  Momentum<dim> mine = flow.liquid->drops()->momentum();
+  mine.linear *= flow.parameters.density;
+  mine.angular *= flow.parameters.density;
   return mine;
 }
 
 template <int dim>
-double MacFluid<dim>::energy_of_drops() const {
-  return parameters_.density * liquid_->drops()->kinetic_energy();
+double energy_of_drops(const MacFlow<dim>& flow) {
+  return flow.parameters.density * flow.liquid->drops()->kinetic_energy();
 }
 
 template <int dim>
-Momentum<dim> MacFluid<dim>::speed_up_drops() {
-  Momentum<dim> mine = liquid_->drops()->speed_up();
-  mine.linear *= parameters_.density;
-  mine.angular *= parameters_.density;
+Momentum<dim> speed_up_drops(MacFlow<dim>& flow) {
+  Momentum<dim> mine = flow.liquid->drops()->speed_up();
+  mine.linear *= flow.parameters.density;
+  mine.angular *= flow.parameters.density;
   return mine;
 }
 
@@ -33,9 +33,9 @@ Momentum<dim> MacFluid<dim>::speed_up_drops() {
 /// mass m follows with the next correction of the volume, spread over the body's surface at
 /// velocities of the fluid, so that both together bring what the drops had.
 template <int dim>
-void MacFluid<dim>::give_back_momentum() {
-  const TiledGrid<dim>& grid = domain_.grid;
-  const std::vector<Drop<dim>>& fallen = liquid_->drops()->fallen();
+void give_back_momentum(MacFlow<dim>& flow) {
+  const TiledGrid<dim>& grid = flow.domain.grid;
+  const std::vector<Drop<dim>>& fallen = flow.liquid->drops()->fallen();
   if (max_all(grid.comm(), static_cast<GlobalIndex>(fallen.size())) == 0)
     return;
   struct Fallen {
@@ -44,14 +44,14 @@ void MacFluid<dim>::give_back_momentum() {
   };
   std::map<int, Fallen> by_cell;
   for (const Drop<dim>& drop : fallen) {
-    const double mass = parameters_.density * drop.volume;
+    const double mass = flow.parameters.density * drop.volume;
     Fallen& in_cell = by_cell[grid.cell_containing(drop.position)];
     in_cell.mass += mass;
     in_cell.momentum += mass * drop.velocity;
   }
   // What coupled faces hold is lumped with the solids.
   const auto is_free = [&](int axis, int face) {
-    return face >= 0 && geometry_.state.faces[axis][face] == FaceState::free;
+    return face >= 0 && flow.geometry.state.faces[axis][face] == FaceState::free;
   };
   FaceField<dim> change;
   for (CellField& component : change)
@@ -62,8 +62,8 @@ void MacFluid<dim>::give_back_momentum() {
       const std::array<int, 2> faces{cell, grid.neighbor(cell, axis, 1)};
       for (const int face : faces)
         if (is_free(axis, face)) {
-          mass += geometry_.mass(axis, face);
-          momentum += geometry_.mass(axis, face) * prediction_[axis][face];
+          mass += flow.geometry.mass(axis, face);
+          momentum += flow.geometry.mass(axis, face) * flow.prediction[axis][face];
         }
       if (mass == 0)
         continue;
@@ -74,24 +74,24 @@ void MacFluid<dim>::give_back_momentum() {
         if (is_free(axis, face))
           change[axis][face] += gained;
     }
-  domain_.halo.sum_to_owner(change);
+  flow.domain.halo.sum_to_owner(change);
   for (int axis = 0; axis < dim; ++axis)
     grid.for_each_owned_face(axis,
-                             [&](int face) { prediction_[axis][face] += change[axis][face]; });
-  domain_.halo.fill(prediction_);
+                             [&](int face) { flow.prediction[axis][face] += change[axis][face]; });
+  flow.domain.halo.fill(flow.prediction);
 }
 
 template <int dim>
-std::vector<SurfaceImpulse<dim>> MacFluid<dim>::impulses_on_solids() const {
-  if (!has_drops())
+std::vector<SurfaceImpulse<dim>> impulses_of_drops(const MacFlow<dim>& flow) {
+  if (!flow.has_drops())
     return {};
   std::vector<double> numbers;
-  for (const SurfaceImpulse<dim>& push : liquid_->drops()->pushes()) {
+  for (const SurfaceImpulse<dim>& push : flow.liquid->drops()->pushes()) {
     numbers.push_back(push.point.simplex);
     for (const auto& part : {push.point.barycentric, push.place, push.impulse})
       numbers.insert(numbers.end(), part.begin(), part.end());
   }
-  numbers = gather_all(domain_.grid.comm(), numbers);
+  numbers = gather_all(flow.domain.grid.comm(), numbers);
   std::vector<SurfaceImpulse<dim>> all(numbers.size() / (1 + 3 * dim));
   auto number = numbers.cbegin();
   for (SurfaceImpulse<dim>& push : all) {
@@ -100,22 +100,21 @@ std::vector<SurfaceImpulse<dim>> MacFluid<dim>::impulses_on_solids() const {
       for (double& component : *part)
         component = *number++;
     push.point.position = push.place;
-    push.impulse *= parameters_.density;
+    push.impulse *= flow.parameters.density;
   }
   return all;
 }
 
-/// Points with radii and velocities.
 template <int dim>
-SurfaceFrame MacFluid<dim>::frame_of_drops() const {
+SurfaceFrame frame_of_drops(const MacFlow<dim>& flow) {
   std::vector<double> mine;
-  for (const Drop<dim>& drop : liquid_->drops()->mine()) {
+  for (const Drop<dim>& drop : flow.liquid->drops()->mine()) {
     mine.insert(mine.end(), drop.position.begin(), drop.position.end());
     mine.insert(mine.end(), drop.velocity.begin(), drop.velocity.end());
     mine.push_back(dim == 2 ? std::sqrt(drop.volume / M_PI)
                             : std::cbrt(drop.volume * 3 / (4 * M_PI)));
   }
-  const std::vector<double> all = gather_all(domain_.grid.comm(), mine);
+  const std::vector<double> all = gather_all(flow.domain.grid.comm(), mine);
   SurfaceFrame frame;
   frame.name = "drops";
   frame.dimension = dim;
@@ -133,17 +132,17 @@ SurfaceFrame MacFluid<dim>::frame_of_drops() const {
   return frame;
 }
 
-template Momentum<2> MacFluid<2>::momentum_of_drops() const;
-template Momentum<3> MacFluid<3>::momentum_of_drops() const;
-template double MacFluid<2>::energy_of_drops() const;
-template double MacFluid<3>::energy_of_drops() const;
-template Momentum<2> MacFluid<2>::speed_up_drops();
-template Momentum<3> MacFluid<3>::speed_up_drops();
-template void MacFluid<2>::give_back_momentum();
-template void MacFluid<3>::give_back_momentum();
-template std::vector<SurfaceImpulse<2>> MacFluid<2>::impulses_on_solids() const;
-template std::vector<SurfaceImpulse<3>> MacFluid<3>::impulses_on_solids() const;
-template SurfaceFrame MacFluid<2>::frame_of_drops() const;
-template SurfaceFrame MacFluid<3>::frame_of_drops() const;
+template Momentum<2> momentum_of_drops(const MacFlow<2>&);
+template Momentum<3> momentum_of_drops(const MacFlow<3>&);
+template double energy_of_drops(const MacFlow<2>&);
+template double energy_of_drops(const MacFlow<3>&);
+template Momentum<2> speed_up_drops(MacFlow<2>&);
+template Momentum<3> speed_up_drops(MacFlow<3>&);
+template void give_back_momentum(MacFlow<2>&);
+template void give_back_momentum(MacFlow<3>&);
+template std::vector<SurfaceImpulse<2>> impulses_of_drops(const MacFlow<2>&);
+template std::vector<SurfaceImpulse<3>> impulses_of_drops(const MacFlow<3>&);
+template SurfaceFrame frame_of_drops(const MacFlow<2>&);
+template SurfaceFrame frame_of_drops(const MacFlow<3>&);
 
 }  // namespace lockstep

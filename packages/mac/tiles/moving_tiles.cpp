@@ -1,4 +1,4 @@
-#include "mac/moving_tiles.hpp"
+#include "mac/tiles/moving_tiles.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,9 @@
-// How the grid of a MacFluid follows what happens in it.
+#include "mac/parts/mac_tiles.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
 #include "grid/tile_migration.hpp"
-#include "mac/mac_fluid.hpp"
 #include "output/checkpoint.hpp"
 
 namespace lockstep {
@@ -85,39 +88,47 @@ void sum_on_root(const Communicator& comm, std::vector<GlobalIndex>& values) {
 }  // namespace
 
 template <int dim>
-typename MovingTiles<dim>::Present MacFluid<dim>::present(const GridState<dim>& state, double time,
+MacTiles<dim>::MacTiles(const ParameterList& fluid, MacFlow<dim>& flow) : flow_(flow) {
+  if (!fluid.isSublist("Moving Tiles"))
+    return;
+  check_input(!flow_.liquid || migrating_interface(),
+              "The interface \"{}\" cannot follow \"Moving Tiles\"; leave them out.",
+              flow_.liquid ? flow_.liquid->interface().name() : "");
+  moving_.emplace(fluid,
+                  DomainDescription<dim>{flow_.domain.grid.description(), flow_.domain.boundary});
+  owners_ = flow_.domain.grid.tile_owners();
+}
+
+template <int dim>
+typename MovingTiles<dim>::Present MacTiles<dim>::present(const GridState<dim>& state, double time,
                                                           double dt) const {
-  typename MovingTiles<dim>::Present present{domain_.grid, owners_, state, velocity_, 0, {},
-                                             time,         dt,      0,     nullptr,   0, false};
-  for (const Scalar& scalar : scalars_.all())
+  typename MovingTiles<dim>::Present present{
+      flow_.domain.grid, owners_, state, flow_.velocity, 0, {}, time, dt, 0, nullptr, 0, false};
+  for (const Scalar& scalar : flow_.scalars.all())
     present.scalars.push_back({scalar.values, scalar.ambient});
-  if (liquid_) {
-    present.distance = &liquid_->interface().distance();
-    present.band = (1 - 1e-6) * liquid_->interface().band(0) * domain_.spacing();
+  if (flow_.liquid) {
+    present.distance = &flow_.liquid->interface().distance();
+    present.band = (1 - 1e-6) * flow_.liquid->interface().band(0) * flow_.domain.spacing();
   }
   return present;
 }
 
 template <int dim>
-MigratingInterface<dim>* MacFluid<dim>::migrating_interface() {
-  return side_of<MigratingInterface<dim>>(liquid_->interface());
+MigratingInterface<dim>* MacTiles<dim>::migrating_interface() {
+  return side_of<MigratingInterface<dim>>(flow_.liquid->interface());
 }
 
 template <int dim>
-bool MacFluid<dim>::begin_step(double time, double dt, const std::function<double()>& solid_speed) {
-  if (time != time_) {  // a run that does not start at 0
-    time_ = time;
-    set_prescribed(time_, velocity_);
-  }
-  if (!moving_tiles_) {
+bool MacTiles<dim>::begin_step(double time, double dt, const std::function<double()>& solid_speed) {
+  if (!moving_) {
     if (share_work())
       steps_since_regrid_ = 0;
     return steps_since_regrid_ == 0;
   }
-  auto now = present(geometry_.state, time, dt);
-  now.largest_speed = largest_speed();
+  auto now = present(flow_.geometry.state, time, dt);
+  now.largest_speed = flow_.largest_speed();
   now.solid_speed = solid_speed();
-  if (const std::optional<TileOwners> owners = moving_tiles_->change(now)) {
+  if (const std::optional<TileOwners> owners = moving_->change(now)) {
     regrid(*owners);
     steps_since_regrid_ = 0;
   } else if (share_work()) {
@@ -129,148 +140,157 @@ bool MacFluid<dim>::begin_step(double time, double dt, const std::function<doubl
 /// Gives ranks other tiles where surfaces, or liquid that is not everywhere, have made their work
 /// uneven. The same work as at the last time would find the same tiles.
 template <int dim>
-bool MacFluid<dim>::share_work() {
-  const Communicator& comm = domain_.grid.comm();
-  if (comm->getSize() == 1 || !(geometry_.state.surface || liquid_) || steps_to_sharing_ > 0 ||
-      (liquid_ && !migrating_interface()))
+bool MacTiles<dim>::share_work() {
+  const Communicator& comm = flow_.domain.grid.comm();
+  if (comm->getSize() == 1 || !(flow_.geometry.state.surface || flow_.liquid) ||
+      steps_to_sharing_ > 0 || (flow_.liquid && !migrating_interface()))
     return false;
   constexpr int steps_between = 20;
   steps_to_sharing_ = steps_between;
   if (owners_.tiles.empty())
-    owners_ = domain_.grid.tile_owners();
-  TileWork work = work_of_tiles(domain_.grid, owners_, geometry_.state.surface.get());
-  if (liquid_)
-    add_liquid(domain_.grid, owners_, liquid_->interface().distance(),
-               liquid_->interface().band(0) * domain_.spacing(), work);
+    owners_ = flow_.domain.grid.tile_owners();
+  TileWork work = work_of_tiles(flow_.domain.grid, owners_, flow_.geometry.state.surface.get());
+  if (flow_.liquid)
+    add_liquid(flow_.domain.grid, owners_, flow_.liquid->interface().distance(),
+               flow_.liquid->interface().band(0) * flow_.domain.spacing(), work);
   const GlobalIndex differs = work.at_surfaces != compared_work_.at_surfaces ||
                               work.everywhere != compared_work_.everywhere;
   if (max_all(comm, differs) == 0)
     return false;
   compared_work_ = work;
   sum_on_root(comm, work.at_surfaces);
-  if (liquid_)
+  if (flow_.liquid)
     sum_on_root(comm, work.everywhere);
-  const auto owners = share_better(domain_.grid.tile_lattice(), comm, owners_, work);
+  const auto owners = share_better(flow_.domain.grid.tile_lattice(), comm, owners_, work);
   if (owners)
     regrid(*owners);
   return owners.has_value();
 }
 
 template <int dim>
-void MacFluid<dim>::make_room_for(const Surface& surface) {
+void MacTiles<dim>::make_room(const Surface& surface) {
+  if (!moving_)
+    return;
+  if (!has_room_)
+    make_first_room(surface);
+  if (surface)
+    moving_->check_room(*surface, owners_, flow_.domain.grid.comm());
+}
+
+template <int dim>
+void MacTiles<dim>::make_first_room(const Surface& surface) {
   GridState<dim> state;
   state.surface = surface;
-  state.cells.assign(domain_.grid.n_stored_cells(), CellState::fluid);
+  state.cells.assign(flow_.domain.grid.n_stored_cells(), CellState::fluid);
   constexpr double any_step = 1;
-  auto now = present(state, time_, any_step);
+  auto now = present(state, flow_.time, any_step);
   now.is_start = true;
-  if (const auto owners = moving_tiles_->change(now))
+  if (const auto owners = moving_->change(now))
     regrid(*owners);
   has_room_ = true;
 }
 
 template <int dim>
-void MacFluid<dim>::regrid(const TileOwners& owners) {
-  TiledGrid<dim> grid(domain_.grid.description(), domain_.grid.comm(), owners);
-  const TileMigration<dim> migration(domain_.grid, grid);
-  for (const StoredField& field : fields_)
+void MacTiles<dim>::regrid(const TileOwners& owners) {
+  TiledGrid<dim> grid(flow_.domain.grid.description(), flow_.domain.grid.comm(), owners);
+  const TileMigration<dim> migration(flow_.domain.grid, grid);
+  for (const StoredField& field : flow_.fields)
     migration.move(field.components, CellField(field.components.size(), field.at_rest));
   // A rank without tiles has none, whatever was accepted.
-  if (max_all(domain_.grid.comm(), static_cast<GlobalIndex>(accepted_cells_.size())) > 0) {
-    std::vector<char> cells(accepted_cells_.size());
-    std::transform(accepted_cells_.begin(), accepted_cells_.end(), cells.begin(),
+  if (max_all(flow_.domain.grid.comm(), static_cast<GlobalIndex>(flow_.accepted_cells.size())) >
+      0) {
+    std::vector<char> cells(flow_.accepted_cells.size());
+    std::transform(flow_.accepted_cells.begin(), flow_.accepted_cells.end(), cells.begin(),
                    [](CellState state) { return static_cast<char>(state); });
     migration.move(cells, static_cast<char>(CellState::empty));
-    accepted_cells_.resize(cells.size());
-    std::transform(cells.begin(), cells.end(), accepted_cells_.begin(),
+    flow_.accepted_cells.resize(cells.size());
+    std::transform(cells.begin(), cells.end(), flow_.accepted_cells.begin(),
                    [](char state) { return static_cast<CellState>(state); });
   }
   const std::function<void()> finish_liquid =
-      liquid_ ? migrating_interface()->migrate(migration) : std::function<void()>();
-  viscosity_.reset();
-  geometry_ = {};
-  largest_speed_.reset();
-  invalid_ = {};
-  ray_halo_.forget();
-  nearby_ = {};
-  domain_.set_grid(std::move(grid));
+      flow_.liquid ? migrating_interface()->migrate(migration) : std::function<void()>();
+  flow_.geometry = {};
+  flow_.forget_speed();
+  flow_.ray_halo.forget();
+  flow_.nearby = {};
+  flow_.domain.set_grid(std::move(grid));
   if (finish_liquid)
     finish_liquid();
-  if (liquid_)
-    liquid_->forget();
-  lattice_blocks_ = lattice_blocks(domain_.grid);
+  if (flow_.liquid)
+    flow_.liquid->forget();
+  flow_.blocks = lattice_blocks(flow_.domain.grid);
   owners_ = owners;
   has_room_ = true;
   rest_at_rim();
-  prediction_ = velocity_;
-  scaled_pressure_ = accepted_pressure_;
+  flow_.prediction = flow_.velocity;
+  flow_.scaled_pressure = flow_.accepted_pressure;
 }
 
 /// Nothing of what left the tiles that are gone may come back from their rim.
 template <int dim>
-void MacFluid<dim>::rest_at_rim() {
-  const TiledGrid<dim>& grid = domain_.grid;
-  const std::vector<char> rim = find_rim(domain_);
+void MacTiles<dim>::rest_at_rim() {
+  const TiledGrid<dim>& grid = flow_.domain.grid;
+  const std::vector<char> rim = find_rim(flow_.domain);
   if (rim.empty())
     return;
   grid.for_each_owned_cell([&](int cell) {
     if (!rim[cell])
       return;
-    for (Scalar& scalar : scalars_.all())
+    for (Scalar& scalar : flow_.scalars.all())
       scalar.values[cell] = scalar.ambient;
     for (int axis = 0; axis < dim; ++axis) {
       const int lower = grid.neighbor(cell, axis, 0);
       if (lower >= 0 && !rim[lower])
         continue;
-      velocity_[axis][cell] = 0;
-      if (history_)
-        for (const StoredField& field : history_->fields())
+      flow_.velocity[axis][cell] = 0;
+      if (flow_.history)
+        for (const StoredField& field : flow_.history->fields())
           (*field.components[axis])[cell] = 0;
     }
   });
-  domain_.full_halo.fill(velocity_);
-  if (history_)
-    for (const StoredField& field : history_->fields())
+  flow_.domain.full_halo.fill(flow_.velocity);
+  if (flow_.history)
+    for (const StoredField& field : flow_.history->fields())
       for (CellField* component : field.components)
-        domain_.full_halo.fill(*component);
-  for (Scalar& scalar : scalars_.all())
-    domain_.full_halo.fill(scalar.values);
+        flow_.domain.full_halo.fill(*component);
+  for (Scalar& scalar : flow_.scalars.all())
+    flow_.domain.full_halo.fill(scalar.values);
 }
 
 template <int dim>
-Momentum<dim> MacFluid<dim>::push_at_rim(const Point<dim>& force, double dt) {
+Momentum<dim> MacTiles<dim>::push_at_rim(const Point<dim>& force, double dt) {
   Momentum<dim> given;
   if (force == Point<dim>::Zero())
     return given;
-  const TiledGrid<dim>& grid = domain_.grid;
-  const Point<dim> origin = origin_of_pressure(domain_, bounds());
-  for (const auto& [axis, cell] : geometry_.rim) {
-    const bool is_above = geometry_.state.cells[cell] == CellState::empty;
+  const TiledGrid<dim>& grid = flow_.domain.grid;
+  const Point<dim> origin = origin_of_pressure(flow_.domain, flow_.domain.bounds());
+  for (const auto& [axis, cell] : flow_.geometry.rim) {
+    const bool is_above = flow_.geometry.state.cells[cell] == CellState::empty;
     const Point<dim> face = grid.face_center(axis, cell);
     const Point<dim> beyond =
         face + (is_above ? 0.5 : -0.5) * grid.spacing() * Point<dim>::Unit(axis);
-    const double pressure = parameters_.density * force.dot(beyond - origin);
+    const double pressure = flow_.parameters.density * force.dot(beyond - origin);
     const double change =
-        (is_above ? -dt : dt) * geometry_.face_table(axis, cell).gradient * pressure;
-    prediction_[axis][cell] += change;
-    given.add(face, axis, geometry_.mass(axis, cell) * change);
+        (is_above ? -dt : dt) * flow_.geometry.face_table(axis, cell).gradient * pressure;
+    flow_.prediction[axis][cell] += change;
+    given.add(face, axis, flow_.geometry.mass(axis, cell) * change);
   }
   return given;
 }
 
 /// With their ranks: the sums of a run that goes on are those of one that never stopped.
 template <int dim>
-void MacFluid<dim>::save_tiles(CheckpointWriter& checkpoint) const {
+void MacTiles<dim>::save(CheckpointWriter& checkpoint) const {
   if (owners_.tiles.empty())
     return;
-  const int rank = domain_.grid.comm()->getRank();
+  const int rank = flow_.domain.grid.comm()->getRank();
   std::vector<GlobalIndex> mine;
   for (std::size_t i = 0; i < owners_.tiles.size(); ++i)
     if (owners_.ranks[i] == rank)
       mine.push_back(owners_.tiles[i]);
   checkpoint.write_distributed("fluid/tiles", mine, std::vector<long long>(mine.size(), rank));
   checkpoint.file().write_attribute<long long>("fluid/tiles", "ranks",
-                                               domain_.grid.comm()->getSize());
+                                               flow_.domain.grid.comm()->getSize());
   checkpoint.file().write_attribute<long long>("fluid/tiles", "steps_to_sharing",
                                                steps_to_sharing_);
   checkpoint.file().write_attribute<long long>("fluid/tiles", "steps_since_regrid",
@@ -278,7 +298,7 @@ void MacFluid<dim>::save_tiles(CheckpointWriter& checkpoint) const {
 }
 
 template <int dim>
-void MacFluid<dim>::load_tiles(const CheckpointReader& checkpoint) {
+void MacTiles<dim>::load(const CheckpointReader& checkpoint) {
   const Hdf5File& file = checkpoint.file();
   if (!file.exists("fluid/tiles"))
     return;
@@ -287,7 +307,7 @@ void MacFluid<dim>::load_tiles(const CheckpointReader& checkpoint) {
     owners.tiles.push_back(tile);
   for (const long long rank : file.read_all<long long>("fluid/tiles/values"))
     owners.ranks.push_back(static_cast<int>(rank));
-  const Communicator& comm = domain_.grid.comm();
+  const Communicator& comm = flow_.domain.grid.comm();
   if (file.has_attribute("fluid/tiles", "steps_to_sharing"))
     steps_to_sharing_ =
         static_cast<int>(file.read_attribute<long long>("fluid/tiles", "steps_to_sharing"));
@@ -295,30 +315,28 @@ void MacFluid<dim>::load_tiles(const CheckpointReader& checkpoint) {
     steps_since_regrid_ =
         static_cast<int>(file.read_attribute<long long>("fluid/tiles", "steps_since_regrid"));
   if (file.read_attribute<long long>("fluid/tiles", "ranks") != comm->getSize())
-    owners = share_tiles(domain_.grid.tile_lattice(), comm, owners.tiles,
+    owners = share_tiles(flow_.domain.grid.tile_lattice(), comm, owners.tiles,
                          std::vector<GlobalIndex>(owners.tiles.size(), tile_volume<dim>));
   regrid(owners);
 }
 
-template MovingTiles<2>::Present MacFluid<2>::present(const GridState<2>&, double, double) const;
-template MovingTiles<3>::Present MacFluid<3>::present(const GridState<3>&, double, double) const;
-template bool MacFluid<2>::begin_step(double, double, const std::function<double()>&);
-template bool MacFluid<3>::begin_step(double, double, const std::function<double()>&);
-template MigratingInterface<2>* MacFluid<2>::migrating_interface();
-template MigratingInterface<3>* MacFluid<3>::migrating_interface();
-template bool MacFluid<2>::share_work();
-template bool MacFluid<3>::share_work();
-template void MacFluid<2>::make_room_for(const Surface&);
-template void MacFluid<3>::make_room_for(const Surface&);
-template void MacFluid<2>::regrid(const TileOwners&);
-template void MacFluid<3>::regrid(const TileOwners&);
-template void MacFluid<2>::rest_at_rim();
-template void MacFluid<3>::rest_at_rim();
-template Momentum<2> MacFluid<2>::push_at_rim(const Point<2>&, double);
-template Momentum<3> MacFluid<3>::push_at_rim(const Point<3>&, double);
-template void MacFluid<2>::save_tiles(CheckpointWriter&) const;
-template void MacFluid<3>::save_tiles(CheckpointWriter&) const;
-template void MacFluid<2>::load_tiles(const CheckpointReader&);
-template void MacFluid<3>::load_tiles(const CheckpointReader&);
+template <int dim>
+void MacTiles<dim>::accept() {
+  steps_since_regrid_ = std::min(steps_since_regrid_ + 1, 2);
+  steps_to_sharing_ = std::max(steps_to_sharing_ - 1, 0);
+}
+
+template <int dim>
+std::vector<std::pair<std::string, std::string>> MacTiles<dim>::notes() const {
+  if (!moving_)
+    return {};
+  GlobalIndex n_tiles = 1;
+  for (const int n : flow_.domain.grid.tile_lattice().n_domain_tiles())
+    n_tiles *= n;
+  return {{"moving tiles", fmt::format("{} of {} at the start", owners_.tiles.size(), n_tiles)}};
+}
+
+template class MacTiles<2>;
+template class MacTiles<3>;
 
 }  // namespace lockstep

@@ -1,10 +1,11 @@
-#include <Tpetra_Vector.hpp>
+#include "mac/parts/mac_output.hpp"
+
 #include <algorithm>
 
 #include "grid/flagged_tiles.hpp"
 #include "liquid/surface/liquid_mesh.hpp"
-#include "mac/mac_fluid.hpp"
-#include "output/checkpoint.hpp"
+#include "mac/parts/mac_drops.hpp"
+#include "mac/parts/prescribed_sides.hpp"
 #include "output/frames.hpp"
 
 namespace lockstep {
@@ -42,8 +43,8 @@ BoxField scalar_field(const TiledGrid<dim>& grid, const std::vector<int>& tiles,
 }  // namespace
 
 template <int dim>
-void MacFluid<dim>::add_frame(std::vector<BoxFrame>& boxes) const {
-  const TiledGrid<dim>& grid = domain_.grid;
+void MacOutput<dim>::add_frame(std::vector<BoxFrame>& boxes) const {
+  const TiledGrid<dim>& grid = flow_.domain.grid;
   BoxFrame box;
   box.dimension = dim;
   for (int a = 0; a < dim; ++a) {
@@ -53,24 +54,24 @@ void MacFluid<dim>::add_frame(std::vector<BoxFrame>& boxes) const {
   }
   std::vector<int> tiles;
   box.blocks = tile_blocks(grid, tiles);
-  const auto& cells = geometry_.state.cells;
+  const auto& cells = flow_.geometry.state.cells;
   box.fields.push_back(
       {"velocity", "m/s", dim, [this, &grid, &cells, tiles](std::size_t block, double* values) {
          for_each_cell_of_tile(grid, tiles[block], [&](int cell) {
            for (int axis = 0; axis < dim; ++axis) {
              const int above = grid.neighbor(cell, axis, 1);
-             const double upper = above < 0 ? 0 : prediction_[axis][above];
+             const double upper = above < 0 ? 0 : flow_.prediction[axis][above];
              const bool fluid = cells[cell] == CellState::fluid;
-             *values++ = fluid ? 0.5 * (prediction_[axis][cell] + upper) : 0;
+             *values++ = fluid ? 0.5 * (flow_.prediction[axis][cell] + upper) : 0;
            }
          });
        }});
-  const double per_step = last_step_ > 0 ? 1 / last_step_ : 0;
+  const double per_step = flow_.last_step > 0 ? 1 / flow_.last_step : 0;
   box.fields.push_back(
       scalar_field(grid, tiles, "pressure", "Pa", [this, &cells, per_step](int cell) {
-        return cells[cell] == CellState::fluid ? scaled_pressure_[cell] * per_step : 0;
+        return cells[cell] == CellState::fluid ? flow_.scaled_pressure[cell] * per_step : 0;
       }));
-  for (const Scalar& scalar : scalars_.all())
+  for (const Scalar& scalar : flow_.scalars.all())
     box.fields.push_back(
         scalar_field(grid, tiles, scalar.name, scalar.unit, [&scalar, &cells](int cell) {
           return cells[cell] == CellState::fluid ? scalar.values[cell] : 0;
@@ -78,22 +79,22 @@ void MacFluid<dim>::add_frame(std::vector<BoxFrame>& boxes) const {
   box.fields.push_back(scalar_field(grid, tiles, "fluid", "1", [&cells](int cell) {
     return cells[cell] == CellState::fluid ? 1.0 : 0.0;
   }));
-  if (liquid_)
+  if (flow_.liquid)
     box.fields.push_back(scalar_field(grid, tiles, "phi", "m", [this](int cell) {
-      return liquid_->interface().distance()[cell];
+      return flow_.liquid->interface().distance()[cell];
     }));
   boxes.push_back(std::move(box));
 }
 
 template <int dim>
-void MacFluid<dim>::add_surfaces(std::vector<SurfaceFrame>& surfaces) const {
-  if (!liquid_)
+void MacOutput<dim>::add_surfaces(std::vector<SurfaceFrame>& surfaces) const {
+  if (!flow_.liquid)
     return;
-  const SurfaceMesh<dim> mine = liquid_mesh(domain_, liquid_->interface().distance());
+  const SurfaceMesh<dim> mine = liquid_mesh(flow_.domain, flow_.liquid->interface().distance());
   std::vector<double> vertices;
   for (const Point<dim>& vertex : mine.vertices)
     vertices.insert(vertices.end(), vertex.data(), vertex.data() + dim);
-  const Communicator& comm = domain_.grid.comm();
+  const Communicator& comm = flow_.domain.grid.comm();
   const GlobalIndex n_before = exclusive_sum(comm, static_cast<GlobalIndex>(mine.vertices.size()));
   std::vector<GlobalIndex> simplices;
   for (const auto& simplex : mine.simplices)
@@ -107,50 +108,32 @@ void MacFluid<dim>::add_surfaces(std::vector<SurfaceFrame>& surfaces) const {
   const std::vector<GlobalIndex> all = gather_all(comm, simplices);
   frame.simplices.assign(all.begin(), all.end());
   surfaces.push_back(std::move(frame));
-  if (has_drops())
-    surfaces.push_back(frame_of_drops());
+  if (flow_.has_drops())
+    surfaces.push_back(frame_of_drops(flow_));
 }
 
 template <int dim>
-void MacFluid<dim>::save(CheckpointWriter& checkpoint) const {
-  save_fields(domain_, fields_, checkpoint);
-  save_tiles(checkpoint);
-  CellField cells(domain_.grid.n_stored_cells(), static_cast<double>(CellState::outside));
-  std::transform(accepted_cells_.begin(), accepted_cells_.end(), cells.begin(),
-                 [](CellState state) { return static_cast<double>(state); });
-  save_fields(domain_, {{"cells_with_pressure", {&cells}}}, checkpoint);
-  checkpoint.file().write_attribute("fluid", "boundary_time", time_);
-  checkpoint.file().write_attribute("fluid", "last_step", last_step_);
-  if (liquid_)
-    liquid_->interface().save(checkpoint);
+std::vector<std::string> MacOutput<dim>::surface_names() const {
+  if (flow_.has_drops())
+    return {"water", "drops"};
+  return flow_.liquid ? std::vector<std::string>{"water"} : std::vector<std::string>();
 }
 
 template <int dim>
-void MacFluid<dim>::load(const CheckpointReader& checkpoint) {
-  load_tiles(checkpoint);
-  load_fields(domain_, fields_, checkpoint);
-  prediction_ = velocity_;
-  scaled_pressure_ = accepted_pressure_;
-  CellField cells(domain_.grid.n_stored_cells(), static_cast<double>(CellState::outside));
-  load_fields(domain_, {{"cells_with_pressure", {&cells}}}, checkpoint);
-  accepted_cells_.resize(cells.size());
-  for (std::size_t cell = 0; cell < cells.size(); ++cell)
-    accepted_cells_[cell] = static_cast<CellState>(static_cast<int>(cells[cell]));
-  time_ = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
-  last_step_ = checkpoint.file().read_attribute<double>("fluid", "last_step");
-  accepted_step_ = last_step_;
-  if (liquid_)
-    liquid_->load(checkpoint);
-  largest_speed_.reset();
+std::vector<std::pair<std::string, std::string>> MacOutput<dim>::notes() const {
+  auto notes = tiles_.notes();
+  for (auto& note : notes_of_inflows(flow_.domain, flow_.geometry))
+    notes.push_back(std::move(note));
+  return notes;
 }
 
-template void MacFluid<2>::add_frame(std::vector<BoxFrame>&) const;
-template void MacFluid<3>::add_frame(std::vector<BoxFrame>&) const;
-template void MacFluid<2>::add_surfaces(std::vector<SurfaceFrame>&) const;
-template void MacFluid<3>::add_surfaces(std::vector<SurfaceFrame>&) const;
-template void MacFluid<2>::save(CheckpointWriter&) const;
-template void MacFluid<3>::save(CheckpointWriter&) const;
-template void MacFluid<2>::load(const CheckpointReader&);
-template void MacFluid<3>::load(const CheckpointReader&);
+template void MacOutput<2>::add_frame(std::vector<BoxFrame>&) const;
+template void MacOutput<3>::add_frame(std::vector<BoxFrame>&) const;
+template void MacOutput<2>::add_surfaces(std::vector<SurfaceFrame>&) const;
+template void MacOutput<3>::add_surfaces(std::vector<SurfaceFrame>&) const;
+template std::vector<std::string> MacOutput<2>::surface_names() const;
+template std::vector<std::string> MacOutput<3>::surface_names() const;
+template std::vector<std::pair<std::string, std::string>> MacOutput<2>::notes() const;
+template std::vector<std::pair<std::string, std::string>> MacOutput<3>::notes() const;
 
 }  // namespace lockstep

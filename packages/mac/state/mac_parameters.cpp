@@ -1,7 +1,10 @@
+#include "mac/state/mac_parameters.hpp"
+
 #include <map>
 
-#include "mac/mac_fluid.hpp"
+#include "liquid/liquid_parameters.hpp"
 #include "mac/state/initial_state.hpp"
+#include "mac/tiles/moving_tiles.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
