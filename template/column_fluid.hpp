@@ -20,6 +20,7 @@ class ColumnFluid : public lockstep::FluidDiscretization<2>, public lockstep::Au
   ColumnFluid(const Options& options, const lockstep::Communicator& comm);
 
   std::string name() const override { return "column"; }
+  const lockstep::AuditedFluid<2>* audit() const override { return this; }
   void save(lockstep::CheckpointWriter& checkpoint) const override;
   void load(const lockstep::CheckpointReader& checkpoint) override;
   std::function<void()> undo() override {

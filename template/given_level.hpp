@@ -1,5 +1,5 @@
 #pragma once
-#include "mac/liquid/interface_model.hpp"
+#include "liquid/common/interface_model.hpp"
 
 namespace lockstep {
 

@@ -43,7 +43,7 @@ TOOL_PAGES = {
     "histories": Tool(["tools/compare-histories --against OTHER/simulate"], ["xml-params/scenes/*.xml"], by_hand=OTHER_PROGRAM),
     "histories-ranks": Tool(["tools/compare-histories --ranks 2"], ["xml-params/scenes/*.xml"]),
     "interfaces": Tool(["tools/measure-interfaces"], [], [
-        "tests/benchmarks/interfaces.cpp", "packages/freesurface", "packages/mac", "packages/grid", "src/base", "src/geometry"]),
+        "tests/benchmarks/interfaces.cpp", "packages/liquid", "packages/staggered", "packages/transport", "packages/grid", "src/base", "src/geometry"]),
     "joints": Tool(["tools/measure-joints"], [f"{STUDIES}/pendulum-scene.xml", "xml-params/scenes/fish-2d.xml"], ["tests/joints"]),
     "messages": Tool(["tools/count-messages"], [
         f"{STUDIES}/step-cost-scene.xml", "xml-params/scenes/hundred-balls.xml", "xml-params/scenes/cloth-in-stream.xml"],
@@ -70,7 +70,7 @@ TOOL_PAGES = {
     "strategies-complexity": Tool(["tools/compare-strategies complexity"], [], [*ANY_SOLVE, "tools/compare-strategies", "tools/solver_cases.py"]),
     "strategies-hard-cases": Tool(["tools/compare-strategies hard-cases"], [
         f"{STUDIES}/{name}-scene.xml" for name in ("density-ratio", "pockets", "pockets-overlap", "pockets-piston", "time-step", "units")],
-        [*ANY_SOLVE, "packages/freesurface", "packages/mac/liquid", "tools/compare-strategies", "tools/solver_cases.py"]),
+        [*ANY_SOLVE, "packages/liquid", "tools/compare-strategies", "tools/solver_cases.py"]),
     "strategies-iterations": Tool(["tools/compare-strategies iterations"], [], [
         *ANY_SOLVE, "packages/mac/pressure", "packages/faces", "packages/mixedface", "tools/compare-strategies", "tools/solver_cases.py"]),
     "strategies-joints": Tool(["tools/compare-strategies joints"], [], [
@@ -141,14 +141,14 @@ def packages_of(settings, strategies):
     def types(where, otherwise):
         return {value for path, value in settings if re.fullmatch(where, path)} or {otherwise}
 
-    packages = {"grid", "mac", "multigrid", "strategies/common"} | {f"strategies/{name.replace('-', '_')}" for name in strategies}
+    packages = {"grid", "transport", "staggered", "mac", "multigrid", "strategies/common"} | {f"strategies/{name.replace('-', '_')}" for name in strategies}
     if any(re.match("Solids/.", path) for path in paths):
         packages |= {SOLID_PACKAGES[name] for name in types("Solids/[^/]*/Type", "rigid body")}
         # The default always counts: one series may have it where another one says something else.
         packages |= {"faces"} | {COUPLING_PACKAGES[name] for name in types("Coupling/Type", "") | {"mixed face"} if name}
         if types("Contact/Type", "gauss seidel") != {"none"}:
             packages.add("contact")
-    for word, package in (("Joints/", "articulated"), ("Observers/", "observers"), ("Fluid/Free Surface/", "freesurface")):
+    for word, package in (("Joints/", "articulated"), ("Observers/", "observers"), ("Fluid/Free Surface/", "liquid")):
         if any(path.startswith(word) for path in paths):
             packages.add(package)
     return packages
@@ -164,8 +164,7 @@ def paths_of_scenes(root, scenes, assignments=()):
             files += [file, *(beside(file, value) for path, value in found if path.endswith("/File") and value)]
         all_files |= set(files)
         packages |= packages_of(settings, strategies_of(root, settings, files))
-    dry = [] if "freesurface" in packages else [":(exclude)packages/mac/liquid"]
-    return [*sorted(all_files), "src", *(f"packages/{name}" for name in sorted(packages)), *dry, NOT_BUILD_FILES]
+    return [*sorted(all_files), "src", *(f"packages/{name}" for name in sorted(packages)), NOT_BUILD_FILES]
 
 
 def study_page(root, name):

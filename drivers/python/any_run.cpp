@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "base/errors.hpp"
-#include "interfaces/field_sampler.hpp"
+#include "interfaces/fluid_sides.hpp"
 #include "interfaces/steering.hpp"
 #include "output/progress.hpp"
 #include "parameters/strict_xml.hpp"
@@ -142,12 +142,12 @@ class SteppedRun : public AnyRun {
   Samples sample(const Eigen::MatrixXd& points) const override {
     check_input(points.cols() == dim, "Points have {} coordinates; the scene has {} dimensions.",
                 points.cols(), dim);
-    const auto* sampler = side_of<FieldSampler<dim>>(*simulation_->components().fluid);
-    check_input(sampler != nullptr, "This fluid cannot be asked at points.");
+    const auto* output = simulation_->components().fluid->output();
+    check_input(output != nullptr, "This fluid cannot be asked at points.");
     std::vector<Point<dim>> places(points.rows());
     for (Eigen::Index i = 0; i < points.rows(); ++i)
       places[i] = points.row(i);
-    const std::vector<FluidSample<dim>> found = sampler->sample(places);
+    const std::vector<FluidSample<dim>> found = output->sample(places);
     Samples samples;
     samples.in_fluid.resize(points.rows());
     samples.pressure.resize(points.rows());

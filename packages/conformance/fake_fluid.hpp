@@ -26,7 +26,6 @@ struct FakeBox {
 template <int dim>
 class FakeFluid : public FluidDiscretization<dim>,
                   public AuditedFluid<dim>,
-                  public BoundedFluid<dim>,
                   public ViscousFluid<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
@@ -48,6 +47,8 @@ class FakeFluid : public FluidDiscretization<dim>,
   const std::vector<double>& predicted() const { return predicted_; }  ///< u* of all faces
 
   std::string name() const override { return "fake fluid"; }
+  const AuditedFluid<dim>* audit() const override { return this; }
+  ViscousFluid<dim>* viscosity() override { return box_.viscosity > 0 ? this : nullptr; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
   std::function<void()> undo() override {
@@ -60,7 +61,6 @@ class FakeFluid : public FluidDiscretization<dim>,
 
   void begin_prediction() override { predicted_ = velocity_; }
   ForceImpulse<dim> add_forces(double time, double dt) override;
-  bool is_viscous() const override { return box_.viscosity > 0; }
   std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
   Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
   void advect(double, double, const MovingSurface<dim>&) override { predicted_ = velocity_; }

@@ -63,7 +63,7 @@ template <int dim>
 void check_projection(FluidDiscretization<dim>& fluid, Violations& found) {
   const auto map = fluid.pressure_map();
   const auto before = make_vector(map), after = make_vector(map), pressure = make_vector(map);
-  const auto* audited = side_of<AuditedFluid<dim>>(fluid);
+  const auto* audited = fluid.audit();
   fluid.begin_prediction();
   const Momentum<dim> start = audited ? audited->momentum() : Momentum<dim>();
   fluid.divergence(*before);
@@ -120,7 +120,7 @@ void check_coupled_volumes(FluidDiscretization<dim>& fluid, Violations& found) {
 
 template <int dim>
 void check_forces(FluidDiscretization<dim>& fluid, Violations& found) {
-  const auto* audited = side_of<AuditedFluid<dim>>(fluid);
+  const auto* audited = fluid.audit();
   fluid.begin_prediction();
   const Momentum<dim> start = audited ? audited->momentum() : Momentum<dim>();
   const std::vector<double> before = fluid.coupled_velocity();
@@ -147,7 +147,7 @@ void check_forces(FluidDiscretization<dim>& fluid, Violations& found) {
 
 template <int dim>
 void check_viscosity(FluidDiscretization<dim>& fluid, Violations& found) {
-  const ViscousFluid<dim>* viscous = viscosity_of(fluid);
+  const ViscousFluid<dim>* viscous = fluid.viscosity();
   if (!viscous)
     return;
   fluid.begin_prediction();
@@ -229,7 +229,7 @@ void check_scales(const FluidDiscretization<dim>& fluid, Violations& found) {
   expect_true(found, fluid.suggested_step(1, 0) > 0, "suggested_step: not positive");
   expect_true(found, fluid.suggested_step(1, 2 * speed + 1) <= fluid.suggested_step(1, 0),
               "suggested_step: longer with a fast solid than without");
-  if (const auto* audited = side_of<AuditedFluid<dim>>(fluid)) {
+  if (const auto* audited = fluid.audit()) {
     const double energy = audited->kinetic_energy();
     expect_true(found, energy >= 0 && std::isfinite(energy),
                 "kinetic_energy: negative or not finite");

@@ -32,7 +32,7 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
                                  const SurfaceSnapshot<dim>& surface) {
   this->take_volumes(fluid, surface);
   shares_.clear();
-  const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid);
+  const LiquidFluid<dim>* liquid = fluid.liquid();
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
     shares_.push_back(face_shares<dim>(volume, surface, options_.weights));
@@ -58,10 +58,10 @@ void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
     return;
   const double density = this->density_around(fluid, solids.comm());
   std::vector<WetBody<dim>> wet;
-  if (const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid))
+  if (const LiquidFluid<dim>* liquid = fluid.liquid())
     wet = liquid->wet_bodies();
   for (const auto& excess :
-       displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density, bounds_of(fluid),
+       displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density, fluid.bounds(),
                              fluid.gravity(), wet, solids.comm())) {
     if (surface_->solids()[excess.solid].prescribed)
       held_excess_.push_back(excess);

@@ -3,12 +3,12 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 
-#include "mac/liquid/free_surface.hpp"
-#include "mac/liquid/gas_faces.hpp"
-#include "mac/moving_tiles.hpp"
-#include "mac/state/covered_sides.hpp"
-#include "mac/state/ghost_faces.hpp"
-#include "mac/state/surface_marks.hpp"
+#include "liquid/gas/gas_faces.hpp"
+#include "liquid/surface/free_surface.hpp"
+#include "mac/tiles/moving_tiles.hpp"
+#include "staggered/state/covered_sides.hpp"
+#include "staggered/state/ghost_faces.hpp"
+#include "staggered/state/surface_marks.hpp"
 
 namespace lockstep {
 
@@ -208,7 +208,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   const TiledGrid<dim>& grid = domain.grid;
   MacGeometry<dim> geometry;
   geometry.face_table = FaceTable<dim>(domain, density);
-  MacState<dim>& state = geometry.state;
+  GridState<dim>& state = geometry.state;
   state.cells.assign(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { state.cells[cell] = CellState::fluid; });
   empty_rim(domain, state.cells);

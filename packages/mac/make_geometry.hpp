@@ -1,5 +1,5 @@
 #pragma once
-#include "mac/liquid/free_surface.hpp"
+#include "liquid/surface/free_surface.hpp"
 
 namespace lockstep {
 

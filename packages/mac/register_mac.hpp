@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "mac/liquid/interface_model.hpp"
+#include "liquid/common/interface_model.hpp"
 
 namespace lockstep {
 

@@ -47,7 +47,7 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   shares_ = surface_shares<dim>(volumes_, surface);
   if (options_.carry_rotations)
     add_local_rotations<dim>(volumes_, surface, shares_);
-  const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid);
+  const LiquidFluid<dim>* liquid = fluid.liquid();
   masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass, liquid);
   find_prescribed(solids);
   balance(fluid, solids);
@@ -70,9 +70,9 @@ void MixedFaceCoupling<dim>::balance(const FluidDiscretization<dim>& fluid,
   if (!options_.balance || surface_->empty())
     return;
   const double density = this->density_around(fluid, solids.comm());
-  const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid);
+  const LiquidFluid<dim>* liquid = fluid.liquid();
   for (const auto& left : balance_masses<dim>(
-           volumes_, shares_, *surface_, density, bounds_of(fluid),
+           volumes_, shares_, *surface_, density, fluid.bounds(),
            liquid ? liquid->wet_bodies() : std::vector<WetBody<dim>>(), solids.comm(), masses_)) {
     if (surface_->solids()[left.solid].prescribed)
       held_unseen_.push_back(left);

@@ -70,7 +70,7 @@ void Energy<dim>::follow(const RunView<dim>& run) {
 
 template <int dim>
 std::vector<std::vector<double>> Energy<dim>::observe(const RunView<dim>& run) {
-  check_input(side_of<EnergyFluid<dim>>(run.fluid) != nullptr,
+  check_input(run.fluid.energy() != nullptr,
               "The fluid \"{}\" cannot tell what is done to its energy, which the observer "
               "\"energy\" wants; leave that observer out.",
               run.fluid.name());

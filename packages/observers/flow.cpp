@@ -55,16 +55,15 @@ std::vector<ObservedColumn> Flow<dim>::columns() const {
 /// The rest of it lies where there never is a fluid; across periodic sides there is one.
 template <int dim>
 Box<dim> Flow<dim>::part_in(const FluidDiscretization<dim>& fluid) const {
-  const auto* bounded = side_of<BoundedFluid<dim>>(fluid);
-  if (!bounded || bounded->is_periodic())
+  if (fluid.is_periodic())
     return window_;
-  const Box<dim> part = window_.intersection(bounded->bounds());
+  const Box<dim> part = window_.intersection(fluid.bounds());
   for (int a = 0; a < dim; ++a)
     check_input(part.max()[a] > part.min()[a] || (a == axis_ && part.max()[a] == part.min()[a]),
                 "In \"Observers\", the window of a flow lies outside of the fluid: along {} it "
                 "reaches from {} to {} m, the domain from {} to {} m.",
-                axis_names[a], window_.min()[a], window_.max()[a], bounded->bounds().min()[a],
-                bounded->bounds().max()[a]);
+                axis_names[a], window_.min()[a], window_.max()[a], fluid.bounds().min()[a],
+                fluid.bounds().max()[a]);
   return part;
 }
 
@@ -95,8 +94,8 @@ std::vector<std::vector<double>> Flow<dim>::observe(const RunView<dim>& run) {
     middles.max()[a] -= edge / 2;
   }
   double rate = 0, open = 0, pressure = 0;
-  for (const FlowSample& sample : sampler_of(run.fluid, this->name())
-                                      .flow_across(axis_, lattice_points<dim>(middles, count))) {
+  for (const FlowSample& sample :
+       output_of(run.fluid, this->name()).flow_across(axis_, lattice_points<dim>(middles, count))) {
     rate += area * sample.rate;
     open += area * sample.open;
     pressure += area * sample.open * sample.pressure;

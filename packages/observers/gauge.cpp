@@ -5,7 +5,6 @@
 
 #include "base/errors.hpp"
 #include "interfaces/liquid.hpp"
-#include "interfaces/surface_sampler.hpp"
 
 namespace lockstep {
 
@@ -14,16 +13,12 @@ namespace {
 constexpr double most_samples = 1e6;
 
 template <int dim>
-const SurfaceSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid) {
-  const auto* sampler = side_of<SurfaceSampler<dim>>(fluid);
-  check_input(sampler != nullptr,
-              "The fluid \"{}\" cannot be asked where its surface is, which the observer \"gauge\" "
-              "wants; leave that observer out.",
-              fluid.name());
-  check_input(liquid_of<dim>(fluid) != nullptr,
+const LiquidFluid<dim>& liquid_of(const FluidDiscretization<dim>& fluid) {
+  const LiquidFluid<dim>* liquid = fluid.liquid();
+  check_input(liquid != nullptr,
               "The observer \"gauge\" measures the height of a liquid, but the fluid fills the "
               "domain; leave it out, or give \"Fluid\" the list \"Free Surface\".");
-  return *sampler;
+  return *liquid;
 }
 }  // namespace
 
@@ -53,7 +48,7 @@ std::vector<ObservedColumn> Gauge<dim>::columns() const {
 
 template <int dim>
 std::vector<std::vector<double>> Gauge<dim>::observe(const RunView<dim>& run) {
-  const SurfaceSampler<dim>& sampler = sampler_of<dim>(run.fluid);
+  const LiquidFluid<dim>& liquid = liquid_of<dim>(run.fluid);
   const double length = (head_ - foot_).norm();
   const double wanted = std::ceil(2 * length / run.fluid.smallest_length());
   check_input(wanted < most_samples,
@@ -64,7 +59,7 @@ std::vector<std::vector<double>> Gauge<dim>::observe(const RunView<dim>& run) {
   std::vector<Point<dim>> points;
   for (int i = 0; i <= n; ++i)
     points.push_back(foot_ + (head_ - foot_) * i / n);
-  const std::vector<double> distance = sampler.surface_distances(points);
+  const std::vector<double> distance = liquid.surface_distances(points);
   double wet = 0, top = 0;
   for (int i = 0; i < n; ++i) {
     const double begin = distance[i], end = distance[i + 1];

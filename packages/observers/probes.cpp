@@ -20,14 +20,14 @@ Point<dim> point(const ParameterList& list, const std::string& name) {
 }  // namespace
 
 template <int dim>
-const FieldSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid,
-                                    const std::string& observer) {
-  const auto* sampler = dynamic_cast<const FieldSampler<dim>*>(&fluid);
-  check_input(sampler != nullptr,
+const FluidOutput<dim>& output_of(const FluidDiscretization<dim>& fluid,
+                                  const std::string& observer) {
+  const auto* output = fluid.output();
+  check_input(output != nullptr,
               "The fluid \"{}\" cannot be asked at single points, which the observer \"{}\" wants; "
               "leave that observer out.",
               fluid.name(), observer);
-  return *sampler;
+  return *output;
 }
 
 template <int dim>
@@ -110,7 +110,7 @@ std::vector<ObservedColumn> Probes<dim>::columns() const {
 
 template <int dim>
 std::vector<std::vector<double>> Probes<dim>::observe(const RunView<dim>& run) {
-  const std::vector<FluidSample<dim>> samples = sampler_of(run.fluid, name_).sample(points_);
+  const std::vector<FluidSample<dim>> samples = output_of(run.fluid, name_).sample(points_);
   std::vector<std::vector<double>> rows;
   for (std::size_t p = 0; p < points_.size(); ++p) {
     std::vector<double> row{static_cast<double>(p + 1)};
@@ -125,8 +125,8 @@ std::vector<std::vector<double>> Probes<dim>::observe(const RunView<dim>& run) {
   return rows;
 }
 
-template const FieldSampler<2>& sampler_of(const FluidDiscretization<2>&, const std::string&);
-template const FieldSampler<3>& sampler_of(const FluidDiscretization<3>&, const std::string&);
+template const FluidOutput<2>& output_of(const FluidDiscretization<2>&, const std::string&);
+template const FluidOutput<3>& output_of(const FluidDiscretization<3>&, const std::string&);
 template std::vector<Point<2>> lattice_points<2>(const Box<2>&, const Index<2>&);
 template std::vector<Point<3>> lattice_points<3>(const Box<3>&, const Index<3>&);
 template ParameterList points_parameters<2>();

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "interfaces/field_sampler.hpp"
+#include "interfaces/fluid_sides.hpp"
 #include "interfaces/observer.hpp"
 #include "parameters/parameter_list.hpp"
 
@@ -10,8 +10,8 @@ namespace lockstep {
 
 /// Returns the fluid's sampler. Throws InputError, naming `observer`, if the fluid has none.
 template <int dim>
-const FieldSampler<dim>& sampler_of(const FluidDiscretization<dim>& fluid,
-                                    const std::string& observer);
+const FluidOutput<dim>& output_of(const FluidDiscretization<dim>& fluid,
+                                  const std::string& observer);
 
 /// Evenly spaced points of the box between two corners [m], `count` along each axis, ends included;
 /// one alone lies in the middle. x runs fastest.

@@ -4,12 +4,12 @@
 #include "contact/register_contact.hpp"
 #include "cutcell/register_flux.hpp"
 #include "deformable/register_deformable.hpp"
-#include "freesurface/register_freesurface.hpp"
-#include "mac/domain/boundary.hpp"
+#include "liquid/register_interfaces.hpp"
 #include "mac/register_mac.hpp"
 #include "mixedface/register_mixed_face.hpp"
 #include "observers/register_observers.hpp"
 #include "rigid/register_rigid.hpp"
+#include "staggered/domain/boundary.hpp"
 #include "strategies/register_strategies.hpp"
 
 namespace lockstep {
@@ -17,7 +17,7 @@ namespace lockstep {
 template <int dim>
 std::shared_ptr<InterfaceRegistry<dim>> shipped_interface_models() {
   auto interfaces = std::make_shared<InterfaceRegistry<dim>>("interface model");
-  register_freesurface<dim>(*interfaces);
+  register_interfaces<dim>(*interfaces);
   return interfaces;
 }
 

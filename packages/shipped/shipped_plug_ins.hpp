@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "interfaces/registries.hpp"
-#include "mac/liquid/interface_model.hpp"
+#include "liquid/common/interface_model.hpp"
 
 namespace lockstep {
 

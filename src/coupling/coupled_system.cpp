@@ -143,8 +143,7 @@ std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& co
   if (null_space.empty())
     return "";
   PrescribedFluxes fluxes;
-  if (const auto* sides = side_of<SideFluxes>(fluid_))
-    fluxes.sides = sides->side_fluxes(time);
+  fluxes.sides = fluid_.side_fluxes(time);
   if (const auto* pushed = side_of<SolidFluxes<dim>>(coupling_))
     fluxes.solids = pushed->solid_fluxes(solids_);
   if (with_solid && !constraints.offset().is_null())

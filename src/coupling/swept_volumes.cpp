@@ -283,7 +283,7 @@ SweptRates swept_rates(const FluidDiscretization<dim>& fluid, const SolidSystem<
       std::all_of(regions.has_dirichlet.begin(), regions.has_dirichlet.end(),
                   [](char has) { return has != 0; }))
     return {};
-  const Box<dim> domain = bounds_of(fluid);
+  const Box<dim> domain = fluid.bounds();
   const SoftRows soft = soft_rows<dim>(solids, domain);
   if (soft.names.empty())
     return {};

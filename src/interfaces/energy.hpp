@@ -10,7 +10,7 @@ namespace lockstep {
 // that the works of all impulses of a step add up, to round-off, to the change of the kinetic
 // energy.
 
-/// Side interface of fluids: the works of what acts on u* one after another, on free faces.
+/// A side of fluids: the works of what acts on u* one after another, on free faces.
 template <int dim>
 class EnergyFluid {
  public:

@@ -1,12 +1,14 @@
 #pragma once
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
-#include "geometry/surface_snapshot.hpp"
+#include "geometry/moving_surface.hpp"
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
+#include "interfaces/prescribed_flux.hpp"
 #include "linear/types.hpp"
 
 namespace lockstep {
@@ -78,17 +80,7 @@ class OpenFractionRule {
   }
 };
 
-/// The surfaces of one step, from t^n to t^{n+1}, and how fast they move.
-template <int dim>
-struct MovingSurface {
-  std::shared_ptr<const SurfaceSnapshot<dim>> before;  ///< at t^n
-  std::shared_ptr<const SurfaceSnapshot<dim>> after;   ///< at t^{n+1}
-  /// Velocity of a surface point [m/s] as F2 uses it: displacement over dt.
-  std::function<Point<dim>(const SurfacePoint<dim>&)> velocity;
-};
-
-/// Connected components of the pressure unknowns through free faces: a component without a
-/// Dirichlet face has a constant in the null space of A.
+/// Connected components of the pressure unknowns through free faces (regions, design: null space).
 struct PressureRegions {
   int n_regions = 0;                ///< over all ranks
   std::vector<int> of_unknown;      ///< region of each local pressure unknown
@@ -115,6 +107,19 @@ struct ForceImpulse {
   Momentum<dim> impulse;               ///< given to the free velocities, global
   std::vector<double> coupled_change;  ///< change of each coupled control volume's u* [m/s]
 };
+
+template <int dim>
+class AuditedFluid;  // interfaces/fluid_sides.hpp
+template <int dim>
+class EnergyFluid;  // interfaces/energy.hpp
+template <int dim>
+class FluidOutput;  // interfaces/fluid_sides.hpp
+template <int dim>
+class GasFluid;  // interfaces/gas.hpp
+template <int dim>
+class LiquidFluid;  // interfaces/liquid.hpp
+template <int dim>
+class ViscousFluid;  // interfaces/viscosity.hpp
 
 /// A fluid on its own discretization. Geometry is frozen between two calls of `set_geometry`.
 ///
@@ -203,6 +208,45 @@ class FluidDiscretization : public PlugIn {
   /// Density of the fluid at x [kg/m^dim], for the buoyancy of bodies too small for the grid to
   /// see. Default 0: such bodies feel none. Local.
   virtual double density(const Point<dim>&) const { return 0; }
+
+  // The box that it can be in. What of a solid lies beyond an open side or a wall displaces
+  // nothing.
+
+  /// Default: all of space. The same on every rank. Local. [m]
+  virtual Box<dim> bounds() const {
+    const Point<dim> far = Point<dim>::Constant(std::numeric_limits<double>::max());
+    return Box<dim>(-far, far);
+  }
+  /// [axis][lower, upper]: a wall, which solids cannot pass either. Local.
+  virtual std::array<std::array<bool, 2>, dim> closed_sides() const { return {}; }
+  /// Of the wall at an end (0 lower, 1 upper) of an axis, along itself [m/s]. Local.
+  virtual Point<dim> wall_velocity(int, int, double) const { return Point<dim>::Zero(); }
+  /// True if what leaves at one side comes in at another: then torques have no common origin.
+  /// Local.
+  virtual bool is_periodic() const { return false; }
+  /// What its sides let in at `time`, one by one, whether they do at that time or not: so that a
+  /// run can say whose motion closed fluid has no room for. Local.
+  virtual std::vector<PrescribedFlux> side_fluxes(double /*time*/) const { return {}; }
+
+  // The pressure of the last step: the initial guess of the solves, and what the viscous solve
+  // reads.
+
+  /// p̂ of the last accepted step on the present unknowns, carried on to those where there was none.
+  /// Default: zero, it is not kept.
+  virtual RCP<Vector> last_scaled_pressure() const { return make_vector(pressure_map()); }
+  /// Adds to the scaled pressure of the last `project` what `accept` keeps with it: of each unknown
+  /// `inflow` [Pa s m^dim] over the volume of its cell. Changes no velocity.
+  virtual void correct_pressure(const Vector& /*inflow*/) {}
+
+  // Sides: what else it can do, each an object of its own. Null: it cannot; the same in all of a
+  // run and on all ranks. Local.
+
+  virtual const AuditedFluid<dim>* audit() const { return nullptr; }
+  virtual EnergyFluid<dim>* energy() const { return nullptr; }
+  virtual GasFluid<dim>* gas() { return nullptr; }  ///< null: none is ever trapped
+  virtual const LiquidFluid<dim>* liquid() const { return nullptr; }  ///< null: no free surface
+  virtual const FluidOutput<dim>* output() const { return nullptr; }
+  virtual ViscousFluid<dim>* viscosity() { return nullptr; }  ///< null: inviscid in this scene
 
  protected:
   FluidDiscretization() = default;

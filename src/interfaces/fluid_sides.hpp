@@ -1,5 +1,4 @@
 #pragma once
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,60 +27,41 @@ class AuditedFluid {
   virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
 };
 
-/// Keeps the pressure of the last step: the initial guess of the solves, and an input of the
-/// viscous solve.
+/// What a fluid is like at one place.
 template <int dim>
-class PressureMemory {
- public:
-  virtual ~PressureMemory() = default;
-  /// p̂ of the last accepted step on the present unknowns, carried on to those where there was none.
-  /// Collective.
-  virtual RCP<Vector> last_scaled_pressure() const = 0;
-  /// Adds `inflow` [Pa s m^dim] over the volume of each unknown's cell to the scaled pressure that
-  /// `accept` keeps of the last `project`. Changes no velocity. Collective.
-  virtual void correct_pressure(const Vector& inflow) = 0;
+struct FluidSample {
+  bool in_fluid = false;                     ///< false: in a solid or outside; all else is zero
+  double pressure = 0;                       ///< [Pa]
+  Point<dim> velocity = Point<dim>::Zero();  ///< [m/s]
 };
 
-/// p̂ of the last step, zero if the fluid does not keep it. Collective.
-template <int dim>
-RCP<Vector> last_scaled_pressure_of(const FluidDiscretization<dim>& fluid) {
-  const auto* memory = side_of<PressureMemory<dim>>(fluid);
-  return memory ? memory->last_scaled_pressure() : make_vector(fluid.pressure_map());
-}
-
-/// Knows the box that the fluid is in. The part of a solid beyond an open side or a wall displaces
-/// no fluid.
-template <int dim>
-class BoundedFluid {
- public:
-  virtual ~BoundedFluid() = default;
-  virtual Box<dim> bounds() const = 0;  ///< [m]; the same on every rank. Local.
-  /// [axis][lower, upper]: a wall, which solids cannot pass either. Local.
-  virtual std::array<std::array<bool, 2>, dim> closed_sides() const { return {}; }
-  /// Velocity of the wall at an end (0 lower, 1 upper) of an axis, tangential to the wall, at a
-  /// time [m/s]. Local.
-  virtual Point<dim> wall_velocity(int, int, double) const { return Point<dim>::Zero(); }
-  /// True if what leaves at one side comes in at another: then torques have no common origin.
-  /// Local.
-  virtual bool is_periodic() const { return false; }
+/// How a fluid goes through a plane at one place.
+struct FlowSample {
+  double open = 0;  ///< part of the plane there that fluid can go through [1]; 0: all else is zero
+  double rate = 0;  ///< volume by area, open or not, and time, along the axis [m/s]
+  double pressure = 0;  ///< [Pa]
 };
 
-/// All of space for fluids without bounds. Local.
-template <int dim>
-Box<dim> bounds_of(const FluidDiscretization<dim>& fluid) {
-  if (const auto* bounded = side_of<BoundedFluid<dim>>(fluid))
-    return bounded->bounds();
-  const Point<dim> far = Point<dim>::Constant(std::numeric_limits<double>::max());
-  return Box<dim>(-far, far);
-}
-
-/// Fields, surfaces and notes that only pictures and `--explain` show.
+/// What is seen of a fluid: samples for observers, fields and surfaces for pictures, notes for
+/// `--explain`.
 template <int dim>
 class FluidOutput {
  public:
   virtual ~FluidOutput() = default;
-  /// Adds its cell-centred fields to a frame.
-  virtual void add_frame(std::vector<BoxFrame>& boxes) const = 0;
+  /// The state at the end of the last step, one sample a point [m], the same on all ranks.
+  /// Collective; all ranks ask for the same points.
+  virtual std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const = 0;
+  /// The same of planes at right angles to an axis: what the fluid's own balance of volume says
+  /// goes through. Without a better answer all or nothing, as `sample` has it. Collective.
+  virtual std::vector<FlowSample> flow_across(int axis,
+                                              const std::vector<Point<dim>>& points) const {
+    std::vector<FlowSample> flows;
+    for (const FluidSample<dim>& one : sample(points))
+      flows.push_back({one.in_fluid ? 1. : 0., one.velocity[axis], one.pressure});
+    return flows;
+  }
+  /// Adds its cell-centred fields to a frame. Default: it has none.
+  virtual void add_frame(std::vector<BoxFrame>&) const {}
   /// Adds its surfaces, as a liquid with a free surface has one. Collective.
   virtual void add_surfaces(std::vector<SurfaceFrame>&) const {}
   /// Returns the names of the surfaces, which no solid may have. Local.

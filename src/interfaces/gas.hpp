@@ -22,7 +22,6 @@ template <int dim>
 class GasFluid {
  public:
   virtual ~GasFluid() = default;
-  virtual bool holds_gas() const = 0;  ///< false: no bubble ever. Local.
   virtual const std::vector<GasPocket>& gas_pockets() const = 0;
   /// rhs += volume rate that scaled bubble pressures p̂ = dt p [Pa s] push out of the pressure
   /// unknowns beside them [m^dim/s]. Local.

@@ -84,15 +84,15 @@ template <int dim>
 class LiquidFluid {
  public:
   virtual ~LiquidFluid() = default;
-  virtual bool has_surface() const = 0;  ///< false: the fluid fills the domain. Local.
-  /// Returns the signed distance from x to the free surface, negative in the liquid [m]: linear
-  /// between the centres of cells, extended into solids, cut off at the edge of the narrow band a
-  /// few cells away. Known near cells that this rank owns. Local.
+  /// From x to the free surface, negative in the liquid [m]; linear between the centres of cells,
+  /// carried on into solids, cut off a few cells away. Near cells that this rank owns. Local.
   virtual double surface_distance(const Point<dim>& x) const = 0;
-  /// Returns the wet part of each solid of the frozen surface; a solid that is not closed has an
-  /// empty one. Collective.
+  /// The same from each point to the surface at the end of the last step, 1e300 where nothing is
+  /// stored. The same on all ranks. Collective; all ranks ask for the same points.
+  virtual std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const = 0;
+  /// By solid of the frozen surface; those that are not closed have nothing. Collective.
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
-  virtual LiquidReport liquid() const = 0;
+  virtual LiquidReport report() const = 0;
   virtual bool traps_gas() const { return false; }  ///< reports have `gas`. Local.
   virtual bool has_drops() const { return false; }  ///< reports have `drops`. Local.
   /// Returns the impulses of drops on solids in the last `advect`, the same on every rank; the next
@@ -104,13 +104,6 @@ class LiquidFluid {
   /// Returns the names of the watched places, as the columns of tables have them. Local.
   virtual std::vector<std::string> watch_names() const { return {}; }
 };
-
-/// Returns the fluid's liquid side; null unless it has a free surface. Local.
-template <int dim, typename Fluid>
-const LiquidFluid<dim>* liquid_of(const Fluid& fluid) {
-  const auto* liquid = dynamic_cast<const LiquidFluid<dim>*>(&fluid);
-  return liquid && liquid->has_surface() ? liquid : nullptr;
-}
 
 /// The part of a box of the size of a cell in which `distance` of a point is negative, as a box:
 /// the surface there is taken to be across the axis that it is most nearly normal to, which keeps

@@ -15,22 +15,12 @@ struct PrescribedFlux {
   std::vector<std::pair<GlobalIndex, double>> into;
 };
 
-// Side interfaces (`side_of`) that let a run say whose motion closed fluid has no room for. What a
-// fluid or coupling without them prescribes is left out.
-
-/// Prescribed fluxes through the sides of the domain; a side interface of fluids.
-class SideFluxes {
- public:
-  virtual ~SideFluxes() = default;
-  /// Returns the flux of each side with a prescribed velocity at `time`, also where it is zero
-  /// then. Local.
-  virtual std::vector<PrescribedFlux> side_fluxes(double time) const = 0;
-};
-
 template <int dim>
 class SolidSystem;
 
-/// Prescribed fluxes of solids; a side interface of couplings.
+/// A side interface of couplings (`side_of`): lets a run say whose motion closed fluid has no room
+/// for, as `FluidDiscretization::side_fluxes` does. What a coupling without it prescribes is left
+/// out.
 template <int dim>
 class SolidFluxes {
  public:

@@ -41,17 +41,13 @@ struct ViscousSystem {
   std::vector<ViscousLink<dim>> links;
 };
 
-/// A side interface of fluids: viscosity, taken implicitly together with the solids. Without it a
-/// fluid is inviscid.
+/// A side of fluids: viscosity, taken implicitly together with the solids.
 template <int dim>
 class ViscousFluid {
  public:
   virtual ~ViscousFluid() = default;
-  /// True if the fluid is viscous in this scene; else the two functions below are never called.
-  /// Local.
-  virtual bool is_viscous() const = 0;
-  /// True if the viscous solve must read the pressure that balances the forces on u*, at the price
-  /// of one more solve. False: the last step's will do. Local.
+  /// The viscous solve must read the pressure that the forces on u* call for, which is one more
+  /// solve. False: the last step's will do. Local.
   virtual bool wants_present_pressure() const { return false; }
   /// Returns the viscous system of the present u*. Collective.
   virtual std::unique_ptr<ViscousSystem<dim>> viscous_system() const = 0;
@@ -62,13 +58,6 @@ class ViscousFluid {
   virtual Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity,
                                        double dt) = 0;
 };
-
-/// Returns the viscous side of a fluid; null if it is inviscid.
-template <int dim>
-ViscousFluid<dim>* viscosity_of(FluidDiscretization<dim>& fluid) {
-  auto* viscous = side_of<ViscousFluid<dim>>(fluid);
-  return viscous && viscous->is_viscous() ? viscous : nullptr;
-}
 
 /// Row of the dynamic solids (ids of SolidSystem's map) and the prescribed velocity at a viscous
 /// link.

@@ -49,23 +49,21 @@ std::function<void()> undo_of(Components<dim>& components) {
   };
 }
 
-/// The side interfaces that a step makes use of; null where a plug-in does without.
+/// The sides that a step makes use of; null where a plug-in does without.
 template <int dim>
 struct ComponentSides {
   explicit ComponentSides(Components<dim>& components)
-      : viscous_fluid(viscosity_of(*components.fluid)),
-        audited_fluid(side_of<AuditedFluid<dim>>(*components.fluid)),
-        pressure_memory(side_of<PressureMemory<dim>>(*components.fluid)),
+      : viscous_fluid(components.fluid->viscosity()),
+        audited_fluid(components.fluid->audit()),
         viscous_coupling(side_of<ViscousCoupling<dim>>(*components.coupling)),
         audited_coupling(side_of<AuditedCoupling<dim>>(*components.coupling)),
         unseen_buoyancy(side_of<UnseenBuoyancy<dim>>(*components.coupling)),
-        gas_fluid(side_of<GasFluid<dim>>(*components.fluid)),
+        gas_fluid(components.fluid->gas()),
         gas_coupling(side_of<GasCoupling<dim>>(*components.coupling)),
         audited(audited_fluid && audited_coupling && components.solids->is_audited()) {}
 
   ViscousFluid<dim>* viscous_fluid;
   const AuditedFluid<dim>* audited_fluid;
-  PressureMemory<dim>* pressure_memory;
   const ViscousCoupling<dim>* viscous_coupling;
   const AuditedCoupling<dim>* audited_coupling;
   const UnseenBuoyancy<dim>* unseen_buoyancy;

@@ -18,7 +18,7 @@ std::string Simulation<dim>::explain() {
   line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(),
                             fluid.smallest_length(), fluid.pressure_map()->getGlobalNumElements()));
   const bool reads_pressure = scene_options_.stepper.incremental_pressure;
-  const auto* viscous = viscosity_of(*components_.fluid);
+  const auto* viscous = components_.fluid->viscosity();
   line("viscous solve", !viscous ? "off (inviscid)"
                         : viscous->wants_present_pressure()
                             ? "on (surface tension is semi-implicit), after one more "
@@ -30,7 +30,7 @@ std::string Simulation<dim>::explain() {
     n_prescribed += solid.prescribed ? 1 : 0;
     n_shells += solid.closed ? 0 : 1;
   }
-  if (const auto* output = side_of<FluidOutput<dim>>(fluid)) {
+  if (const auto* output = fluid.output()) {
     for (const auto& [title, note] : output->notes())
       line(title, note);
   }

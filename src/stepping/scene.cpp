@@ -296,7 +296,7 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
   components.fluid =
       registries.fluids.create(type_of("Fluid"), fluid_list, scene.sublist("Domain"), comm);
   const FluidDiscretization<dim>& fluid = *components.fluid;
-  const Box<dim> bounds = bounds_of(fluid);
+  const Box<dim> bounds = fluid.bounds();
   const SolidSetting<dim> solid_setting{fluid.smallest_length(), fluid.gravity(),
                                         scene.sublist("Time").get<double>("Start"), comm,
                                         fluid.density(bounds.center())};
@@ -317,12 +317,10 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
     for (const SolidDescription& solid : components.solids->solids())
       setting.solids.push_back(solid.name);
     setting.jointed = jointed_pairs(scene);
-    if (const auto* bounded = side_of<BoundedFluid<dim>>(fluid)) {
-      setting.closed_sides = bounded->closed_sides();
-      setting.wall_velocity = [bounded](int axis, int end, double time) {
-        return bounded->wall_velocity(axis, end, time);
-      };
-    }
+    setting.closed_sides = fluid.closed_sides();
+    setting.wall_velocity = [&fluid](int axis, int end, double time) {
+      return fluid.wall_velocity(axis, end, time);
+    };
     components.contact =
         registries.contacts.create(type_of("Contact"), scene.sublist("Contact"), setting);
   }

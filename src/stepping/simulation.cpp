@@ -28,7 +28,7 @@ double seconds_since(Clock::time_point start) {
 template <int dim>
 double n_cells(const FluidDiscretization<dim>& fluid) {
   std::vector<BoxFrame> boxes;
-  if (const auto* output = side_of<FluidOutput<dim>>(fluid))
+  if (const auto* output = fluid.output())
     output->add_frame(boxes);
   double n = 0;
   for (const BoxFrame& box : boxes)
@@ -47,7 +47,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
       comm_(comm),
       log_(log),
       components_(build_components<dim>(registries, scene, options.scene_file, comm)),
-      tables_(comm, options.output_directory, liquid_of<dim>(*components_.fluid),
+      tables_(comm, options.output_directory, components_.fluid->liquid(),
               components_.solids->joints() != nullptr),
       observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory,
                  scene_options_.time.start),
@@ -86,7 +86,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
 /// Surfaces of fluid and solids lie side by side in frames.
 template <int dim>
 void Simulation<dim>::check_names() const {
-  const auto* output = side_of<FluidOutput<dim>>(*components_.fluid);
+  const auto* output = components_.fluid->output();
   if (!output)
     return;
   for (const std::string& name : output->surface_names())
@@ -140,7 +140,7 @@ RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) c
 template <int dim>
 Frame Simulation<dim>::frame() const {
   Frame frame;
-  const auto* fluid = side_of<FluidOutput<dim>>(*components_.fluid);
+  const auto* fluid = components_.fluid->output();
   if (fluid)
     fluid->add_frame(frame.boxes);
   frame.meshes = surface_frames<dim>(*components_.solids, *stepper_->system().surface());

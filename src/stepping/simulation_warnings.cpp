@@ -20,7 +20,7 @@ void Simulation<dim>::warn_of_watches() {
         "Step {}: the point of the watch \"{}\" sees the centre of no cell, and no cell is left of "
         "the place that it was in. While that is so it is not watched, and its columns are nan. "
         "Later steps like this one are not told.",
-        step_, liquid_of<dim>(*components_.fluid)->watch_names()[w]);
+        step_, components_.fluid->liquid()->watch_names()[w]);
   }
 }
 

@@ -79,10 +79,9 @@ void audit_momentum(const Components<dim>& components, const ComponentSides<dim>
   const double fastest = components.fluid->largest_speed();
   const double momentum_scale = fastest > 0 ? 2 * report.fluid_kinetic_energy / fastest : 0;
   report.momentum_error = report.ledger.linear_error(momentum_scale);
-  const auto* box = side_of<BoundedFluid<dim>>(*components.fluid);
-  const double length =
-      box ? box->bounds().sizes().maxCoeff() : std::pow(report.fluid_volume, 1.0 / dim);
-  if (!box || !box->is_periodic())
+  const double extent = components.fluid->bounds().sizes().maxCoeff();
+  const double length = std::isfinite(extent) ? extent : std::pow(report.fluid_volume, 1.0 / dim);
+  if (!components.fluid->is_periodic())
     report.angular_momentum_error = report.ledger.angular_error(length, momentum_scale);
 }
 

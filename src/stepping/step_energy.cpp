@@ -49,8 +49,8 @@ template <int dim>
 StepEnergy<dim>::StepEnergy(Components<dim>& components, const CoupledSystem<dim>& system)
     : components_(components),
       system_(system),
-      fluid_(side_of<EnergyFluid<dim>>(*components.fluid)),
-      audited_(side_of<AuditedFluid<dim>>(*components.fluid)) {}
+      fluid_(components.fluid->energy()),
+      audited_(components.fluid->audit()) {}
 
 /// Of u*, what is lumped on solids included.
 template <int dim>

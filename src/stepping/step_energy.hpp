@@ -10,7 +10,7 @@
 namespace lockstep {
 
 /// Keeps the energy book of a step: told where the step is, it looks at fluid and solids. All
-/// collective. The fluid is an EnergyFluid, or only solids are in the book.
+/// collective. Of a fluid without an EnergyFluid only solids are in the book.
 template <int dim>
 class StepEnergy {
  public:

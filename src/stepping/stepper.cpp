@@ -25,7 +25,7 @@ Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options
       "The coupling \"{}\" carries no viscous forces, but the fluid is viscous; take another "
       "one, or make the fluid inviscid.",
       components.coupling->name());
-  check_input(!sides_.gas_fluid || !sides_.gas_fluid->holds_gas() || sides_.gas_coupling,
+  check_input(!sides_.gas_fluid || sides_.gas_coupling,
               "The coupling \"{}\" knows no gas that pushes on solids; take another one, or leave "
               "\"Trapped Air\" at \"void\".",
               components.coupling->name());
@@ -167,7 +167,7 @@ ContactReport<dim> Stepper<dim>::contact_momentum(const StepContext<dim>& contex
 /// p̂ = dt p of the last step's pressure p; zero before the first one.
 template <int dim>
 RCP<Vector> Stepper<dim>::last_pressure(double dt) const {
-  const RCP<Vector> pressure = last_scaled_pressure_of(*components_.fluid);
+  const RCP<Vector> pressure = components_.fluid->last_scaled_pressure();
   if (last_dt_ > 0)
     pressure->scale(dt / last_dt_);
   return pressure;
@@ -273,8 +273,8 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
       largest_divergence(system_.blocks(context.dt), solution, fluid.smallest_length(), dim);
   audit_solve<dim>(components_, sides_, system_, context, solution, prediction.viscous, report);
   project(*solution.unknowns.pressure, solution.gas_pressure);
-  if (!prediction.pressure.is_null() && sides_.pressure_memory)
-    sides_.pressure_memory->correct_pressure(*prediction.pressure);
+  if (!prediction.pressure.is_null())
+    fluid.correct_pressure(*prediction.pressure);
   const std::vector<double> coupled_after = components_.coupling->velocity(*solution.velocity);
   fluid.set_coupled_velocity(coupled_after);
   if (energy_)
@@ -287,8 +287,8 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
   if (sides_.audited_fluid)
     report.fluid_kinetic_energy += sides_.audited_fluid->kinetic_energy();
   report.fluid_volume = fluid.fluid_volume();
-  if (const LiquidFluid<dim>* liquid = liquid_of<dim>(fluid)) {
-    report.liquid = liquid->liquid();
+  if (const LiquidFluid<dim>* liquid = fluid.liquid()) {
+    report.liquid = liquid->report();
     report.fluid_volume = report.liquid->volume;
   }
   if (coupled()) {

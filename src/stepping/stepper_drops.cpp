@@ -10,7 +10,7 @@ namespace lockstep {
 template <int dim>
 void Stepper<dim>::add_drops(const StepContext<dim>& context, Vector& momentum,
                              StepReport<dim>& report) const {
-  const LiquidFluid<dim>* liquid = liquid_of<dim>(*components_.fluid);
+  const LiquidFluid<dim>* liquid = components_.fluid->liquid();
   if (!liquid || !liquid->has_drops())
     return;
   const std::vector<SurfaceImpulse<dim>> impulses = liquid->impulses_on_solids();

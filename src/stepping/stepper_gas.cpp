@@ -9,8 +9,7 @@ namespace lockstep {
 
 template <int dim>
 bool Stepper<dim>::has_gas() const {
-  return sides_.gas_fluid && sides_.gas_fluid->holds_gas() &&
-         !sides_.gas_fluid->gas_pockets().empty();
+  return sides_.gas_fluid && !sides_.gas_fluid->gas_pockets().empty();
 }
 
 /// p̂ of the pockets at the start of a solve.

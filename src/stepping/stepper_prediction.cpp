@@ -32,7 +32,7 @@ template <int dim>
 Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
                                              StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
-  const auto* liquid = liquid_of<dim>(fluid);
+  const auto* liquid = fluid.liquid();
   Momentum<dim> tension;
   {
     ScopedPhase phase(timers_, "forces");

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "freesurface/advection_cases.hpp"
+#include "liquid/advection_cases.hpp"
 
 using namespace lockstep;
 using namespace lockstep::test;

@@ -12,8 +12,10 @@ TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".sh", "
 
 # The sibling packages that a package may include.
 SIBLINGS = {
-    "mac": {"grid"},
-    "freesurface": {"grid", "mac"},
+    "transport": {"grid"},
+    "staggered": {"grid", "transport"},
+    "liquid": {"grid", "transport", "staggered"},
+    "mac": {"grid", "transport", "staggered", "liquid"},
     "cutcell": {"faces"},
     "mixedface": {"faces"},
     "articulated": {"rigid", "deformable"},
@@ -38,6 +40,24 @@ UNNAMED = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$", re.MULTILINE | r
 # too.
 CONSTANT_OR_TYPE = re.compile(r"^(?:(?:struct|class|enum class|enum)\s+(\w+)[^;{]*\{|(?:const|constexpr)\b[^=({\n]*?(\w+)(?:\[\w*\])?\s*[={])", re.MULTILINE)
 FUNCTION = re.compile(r"^(?!const\b[^(]*=)[A-Za-z][^;={}()#]*?\b(\w+)\(([^;{}]*?)\)(?: const)? \{", re.MULTILINE)
+MOST_HOMES = 2  # .cpp files that define functions of one class
+MOST_BASES = 4
+MOST_PARAMETERS = 6
+# What has more, and how many: these lists may only shrink.
+KNOWN_HOMES = {"DeformableSolids": 9, "VolumeLedger": 3, "SolidSystem": 3, "Hdf5File": 3, "Simulation": 4, "Stepper": 7}
+KNOWN_BASES = {"DeformableSolids": 7, "FaceCoupling": 6, "RigidBodies": 5}
+KNOWN_PARAMETERS = {
+    "solve_viscous": 11, "displaced_excess": 9,
+    "add_cells_seen": 8, "advance": 8, "balance_masses": 8, "revalidate_scalar": 8, "set": 8, "settle_motion": 8,
+    "add": 7, "add_surface_contacts": 7, "advance_row": 7, "answer_to": 7, "apply": 7, "audit_solve": 7, "directed_row": 7,
+    "join_impact_zones": 7, "led_to": 7, "mark_near": 7, "multiply": 7, "residual": 7, "residual_at": 7, "revalidate_faces": 7,
+    "solve_with_gas": 7, "take_along": 7, "take_lone_particles": 7}
+COMMENT = re.compile(r"//.*")
+# The class of a member function whose definition begins a line.
+MEMBER = re.compile(r"^(?!template (?!<)|using |#|  )(?:[\w:<>,&*~\s\[\]]*?[\s&*])?([A-Z]\w*)(?:<[\w, ]*>)?::(?:~?\w+|operator[^\s(]+)\(", re.MULTILINE)
+INHERITING = re.compile(r"^\s*(?:class|struct) (\w+)(?: final)?\s*:\s*([^;{]*)\{", re.MULTILINE)
+DECLARATION = re.compile(r"[\w>&*\]] (\w+)\(([^(){};]*(?:\([^()]*\)[^(){};]*)*)\)\s*(?:const)?\s*(?:noexcept)?\s*(?:override)?\s*(?:= 0)?\s*[;{]")
+PARAMETER = re.compile(r"^(?:const )?[\w:]+(?:<.*>)?(?:::\w+)?[\s&*]+(?:/\*)?\w*(?:\*/)?(?: = [^=]*)?$", re.DOTALL)
 CONSOLE = re.compile(r"\bstd::(cout|cerr)\b")
 
 
@@ -154,6 +174,49 @@ def clashes(root):
             yield f"{' and '.join(files)}: both define {name}: share it, or call one of them something else"
 
 
+def listed(text):
+    """What commas part that are in no brackets."""
+    depth, parts = 0, [""]
+    for c in text:
+        depth += (c in "<([{") - (c in ">)]}")
+        if c == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += c
+    return [part.strip() for part in parts]
+
+
+def sizes(root):
+    """By name the .cpp files that classes are defined in, their bases, and the parameters of functions: the most that one has."""
+    homes, bases, parameters = {}, {}, {}
+    for path in source_files(root, {".cpp", ".hpp"}, ["src", "packages", "drivers"]):
+        text = COMMENT.sub("", path.read_text())
+        if path.suffix == ".cpp":
+            for name in MEMBER.findall(text):
+                homes.setdefault((path.relative_to(root).parts[:2], name), set()).add(path)
+        for name, of in INHERITING.findall(text):
+            bases[name] = max(bases.get(name, 0), len(listed(of)))
+        for name, of in DECLARATION.findall(text):
+            taken = listed(of)
+            if len(taken) > parameters.get(name, MOST_PARAMETERS) and all(map(PARAMETER.match, taken)):
+                parameters[name] = len(taken)
+    files = {}
+    for (_, name), paths in homes.items():
+        files[name] = max(files.get(name, 0), len(paths))
+    return files, bases, parameters
+
+
+def size_violations(root):
+    rules = [(".cpp files", MOST_HOMES, KNOWN_HOMES), ("bases", MOST_BASES, KNOWN_BASES), ("parameters", MOST_PARAMETERS, KNOWN_PARAMETERS)]
+    for (what, most, known), found in zip(rules, sizes(root)):
+        for name, n in sorted(found.items()):
+            if n > known.get(name, most):
+                yield f"{name} has {n} {what}, more than {known.get(name, most)}"
+        for name, n in sorted(known.items()):
+            if found and 0 < found.get(name, 0) < n:
+                yield f"{name} has no longer {n} {what}: the list of those that have too many may shrink"
+
+
 def violations(root):
     root = Path(root)
     packages = rooms(root, "packages")
@@ -164,6 +227,7 @@ def violations(root):
     yield from folder_violations(root)
     yield from folder_loops(root)
     yield from clashes(root)
+    yield from size_violations(root)
     # In a worktree .git is a file that holds a path.
     top = [path for path in sorted(root.iterdir())
            if path.is_file() and path.suffix in TEXT_SUFFIXES and path.name != ".git"]

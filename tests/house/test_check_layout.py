@@ -56,15 +56,30 @@ class Rules(unittest.TestCase):
         def files(*includes):
             return {f"{name}{number}.cpp": f'#include "{include}"\n' for number, (name, include) in enumerate(includes)}
 
-        mac, floors = "packages/mac", [("packages/mac/a", "mac/state/x.hpp"), ("packages/mac/liquid/a", "mac/state/x.hpp"),
-                                       ("packages/mac/liquid/a", "mac/pressure/x.hpp"), ("packages/mac/pressure/a", "mac/state/x.hpp"),
+        mac, floors = "packages/mac", [("packages/mac/a", "mac/state/x.hpp"), ("packages/mac/viscosity/a", "mac/state/x.hpp"),
+                                       ("packages/mac/viscosity/a", "mac/pressure/x.hpp"), ("packages/mac/pressure/a", "mac/state/x.hpp"),
                                        ("packages/mac/state/a", "mac/state/x.hpp"), ("packages/mac/state/a", "base/x.hpp")]
         self.assertEqual(self.found(files(*floors)), [])
         for name, include, length in [(f"{mac}/state/a", "mac/x.hpp", 2), (f"{mac}/state/a", "mac/pressure/x.hpp", 2),
-                                      (f"{mac}/pressure/a", "mac/liquid/x.hpp", 2), (f"{mac}/state/a", "mac/liquid/x.hpp", 4)]:
+                                      (f"{mac}/pressure/a", "mac/viscosity/x.hpp", 2), (f"{mac}/state/a", "mac/viscosity/x.hpp", 4)]:
             with self.subTest(name=name, include=include):
                 self.assertEqual(len(self.found(files(*floors, (name, include)))), length)
         self.assertEqual(len(self.found(files(("src/solve/a", "solve/soft/x.hpp"), ("src/solve/soft/a", "solve/x.hpp")))), 2)
+
+    def test_classes_in_pieces(self):
+        files = {f"packages/mac/{i}.cpp": f"template <int dim>\nvoid Fluid<dim>::f{i}() {{}}\ntemplate void Fluid<2>::f{i}();\n" for i in range(2)}
+        self.assertEqual(self.found({**files, "packages/mac/c.cpp": "template void Fluid<2>::g();\n"}), [])
+        self.assertEqual(len(self.found({**files, "packages/mac/c.cpp": "const Name& Fluid<dim>::g() const {\n}\n"})), 1)
+
+    def test_bases(self):
+        self.assertEqual(self.found({"src/base/a.hpp": "class A : public B<1, 2>, public C, public D, E {\n};\n"}), [])
+        self.assertEqual(len(self.found({"src/base/a.hpp": "class A : public B, public C, public D, public E, F {\n};\n"})), 1)
+
+    def test_parameters(self):
+        six = "int a, const B<C, D>& b, int c, double d = 0, const E& e, std::function<void(int, int)> f"
+        self.assertEqual(self.found({"src/base/a.hpp": f"int f({six});\n"}), [])
+        self.assertEqual(len(self.found({"src/base/a.hpp": f"int f({six}, int g);\n"})), 1)
+        self.assertEqual(self.found({"src/base/a.cpp": "  return f(a + b, c, d, e, f, g, h);\n"}), [])
 
     def test_full_folders(self):
         files = {f"src/base/a{i}.cpp": "" for i in range(39)}

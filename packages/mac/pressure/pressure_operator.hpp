@@ -1,6 +1,6 @@
 #pragma once
 #include "linear/stencil_operator.hpp"
-#include "mac/state/mac_geometry.hpp"
+#include "staggered/state/mac_geometry.hpp"
 
 namespace lockstep {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "mac/state/mac_geometry.hpp"
+#include "staggered/state/mac_geometry.hpp"
 
 namespace lockstep {
 

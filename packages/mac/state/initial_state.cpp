@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "mac/domain/parameter_values.hpp"
+#include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
 

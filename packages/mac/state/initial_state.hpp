@@ -1,6 +1,6 @@
 #pragma once
-#include "mac/domain/mac_domain.hpp"
 #include "parameters/parameter_list.hpp"
+#include "staggered/domain/mac_domain.hpp"
 
 namespace lockstep {
 

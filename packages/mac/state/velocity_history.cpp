@@ -21,7 +21,7 @@ void VelocityHistory<dim>::add(double scale, const FaceField<dim>& change, FaceF
 
 template <int dim>
 void VelocityHistory<dim>::accept(const FaceField<dim>& before, const FaceField<dim>& after,
-                                  const MacState<dim>& state, double dt, bool jumped) {
+                                  const GridState<dim>& state, double dt, bool jumped) {
   const double scale = jumped ? 0 : 1 / dt;
   for (int axis = 0; axis < dim; ++axis) {
     for (std::size_t i = 0; i < after[axis].size(); ++i) {

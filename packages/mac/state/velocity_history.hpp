@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "grid/halo_exchange.hpp"
-#include "mac/state/mac_state.hpp"
-#include "mac/state/stored_fields.hpp"
+#include "staggered/state/stored_fields.hpp"
+#include "transport/grid_state.hpp"
 
 namespace lockstep {
 
@@ -26,10 +26,9 @@ class VelocityHistory {
   void add_acceleration(double scale, FaceField<dim>& u) const { add(scale, acceleration_, u); }
 
   void set_advected(const FaceField<dim>& u) { advected_ = u; }
-  /// Takes in the change of a step of dt from `before` to `after`; `jumped`: the change was an
-  /// impulse.
-  void accept(const FaceField<dim>& before, const FaceField<dim>& after, const MacState<dim>& state,
-              double dt, bool jumped = false);
+  /// After a step of dt from `before` to `after`; `jumped`: its change was an impulse.
+  void accept(const FaceField<dim>& before, const FaceField<dim>& after,
+              const GridState<dim>& state, double dt, bool jumped = false);
 
   /// Fields that a restart needs. Valid while this is neither moved nor copied.
   std::vector<StoredField> fields() {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "mac/state/mac_geometry.hpp"
+#include "staggered/state/mac_geometry.hpp"
 
 namespace lockstep {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "mac/state/mac_geometry.hpp"
+#include "staggered/state/mac_geometry.hpp"
 
 namespace lockstep {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "interfaces/viscosity.hpp"
-#include "mac/state/mac_geometry.hpp"
+#include "staggered/state/mac_geometry.hpp"
 
 namespace lockstep {
 

@@ -31,7 +31,7 @@ TEST(FlowAcross, FacesCountByTheirOpenPart) {
     std::vector<Point<2>> points;
     for (int j = 0; j < 13; ++j)
       points.emplace_back(x, j + 0.5);
-    for (const FlowSample& sample : fluid->flow_across(0, points)) {
+    for (const FlowSample& sample : fluid->output()->flow_across(0, points)) {
       open += sample.open;
       rate += sample.rate;
     }

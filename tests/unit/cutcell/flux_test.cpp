@@ -164,7 +164,7 @@ TEST(Flux, LosesNoMomentumNorAngularMomentum) {
     // Row 2 of Eq. 16, and F4.
     const std::vector<double> before = c.fluid->coupled_velocity();
     const RCP<Vector> momentum = c.solids->explicit_momentum(0, 0.1);
-    Momentum<3> total = c.fluid->momentum() + c.system->lumped_fluid_momentum(before);
+    Momentum<3> total = c.fluid->audit()->momentum() + c.system->lumped_fluid_momentum(before);
     total += c.solids->momentum(*momentum);
     const RCP<Vector> rhs = c.system->lumped_momentum(*momentum);
     const BlockSystem& blocks = c.system->blocks(0.1);
@@ -173,12 +173,12 @@ TEST(Flux, LosesNoMomentumNorAngularMomentum) {
         distributed(dense(blocks.solid_block()).llt().solve(dense(*rhs)), c.solids->map());
     const std::vector<double> after = c.coupling.velocity(*velocity);
     total += total_of(c.coupling.prescribed_impulses(before, after, *pressure, {}));
-    total += c.fluid->boundary_pressure_impulse(*pressure);
+    total += c.fluid->audit()->boundary_pressure_impulse(*pressure);
     c.fluid->project(*pressure);
     c.fluid->set_coupled_velocity(after);
     const auto gained = make_vector(c.solids->map());
     apply(*c.solids->mass(), *velocity, *gained);
-    total -= c.fluid->momentum() + c.system->lumped_fluid_momentum(after);
+    total -= c.fluid->audit()->momentum() + c.system->lumped_fluid_momentum(after);
     total -= c.solids->momentum(*gained);
     EXPECT_LT(total.linear.norm(), 1e-13) << smallest;
     EXPECT_LT(total.angular.norm(), 1e-13) << smallest;
@@ -262,14 +262,15 @@ TEST(Flux, NamesTheLeversOfNodes) {
   solution.solid =
       distributed(dense(blocks.solid_block()).llt().solve(dense(*rhs)), c.solids->map());
   const std::vector<double> after = c.coupling.velocity(*solution.solid);
-  Momentum<2> total = c.fluid->momentum() + c.system->lumped_fluid_momentum(before);
-  total += c.solids->momentum(*momentum) + c.fluid->boundary_pressure_impulse(*solution.pressure);
+  Momentum<2> total = c.fluid->audit()->momentum() + c.system->lumped_fluid_momentum(before);
+  total += c.solids->momentum(*momentum) +
+           c.fluid->audit()->boundary_pressure_impulse(*solution.pressure);
   const AngularVector<2> levers = c.coupling.lever_impulse(*c.solids, before, after, solution, {});
   c.fluid->project(*solution.pressure);
   c.fluid->set_coupled_velocity(after);
   const auto gained = make_vector(c.solids->map());
   apply(*c.solids->mass(), *solution.solid, *gained);
-  total -= c.fluid->momentum() + c.system->lumped_fluid_momentum(after);
+  total -= c.fluid->audit()->momentum() + c.system->lumped_fluid_momentum(after);
   total -= c.solids->momentum(*gained);
   EXPECT_LT(total.linear.norm(), 1e-13);
   EXPECT_GT(levers.norm(), 1e-5);

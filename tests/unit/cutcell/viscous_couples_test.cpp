@@ -59,8 +59,8 @@ struct ViscousCase {
     fluid->set_coupled_velocity(coupling.velocity(*solids->velocity()));
     ViscousOptions options;
     options.tolerance = 1e-14;
-    return solve_viscous<dim>(*fluid->viscous_system(), *fluid, *solids, coupling,
-                              system->blocks(dt).solid_block(), {},
+    return solve_viscous<dim>(*fluid->viscosity()->viscous_system(), *fluid->viscosity(), *solids,
+                              coupling, system->blocks(dt).solid_block(), {},
                               system->lumped_momentum(*solids->explicit_momentum(0, dt)), dt,
                               solids->reduction(), options);
   }

@@ -60,7 +60,7 @@ TEST(Fluid, SamplesOfALinearVelocityAreExactOnAnyRank) {
   const auto velocity = [](const Point<2>& x) { return Point<2>(1 + 2 * x[0] - x[1], 3 * x[1]); };
   fluid->set_prediction(velocity);
   std::vector<Point<2>> points{{1.234, 2.1}, {2.5, 4.75}, {4.4, 0.6}, {-1, 2}};
-  const auto samples = fluid->sample(points);
+  const auto samples = fluid->output()->sample(points);
   for (int p = 0; p < 3; ++p) {
     EXPECT_TRUE(samples[p].in_fluid);
     EXPECT_NEAR((samples[p].velocity - velocity(points[p])).norm(), 0, 1e-13);
@@ -90,19 +90,19 @@ TEST(Fluid, SidesBelongToTheCellsBesideThem) {
   fluid->begin_prediction();
   fluid->set_prediction([](const Point<2>&) { return Point<2>(0, 3); });
   const double left = -0.3, right = 0.9, top = 0.7;
-  const auto samples = fluid->sample({{left, 0.35},
-                                      {right, 0.35},
-                                      {left, 0},
-                                      {right, top},
-                                      {0.3, top},
-                                      {right + 1e-6, 0.35},
-                                      {0.3, top + 1e-6}});
+  const auto samples = fluid->output()->sample({{left, 0.35},
+                                                {right, 0.35},
+                                                {left, 0},
+                                                {right, top},
+                                                {0.3, top},
+                                                {right + 1e-6, 0.35},
+                                                {0.3, top + 1e-6}});
   for (int p = 0; p < 5; ++p)
     EXPECT_TRUE(samples[p].in_fluid) << p;
   EXPECT_FALSE(samples[5].in_fluid);
   EXPECT_FALSE(samples[6].in_fluid);
   EXPECT_DOUBLE_EQ(samples[4].velocity[1], 3);
-  const auto flows = fluid->flow_across(1, {{0.3, top}, {0.3, 0}});
+  const auto flows = fluid->output()->flow_across(1, {{0.3, top}, {0.3, 0}});
   EXPECT_DOUBLE_EQ(flows[0].open, 1);
   EXPECT_DOUBLE_EQ(flows[0].rate, 3);
   EXPECT_DOUBLE_EQ(flows[1].rate, 0);  // a wall
@@ -114,7 +114,7 @@ TEST(Fluid, PointsInSolidsAreNotInTheFluid) {
   Solids<2> solids;  // its sides beside the centres of cells, which are fluid
   solids.add(box_surface<2>(Point<2>(2.8, 2.8), 1), Point<2>(4, 4), true);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
-  const auto samples = fluid->sample({{2.7, 4.2}, {2.55, 4.2}, {2.8, 4.2}});
+  const auto samples = fluid->output()->sample({{2.7, 4.2}, {2.55, 4.2}, {2.8, 4.2}});
   EXPECT_FALSE(samples[0].in_fluid);
   EXPECT_TRUE(samples[1].in_fluid);
   EXPECT_FALSE(samples[2].in_fluid);
@@ -124,7 +124,7 @@ TEST(Fluid, HistoryByHand) {
   Case<2> scene({4, 4}, 0.5);
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
-  const MacState<2>& state = fluid->geometry().state;
+  const GridState<2>& state = fluid->geometry().state;
   const TiledGrid<2>& grid = fluid->domain().grid;
   VelocityHistory<2> history(grid);
   const auto constant = [&](double value) {
@@ -172,7 +172,7 @@ TEST(Fluid, AVortexAtRestInTheMeanStaysOneInAStep) {
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
   fluid->begin_prediction();
-  const double energy = fluid->kinetic_energy();
+  const double energy = fluid->audit()->kinetic_energy();
   for (int step = 0; step < 4; ++step) {
     const double dt = 0.5 * fluid->smallest_length() / fluid->largest_speed();
     fluid->begin_prediction();
@@ -186,7 +186,7 @@ TEST(Fluid, AVortexAtRestInTheMeanStaysOneInAStep) {
     fluid->accept();
   }
   fluid->begin_prediction();
-  EXPECT_NEAR(fluid->kinetic_energy() / energy, 1, 0.03);
+  EXPECT_NEAR(fluid->audit()->kinetic_energy() / energy, 1, 0.03);
 }
 
 TEST(Fluid, AChannelFillsFromTheInflow) {
@@ -205,7 +205,7 @@ TEST(Fluid, AChannelFillsFromTheInflow) {
     const double speed = std::min(end, 1.0);
     EXPECT_NEAR(fluid->largest_speed(), speed, 1e-8);
     // 1000 kg/m^3 on 2 m^3 less the half cell at the inflow.
-    EXPECT_NEAR(fluid->momentum().linear[0], 1000 * speed * (2 - 0.0625), 1e-5);
+    EXPECT_NEAR(fluid->audit()->momentum().linear[0], 1000 * speed * (2 - 0.0625), 1e-5);
   }
 }
 
@@ -224,7 +224,8 @@ TEST(Fluid, AJetEntersThroughItsOpeningUntilItEnds) {
     fluid->add_forces(end - 0.1, 0.1);
     make_divergence_free(*fluid);
     fluid->accept();
-    EXPECT_NEAR(fluid->momentum().linear[0], end < 1 ? 1000 * flux * (2 - 0.0625) : 0, 1e-5);
+    EXPECT_NEAR(fluid->audit()->momentum().linear[0], end < 1 ? 1000 * flux * (2 - 0.0625) : 0,
+                1e-5);
   }
 }
 
@@ -309,7 +310,7 @@ TEST(Fluid, AnOpeningThatEndsWithinFacesLetsInWhatWasAskedFor) {
       const auto rhs = make_vector(fluid->pressure_map());
       fluid->divergence(*rhs);
       EXPECT_NEAR(rhs->meanValue() * 128, 2 * (upper - 0.28), 1e-13);
-      ASSERT_EQ(fluid->notes().size(), 1u);
+      ASSERT_EQ(fluid->output()->notes().size(), 1u);
     }
   }
 }
@@ -325,7 +326,7 @@ TEST(Fluid, SourcesFeedSmokeAndAFrameShowsIt) {
   fluid->begin_prediction();
   fluid->advect(0, 0.25, no_surface<2>());
   std::vector<BoxFrame> frames;
-  fluid->add_frame(frames);
+  fluid->output()->add_frame(frames);
   ASSERT_EQ(frames.size(), 1u);
   double smoke = 0, cells = 0;
   for (const BoxField& field : frames[0].fields) {

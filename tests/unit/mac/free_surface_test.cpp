@@ -89,10 +89,10 @@ void expect_surface_impulses_telescope() {
   fluid->set_geometry(nullptr, BlockedFaces<dim>());
   const auto pressure = pressure_vector<dim>(*fluid, wavy<dim>);
   fluid->begin_prediction();
-  const Momentum<dim> before = fluid->momentum();
+  const Momentum<dim> before = fluid->audit()->momentum();
   fluid->project(*pressure);
-  Momentum<dim> gained = fluid->momentum() - before;
-  const Momentum<dim> given = fluid->boundary_pressure_impulse(*pressure);
+  Momentum<dim> gained = fluid->audit()->momentum() - before;
+  const Momentum<dim> given = fluid->audit()->boundary_pressure_impulse(*pressure);
   EXPECT_LT((gained.linear - given.linear).norm(), 1e-13) << given.linear.transpose();
   EXPECT_LT((gained.angular - given.angular).norm(), 1e-13) << given.angular.transpose();
   EXPECT_GT(given.linear.norm(), 0.01);
@@ -141,7 +141,7 @@ void expect_wet_part_of_a_box() {
   solids.add(box_surface<dim>(size, h), center, true);
   solids.add(box_surface<dim>(Point<dim>::Constant(0.11), h), Point<dim>::Constant(0.12), true);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
-  const std::vector<WetBody<dim>> bodies = fluid->wet_bodies();
+  const std::vector<WetBody<dim>> bodies = fluid->liquid()->wet_bodies();
   ASSERT_EQ(bodies.size(), 2u);
   EXPECT_FALSE(bodies[1].partly);
   const WetBody<dim>& body = bodies[0];
@@ -258,7 +258,7 @@ TEST(FreeSurface, WhatLiesInADryHullIsDry) {
   solids.add(ball_surface<2>(0.4, 0.1), Point<2>(1.32, 3.02), true);
   const auto fluid = make_liquid<2>(scene);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
-  const std::vector<WetBody<2>> bodies = fluid->wet_bodies();
+  const std::vector<WetBody<2>> bodies = fluid->liquid()->wet_bodies();
   for (const int ball : {1, 2}) {
     EXPECT_EQ(bodies[ball].volume, 0);
     for (const double displaced : bodies[ball].displaced)

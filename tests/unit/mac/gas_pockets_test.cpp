@@ -1,4 +1,4 @@
-#include "mac/liquid/gas_pockets.hpp"
+#include "liquid/gas/gas_pockets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -89,16 +89,16 @@ TEST(GasPockets, ProjectWithTheirOwnPressureOrNone) {
   const auto fluid = make_liquid<2>(scene);
   fluid->set_geometry(nullptr, BlockedFaces<2>());
   fluid->begin_prediction();
-  ASSERT_EQ(fluid->gas_pockets().size(), 1U);
+  ASSERT_EQ(fluid->gas()->gas_pockets().size(), 1U);
   const Vector no_pressure(fluid->pressure_map());
-  const double pressure = 3, opens = pressure * fluid->gas_conductance()[0];
+  const double pressure = 3, opens = pressure * fluid->gas()->gas_conductance()[0];
   EXPECT_GT(opens, 0);
-  fluid->project(no_pressure, {pressure});
-  EXPECT_NEAR(fluid->gas_rates()[0], opens, 1e-14 * opens);
+  fluid->gas()->project(no_pressure, {pressure});
+  EXPECT_NEAR(fluid->gas()->gas_rates()[0], opens, 1e-14 * opens);
   fluid->project(no_pressure);
-  EXPECT_NEAR(fluid->gas_rates()[0], opens, 1e-14 * opens);
-  fluid->project(no_pressure, {-pressure});
-  EXPECT_NEAR(fluid->gas_rates()[0], 0, 1e-14 * opens);
+  EXPECT_NEAR(fluid->gas()->gas_rates()[0], opens, 1e-14 * opens);
+  fluid->gas()->project(no_pressure, {-pressure});
+  EXPECT_NEAR(fluid->gas()->gas_rates()[0], 0, 1e-14 * opens);
 }
 
 }  // namespace

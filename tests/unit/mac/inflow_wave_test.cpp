@@ -1,12 +1,12 @@
-// Velocity of a side that sends waves into a tank, against linear theory.
-#include "mac/domain/inflow_wave.hpp"
+// What a side that sends waves into a tank prescribes, against linear theory.
+#include "staggered/domain/inflow_wave.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "mac/domain/boundary.hpp"
 #include "mac_cases.hpp"
+#include "staggered/domain/boundary.hpp"
 
 namespace lockstep::test {
 

@@ -1,4 +1,4 @@
-#include "mac/liquid/leak_audit.hpp"
+#include "liquid/watch/leak_audit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The surface of a liquid as frames show it: closed, of the right size, the same on any number of
 // ranks.
-#include "mac/liquid/liquid_mesh.hpp"
+#include "liquid/surface/liquid_mesh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "geometry/generators.hpp"
-#include "mac/domain/parameter_values.hpp"
 #include "mac/mac_fluid.hpp"
 #include "parameters/validate.hpp"
+#include "staggered/domain/parameter_values.hpp"
 #include "support/world.hpp"
 
 namespace lockstep::test {

@@ -1,4 +1,4 @@
-#include "mac/domain/region_shape.hpp"
+#include "staggered/domain/region_shape.hpp"
 
 #include <gtest/gtest.h>
 

@@ -23,7 +23,7 @@ void expect_stress_of_a_blob() {
   fluid->begin_prediction();
   const auto stiffness_of = [&](const std::function<Point<dim>(const Point<dim>&)>& velocity) {
     fluid->set_prediction(velocity);
-    const auto system = fluid->viscous_system();
+    const auto system = fluid->viscosity()->viscous_system();
     Vector force(system->map);
     system->stiffness->apply(*system->velocity, force);
     return std::make_pair(force.normInf(), force.dot(*system->velocity));
@@ -45,10 +45,10 @@ void expect_stress_of_a_blob() {
                 return u;
               }).second,
               0);
-  const Momentum<dim> before = fluid->momentum();
+  const Momentum<dim> before = fluid->audit()->momentum();
   Momentum<dim> impulse;
   viscous_step(*fluid, 0.3, impulse);
-  const Momentum<dim> gained = fluid->momentum() - before;
+  const Momentum<dim> gained = fluid->audit()->momentum() - before;
   EXPECT_LT((gained.linear - impulse.linear).norm(), 1e-12);
   EXPECT_LT((gained.angular - impulse.angular).norm(), 1e-12);
   // Nobody is there to give any.
@@ -98,7 +98,7 @@ void expect_definite_at_walls() {
     const auto fluid = make_liquid<dim>(scene);
     fluid->set_geometry(nullptr, BlockedFaces<dim>());
     fluid->begin_prediction();
-    EXPECT_GT(smallest_of_largest(*fluid->viscous_system()), -1e-14) << wall;
+    EXPECT_GT(smallest_of_largest(*fluid->viscosity()->viscous_system()), -1e-14) << wall;
   }
 }
 // At walls, too, the form is that of the symmetric stress: what it lacked in 3D had an eigenvalue
@@ -127,7 +127,7 @@ void expect_definite_near_bodies() {
     solids.add(ball_surface<dim>(1.1, 0.5), place, true);
     fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
     fluid->begin_prediction();
-    EXPECT_GT(smallest_of_largest(*fluid->viscous_system()), -1e-14) << distance;
+    EXPECT_GT(smallest_of_largest(*fluid->viscosity()->viscous_system()), -1e-14) << distance;
   }
 }
 TEST(StressAtVoid, NothingGainsEnergyNearBodies2D) {
@@ -161,17 +161,17 @@ void expect_jet_to_fly_on() {
   fluid->set_geometry(nullptr, BlockedFaces<dim>());
   fluid->begin_prediction();
   fluid->set_prediction([&](const Point<dim>&) { return speed; });
-  auto system = fluid->viscous_system();
+  auto system = fluid->viscosity()->viscous_system();
   Vector force(*system->wall_force, Teuchos::Copy);
   system->stiffness->apply(*system->velocity, force, Teuchos::NO_TRANS, 1, -1);
   EXPECT_GT(system->wall_force->normInf(), 0.1);
   EXPECT_LT(force.normInf(), 1e-13);
 
   fluid->set_prediction(wavy_velocity<dim>);
-  const Momentum<dim> before = fluid->momentum();
+  const Momentum<dim> before = fluid->audit()->momentum();
   Momentum<dim> impulse;
   viscous_step(*fluid, 0.03, impulse);
-  const Momentum<dim> gained = fluid->momentum() - before;
+  const Momentum<dim> gained = fluid->audit()->momentum() - before;
   EXPECT_GT(impulse.linear.norm(), 1e-3);
   EXPECT_LT((gained.linear - impulse.linear).norm(), 1e-12);
   EXPECT_LT((gained.angular - impulse.angular).norm(), 1e-12);

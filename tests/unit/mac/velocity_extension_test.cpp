@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
+#include "liquid/surface/velocity_extension.hpp"
+#include "liquid/surface/wave_damping.hpp"
 #include "liquid_cases.hpp"
-#include "mac/liquid/velocity_extension.hpp"
-#include "mac/liquid/wave_damping.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 template <int dim>
 struct Extended {
   FaceField<dim> velocity;
-  MacState<dim> state;
+  GridState<dim> state;
 };
 template <int dim>
 Extended<dim> extended(const MacFluid<dim>& fluid, const CellField& distance, double band,

@@ -18,12 +18,12 @@ struct ViscousOperator {
 
 template <int dim>
 void viscous_step(MacFluid<dim>& fluid, double dt, Momentum<dim>& impulse) {
-  const auto system = fluid.viscous_system();
+  const auto system = fluid.viscosity()->viscous_system();
   Vector rhs(system->map), solution(system->map);
   rhs.elementWiseMultiply(1, *system->mass, *system->velocity, 0);
   rhs.update(dt, *system->wall_force, 1);
   conjugate_gradients(ViscousOperator{*system->stiffness, *system->mass, dt}, rhs, solution, 1e-14);
-  impulse = fluid.accept_viscous(solution, solution, dt);
+  impulse = fluid.viscosity()->accept_viscous(solution, solution, dt);
 }
 
 }  // namespace lockstep::test

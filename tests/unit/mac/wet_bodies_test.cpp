@@ -22,7 +22,7 @@ bool is_partly_wet(const Point<dim>& gravity, double height) {
   solids.add(ball_surface<dim>(0.171, 0.05), Point<dim>::Constant(0.483), true);
   const auto fluid = make_liquid<dim>(scene);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
-  const WetBody<dim> body = fluid->wet_bodies()[0];
+  const WetBody<dim> body = fluid->liquid()->wet_bodies()[0];
   EXPECT_EQ(body.partly, body.volume > 0) << height;
   return body.partly;
 }
@@ -60,7 +60,7 @@ void expect_no_void_inside() {
   solids.add(box_surface<dim>(Point<dim>::Constant(0.41), 0.05), Point<dim>::Constant(0.49), true);
   const auto fluid = make_liquid<dim>(scene);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
-  EXPECT_FALSE(fluid->wet_bodies()[0].partly);
+  EXPECT_FALSE(fluid->liquid()->wet_bodies()[0].partly);
 }
 TEST(WetBodies, DoNotAskTheirInside) {
   expect_no_void_inside<2>();
@@ -86,7 +86,7 @@ void expect_ends_of_their_own(double place) {
       solids.add(box_surface<dim>(size, h), center, true);
     const auto fluid = make_liquid<dim>(scene);
     fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
-    return fluid->wet_bodies();
+    return fluid->liquid()->wet_bodies();
   };
   const WetBody<dim> box = bodies(false)[0];
   const auto both = bodies(true);

@@ -11,10 +11,12 @@ namespace {
 /// All below a height.
 struct Level : LiquidFluid<2> {
   double height = 0;
-  bool has_surface() const override { return true; }
   double surface_distance(const Point<2>& x) const override { return x[1] - height; }
   std::vector<WetBody<2>> wet_bodies() const override { return {}; }
-  LiquidReport liquid() const override { return {}; }
+  std::vector<double> surface_distances(const std::vector<Point<2>>& points) const override {
+    return std::vector<double>(points.size(), 0);
+  }
+  LiquidReport report() const override { return {}; }
 };
 
 /// Cells of width 1; the dual cell of the face across `axis` at (0, 0).

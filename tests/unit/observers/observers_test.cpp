@@ -6,8 +6,8 @@
 
 #include "base/errors.hpp"
 #include "conformance/fake_fluid.hpp"
+#include "interfaces/energy.hpp"
 #include "interfaces/liquid.hpp"
-#include "interfaces/surface_sampler.hpp"
 #include "observers/energy.hpp"
 #include "observers/flow.hpp"
 #include "observers/gauge.hpp"
@@ -20,8 +20,9 @@ using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
 /// Fluid right of x = 1 with the pressure 10 x and the velocity (y, 2).
-class HalfPlane : public FakeFluid<2>, public FieldSampler<2> {
+class HalfPlane : public FakeFluid<2>, public FluidOutput<2> {
  public:
+  const FluidOutput<2>* output() const override { return this; }
   HalfPlane() : FakeFluid<2>({{4, 4}, 0.5}, Tpetra::getDefaultComm()) {}
   std::vector<FluidSample<2>> sample(const std::vector<Point<2>>& points) const override {
     std::vector<FluidSample<2>> samples(points.size());
@@ -33,7 +34,7 @@ class HalfPlane : public FakeFluid<2>, public FieldSampler<2> {
 };
 
 /// Liquid below y = 1 + x / 4, and from y = 3 to y = 3.3.
-class Pool : public FakeFluid<2>, public SurfaceSampler<2>, public LiquidFluid<2> {
+class Pool : public FakeFluid<2>, public LiquidFluid<2> {
  public:
   explicit Pool(bool has_surface = true)
       : FakeFluid<2>({{4, 4}, 0.5}, Tpetra::getDefaultComm()), has_surface_(has_surface) {}
@@ -46,21 +47,28 @@ class Pool : public FakeFluid<2>, public SurfaceSampler<2>, public LiquidFluid<2
   double surface_distance(const Point<2>& x) const override {
     return std::min(x[1] - 1 - x[0] / 4, std::abs(x[1] - 3.15) - 0.15);
   }
-  bool has_surface() const override { return has_surface_; }
+  const LiquidFluid<2>* liquid() const override { return has_surface_ ? this : nullptr; }
   std::vector<WetBody<2>> wet_bodies() const override { return {}; }
-  LiquidReport liquid() const override { return {}; }
+  LiquidReport report() const override { return {}; }
 
  private:
   bool has_surface_;
 };
 
-/// Nothing works on it.
-class EnergyTeller : public FakeFluid<2>, public EnergyFluid<2> {
- public:
-  EnergyTeller() : FakeFluid<2>({{4, 4}, 0.5}, Tpetra::getDefaultComm()) {}
+struct NoWorks : EnergyFluid<2> {
   void begin_works() override {}
   void end_work() override {}
   std::vector<double> works() override { return {}; }
+};
+
+/// Nothing works on it.
+class EnergyTeller : public FakeFluid<2> {
+ public:
+  EnergyTeller() : FakeFluid<2>({{4, 4}, 0.5}, Tpetra::getDefaultComm()) {}
+  EnergyFluid<2>* energy() const override { return works_.get(); }
+
+ private:
+  std::unique_ptr<NoWorks> works_ = std::make_unique<NoWorks>();
 };
 
 ParameterList box(double x0, double y0, double x1, double y1) {

@@ -23,10 +23,12 @@ using Texts = std::map<std::string, std::string>;  ///< texts of a row, by the n
 /// A liquid of which all is reported that there can be.
 template <int dim>
 struct FullLiquid : LiquidFluid<dim> {
-  bool has_surface() const override { return true; }
   double surface_distance(const Point<dim>&) const override { return 0; }
   std::vector<WetBody<dim>> wet_bodies() const override { return {}; }
-  LiquidReport liquid() const override { return {}; }
+  std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const override {
+    return std::vector<double>(points.size(), 0);
+  }
+  LiquidReport report() const override { return {}; }
   bool traps_gas() const override { return true; }
   bool has_drops() const override { return true; }
   std::vector<std::string> watch_names() const override { return {"Cup", "Bowl"}; }

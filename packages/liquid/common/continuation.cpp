@@ -1,0 +1,119 @@
+#include "liquid/common/continuation.hpp"
+
+#include <algorithm>
+
+namespace lockstep {
+
+namespace {
+/// Neighbours of solid cells. Fluid beyond a shell is other fluid than that around the solid.
+template <int dim>
+class Neighbors {
+ public:
+  Neighbors(const MacDomain<dim>& domain, const SolidCells<dim>& solids)
+      : grid_(domain.grid), solids_(solids) {
+    for (const SolidDescription& solid : solids.state.surface->solids())
+      has_shells_ = has_shells_ || !solid.closed;
+  }
+  /// The neighbour of a solid cell, or -1 if it is fluid that a shell hides.
+  int operator()(int cell, int axis, int side) const {
+    const int other = grid_.neighbor(cell, axis, side);
+    if (!has_shells_ || other < 0 || !solids_.is_fluid(other))
+      return other;
+    const SurfaceSnapshot<dim>& surface = *solids_.state.surface;
+    const Point<dim> x = grid_.center(cell);
+    const auto hit =
+        surface.first_hit(x + (side == 0 ? -1 : 1) * grid_.spacing() * Point<dim>::Unit(axis), x);
+    return hit && !surface.solids()[surface.solid_of(hit->simplex)].closed ? -1 : other;
+  }
+
+ private:
+  const TiledGrid<dim>& grid_;
+  const SolidCells<dim>& solids_;
+  bool has_shells_ = false;
+};
+
+constexpr char no_layer = 127;
+}  // namespace
+
+template <int dim>
+void Continuation<dim>::find_layers(const MacDomain<dim>& domain, const SolidCells<dim>& solids) {
+  const TiledGrid<dim>& grid = domain.grid;
+  surface_ = solids.state.surface;
+  layers_.assign(n_layers_, {});
+  layer_of_.resize(grid.n_stored_cells());
+  for (std::size_t cell = 0; cell < layer_of_.size(); ++cell)
+    layer_of_[cell] = solids.is_fluid(static_cast<int>(cell)) ? 0 : no_layer;
+  std::vector<int> left;
+  grid.for_each_owned_cell([&](int cell) {
+    if (solids.state.cells[cell] == CellState::solid)
+      left.push_back(cell);
+  });
+  const Neighbors<dim> neighbor(domain, solids);
+  for (int layer = 1; layer <= n_layers_; ++layer) {
+    std::vector<int> beyond;
+    for (const int cell : left) {
+      unsigned char from = 0;
+      for (int i = 0; i < 2 * dim; ++i) {
+        const int other = neighbor(cell, i / 2, i % 2);
+        if (other >= 0 && layer_of_[other] < layer)
+          from |= 1 << i;
+      }
+      if (from)
+        layers_[layer - 1].push_back({cell, from});
+      else
+        beyond.push_back(cell);
+    }
+    for (const LayerCell& found : layers_[layer - 1])
+      layer_of_[found.cell] = static_cast<char>(layer);
+    domain.full_halo.fill(layer_of_);
+    left.swap(beyond);
+  }
+}
+
+/// Extrapolates phi linearly from a neighbour, along the axis from it to the cell [m].
+template <int dim>
+double Continuation<dim>::led_to(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                                 const CellField& phi, int other, int axis, int side,
+                                 int layer) const {
+  const int beyond = grid.neighbor(other, axis, side);
+  if (beyond < 0 || layer_of_[beyond] >= layer)
+    return phi[other];
+  if (solids.is_fluid(other) && solids.seen_neighbor(grid, other, axis, side) < 0)
+    return phi[other];
+  const double h = grid.spacing();
+  return phi[other] + std::clamp(phi[other] - phi[beyond], -h, h);
+}
+
+template <int dim>
+void Continuation<dim>::into_solids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                                    double cut_off, CellField& phi) {
+  if (!solids.state.surface)
+    return;
+  if (surface_ != solids.state.surface)
+    find_layers(domain, solids);
+  const TiledGrid<dim>& grid = domain.grid;
+  std::vector<double> values;
+  for (int layer = 1; layer <= n_layers_; ++layer) {
+    const std::vector<LayerCell>& cells = layers_[layer - 1];
+    values.clear();
+    for (const LayerCell& at : cells) {
+      double sum = 0;
+      int n = 0;
+      for (int i = 0; i < 2 * dim; ++i)
+        if (at.from >> i & 1) {
+          const int other = grid.neighbor(at.cell, i / 2, i % 2);
+          sum += led_to(grid, solids, phi, other, i / 2, i % 2, layer);
+          ++n;
+        }
+      values.push_back(std::clamp(sum / n, -cut_off, cut_off));
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      phi[cells[i].cell] = values[i];
+    domain.full_halo.fill(phi);
+  }
+}
+
+template class Continuation<2>;
+template class Continuation<3>;
+
+}  // namespace lockstep

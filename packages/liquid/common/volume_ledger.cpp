@@ -1,0 +1,359 @@
+#include "liquid/common/volume_ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace lockstep {
+
+namespace {
+/// Distance in which a liquid component that vanishes looks for one to give its volume to [cells].
+constexpr int giving_reach = 3;
+
+template <int dim>
+std::vector<char> wet_cells(const CellField& phi) {
+  std::vector<char> wet(phi.size());
+  for (std::size_t cell = 0; cell < phi.size(); ++cell)
+    wet[cell] = phi[cell] < 0;
+  return wet;
+}
+
+/// Calls f(cell) for the owned cells beside a side of the domain.
+template <int dim, typename Function>
+void for_each_cell_at_side(const TiledGrid<dim>& grid, int axis, int end, const Function& f) {
+  const int last = end == 0 ? 0 : grid.n_cells()[axis] - 1;
+  for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
+    const int begin = grid.tile_begin(tile)[axis];
+    if (last < begin || last >= begin + tile_width<dim>)
+      continue;
+    for (int cell = tile * tile_volume<dim>; cell < (tile + 1) * tile_volume<dim>; ++cell)
+      if (grid.in_domain(cell) && grid.coordinates(cell)[axis] == last)
+        f(cell);
+  }
+}
+
+/// Number of cells, over all ranks, in which each pair (new group, old group) occurs.
+using Overlaps = std::map<std::pair<int, int>, double>;
+
+Overlaps gather(const Communicator& comm, const Overlaps& mine) {
+  std::vector<double> packed;
+  for (const auto& [pair, n] : mine)
+    packed.insert(packed.end(),
+                  {static_cast<double>(pair.first), static_cast<double>(pair.second), n});
+  packed = gather_all(comm, packed);
+  Overlaps all;
+  for (std::size_t i = 0; i < packed.size(); i += 3)
+    all[{static_cast<int>(packed[i]), static_cast<int>(packed[i + 1])}] += packed[i + 2];
+  return all;
+}
+}  // namespace
+
+template <int dim>
+VolumeLedger<dim>::VolumeLedger(const MacDomain<dim>& domain, const VolumeParameters& parameters)
+    : domain_(domain), parameters_(parameters), measure_(domain) {}
+
+template <int dim>
+CellGroups VolumeLedger<dim>::find(const SolidCells<dim>& solids, const CellField& phi) const {
+  return find_groups(domain_, solids, wet_cells<dim>(phi));
+}
+
+template <int dim>
+void VolumeLedger<dim>::begin(const SolidCells<dim>& solids, const CellField& phi) {
+  restore(solids, phi, {});
+  targets_.of_group = volumes_.volume;
+  targets_.loose = volumes_.loose;
+}
+
+template <int dim>
+void VolumeLedger<dim>::restore(const SolidCells<dim>& solids, const CellField& phi,
+                                const VolumeTargets& targets) {
+  groups_ = find(solids, phi);
+  measure_.prepare(solids, phi);
+  volumes_ = measure_.measure(phi, groups_);
+  targets_ = targets;
+}
+
+/// The body that a cell or, of those beside it, the one nearest to the surface belongs to, -1:
+/// none. A cell whose centre a solid holds has its fluid from those beside it.
+template <int dim>
+int VolumeLedger<dim>::body_at(const SolidCells<dim>& solids, const CellField& phi,
+                               int cell) const {
+  int body = groups_.of_cell[cell];
+  if (body >= 0)
+    return body;
+  double nearest = 0;
+  for (int i = 0; i < 2 * dim; ++i) {
+    const int other = solids.is_fluid(cell) ? solids.seen_neighbor(domain_.grid, cell, i / 2, i % 2)
+                                            : domain_.grid.neighbor(cell, i / 2, i % 2);
+    if (other < 0 || groups_.of_cell[other] < 0)
+      continue;
+    const double distance = std::abs(phi[other]);
+    if (body < 0 || distance < nearest || (distance == nearest && groups_.of_cell[other] < body)) {
+      body = groups_.of_cell[other];
+      nearest = distance;
+    }
+  }
+  return body;
+}
+
+template <int dim>
+void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField& phi,
+                                 const InterfaceStep<dim>& step) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  const double per_speed = step.dt * domain_.face_area(), h = domain_.spacing();
+  std::vector<double> out(groups_.n, 0.0);
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end) {
+      const SideType type = domain_.boundary.side(axis, end).type;
+      if (type != SideType::open && type != SideType::inflow)
+        continue;
+      for_each_cell_at_side(grid, axis, end, [&](int cell) {
+        // cells count whose centre is above the surface, too: else the flux jumps as it passes
+        const double wet = std::clamp(0.5 - phi[cell] / h, 0.0, 1.0);
+        const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
+        const double open = wet > 0 ? step.open_part(axis, face) : 0;
+        const int body = open > 0 ? body_at(solids, phi, cell) : -1;
+        if (body < 0)
+          return;
+        double speed = (end == 0 ? -1 : 1) * step.advection_velocity[axis][face];
+        if (type == SideType::open)
+          speed = std::max(speed, 0.0);
+        out[body] += speed * per_speed * wet * open;
+      });
+    }
+  sum_all(grid.comm(), out.data(), groups_.n);
+  for (int group = 0; group < groups_.n; ++group) {
+    // a long step may let out more than a small component has
+    double& target = targets_.of_group[group];
+    target -= std::min(out[group], std::max(target, 0.0));
+  }
+}
+
+template <int dim>
+void VolumeLedger<dim>::inherit(const SolidCells<dim>& before, const SolidCells<dim>& solids,
+                                const CellField& phi, const std::vector<char>& swept, int reach) {
+  measure_.prepare(solids, phi);
+  regroup(before, solids, phi, swept, reach);
+  // Liquid that no cell showed at the start follows no flow: it belongs to no component that could
+  // take it.
+  const double gone = std::max(targets_.loose - volumes_.loose, 0.0);
+  targets_.loose -= gone;
+  targets_.lost += gone;
+}
+
+template <int dim>
+void VolumeLedger<dim>::regroup(const SolidCells<dim>& before, const SolidCells<dim>& solids,
+                                const CellField& phi, const std::vector<char>& swept, int reach) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  CellGroups groups = find(solids, phi);
+  std::vector<int> ancestor = groups_.of_cell;
+  for (std::size_t cell = 0; cell < swept.size(); ++cell)
+    if (swept[cell])
+      ancestor[cell] = -1;
+  const auto overlaps_of = [&](const auto& counts) {
+    Overlaps mine;
+    std::pair<int, int> last{-1, -1};
+    double n = 0;
+    grid.for_each_owned_cell([&](int cell) {
+      const std::pair<int, int> pair{groups.of_cell[cell], ancestor[cell]};
+      if (pair.first < 0 || pair.second < 0 || !counts(pair.first))
+        return;
+      if (pair != last && n > 0) {
+        mine[last] += n;
+        n = 0;
+      }
+      last = pair;
+      ++n;
+    });
+    if (n > 0)
+      mine[last] += n;
+    return gather(grid.comm(), mine);
+  };
+  Overlaps overlaps = overlaps_of([](int) { return true; });
+  std::vector<char> has_ancestor(groups.n, 0), vanished(groups_.n, 1);
+  for (const auto& [pair, n] : overlaps)
+    has_ancestor[pair.first] = 1;
+  if (std::count(has_ancestor.begin(), has_ancestor.end(), 0) > 0) {
+    // A component that moves by more than its size comes from the nearest one before.
+    domain_.halo.fill(ancestor);
+    spread_labels(domain_, solids, phi, reach, ancestor);
+    overlaps.merge(overlaps_of([&](int group) { return !has_ancestor[group]; }));
+  }
+  volumes_ = measure_.measure(phi, groups);
+
+  std::vector<double> n_cells(groups.n, 0.0), claims(groups_.n, 0.0);
+  for (const auto& [pair, n] : overlaps)
+    n_cells[pair.first] += n;
+  const auto claim = [&](const std::pair<int, int>& pair, double n) {
+    return std::max(volumes_.volume[pair.first], 1e-300) * n / n_cells[pair.first];
+  };
+  for (const auto& [pair, n] : overlaps) {
+    claims[pair.second] += claim(pair, n);
+    vanished[pair.second] = 0;
+  }
+  std::vector<double> target(groups.n, 0.0);
+  for (const auto& [pair, n] : overlaps)
+    target[pair.first] += targets_.of_group[pair.second] * claim(pair, n) / claims[pair.second];
+  if (std::count(vanished.begin(), vanished.end(), 1) > 0)
+    give_to_nearest(solids, phi, groups, places_of(vanished, before, phi, swept), vanished, target);
+  groups_ = std::move(groups);
+  targets_.of_group = std::move(target);
+}
+
+template <int dim>
+std::vector<int> VolumeLedger<dim>::places_of(const std::vector<char>& vanished,
+                                              const SolidCells<dim>& before, const CellField& phi,
+                                              const std::vector<char>& swept) const {
+  std::vector<int> places = groups_.of_cell;
+  for (int& group : places)
+    if (group >= 0 && !vanished[group])
+      group = -1;
+  double n_swept = 0;
+  for (std::size_t cell = 0; cell < swept.size(); ++cell)
+    n_swept += swept[cell] && places[cell] >= 0;
+  if (sum_all(domain_.grid.comm(), n_swept) == 0)
+    return places;
+  spread_labels(domain_, before, phi, giving_reach, places);
+  for (std::size_t cell = 0; cell < swept.size(); ++cell)
+    if (swept[cell])
+      places[cell] = -1;
+  return places;
+}
+
+template <int dim>
+void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
+                                        const CellGroups& groups, const std::vector<int>& places,
+                                        std::vector<char> homeless, std::vector<double>& target) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  std::vector<int> nearest = groups.of_cell;
+  spread_labels(domain_, solids, phi, giving_reach, nearest);
+  Overlaps mine;
+  grid.for_each_owned_cell([&](int cell) {
+    if (places[cell] >= 0 && nearest[cell] >= 0)
+      mine[{places[cell], nearest[cell]}] += 1;
+  });
+  std::map<int, std::pair<double, int>> heir;  // most cells; the first of several
+  for (const auto& [pair, n] : gather(grid.comm(), mine)) {
+    auto& best = heir[pair.first];
+    if (n > best.first)
+      best = {n, pair.second};
+  }
+  for (const auto& [old, best] : heir) {
+    target[best.second] += targets_.of_group[old];
+    homeless[old] = 0;
+  }
+  if (std::count(homeless.begin(), homeless.end(), 1) > 0)
+    share_out(solids, groups, places, homeless, target);
+}
+
+template <int dim>
+std::vector<int> VolumeLedger<dim>::places_among(const CellGroups& spaces,
+                                                 const CellGroups& bodies) const {
+  if (spaces.n == 1)
+    return std::vector<int>(bodies.n, 0);
+  Overlaps mine;
+  std::pair<int, int> last{-1, -1};
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    const std::pair<int, int> pair{bodies.of_cell[cell], spaces.of_cell[cell]};
+    if (pair.first >= 0 && pair != last)
+      mine[last = pair] = 1;
+  });
+  std::vector<int> space(bodies.n, 0);
+  for (const auto& [pair, n] : gather(domain_.grid.comm(), mine))
+    space[pair.first] = pair.second;
+  return space;
+}
+
+template <int dim>
+void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
+                                  const std::vector<int>& places, const std::vector<char>& homeless,
+                                  std::vector<double>& target) {
+  const CellGroups& spaces = find_closed_spaces(domain_, solids);
+  Overlaps of_old;
+  domain_.grid.for_each_owned_cell([&](int cell) {
+    const int old = places[cell];
+    if (old >= 0 && homeless[old] && solids.is_fluid(cell))
+      of_old[{old, spaces.of_cell[cell]}] += 1;
+  });
+  const std::vector<int> space = places_among(spaces, groups);
+  std::vector<double> volume_in_space(spaces.n, 0.0);
+  for (int group = 0; group < groups.n; ++group)
+    volume_in_space[space[group]] += volumes_.volume[group];
+  std::map<int, std::pair<double, int>> space_of_old;
+  for (const auto& [pair, n] : gather(domain_.grid.comm(), of_old)) {
+    auto& most = space_of_old[pair.first];
+    if (n > most.first)
+      most = {n, pair.second};
+  }
+  std::vector<double> given(spaces.n, 0.0);
+  for (int old = 0; old < groups_.n; ++old) {
+    if (!homeless[old])
+      continue;
+    const auto found = space_of_old.find(old);
+    if (found != space_of_old.end() && volume_in_space[found->second.second] > 0)
+      given[found->second.second] += targets_.of_group[old];
+    else
+      targets_.lost += targets_.of_group[old];
+  }
+  for (int group = 0; group < groups.n; ++group)
+    if (given[space[group]] != 0)
+      target[group] += given[space[group]] * volumes_.volume[group] / volume_in_space[space[group]];
+}
+
+template <int dim>
+void VolumeLedger<dim>::remove(const SolidCells<dim>& solids, const CellField& phi) {
+  measure_.prepare(solids, phi);
+  const GroupVolumes left = measure_.measure(phi, groups_);
+  for (int group = 0; group < groups_.n; ++group)
+    targets_.of_group[group] += left.volume[group] - volumes_.volume[group];
+  targets_.loose = std::min(targets_.loose, left.loose);
+  inherit(solids, solids, phi, {}, 1);
+}
+
+template <int dim>
+void VolumeLedger<dim>::create(const SolidCells<dim>& solids, const CellField& before,
+                               const CellField& phi) {
+  measure_.prepare(solids, before);
+  const CellGroups groups = find(solids, phi);
+  const GroupVolumes there = measure_.measure(before, groups);
+  inherit(solids, solids, phi, {}, 1);
+  for (int group = 0; group < groups_.n; ++group)
+    targets_.of_group[group] += volumes_.volume[group] - there.volume[group];
+}
+
+template <int dim>
+WatchedLiquid VolumeLedger<dim>::in_cells(const CellField& phi,
+                                          const std::vector<char>& cells) const {
+  CellGroups there = groups_;
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    if (!cells[cell])
+      there.of_cell[cell] = -1;
+  const GroupVolumes volumes = measure_.measure(phi, there);
+  WatchedLiquid liquid;
+  for (int group = 0; group < groups_.n; ++group) {
+    if (volumes.volume[group] == 0)
+      continue;
+    liquid.volume += volumes.volume[group];
+    liquid.target += targets_.of_group[group] * volumes.volume[group] / volumes_.volume[group];
+  }
+  return liquid;
+}
+
+template <int dim>
+LiquidLedger VolumeLedger<dim>::state() const {
+  LiquidLedger ledger;
+  ledger.volume = volumes_.total();
+  ledger.target =
+      std::accumulate(targets_.of_group.begin(), targets_.of_group.end(), targets_.loose);
+  ledger.shift = targets_.shift;
+  ledger.lost = targets_.lost;
+  ledger.n_components = groups_.n;
+  return ledger;
+}
+
+template class VolumeLedger<2>;
+template class VolumeLedger<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,118 @@
+#pragma once
+#include <vector>
+
+#include "liquid/common/interface_model.hpp"
+#include "liquid/common/liquid_volume.hpp"
+#include "parameters/parameter_list.hpp"
+
+namespace lockstep {
+
+enum class VolumeCorrection {
+  component,  ///< each liquid component keeps its own volume
+  global,     ///< all of them together
+  none
+};
+
+/// Parameters of volume conservation.
+struct VolumeParameters {
+  VolumeCorrection correction = VolumeCorrection::component;
+  double largest_shift =
+      0.2;  ///< largest shift of the surface in a step in which nothing crosses a cell [cells]
+};
+
+/// Declares "Volume Correction" and "Largest Shift".
+void declare_volume_correction(ParameterList& list);
+VolumeParameters read_volume_correction(const ParameterList& list);
+
+/// State that the ledger keeps from step to step.
+struct VolumeTargets {
+  std::vector<double> of_group;  ///< target volume of each liquid component [m^dim]
+  double loose = 0;  ///< remainder of the start's liquid that is beside no liquid cell [m^dim]
+  double lost = 0, shift = 0;  ///< [m^dim]
+};
+
+/// Decrease of phi in owned cells on and beside liquid components [m]; empty: nowhere.
+using VolumeShift = CellField;
+
+/// Conserves the volume of each liquid component. The target of a component changes by known fluxes
+/// only; where components merge the targets add up, where one breaks up its target is shared in
+/// proportion to the volumes.
+template <int dim>
+class VolumeLedger {
+ public:
+  VolumeLedger(const MacDomain<dim>& domain, const VolumeParameters& parameters);
+
+  /// Takes the present volumes as targets. Collective.
+  void begin(const SolidCells<dim>& solids, const CellField& phi);
+  /// Subtracts the outflow through the sides of the domain in a step; through open sides no liquid
+  /// comes in. Called before phi is advected. Collective.
+  void flow_out(const SolidCells<dim>& solids, const CellField& phi,
+                const InterfaceStep<dim>& step);
+  /// Hands the targets on to the components of the advected phi. `swept` (may be empty): cells that
+  /// have changed sides of a surface since `before`; `reach`: more than the displacement of any
+  /// cell's content [cells]. Collective.
+  void inherit(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
+               const std::vector<char>& swept, int reach);
+  /// Takes the change by a sink into the targets. Collective.
+  void remove(const SolidCells<dim>& solids, const CellField& phi);
+  /// Takes the change by a source since `before` into the targets. Collective.
+  void create(const SolidCells<dim>& solids, const CellField& before, const CellField& phi);
+  /// Takes a volume [m^dim] for a drop at each of these owned cells from the nearest component, or,
+  /// where none is within a few cells, from all in the same closed space. Returns the parts of
+  /// these volumes that were available. Collective.
+  std::vector<double> take_drops(const SolidCells<dim>& solids, const CellField& phi,
+                                 const std::vector<int>& cells, double volume);
+  /// Gives the volumes of drops to the components that these owned cells belong to. Collective.
+  void give_drops(const std::vector<int>& cells, const std::vector<double>& volumes);
+  /// Books a volume of this rank as lost for good. Collective.
+  void lose(double volume) { targets_.lost += sum_all(domain_.grid.comm(), volume); }
+  /// Shifts phi until liquid components have their target volumes, by at most `largest_shift`
+  /// max(1, cfl) cells. `phi`, known up to `cut_off`, on the halo of width 1, which is set on
+  /// return. `settle()` sets its ghosts and extrapolates it into solids, as is needed before all
+  /// calls: boxes that solids cut are measured with it. Returns the shift, empty: none. Collective.
+  VolumeShift correct(const SolidCells<dim>& solids, double cfl, double cut_off,
+                      const std::function<void()>& settle, CellField& phi);
+
+  LiquidLedger state() const;
+  /// Measures the part of the liquid components in some cells (1) and that part of their targets.
+  /// Collective.
+  WatchedLiquid in_cells(const CellField& phi, const std::vector<char>& cells) const;
+  const CellGroups& groups() const { return groups_; }
+  const VolumeTargets& targets() const { return targets_; }
+  /// Restores the targets at a restart; groups are found anew. Collective.
+  void restore(const SolidCells<dim>& solids, const CellField& phi, const VolumeTargets& targets);
+
+ private:
+  CellGroups find(const SolidCells<dim>& solids, const CellField& phi) const;
+  int body_at(const SolidCells<dim>& solids, const CellField& phi, int cell) const;
+  /// `inherit` where the list of boxes is still good.
+  void regroup(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
+               const std::vector<char>& swept, int reach);
+  /// Returns the places of vanished components; for those that surfaces passed over, the components
+  /// around.
+  std::vector<int> places_of(const std::vector<char>& vanished, const SolidCells<dim>& before,
+                             const CellField& phi, const std::vector<char>& swept) const;
+  /// `places`: old bodies that have vanished.
+  void give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
+                       const CellGroups& groups, const std::vector<int>& places,
+                       std::vector<char> homeless, std::vector<double>& target);
+  /// Gives the targets of vanished components without another one near to all components in the
+  /// same closed space.
+  void share_out(const SolidCells<dim>& solids, const CellGroups& groups,
+                 const std::vector<int>& places, const std::vector<char>& homeless,
+                 std::vector<double>& target);
+  /// Returns the group that each component is in: a closed space, or an earlier component.
+  std::vector<int> places_among(const CellGroups& spaces, const CellGroups& bodies) const;
+  std::vector<double> wanted_shifts(const GroupVolumes& now) const;
+  std::vector<double> limited_shifts(const SolidCells<dim>& solids,
+                                     const std::vector<double>& left) const;
+
+  const MacDomain<dim>& domain_;
+  VolumeParameters parameters_;
+  LiquidVolume<dim> measure_;
+  CellGroups groups_;
+  VolumeTargets targets_;
+  GroupVolumes volumes_;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,211 @@
+#include "liquid/liquid.hpp"
+
+#include <numeric>
+
+#include "base/errors.hpp"
+#include "liquid/common/dry_cells.hpp"
+#include "liquid/surface/wave_damping.hpp"
+
+namespace lockstep {
+
+namespace {
+template <int dim>
+std::array<bool, dim> periodic_axes(const MacDomain<dim>& domain) {
+  std::array<bool, dim> periodic;
+  for (int axis = 0; axis < dim; ++axis)
+    periodic[axis] = domain.boundary.periodic(axis);
+  return periodic;
+}
+
+/// Along an axis, over all ranks [cells].
+template <int dim>
+double largest_displacement(const MacDomain<dim>& domain, const GridState<dim>& state,
+                            const FaceField<dim>& velocity, double dt) {
+  double fastest = 0;
+  for (int axis = 0; axis < dim; ++axis)
+    domain.grid.for_each_owned_face(axis, [&](int cell) {
+      if (is_wet(state.faces[axis][cell]))
+        fastest = std::max(fastest, std::abs(velocity[axis][cell]));
+    });
+  return max_all(domain.grid.comm(), fastest) * dt / domain.spacing();
+}
+
+/// Beyond what is extended nothing moves: what the liquid once left there would count as motion.
+template <int dim>
+void stop_beyond(const GridState<dim>& state, FaceField<dim>& velocity) {
+  for (int axis = 0; axis < dim; ++axis)
+    for (std::size_t cell = 0; cell < velocity[axis].size(); ++cell)
+      if (state.faces[axis][cell] == FaceState::inactive)
+        velocity[axis][cell] = 0;
+}
+}  // namespace
+
+template <int dim>
+Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
+                    const Point<dim>& acceleration, const InterfaceRegistry<dim>& interfaces,
+                    const MacDomain<dim>& domain)
+    : domain_(domain),
+      acceleration_(acceleration.norm()),
+      lead_(domain.grid.n_stored_cells(), 0.0) {
+  check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
+  const ParameterList& list = fluid.sublist("Free Surface");
+  parameters_ = read_free_surface(list);
+  initial_distance_ = read_liquid<dim>(fluid, gravity);
+  starts_empty_ = list.sublist("Liquid").numParams() == 0;
+  sinks_ = read_sinks<dim>(list);
+  dry_points_ = read_dry_points<dim>(list);
+  auto watches = read_watches<dim>(list);
+  if (!watches.empty())
+    audit_ = std::make_unique<LeakAudit<dim>>(domain, std::move(watches));
+  if (const auto gas = read_gas<dim>(fluid); gas.kind != TrappedAir::none)
+    gas_ = std::make_unique<GasPockets<dim>>(domain, gas, gravity);
+  const ParameterList& interface = list.sublist("Interface");
+  interface_ = interfaces.create(interface.get<std::string>("Type"), interface, domain);
+}
+
+template <int dim>
+void Liquid<dim>::begin(const Surface& surface) {
+  lattice_.emplace(domain_.grid);
+  if (!initial_distance_)
+    return;
+  if (!dry_points_.empty()) {
+    const NearbySurface<dim> nearby(surface && !surface->empty() ? surface : nullptr, domain_.grid,
+                                    2);
+    const auto dry = find_dry_cells<dim>(domain_, initial_distance_, nearby, dry_points_);
+    initial_distance_ = [this, dry, filled = initial_distance_](const Point<dim>& x) {
+      const int cell = domain_.grid.cell_containing(x);
+      const double distance = filled(x);
+      return cell >= 0 && dry[cell] ? std::max(std::abs(distance), domain_.spacing()) : distance;
+    };
+  }
+  if (audit_)
+    audit_->begin(surface);
+  interface_->initialise(initial_distance_, surface);
+  initial_distance_ = nullptr;
+}
+
+template <int dim>
+FreeSurface<dim> Liquid<dim>::surface() {
+  FreeSurface<dim> surface;
+  surface.distance = &interface_->distance();
+  // All crossings about a wet cell's centre must be at one place, or the capillary force would
+  // drive the fluid between two such places, by its difference over next to no distance.
+  surface.crossing = [this, &phi = interface_->distance()](int wet, int dry) {
+    const double part = interface_->crossing(wet, dry);
+    const double lead = (1 - part) * lead_[wet] + part * lead_[dry];
+    return lead == 0 ? part
+                     : std::clamp(part - lead / (phi[dry] - phi[wet]),
+                                  parameters_.smallest_distance, 1.0);
+  };
+  surface.smallest_distance = parameters_.smallest_distance;
+  surface.at_true_place = parameters_.pressure_order == 2;
+  surface.gas = gas_.get();
+  return surface;
+}
+
+template <int dim>
+void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
+                          FaceField<dim>& advection_velocity, FaceField<dim>& velocity) {
+  const double displacement =
+      largest_displacement<dim>(domain_, geometry.state, advection_velocity, step.dt);
+  // Beyond the domain nothing is left to extend to, however fast a run is that has become unstable.
+  const auto& n_cells = domain_.grid.n_cells();
+  const double farthest = std::accumulate(n_cells.begin(), n_cells.end(), 1.0);
+  const double band = interface_->band(std::min(displacement, farthest)) * domain_.spacing();
+  const auto solids = step.kept.of(geometry.state.surface, domain_.grid, 2);
+  const double known = interface_->band(0) * domain_.spacing();
+  const VelocityExtension<dim> extension(domain_, interface_->distance(), known, band,
+                                         geometry.near, *solids, geometry.state);
+  extension.extend(step.time, step.surface.velocity, advection_velocity);
+  stop_beyond<dim>(geometry.state, advection_velocity);
+  if (&velocity != &advection_velocity) {
+    extension.extend(step.time, step.surface.velocity, velocity);
+    stop_beyond<dim>(geometry.state, velocity);
+  }
+  if (acceleration_ > 0)
+    lead_ = lead_of_short_waves<dim>(domain_, geometry, interface_->distance(), advection_velocity,
+                                     acceleration_, step.dt);
+  if (audit_)
+    audit_->open(step, *interface_);
+  if (gas_)
+    gas_->pass_over(step.surface);
+  interface_->advance(step);
+  if (audit_)
+    audit_->close(step, *interface_, displacement);
+}
+
+template <int dim>
+double Liquid<dim>::distance(const Point<dim>& x) const {
+  const Point<dim> place = (domain_.grid.wrap(x) - domain_.grid.lower()) / domain_.spacing();
+  const auto stencil = lattice_->locate(cell_centers, place);
+  return interpolate<dim>(stencil, interface_->distance().data());
+}
+
+template <int dim>
+LiquidReport Liquid<dim>::report() const {
+  const LiquidLedger ledger = interface_->ledger();
+  LiquidReport report;
+  report.volume = ledger.volume;
+  report.target = ledger.target;
+  report.shift = ledger.shift;
+  report.lost = ledger.lost;
+  report.n_bodies = ledger.n_components;
+  if (audit_)
+    report.watches = audit_->report();
+  if (gas_)
+    report.gas = gas_->report();
+  if (drops())
+    report.drops = drops()->report();
+  return report;
+}
+
+template <int dim>
+std::vector<std::string> Liquid<dim>::watch_names() const {
+  std::vector<std::string> names;
+  if (audit_)
+    for (const Watch<dim>& watch : audit_->watches())
+      names.push_back(watch.name);
+  return names;
+}
+
+template <int dim>
+std::vector<StoredField> Liquid<dim>::fields() {
+  std::vector<StoredField> fields = {{"surface_lead", {&lead_}}};
+  const auto add = [&](std::vector<StoredField> more) {
+    fields.insert(fields.end(), more.begin(), more.end());
+  };
+  if (gas_)
+    add(gas_->fields());
+  if (audit_)
+    add(audit_->fields());
+  return fields;
+}
+
+template <int dim>
+void Liquid<dim>::load(const CheckpointReader& checkpoint) {
+  interface_->load(checkpoint);
+  forget();
+}
+
+template <int dim>
+void Liquid<dim>::forget() {
+  if (audit_)
+    audit_->forget();
+}
+
+template <int dim>
+std::function<void()> Liquid<dim>::undo() {
+  const auto undo_gas = gas_ ? gas_->undo() : [] {};
+  const auto undo_audit = audit_ ? audit_->undo() : [] {};
+  return [this, undo_interface = interface_->undo(), undo_gas, undo_audit, lead = lead_] {
+    undo_interface();
+    undo_gas();
+    undo_audit();
+    lead_ = lead;
+  };
+}
+
+template class Liquid<2>;
+template class Liquid<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,79 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "interfaces/liquid.hpp"
+#include "liquid/common/interface_model.hpp"
+#include "liquid/gas/gas_pockets.hpp"
+#include "liquid/liquid_parameters.hpp"
+#include "liquid/surface/free_surface.hpp"
+#include "liquid/surface/velocity_extension.hpp"
+#include "liquid/watch/leak_audit.hpp"
+#include "transport/sample_lattice.hpp"
+
+namespace lockstep {
+
+/// The liquid of a fluid that has a free surface: its interface and the stages of its step.
+template <int dim>
+class Liquid {
+ public:
+  using Surface = std::shared_ptr<const SurfaceSnapshot<dim>>;
+
+  /// Validated list "Fluid" with a list "Free Surface". `acceleration`: by gravity and any body
+  /// force [m/s^2]. `domain` must outlive this. Collective.
+  Liquid(const ParameterList& fluid, const Point<dim>& gravity, const Point<dim>& acceleration,
+         const InterfaceRegistry<dim>& interfaces, const MacDomain<dim>& domain);
+
+  /// Prepares the liquid, before all else on the present tiles. The first call fills the liquid
+  /// in, outside of the solids. Collective.
+  void begin(const Surface& surface);
+  /// Returns the free surface at the present time; valid while this object is.
+  FreeSurface<dim> surface();
+  /// Extends u_ADV and u^n into the air, marks those faces in `geometry`, and moves the interface.
+  /// Halos must be valid, and are so afterwards. Collective.
+  void advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
+               FaceField<dim>& advection_velocity, FaceField<dim>& velocity);
+
+  double tension() const { return parameters_.tension; }  ///< surface tension [N/m]
+  bool tension_is_implicit() const {
+    return parameters_.tension > 0 && parameters_.tension_is_implicit;
+  }
+  const std::vector<SignedDistance<dim>>& sinks() const { return sinks_; }
+  /// All but the interface's.
+  std::vector<StoredField> fields();
+  /// The interface's; the fields are set. Collective.
+  void load(const CheckpointReader& checkpoint);
+  /// Forgets data of other tiles, or of another instant. Local.
+  void forget();
+  /// True if no liquid is given: sources are to bring it.
+  bool starts_empty() const { return starts_empty_; }
+  GasPockets<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
+  const GasPockets<dim>* gas() const { return gas_.get(); }
+  Drops<dim>* drops() const { return interface_->drops(); }  ///< null: there are never any
+  InterfaceModel<dim>& interface() { return *interface_; }
+  const InterfaceModel<dim>& interface() const { return *interface_; }
+  /// phi at a point near cells that this rank owns, linear between the centres of cells [m]. Valid
+  /// after `begin`. Local.
+  double distance(const Point<dim>& x) const;
+  LiquidReport report() const;
+  std::vector<std::string> watch_names() const;
+  /// Returns a function that undoes `advance`.
+  std::function<void()> undo();
+
+ private:
+  const MacDomain<dim>& domain_;
+  FreeSurfaceParameters parameters_;
+  double acceleration_ = 0;  ///< by gravity and body force [m/s^2]
+  bool starts_empty_ = false;
+  CellField
+      lead_;  ///< interface filter: distance of the pressure's phi ahead of the interface's [m]
+  std::optional<SampleLattice<dim>> lattice_;  ///< lattice of the tiles since the last `begin`
+  std::vector<SignedDistance<dim>> sinks_;
+  std::vector<Point<dim>> dry_points_;
+  SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
+  std::unique_ptr<InterfaceModel<dim>> interface_;
+  std::unique_ptr<LeakAudit<dim>> audit_;  ///< null: nothing is watched
+  std::unique_ptr<GasPockets<dim>> gas_;
+};
+
+}  // namespace lockstep

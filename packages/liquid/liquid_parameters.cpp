@@ -1,0 +1,302 @@
+#include "liquid/liquid_parameters.hpp"
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "geometry/mesh_files.hpp"
+#include "geometry/mesh_repair.hpp"
+#include "geometry/surface_check.hpp"
+#include "geometry/surface_snapshot.hpp"
+#include "liquid/watch/watch.hpp"
+#include "staggered/domain/parameter_values.hpp"
+#include "staggered/domain/region_shape.hpp"
+
+namespace lockstep {
+
+namespace {
+constexpr double very_far = 1e9;  ///< [m], from the liquid of a tank that is empty
+
+/// A level with waves a cos(k (x - x0)) along the first axis across gravity.
+template <int dim>
+SignedDistance<dim> level(const std::string& name, const ParameterList& list,
+                          const Point<dim>& gravity) {
+  check_input(
+      gravity.norm() > 0,
+      "In \"Liquid\", \"{}\" is a level, but \"Gravity\" is 0, so that nothing says where up "
+      "is; give a box, or gravity.",
+      name);
+  const Point<dim> up = -gravity.normalized();
+  const double height = list.get<double>("Height"), amplitude = list.get<double>("Amplitude");
+  const double k = 2 * M_PI / list.get<double>("Wavelength"), crest = list.get<double>("Crest");
+  int along = 0;
+  while (std::abs(up[along]) > 0.9)
+    ++along;
+  return [=](const Point<dim>& x) {
+    const double phase = k * (x[along] - crest);
+    const double slope = amplitude * k * std::sin(phase);
+    return (x.dot(up) - height - amplitude * std::cos(phase)) / std::sqrt(1 + slope * slope);
+  };
+}
+
+template <int dim>
+SignedDistance<dim> box(const std::string& name, const ParameterList& list) {
+  RegionShape<dim> shape;
+  shape.lower = point_value<dim>(list, "Lower");
+  shape.upper = point_value<dim>(list, "Upper");
+  check_input(
+      (shape.upper - shape.lower).minCoeff() > 0,
+      "In \"Liquid\", the box \"{}\" is empty: \"Upper\" must be above \"Lower\" along every "
+      "axis.",
+      name);
+  return [shape](const Point<dim>& x) { return shape.distance(x); };
+}
+
+template <int dim>
+SignedDistance<dim> ball(const ParameterList& list) {
+  const Point<dim> center = point_value<dim>(list, "Center");
+  const double radius = list.get<double>("Radius");
+  return [=](const Point<dim>& x) { return (x - center).norm() - radius; };
+}
+
+/// The distance from a closed mesh, negative inside.
+template <int dim>
+SignedDistance<dim> mesh(const std::string& name, const ParameterList& list) {
+  MeshNames names;
+  SurfaceMesh<dim> surface = read_surface<dim>(list.get<std::string>("File"), names);
+  repair_surface(list, surface, names);
+  check_surface(surface, {name, true, false}, names);
+  const Point<dim> position = point_value<dim>(list, "Position");
+  for (Point<dim>& vertex : surface.vertices)
+    vertex += position;
+  SolidDescription whole;
+  whole.name = name;
+  whole.simplex_end = static_cast<int>(surface.simplices.size());
+  whole.vertex_end = static_cast<int>(surface.vertices.size());
+  const auto snapshot =
+      std::make_shared<const SurfaceSnapshot<dim>>(std::move(surface), std::vector{whole});
+  return [snapshot](const Point<dim>& x) {
+    const double distance = snapshot->closest_on_solid(x, 0).fraction;
+    return snapshot->inside(x) < 0 ? distance : -distance;
+  };
+}
+
+template <int dim>
+std::vector<TypedSchema> liquid_schemas() {
+  ParameterList level, box, ball, mesh;
+  declare(level, "Height", 0.0,
+          "Height of the surface, measured against gravity from the origin [m].");
+  declare_at_least(level, "Amplitude", 0.0, 0.0, "Amplitude of waves on the surface [m].");
+  declare_positive(level, "Wavelength", 1.0, "Wavelength of these waves [m].");
+  declare(level, "Crest", 0.0, "Place of a crest along the first axis across gravity [m].");
+  declare_vector(box, "Lower", filled_array(dim, 0.0), dim, "Lower corner [m].");
+  declare_vector(box, "Upper", filled_array(dim, 1.0), dim, "Upper corner [m].");
+  declare_vector(ball, "Center", filled_array(dim, 0.0), dim, "Centre [m].");
+  declare_positive(ball, "Radius", 0.1, "Radius [m].");
+  declare_required<std::string>(
+      mesh, "File",
+      "Closed surface: .obj, .off or (3D) .stl; relative to the folder of the scene.");
+  declare_mesh_repair(mesh);
+  declare_vector(mesh, "Position", filled_array(dim, 0.0), dim,
+                 "Position of the origin of the file's coordinates [m].");
+  return {{"level", "All below a height.", level},
+          {"box", "A box along the axes.", box},
+          {"ball", "A ball (2D: a disc).", ball},
+          {"mesh", "The inside of a closed mesh of a file.", mesh}};
+}
+
+void declare_trapped_air(ParameterList& list) {
+  declare_choice(list, "Trapped Air", "void", {"void", "ideal gas", "constant volume"},
+                 "Content of closed air pockets above the liquid: \"void\", p = 0, as in the "
+                 "atmosphere; \"ideal gas\", whose pressure follows from its volume; \"constant "
+                 "volume\", a gas that cannot be compressed. Of more than 8 pockets the largest "
+                 "have gas. Pockets of at most \"Smallest Void\" cells are filled all the same.");
+  declare_optional<ParameterArray<double>>(
+      list, "Atmosphere",
+      "Points, a component an axis, one after the other [m]: air that can be reached from them or "
+      "from an open side is no pocket. Absent: nor is air at the side of the domain that "
+      "gravity points away from.");
+  declare_positive(list, "Atmospheric Pressure", 101325.0,
+                   "Pressure of the atmosphere for an ideal gas [Pa].");
+  declare_positive(list, "Gas Exponent", 1.4,
+                   "gamma of an ideal gas, p V^gamma = const.: 1.4 for air without, 1 with time to "
+                   "take the liquid's temperature [1].");
+  declare(list, "Gas Pressure", 0.0,
+          "Gas pressure in pockets at the start, above that of the atmosphere [Pa]; for a gas of "
+          "constant volume a guess.");
+}
+}  // namespace
+
+template <int dim>
+void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterList& fluid) {
+  ParameterList& list =
+      declare_optional_list(fluid, "Free Surface",
+                            "The fluid is a liquid with a free surface, above which is air at p = "
+                            "0. Absent: the fluid fills the domain.");
+  const std::string usual = "particle level set";
+  declare_typed_sublist(list, "Interface", "Representation and advection of the free surface.",
+                        interfaces.schemas(),
+                        interfaces.contains(usual) ? usual : interfaces.begin()->name);
+  declare_named_sublists(list, "Liquid",
+                         "Shapes of the liquid at the start: their union, outside of solids.",
+                         liquid_schemas<dim>());
+  declare_optional<ParameterArray<double>>(
+      list, "Dry Points",
+      "Points below the surface, a component an axis, one after the other [m]: what can be reached "
+      "from them without passing through a solid is dry at the start, as the inside of a boat.");
+  ParameterList sink;
+  declare_shape<dim>(sink);
+  declare_named_sublists(list, "Sinks",
+                         "Boxes and balls that take the liquid away that is in them; "
+                         "\"Fluid/Sources\" bring it.",
+                         sink);
+  declare_watches<dim>(list);
+  declare_between(
+      list, "Smallest Distance", 1e-5, 1e-6, 1.0,
+      "Pressures are taken to be no nearer to the surface than this part of a cell [1].");
+  declare_at_least(
+      list, "Surface Tension", 0.0, 0.0,
+      "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature; the surface meets "
+      "solids and sides at 90 degrees. 0: none.");
+  declare_choice(
+      list, "Tension Integration", "explicit", {"explicit", "semi-implicit"},
+      "explicit: steps are at most 0.28 sqrt(density h^3 / sigma). semi-implicit: 8 times that; "
+      "what the surface does within the step is foreseen by a viscous solve in which sigma dt "
+      "times the surface Laplacian holds the velocity back, and one more pressure solve before "
+      "it. Damps ripples a few cells long, and what turns and swings, the more the longer the "
+      "step.");
+  declare_trapped_air(list);
+  declare_between(list, "Pressure Order", 2, 1, 2,
+                  "2: p = 0 where the surface is. 1: at the centre of the first cell above it, to "
+                  "show what that costs: waves lower than half a cell do not exist then.");
+}
+
+FreeSurfaceParameters read_free_surface(const ParameterList& list) {
+  return {list.get<double>("Smallest Distance"), list.get<int>("Pressure Order"),
+          list.get<double>("Surface Tension"),
+          list.get<std::string>("Tension Integration") == "semi-implicit"};
+}
+
+template <int dim>
+SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gravity) {
+  const ParameterList& liquids = fluid.sublist("Free Surface").sublist("Liquid");
+  std::vector<SignedDistance<dim>> parts;
+  for (auto it = liquids.begin(); it != liquids.end(); ++it) {
+    const std::string& name = liquids.name(it);
+    const ParameterList& liquid = liquids.sublist(name);
+    const auto type = liquid.get<std::string>("Type");
+    parts.push_back(type == "level"  ? level<dim>(name, liquid, gravity)
+                    : type == "box"  ? box<dim>(name, liquid)
+                    : type == "mesh" ? mesh<dim>(name, liquid)
+                                     : ball<dim>(liquid));
+  }
+  const ParameterList& sources = fluid.sublist("Sources");
+  bool has_source = false;
+  for (auto it = sources.begin(); it != sources.end(); ++it)
+    has_source = has_source || sources.sublist(sources.name(it)).get<bool>("Liquid");
+  check_input(
+      !parts.empty() || has_source,
+      "\"Free Surface\" has no liquid; say where it is in the list \"Liquid\", or have one of "
+      "\"Fluid/Sources\" bring it.");
+  return [parts = std::move(parts)](const Point<dim>& x) {
+    double nearest = very_far;
+    for (const SignedDistance<dim>& part : parts)
+      nearest = std::min(nearest, part(x));
+    return nearest;
+  };
+}
+
+namespace {
+/// Reads the points of an optional array, the components of one after the other.
+template <int dim>
+std::vector<Point<dim>> read_points(const ParameterList& list, const char* name) {
+  if (!list.isParameter(name))
+    return {};
+  const auto& numbers = list.get<ParameterArray<double>>(name);
+  check_input(numbers.size() % dim == 0,
+              "In \"Free Surface\", \"{}\" has {} numbers; it takes {} a point.", name,
+              numbers.size(), dim);
+  std::vector<Point<dim>> points(numbers.size() / dim);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (int a = 0; a < dim; ++a)
+      points[p][a] = numbers[p * dim + a];
+  return points;
+}
+}  // namespace
+
+template <int dim>
+std::vector<Point<dim>> read_dry_points(const ParameterList& list) {
+  return read_points<dim>(list, "Dry Points");
+}
+
+template <int dim>
+GasParameters<dim> read_gas(const ParameterList& fluid) {
+  const ParameterList& list = fluid.sublist("Free Surface");
+  const auto kind = list.get<std::string>("Trapped Air");
+  GasParameters<dim> gas;
+  if (kind == "void")
+    return gas;
+  check_input(!fluid.isSublist("Moving Tiles"),
+              "\"Trapped Air\" is \"{}\", but with \"Moving Tiles\" not all of the air is there "
+              "to be looked through; leave them out.",
+              kind);
+  gas.kind = kind == "ideal gas" ? TrappedAir::ideal_gas : TrappedAir::constant_volume;
+  gas.atmospheric_pressure = list.get<double>("Atmospheric Pressure");
+  gas.exponent = list.get<double>("Gas Exponent");
+  gas.pressure_at_start = list.get<double>("Gas Pressure");
+  check_input(gas.pressure_at_start > -gas.atmospheric_pressure,
+              "In \"Free Surface\", \"Gas Pressure\" is measured from the atmosphere's and must be "
+              "above minus \"Atmospheric Pressure\", {:g} Pa.",
+              -gas.atmospheric_pressure);
+  gas.atmosphere = read_points<dim>(list, "Atmosphere");
+  return gas;
+}
+
+template <int dim>
+std::vector<SignedDistance<dim>> read_sinks(const ParameterList& list) {
+  const ParameterList& sinks = list.sublist("Sinks");
+  std::vector<SignedDistance<dim>> shapes;
+  for (auto it = sinks.begin(); it != sinks.end(); ++it)
+    shapes.push_back([shape = read_shape<dim>(sinks.sublist(sinks.name(it)))](const Point<dim>& x) {
+      return shape.distance(x);
+    });
+  return shapes;
+}
+
+template <int dim>
+void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
+                        const std::array<bool, dim>& periodic) {
+  for (const char* scalar : {"Smoke", "Temperature"})
+    check_input(
+        !fluid.isSublist(scalar),
+        "\"{}\" and \"Free Surface\" are both given, but a liquid with a surface carries no "
+        "scalars yet; leave one of them out.",
+        scalar);
+  check_input(
+      fluid.get<int>("Order in Time") == 1,
+      "\"Order in Time\" 2 and \"Free Surface\" do not go together: pressures act at the new "
+      "surface, which moves with the old velocity, so that waves keep their height; an "
+      "advection velocity from the middle of the step would damp them. Leave the order at 1.");
+  for (int axis = 0; axis < dim; ++axis)
+    check_input(
+        !periodic[axis] || gravity[axis] == 0,
+        "With a \"Free Surface\", gravity may not act along the periodic axis {}: the liquid "
+        "would fall for ever.",
+        "xyz"[axis]);
+}
+
+template void declare_free_surface<2>(const InterfaceRegistry<2>&, ParameterList&);
+template void declare_free_surface<3>(const InterfaceRegistry<3>&, ParameterList&);
+template GasParameters<2> read_gas<2>(const ParameterList&);
+template GasParameters<3> read_gas<3>(const ParameterList&);
+template std::vector<Point<2>> read_dry_points<2>(const ParameterList&);
+template std::vector<Point<3>> read_dry_points<3>(const ParameterList&);
+template std::vector<SignedDistance<2>> read_sinks<2>(const ParameterList&);
+template std::vector<SignedDistance<3>> read_sinks<3>(const ParameterList&);
+template SignedDistance<2> read_liquid<2>(const ParameterList&, const Point<2>&);
+template SignedDistance<3> read_liquid<3>(const ParameterList&, const Point<3>&);
+template void check_free_surface<2>(const ParameterList&, const Point<2>&,
+                                    const std::array<bool, 2>&);
+template void check_free_surface<3>(const ParameterList&, const Point<3>&,
+                                    const std::array<bool, 3>&);
+
+}  // namespace lockstep

@@ -1,0 +1,44 @@
+#pragma once
+#include <algorithm>
+#include <functional>
+
+#include "staggered/state/mac_geometry.hpp"
+
+namespace lockstep {
+
+template <int dim>
+class GasPockets;
+
+/// The free surface at one instant, as pressures and faces see it: ghost fluid with p = 0 above it.
+template <int dim>
+struct FreeSurface {
+  /// phi on all stored cells [m]: negative in the liquid, extrapolated into solids.
+  const CellField* distance = nullptr;
+  /// Part of the way from the centre of a wet cell to that of a dry neighbour at which the surface
+  /// is, in (0, 1]. Local.
+  std::function<double(int wet, int dry)> crossing;
+  double smallest_distance = 1e-5;  ///< least distance of a pressure from the surface [cells]
+  /// True: p = 0 at the free surface, second order (ghost fluid). False: at the centre of the dry
+  /// cell, first order.
+  bool at_true_place = true;
+  GasPockets<dim>* gas = nullptr;  ///< null: no air is closed in
+
+  bool wet(int cell) const { return (*distance)[cell] < 0; }
+  /// Distance factor w = 1/theta of the face between them, h over the distance of the pressure from
+  /// the surface.
+  double closeness(int wet, int dry, double least = 0) const {
+    return at_true_place ? 1 / std::max({crossing(wet, dry), smallest_distance, least}) : 1;
+  }
+};
+
+/// Marks cells that are not below the free surface as air. Local.
+template <int dim>
+void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_surface,
+                     std::vector<CellState>& cells);
+/// Sets the distance factor 1/theta of faces beside air (ghost fluid: p = 0 at the free surface),
+/// for owned faces and the upper ones of owned cells. Local.
+template <int dim>
+void set_closeness_to_void(const MacDomain<dim>& domain, const FreeSurface<dim>& free_surface,
+                           MacGeometry<dim>& geometry);
+
+}  // namespace lockstep

@@ -1,0 +1,189 @@
+#include "mac/forces/scalars.hpp"
+
+#include "base/errors.hpp"
+#include "staggered/domain/parameter_values.hpp"
+
+namespace lockstep {
+
+namespace {
+template <int dim>
+void declare_scalar(ParameterList& fluid, const std::string& name, const std::string& unit,
+                    const std::string& doc) {
+  ParameterList& list = declare_optional_list(fluid, name, doc);
+  declare(list, "Ambient", 0.0, "Initial value outside all \"Regions\", " + unit + ".");
+  ParameterList region;
+  declare_shape<dim>(region);
+  declare(region, "Value", 1.0, "Initial value inside, " + unit + ".");
+  declare_named_sublists(list, "Regions", "Boxes and balls with another initial value.", region);
+}
+
+template <int dim>
+Scalar read_scalar(const MacDomain<dim>& domain, const ParameterList& list, const std::string& name,
+                   const std::string& unit) {
+  Scalar scalar;
+  scalar.name = name;
+  scalar.unit = unit;
+  scalar.ambient = list.get<double>("Ambient");
+  scalar.values.assign(domain.grid.n_stored_cells(), scalar.ambient);
+  for (int axis = 0; axis < dim; ++axis) {
+    const auto& sides = domain.boundary.sides[axis];
+    if (name == "smoke")
+      scalar.inflow.push_back({sides[0].smoke, sides[1].smoke});
+    else
+      scalar.inflow.push_back({sides[0].temperature, sides[1].temperature});
+  }
+  const ParameterList& regions = list.sublist("Regions");
+  for (auto it = regions.begin(); it != regions.end(); ++it) {
+    const ParameterList& region = regions.sublist(regions.name(it));
+    const RegionShape<dim> shape = read_shape<dim>(region);
+    const double value = region.get<double>("Value");
+    domain.grid.for_each_stored_cell([&](int cell) {
+      if (shape.contains(domain.grid.center(cell)))
+        scalar.values[cell] = value;
+    });
+  }
+  return scalar;
+}
+
+template <int dim>
+ScalarSource<dim> read_source(const ParameterList& list) {
+  ScalarSource<dim> source;
+  source.shape = read_shape<dim>(list);
+  source.begin_time = list.get<double>("Begin Time");
+  if (list.isParameter("End Time"))
+    source.end_time = list.get<double>("End Time");
+  for (const std::string name : {"Smoke", "Temperature"}) {
+    const std::string scalar = name == "Smoke" ? "smoke" : "temperature";
+    if (list.isParameter(name))
+      source.feeds.push_back({scalar, false, list.get<double>(name)});
+    if (list.isParameter(name + " Rate"))
+      source.feeds.push_back({scalar, true, list.get<double>(name + " Rate")});
+  }
+  source.liquid = list.get<bool>("Liquid");
+  if (list.isParameter("Velocity"))
+    source.velocity = point_value<dim>(list, "Velocity");
+  return source;
+}
+}  // namespace
+
+template <int dim>
+void declare_scalars(ParameterList& fluid) {
+  declare_scalar<dim>(fluid, "Smoke", "[1]",
+                      "Density of smoke, which the fluid carries. Absent: none.");
+  declare_scalar<dim>(fluid, "Temperature", "[K]",
+                      "Temperature, which the fluid carries. Absent: none.");
+  ParameterList source;
+  declare_shape<dim>(source);
+  declare_optional<double>(source, "Smoke", "Smoke density held inside [1].");
+  declare_optional<double>(source, "Smoke Rate", "Smoke density added inside [1/s].");
+  declare_optional<double>(source, "Temperature", "Temperature held inside [K].");
+  declare_optional<double>(source, "Temperature Rate", "Heating inside [K/s].");
+  declare_optional<ParameterArray<double>>(
+      source, "Velocity", "Velocity given to the fluid inside at every step [m/s].");
+  set_length(source, "Velocity", dim);
+  declare(source, "Begin Time", 0.0, "Time at which the source starts [s].");
+  declare_optional<double>(source, "End Time",
+                           "Time at which the source stops [s]; never if it is left out.");
+  declare(
+      source, "Liquid", false,
+      "Fill it with liquid at every step, which its velocity carries away: a jet. For fluids with "
+      "a \"Free Surface\".");
+  declare_named_sublists(fluid, "Sources",
+                         "Boxes and balls that feed liquid, smoke, heat and momentum.", source);
+}
+
+template <int dim>
+Scalars<dim>::Scalars(const MacDomain<dim>& domain, const ParameterList& fluid) : domain_(domain) {
+  if (fluid.isSublist("Smoke"))
+    scalars_.push_back(read_scalar(domain, fluid.sublist("Smoke"), "smoke", "1"));
+  if (fluid.isSublist("Temperature"))
+    scalars_.push_back(read_scalar(domain, fluid.sublist("Temperature"), "temperature", "K"));
+  const ParameterList& sources = fluid.sublist("Sources");
+  for (auto it = sources.begin(); it != sources.end(); ++it) {
+    const std::string name = sources.name(it);
+    sources_.push_back(read_source<dim>(sources.sublist(name)));
+    check_input(
+        !sources_.back().liquid || fluid.isSublist("Free Surface"),
+        "The source \"{}\" in \"Fluid/Sources\" feeds liquid, but the fluid fills its domain "
+        "already; add the list \"Fluid/Free Surface\".",
+        name);
+    for (const auto& feed : sources_.back().feeds)
+      check_input(
+          find(feed.scalar) != nullptr,
+          "The source \"{}\" in \"Fluid/Sources\" feeds {}, but the fluid carries none; add "
+          "the list \"Fluid/{}\".",
+          name, feed.scalar, feed.scalar == "smoke" ? "Smoke" : "Temperature");
+  }
+}
+
+template <int dim>
+const Scalar* Scalars<dim>::find(const std::string& name) const {
+  for (const Scalar& scalar : scalars_)
+    if (scalar.name == name)
+      return &scalar;
+  return nullptr;
+}
+
+template <int dim>
+void Scalars<dim>::feed(const MacGeometry<dim>& geometry, double time, double dt) {
+  const TiledGrid<dim>& grid = domain_.grid;
+  for (const ScalarSource<dim>& source : sources_) {
+    if (!source.active(time) || source.feeds.empty())
+      continue;
+    grid.for_each_owned_cell([&](int cell) {
+      if (geometry.state.cells[cell] != CellState::fluid ||
+          !source.shape.contains(grid.center(cell)))
+        return;
+      for (const auto& feed : source.feeds)
+        for (Scalar& scalar : scalars_)
+          if (scalar.name == feed.scalar)
+            scalar.values[cell] = feed.rate ? scalar.values[cell] + dt * feed.value : feed.value;
+    });
+  }
+}
+
+template <int dim>
+std::vector<std::function<double(const Point<dim>&)>> Scalars<dim>::liquid_sources(
+    double time) const {
+  std::vector<std::function<double(const Point<dim>&)>> shapes;
+  for (const ScalarSource<dim>& source : sources_)
+    if (source.liquid && source.active(time))
+      shapes.push_back([shape = source.shape](const Point<dim>& x) { return shape.distance(x); });
+  return shapes;
+}
+
+template <int dim>
+bool Scalars<dim>::sources_push(double time) const {
+  for (const ScalarSource<dim>& source : sources_)
+    if (source.velocity && source.active(time))
+      return true;
+  return false;
+}
+
+template <int dim>
+bool Scalars<dim>::begin_to_push(double earlier, double now) const {
+  for (const ScalarSource<dim>& source : sources_)
+    if (source.velocity && source.active(now) && !source.active(earlier))
+      return true;
+  return false;
+}
+
+template <int dim>
+void Scalars<dim>::push(const MacGeometry<dim>& geometry, double time,
+                        FaceField<dim>& velocity) const {
+  const TiledGrid<dim>& grid = domain_.grid;
+  for (const ScalarSource<dim>& source : sources_)
+    for (int axis = 0; source.velocity && source.active(time) && axis < dim; ++axis)
+      grid.for_each_owned_face(axis, [&](int cell) {
+        if (geometry.state.faces[axis][cell] == FaceState::free &&
+            source.shape.contains(grid.face_center(axis, cell)))
+          velocity[axis][cell] = (*source.velocity)[axis];
+      });
+}
+
+template class Scalars<2>;
+template class Scalars<3>;
+template void declare_scalars<2>(ParameterList&);
+template void declare_scalars<3>(ParameterList&);
+
+}  // namespace lockstep

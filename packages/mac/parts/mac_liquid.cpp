@@ -1,0 +1,105 @@
+#include "mac/parts/mac_liquid.hpp"
+
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+#include "liquid/surface/surface_tension.hpp"
+#include "liquid/surface/wet_bodies.hpp"
+#include "mac/parts/grid_place.hpp"
+#include "mac/pressure/extended_pressure.hpp"
+
+namespace lockstep {
+
+template <int dim>
+std::vector<double> MacLiquid<dim>::surface_distances(const std::vector<Point<dim>>& points) const {
+  const TiledGrid<dim>& grid = flow_.domain.grid;
+  const SampleLattice<dim> lattice(grid);
+  const CellField& phi = liquid_.interface().distance();
+  constexpr double nothing_stored = 1e300;
+  const std::size_t n = points.size();
+  std::vector<double> values(2 * n, 0.0);  // distances; how many ranks know
+  for (std::size_t p = 0; p < n; ++p) {
+    const auto [cell, x] = place_of<dim>(grid, points[p]);
+    if (cell < 0 || !grid.owned(cell))
+      continue;
+    const auto stencil = lattice.locate(cell_centers, x);
+    values[p] = stencil.complete() ? interpolate<dim>(stencil, phi.data()) : phi[cell];
+    values[n + p] = 1;
+  }
+  sum_all(grid.comm(), values.data(), static_cast<int>(values.size()));
+  for (std::size_t p = 0; p < n; ++p)
+    if (values[n + p] == 0)
+      values[p] = nothing_stored;
+  values.resize(n);
+  return values;
+}
+
+template <int dim>
+std::vector<WetBody<dim>> MacLiquid<dim>::wet_bodies() const {
+  return find_wet_bodies<dim>(flow_.domain, flow_.geometry, liquid_.interface().distance(),
+                              flow_.parameters.forces.gravity);
+}
+
+template <int dim>
+void MacLiquid<dim>::bound_pressure(CellField& pressure) const {
+  const CellField& phi = liquid_.interface().distance();
+  const double tension = flow_.accepted_step * liquid_.tension();
+  const auto at_surface = [&](int wet, int dry, int axis, int end) {
+    double value = flow_.geometry.in_pocket(dry) ? pressure[dry] : 0;
+    if (tension > 0) {
+      const int face = end == 0 ? wet : dry;
+      const double place = 1 / flow_.geometry.face_table(axis, face).closeness;
+      value += tension * curvature(flow_.domain, phi, wet, axis, end, place);
+    }
+    return value;
+  };
+  bound_beside_void<dim>(flow_.domain, flow_.geometry, at_surface, pressure);
+}
+
+template <int dim>
+void MacLiquid<dim>::move(double time, double dt, const MovingSurface<dim>& surface,
+                          FaceField<dim>& advection) {
+  const auto open = [this](int axis, int cell) {
+    return flow_.geometry.state.faces[axis][cell] == FaceState::coupled
+               ? 0
+               : flow_.geometry.face_table(axis, cell).open;
+  };
+  const InterfaceStep<dim> step{advection,
+                                surface,
+                                flow_.ray_halo,
+                                flow_.nearby,
+                                time,
+                                dt,
+                                flow_.scalars.liquid_sources(time),
+                                liquid_.sinks(),
+                                flow_.parameters.forces.uniform(),
+                                open};
+  liquid_.advance(step, flow_.geometry, advection, flow_.velocity);
+}
+
+template <int dim>
+void MacLiquid<dim>::push_surface(double dt) {
+  const Momentum<dim> mine = lockstep::push_surface<dim>(
+      flow_.domain, flow_.geometry, liquid_.surface(), liquid_.tension(), dt, flow_.prediction);
+  flow_.surface_impulse = sum_over_ranks(mine, flow_.domain.grid.comm());
+}
+
+/// Gravity and the shortest waves of a surface at rest: their pressure answers within a step up to
+/// about 1.3 times sqrt(h / g). Of surface tension the shortest waves must not go over more than
+/// their length (Brackbill et al. 1992, without air); implicit, it is stable to some 12 times that:
+/// beyond, waves reach deeper than the layer that is held back.
+template <int dim>
+double MacLiquid<dim>::largest_stable_step() const {
+  const double g = flow_.parameters.forces.uniform().norm(), h = flow_.domain.spacing();
+  const double by_gravity = g > 0 ? std::sqrt(h / g) : 1e300;
+  const double tension = liquid_.tension();
+  if (tension == 0)
+    return by_gravity;
+  const double part = liquid_.tension_is_implicit() ? 8 * 0.28 : 0.28;
+  return std::min(by_gravity, part * std::sqrt(flow_.parameters.density * h * h * h / tension));
+}
+
+template class MacLiquid<2>;
+template class MacLiquid<3>;
+
+}  // namespace lockstep

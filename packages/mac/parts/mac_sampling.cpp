@@ -1,0 +1,111 @@
+#include "mac/parts/grid_place.hpp"
+#include "mac/parts/mac_output.hpp"
+
+namespace lockstep {
+namespace {
+
+/// Interpolates from those samples around x that `has_value`; zero if there are none.
+template <int dim, typename HasValue>
+double mean_of(const SampleLattice<dim>& lattice, SampleKind kind, const Point<dim>& x,
+               const CellField& field, const HasValue& has_value) {
+  double weight = 0, sum = 0;
+  for (const StencilCorner<dim>& corner : lattice.corners(kind, x)) {
+    const bool at_wall = corner.id == Stencil<dim>::wall_sample;
+    if (corner.weight == 0 || (!at_wall && (corner.id < 0 || !has_value(corner.id))))
+      continue;
+    weight += corner.weight;
+    sum += at_wall ? 0 : corner.weight * field[corner.id];
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<FluidSample<dim>> MacOutput<dim>::sample(const std::vector<Point<dim>>& points) const {
+  const TiledGrid<dim>& grid = flow_.domain.grid;
+  const SampleLattice<dim> lattice(grid);
+  const GridState<dim>& state = flow_.geometry.state;
+  const bool has_pressure = flow_.last_step > 0;
+  constexpr int n_values = dim + 2;
+  // Each rank answers for its own cells; the sum is everybody's answer.
+  std::vector<double> values(points.size() * n_values, 0.);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto [cell, x] = place_of<dim>(grid, points[p]);
+    if (cell < 0 || !grid.owned(cell) || state.cells[cell] != CellState::fluid ||
+        (state.surface && state.surface->inside(grid.wrap(points[p])) >= 0))
+      continue;
+    double* value = &values[p * n_values];
+    *value++ = 1;
+    if (has_pressure)
+      *value = mean_of<dim>(lattice, cell_centers, x, flow_.scaled_pressure,
+                            [&](int id) { return state.cells[id] == CellState::fluid; }) /
+               flow_.last_step;
+    ++value;
+    for (int axis = 0; axis < dim; ++axis)
+      *value++ = mean_of<dim>(lattice, axis, x, flow_.prediction[axis],
+                              [&](int id) { return is_wet(state.faces[axis][id]); });
+  }
+  sum_all(flow_.domain.grid.comm(), values.data(), static_cast<int>(values.size()));
+  std::vector<FluidSample<dim>> samples(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double* value = &values[p * n_values];
+    samples[p].in_fluid = value[0] > 0;
+    samples[p].pressure = value[1];
+    for (int axis = 0; axis < dim; ++axis)
+      samples[p].velocity[axis] = value[2 + axis];
+  }
+  return samples;
+}
+
+template <int dim>
+std::vector<FlowSample> MacOutput<dim>::flow_across(int axis,
+                                                    const std::vector<Point<dim>>& points) const {
+  const TiledGrid<dim>& grid = flow_.domain.grid;
+  const SampleLattice<dim> lattice(grid);
+  const auto& cells = flow_.geometry.state.cells;
+  const auto is_fluid = [&cells](int cell) { return cells[cell] == CellState::fluid; };
+  const auto in_domain = [&](int face) {
+    if (face < 0)
+      return false;
+    const FaceCells beside = cells_of_face(grid, cells, axis, face);
+    return beside.lower >= 0 || beside.upper >= 0;
+  };
+  constexpr int n_values = 3;
+  std::vector<double> values(points.size() * n_values, 0.);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto [cell, x] = place_of<dim>(grid, points[p]);
+    if (cell < 0 || !grid.owned(cell) || !is_fluid(cell))
+      continue;
+    double weight = 0, open = 0, rate = 0;
+    for (const StencilCorner<dim>& corner : lattice.corners(axis, x)) {
+      const bool at_wall = corner.id == Stencil<dim>::wall_sample;
+      if (corner.weight == 0 || (!at_wall && !in_domain(corner.id)))
+        continue;
+      weight += corner.weight;
+      const double part = at_wall ? 1 : flow_.geometry.flux_fraction(axis, corner.id);
+      open += corner.weight * part;
+      rate += at_wall ? 0 : corner.weight * part * flow_.prediction[axis][corner.id];
+    }
+    if (open == 0)
+      continue;
+    double* value = &values[p * n_values];
+    value[0] = open / weight;
+    value[1] = rate / weight;
+    if (flow_.last_step > 0)
+      value[2] =
+          mean_of<dim>(lattice, cell_centers, x, flow_.scaled_pressure, is_fluid) / flow_.last_step;
+  }
+  sum_all(grid.comm(), values.data(), static_cast<int>(values.size()));
+  std::vector<FlowSample> samples;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    samples.push_back({values[3 * p], values[3 * p + 1], values[3 * p + 2]});
+  return samples;
+}
+
+template std::vector<FlowSample> MacOutput<2>::flow_across(int, const std::vector<Point<2>>&) const;
+template std::vector<FlowSample> MacOutput<3>::flow_across(int, const std::vector<Point<3>>&) const;
+template std::vector<FluidSample<2>> MacOutput<2>::sample(const std::vector<Point<2>>&) const;
+template std::vector<FluidSample<3>> MacOutput<3>::sample(const std::vector<Point<3>>&) const;
+
+}  // namespace lockstep

@@ -1,0 +1,89 @@
+#include "mac/parts/prescribed_sides.hpp"
+
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// Calls f(axis, end, side) for the sides that fluid enters or leaves through at a given velocity.
+template <int dim, typename Function>
+void for_each_inflow(const Boundary<dim>& boundary, const Function& f) {
+  for (int axis = 0; axis < dim; ++axis) {
+    for (int end = 0; end < 2; ++end) {
+      const BoundarySide<dim>& side = boundary.side(axis, end);
+      if (side.type == SideType::inflow && (side.wave || side.velocity[axis] != 0))
+        f(axis, end, side);
+    }
+  }
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
+                                            const MacGeometry<dim>& geometry, double time) {
+  std::vector<PrescribedFlux> fluxes;
+  for_each_inflow(domain.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
+    fluxes.push_back({fmt::format("the inflow \"{}\"", side_name(axis, end)), {}});
+    for (const auto& [face_axis, cell] : geometry.prescribed) {
+      const bool is_upper = geometry.state.cells[cell] == CellState::outside;
+      if (face_axis != axis || is_upper != (end == 1))
+        continue;
+      const double velocity =
+          side.mean_velocity(axis, domain.face_box(axis, cell), time)[axis] * (is_upper ? -1 : 1);
+      const int fluid = is_upper ? domain.grid.neighbor(cell, axis, 0) : cell;
+      const double area = geometry.face_table.area() * geometry.flux_fraction(axis, cell);
+      if (velocity != 0)
+        fluxes.back().into.emplace_back(geometry.unknown[fluid], area * velocity);
+    }
+  });
+  return fluxes;
+}
+
+template <int dim>
+std::vector<std::pair<std::string, std::string>> notes_of_inflows(
+    const MacDomain<dim>& domain, const MacGeometry<dim>& geometry) {
+  std::vector<std::pair<std::string, std::string>> notes;
+  for_each_inflow(domain.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
+    if (side.wave) {
+      const double length = 2 * M_PI / side.wave->number;
+      notes.emplace_back("inflow " + side_name(axis, end),
+                         fmt::format("waves {:.6g} m long ({:.3g} cells), {:.6g} m/s fast", length,
+                                     length / domain.spacing(), side.wave->speed()));
+      return;
+    }
+    double sums[3] = {0, 0, 0};  // open area, faces, faces in part
+    InflowShape<dim> opening = side.shape;
+    opening.parabolic = false;
+    for (const auto& [face_axis, cell] : geometry.prescribed) {
+      const bool is_upper = geometry.state.cells[cell] == CellState::outside;
+      if (face_axis != axis || is_upper != (end == 1))
+        continue;
+      const double open = opening.mean_factor(axis, domain.face_box(axis, cell));
+      sums[0] += open * geometry.face_table.area();
+      sums[1] += open > 0;
+      sums[2] += open > 0 && open < 1;
+    }
+    sum_all(domain.grid.comm(), sums, 3);
+    notes.emplace_back(
+        "inflow " + side_name(axis, end),
+        fmt::format("{:.6g} m^{}/s through {:.6g} m^{}: {:.0f} faces, {:.0f} of them in part",
+                    std::abs(side.velocity[axis]) * sums[0], dim, sums[0], dim - 1, sums[1],
+                    sums[2]));
+  });
+  return notes;
+}
+
+template std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<2>&, const MacGeometry<2>&,
+                                                     double);
+template std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<3>&, const MacGeometry<3>&,
+                                                     double);
+template std::vector<std::pair<std::string, std::string>> notes_of_inflows(const MacDomain<2>&,
+                                                                           const MacGeometry<2>&);
+template std::vector<std::pair<std::string, std::string>> notes_of_inflows(const MacDomain<3>&,
+                                                                           const MacGeometry<3>&);
+
+}  // namespace lockstep

@@ -1,0 +1,168 @@
+#include "staggered/domain/boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/errors.hpp"
+#include "staggered/domain/inflow_scalars.hpp"
+#include "staggered/domain/parameter_values.hpp"
+
+namespace lockstep {
+
+std::string side_name(int axis, int end) {
+  return std::string(axis_names[axis]) + (end == 0 ? " lower" : " upper");
+}
+
+namespace {
+const std::vector<std::string> side_types = {"wall", "slip wall", "open", "inflow", "periodic"};
+
+SideType side_type(const std::string& name) {
+  for (std::size_t i = 0; i < side_types.size(); ++i)
+    if (side_types[i] == name)
+      return static_cast<SideType>(i);
+  throw InputError(fmt::format("There is no side of type \"{}\".", name));
+}
+
+template <int dim>
+BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, int axis, int end) {
+  BoundarySide<dim> side;
+  side.type = side_type(list.get<std::string>("Type"));
+  side.velocity = point_value<dim>(list, "Velocity");
+  side.ramp_time = list.get<double>("Ramp Time");
+  if (list.isParameter("End Time"))
+    side.end_time = list.get<double>("End Time");
+  side.shape = read_inflow_shape<dim>(list, domain, axis, "Domain/Sides/" + side_name(axis, end));
+  check_input(
+      !side.closed() || side.velocity[axis] == 0,
+      "In \"Domain/Sides/{}\", a wall cannot move along {} (velocity {} m/s): it would leave "
+      "the domain. Make it an inflow, or set that component to 0.",
+      side_name(axis, end), axis_names[axis], side.velocity[axis]);
+  const auto check_meaning = [&](const char* parameter, bool given) {
+    check_input(!given || side.type == SideType::wall || side.type == SideType::inflow,
+                "In \"Domain/Sides/{}\", \"{}\" has no meaning on a side of type \"{}\"; it is "
+                "for walls and inflows.",
+                side_name(axis, end), parameter, list.get<std::string>("Type"));
+  };
+  check_meaning("Velocity", side.velocity != Point<dim>::Zero());
+  check_meaning("Ramp Time", side.ramp_time > 0);
+  check_meaning("End Time", list.isParameter("End Time"));
+  return side;
+}
+
+/// Places within a cell must be numbers of their own.
+template <int dim>
+void check_resolution(const Point<dim>& lower, const Point<dim>& upper, double spacing) {
+  constexpr double finest = 1e-6;  // part of a cell
+  const double farthest = std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff());
+  check_input(!(farthest * std::numeric_limits<double>::epsilon() > finest * spacing),
+              "In \"Domain\", a corner lies {:g} m from the origin, where the numbers of a "
+              "computer cannot tell places in a cell of {:g} m apart; move the domain to the "
+              "origin.",
+              farthest, spacing);
+}
+}  // namespace
+
+template <int dim>
+ParameterList domain_parameters() {
+  ParameterList list("Domain");
+  declare_vector(list, "Lower", filled_array(dim, 0.0), dim, "Lower corner [m].");
+  declare_vector(list, "Upper", filled_array(dim, 1.0), dim, "Upper corner [m].");
+  declare_vector(list, "Cells", filled_array(dim, 32), dim,
+                 "Cells along each axis. The cells must come out as squares or cubes.");
+  set_at_least(list, "Cells", 1);
+  ParameterList& sides =
+      declare_list(list, "Sides", "Boundary conditions on the sides of the domain.");
+  for (int a = 0; a < dim; ++a)
+    for (int end = 0; end < 2; ++end) {
+      ParameterList& side =
+          declare_list(sides, side_name(a, end), "The side at the end of this axis.");
+      declare_choice(side, "Type", "wall", side_types,
+                     "wall: closed, the fluid sticks to it; slip wall: closed, no friction; open: "
+                     "pressure 0; inflow: given velocity; periodic: joined to the opposite side "
+                     "(both must be periodic).");
+      declare_vector(side, "Velocity", filled_array(dim, 0.0), dim,
+                     "Velocity of the inflow, or of a wall along itself [m/s].");
+      declare_at_least(side, "Ramp Time", 0.0, 0.0,
+                       "Time during which \"Velocity\" grows linearly from 0 [s].");
+      declare_optional<double>(side, "End Time", "After it \"Velocity\" is 0 [s].");
+      declare_inflow_shape<dim>(side);
+      declare_inflow_wave(side);
+      declare_inflow_scalars(side);
+    }
+  return list;
+}
+
+template <int dim>
+void set_grid_flags(const Boundary<dim>& boundary, GridDescription<dim>& grid) {
+  for (int a = 0; a < dim; ++a) {
+    const SideType upper = boundary.side(a, 1).type;
+    grid.periodic[a] = boundary.periodic(a);
+    grid.store_upper_face[a] = upper == SideType::open || upper == SideType::inflow;
+  }
+}
+
+template <int dim>
+DomainDescription<dim> read_domain(const ParameterList& list) {
+  DomainDescription<dim> result;
+  const Point<dim> lower = point_value<dim>(list, "Lower");
+  const Point<dim> upper = point_value<dim>(list, "Upper");
+  const auto& cells = list.get<ParameterArray<int>>("Cells");
+  GridDescription<dim>& grid = result.grid;
+  grid.lower = lower;
+  grid.spacing = (upper[0] - lower[0]) / cells[0];
+  for (int a = 0; a < dim; ++a)
+    check_input(
+        upper[a] > lower[a],
+        "In \"Domain\", the upper corner must be above the lower one, but along {} they are "
+        "{} and {} m.",
+        axis_names[a], upper[a], lower[a]);
+  check_resolution<dim>(lower, upper, grid.spacing);
+  for (int a = 0; a < dim; ++a) {
+    grid.n_cells[a] = cells[a];
+    const double h = (upper[a] - lower[a]) / cells[a];
+    check_input(
+        std::abs(h - grid.spacing) <= 1e-9 * grid.spacing,
+        "In \"Domain\", the cells must be as long along every axis, but they are {} m along x "
+        "and {} m along {}; change \"Cells\" or the corners.",
+        grid.spacing, h, axis_names[a]);
+    for (int end = 0; end < 2; ++end)
+      result.boundary.sides[a][end] =
+          read_side<dim>(list.sublist("Sides").sublist(side_name(a, end)), {lower, upper}, a, end);
+    check_input(
+        (result.boundary.side(a, 0).type == SideType::periodic) ==
+            (result.boundary.side(a, 1).type == SideType::periodic),
+        "In \"Domain/Sides\", only one of \"{}\" and \"{}\" is periodic; either both are or "
+        "none.",
+        side_name(a, 0), side_name(a, 1));
+  }
+  for (int a = 0; a < dim; ++a)
+    check_input(!result.boundary.periodic(a) || cells[a] >= 3,
+                "In \"Domain\", the periodic axis {} has {} cells, but needs 3 or more.",
+                axis_names[a], cells[a]);
+  set_grid_flags(result.boundary, grid);
+  return result;
+}
+
+template <int dim>
+void read_waves(const ParameterList& fluid, const ParameterList& domain,
+                DomainDescription<dim>& description) {
+  const Box<dim> box(point_value<dim>(domain, "Lower"), point_value<dim>(domain, "Upper"));
+  for (int axis = 0; axis < dim; ++axis)
+    for (int end = 0; end < 2; ++end) {
+      const std::string name = side_name(axis, end);
+      description.boundary.sides[axis][end].wave = read_inflow_wave<dim>(
+          domain.sublist("Sides").sublist(name), fluid, box, axis, end, "Domain/Sides/" + name);
+    }
+}
+
+template void read_waves<2>(const ParameterList&, const ParameterList&, DomainDescription<2>&);
+template void read_waves<3>(const ParameterList&, const ParameterList&, DomainDescription<3>&);
+template ParameterList domain_parameters<2>();
+template ParameterList domain_parameters<3>();
+template DomainDescription<2> read_domain<2>(const ParameterList&);
+template DomainDescription<3> read_domain<3>(const ParameterList&);
+template void set_grid_flags<2>(const Boundary<2>&, GridDescription<2>&);
+template void set_grid_flags<3>(const Boundary<3>&, GridDescription<3>&);
+
+}  // namespace lockstep

@@ -1,0 +1,57 @@
+#include "staggered/state/face_table.hpp"
+
+namespace lockstep {
+
+template <int dim>
+FaceTable<dim>::FaceTable(const MacDomain<dim>& domain, double density)
+    : area_(domain.face_area()), volume_(domain.cell_volume()), spacing_(domain.spacing()) {
+  regular_.density = density;
+  derive(regular_);
+  for (auto& blocks : block_of_tile_)
+    blocks.assign(domain.grid.n_tiles(), -1);
+}
+
+template <int dim>
+void FaceTable<dim>::derive(FaceWorth& face) const {
+  face.mass = face.density * volume_ * face.open / face.closeness;
+  face.coefficient = face.open * face.closeness * (regular_.density / face.density);
+  face.gradient = face.closeness / (face.density * spacing_);
+}
+
+template <int dim>
+FaceWorth& FaceTable<dim>::own(int axis, int cell) {
+  int& block = block_of_tile_[axis][TiledGrid<dim>::tile_of(cell)];
+  auto& faces = special_[axis];
+  if (block < 0) {
+    block = static_cast<int>(faces.size() >> log_tile_volume<dim>);
+    faces.resize(faces.size() + tile_volume<dim>, regular_);
+  }
+  return faces[place(block, cell)];
+}
+
+template <int dim>
+void FaceTable<dim>::set_open(int axis, int cell, double open) {
+  FaceWorth& face = own(axis, cell);
+  face.open = open;
+  derive(face);
+}
+
+template <int dim>
+void FaceTable<dim>::set_closeness(int axis, int cell, double closeness) {
+  FaceWorth& face = own(axis, cell);
+  face.closeness = closeness;
+  derive(face);
+}
+
+template <int dim>
+std::size_t FaceTable<dim>::n_stored() const {
+  std::size_t n = 0;
+  for (const auto& faces : special_)
+    n += faces.size();
+  return n;
+}
+
+template class FaceTable<2>;
+template class FaceTable<3>;
+
+}  // namespace lockstep

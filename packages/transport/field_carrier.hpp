@@ -1,0 +1,89 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "transport/transport_frame.hpp"
+
+namespace lockstep {
+
+/// One advected field, and the data of MacCormack's first half.
+template <int dim>
+struct Passenger {
+  AdvectionScheme scheme = AdvectionScheme::semi_lagrangian;
+  const CellField* start = nullptr;  ///< the field at t^n
+  CarriedField<dim> field;           ///< kind and inflow set by the caller
+  CellField* result = nullptr;
+  std::vector<char>* invalid = nullptr;
+  double beyond = 0;   ///< the field where no tile exists
+  CellField storage;   ///< storage of field.values
+  CellField half_way;  ///< MacCormack's first half: the result of semi-Lagrangian transport
+  /// Range of the samples used, of owned cells; empty (low > high): no correction. `low` is kept
+  /// where the result will be.
+  double* low = nullptr;
+  std::unique_ptr<double[]> high;
+  /// Rays of the strips of a tile near surfaces that is advected by strips.
+  std::vector<RowRays<dim>> back, forth;
+
+  bool cubic() const { return scheme == AdvectionScheme::cubic; }
+  bool corrects() const { return scheme == AdvectionScheme::maccormack; }
+  /// Target of the semi-Lagrangian values.
+  CellField& carried() { return corrects() ? half_way : *result; }
+  void forbid_correction(int id) {
+    if (corrects()) {
+      low[id] = 1;
+      high[id] = 0;
+    }
+  }
+  bool may_correct(int id) const { return corrects() && low[id] <= high[id]; }
+};
+
+/// Advects fields along the rays of one frame: whole tiles by strips; near surfaces and inflow
+/// sides, and where rays are long, one sample at a time.
+template <int dim>
+class FieldCarrier {
+ public:
+  explicit FieldCarrier(TransportFrame<dim>& frame) : frame_(frame) {}
+  /// Advects the fields. `tiles`: a flag for each owned tile, 0 where nothing is advected; null:
+  /// all are. Collective.
+  void carry(std::vector<Passenger<dim>>& passengers, const std::vector<char>* tiles = nullptr);
+
+ private:
+  void begin(Passenger<dim>& passenger);
+  bool carry_rows(std::vector<Passenger<dim>>& passengers, int tile);
+  void carry_singles(Passenger<dim>& passenger, int tile);
+  /// Advects the samples near surfaces; `by_rows`: all have been advected as if there were none.
+  void carry_near_surfaces(std::vector<Passenger<dim>>& passengers, int tile, bool by_rows);
+  /// Returns the ray from a sample; `by_rows`: the one that advection by strips used.
+  Ray<dim> trace(const Passenger<dim>& passenger, int id, const Point<dim>& x, double direction,
+                 bool cubic, bool by_rows) const;
+  /// True for samples of a tile advected by strips that are far from all surfaces.
+  bool is_far(const Passenger<dim>& passenger, int id, const Point<dim>& x) const;
+  /// Advects one sample; `wide`: by cubics.
+  void carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x, bool wide);
+  void carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x, bool by_rows);
+  void carry_seeing(Passenger<dim>& passenger, int id, const Point<dim>& x);
+  /// Advects a partly open face whose centre a solid holds or passes: it keeps its own value and
+  /// takes the change where its fluid is. Returns false if it is no such face.
+  bool carry_open_part(Passenger<dim>& passenger, int id, const Point<dim>& x);
+  /// Corrects by half of the error that semi-Lagrangian advection there and back again shows
+  /// (MacCormack).
+  void correct(std::vector<Passenger<dim>>& passengers);
+  bool correct_rows(std::vector<Passenger<dim>>& passengers,
+                    const std::vector<const double*>& carried, int tile);
+  void correct_single(Passenger<dim>& passenger, const double* carried, int id,
+                      const Point<dim>& x) const;
+
+  /// True if transport advects a sample; if not, `has_value` says whether it has a value
+  /// nevertheless.
+  bool is_carried(SampleKind kind, int id, bool& has_value) const;
+  /// True if a solid may hold the place of a sample that is advected.
+  bool may_hold_center(SampleKind kind, int id) const;
+  /// True if these are free faces, all advected.
+  bool all_free(SampleKind kind, int first, int n) const;
+  /// Leaves a sample as it was.
+  void keep(Passenger<dim>& passenger, int id, bool has_value) const;
+
+  TransportFrame<dim>& frame_;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,33 @@
+#pragma once
+#include "geometry/moving_surface.hpp"
+#include "transport/grid_state.hpp"
+#include "transport/transport.hpp"
+
+namespace lockstep {
+
+/// Result of populating uncovered cells, over all ranks.
+struct RevalidationReport {
+  GlobalIndex n_invalid = 0;  ///< samples in the fluid that had no value
+  GlobalIndex n_left_over =
+      0;             ///< invalid samples without a valid one in sight, directly or over others
+  int n_fronts = 0;  ///< sweeps until nothing changed
+};
+
+/// Populates uncovered faces after the geometry of t^{n+1} is set: invalid velocities get the mean
+/// of their valid and visible neighbours along the axes, front after front (Guendelman et al.
+/// 2005). Faces left over, and faces inside solids, get the velocity of the nearest surface within
+/// three cells, or zero. `halo` has width 1 or more; ghost values of u are set on return.
+/// Collective.
+template <int dim>
+RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
+                                    const GridState<dim>& after, const MovingSurface<dim>& surface,
+                                    KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
+                                    FaceField<dim>& u);
+/// Populates the invalid cells of a scalar; those left over get `ambient`.
+template <int dim>
+RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
+                                     const GridState<dim>& after, const MovingSurface<dim>& surface,
+                                     KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
+                                     double ambient, CellField& s);
+
+}  // namespace lockstep

@@ -1,0 +1,213 @@
+#include "transport/tile_block.hpp"
+
+#include <algorithm>
+
+#include "transport/row_cubic.hpp"
+#include "transport/row_stencil.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// The points split along each axis, for samples at `offset` in their cells.
+template <int dim>
+struct SplitPoints {
+  SplitPoints(const RowPoints<dim>& points, const Point<dim>& offset) {
+    for (int a = 0; a < dim; ++a) {
+      along[a].set(points[a], a, offset[a]);
+      splits[a] = &along[a];
+    }
+  }
+  std::array<RowSplit<dim>, dim> along;
+  std::array<const RowSplit<dim>*, dim> splits;
+};
+
+}  // namespace
+
+template <int dim>
+TileBlock<dim>::TileBlock(const SampleLattice<dim>& lattice, const RayTracer<dim>& tracer,
+                          int reach, int stencil_reach)
+    : lattice_(lattice), tracer_(tracer), stencil_reach_(stencil_reach) {
+  int size = 1;
+  for (int a = 0; a < dim; ++a) {
+    const int margin = reach + stencil_reach;
+    margin_[a] = a == 0 ? (margin + 3) / 4 * 4 : margin;
+    width_[a] = tile_width<dim> + 2 * margin_[a];
+    stride_[a] = size;
+    size *= width_[a];
+  }
+  for (Values& component : velocity_)
+    component.resize(size + 2 * first_place);
+  storage_.resize(size + 2 * first_place);
+}
+
+template <int dim>
+bool TileBlock<dim>::enter(const Index<dim>& tile_begin) {
+  for (int a = 0; a < dim; ++a) {
+    begin_[a] = tile_begin[a] - margin_[a];
+    for (int on_faces = 0; on_faces < 2; ++on_faces)
+      runs_[a][on_faces] = lattice_.find_runs(a, on_faces == 1, begin_[a], width_[a]);
+    // Whatever the velocity is where there is no fluid, no ray may look outside the block.
+    // All places of the tile are inside, even if nothing moves: the margin is the stencil's then.
+    lower_[a] = stencil_reach_ - 0.5;
+    upper_[a] = width_[a] - stencil_reach_ - 1e-9;
+    if (lattice_.periodic(a))
+      continue;
+    lower_[a] = std::max<double>(lower_[a], -begin_[a]);
+    upper_[a] = std::min<double>(upper_[a], lattice_.n_cells()[a] - begin_[a]);
+  }
+  for (int a = 0; a < dim; ++a)
+    if (!copy(a, tracer_.velocity()[a], velocity_[a]))
+      return false;
+  return true;
+}
+
+template <int dim>
+bool TileBlock<dim>::copy(SampleKind kind, const double* from, Values& to) const {
+  std::array<const Runs*, dim> runs;
+  for (int a = 0; a < dim; ++a)
+    runs[a] = &runs_[a][a == kind ? 1 : 0];
+  return lattice_.copy_block(runs, stride_, from, to.data() + first_place);
+}
+
+template <int dim>
+void TileBlock<dim>::load(SampleKind kind, const double* field) {
+  kind_ = kind;
+  offset_ = sample_offset<dim>(kind);
+  if (kind != cell_centers && field == tracer_.velocity()[kind]) {
+    field_ = velocity_[kind].data() + first_place;
+    return;
+  }
+  // Complete, because the velocity is.
+  copy(kind, field, storage_);
+  field_ = storage_.data() + first_place;
+}
+
+template <int dim>
+RowValues<dim> TileBlock<dim>::velocity_at_samples(int axis, int place) const {
+  using Row = Eigen::Map<const RowValues<dim>>;
+  const double* c = velocity_[axis].data() + first_place + place;
+  // A sample lies at a face of the component, or half-way between two along one axis or two.
+  if (axis == kind_)
+    return Row(c);
+  if (kind_ == cell_centers)
+    return 0.5 * (Row(c) + Row(c + stride_[axis]));
+  const int first = stride_[std::min(axis, kind_)], second = stride_[std::max(axis, kind_)];
+  c -= stride_[kind_];
+  // In pairs, so that constants stay exact.
+  return 0.25 * ((Row(c) + Row(c + first)) + (Row(c + second) + Row(c + second + first)));
+}
+
+template <int dim>
+std::array<double, 2> TileBlock<dim>::sample_limits(int axis, SampleKind kind) const {
+  if (lattice_.periodic(axis))
+    return {-1e300, 1e300};
+  return {static_cast<double>(-begin_[axis]),
+          static_cast<double>(lattice_.last_sample(axis, kind) - begin_[axis])};
+}
+
+template <int dim>
+RowPoints<dim> TileBlock<dim>::velocity_at(const RowPoints<dim>& points, bool cubic) const {
+  RowPoints<dim> velocity;
+  const auto look_up = [&](auto stencil, const auto& on_faces, const auto& at_centers) {
+    for (int a = 0; a < dim; ++a) {
+      std::array<decltype(on_faces.data()), dim> splits;
+      for (int b = 0; b < dim; ++b)
+        splits[b] = a == b ? &on_faces[b] : &at_centers[b];
+      stencil(splits).interpolate(velocity_[a].data() + first_place, velocity[a]);
+    }
+  };
+  if (cubic) {
+    std::array<RowCubicSplit<dim>, dim> on_faces, at_centers;
+    for (int a = 0; a < dim; ++a) {
+      on_faces[a].set(points[a], a, 0, sample_limits(a, a));
+      at_centers[a].set(points[a], a, 0.5, sample_limits(a, cell_centers));
+    }
+    look_up([&](const auto& splits) { return RowCubic<dim>(splits, stride_); }, on_faces,
+            at_centers);
+  } else {
+    std::array<RowSplit<dim>, dim> on_faces, at_centers;
+    for (int a = 0; a < dim; ++a) {
+      on_faces[a].set(points[a], a, 0);
+      at_centers[a].set(points[a], a, 0.5);
+    }
+    look_up([&](const auto& splits) { return RowStencil<dim>(splits, stride_); }, on_faces,
+            at_centers);
+  }
+  return velocity;
+}
+
+template <int dim>
+RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, bool cubic) const {
+  const double factor = direction * tracer_.cells_per_velocity();
+  int place = 0;
+  RowPoints<dim> start;
+  for (int a = 0; a < dim; ++a) {
+    const int cell = margin_[a] + (a == 0 ? 0 : in_tile[a]);
+    start[a].setConstant(cell + offset_[a]);
+    place += cell * stride_[a];
+  }
+  start[0] += steps<dim>();
+  RowPoints<dim> velocity;
+  if (cubic) {
+    velocity = velocity_at(start, true);
+  } else {
+    for (int a = 0; a < dim; ++a)
+      velocity[a] = velocity_at_samples(a, place);
+  }
+  return rays_from(start, velocity, factor, cubic);
+}
+
+template <int dim>
+RowRays<dim> TileBlock<dim>::follow(const RowPoints<dim>& start, double direction) const {
+  return rays_from(start, velocity_at(start, false), direction * tracer_.cells_per_velocity(),
+                   false);
+}
+
+template <int dim>
+RowRays<dim> TileBlock<dim>::rays_from(const RowPoints<dim>& start, const RowPoints<dim>& velocity,
+                                       double factor, bool cubic) const {
+  RowRays<dim> rays;
+  for (int a = 0; a < dim; ++a)
+    rays.middle[a] =
+        clamped(RowValues<dim>(start[a] + 0.5 * factor * velocity[a]), lower_[a], upper_[a]);
+  const RowPoints<dim> halfway = velocity_at(rays.middle, cubic);
+  rays.clipped.setZero();
+  for (int a = 0; a < dim; ++a) {
+    const RowValues<dim> wanted = start[a] + factor * halfway[a];
+    rays.end[a] = clamped(wanted, lower_[a], upper_[a]);
+    rays.clipped += (rays.end[a] - wanted).abs();
+  }
+  return rays;
+}
+
+template <int dim>
+void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values) const {
+  const SplitPoints<dim> split(points, offset_);
+  RowStencil<dim>(split.splits, stride_).interpolate(field_, values);
+}
+
+template <int dim>
+void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values,
+                             RowValues<dim>& low, RowValues<dim>& high) const {
+  const SplitPoints<dim> split(points, offset_);
+  const RowStencil<dim> stencil(split.splits, stride_);
+  stencil.interpolate(field_, values);
+  stencil.find_range(field_, low, high);
+}
+
+template <int dim>
+void TileBlock<dim>::look_up_cubic(const RowPoints<dim>& points, RowValues<dim>& values) const {
+  std::array<RowCubicSplit<dim>, dim> along;
+  std::array<const RowCubicSplit<dim>*, dim> splits;
+  for (int a = 0; a < dim; ++a) {
+    along[a].set(points[a], a, offset_[a], sample_limits(a, kind_));
+    splits[a] = &along[a];
+  }
+  RowCubic<dim>(splits, stride_).interpolate(field_, values);
+}
+
+template class TileBlock<2>;
+template class TileBlock<3>;
+
+}  // namespace lockstep
