@@ -11,7 +11,7 @@
 namespace lockstep {
 
 /// A single-phase fluid on a staggered Cartesian grid of tiles. Every cell whose centre is not
-/// inside a closed solid is fluid, or void where it is above a free surface.
+/// inside a closed solid is fluid, or air where it is above a free surface.
 ///
 /// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
 template <int dim>
@@ -76,7 +76,7 @@ class MacFluid : public FluidDiscretization<dim> {
  private:
   const FluidGeometry<dim>& freeze(const Surface& surface,
                                    const OpenFractionRule<dim>& rule) override;
-  /// What is prescribed jumped in the step that ends now.
+  /// True if a prescribed velocity jumped in the step that ends now.
   bool jumped() const;
   Momentum<dim> push_sources(double time);
   /// u* += dt f; the change of momentum of free faces, of this rank.
@@ -96,7 +96,7 @@ class MacFluid : public FluidDiscretization<dim> {
   std::unique_ptr<MacLiquid<dim>> liquid_;  ///< null: no free surface
   std::unique_ptr<MacGas<dim>> gas_;        ///< null: none is ever trapped
   bool has_begun_ = false;                  ///< with a geometry: sinks may empty it later
-  InvalidSamples<dim> invalid_;             ///< of the last transport
+  InvalidSamples<dim> invalid_;             ///< samples without a value after the last transport
 };
 
 }  // namespace lockstep

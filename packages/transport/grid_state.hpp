@@ -8,16 +8,16 @@
 
 namespace lockstep {
 
-/// What fills a cell, judged at its centre.
+/// Content of a cell, judged at its centre.
 enum class CellState : char {
   outside,  ///< beyond the domain
   fluid,    ///< carries a pressure
   solid,    ///< centre inside a closed solid
-  empty     ///< its pressure is known: a void above a free surface, p = 0, or fluid at rest at the
+  empty     ///< its pressure is known: air above a free surface, p = 0, or fluid at rest at the
             ///< rim of the stored tiles
 };
 
-/// What a face velocity is.
+/// Kind of a face velocity.
 enum class FaceState : char {
   inactive,    ///< no fluid on either side
   free,        ///< changed by pressure: interior or open side
@@ -35,7 +35,7 @@ inline bool is_carried(FaceState face) {
   return face == FaceState::free || face == FaceState::coupled || face == FaceState::extended;
 }
 
-/// What the samples of a staggered grid are at one instant, on all stored cells (owned and ghost):
+/// State of the samples of a staggered grid at one instant, on all stored cells (owned and ghost):
 /// which of them have a value, and which solids are between them.
 template <int dim>
 struct GridState {

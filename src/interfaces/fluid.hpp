@@ -219,13 +219,13 @@ class FluidDiscretization : public PlugIn {
   }
   /// [axis][lower, upper]: a wall, which solids cannot pass either. Local.
   virtual std::array<std::array<bool, 2>, dim> closed_sides() const { return {}; }
-  /// Of the wall at an end (0 lower, 1 upper) of an axis, along itself [m/s]. Local.
+  /// Velocity of the wall at an end (0 lower, 1 upper) of an axis, along itself [m/s]. Local.
   virtual Point<dim> wall_velocity(int, int, double) const { return Point<dim>::Zero(); }
   /// True if what leaves at one side comes in at another: then torques have no common origin.
   /// Local.
   virtual bool is_periodic() const { return false; }
-  /// What its sides let in at `time`, one by one, whether they do at that time or not: so that a
-  /// run can say whose motion closed fluid has no room for. Local.
+  /// Returns the fluxes through its sides at `time`, one by one, those of sides that are shut then
+  /// too: so that a run can say whose motion closed fluid has no room for. Local.
   virtual std::vector<PrescribedFlux> side_fluxes(double /*time*/) const { return {}; }
 
   // The pressure of the last step: the initial guess of the solves, and what the viscous solve

@@ -27,7 +27,7 @@ class AuditedFluid {
   virtual Momentum<dim> boundary_pressure_impulse(const Vector& scaled_pressure) const = 0;
 };
 
-/// What a fluid is like at one place.
+/// State of a fluid at one place.
 template <int dim>
 struct FluidSample {
   bool in_fluid = false;                     ///< false: in a solid or outside; all else is zero
@@ -35,14 +35,14 @@ struct FluidSample {
   Point<dim> velocity = Point<dim>::Zero();  ///< [m/s]
 };
 
-/// How a fluid goes through a plane at one place.
+/// Flow of a fluid through a plane at one place.
 struct FlowSample {
   double open = 0;  ///< part of the plane there that fluid can go through [1]; 0: all else is zero
   double rate = 0;  ///< volume by area, open or not, and time, along the axis [m/s]
   double pressure = 0;  ///< [Pa]
 };
 
-/// What is seen of a fluid: samples for observers, fields and surfaces for pictures, notes for
+/// Output of a fluid: samples for observers, fields and surfaces for pictures, notes for
 /// `--explain`.
 template <int dim>
 class FluidOutput {
@@ -51,8 +51,8 @@ class FluidOutput {
   /// The state at the end of the last step, one sample a point [m], the same on all ranks.
   /// Collective; all ranks ask for the same points.
   virtual std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const = 0;
-  /// The same of planes at right angles to an axis: what the fluid's own balance of volume says
-  /// goes through. Without a better answer all or nothing, as `sample` has it. Collective.
+  /// Returns the flow through planes at right angles to an axis, by the fluid's own balance of
+  /// volume. Without a better answer all or nothing, as `sample` has it. Collective.
   virtual std::vector<FlowSample> flow_across(int axis,
                                               const std::vector<Point<dim>>& points) const {
     std::vector<FlowSample> flows;

@@ -87,8 +87,8 @@ class LiquidFluid {
   /// From x to the free surface, negative in the liquid [m]; linear between the centres of cells,
   /// carried on into solids, cut off a few cells away. Near cells that this rank owns. Local.
   virtual double surface_distance(const Point<dim>& x) const = 0;
-  /// The same from each point to the surface at the end of the last step, 1e300 where nothing is
-  /// stored. The same on all ranks. Collective; all ranks ask for the same points.
+  /// Distance from each point to the surface at the end of the last step [m], 1e300 where nothing
+  /// is stored. The same on all ranks. Collective; all ranks ask for the same points.
   virtual std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const = 0;
   /// By solid of the frozen surface; those that are not closed have nothing. Collective.
   virtual std::vector<WetBody<dim>> wet_bodies() const = 0;

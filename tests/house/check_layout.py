@@ -43,7 +43,7 @@ FUNCTION = re.compile(r"^(?!const\b[^(]*=)[A-Za-z][^;={}()#]*?\b(\w+)\(([^;{}]*?
 MOST_HOMES = 2  # .cpp files that define functions of one class
 MOST_BASES = 4
 MOST_PARAMETERS = 6
-# What has more, and how many: these lists may only shrink.
+# Exceptions and their numbers: these lists may only shrink.
 KNOWN_HOMES = {"DeformableSolids": 9, "VolumeLedger": 3, "SolidSystem": 3, "Hdf5File": 3, "Simulation": 4, "Stepper": 7}
 KNOWN_BASES = {"DeformableSolids": 7, "FaceCoupling": 6, "RigidBodies": 5}
 KNOWN_PARAMETERS = {
@@ -175,7 +175,7 @@ def clashes(root):
 
 
 def listed(text):
-    """What commas part that are in no brackets."""
+    """The parts between commas that are in no brackets."""
     depth, parts = 0, [""]
     for c in text:
         depth += (c in "<([{") - (c in ">)]}")

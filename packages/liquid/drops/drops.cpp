@@ -8,9 +8,9 @@
 namespace lockstep {
 
 namespace {
-/// How near to a closed side a drop may come [cells].
+/// Least distance of a drop from a closed side [cells].
 constexpr double drops_to_side = 1e-3;
-/// How far from solids drops stay [cells]; in corners, half of it after each attempt.
+/// Distance that drops keep from solids [cells]; in corners, half of it after each attempt.
 constexpr double clearance_of_drops = 0.1;
 constexpr int attempts = 8;
 const char* const file_name = "fluid/drops";

@@ -9,9 +9,9 @@
 namespace lockstep {
 
 namespace {
-/// How far a body looks for what it is owed [cells].
+/// Reach within which a component takes volume defects [cells].
 constexpr int reach_of_labels = 3;
-/// Debts below this wait for others [cells].
+/// Volume defects below this wait for others [cells].
 constexpr double negligible_debt = 1e-13;
 /// Rest of a shift below which no other component takes it over [cells].
 constexpr double negligible_left = 1e-6;

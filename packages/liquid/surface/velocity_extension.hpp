@@ -54,7 +54,7 @@ class VelocityExtension {
   void find_sources(int axis, const GridState<dim>& state);
   /// `rank`: of owned faces that are extended.
   void find_sources_of(Face& face, int axis, const CellField& rank, const GridState<dim>& state);
-  /// Whether the fluid goes on steadily beyond a source.
+  /// True if the fluid goes on steadily beyond a source.
   bool goes_on(int axis, int source, int side, const GridState<dim>& state) const;
   /// Smallest where fluid is nearest, a whole number.
   double rank_of_face(int axis, int cell, const GridState<dim>& state) const;

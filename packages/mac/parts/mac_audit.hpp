@@ -8,8 +8,8 @@
 
 namespace lockstep {
 
-/// What partly open faces of this rank add to an angular momentum, because their fluid moves beside
-/// their centres, where all other forces are taken to act.
+/// Returns the angular momentum that partly open faces of this rank add, because their fluid moves
+/// beside their centres, where all other forces are taken to act.
 template <int dim>
 AngularVector<dim> moment_of_shifts(const MacGeometry<dim>& geometry,
                                     const std::function<double(int axis, int cell)>& velocity);

@@ -7,17 +7,17 @@ namespace lockstep {
 
 struct SurfaceFrame;  // output/frames.hpp
 
-// What a fluid does with drops that its grid does not show. Drops know no density.
+// Momentum, energy and forces of drops that are smaller than a cell. Drops know no density.
 
 template <int dim>
-Momentum<dim> momentum_of_drops(const MacFlow<dim>& flow);  ///< of this rank
+Momentum<dim> momentum_of_drops(const MacFlow<dim>& flow);  ///< this rank's part [kg m/s]
 template <int dim>
-double energy_of_drops(const MacFlow<dim>& flow);  ///< of this rank
+double energy_of_drops(const MacFlow<dim>& flow);  ///< this rank's part [J]
 /// Gives drops that have flown the velocities that the step's forces lead to; returns the change of
 /// momentum, of this rank.
 template <int dim>
 Momentum<dim> speed_up_drops(MacFlow<dim>& flow);
-/// Of drops that have fallen into the liquid. Collective.
+/// Adds drops that have fallen into the liquid to it. Collective.
 template <int dim>
 void give_back_momentum(MacFlow<dim>& flow);
 /// See LiquidFluid::impulses_on_solids. Collective.

@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// The pockets of gas beside the liquid of a fluid.
+/// The gas bubbles beside the liquid of a fluid.
 template <int dim>
 class MacGas : public GasFluid<dim> {
  public:
@@ -26,7 +26,7 @@ class MacGas : public GasFluid<dim> {
   void accept(double dt) { pockets_.accept(dt); }  ///< a step of dt
 
  private:
-  /// Over the faces of the pockets, the sum of value(face) for each pocket. Collective.
+  /// Sums value(face) over the faces of each bubble. Collective.
   template <typename Value>
   std::vector<double> sum_of_pockets(const Value& value) const;
 

@@ -27,11 +27,11 @@ class MacLiquid : public LiquidFluid<dim> {
   Momentum<dim> surface_impulse() const override { return flow_.surface_impulse; }
   std::vector<std::string> watch_names() const override { return liquid_.watch_names(); }
 
-  /// Along u_ADV, which is carried on into the void as u^n is. Collective.
+  /// Moves the liquid along u_ADV, which is extended into the air as u^n is. Collective.
   void move(double time, double dt, const MovingSurface<dim>& surface, FaceField<dim>& advection);
   /// By surface tension over dt, at the faces' centres. Collective.
   void push_surface(double dt);
-  /// That of the last step, beside the void. Collective.
+  /// Bounds the last step's pressure in cells beside the air. Collective.
   void bound_pressure(CellField& pressure) const;
   double largest_stable_step() const;  ///< [s]. Local.
 

@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// What is seen of the fluid.
+/// Samples, fields and notes of the fluid.
 template <int dim>
 class MacOutput : public FluidOutput<dim> {
  public:
@@ -17,7 +17,7 @@ class MacOutput : public FluidOutput<dim> {
   /// Multilinear from the samples around a point that have a value, those beyond a thin shell
   /// included.
   std::vector<FluidSample<dim>> sample(const std::vector<Point<dim>>& points) const override;
-  /// Of faces, multilinear between them.
+  /// Returns the flow of faces, multilinear between them.
   std::vector<FlowSample> flow_across(int axis,
                                       const std::vector<Point<dim>>& points) const override;
   void add_frame(std::vector<BoxFrame>& boxes) const override;

@@ -28,8 +28,8 @@ class MacTiles {
   /// Rates of cells that were made one step ago are not those of a flow.
   bool are_new() const { return steps_since_regrid_ <= 1; }
   void accept();
-  /// What the pressure beyond the stored tiles does to the faces there in dt: that of fluid at rest
-  /// under this acceleration. Of this rank.
+  /// Applies the pressure beyond the stored tiles to the faces at the band edge over dt, that of
+  /// fluid at rest under this acceleration; returns this rank's impulse.
   Momentum<dim> push_at_rim(const Point<dim>& force, double dt);
 
   void save(CheckpointWriter& checkpoint) const;
@@ -44,15 +44,15 @@ class MacTiles {
   /// Other tiles: all fields move; what else was made of the grid waits until geometry is frozen.
   void regrid(const TileOwners& owners);
   void rest_at_rim();
-  /// Of the liquid; null: its interface cannot live on other tiles.
+  /// Interface of the liquid; null: it cannot live on other tiles.
   MigratingInterface<dim>* migrating_interface();
 
   MacFlow<dim>& flow_;
   std::optional<MovingTiles<dim>> moving_;  ///< none: all tiles exist, always
-  TileOwners owners_;                       ///< of the tiles; empty: as at the start
+  TileOwners owners_;                       ///< owners of the tiles; empty: as at the start
   int steps_since_regrid_ = 2;              ///< accepted; 2: or more
   int steps_to_sharing_ = 0;                ///< before work is next compared between ranks
-  TileWork compared_work_;                  ///< of this rank's tiles, then
+  TileWork compared_work_;                  ///< work of this rank's tiles, then
   bool has_room_ = false;                   ///< for the first surface
 };
 

@@ -12,7 +12,7 @@ namespace lockstep {
 template <int dim>
 std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
                                             const MacGeometry<dim>& geometry, double time);
-/// How the grid has taken each inflow, title and text. Collective.
+/// Notes on each inflow as the grid has it, title and text. Collective.
 template <int dim>
 std::vector<std::pair<std::string, std::string>> notes_of_inflows(const MacDomain<dim>& domain,
                                                                   const MacGeometry<dim>& geometry);

@@ -13,8 +13,8 @@
 
 namespace lockstep {
 
-/// What the parts of a MacFluid share: its grid, its parameters, the geometry of an instant and all
-/// fields.
+/// State that the parts of a MacFluid share: its grid, its parameters, the geometry of an instant
+/// and all fields.
 template <int dim>
 struct MacFlow {
   /// Collective. Validated lists "Fluid" and "Domain" of a scene.
@@ -34,14 +34,15 @@ struct MacFlow {
   MacGeometry<dim> geometry;
   FaceField<dim> velocity, prediction;          ///< u^n, u*
   std::optional<VelocityHistory<dim>> history;  ///< none: first order in time
-  CellField scaled_pressure;                    ///< of the last projection
-  CellField accepted_pressure;                  ///< of the last accepted step
-  std::vector<CellState> accepted_cells;        ///< which cells had one
+  CellField scaled_pressure;                    ///< p̂ of the last projection
+  CellField accepted_pressure;                  ///< p of the last accepted step [Pa]
+  std::vector<CellState> accepted_cells;        ///< states of the cells then
   double accepted_step = 0;                     ///< its dt
   std::vector<StoredField> fields;              ///< all that are kept from step to step
-  double time = 0;                ///< of walls and inflows: time + dt of the last forces
-  double last_step = 0;           ///< dt of the last forces, for p = p̂ / dt in pictures
-  Momentum<dim> surface_impulse;  ///< of surface tension in the last forces and viscous solve
+  double time = 0;       ///< time of walls and inflows: time + dt of the last forces [s]
+  double last_step = 0;  ///< dt of the last forces, for p = p̂ / dt in pictures
+  Momentum<dim>
+      surface_impulse;  ///< impulse of surface tension in the last forces and viscous solve
 
   bool tension_is_implicit() const { return liquid && liquid->tension_is_implicit(); }
   bool holds_gas() const { return liquid && liquid->gas(); }

@@ -14,7 +14,7 @@ struct MacParameters {
   ViscosityParameters viscosity;
   ForceParameters<dim> forces;
   AdvectionScheme advection = AdvectionScheme::semi_lagrangian;
-  int order_in_time = 1;  ///< of the splitting of advection from all else
+  int order_in_time = 1;  ///< order of the splitting of advection from all else
 };
 
 /// Schema of the "Fluid" list, without "Type"; without interface models it knows no free surface.

@@ -28,7 +28,7 @@ class MovingTiles {
   /// State at the beginning of a step.
   struct Present {
     const TiledGrid<dim>& grid;
-    const TileOwners& owners;  ///< of its tiles
+    const TileOwners& owners;  ///< owners of its tiles
     const GridState<dim>& state;
     const FaceField<dim>& velocity;
     double largest_speed;  ///< [m/s]

@@ -1,4 +1,4 @@
-// What a side that sends waves into a tank prescribes, against linear theory.
+// Velocities that a wavemaker side prescribes, against linear theory.
 #include "staggered/domain/inflow_wave.hpp"
 
 #include <gtest/gtest.h>
