@@ -9,7 +9,7 @@ namespace lockstep {
 template <int dim>
 using Axes = Eigen::Matrix<double, dim, dim>;
 
-/// Where the second side of a joint is, in the axes of the first: the joint's own axis comes first.
+/// Pose of the second side of a joint in the axes of the first; the joint's own axis comes first.
 template <int dim>
 struct RelativePose {
   Point<dim> offset = Point<dim>::Zero();  ///< [m]
@@ -24,8 +24,8 @@ struct Screw {
   AngularVector<dim> angular = AngularVector<dim>::Zero();
 };
 
-/// About which of its axes a joint turns: two_axes are the first of the first side and the second
-/// of the second side.
+/// Axes about which a joint turns: two_axes are the first of the first side and the second of the
+/// second side.
 enum class JointTurn { none, axis, two_axes, any };
 
 /// The degrees of freedom of a joint. Its coordinates q are displacements along the axes it
@@ -76,8 +76,8 @@ RelativePose<dim> pose_of(const JointKind& kind, const Eigen::VectorXd& q);
 template <int dim>
 Eigen::VectorXd advanced(const JointKind& kind, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& change);
-/// The change that `advanced` makes `goal` of q with; of balls along the way of as many whole
-/// turns.
+/// Returns the change with which `advanced` takes q to `goal`; for ball joints with the same number
+/// of whole turns.
 template <int dim>
 Eigen::VectorXd change_to(const JointKind& kind, const Eigen::VectorXd& q,
                           const Eigen::VectorXd& goal);

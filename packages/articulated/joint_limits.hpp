@@ -22,7 +22,7 @@ struct JointLimits {
   bool any() const { return lower.size() > 0 || std::isfinite(largest_turn); }
 };
 
-/// Declares them in the list of a joint of this kind.
+/// Declares the limits in the list of a joint of this kind.
 template <int dim>
 void declare_limits(ParameterList& joint, const JointKind& kind);
 /// Declares the limits of n coordinates alike.
@@ -37,7 +37,7 @@ struct RateLimit {
   double room = 0;          ///< [rad, m]
   bool turns = false;       ///< true for an angle
 };
-/// At coordinates q, for a motion with about these rates over dt.
+/// Returns the limits at coordinates q, for a motion with about these rates over dt.
 template <int dim>
 std::vector<RateLimit> rate_limits(const JointKind& kind, const JointLimits& limits,
                                    const Eigen::VectorXd& q, const Eigen::VectorXd& rates,

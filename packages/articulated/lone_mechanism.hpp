@@ -5,7 +5,8 @@
 
 namespace lockstep {
 
-/// A mechanism under numbers of its own: of many, what copies bodies and joints copies these alone.
+/// A mechanism under numbers of its own, so that work on one of many copies its bodies and joints
+/// alone.
 template <int dim>
 struct LoneMechanism {
   Mechanism mechanism;             ///< in its own numbers

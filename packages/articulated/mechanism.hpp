@@ -40,7 +40,7 @@ struct BodyPose {
 
 constexpr int space = -1;  ///< in the place of a body
 
-/// Where a joint is fixed to a body, in the body's coordinates.
+/// Frame of a joint on a body, in the body's coordinates.
 template <int dim>
 struct JointSide {
   int body = space;
@@ -115,8 +115,8 @@ struct MotionBasis {
   std::vector<GlobalIndex> columns;  ///< dofs, in the stack of all solids
   std::vector<Eigen::Matrix<double, n_twist<dim>, Eigen::Dynamic>> twists;  ///< by body of the
                                                                             ///< mechanism
-  /// Where loops make rates combinations of others: the number of its column, then a row over
-  /// all columns, zero at those that depend on others.
+  /// Rates that loops make combinations of others: the number of the column, then a row over all
+  /// columns, zero at those that depend on others.
   std::vector<std::pair<int, Eigen::RowVectorXd>> dependent;
 };
 
@@ -126,7 +126,7 @@ struct RateDofs {
   std::vector<GlobalIndex> first_of_body;  ///< first dof of the twist of prescribed bodies
 };
 
-/// `given`: whether the rates of all joints are, so that loops cannot make them combinations.
+/// `given`: 1 for joint rates that are given, which loops cannot make combinations.
 template <int dim>
 MotionBasis<dim> motion_basis(const Mechanism& mechanism,
                               const std::vector<JointedBody<dim>>& bodies,

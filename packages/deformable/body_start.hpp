@@ -6,12 +6,13 @@
 
 namespace lockstep {
 
-/// Declares what volumes and shells share: mass matrix, damping, time integration, where and how
-/// fast they start, constraints, loads, contact.
+/// Declares the parameters that volumes and shells share: mass matrix, damping, time integration,
+/// place and velocity at the start, constraints, loads, contact.
 template <int dim>
 void declare_body_start(ParameterList& list);
 
-/// Reads it for nodes at these rest positions; name, mass elements and their masses are set before.
+/// Reads the parameters for nodes at these rest positions; name, mass elements and their masses are
+/// set before.
 template <int dim>
 void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& rest,
                      DeformableBody<dim>& body);

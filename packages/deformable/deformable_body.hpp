@@ -18,7 +18,7 @@ enum class TimeIntegration {
   second_order      ///< fully implicit in S1; in S2 D(dt) = -(B + dt/2 K), both linearised halfway
 };
 
-/// One deformable body at the start, in nodes of its own: what the model is made of.
+/// One deformable body at the start, in nodes of its own, from which the model is made.
 template <int dim>
 struct DeformableBody {
   std::string name;

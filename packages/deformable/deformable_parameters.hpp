@@ -6,23 +6,23 @@
 
 namespace lockstep {
 
-/// Everything a solid of type "deformable body" may say, without "Type".
+/// Schema of a solid of type "deformable body", without "Type".
 template <int dim>
 ParameterList deformable_body_parameters();
 
-/// A body at the start from its list, validated against `deformable_body_parameters`. A "File" must
-/// be absolute or relative to the working directory; `grid_spacing` [m] sets the resolution of
-/// generated meshes; `gravity` [m/s^2] what its weight may crush. Throws InputError. Every rank
-/// reads.
+/// Reads a body at the start from its list, validated against `deformable_body_parameters`. A
+/// "File" must be absolute or relative to the working directory; `grid_spacing` [m] sets the
+/// resolution of generated meshes; `gravity` [m/s^2] what its weight may crush. Throws InputError.
+/// Every rank reads.
 template <int dim>
 DeformableBody<dim> read_deformable_body(const std::string& name, const ParameterList& list,
                                          double grid_spacing, double gravity = 0);
 
-/// Everything a solid of type "cloth" may say, without "Type".
+/// Schema of a solid of type "cloth", without "Type".
 template <int dim>
 ParameterList cloth_parameters();
 
-/// A thin shell at the start from its list, validated against `cloth_parameters`; the rest as
+/// Reads a thin shell at the start from its list, validated against `cloth_parameters`; the rest as
 /// above.
 template <int dim>
 DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& list,

@@ -52,8 +52,8 @@ class DeformableSolids : public SolidModel<dim>,
   RCP<const Map> dof_map() const override { return space_.dof_map(); }
   /// A CrsMatrix; diagonal where the mass is lumped.
   RCP<const LinearOperator> mass() const override { return mass_; }
-  /// A CrsMatrix, or null if all bodies are explicit. Of rigid motions it is zero, but for the
-  /// torque of fully implicit elasticity, which turns the present forces with the body.
+  /// Returns a CrsMatrix, or null if all bodies are explicit. It takes rigid motions to zero, but
+  /// for the torque of fully implicit elasticity, which turns the present forces with the body.
   RCP<const LinearOperator> implicit_force(double dt) const override;
   RigidMotions near_null_space() const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
@@ -90,7 +90,8 @@ class DeformableSolids : public SolidModel<dim>,
   void sweep(double dt, const std::vector<double>& volumes, Vector& velocity) const override;
 
   std::function<void()> undo() override;
-  /// Bit for bit on the same ranks. Throws InputError if the checkpoint holds other bodies.
+  /// Saves the state, bit for bit on the same ranks; `load` throws InputError if the checkpoint
+  /// holds other bodies.
   void save(CheckpointWriter& writer) const override;
   void load(const CheckpointReader& reader) override;
 
@@ -125,15 +126,15 @@ class DeformableSolids : public SolidModel<dim>,
   void distribute(std::vector<DeformableBody<dim>>& bodies, const Communicator& comm);
   void assemble_mass(const std::vector<DeformableBody<dim>>& bodies);
   void distribute_surface(const std::vector<DeformableBody<dim>>& bodies);
-  /// After the positions have changed: surface, forces, linearisation, states.
+  /// Updates surface, forces, linearisation and states after the positions have changed.
   void update_geometry();
   void update_within_surface();  ///< updates all but the surface
   void update_forces();
-  /// The time after which the elastic forces that the coming solve solves for are taken, over that
-  /// of the solve: in S1 the end of the step, two halves of it, in S2 its end or its middle; 0
-  /// where D has no elasticity.
+  /// Time after which the elastic forces of the coming solve are taken, as a part of the solve's dt
+  /// [1]: in S1 the end of the step, two halves of it, in S2 its end or its middle; 0 where D has
+  /// no elasticity.
   double elastic_share(const Body& body) const;
-  /// Forces, stiffness and damping at positions x of all local nodes.
+  /// Assembles forces, stiffness and damping at positions x of all local nodes.
   void assemble_forces(const Nodes& x);
   void update_largest_stable_step();
   void bound_frequencies();
@@ -188,8 +189,8 @@ class DeformableSolids : public SolidModel<dim>,
   mutable RCP<const LinearOperator> implicit_force_;  ///< null: not asked for yet
   mutable double implicit_force_dt_ = 0;              ///< [s]
   Nodes x_;                                           ///< positions of all local nodes [m]
-  /// From `move` to the end of the step, if bodies are of second order: x_, theirs at the start
-  /// [m]. Null on all ranks or on none, with nodes or without.
+  /// Positions at the start of the step [m], from `move` to the end of the step, if bodies are of
+  /// second order. Null on all ranks or on none, with nodes or without.
   std::optional<Nodes> before_;
   Nodes elastic_force_;                          ///< force on the owned nodes [N]
   mutable std::optional<Nodes> averaged_force_;  ///< none: not asked for yet

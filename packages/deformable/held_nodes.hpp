@@ -33,13 +33,13 @@ class HeldNodes {
   /// Holds a node along an axis; `at` is where it starts [m]. Number -1: at rest for ever. Nodes
   /// ascend.
   void hold(int node, int axis, const Point<dim>& at, int number);
-  /// Lets go of what is released by the time at which a step begins [s]. True if other dofs are
-  /// held than before, on all ranks.
+  /// Lets go of the nodes that are released by the time at which a step begins [s]. Returns true if
+  /// other dofs are held than before, on all ranks.
   bool begin_step(double time);
 
   /// Held in the present step, ascending.
   std::vector<int> dofs() const;
-  /// Mean velocity of each of them between two times, at equal times that of the instant [m/s].
+  /// Mean velocity of each held dof between two times, at equal times the velocity then [m/s].
   std::vector<double> velocities(double begin, double end) const;
 
  private:

@@ -21,8 +21,8 @@ std::vector<int> nodes_in_region(const ParameterList& list, const std::vector<Po
 template <int dim>
 void declare_loads_and_tethers(ParameterList& body);
 
-/// Reads them for nodes at these rest positions; `name` is the body's, for messages.
-/// Loads are spread over the nodes in proportion to `node_measure`.
+/// Reads loads for nodes at these rest positions; `name` is the body's, for messages. Loads are
+/// spread over the nodes in proportion to `node_measure`.
 template <int dim>
 std::vector<Point<dim>> read_loads(const ParameterList& body, const std::vector<Point<dim>>& nodes,
                                    const std::vector<double>& node_measure,

@@ -40,7 +40,8 @@ class NodeSpace {
   /// The matrix of dofs of these blocks. Collective.
   RCP<const CrsMatrix> matrix(const NodeMatrix<dim>& blocks) const;
 
-  /// By original number, for the set-up only: rank, global number, local number (-1: unseen).
+  /// Numbers of nodes by original number, for the set-up only: rank, global number, local number
+  /// (-1: unseen).
   struct Numbers {
     std::vector<int> rank, global, local;
   };

@@ -31,7 +31,7 @@ class Rules(unittest.TestCase):
 
     def test_comments_without_a_subject(self):
         for comment in ("/// Of u*.", "// What the grid sees.", "double volume = 0;  ///< of all of them [m^dim]", "/// The same for cells.",
-                        "/// Whether a cell is wet.", "/// Those of this rank.", "/// Where it is.", "/// And the rest."):
+                        "/// Whether a cell is wet.", "/// Those of this rank.", "/// Where it is.", "/// And the rest.", "/// : density"):
             with self.subTest(comment=comment):
                 self.assertEqual([line for line, _ in self.found("int i;\n\n" + comment + "\n")], [3])
 

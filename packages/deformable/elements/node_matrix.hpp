@@ -28,10 +28,10 @@ class NodeMatrix {
   const Block& block(int entry) const { return blocks_[entry]; }
 
   void set_zero();
-  /// Row += factor * row of a matrix with the same pattern.
+  /// Adds a row of a matrix with the same pattern: row += factor * other row.
   void add_row(int row, double factor, const NodeMatrix& other);
   void scale_row(int row, double factor);
-  /// Sum over the row of the blocks times x (all local nodes).
+  /// Product of one row with x (all local nodes).
   Point<dim> row_times(int row, const std::vector<Point<dim>>& x) const;
   /// Rows of ghosts are another rank's: ignored.
   template <typename Derived>

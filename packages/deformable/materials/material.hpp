@@ -20,7 +20,8 @@ struct LameConstants {
   double lambda = 0, mu = 0;
 };
 
-/// From Young's modulus [Pa] and Poisson's ratio in (-1, 0.5). Throws InputError.
+/// Returns Lamé's constants for Young's modulus [Pa] and Poisson's ratio in (-1, 0.5). Throws
+/// InputError.
 LameConstants lame_constants(double youngs_modulus, double poisson_ratio);
 
 /// A hyperelastic law. In 2D it is that of plane strain: F_zz = 1.
