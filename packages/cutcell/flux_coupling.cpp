@@ -52,22 +52,15 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
 template <int dim>
 void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
                                      const SolidSystem<dim>& solids) {
-  excess_.clear();
-  held_excess_.clear();
   if (!options_.correct_buoyancy || surface_->empty() || fluid.gravity().isZero(0))
     return;
   const double density = this->density_around(fluid, solids.comm());
   std::vector<WetBody<dim>> wet;
   if (const LiquidFluid<dim>* liquid = fluid.liquid())
     wet = liquid->wet_bodies();
-  for (const auto& excess :
-       displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density, fluid.bounds(),
-                             fluid.gravity(), wet, solids.comm())) {
-    if (surface_->solids()[excess.solid].prescribed)
-      held_excess_.push_back(excess);
-    else
-      excess_.push_back(force_of<dim>(excess, solids, *surface_));
-  }
+  this->keep_unseen(displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density,
+                                          fluid.bounds(), fluid.gravity(), wet, solids.comm()),
+                    solids);
 }
 
 template <int dim>
@@ -95,13 +88,6 @@ void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
     added_mass_ = assemble_triplets(
         added_mass_triplets<dim>(volumes_, thin, solids, masses_, Lumping::diagonal), solids.map(),
         solids.map());
-}
-
-template <int dim>
-std::vector<Momentum<dim>> FluxCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity,
-                                                                  double dt, Vector& rhs) const {
-  add_forces<dim>(excess_, gravity, dt, rhs);
-  return impulses_on<dim>(surface_->solids().size(), held_excess_, gravity, dt);
 }
 
 template <int dim>

@@ -3,7 +3,6 @@
 
 #include "cutcell/displaced_volume.hpp"
 #include "cutcell/flux_shares.hpp"
-#include "faces/axis_force.hpp"
 #include "faces/face_coupling.hpp"
 
 namespace lockstep {
@@ -48,8 +47,6 @@ class FluxCoupling : public FaceCoupling<dim> {
                                    const std::vector<double>& velocity_after,
                                    const BlockVector& solution,
                                    const std::vector<double>& gas_pressure) const override;
-  std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
-                                                 Vector& rhs) const override;
   void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
                 LinkRow<dim>& row) const override;
 
@@ -78,10 +75,8 @@ class FluxCoupling : public FaceCoupling<dim> {
   FluxOptions options_;
   std::vector<FaceShares<dim>> shares_;
   CouplingWeights thin_weights_;  ///< weights of thin parts; `weights_` are of all shares
-  std::vector<double> prescribed_thin_velocity_;   ///< velocity of prescribed thin parts
-  RCP<Import> thin_solid_import_;                  ///< solid map -> `thin_weights_.dofs`
-  std::vector<AxisForce> excess_;                  ///< on dynamic solids
-  std::vector<DisplacedExcess<dim>> held_excess_;  ///< on prescribed ones
+  std::vector<double> prescribed_thin_velocity_;  ///< velocity of prescribed thin parts
+  RCP<Import> thin_solid_import_;                 ///< solid map -> `thin_weights_.dofs`
 };
 
 }  // namespace lockstep

@@ -20,6 +20,8 @@ void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
   coupling_transposed_ = Teuchos::null;
   added_mass_ = Teuchos::null;
   closed_area_.clear();
+  unseen_.clear();
+  held_unseen_.clear();
   std::vector<GlobalIndex> unknowns;
   for (const ControlVolume<dim>& volume : volumes_) {
     closed_area_.push_back(closed_area(volume));
@@ -144,6 +146,24 @@ std::vector<double> FaceCoupling<dim>::closed_velocity(const Vector& solid_veloc
   if (!coupling_transposed_.is_null())
     add_product(weights_, *solid_import_, solid_velocity, result);
   return result;
+}
+
+template <int dim>
+void FaceCoupling<dim>::keep_unseen(const std::vector<DisplacedExcess<dim>>& excesses,
+                                    const SolidSystem<dim>& solids) {
+  for (const DisplacedExcess<dim>& excess : excesses) {
+    if (surface_->solids()[excess.solid].prescribed)
+      held_unseen_.push_back(excess);
+    else
+      unseen_.push_back(force_of<dim>(excess, solids, *surface_));
+  }
+}
+
+template <int dim>
+std::vector<Momentum<dim>> FaceCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity,
+                                                                  double dt, Vector& rhs) const {
+  add_forces<dim>(unseen_, gravity, dt, rhs);
+  return impulses_on<dim>(surface_->solids().size(), held_unseen_, gravity, dt);
 }
 
 template <int dim>

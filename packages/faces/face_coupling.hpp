@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "faces/axis_force.hpp"
 #include "faces/surface_shares.hpp"
 #include "interfaces/coupling.hpp"
 #include "interfaces/coupling_sides.hpp"
@@ -32,10 +33,12 @@ class FaceCoupling : public Coupling<dim>,
                                 int n_pockets) const override;
   std::vector<double> closed_velocity(const Vector& solid_velocity,
                                       bool with_prescribed) const override;
+  std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
+                                                 Vector& rhs) const override;
 
  protected:
-  /// Takes over the fluid's coupled volumes, with no solids, masses and velocities zero.
-  /// Collective.
+  /// Starts anew with the fluid's coupled volumes: no solids, masses, velocities and unseen
+  /// buoyancy zero. Collective.
   void take_volumes(const FluidDiscretization<dim>& fluid, const SurfaceSnapshot<dim>& surface);
   /// Area of the part of a face that moves with solids [m^(dim-1)].
   virtual double closed_area(const ControlVolume<dim>& volume) const = 0;
@@ -60,6 +63,11 @@ class FaceCoupling : public Coupling<dim>,
   /// solid, of which there must be one. Collective.
   double density_around(const FluidDiscretization<dim>& fluid, const Communicator& comm) const;
 
+  /// Keeps what `add_unseen_buoyancy` takes off: the displaced masses that the grid has too much
+  /// of. Local.
+  void keep_unseen(const std::vector<DisplacedExcess<dim>>& excesses,
+                   const SolidSystem<dim>& solids);
+
   const SurfaceSnapshot<dim>* surface_ =
       nullptr;  ///< snapshot of the last `assemble`; the caller keeps it alive
   std::vector<ControlVolume<dim>> volumes_;
@@ -76,6 +84,8 @@ class FaceCoupling : public Coupling<dim>,
                          std::vector<double>& result) const;
 
   std::vector<double> closed_area_;
+  std::vector<AxisForce> unseen_;                  ///< on dynamic solids
+  std::vector<DisplacedExcess<dim>> held_unseen_;  ///< on prescribed ones
 };
 
 /// rhs += weights^T momentum, one value a row; `import` brings the dofs of the weights. Collective.

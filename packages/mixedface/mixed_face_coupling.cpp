@@ -65,20 +65,14 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
 template <int dim>
 void MixedFaceCoupling<dim>::balance(const FluidDiscretization<dim>& fluid,
                                      const SolidSystem<dim>& solids) {
-  unseen_.clear();
-  held_unseen_.clear();
   if (!options_.balance || surface_->empty())
     return;
   const double density = this->density_around(fluid, solids.comm());
   const LiquidFluid<dim>* liquid = fluid.liquid();
-  for (const auto& left : balance_masses<dim>(
-           volumes_, shares_, *surface_, density, fluid.bounds(),
-           liquid ? liquid->wet_bodies() : std::vector<WetBody<dim>>(), solids.comm(), masses_)) {
-    if (surface_->solids()[left.solid].prescribed)
-      held_unseen_.push_back(left);
-    else
-      unseen_.push_back(force_of<dim>(left, solids, *surface_));
-  }
+  this->keep_unseen(balance_masses<dim>(volumes_, shares_, *surface_, density, fluid.bounds(),
+                                        liquid ? liquid->wet_bodies() : std::vector<WetBody<dim>>(),
+                                        solids.comm(), masses_),
+                    solids);
 }
 
 template <int dim>
@@ -94,14 +88,6 @@ void MixedFaceCoupling<dim>::assemble_weights(const SolidSystem<dim>& solids) {
     column = static_cast<int>(place - weights_.dofs.begin());
   }
   plain_weights_.dofs = weights_.dofs;
-}
-
-template <int dim>
-std::vector<Momentum<dim>> MixedFaceCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity,
-                                                                       double dt,
-                                                                       Vector& rhs) const {
-  add_forces<dim>(unseen_, gravity, dt, rhs);
-  return impulses_on<dim>(surface_->solids().size(), held_unseen_, gravity, dt);
 }
 
 template <int dim>

@@ -48,8 +48,6 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
                                    const std::vector<double>& velocity_after,
                                    const BlockVector& solution,
                                    const std::vector<double>& gas_pressure) const override;
-  std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
-                                                 Vector& rhs) const override;
   void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
                 LinkRow<dim>& row) const override;
 
@@ -84,8 +82,6 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   std::vector<std::vector<SurfaceShare<dim>>> shares_;
   CouplingWeights plain_weights_;  ///< without rotations, if `masses_are_plain`; the same columns
   std::vector<double> prescribed_share_;
-  std::vector<AxisForce> unseen_;                  ///< on dynamic solids
-  std::vector<DisplacedExcess<dim>> held_unseen_;  ///< on prescribed ones
 };
 
 }  // namespace lockstep

@@ -54,7 +54,7 @@ bool Drops<dim>::stop_at_sides(Point<dim>& place, Point<dim>& velocity) const {
         continue;
       if (!is_closed)
         return false;
-      place[a] = end == 0 ? lower + drops_to_side * h : upper - nearest_to_side * h;
+      place[a] = end == 0 ? lower + drops_to_side * h : upper - drops_to_side * h;
       velocity[a] = end == 0 ? std::max(velocity[a], 0.0) : std::min(velocity[a], 0.0);
     }
   }
