@@ -196,22 +196,6 @@ void MacFluid<dim>::accept() {
 }
 
 template <int dim>
-std::function<void()> MacFluid<dim>::undo() {
-  std::vector<CellField> before;
-  for (const Scalar& scalar : scalars_.all())
-    before.push_back(scalar.values);
-  const auto undo_liquid = liquid_ ? liquid_->undo() : [] {};
-  return [this, before = std::move(before), undo_liquid, time = time_, last_step = last_step_] {
-    undo_liquid();
-    for (std::size_t s = 0; s < before.size(); ++s)
-      scalars_.all()[s].values = before[s];
-    scaled_pressure_ = accepted_pressure_;
-    time_ = time;
-    last_step_ = last_step;
-  };
-}
-
-template <int dim>
 Momentum<dim> MacFluid<dim>::push_sources(double time) {
   if (!scalars_.sources_push(time))
     return {};

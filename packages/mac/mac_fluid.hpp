@@ -144,7 +144,6 @@ class MacFluid : public FluidDiscretization<dim>,
                                       const std::vector<Point<dim>>& points) const override;
   std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const override;
   std::vector<PrescribedFlux> side_fluxes(double time) const override;
-  std::function<void()> undo() override;
   std::vector<std::pair<std::string, std::string>> notes() const override;
 
   const MacDomain<dim>& domain() const { return domain_; }

@@ -64,7 +64,6 @@ class RigidBodies : public SolidModel<dim>,
   void set_load(int solid, const Point<dim>& force, const AngularVector<dim>& torque) override;
   void add_frames(std::vector<SurfaceFrame>& frames) const override;  ///< of what no fluid sees
 
-  std::function<void()> undo() override;
   /// Bit for bit. Throws InputError if the checkpoint holds other bodies.
   void save(CheckpointWriter& writer) const override;
   void load(const CheckpointReader& reader) override;

@@ -116,7 +116,7 @@ struct ForceImpulse {
 
 /// A fluid on its own discretization. Geometry is frozen between two calls of `set_geometry`.
 ///
-/// It keeps three velocity fields: the velocity u^n, the prediction u* on which all phases between
+/// It keeps three velocity fields: the velocity u^n, the prediction u* on which all stages between
 /// `begin_prediction` and `accept` act, and the leak-proof advection velocity u_ADV. What audits,
 /// solvers and outputs want beyond this: interfaces/fluid_sides.hpp; viscosity: viscosity.hpp.
 /// All members are collective unless they say otherwise.
@@ -150,13 +150,12 @@ class FluidDiscretization : public PlugIn {
   /// u* of those that are closed (open fraction 0); a partly open one keeps its own.
   virtual void set_coupled_velocity(const std::vector<double>& velocity) = 0;
 
-  // The phases of a step.
+  // The stages of a step.
 
   /// A step from `time` to time + dt begins: room may be made where things will move. True if
-  /// u^n lives on other cells than when it was accepted, without being free of divergence there,
-  /// also where a step before this one had moved it and was not finished: then the geometry is to
-  /// be frozen anew. `solid_speed`: that of the fastest solid [m/s]; collective, for those who want
-  /// it. Default: the fluid always has room.
+  /// u^n lives on other cells than when it was accepted, without being free of divergence there:
+  /// then the geometry is to be frozen anew. `solid_speed`: that of the fastest solid [m/s];
+  /// collective, for those who want it. Default: the fluid always has room.
   virtual bool begin_step(double /*time*/, double /*dt*/,
                           const std::function<double()>& /*solid_speed*/) {
     return false;

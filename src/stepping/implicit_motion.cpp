@@ -125,7 +125,7 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
                                  const RCP<const LinearOperator>& known_response) {
   const double dt = context.dt;
   const ContactPhase phase =
-      context.phase == Phase::S1 ? ContactPhase::position : ContactPhase::velocity;
+      context.stage == Stage::S1 ? ContactPhase::position : ContactPhase::velocity;
   SettledMotion<dim> settled;
   Response<dim> response(solids, dt, known_response);
   RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
@@ -153,7 +153,6 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
     }
     const RCP<const Vector> before = solids.explicit_momentum(context.time, dt);
     solids.linearise(dt, *at);
-    settled.linearised_anew = true;
     Vector change(*solids.explicit_momentum(context.time, dt), Teuchos::Copy);
     change.update(-1, *before, 1);
     momentum.update(1, change, 1);

@@ -9,9 +9,8 @@ namespace lockstep {
 
 template <int dim>
 struct SettledMotion {
-  RCP<Vector> velocity;          ///< with contact
-  ContactReport<dim> contact;    ///< of the last linearisation; without contact empty
-  bool linearised_anew = false;  ///< D is another one than before
+  RCP<Vector> velocity;        ///< with contact
+  ContactReport<dim> contact;  ///< of the last linearisation; without contact empty
   bool is_settled =
       true;  ///< false: the forces are not yet those of this velocity, nor the contact
 };

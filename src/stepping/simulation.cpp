@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "base/interruption.hpp"
+#include "base/signals.hpp"
 #include "interfaces/limited_torques.hpp"
 #include "interfaces/liquid.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
-#include "output/signals.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/write.hpp"
 #include "stepping/surface_frames.hpp"
@@ -35,6 +34,15 @@ double n_cells(const FluidDiscretization<dim>& fluid) {
     n += double(box.n_cells[0]) * box.n_cells[1] * box.n_cells[2];
   return boxes.empty() ? double(fluid.pressure_map()->getGlobalNumElements()) : n;
 }
+
+/// Seconds of wall time after which a signal ends a step between its stages, without a checkpoint.
+/// Batch systems kill 30 s after they have asked.
+constexpr double long_step = 20;
+
+/// Thrown between the stages of a long step after a signal, on all ranks.
+struct StepStopped {
+  int signal;
+};
 
 }  // namespace
 
@@ -73,7 +81,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
     dumping_ = dumping.get();
     components_.strategy = std::move(dumping);
   }
-  ScopedPhase phase(timers_, "start");
+  ScopedStage stage(timers_, "start");
   scene_options_.stepper.energy_book = observers_.want_energy();
   stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
                                             scene_options_.time.start, timers_);
@@ -155,34 +163,21 @@ Frame Simulation<dim>::frame() const {
 
 template <int dim>
 void Simulation<dim>::write_frame() {
-  ScopedPhase phase(timers_, "frames");
+  ScopedStage stage(timers_, "frames");
   const Frame now = frame();
   frames_.write(step_, stepper_->time(), now.boxes, now.meshes);
 }
 
 template <int dim>
 void Simulation<dim>::write_checkpoint() {
-  ScopedPhase phase(timers_, "checkpoints");
+  ScopedStage stage(timers_, "checkpoints");
   CheckpointWriter checkpoint(comm_, options_.output_directory,
                               {step_, stepper_->time(), to_xml(scene_), files_});
   for_each_plug_in(components_, [&](const PlugIn& plug_in) { plug_in.save(checkpoint); });
-  stepper_->save(checkpoint);
   observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
   checkpoint.file().write_attribute("/", "last frame", last_frame_);
   checkpoint.finish(scene_options_.output.keep_checkpoints);
-}
-
-template <int dim>
-bool Simulation<dim>::take_step(double dt) {
-  ScopedPhase phase(timers_, "step");
-  try {
-    report_ = stepper_->advance(dt);
-    return true;
-  } catch (const Interrupted& interrupted) {
-    signal_ = interrupted.signal;
-    return false;
-  }
 }
 
 template <int dim>
@@ -217,18 +212,31 @@ void Simulation<dim>::begin() {
 }
 
 template <int dim>
+bool Simulation<dim>::take_step(double dt, Clock::time_point start) {
+  ScopedStage stage(timers_, "step");
+  try {
+    report_ = stepper_->advance(dt, [&] {
+      const int noted = seconds_since(start) > long_step ? noted_signal() : 0;
+      const auto signal = static_cast<int>(max_all(comm_, static_cast<GlobalIndex>(noted)));
+      if (signal != 0)
+        throw StepStopped{signal};
+    });
+  } catch (const StepStopped& stopped) {
+    signal_ = stopped.signal;
+    is_within_step_ = true;
+  }
+  return !is_within_step_;
+}
+
+template <int dim>
 bool Simulation<dim>::step() {
   if (finished() || signal_ != 0)
     return false;
-  bool taken = false;
   recorded([&] {
     const auto step_start = Clock::now();
     const double dt = next_step();
-    taken = take_step(dt);
-    if (!taken) {
-      log_.normal("Step {} is abandoned.", step_ + 1);
+    if (!take_step(dt, step_start))
       return;
-    }
     ++step_;
     last_dt_ = dt;
     summary_.count(*report_);
@@ -238,7 +246,7 @@ bool Simulation<dim>::step() {
     write_what_is_due();
     signal_ = signal_received(comm_);
   });
-  return taken;
+  return !is_within_step_;
 }
 
 namespace {
@@ -261,7 +269,7 @@ void Simulation<dim>::write_rows() {
     summary_.count(coordinates, limited);
   }
   if (!observers_.empty()) {
-    ScopedPhase phase(timers_, "observers");
+    ScopedStage stage(timers_, "observers");
     observers_.observe(step_, view(states), finished());
   }
   StepProgress progress = progress_of<dim>(step_, *report_, step_seconds_);
@@ -292,7 +300,8 @@ std::vector<std::pair<std::string, HistoryValue>> Simulation<dim>::history_row()
 template <int dim>
 void Simulation<dim>::end() {
   recorded([&] {
-    write_checkpoint();
+    if (!is_within_step_)
+      write_checkpoint();
     end_outputs(seconds_since(start_));
   });
   folder_lock_.reset();
@@ -327,7 +336,12 @@ void Simulation<dim>::end_outputs(double wall_seconds) {
     log_.warning("--dump-system: no step solved {}:{}, and '{}' is not written.",
                  options_.dump_system->step, options_.dump_system->solve,
                  options_.dump_system->file);
-  if (signal_ != 0) {
+  if (is_within_step_) {
+    log_.normal(
+        "Stopped by signal {} within step {}, which takes longer than {} s and is lost; the "
+        "last checkpoint continues the run.",
+        signal_, step_ + 1, long_step);
+  } else if (signal_ != 0) {
     log_.normal("Stopped by signal {} after step {}; the checkpoint in {} continues the run.",
                 signal_, step_, options_.output_directory);
   }

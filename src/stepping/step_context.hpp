@@ -6,13 +6,13 @@
 
 namespace lockstep {
 
-/// The parts of a step, as Section 7 names them.
-enum class Phase { F1, S1, F2, F3, S2, F4 };
+/// The stages of a step, as Section 7 names them.
+enum class Stage { F1, S1, F2, F3, S2, F4 };
 
 /// What messages and files call it.
-inline std::string name_of(Phase phase) {
+inline std::string name_of(Stage stage) {
   constexpr const char* names[] = {"F1", "S1", "F2", "F3", "S2", "F4"};
-  return names[static_cast<int>(phase)];
+  return names[static_cast<int>(stage)];
 }
 
 /// What joints give where the step begins, found in S1 with how far the bodies go; S2 finds the
@@ -26,7 +26,7 @@ struct StartImpulse {
 /// velocities dofs are held meanwhile, and who takes note of the impulses.
 template <int dim>
 struct StepContext {
-  Phase phase = Phase::S2;
+  Stage stage = Stage::S2;
   double time = 0;     ///< at which the step begins [s]
   double step_dt = 0;  ///< the whole step [s]
   double dt = 0;       ///< over which this part acts [s]: half of it in F1 and S1
@@ -35,11 +35,11 @@ struct StepContext {
   StartImpulse joints = {};               ///< of F3 and S2
 
   /// F1 and S1 find where the solids go; what they do to momenta and velocities is thrown away.
-  bool moves_positions() const { return phase == Phase::F1 || phase == Phase::S1; }
-  /// The same with another phase.
-  StepContext in(Phase other) const {
+  bool moves_positions() const { return stage == Stage::F1 || stage == Stage::S1; }
+  /// The same with another stage.
+  StepContext in(Stage other) const {
     StepContext context = *this;
-    context.phase = other;
+    context.stage = other;
     return context;
   }
   /// The same, of which nothing is kept.

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "base/interruption.hpp"
 #include "linear/null_space.hpp"
 #include "solve/soft/exact_inverse.hpp"
 
@@ -13,7 +12,7 @@ namespace lockstep {
 
 template <int dim>
 Stepper<dim>::Stepper(Components<dim>& components, const StepperOptions& options, double start_time,
-                      PhaseTimers& timers)
+                      StageTimers& timers)
     : components_(components),
       sides_(components),
       options_(options),
@@ -58,7 +57,6 @@ bool Stepper<dim>::solids_rest() const {
   return !coupled() && components_.solids->largest_surface_speed() == 0;
 }
 
-/// A step that is interrupted afterwards leaves the fluid on its new cells.
 template <int dim>
 void Stepper<dim>::make_room(double dt) {
   const auto& solids = *components_.solids;
@@ -116,8 +114,8 @@ RCP<Vector> Stepper<dim>::solid_momentum(const StepContext<dim>& context,
   }
   if (!context.moves_positions())
     add_drops(context, *momentum, report);
-  if (context.phase == Phase::S2 && components_.contact) {
-    ScopedPhase phase(timers_, "contact");
+  if (context.stage == Stage::S2 && components_.contact) {
+    ScopedStage stage(timers_, "contact");
     report.contact_velocity = contact_momentum(context, *momentum);
     if (context.ledger)
       context.ledger->add("contact", report.contact_velocity.external_impulse);
@@ -183,7 +181,7 @@ CoupledSolution Stepper<dim>::solve(const StepContext<dim>& context, const RCP<V
   solution.momentum = momentum;
   solution.coupled_before = components_.fluid->coupled_velocity();
   {
-    ScopedPhase phase(timers_, "right-hand side");
+    ScopedStage stage(timers_, "right-hand side");
     solution.rhs = system_.right_hand_side(*momentum, context.dt, constraints, incompatibility);
   }
   const BlockSystem& blocks = system_.blocks(context.dt);
@@ -196,10 +194,10 @@ CoupledSolution Stepper<dim>::solve(const StepContext<dim>& context, const RCP<V
     constraints.select(*solution.unknowns.solid);
   }
   {
-    ScopedPhase phase(timers_, "preconditioner");
+    ScopedStage stage(timers_, "preconditioner");
     components_.strategy->prepare(blocks);
   }
-  ScopedPhase phase(timers_, "iterations");
+  ScopedStage stage(timers_, "iterations");
   solve_coupled(context, blocks, request(name, context.dt), solution, report);
   solution.velocity = coupled() ? solution.unknowns.solid : make_vector(components_.solids->map());
   if (!constraints.is_identity()) {
@@ -312,20 +310,15 @@ void Stepper<dim>::finish(const Solved& solved, StepReport<dim>& report) {
 }
 
 template <int dim>
-StepReport<dim> Stepper<dim>::advance(double dt) {
+StepReport<dim> Stepper<dim>::advance(double dt, const std::function<void()>& between_stages) {
   make_room(dt);
-  const std::function<void()> undo = undo_of(components_);
   StepReport<dim> report;
-  try {
-    const Solved solved = solve_step(dt, report);
-    ScopedPhase phase(timers_, "end");
+  const Solved solved = solve_step(dt, between_stages, report);
+  between_stages();
+  {
+    ScopedStage stage(timers_, "end");
     finish(solved, report);  // F4
-  } catch (const Interrupted&) {
-    undo();
-    cells_are_gone_ = fluid_moved_;
-    throw;
   }
-  cells_are_gone_ = false;
   time_ += dt;
   last_dt_ = dt;
   ++n_steps_;
@@ -335,7 +328,7 @@ StepReport<dim> Stepper<dim>::advance(double dt) {
 /// F1 and S1: mean velocities of held dofs over the step, so that positions follow their scripts.
 template <int dim>
 StepContext<dim> Stepper<dim>::context_of_positions(double dt) const {
-  return {Phase::F1, time_, dt, dt / 2, components_.solids->constraints(time_, time_ + dt)};
+  return {Stage::F1, time_, dt, dt / 2, components_.solids->constraints(time_, time_ + dt)};
 }
 
 /// F3 and S2: those at the end of the step.
@@ -343,12 +336,13 @@ template <int dim>
 StepContext<dim> Stepper<dim>::context_of_velocities(double dt, MomentumLedger<dim>& ledger,
                                                      const StartImpulse& joints) const {
   const double end = time_ + dt;
-  return {Phase::F3, time_, dt, dt, components_.solids->constraints(end, end), &ledger, joints};
+  return {Stage::F3, time_, dt, dt, components_.solids->constraints(end, end), &ledger, joints};
 }
 
 template <int dim>
-typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim>& report) {
-  const Interruptible interruptible;
+typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt,
+                                                       const std::function<void()>& between_stages,
+                                                       StepReport<dim>& report) {
   auto& fluid = *components_.fluid;
   auto& solids = *components_.solids;
   report.dt = dt;
@@ -358,31 +352,35 @@ typename Stepper<dim>::Solved Stepper<dim>::solve_step(double dt, StepReport<dim
     freeze();  // other dofs are unknowns now
   if (components_.contact)
     components_.contact->begin_step(time_);
-  system_.forget_solid_block();  // what is implicit is other in S1 than in S2
   if (energy_)
     energy_->begin();
 
   StepContext<dim> context = context_of_positions(dt);
   Prediction<dim> prediction;
   if (coupled()) {  // F1 serves S1 only
-    ScopedPhase phase(timers_, "F1");
+    ScopedStage stage(timers_, "F1");
     fluid.begin_prediction();
     reset_unseen_faces();
     prediction = predict_forces(context, report);
   }
-  const StartImpulse joints = move_solids(context.in(Phase::S1), prediction, report);  // S1
+  between_stages();
+  const StartImpulse joints = move_solids(context.in(Stage::S1), prediction, report);  // S1
   report.s1.add_work(prediction.pressure_work);
+  between_stages();
   make_advection_velocity(dt, report);  // F2
-  advect(dt, report);                   // F3
+  between_stages();
+  advect(dt, report);  // F3
+  between_stages();
   context = context_of_velocities(dt, report.ledger, joints);
   {
-    ScopedPhase phase(timers_, "F3 forces");
+    ScopedStage stage(timers_, "F3 forces");
     prediction = predict_forces(context, report);
   }
   if (energy_)
     energy_->end_friction();
-  ScopedPhase phase(timers_, "S2");
-  context.phase = Phase::S2;
+  between_stages();
+  ScopedStage stage(timers_, "S2");
+  context.stage = Stage::S2;
   RCP<Vector> momentum = make_vector(solids.map());
   if (coupled()) {
     momentum = solid_momentum(context, prediction, report);

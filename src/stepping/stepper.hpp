@@ -45,15 +45,14 @@ class Stepper {
  public:
   /// Freezes the geometry of the start. Collective.
   Stepper(Components<dim>& components, const StepperOptions& options, double start_time,
-          PhaseTimers& timers);
+          StageTimers& timers);
 
   /// Advances by dt. Throws SolveError if a solve fails, or if what is prescribed has no solution.
-  /// Throws Interrupted (base/interruption.hpp) if a signal is received before the step is solved:
-  /// then fluid and solids can be saved as they were at its start, and not stepped on. Collective.
-  StepReport<dim> advance(double dt);
+  /// `between_stages` is called between the stages; once it has thrown, fluid and solids are
+  /// somewhere within the step, and of no use. Collective.
+  StepReport<dim> advance(
+      double dt, const std::function<void()>& between_stages = [] {});
   double time() const { return time_; }
-  /// What a restart needs beside fluid and solids. Collective.
-  void save(CheckpointWriter& checkpoint) const;
   /// For restart, after fluid and solids were loaded: freezes the geometry anew. `last_dt` is that
   /// of the checkpoint's last step. Collective.
   void resume(const CheckpointReader& checkpoint, double last_dt);
@@ -76,8 +75,9 @@ class Stepper {
   void freeze(const std::shared_ptr<const SurfaceSnapshot<dim>>& surface);
   bool solids_rest() const;
   void make_room(double dt);
-  /// All of a step but its end: nothing yet that cannot be undone.
-  Solved solve_step(double dt, StepReport<dim>& report);
+  /// All of a step but its end.
+  Solved solve_step(double dt, const std::function<void()>& between_stages,
+                    StepReport<dim>& report);
   bool coupled() const { return components_.solids->has_unknowns(); }
   StepContext<dim> context_of_positions(double dt) const;
   StepContext<dim> context_of_velocities(double dt, MomentumLedger<dim>& ledger,
@@ -139,7 +139,7 @@ class Stepper {
   Components<dim>& components_;
   ComponentSides<dim> sides_;
   StepperOptions options_;
-  PhaseTimers& timers_;
+  StageTimers& timers_;
   CoupledSystem<dim> system_;
   double time_;
   double last_dt_ = 0;           ///< 0 before the first step
@@ -147,7 +147,6 @@ class Stepper {
   bool fluid_moved_ = false;     ///< to other cells, before this step
   bool frozen_at_rest_ = false;  ///< the geometry is that of solids that did not move then
   Momentum<dim> last_momentum_;  ///< at the end of the last step
-  bool cells_are_gone_ = false;  ///< an abandoned step has left some that were in it
   std::optional<StepEnergy<dim>> energy_;  ///< none: nobody wants it
 };
 

@@ -90,7 +90,7 @@ template <int dim>
 std::vector<double> Stepper<dim>::solve_advection(double dt, const std::vector<double>& effective,
                                                   const BlockSystem& blocks, BlockVector& rhs,
                                                   BlockVector& solution, SolveReport& report) {
-  const SolveRequest asked = request(name_of(Phase::F2), dt);
+  const SolveRequest asked = request(name_of(Stage::F2), dt);
   if (!has_gas()) {
     report = components_.strategy->solve(blocks, rhs, solution, asked);
     return {};

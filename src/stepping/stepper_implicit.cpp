@@ -55,13 +55,12 @@ CoupledSolution Stepper<dim>::solve_newton(const StepContext<dim>& context,
                                            const RCP<Vector>& momentum, SolveReport& report,
                                            double& incompatibility, const BlockVector* nearby) {
   auto& solids = *components_.solids;
-  const std::string name = name_of(context.phase);
+  const std::string name = name_of(context.stage);
   CoupledSolution solution = solve(context, momentum, name, report, incompatibility, nearby);
   for (int k = 1; k < options_.newton_iterations && coupled(); ++k) {
     const RCP<const Vector> before = solids.explicit_momentum(context.time, context.dt);
     if (!solids.linearise(context.dt, *solution.velocity))
       break;
-    system_.forget_solid_block();
     momentum->update(1, *solids.explicit_momentum(context.time, context.dt), -1, *before, 1);
     const SolveReport earlier = report;
     solution = solve(context, momentum, name, report, incompatibility, &solution.unknowns);
@@ -81,8 +80,6 @@ ContactReport<dim> Stepper<dim>::settled_momentum(const StepContext<dim>& contex
       solids.velocity_of(momentum, context.dt, context.constraints, *response);
   const SettledMotion<dim> settled = settle_motion<dim>(
       solids, components_.contact.get(), context, {}, *predicted, *predicted, momentum, response);
-  if (settled.linearised_anew)
-    system_.forget_solid_block();
   if (!settled.contact.impulse.is_null())
     momentum.update(1, *settled.contact.impulse, 1);
   return settled.contact;
@@ -102,9 +99,8 @@ CoupledSolution Stepper<dim>::solve_settled(const StepContext<dim>& context,
   for (; k < most_repeats && !is_settled(solids, context.dt, *solution.velocity); ++k) {
     settle_motion<dim>(solids, nullptr, context, {}, *solution.velocity, *solution.velocity,
                        *momentum);
-    system_.forget_solid_block();
     const SolveReport earlier = report.s2;
-    solution = solve(context, momentum, name_of(context.phase), report.s2,
+    solution = solve(context, momentum, name_of(context.stage), report.s2,
                      report.incompatibility_s2, &solution.unknowns);
     report.s2.add_work(earlier);
   }

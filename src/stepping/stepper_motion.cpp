@@ -50,7 +50,7 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
   SweptRates swept;
   RCP<Vector> momentum, joint_impulse;
   if (coupled()) {
-    ScopedPhase phase(timers_, "S1");
+    ScopedStage stage(timers_, "S1");
     momentum = solid_momentum(context, prediction, report, correction);
     const CoupledSolution found =
         solve_newton(context, momentum, report.s1, report.incompatibility_s1,
@@ -66,7 +66,7 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
     }
     swept = swept_rates(*components_.fluid, solids, *components_.coupling, *half_velocity);
   }
-  ScopedPhase phase(timers_, "solid motion");
+  ScopedStage stage(timers_, "solid motion");
   solids.limit_motion(dt, *half_velocity);
   report.stretch_beyond_limit = solids.stretch_beyond_limit();
   // Shells push the fluid of closed regions, bodies only take back what straight steps add.
@@ -85,8 +85,6 @@ typename Stepper<dim>::FoundMotion Stepper<dim>::find_motion(const StepContext<d
     const SettledMotion<dim> settled =
         settle_motion<dim>(solids, components_.contact.get(), context, sweep_shells, as_solved,
                            *half_velocity, *momentum);
-    if (settled.linearised_anew)
-      system_.forget_solid_block();
     half_velocity = settled.velocity;
     report.is_settled = report.is_settled && settled.is_settled;
     report.contact_position = settled.contact;
@@ -155,7 +153,7 @@ StartImpulse Stepper<dim>::move_solids(const StepContext<dim>& context,
   StartImpulse joints;
   if (jointed)
     joints = close_joints(context, prediction, correction, solution, found, report);
-  ScopedPhase phase(timers_, "solid motion");
+  ScopedStage stage(timers_, "solid motion");
   solids.move(*found.velocity, context.time, context.step_dt);
   return joints;
 }

@@ -35,7 +35,7 @@ Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
   const auto* liquid = liquid_of<dim>(fluid);
   Momentum<dim> tension;
   {
-    ScopedPhase phase(timers_, "forces");
+    ScopedStage stage(timers_, "forces");
     const ForceImpulse<dim> given = fluid.add_forces(context.time, context.dt);
     if (context.ledger) {
       tension = liquid ? liquid->surface_impulse() : Momentum<dim>();
@@ -46,7 +46,7 @@ Prediction<dim> Stepper<dim>::predict_forces(const StepContext<dim>& context,
         context.ledger->add("surface tension", tension);
     }
   }
-  if (energy_ && context.phase == Phase::F3)
+  if (energy_ && context.stage == Stage::F3)
     energy_->end_forces();
   if (!sides_.viscous_fluid)
     return {};
@@ -96,7 +96,7 @@ Prediction<dim> Stepper<dim>::predict_viscosity(const StepContext<dim>& context,
   if (options_.incremental_pressure || sides_.viscous_fluid->wants_present_pressure())
     expected = expected_pressure(context, report);
   const RCP<const Vector>& pressure = expected.of_fluid;
-  ScopedPhase phase(timers_, "viscosity");
+  ScopedStage stage(timers_, "viscosity");
   RCP<const LinearOperator> block;
   SoftNodes soft_nodes;
   RCP<Vector> row;
@@ -169,7 +169,7 @@ void Stepper<dim>::make_advection_velocity(double dt, StepReport<dim>& report) {
   const bool has_no_divergence = fluid.begin_advection_velocity(dt);
   if (components_.solids->empty() && last_dt_ > 0 && !fluid_moved_ && has_no_divergence)
     return;
-  ScopedPhase phase(timers_, "F2");
+  ScopedStage stage(timers_, "F2");
   const std::vector<double> effective = coupling.effective_velocity(*components_.solids);
   fluid.set_coupled_velocity(effective);
   BlockVector rhs{make_vector(fluid.pressure_map()), Teuchos::null}, solution;
@@ -187,7 +187,7 @@ void Stepper<dim>::make_advection_velocity(double dt, StepReport<dim>& report) {
 /// F3 but for the forces: along the rays of u_ADV, to the geometry of t^{n+1}.
 template <int dim>
 void Stepper<dim>::advect(double dt, StepReport<dim>& report) {
-  ScopedPhase phase(timers_, "F3 advection");
+  ScopedStage stage(timers_, "F3 advection");
   auto& fluid = *components_.fluid;
   const auto& solids = *components_.solids;
   const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
@@ -199,7 +199,7 @@ void Stepper<dim>::advect(double dt, StepReport<dim>& report) {
                                   }};
   fluid.advect(time_, dt, moving);
   {
-    ScopedPhase geometry(timers_, "geometry");
+    ScopedStage geometry(timers_, "geometry");
     if (!stays || fluid.geometry_changes())
       freeze(after);
   }

@@ -57,7 +57,6 @@ class Liquid {
   LiquidReport report() const;
   std::vector<std::string> watch_names() const;
   /// Takes back what `advance` does.
-  std::function<void()> undo();
 
  private:
   const MacDomain<dim>& domain_;

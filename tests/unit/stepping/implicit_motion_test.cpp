@@ -69,7 +69,7 @@ TEST(ImplicitMotion, SettlesTheSameInAnotherFrame) {
     context.dt = context.step_dt = long_step;
     context.constraints = system->reduction();
     const auto motion = settle_motion<2>(*system, nullptr, context, {}, *start, *start, *momentum);
-    EXPECT_TRUE(motion.linearised_anew);
+    EXPECT_GT(system->linearisation_number(), 0);
     EXPECT_TRUE(motion.is_settled);
     std::vector<double> own;
     const auto values = motion.velocity->getData();
