@@ -46,7 +46,7 @@ template <int dim>
 const BlockSystem& CoupledSystem<dim>::blocks(double dt, bool with_solid) {
   if (!with_solid || !solids_.has_unknowns())
     return pressure_only_;
-  const long long linearisation = solids_.linearisation_number();
+  const unsigned linearisation = solids_.linearisation_number();
   const bool is_present = dt == block_dt_ && linearisation == block_linearisation_;
   if (!blocks_.has_solid() || (solid_depends_on_dt_ && !is_present)) {
     blocks_.set_blocks(blocks_.pressure_block(), coupling_transposed_,

@@ -106,7 +106,7 @@ class SolidSystem {
   bool linearise(double dt, const Vector& velocity);
   /// Another number after anything that changes the implicit forces: a step that begins or
   /// linearises anew, a motion, velocities. Local.
-  long long linearisation_number() const { return linearisation_number_; }
+  unsigned linearisation_number() const { return linearisation_number_; }
   /// Of any model, of all, and of each solid: see UnlinearSolids.
   bool has_implicit_forces() const;
   RCP<const Vector> linearisation() const;
@@ -148,7 +148,7 @@ class SolidSystem {
   std::vector<ModelBegin> begin_;  ///< of each model
   GlobalIndex n_unknowns_ = 0;
   int n_padding_ = 0;  ///< local
-  long long linearisation_number_ = 0;
+  unsigned linearisation_number_ = 0;
   std::vector<char> carried_;                ///< models with attached nodes, on any rank
   std::vector<AttachedNode<dim>> attached_;  ///< of this rank, at the present positions
   Reduction reduction_;

@@ -82,9 +82,9 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
     components_.strategy = std::move(dumping);
   }
   ScopedStage stage(timers_, "start");
-  scene_options_.stepper.energy_book = observers_.want_energy();
-  stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
-                                            scene_options_.time.start, timers_);
+  scene_options_.step.energy_book = observers_.want_energy();
+  scheme_ = std::make_unique<PaperStep<dim>>(components_, scene_options_.step,
+                                             scene_options_.time.start, timers_);
   check_names();
   if (!observers_.empty())
     ObserverTables<dim>::try_out(registries.observers, scene.sublist("Observers"),
@@ -98,7 +98,7 @@ void Simulation<dim>::check_names() const {
   if (!output)
     return;
   for (const std::string& name : output->surface_names())
-    for (const SolidDescription& solid : stepper_->system().surface()->solids())
+    for (const SolidDescription& solid : scheme_->system().surface()->solids())
       check_input(
           xdmf::stored_name(solid.name) != name,
           "The solid \"{}\" has the name of the fluid's surface in frames; give it another.",
@@ -116,24 +116,24 @@ double Simulation<dim>::next_step() const {
       {dt, components_.fluid->largest_stable_step(), components_.solids->largest_stable_step()});
   // A bit of difference between ranks would let one of them take a step more.
   dt = min_all(comm_, dt);
-  check_solve(stepper_->time() + dt > stepper_->time(),
+  check_solve(scheme_->time() + dt > scheme_->time(),
               "The step of {} s at {} s is lost in the round-off of the time; something moves too "
               "fast, or a body is too stiff for explicit forces.",
-              dt, stepper_->time());
-  return step_to_end(time, stepper_->time(), dt);
+              dt, scheme_->time());
+  return step_to_end(time, scheme_->time(), dt);
 }
 
 template <int dim>
 bool Simulation<dim>::finished() const {
   const TimeOptions& time = scene_options_.time;
   const double tiny = 1e-12 * std::max(std::abs(time.end), time.end - time.start);
-  return stepper_->time() >= time.end - tiny || (time.most_steps > 0 && step_ >= time.most_steps);
+  return scheme_->time() >= time.end - tiny || (time.most_steps > 0 && step_ >= time.most_steps);
 }
 
 template <int dim>
 double Simulation<dim>::fraction_done() const {
   const TimeOptions& time = scene_options_.time;
-  const double by_time = (stepper_->time() - time.start) / (time.end - time.start);
+  const double by_time = (scheme_->time() - time.start) / (time.end - time.start);
   const double by_steps = time.most_steps > 0 ? double(step_) / double(time.most_steps) : 0;
   return std::max(by_time, by_steps);
 }
@@ -141,7 +141,7 @@ double Simulation<dim>::fraction_done() const {
 template <int dim>
 RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) const {
   const bool has_energy = report_ && report_->energy;
-  return {stepper_->time(), last_dt_, *components_.fluid, states,
+  return {scheme_->time(), last_dt_, *components_.fluid, states,
           has_energy ? &*report_->energy : nullptr};
 }
 
@@ -151,7 +151,7 @@ Frame Simulation<dim>::frame() const {
   const auto* fluid = side_of<FluidOutput<dim>>(*components_.fluid);
   if (fluid)
     fluid->add_frame(frame.boxes);
-  frame.meshes = surface_frames<dim>(*components_.solids, *stepper_->system().surface());
+  frame.meshes = surface_frames<dim>(*components_.solids, *scheme_->system().surface());
   for (int m = 0; m < components_.solids->n_models(); ++m) {
     if (const auto* output = side_of<SolidOutput<dim>>(components_.solids->model(m)))
       output->add_frames(frame.meshes);
@@ -165,14 +165,14 @@ template <int dim>
 void Simulation<dim>::write_frame() {
   ScopedStage stage(timers_, "frames");
   const Frame now = frame();
-  frames_.write(step_, stepper_->time(), now.boxes, now.meshes);
+  frames_.write(step_, scheme_->time(), now.boxes, now.meshes);
 }
 
 template <int dim>
 void Simulation<dim>::write_checkpoint() {
   ScopedStage stage(timers_, "checkpoints");
   CheckpointWriter checkpoint(comm_, options_.output_directory,
-                              {step_, stepper_->time(), to_xml(scene_), files_});
+                              {step_, scheme_->time(), to_xml(scene_), files_});
   for_each_plug_in(components_, [&](const PlugIn& plug_in) { plug_in.save(checkpoint); });
   observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
@@ -215,7 +215,7 @@ template <int dim>
 bool Simulation<dim>::take_step(double dt, Clock::time_point start) {
   ScopedStage stage(timers_, "step");
   try {
-    report_ = stepper_->advance(dt, [&] {
+    report_ = scheme_->advance(dt, [&] {
       const int noted = seconds_since(start) > long_step ? noted_signal() : 0;
       const auto signal = static_cast<int>(max_all(comm_, static_cast<GlobalIndex>(noted)));
       if (signal != 0)
@@ -281,12 +281,12 @@ void Simulation<dim>::write_rows() {
 template <int dim>
 void Simulation<dim>::write_what_is_due() {
   const OutputOptions& output = scene_options_.output;
-  const bool is_due = frame_times_.reach(stepper_->time(), last_dt_) || frames_.n_frames() == 0;
+  const bool is_due = frame_times_.reach(scheme_->time(), last_dt_) || frames_.n_frames() == 0;
   if (output.frames && is_due)
-    last_frame_ = stepper_->time();
+    last_frame_ = scheme_->time();
   if (output.frames && (is_due || finished()))
     write_frame();
-  if (output.checkpoint_interval > 0 && checkpoint_times_.reach(stepper_->time(), last_dt_))
+  if (output.checkpoint_interval > 0 && checkpoint_times_.reach(scheme_->time(), last_dt_))
     write_checkpoint();
 }
 
@@ -323,7 +323,7 @@ void Simulation<dim>::end_outputs(double wall_seconds) {
   const RunFacts facts{signal_ == 0 ? "done" : "stopped by a signal",
                        step_ - first_step_,
                        step_,
-                       stepper_->time(),
+                       scheme_->time(),
                        fluid.pressure_map()->getGlobalNumElements(),
                        n_cells(fluid),
                        fluid.smallest_length(),

@@ -59,8 +59,8 @@ class Simulation {
   /// collective. What the run itself threw is told already.
   void stop(const std::string& message);
 
-  double time() const { return stepper_->time(); }  ///< [s]
-  long long n_steps() const { return step_; }       ///< with those before a restart
+  double time() const { return scheme_->time(); }  ///< [s]
+  long long n_steps() const { return step_; }      ///< with those before a restart
   /// Of the last step; null before the first that this object takes.
   const StepReport<dim>* report() const { return report_ ? &*report_ : nullptr; }
   /// The row of history.csv of the last step, by column. Local.
@@ -104,7 +104,7 @@ class Simulation {
   const Log& log_;
   StageTimers timers_;
   Components<dim> components_;
-  std::unique_ptr<Stepper<dim>> stepper_;
+  std::unique_ptr<PaperStep<dim>> scheme_;
   RunTables<dim> tables_;
   ObserverTables<dim> observers_;
   FrameWriter frames_;

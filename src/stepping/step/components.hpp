@@ -38,7 +38,7 @@ void for_each_plug_in(Components<dim>& components, const Function& f) {
 /// The side interfaces that a step makes use of; null where a plug-in does without.
 template <int dim>
 struct ComponentSides {
-  explicit ComponentSides(Components<dim>& components)
+  explicit ComponentSides(const Components<dim>& components)
       : viscous_fluid(viscosity_of(*components.fluid)),
         audited_fluid(side_of<AuditedFluid<dim>>(*components.fluid)),
         pressure_memory(side_of<PressureMemory<dim>>(*components.fluid)),

@@ -3,7 +3,7 @@
 
 #include "coupling/solid_system.hpp"
 #include "interfaces/contact.hpp"
-#include "stepping/step_context.hpp"
+#include "stepping/step/step_context.hpp"
 
 namespace lockstep {
 
@@ -18,6 +18,11 @@ struct SettledMotion {
 /// (M_S - dt D)^-1 with locked rows of the identity. Collective.
 template <int dim>
 RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, double dt);
+
+/// The answer of joints with stiff springs to what contact and limits do within a step of dt; empty
+/// without them: solids answer with their masses.
+template <int dim>
+ContactResponse joint_response(const SolidSystem<dim>& solids, double dt);
 
 /// What a solve over dt is to find for the solids alone: with the impulses of the fluid as they
 /// are, the velocity that minimises
