@@ -6,16 +6,16 @@
 //   simulate scene.xml --validate | --explain        simulate --parameters | --list-plugins
 //
 // Exit codes: 0 done, 2 bad input, 3 a solve failed, 4 input or output failed, 130/143 stopped by a
-// signal after a checkpoint.
+// signal after a step and its checkpoint.
 #include <CLI/CLI.hpp>
 #include <Tpetra_Core.hpp>
 #include <iostream>
 #include <memory>
 
-#include "base/interruption.hpp"
 #include "base/lone_process.hpp"
 #include "base/memory.hpp"
 #include "base/shortened.hpp"
+#include "base/signals.hpp"
 #include "output/provenance/build_information.hpp"
 #include "parameters/command_line.hpp"
 #include "parameters/reference.hpp"

@@ -23,9 +23,6 @@ class ColumnFluid : public lockstep::FluidDiscretization<2>, public lockstep::Au
   const lockstep::AuditedFluid<2>* audit() const override { return this; }
   void save(lockstep::CheckpointWriter& checkpoint) const override;
   void load(const lockstep::CheckpointReader& checkpoint) override;
-  std::function<void()> undo() override {
-    return [this, before = velocity_] { velocity_ = before; };
-  }
   const std::vector<double>& predicted() const { return predicted_; }  ///< u* at the faces [m/s]
 
   void divergence(lockstep::Vector& rhs) const override;

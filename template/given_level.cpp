@@ -48,8 +48,4 @@ void GivenLevel::load(const CheckpointReader& checkpoint) {
   draw(checkpoint.file().read_attribute<double>("fluid", "given_level"));
 }
 
-std::function<void()> GivenLevel::undo() {
-  return [this, level = level_] { draw(level); };
-}
-
 }  // namespace lockstep

@@ -17,7 +17,6 @@ class GivenLevel : public InterfaceModel<2> {
   std::string name() const override { return "given level"; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
-  std::function<void()> undo() override;
 
   void initialise(const SignedDistance<2>& distance, const Surface& surface) override;
   void advance(const InterfaceStep<2>& step) override;

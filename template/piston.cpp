@@ -101,7 +101,3 @@ void Piston::load(const CheckpointReader& checkpoint) {
               checkpoint.file().path());
   set_state({values[0], values[1], values[2]});
 }
-
-std::function<void()> Piston::undo() {
-  return [this, before = state()] { set_state(before); };
-}

@@ -20,7 +20,6 @@ class Piston : public lockstep::SolidModel<2>, public lockstep::AuditedSolids<2>
   std::string name() const override { return "piston"; }
   void save(lockstep::CheckpointWriter& checkpoint) const override;
   void load(const lockstep::CheckpointReader& checkpoint) override;
-  std::function<void()> undo() override;
   const std::vector<lockstep::SolidDescription>& solids() const override { return solids_; }
   const lockstep::SurfaceMesh<2>& surface() const override { return surface_; }
   void velocity_row(const lockstep::SurfacePoint<2>& point, const lockstep::Point<2>& x,

@@ -187,11 +187,6 @@ void JointRates<dim>::set_state(const std::vector<double>& values) {
 }
 
 template <int dim>
-std::function<void()> JointRates<dim>::undo() {
-  return [this, before = state()] { set_state(before); };
-}
-
-template <int dim>
 void JointRates<dim>::save(CheckpointWriter& writer) const {
   writer.file().create_group(group);
   writer.file().write_text(names_path, joined_names(*articulation_));

@@ -43,7 +43,6 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public Wor
   std::vector<SolidState<dim>> states() const override { return {}; }
   double largest_stable_step() const override;
 
-  std::function<void()> undo() override;
   void save(CheckpointWriter& writer) const override;
   void load(const CheckpointReader& reader) override;
 

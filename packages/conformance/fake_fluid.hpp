@@ -51,9 +51,6 @@ class FakeFluid : public FluidDiscretization<dim>,
   ViscousFluid<dim>* viscosity() override { return box_.viscosity > 0 ? this : nullptr; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
-  std::function<void()> undo() override {
-    return [this, before = velocity_] { velocity_ = before; };
-  }
   void divergence(Vector& rhs) const override;
   void project(const Vector& scaled_pressure) override;
   std::vector<double> coupled_velocity() const override;

@@ -307,11 +307,6 @@ void FakeSolid<dim>::set_state(const std::vector<double>& values) {
 }
 
 template <int dim>
-std::function<void()> FakeSolid<dim>::undo() {
-  return [this, before = state()] { set_state(before); };
-}
-
-template <int dim>
 void FakeSolid<dim>::save(CheckpointWriter& checkpoint) const {
   checkpoint.file().create_group("solids");
   checkpoint.file().write_replicated("solids/state", state());

@@ -41,7 +41,6 @@ class FakeSolid : public SolidModel<dim>, public AuditedSolids<dim> {
   std::string name() const override { return "fake solid"; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
-  std::function<void()> undo() override;
   const std::vector<SolidDescription>& solids() const override { return solids_; }
   const SurfaceMesh<dim>& surface() const override { return surface_; }
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,

@@ -1,7 +1,6 @@
 // Active set of contacts and joint limits, found round by round.
 #include <algorithm>
 
-#include "base/interruption.hpp"
 #include "contact/contact_problem.hpp"
 
 namespace lockstep {
@@ -134,7 +133,6 @@ int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
   for (const Contact<dim>& contact : held_)
     solver.add(contact, 0, 0);
   for (int round = 0; round < shapes_.n_solids() + further_rounds; ++round) {
-    poll_interruption(system_.comm());
     const SolidMotion<dim> motion(system_, shapes_, solver.velocity());
     const double tolerance = (round == 0 ? 0 : 10) * options_.tolerance * scale_;
     const int most = round == 0 ? most_at_once<dim> : 2;
@@ -181,7 +179,6 @@ template <int dim>
 int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
   int sweeps = 0;
   for (int round = 0; round < most_impact_rounds; ++round) {
-    poll_interruption(system_.comm());
     const std::vector<Contact<dim>> impacts = impacts_of(solver.velocity());
     bool any = false;
     for (const Contact<dim>& contact : impacts)

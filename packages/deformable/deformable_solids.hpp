@@ -89,7 +89,6 @@ class DeformableSolids : public SolidModel<dim>,
   std::vector<int> solid_of_row() const override;
   void sweep(double dt, const std::vector<double>& volumes, Vector& velocity) const override;
 
-  std::function<void()> undo() override;
   /// Saves the state, bit for bit on the same ranks; `load` throws InputError if the checkpoint
   /// holds other bodies.
   void save(CheckpointWriter& writer) const override;

@@ -36,18 +36,6 @@ std::vector<Point<dim>> points_of(const std::vector<double>& values) {
 }  // namespace
 
 template <int dim>
-std::function<void()> DeformableSolids<dim>::undo() {
-  return [this, x = x_, velocity = velocity_, surface_velocity = surface_velocity_] {
-    x_ = x;
-    velocity_ = velocity;
-    surface_velocity_ = surface_velocity;
-    limiting_impulse_.clear();
-    before_.reset();
-    update_geometry();
-  };
-}
-
-template <int dim>
 void DeformableSolids<dim>::save(CheckpointWriter& writer) const {
   std::vector<GlobalIndex> ids;
   for (int i = 0; i < space_.n_owned(); ++i)
@@ -83,8 +71,6 @@ void DeformableSolids<dim>::load(const CheckpointReader& reader) {
   update_geometry();
 }
 
-template std::function<void()> DeformableSolids<2>::undo();
-template std::function<void()> DeformableSolids<3>::undo();
 template void DeformableSolids<2>::save(CheckpointWriter&) const;
 template void DeformableSolids<3>::save(CheckpointWriter&) const;
 template void DeformableSolids<2>::load(const CheckpointReader&);

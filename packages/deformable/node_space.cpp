@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "base/errors.hpp"
-#include "base/interruption.hpp"
+#include "base/signals.hpp"
 
 namespace lockstep {
 

@@ -193,18 +193,6 @@ void Liquid<dim>::forget() {
     audit_->forget();
 }
 
-template <int dim>
-std::function<void()> Liquid<dim>::undo() {
-  const auto undo_gas = gas_ ? gas_->undo() : [] {};
-  const auto undo_audit = audit_ ? audit_->undo() : [] {};
-  return [this, undo_interface = interface_->undo(), undo_gas, undo_audit, lead = lead_] {
-    undo_interface();
-    undo_gas();
-    undo_audit();
-    lead_ = lead;
-  };
-}
-
 template class Liquid<2>;
 template class Liquid<3>;
 

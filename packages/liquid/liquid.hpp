@@ -57,8 +57,6 @@ class Liquid {
   double distance(const Point<dim>& x) const;
   LiquidReport report() const;
   std::vector<std::string> watch_names() const;
-  /// Returns a function that undoes `advance`.
-  std::function<void()> undo();
 
  private:
   const MacDomain<dim>& domain_;

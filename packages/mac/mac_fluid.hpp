@@ -26,7 +26,6 @@ class MacFluid : public FluidDiscretization<dim> {
   std::string name() const override { return "mac"; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
-  std::function<void()> undo() override { return flow_.undo(); }
 
   const AuditedFluid<dim>* audit() const override { return &audit_; }
   EnergyFluid<dim>* energy() const override { return energy_.get(); }

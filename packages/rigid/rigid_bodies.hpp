@@ -65,7 +65,6 @@ class RigidBodies : public SolidModel<dim>,
   void add_frames(
       std::vector<SurfaceFrame>& frames) const override;  ///< surfaces of solids that no fluid sees
 
-  std::function<void()> undo() override;
   /// Bit for bit. Throws InputError if the checkpoint holds other bodies.
   void save(CheckpointWriter& writer) const override;
   void load(const CheckpointReader& reader) override;

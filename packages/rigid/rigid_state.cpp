@@ -61,11 +61,6 @@ void RigidBodies<dim>::set_state(const std::vector<double>& values) {
 }
 
 template <int dim>
-std::function<void()> RigidBodies<dim>::undo() {
-  return [this, before = state()] { set_state(before); };
-}
-
-template <int dim>
 void RigidBodies<dim>::save(CheckpointWriter& writer) const {
   writer.file().create_group(group);
   writer.file().write_text(names_path, joined_names(bodies_));
@@ -116,8 +111,6 @@ void RigidBodies<dim>::add_frames(std::vector<SurfaceFrame>& frames) const {
 
 template void RigidBodies<2>::add_frames(std::vector<SurfaceFrame>&) const;
 template void RigidBodies<3>::add_frames(std::vector<SurfaceFrame>&) const;
-template std::function<void()> RigidBodies<2>::undo();
-template std::function<void()> RigidBodies<3>::undo();
 template void RigidBodies<2>::save(CheckpointWriter&) const;
 template void RigidBodies<3>::save(CheckpointWriter&) const;
 template void RigidBodies<2>::load(const CheckpointReader&);

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "base/errors.hpp"
-#include "base/interruption.hpp"
 
 namespace lockstep {
 
@@ -47,24 +46,8 @@ std::vector<T> gather(const Communicator& comm, const std::vector<T>& values, MP
 }
 }  // namespace
 
-namespace {
-/// True if the communicator has all ranks of the run. A sum over some of them must not end in an
-/// exception, since the others would not leave with it.
-bool is_of_all_ranks(const Communicator& comm) {
-  int n = 0;
-  MPI_Comm_size(MPI_COMM_WORLD, &n);
-  return comm->getSize() == n;
-}
-}  // namespace
-
 double sum_all(const Communicator& comm, double value) {
-  if (!is_interruptible() || !is_of_all_ranks(comm))
-    return reduce(comm, value, MPI_DOUBLE, MPI_SUM);
-  double values[2] = {value, noted_signal() != 0 ? 1.0 : 0.0};
-  sum_all(comm, values, 2);
-  if (values[1] > 0)
-    throw Interrupted{signal_received(comm)};
-  return values[0];
+  return reduce(comm, value, MPI_DOUBLE, MPI_SUM);
 }
 double max_all(const Communicator& comm, double value) {
   return reduce(comm, value, MPI_DOUBLE, MPI_MAX);

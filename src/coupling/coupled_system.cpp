@@ -37,7 +37,6 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   blocks_.soft_nodes = solids_.soft_nodes(coupling_.added_mass());
   blocks_.null_space = null_spaces.coupled;
   blocks_.pressure_null_space = null_spaces.pressure;
-  block_dt_ = -1;
 
   pressure_only_ = blocks_;
   pressure_only_.null_space = null_spaces.pressure;
@@ -47,11 +46,14 @@ template <int dim>
 const BlockSystem& CoupledSystem<dim>::blocks(double dt, bool with_solid) {
   if (!with_solid || !solids_.has_unknowns())
     return pressure_only_;
-  if (!blocks_.has_solid() || (solid_depends_on_dt_ && dt != block_dt_)) {
+  const unsigned linearisation = solids_.linearisation_number();
+  const bool is_present = dt == block_dt_ && linearisation == block_linearisation_;
+  if (!blocks_.has_solid() || (solid_depends_on_dt_ && !is_present)) {
     blocks_.set_blocks(blocks_.pressure_block(), coupling_transposed_,
                        solids_.solid_block(coupling_.added_mass(), dt));
     ++blocks_.solids.stamp;
     block_dt_ = dt;
+    block_linearisation_ = linearisation;
   }
   return blocks_;
 }

@@ -26,9 +26,6 @@ class CoupledSystem {
   /// Collective.
   const BlockSystem& blocks(double dt, bool with_solid = true);
 
-  /// Invalidates C: the solids' D has changed since the last `blocks`.
-  void forget_solid_block() { block_dt_ = -1; }
-
   /// Row 1: V G_f^T u* + V G_d^T u_d + V G_c^T W_k V_k + B b; row 2: P^T (`momentum` + W^T M_F
   /// (u*_F
   /// - W_k V_k) - C b) for a step of dt. `momentum` = M_S V_S* (+ the viscous impulse); unused
@@ -69,7 +66,8 @@ class CoupledSystem {
   std::shared_ptr<const SurfaceSnapshot<dim>> surface_;
   RCP<const CrsMatrix> coupling_transposed_;  ///< P^T B^T of the geometry; null without solids
   BlockSystem blocks_, pressure_only_;
-  double block_dt_ = -1;  ///< the dt of C in `blocks_`
+  double block_dt_ = 0;               ///< the dt of C in `blocks_`
+  unsigned block_linearisation_ = 0;  ///< that of D in `blocks_`, see SolidSystem
   bool solid_depends_on_dt_ = false;
 };
 

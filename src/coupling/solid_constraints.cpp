@@ -37,6 +37,7 @@ template <int dim>
 bool SolidSystem<dim>::begin_step(double time, double dt) {
   for (const auto& solid_model : models_)
     solid_model->begin_step(time, dt);
+  ++linearisation_number_;
   const Reduction before = reduction_;
   find_reduction();
   return reduction_.differs_in_unknowns(before);
@@ -66,6 +67,7 @@ void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
   }
   if (reduction_.has_combinations())
     move_attached(velocity, time, dt);
+  ++linearisation_number_;
 }
 
 /// Attached nodes go where their solids have carried them, round the arc of a rotation.

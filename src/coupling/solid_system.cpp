@@ -182,6 +182,7 @@ template <int dim>
 void SolidSystem<dim>::set_velocity(const Vector& velocity) {
   for (int m = 0; m < n_models(); ++m)
     model(m).set_velocity(*part(velocity, m));
+  ++linearisation_number_;
 }
 
 template <int dim>
@@ -234,24 +235,13 @@ Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
 }
 
 template <int dim>
-std::function<void()> SolidSystem<dim>::undo() {
-  std::vector<std::function<void()>> all;
-  for (const auto& solid_model : models_)
-    all.push_back(solid_model->undo());
-  return [this, all = std::move(all)] {
-    for (const auto& undo_one : all)
-      undo_one();
-    find_reduction();
-  };
-}
-
-template <int dim>
 bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   bool any = false;
   for (int m = 0; m < n_models(); ++m) {
     if (unlinear(m))
       any = side_of<UnlinearSolids<dim>>(model(m))->linearise(dt, *part(velocity, m)) || any;
   }
+  ++linearisation_number_;
   return any;
 }
 

@@ -105,6 +105,9 @@ class SolidSystem {
   AngularVector<dim> inner_angular_impulse(double dt) const;  ///< sum over all models [kg m^2/s]
   Momentum<dim> external_impulse(double time, double dt) const;
   bool linearise(double dt, const Vector& velocity);
+  /// Another number after anything that changes the implicit forces: a step that begins or
+  /// linearises anew, a motion, velocities. Local.
+  unsigned linearisation_number() const { return linearisation_number_; }
   /// Nonlinear implicit forces: true if any model has them; the linearisation of all models; the
   /// energies of each solid (see UnlinearSolids).
   bool has_implicit_forces() const;
@@ -112,8 +115,6 @@ class SolidSystem {
   std::vector<ComputedEnergy> unlinear_energies(double dt, const Vector& velocity) const;
   void limit_motion(double dt, Vector& velocity);
   void move(const Vector& velocity, double time, double dt);
-  /// `SolidModel::undo` of all models. Calling what it returns is collective.
-  std::function<void()> undo();
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.
   /// Collective.
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;
@@ -148,7 +149,8 @@ class SolidSystem {
   RCP<const Map> map_;
   std::vector<ModelBegin> begin_;  ///< begin of each model
   GlobalIndex n_unknowns_ = 0;
-  int n_padding_ = 0;                        ///< local
+  int n_padding_ = 0;  ///< local
+  unsigned linearisation_number_ = 0;
   std::vector<char> carried_;                ///< models with attached nodes, on any rank
   std::vector<AttachedNode<dim>> attached_;  ///< this rank's nodes, at the present positions
   Reduction reduction_;

@@ -160,11 +160,10 @@ class FluidDiscretization : public PlugIn {
 
   // The stages of a step.
 
-  /// Begins a step from `time` to time + dt: tiles may be made where things will move. Returns true
-  /// if u^n lives on other cells than when it was accepted, without being free of divergence there,
-  /// also where a step before this one had moved it and was not finished: then the geometry is to
-  /// be frozen anew. `solid_speed`: that of the fastest solid [m/s]; collective, for those who want
-  /// it. Default: the fluid always has room.
+  /// Begins a step from `time` to time + dt: tiles may be made where things will move. Returns true if
+  /// u^n lives on other cells than when it was accepted, without being free of divergence there:
+  /// then the geometry is to be frozen anew. `solid_speed`: that of the fastest solid [m/s];
+  /// collective, for those who want it. Default: the fluid always has room.
   virtual bool begin_step(double /*time*/, double /*dt*/,
                           const std::function<double()>& /*solid_speed*/) {
     return false;

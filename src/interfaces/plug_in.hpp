@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <string>
 
 namespace lockstep {
@@ -18,11 +17,6 @@ class PlugIn {
   /// Collective. Default: no state.
   virtual void save(CheckpointWriter&) const {}
   virtual void load(const CheckpointReader&) {}
-  /// Called at the start of a step: puts back, when it is called in turn, all that `save` writes
-  /// and a step changes. Calling that is collective. Default: nothing is put back.
-  virtual std::function<void()> undo() {
-    return [] {};
-  }
 
  protected:
   PlugIn() = default;

@@ -8,31 +8,31 @@
 
 namespace lockstep {
 
-/// Wall time of one phase over the run.
-struct PhaseTime {
-  std::string name;                               ///< with the phases around it: "step / S2 solve"
+/// Wall time of one stage over the run.
+struct StageTime {
+  std::string name;                               ///< with the stages around it: "step / S2 solve"
   double min_seconds, mean_seconds, max_seconds;  ///< over the ranks
   long long calls;                                ///< on rank 0
 };
 
-/// Wall clock of named phases, which nest. (Teuchos::StackedTimer only prints its minima and maxima
+/// Wall clock of named stages, which nest. (Teuchos::StackedTimer only prints its minima and maxima
 /// over the ranks; the summary of a run needs them as numbers.)
-class PhaseTimers {
+class StageTimers {
  public:
-  PhaseTimers();
+  StageTimers();
 
-  /// Opens a phase inside the one that is open. Not collective.
+  /// Opens a stage inside the one that is open. Not collective.
   void start(const std::string& name);
-  /// Closes the phase opened last.
+  /// Closes the stage opened last.
   void stop();
 
-  /// Collective: the phases that rank 0 has closed, each after the phase around it. A rank that
+  /// Collective: the stages that rank 0 has closed, each after the stage around it. A rank that
   /// never entered one counts with 0 s.
-  std::vector<PhaseTime> report(const Communicator& comm) const;
+  std::vector<StageTime> report(const Communicator& comm) const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Phase {
+  struct Stage {
     std::string path;
     std::size_t parent;
     std::map<std::string, std::size_t> children;
@@ -40,28 +40,28 @@ class PhaseTimers {
     long long calls = 0;
     Clock::time_point started{};
   };
-  void append_in_order(std::size_t phase, std::vector<std::size_t>& order) const;
+  void append_in_order(std::size_t stage, std::vector<std::size_t>& order) const;
 
-  std::vector<Phase> phases_;  // the first is the root, which has no time of its own
+  std::vector<Stage> stages_;  // the first is the root, which has no time of its own
   std::size_t open_ = 0;
 };
 
 /// Times the scope it lives in.
-class ScopedPhase {
+class ScopedStage {
  public:
-  ScopedPhase(PhaseTimers& timers, const std::string& name) : timers_(timers) {
+  ScopedStage(StageTimers& timers, const std::string& name) : timers_(timers) {
     timers_.start(name);
   }
-  ~ScopedPhase() { timers_.stop(); }
-  ScopedPhase(const ScopedPhase&) = delete;
-  ScopedPhase& operator=(const ScopedPhase&) = delete;
+  ~ScopedStage() { timers_.stop(); }
+  ScopedStage(const ScopedStage&) = delete;
+  ScopedStage& operator=(const ScopedStage&) = delete;
 
  private:
-  PhaseTimers& timers_;
+  StageTimers& timers_;
 };
 
-/// A table for the end of a run: one line a phase.
-std::string timing_table(const std::vector<PhaseTime>& phases);
+/// A table for the end of a run: one line a stage.
+std::string timing_table(const std::vector<StageTime>& stages);
 
 /// Largest resident memory so far [MB of 10^6 bytes].
 struct PeakMemory {

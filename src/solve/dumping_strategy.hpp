@@ -26,7 +26,6 @@ class DumpingStrategy : public SolverStrategy {
   std::string name() const override { return strategy_->name(); }
   void save(CheckpointWriter& checkpoint) const override { strategy_->save(checkpoint); }
   void load(const CheckpointReader& checkpoint) override { strategy_->load(checkpoint); }
-  std::function<void()> undo() override { return strategy_->undo(); }
   void prepare(const BlockSystem& system) override { strategy_->prepare(system); }
   SolveReport solve(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
                     const SolveRequest& request) override;

@@ -17,7 +17,7 @@ std::string Simulation<dim>::explain() {
   line("ranks", std::to_string(comm_->getSize()));
   line("fluid", fmt::format("{}, h = {:g} m, {} pressure unknowns", fluid.name(),
                             fluid.smallest_length(), fluid.pressure_map()->getGlobalNumElements()));
-  const bool reads_pressure = scene_options_.stepper.incremental_pressure;
+  const bool reads_pressure = scene_options_.step.prediction.incremental_pressure;
   const auto* viscous = components_.fluid->viscosity();
   line("viscous solve", !viscous ? "off (inviscid)"
                         : viscous->wants_present_pressure()
@@ -48,7 +48,7 @@ std::string Simulation<dim>::explain() {
     line("joints", joints->note());
   line("contact", components_.contact ? components_.contact->name() : "none");
   line("pressure regions", fmt::format("{}, null space of dimension {}", fluid.regions().n_regions,
-                                       stepper_->system().null_space().size()));
+                                       scheme_->system().null_space().size()));
   line("memory so far",
        fmt::format(
            "{:.0f} MB over all ranks, {:.0f} bytes a cell", memory.all_ranks_mb,

@@ -86,16 +86,16 @@ void RunSummary::count(const std::vector<JointState>& joints,
 }
 
 nlohmann::ordered_json RunSummary::json(const nlohmann::ordered_json& header, const RunFacts& run,
-                                        const std::vector<PhaseTime>& phases,
+                                        const std::vector<StageTime>& stages,
                                         const Communicator& comm) const {
   const PeakMemory memory = peak_memory_mb(comm);
-  nlohmann::ordered_json phase_times = nlohmann::ordered_json::array();
-  for (const PhaseTime& phase : phases) {
-    phase_times.push_back({{"name", phase.name},
-                           {"min_seconds", phase.min_seconds},
-                           {"mean_seconds", phase.mean_seconds},
-                           {"max_seconds", phase.max_seconds},
-                           {"calls", phase.calls}});
+  nlohmann::ordered_json stage_times = nlohmann::ordered_json::array();
+  for (const StageTime& stage : stages) {
+    stage_times.push_back({{"name", stage.name},
+                           {"min_seconds", stage.min_seconds},
+                           {"mean_seconds", stage.mean_seconds},
+                           {"max_seconds", stage.max_seconds},
+                           {"calls", stage.calls}});
   }
   nlohmann::ordered_json summary = unfinished_summary(run.status, "", header);
   summary.update(nlohmann::ordered_json{{"steps", run.n_steps},
@@ -118,7 +118,7 @@ nlohmann::ordered_json RunSummary::json(const nlohmann::ordered_json& header, co
                                         {"wall_seconds", run.wall_seconds},
                                         {"peak_memory_mb", memory.all_ranks_mb},
                                         {"peak_memory_largest_rank_mb", memory.largest_rank_mb},
-                                        {"phases", phase_times}});
+                                        {"stages", stage_times}});
   if (has_joints_)
     summary["joints"] = {{"steps_of_end_impulses", end_impulses_},
                          {"steps_of_limited_torques", limited_torques_}};

@@ -44,7 +44,7 @@ class RunSummary {
   void count(const std::vector<JointState>& joints, const std::vector<char>& limited_torques);
   /// Collective.
   nlohmann::ordered_json json(const nlohmann::ordered_json& header, const RunFacts& run,
-                              const std::vector<PhaseTime>& phases, const Communicator& comm) const;
+                              const std::vector<StageTime>& stages, const Communicator& comm) const;
 
  private:
   void count(const SolveReport& s1, const SolveReport& f2, const SolveReport& s2);

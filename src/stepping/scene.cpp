@@ -266,8 +266,8 @@ SceneOptions scene_options(const ParameterList& scene) {
   options.time.largest_step = time.get<double>("Largest Step");
   options.time.most_steps = time.get<int>("Steps");
   const auto& correction = time.get<std::string>("Pressure Correction");
-  options.stepper.incremental_pressure = correction != "non-incremental";
-  options.stepper.rotational_pressure = correction == "rotational";
+  options.step.prediction.incremental_pressure = correction != "non-incremental";
+  options.step.prediction.rotational_pressure = correction == "rotational";
   check_input(options.time.end > options.time.start,
               "In \"Time\", \"End\" ({} s) must be later than \"Start\" ({} s).", options.time.end,
               options.time.start);
@@ -278,9 +278,9 @@ SceneOptions scene_options(const ParameterList& scene) {
   options.output.keep_checkpoints = output.get<int>("Keep Checkpoints");
   options.output.precision = output.get<std::string>("Precision");
   const ParameterList& solver = scene.sublist("Solver");
-  options.stepper.tolerance = solver.get<double>("Tolerance");
-  options.stepper.newton_iterations = solver.get<int>("Newton Iterations");
-  options.stepper.viscous = viscous_options(solver);
+  options.step.solve.tolerance = solver.get<double>("Tolerance");
+  options.step.solve.newton_iterations = solver.get<int>("Newton Iterations");
+  options.step.prediction.viscous = viscous_options(solver);
   return options;
 }
 

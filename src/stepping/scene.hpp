@@ -3,8 +3,8 @@
 
 #include "interfaces/registries.hpp"
 #include "parameters/source.hpp"
+#include "stepping/step/paper_step.hpp"
 #include "stepping/step_size.hpp"
-#include "stepping/stepper.hpp"
 
 namespace lockstep {
 
@@ -25,7 +25,7 @@ struct OutputOptions {
 struct SceneOptions {
   TimeOptions time;
   OutputOptions output;
-  StepperOptions stepper;
+  StepOptions step;
 };
 
 /// The "Type" of a scene's fluid, as the document, not validated yet, or a `--set` has it; empty if

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "base/interruption.hpp"
+#include "base/signals.hpp"
 #include "interfaces/limited_torques.hpp"
 #include "interfaces/liquid.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
-#include "output/signals.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/write.hpp"
 #include "stepping/surface_frames.hpp"
@@ -35,6 +34,15 @@ double n_cells(const FluidDiscretization<dim>& fluid) {
     n += double(box.n_cells[0]) * box.n_cells[1] * box.n_cells[2];
   return boxes.empty() ? double(fluid.pressure_map()->getGlobalNumElements()) : n;
 }
+
+/// Seconds of wall time after which a signal ends a step between its stages, without a checkpoint.
+/// Batch systems kill 30 s after they have asked.
+constexpr double long_step = 20;
+
+/// Thrown between the stages of a long step after a signal, on all ranks.
+struct StepStopped {
+  int signal;
+};
 
 }  // namespace
 
@@ -73,10 +81,10 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
     dumping_ = dumping.get();
     components_.strategy = std::move(dumping);
   }
-  ScopedPhase phase(timers_, "start");
-  scene_options_.stepper.energy_book = observers_.want_energy();
-  stepper_ = std::make_unique<Stepper<dim>>(components_, scene_options_.stepper,
-                                            scene_options_.time.start, timers_);
+  ScopedStage stage(timers_, "start");
+  scene_options_.step.energy_book = observers_.want_energy();
+  scheme_ = std::make_unique<PaperStep<dim>>(components_, scene_options_.step,
+                                             scene_options_.time.start, timers_);
   check_names();
   if (!observers_.empty())
     ObserverTables<dim>::try_out(registries.observers, scene.sublist("Observers"),
@@ -90,7 +98,7 @@ void Simulation<dim>::check_names() const {
   if (!output)
     return;
   for (const std::string& name : output->surface_names())
-    for (const SolidDescription& solid : stepper_->system().surface()->solids())
+    for (const SolidDescription& solid : scheme_->system().surface()->solids())
       check_input(
           xdmf::stored_name(solid.name) != name,
           "The solid \"{}\" has the name of the fluid's surface in frames; give it another.",
@@ -108,24 +116,24 @@ double Simulation<dim>::next_step() const {
       {dt, components_.fluid->largest_stable_step(), components_.solids->largest_stable_step()});
   // A bit of difference between ranks would let one of them take a step more.
   dt = min_all(comm_, dt);
-  check_solve(stepper_->time() + dt > stepper_->time(),
+  check_solve(scheme_->time() + dt > scheme_->time(),
               "The step of {} s at {} s is lost in the round-off of the time; something moves too "
               "fast, or a body is too stiff for explicit forces.",
-              dt, stepper_->time());
-  return step_to_end(time, stepper_->time(), dt);
+              dt, scheme_->time());
+  return step_to_end(time, scheme_->time(), dt);
 }
 
 template <int dim>
 bool Simulation<dim>::finished() const {
   const TimeOptions& time = scene_options_.time;
   const double tiny = 1e-12 * std::max(std::abs(time.end), time.end - time.start);
-  return stepper_->time() >= time.end - tiny || (time.most_steps > 0 && step_ >= time.most_steps);
+  return scheme_->time() >= time.end - tiny || (time.most_steps > 0 && step_ >= time.most_steps);
 }
 
 template <int dim>
 double Simulation<dim>::fraction_done() const {
   const TimeOptions& time = scene_options_.time;
-  const double by_time = (stepper_->time() - time.start) / (time.end - time.start);
+  const double by_time = (scheme_->time() - time.start) / (time.end - time.start);
   const double by_steps = time.most_steps > 0 ? double(step_) / double(time.most_steps) : 0;
   return std::max(by_time, by_steps);
 }
@@ -133,7 +141,7 @@ double Simulation<dim>::fraction_done() const {
 template <int dim>
 RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) const {
   const bool has_energy = report_ && report_->energy;
-  return {stepper_->time(), last_dt_, *components_.fluid, states,
+  return {scheme_->time(), last_dt_, *components_.fluid, states,
           has_energy ? &*report_->energy : nullptr};
 }
 
@@ -143,7 +151,7 @@ Frame Simulation<dim>::frame() const {
   const auto* fluid = components_.fluid->output();
   if (fluid)
     fluid->add_frame(frame.boxes);
-  frame.meshes = surface_frames<dim>(*components_.solids, *stepper_->system().surface());
+  frame.meshes = surface_frames<dim>(*components_.solids, *scheme_->system().surface());
   for (int m = 0; m < components_.solids->n_models(); ++m) {
     if (const auto* output = side_of<SolidOutput<dim>>(components_.solids->model(m)))
       output->add_frames(frame.meshes);
@@ -155,34 +163,21 @@ Frame Simulation<dim>::frame() const {
 
 template <int dim>
 void Simulation<dim>::write_frame() {
-  ScopedPhase phase(timers_, "frames");
+  ScopedStage stage(timers_, "frames");
   const Frame now = frame();
-  frames_.write(step_, stepper_->time(), now.boxes, now.meshes);
+  frames_.write(step_, scheme_->time(), now.boxes, now.meshes);
 }
 
 template <int dim>
 void Simulation<dim>::write_checkpoint() {
-  ScopedPhase phase(timers_, "checkpoints");
+  ScopedStage stage(timers_, "checkpoints");
   CheckpointWriter checkpoint(comm_, options_.output_directory,
-                              {step_, stepper_->time(), to_xml(scene_), files_});
+                              {step_, scheme_->time(), to_xml(scene_), files_});
   for_each_plug_in(components_, [&](const PlugIn& plug_in) { plug_in.save(checkpoint); });
-  stepper_->save(checkpoint);
   observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
   checkpoint.file().write_attribute("/", "last frame", last_frame_);
   checkpoint.finish(scene_options_.output.keep_checkpoints);
-}
-
-template <int dim>
-bool Simulation<dim>::take_step(double dt) {
-  ScopedPhase phase(timers_, "step");
-  try {
-    report_ = stepper_->advance(dt);
-    return true;
-  } catch (const Interrupted& interrupted) {
-    signal_ = interrupted.signal;
-    return false;
-  }
 }
 
 template <int dim>
@@ -217,18 +212,31 @@ void Simulation<dim>::begin() {
 }
 
 template <int dim>
+bool Simulation<dim>::take_step(double dt, Clock::time_point start) {
+  ScopedStage stage(timers_, "step");
+  try {
+    report_ = scheme_->advance(dt, [&] {
+      const int noted = seconds_since(start) > long_step ? noted_signal() : 0;
+      const auto signal = static_cast<int>(max_all(comm_, static_cast<GlobalIndex>(noted)));
+      if (signal != 0)
+        throw StepStopped{signal};
+    });
+  } catch (const StepStopped& stopped) {
+    signal_ = stopped.signal;
+    is_within_step_ = true;
+  }
+  return !is_within_step_;
+}
+
+template <int dim>
 bool Simulation<dim>::step() {
   if (finished() || signal_ != 0)
     return false;
-  bool taken = false;
   recorded([&] {
     const auto step_start = Clock::now();
     const double dt = next_step();
-    taken = take_step(dt);
-    if (!taken) {
-      log_.normal("Step {} is abandoned.", step_ + 1);
+    if (!take_step(dt, step_start))
       return;
-    }
     ++step_;
     last_dt_ = dt;
     summary_.count(*report_);
@@ -238,7 +246,7 @@ bool Simulation<dim>::step() {
     write_what_is_due();
     signal_ = signal_received(comm_);
   });
-  return taken;
+  return !is_within_step_;
 }
 
 namespace {
@@ -261,7 +269,7 @@ void Simulation<dim>::write_rows() {
     summary_.count(coordinates, limited);
   }
   if (!observers_.empty()) {
-    ScopedPhase phase(timers_, "observers");
+    ScopedStage stage(timers_, "observers");
     observers_.observe(step_, view(states), finished());
   }
   StepProgress progress = progress_of<dim>(step_, *report_, step_seconds_);
@@ -273,12 +281,12 @@ void Simulation<dim>::write_rows() {
 template <int dim>
 void Simulation<dim>::write_what_is_due() {
   const OutputOptions& output = scene_options_.output;
-  const bool is_due = frame_times_.reach(stepper_->time(), last_dt_) || frames_.n_frames() == 0;
+  const bool is_due = frame_times_.reach(scheme_->time(), last_dt_) || frames_.n_frames() == 0;
   if (output.frames && is_due)
-    last_frame_ = stepper_->time();
+    last_frame_ = scheme_->time();
   if (output.frames && (is_due || finished()))
     write_frame();
-  if (output.checkpoint_interval > 0 && checkpoint_times_.reach(stepper_->time(), last_dt_))
+  if (output.checkpoint_interval > 0 && checkpoint_times_.reach(scheme_->time(), last_dt_))
     write_checkpoint();
 }
 
@@ -292,7 +300,8 @@ std::vector<std::pair<std::string, HistoryValue>> Simulation<dim>::history_row()
 template <int dim>
 void Simulation<dim>::end() {
   recorded([&] {
-    write_checkpoint();
+    if (!is_within_step_)
+      write_checkpoint();
     end_outputs(seconds_since(start_));
   });
   folder_lock_.reset();
@@ -314,7 +323,7 @@ void Simulation<dim>::end_outputs(double wall_seconds) {
   const RunFacts facts{signal_ == 0 ? "done" : "stopped by a signal",
                        step_ - first_step_,
                        step_,
-                       stepper_->time(),
+                       scheme_->time(),
                        fluid.pressure_map()->getGlobalNumElements(),
                        n_cells(fluid),
                        fluid.smallest_length(),
@@ -327,7 +336,12 @@ void Simulation<dim>::end_outputs(double wall_seconds) {
     log_.warning("--dump-system: no step solved {}:{}, and '{}' is not written.",
                  options_.dump_system->step, options_.dump_system->solve,
                  options_.dump_system->file);
-  if (signal_ != 0) {
+  if (is_within_step_) {
+    log_.normal(
+        "Stopped by signal {} within step {}, which takes longer than {} s and is lost; the "
+        "last checkpoint continues the run.",
+        signal_, step_ + 1, long_step);
+  } else if (signal_ != 0) {
     log_.normal("Stopped by signal {} after step {}; the checkpoint in {} continues the run.",
                 signal_, step_, options_.output_directory);
   }

@@ -48,18 +48,19 @@ class Simulation {
   /// Writes the start, or loads the checkpoint; once, before all steps.
   void begin();
   /// Takes a step and writes what is due. False, and no step, at the end of the scene and after a
-  /// signal that was asked for (output/signals.hpp). Once it has thrown, solids and fluid may be at
+  /// signal that was asked for (base/signals.hpp). Once it has thrown, solids and fluid may be at
   /// different times: then it throws InputError, and so does `end`.
   bool step();
-  /// The last checkpoint and the summary; once, after all steps.
+  /// The last checkpoint, unless a signal has ended the last step between its stages, and the
+  /// summary; once, after all steps.
   void end();
   /// In place of `end`, where the program around the run has failed: says so in summary.json. On
   /// one rank with the last checkpoint; on several not all may have failed, so this is not
   /// collective. What the run itself threw is told already.
   void stop(const std::string& message);
 
-  double time() const { return stepper_->time(); }  ///< [s]
-  long long n_steps() const { return step_; }       ///< with those before a restart
+  double time() const { return scheme_->time(); }  ///< [s]
+  long long n_steps() const { return step_; }      ///< with those before a restart
   /// Of the last step; null before the first that this object takes.
   const StepReport<dim>* report() const { return report_ ? &*report_ : nullptr; }
   /// The row of history.csv of the last step, by column. Local.
@@ -71,8 +72,8 @@ class Simulation {
  private:
   double next_step() const;
   bool finished() const;
-  /// False if a signal ended it. Collective.
-  bool take_step(double dt);
+  /// False if a signal ended it between two of its stages, because it takes long. Collective.
+  bool take_step(double dt, std::chrono::steady_clock::time_point start);
   void write_rows();
   void write_what_is_due();
   /// Calls f; what it throws is told to summary.json too.
@@ -101,9 +102,9 @@ class Simulation {
   SceneOptions scene_options_;
   Communicator comm_;
   const Log& log_;
-  PhaseTimers timers_;
+  StageTimers timers_;
   Components<dim> components_;
-  std::unique_ptr<Stepper<dim>> stepper_;
+  std::unique_ptr<PaperStep<dim>> scheme_;
   RunTables<dim> tables_;
   ObserverTables<dim> observers_;
   FrameWriter frames_;
@@ -120,7 +121,9 @@ class Simulation {
   std::optional<StepReport<dim>> report_;     ///< of the last step
   double step_seconds_ = 0;                   ///< it took so long
   int signal_ = 0;                            ///< that ended the run
-  bool failed_ = false;                       ///< what is in memory is of no use
+  bool is_within_step_ =
+      false;             ///< in memory is no state between steps, because a signal ended one
+  bool failed_ = false;  ///< what is in memory is of no use
   std::chrono::steady_clock::time_point start_;
   RunSummary summary_;
   nlohmann::ordered_json header_;

@@ -52,22 +52,22 @@ void Simulation<dim>::begin_tables() {
       observers_.start(step_, view(components_.solids->states()));
     frames_.start();
     if (scene_options_.output.frames) {
-      last_frame_ = stepper_->time();
+      last_frame_ = scheme_->time();
       write_frame();
     }
   } else {
     discard_checkpoints_after(comm_, options_.output_directory, step_);
     tables_.resume(step_);
-    observers_.resume(step_, stepper_->time(), last_dt_, finished());
+    observers_.resume(step_, scheme_->time(), last_dt_, finished());
     resume_frames();
-    checkpoint_times_.reach(stepper_->time(), last_dt_);
+    checkpoint_times_.reach(scheme_->time(), last_dt_);
   }
 }
 
 /// A frame that came only because the earlier run ended here is none of a run that goes on.
 template <int dim>
 void Simulation<dim>::resume_frames() {
-  const double now = stepper_->time();
+  const double now = scheme_->time();
   const bool was_due = last_frame_ == never_ || last_frame_ >= now;
   frames_.resume(was_due || finished() ? now : std::nextafter(now, never_));
   frame_times_.reach(now, last_dt_);
@@ -83,7 +83,7 @@ void Simulation<dim>::load_checkpoint() {
   last_dt_ = checkpoint.file().read_attribute<double>("/", "last dt");
   if (checkpoint.file().has_attribute("/", "last frame"))  // older ones say nothing of it
     last_frame_ = checkpoint.file().read_attribute<double>("/", "last frame");
-  stepper_->resume(checkpoint, last_dt_);
+  scheme_->resume(checkpoint.header().time, step_, last_dt_);
 }
 
 template void Simulation<2>::begin_outputs();

@@ -5,8 +5,8 @@
   the file: <!-- from: template/driver.cpp -->
 - every page of docs/results stands in their list, holds every series of its study, and names a commit of this history
 - formulas are such as GitHub sets, too, whose Markdown reads them first
-- paths of the tree in backticks exist, and in `file.cpp: function` the file has that word; names of
-  code files without a path are those of files
+- paths of the tree in backticks exist, and in `file.cpp: function` the file defines it; names of code files without a
+  path are those of files
 """
 import csv
 import re
@@ -44,6 +44,23 @@ def headings(page):
 def squeezed(text):
     """Blanks and line breaks do not count: a quotation may be laid out differently."""
     return re.sub(r"\s", "", text)
+
+
+def defines(file, name):
+    """Whether a .cpp file has the body of a function, a class, or a constant of this name; of others whether the word occurs."""
+    text = file.read_text()
+    if file.suffix != ".cpp":
+        return bool(re.search(rf"\b{re.escape(name)}\b", text))
+    if re.search(rf"\b(?:class|struct|enum class|namespace|using) {name}\b|\b(?:const|constexpr) [^;()]*\b{name}\b", text):
+        return True
+    for match in re.finditer(rf"\b{name}\(", text):
+        depth, end = 1, match.end()
+        while depth and end < len(text):
+            depth += {"(": 1, ")": -1}.get(text[end], 0)
+            end += 1
+        if re.match(r"(?:\s|const\b|noexcept\b|override\b)*(?::(?!:)[^;]*?)?\{", text[end:]):
+            return True
+    return False
 
 
 class Docs(unittest.TestCase):
@@ -91,8 +108,7 @@ class Docs(unittest.TestCase):
                     self.assertTrue(found)
                     if word:
                         last = word.split("::")[-1]
-                        self.assertTrue(any(re.search(rf"\b{re.escape(last)}\b", file.read_text()) for file in found),
-                                        f"no {last} in {name}")
+                        self.assertTrue(any(defines(file, last) for file in found), f"{name} does not define {last}")
 
     def test_names_of_code_files(self):
         files = {}

@@ -156,33 +156,23 @@ class Faults(unittest.TestCase):
                 self.assertEqual(result.returncode, 4, result.stderr)
                 self.assertIn("File too large", result.stderr)
 
-    def test_signal_in_a_long_step(self):
-        """A step that would take minutes is left within seconds, wherever it is, and has not been."""
+    def test_signal_in_a_step(self):
+        """The step is finished, and the checkpoint has it."""
         slow = SCENE.replace("rigid body", "deformable body").replace('<Parameter name="Density" type="double" value="500"/>', SOFT)
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(simulate(folder, "--steps", 2, scene=slow).returncode, 0)
-            kept = newest_checkpoint(folder)
-            again = ["--restart", kept, "--set", "Solver/Newton Iterations=300000", "--output"]
-            for seconds in (1, 3, 6):
-                other = Path(folder) / str(seconds)
-                with self.subTest(seconds=seconds), started(folder, *again, other, scene=slow) as process:
-                    wait_for(lambda: (other / "history.csv").exists(), process)
-                    time.sleep(seconds)
-                    process.send_signal(signal.SIGTERM)
-                    sent = time.monotonic()
-                    output, _ = process.communicate(timeout=60)
-                    self.assertLess(time.monotonic() - sent, 2)
-                    self.assertEqual(process.returncode, 128 + signal.SIGTERM, output)
-                    self.assert_equal_checkpoints(next(other.glob("checkpoint-*.h5")), kept)
-
-    def assert_equal_checkpoints(self, one, other):
-        """As far as steps change them: the settings may differ."""
-        with h5py.File(one) as a, h5py.File(other) as b:
-            self.assertEqual((a.attrs["step"], a.attrs["time"]), (b.attrs["step"], b.attrs["time"]))
-            names = []
-            b.visititems(lambda name, data: names.append(name) if isinstance(data, h5py.Dataset) else None)
-            for name in set(names) - {"parameters"}:
-                self.assertTrue(numpy.array_equal(a[name][...], b[name][...]), name)
+            other = Path(folder) / "other"
+            again = ["--restart", newest_checkpoint(folder), "--set", "Solver/Newton Iterations=1000", "--output", other]
+            with started(folder, *again, scene=slow) as process:
+                wait_for(lambda: (other / "history.csv").exists(), process)
+                time.sleep(0.3)
+                process.send_signal(signal.SIGTERM)
+                output, _ = process.communicate(timeout=120)
+                self.assertEqual(process.returncode, 128 + signal.SIGTERM, output)
+            steps = [int(row["step"]) for row in read_table(other / "history.csv")]
+            with h5py.File(next(other.glob("checkpoint-*.h5"))) as checkpoint:
+                self.assertEqual(checkpoint.attrs["step"], steps[-1])
+            self.assertGreater(steps[-1], 2)
 
     def test_restart_on_two_ranks(self):
         with tempfile.TemporaryDirectory() as straight, tempfile.TemporaryDirectory() as folder:

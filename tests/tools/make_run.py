@@ -62,10 +62,10 @@ def main(folder, dim, title="a </script> in a title", view=""):
     (folder / "history.csv").write_text(history())
     (folder / "bodies.csv").write_text(bodies(dim))
     (folder / "joints.csv").write_text(joints())
-    phases = [{"name": name, "min_seconds": seconds, "mean_seconds": seconds, "max_seconds": seconds, "calls": N_STEPS}
+    stages = [{"name": name, "min_seconds": seconds, "mean_seconds": seconds, "max_seconds": seconds, "calls": N_STEPS}
               for name, seconds in (("step", 3.0), ("step / S2", 2.0))]
     (folder / "summary.json").write_text(json.dumps({
-        "status": "done", "ranks": 1, "wall_seconds": 3.5, "largest_momentum_error": float("nan"), "phases": phases}))
+        "status": "done", "ranks": 1, "wall_seconds": 3.5, "largest_momentum_error": float("nan"), "stages": stages}))
 
 
 if __name__ == "__main__":

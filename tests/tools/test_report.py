@@ -238,7 +238,7 @@ class Data(Pages):
         wanted = re.findall(r'\["(\w+)", "[^"]*"\]', (TOOLS / "report_page" / "curves.js").read_text())
         self.assertEqual([name for name in wanted if name not in history], ["liquid_volume_target"])
         self.assertEqual(set(run["tables"]["bodies.csv"]["named"]), {"Disc", "Tail", "Curtain"})
-        self.assertTrue(any(phase["name"] == "step / S2" for phase in run["phases"]))
+        self.assertTrue(any(stage["name"] == "step / S2" for stage in run["stages"]))
 
 
 if __name__ == "__main__":

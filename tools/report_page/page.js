@@ -1,5 +1,5 @@
 "use strict";
-// Puts the page together: heads, players that go by one clock, curves, phases and parameters.
+// Puts the page together: heads, players that go by one clock, curves, stages and parameters.
 
 const at = (id) => document.getElementById(id);
 const state = { runs: pageData.runs, time: 0, playing: false, players: [], plots: [], chosen: {}, hidden: {} };
@@ -209,18 +209,18 @@ function nearestFrame(time) {
 }
 
 function fillPhases() {
-  at("phases").replaceChildren(...state.runs.map((run) => {
-    if (!run.phases.length) return make("p", { class: "note" }, "Told when the run has ended.");
-    const total = run.phases.filter(({ name }) => !name.includes(" / ")).reduce((sum, phase) => sum + phase.max_seconds, 0);
-    const rows = run.phases.filter((phase) => phase.max_seconds > 0.004 * total).map((phase) => {
-      const depth = phase.name.split(" / ").length - 1;
-      const label = make("td", { style: `padding-left: ${18 * depth}px` }, phase.name.split(" / ").pop());
-      const bar = make("span", { class: "share", style: `width: ${(100 * phase.mean_seconds) / total}%; opacity: ${1 - 0.25 * Math.min(depth, 3)}` });
-      const ranks = phase.max_seconds > 1.02 * phase.min_seconds ? ` (${shortNumber(phase.min_seconds)} to ${shortNumber(phase.max_seconds)})` : "";
-      return make("tr", {}, label, make("td", {}, bar), make("td", { class: "number" }, `${shortNumber(phase.mean_seconds)} s${ranks}`),
-        make("td", { class: "number" }, `${phase.calls} ×`));
+  at("stages").replaceChildren(...state.runs.map((run) => {
+    if (!run.stages.length) return make("p", { class: "note" }, "Told when the run has ended.");
+    const total = run.stages.filter(({ name }) => !name.includes(" / ")).reduce((sum, stage) => sum + stage.max_seconds, 0);
+    const rows = run.stages.filter((stage) => stage.max_seconds > 0.004 * total).map((stage) => {
+      const depth = stage.name.split(" / ").length - 1;
+      const label = make("td", { style: `padding-left: ${18 * depth}px` }, stage.name.split(" / ").pop());
+      const bar = make("span", { class: "share", style: `width: ${(100 * stage.mean_seconds) / total}%; opacity: ${1 - 0.25 * Math.min(depth, 3)}` });
+      const ranks = stage.max_seconds > 1.02 * stage.min_seconds ? ` (${shortNumber(stage.min_seconds)} to ${shortNumber(stage.max_seconds)})` : "";
+      return make("tr", {}, label, make("td", {}, bar), make("td", { class: "number" }, `${shortNumber(stage.mean_seconds)} s${ranks}`),
+        make("td", { class: "number" }, `${stage.calls} ×`));
     });
-    return make("table", { class: "phases" }, ...rows);
+    return make("table", { class: "stages" }, ...rows);
   }));
 }
 

@@ -32,7 +32,7 @@ def pack_run(folder, blobs, frames):
         "view": view_of(values),
         "domain": domain(values, packed_frames["frames"]),
         "facts": facts(summary, values, tables.get(HISTORY)),
-        "phases": summary.get("phases", []),
+        "stages": summary.get("stages", []),
         "parameters": [(name, value) for name, value, is_default in parameters if not is_default],
         "scene": (folder / "input.xml").read_text(errors="replace") if (folder / "input.xml").is_file() else "",
         "tables": pack_tables(tables, blobs),

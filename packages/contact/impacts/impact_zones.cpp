@@ -7,7 +7,6 @@
 #include <set>
 
 #include "base/disjoint_sets.hpp"
-#include "base/interruption.hpp"
 #include "contact/impacts/rigid_member.hpp"
 #include "linear/least_squares.hpp"
 
@@ -339,7 +338,6 @@ ZonedMotion<dim> join_impact_zones(const SolidSystem<dim>& system, const Contact
   ImpactZones<dim> zones(system, shapes, inverse_mass, dt, velocity);
   ZonedMotion<dim> zoned;
   for (int round = 0; round < most_rounds; ++round) {
-    poll_interruption(system.comm());
     const SolidMotion<dim> motion(system, shapes, velocity);
     SurfacePath<dim> path(shapes, motion, dt);
     path.unheld = unheld;

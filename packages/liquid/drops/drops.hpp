@@ -58,10 +58,6 @@ class Drops {
 
   void save(CheckpointWriter& checkpoint) const;  ///< under fluid/drops
   void load(const CheckpointReader& checkpoint);
-  /// Takes back what has been done since.
-  std::function<void()> undo() {
-    return [this, state = state_] { state_ = state; };
-  }
 
  private:
   struct State {

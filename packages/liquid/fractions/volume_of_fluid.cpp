@@ -341,22 +341,6 @@ void VolumeOfFluid<dim>::load(const CheckpointReader& checkpoint) {
 }
 
 template <int dim>
-std::function<void()> VolumeOfFluid<dim>::undo() {
-  return [this, phi = phi_, fractions = fractions_, solids = solids_, n_sweeps = n_sweeps_,
-          n_bodies = n_bodies_, volume = volume_, target = target_, paid = paid_, lost = lost_] {
-    phi_ = phi;
-    fractions_ = fractions;
-    solids_ = solids;
-    n_sweeps_ = n_sweeps;
-    n_bodies_ = n_bodies;
-    volume_ = volume;
-    target_ = target;
-    paid_ = paid;
-    lost_ = lost;
-  };
-}
-
-template <int dim>
 std::function<void()> VolumeOfFluid<dim>::migrate(const TileMigration<dim>& migration) {
   const double lost = leave_tiles(domain_, solids_, migration.gone(), fractions_);
   target_ -= lost;

@@ -32,7 +32,6 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   std::string name() const override { return "volume of fluid"; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
-  std::function<void()> undo() override;
   std::function<void()> migrate(const TileMigration<dim>& migration) override;
 
   void initialise(const SignedDistance<dim>& distance, const Surface& surface) override;

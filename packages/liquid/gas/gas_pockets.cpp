@@ -284,15 +284,6 @@ std::vector<StoredField> GasPockets<dim>::fields() {
       {"gas_pocket", {&number_}}, {"gas_amount", {&amount_}}, {"gas_pressure", {&last_pressure_}}};
 }
 
-template <int dim>
-std::function<void()> GasPockets<dim>::undo() {
-  return [this, number = number_, amount = amount_, last = last_pressure_] {
-    number_ = number;
-    amount_ = amount;
-    last_pressure_ = last;
-  };
-}
-
 template class GasPockets<2>;
 template class GasPockets<3>;
 

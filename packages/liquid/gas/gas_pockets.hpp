@@ -56,7 +56,6 @@ class GasPockets {
   void accept(double dt);  ///< keeps the pressures last given, in a step of dt. Local.
   GasReport report() const;
   std::vector<StoredField> fields();
-  std::function<void()> undo();
 
  private:
   std::vector<char> open_groups(const CellGroups& groups, const CellField& phi) const;

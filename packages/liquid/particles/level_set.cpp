@@ -343,26 +343,6 @@ void LevelSet<dim>::load(const CheckpointReader& checkpoint) {
 }
 
 template <int dim>
-std::function<void()> LevelSet<dim>::undo() {
-  return [this, phi = phi_, moved = moved_, surface = solids_.state.surface,
-          targets = volume_.targets(), particles = particles_, in_band = in_band_,
-          n_restored = n_restored_, loaded = loaded_,
-          undo_drops = drops_ ? drops_->undo() : std::function<void()>()] {
-    if (undo_drops)
-      undo_drops();
-    phi_ = phi;
-    moved_ = moved;
-    find_solids(surface);
-    loaded_ = loaded;
-    if (!loaded_)
-      volume_.restore(solids_, phi_, targets);
-    particles_ = particles;
-    in_band_ = in_band;
-    n_restored_ = n_restored;
-  };
-}
-
-template <int dim>
 std::function<void()> LevelSet<dim>::migrate(const TileMigration<dim>& migration) {
   in_band_.resize(phi_.size(), 0);  // ghosts come from their owners
   migration.move(phi_, cut_off());

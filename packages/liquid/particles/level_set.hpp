@@ -42,7 +42,6 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
-  std::function<void()> undo() override;
   std::function<void()> migrate(const TileMigration<dim>& migration) override;
 
   void initialise(const SignedDistance<dim>& distance, const Surface& surface) override;

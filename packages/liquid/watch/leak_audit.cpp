@@ -156,14 +156,6 @@ void LeakAudit<dim>::open(const InterfaceStep<dim>& step, InterfaceModel<dim>& i
 }
 
 template <int dim>
-std::function<void()> LeakAudit<dim>::undo() {
-  return [this, places = places_] {
-    places_ = places;
-    forget();
-  };
-}
-
-template <int dim>
 bool LeakAudit<dim>::holds_solids(const Look& now, const std::vector<char>& cells) const {
   const TiledGrid<dim>& grid = domain_.grid;
   GlobalIndex n_beside = 0;

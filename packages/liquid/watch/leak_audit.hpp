@@ -43,7 +43,6 @@ class LeakAudit {
   /// All is nan of a place that is not watched.
   const std::vector<WatchedLiquid>& report() const { return report_; }
   std::vector<StoredField> fields() { return {{"watched_places", {&places_}}}; }
-  std::function<void()> undo();
 
  private:
   /// Liquid and solids at one instant, on stored cells.

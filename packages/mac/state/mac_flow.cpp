@@ -94,22 +94,6 @@ double MacFlow<dim>::largest_speed() const {
 }
 
 template <int dim>
-std::function<void()> MacFlow<dim>::undo() {
-  std::vector<CellField> before;
-  for (const Scalar& scalar : scalars.all())
-    before.push_back(scalar.values);
-  const auto undo_liquid = liquid ? liquid->undo() : [] {};
-  return [this, before = std::move(before), undo_liquid, old_time = time, old_step = last_step] {
-    undo_liquid();
-    for (std::size_t s = 0; s < before.size(); ++s)
-      scalars.all()[s].values = before[s];
-    scaled_pressure = accepted_pressure;
-    time = old_time;
-    last_step = old_step;
-  };
-}
-
-template <int dim>
 void MacFlow<dim>::save(CheckpointWriter& checkpoint) const {
   save_fields(domain, fields, checkpoint);
   CellField cells(domain.grid.n_stored_cells(), static_cast<double>(CellState::outside));

@@ -59,8 +59,6 @@ struct MacFlow {
   /// The fields and times. Loading finds the tiles already as they were. Collective.
   void save(CheckpointWriter& checkpoint) const;
   void load(const CheckpointReader& checkpoint);
-  /// Puts back what a step changes before it is accepted. Calling what it returns is collective.
-  std::function<void()> undo();
 
  private:
   mutable std::optional<double> largest_speed_;

@@ -11,7 +11,7 @@
 #include <unordered_map>
 
 #include "base/errors.hpp"
-#include "base/interruption.hpp"
+#include "base/signals.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/gathered_operator.hpp"
 #include "solve/soft/multifrontal_cholesky.hpp"

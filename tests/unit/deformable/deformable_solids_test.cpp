@@ -239,20 +239,6 @@ TEST(DeformableSolids, TwoTrianglesOnManyRanks) {
   EXPECT_NEAR(alone.solids.states()[0].velocity.y(), -0.3, 1e-12);
 }
 
-TEST(DeformableSolids, UndoPutsBackWhatAStepChanges) {
-  const auto bodies = model<3>(pair_of_bodies), untouched = model<3>(pair_of_bodies);
-  const auto undo = bodies->undo();
-  const auto velocity = rcp(new Vector(*bodies->velocity(), Teuchos::Copy));
-  bodies->move(*velocity, 0, 0.3);
-  velocity->scale(2);
-  bodies->set_velocity(*velocity);
-  undo();
-  EXPECT_EQ(bodies->positions(), untouched->positions());
-  EXPECT_EQ(bodies->surface().vertices, untouched->surface().vertices);
-  EXPECT_EQ(dense(*bodies->velocity()), dense(*untouched->velocity()));
-  EXPECT_EQ(bodies->elastic_forces(), untouched->elastic_forces());
-}
-
 TEST(DeformableSolids, CheckpointRestoresBitForBit) {
   const std::string folder = (std::filesystem::temp_directory_path() /
                               ("lockstep_deformable_" + std::to_string(world()->getSize())))

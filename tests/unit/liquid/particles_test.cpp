@@ -177,22 +177,6 @@ TEST(Particles, CheckpointRestoresBitForBit) {
 }
 
 /// A step that is taken back leaves no trace.
-TEST(Particles, AStepCanBeTakenBack) {
-  Bath<2> bath(open_cube<2>(40));
-  bath.set_velocity(swirl<2>);
-  const auto model = bath.make(name), straight = bath.make(name);
-  for (auto* m : {model.get(), straight.get()})
-    m->initialise(ball<2>(Point<2>(0.45, 0.45), 0.25), nullptr);
-  const auto undo = model->undo();
-  bath.step(*model, 0, 0.11);
-  undo();
-  for (auto* m : {model.get(), straight.get()})
-    bath.step(*m, 0, 0.05);
-  EXPECT_EQ(census(bath, *model), census(bath, *straight));
-  bath.domain.grid.for_each_stored_cell(
-      [&](int c) { ASSERT_EQ(model->distance()[c], straight->distance()[c]); });
-}
-
 /// A closed shell, empty in a pool or half full in the air, is driven through rough flow. What was
 /// dry stays dry, what is inside remains there, and no particle of the liquid changes sides.
 template <int dim>

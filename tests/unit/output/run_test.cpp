@@ -9,11 +9,10 @@
 #include <thread>
 
 #include "base/errors.hpp"
-#include "base/interruption.hpp"
+#include "base/signals.hpp"
 #include "output/progress.hpp"
 #include "output/provenance/build_information.hpp"
 #include "output/run_record.hpp"
-#include "output/signals.hpp"
 #include "output/timers.hpp"
 #include "test_folder.hpp"
 
@@ -69,18 +68,18 @@ TEST(Banner, NamesTheBuild) {
                            "simulate scene.xml"));
 }
 
-TEST(PhaseTimers, NestAndReduceOverTheRanks) {
+TEST(StageTimers, NestAndReduceOverTheRanks) {
   const Communicator comm = Tpetra::getDefaultComm();
-  PhaseTimers timers;
+  StageTimers timers;
   for (int i = 0; i < 2; ++i) {
-    const ScopedPhase step(timers, "step");
-    const ScopedPhase solve(timers, "S2 solve");
+    const ScopedStage step(timers, "step");
+    const ScopedStage solve(timers, "S2 solve");
     // The last rank takes longest.
     if (comm->getRank() + 1 == comm->getSize()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
-  const std::vector<PhaseTime> report = timers.report(comm);
+  const std::vector<StageTime> report = timers.report(comm);
   ASSERT_EQ(report.size(), 2u);
   EXPECT_EQ(report[0].name, "step");
   EXPECT_EQ(report[1].name, "step / S2 solve");
@@ -105,18 +104,8 @@ TEST(Signals, AreSeenByAllRanks) {
   if (comm->getRank() + 1 == comm->getSize())
     std::raise(SIGTERM);
   EXPECT_EQ(signal_received(comm), SIGTERM);
-
-  // Where a run can be left, the next sum leaves it, on all ranks.
-  EXPECT_EQ(sum_all(comm, 2.0), 2.0 * comm->getSize());
-  poll_interruption(comm);
-  const Interruptible interruptible;
-  EXPECT_THROW(sum_all(comm, 2.0), Interrupted);
-  try {
-    poll_interruption(comm);
-    FAIL() << "not interrupted";
-  } catch (const Interrupted& interrupted) {
-    EXPECT_EQ(interrupted.signal, SIGTERM);
-  }
+  note_signal(0);
+  EXPECT_EQ(signal_received(comm), 0);
 }
 
 TEST(RunRecord, KeepsTheInputByteForByte) {

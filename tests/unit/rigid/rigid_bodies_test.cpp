@@ -133,39 +133,6 @@ TEST(RigidBodies, MomentumOfVelocityIsThatOfTheBodies) {
   EXPECT_NEAR(each[4].linear.z(), 8, 1e-12);
 }
 
-TEST(RigidBodies, UndoPutsBackWhatAStepChanges) {
-  const auto bodies = model<3>(zoo()), untouched = model<3>(zoo());
-  const auto undo = bodies->undo();
-  const auto velocity = rcp(new Vector(*bodies->velocity(), Teuchos::Copy));
-  bodies->move(*velocity, 0, 0.25);
-  velocity->scale(2);
-  bodies->set_velocity(*velocity);
-  undo();
-  EXPECT_EQ(bodies->time(), 0);
-  EXPECT_EQ(bodies->surface().vertices, untouched->surface().vertices);
-  for (std::size_t b = 0; b < bodies->bodies().size(); ++b) {
-    EXPECT_EQ(bodies->bodies()[b].velocity, untouched->bodies()[b].velocity);
-    EXPECT_EQ(bodies->bodies()[b].momentum, untouched->bodies()[b].momentum);
-  }
-}
-
-/// A script tells when its body is copied, with its mesh.
-TEST(RigidBodies, UndoCopiesNoBody) {
-  struct Script {
-    explicit Script(int& counter) : n_copies(counter) {}
-    Script(const Script& other) : n_copies(other.n_copies) { ++n_copies; }
-    ScriptedMotion<3> operator()(double) const { return {}; }
-    int& n_copies;
-  };
-  int n_copies = 0;
-  RigidBody<3> scripted = body<3>(small_ball + number("Density", "2"));
-  scripted.script = Script(n_copies);
-  RigidBodies<3> bodies({scripted}, Point<3>::Zero(), world());
-  n_copies = 0;
-  bodies.undo()();
-  EXPECT_EQ(n_copies, 0);
-}
-
 TEST(RigidBodies, LocksAreTheNamedDofs) {
   const auto bodies = model<3>(zoo());
   const auto mine = bodies->locked_dofs();

@@ -52,9 +52,6 @@ class RecordingFluid : public FakeFluid<2> {
     calls_.push_back("fluid: u = u*");
     FakeFluid<2>::accept();
   }
-  std::function<void()> undo() override {
-    return [this] { calls_.push_back("fluid: undo"); };
-  }
 
  protected:
   const FluidGeometry<2>& freeze(const Surface& surface, const OpenFractionRule<2>& rule) override {
@@ -98,9 +95,6 @@ class RecordingSolid : public FakeSolid<2> {
     calls_.push_back("solids: V");
     FakeSolid<2>::set_velocity(velocity);
   }
-  std::function<void()> undo() override {
-    return [this] { calls_.push_back("solids: undo"); };
-  }
 
  private:
   Calls& calls_;
@@ -111,9 +105,6 @@ class RecordingJoints : public ConstraintModel {
  public:
   explicit RecordingJoints(Calls& calls) : calls_(calls) {}
   std::string name() const override { return "recording"; }
-  std::function<void()> undo() override {
-    return [this] { calls_.push_back("joints: undo"); };
-  }
   std::vector<Combination> combinations() const override { return {}; }
   ClosedMotion close(double, double, Vector&) override { return {}; }
   std::vector<JointLimit> limits(double, const std::vector<double>&) const override { return {}; }

@@ -35,20 +35,6 @@ void for_each_plug_in(Components<dim>& components, const Function& f) {
     f(*components.contact);
 }
 
-/// `PlugIn::undo` of all of them. Calling what it returns is collective.
-template <int dim>
-std::function<void()> undo_of(Components<dim>& components) {
-  std::vector<std::function<void()>> all{components.solids->undo()};
-  for_each_plug_in(components, [&all](PlugIn& plug_in) {
-    if (!side_of<SolidModel<dim>>(plug_in))
-      all.push_back(plug_in.undo());
-  });
-  return [all = std::move(all)] {
-    for (const auto& undo_one : all)
-      undo_one();
-  };
-}
-
 /// The sides that a step makes use of; null where a plug-in does without.
 template <int dim>
 struct ComponentSides {

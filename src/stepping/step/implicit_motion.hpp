@@ -3,15 +3,14 @@
 
 #include "coupling/solid_system.hpp"
 #include "interfaces/contact.hpp"
-#include "stepping/step_context.hpp"
+#include "stepping/step/step_context.hpp"
 
 namespace lockstep {
 
 template <int dim>
 struct SettledMotion {
-  RCP<Vector> velocity;          ///< with contact
-  ContactReport<dim> contact;    ///< of the last linearisation; without contact empty
-  bool linearised_anew = false;  ///< D is another one than before
+  RCP<Vector> velocity;        ///< with contact
+  ContactReport<dim> contact;  ///< of the last linearisation; without contact empty
   bool is_settled =
       true;  ///< false: the forces are not yet those of this velocity, nor the contact
 };
@@ -19,6 +18,11 @@ struct SettledMotion {
 /// (M_S - dt D)^-1 with locked rows of the identity. Collective.
 template <int dim>
 RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, double dt);
+
+/// The answer of joints with stiff springs to what contact and limits do within a step of dt; empty
+/// without them: solids answer with their masses.
+template <int dim>
+ContactResponse joint_response(const SolidSystem<dim>& solids, double dt);
 
 /// What a solve over dt is to find for the solids alone: with the impulses of the fluid as they
 /// are, the velocity that minimises

@@ -1,4 +1,4 @@
-#include "stepping/implicit_motion.hpp"
+#include "stepping/step/implicit_motion.hpp"
 
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
@@ -118,6 +118,17 @@ RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, doub
 }
 
 template <int dim>
+ContactResponse joint_response(const SolidSystem<dim>& solids, double dt) {
+  if (!solids.joints() || !solids.joints()->has_implicit_forces())
+    return {};
+  return [&solids, dt, inverse = RCP<const LinearOperator>()]() mutable {
+    if (inverse.is_null())
+      inverse = exact_inverse(solids.solid_block(Teuchos::null, dt), "implicit forces of joints");
+    return inverse;
+  };
+}
+
+template <int dim>
 SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
                                  const StepContext<dim>& context,
                                  const std::function<void(Vector&)>& adjust,
@@ -125,7 +136,7 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
                                  const RCP<const LinearOperator>& known_response) {
   const double dt = context.dt;
   const ContactPhase phase =
-      context.phase == Phase::S1 ? ContactPhase::position : ContactPhase::velocity;
+      context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
   SettledMotion<dim> settled;
   Response<dim> response(solids, dt, known_response);
   RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
@@ -135,7 +146,7 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
   apply(*block, predicted, impulse);
   for (int k = 1;; ++k) {
     if (contact) {
-      settled.contact = contact->resolve(solids, phase, context.step_dt, *goal,
+      settled.contact = contact->resolve(solids, phase, context.step.dt, *goal,
                                          [&response] { return response.inverse(); });
     }
     Vector gradient(impulse, Teuchos::Copy);
@@ -151,10 +162,9 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
       settled.is_settled = false;
       return settled;
     }
-    const RCP<const Vector> before = solids.explicit_momentum(context.time, dt);
+    const RCP<const Vector> before = solids.explicit_momentum(context.step.begin, dt);
     solids.linearise(dt, *at);
-    settled.linearised_anew = true;
-    Vector change(*solids.explicit_momentum(context.time, dt), Teuchos::Copy);
+    Vector change(*solids.explicit_momentum(context.step.begin, dt), Teuchos::Copy);
     change.update(-1, *before, 1);
     momentum.update(1, change, 1);
     impulse.update(1, change, 1);
@@ -221,6 +231,8 @@ template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, co
                                            const Vector&, Vector&,
                                            const RCP<const LinearOperator>&);
 template RCP<const LinearOperator> implicit_response(const SolidSystem<2>&, double);
+template ContactResponse joint_response(const SolidSystem<2>&, double);
+template ContactResponse joint_response(const SolidSystem<3>&, double);
 template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, const StepContext<3>&,
                                            const std::function<void(Vector&)>&, const Vector&,
                                            const Vector&, Vector&,

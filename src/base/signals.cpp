@@ -1,14 +1,11 @@
-#include "output/signals.hpp"
+#include "base/signals.hpp"
 
 #include <signal.h>
-
-#include <csignal>
-
-#include "base/interruption.hpp"
 
 namespace lockstep {
 
 namespace {
+volatile std::sig_atomic_t noted = 0;
 volatile std::sig_atomic_t n_received = 0;
 
 void handle_signal(int signal_number) {
@@ -30,6 +27,30 @@ void install_signal_handlers() {
   sigaction(SIGINT, &action, nullptr);
   // Beyond a limit of the size of files, writing fails with a message instead.
   signal(SIGXFSZ, SIG_IGN);
+}
+
+void note_signal(int signal_number) {
+  noted = signal_number;
+}
+
+int noted_signal() {
+  return noted;
+}
+
+int signal_received(const Communicator& comm) {
+  return static_cast<int>(max_all(comm, static_cast<GlobalIndex>(noted)));
+}
+
+HeldSignals::HeldSignals() {
+  sigset_t held;
+  sigemptyset(&held);
+  sigaddset(&held, SIGTERM);
+  sigaddset(&held, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &held, &before_);
+}
+
+HeldSignals::~HeldSignals() {
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 }  // namespace lockstep

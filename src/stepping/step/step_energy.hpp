@@ -3,9 +3,9 @@
 
 #include "coupling/coupled_system.hpp"
 #include "interfaces/energy.hpp"
-#include "stepping/components.hpp"
-#include "stepping/solve_audit.hpp"
-#include "stepping/step_context.hpp"
+#include "stepping/step/components.hpp"
+#include "stepping/step/coupled_solution.hpp"
+#include "stepping/step/step_context.hpp"
 
 namespace lockstep {
 

@@ -1,0 +1,36 @@
+#include "stepping/step/advection_velocity.hpp"
+
+#include <Tpetra_Vector.hpp>
+
+#include "linear/null_space.hpp"
+
+namespace lockstep {
+
+template <int dim>
+AdvectionReport AdvectionVelocity<dim>::make(const StepTime& step, const std::string& name,
+                                             bool is_projected) {
+  auto& fluid = *components_.fluid;
+  auto& coupling = *components_.coupling;
+  const bool has_no_divergence = fluid.begin_advection_velocity(step.dt);
+  if (components_.solids->empty() && is_projected && has_no_divergence)
+    return {};
+  const std::vector<double> effective = coupling.effective_velocity(*components_.solids);
+  fluid.set_coupled_velocity(effective);
+  CoupledSolution solution;
+  solution.rhs.pressure = make_vector(fluid.pressure_map());
+  fluid.divergence(*solution.rhs.pressure);
+  coupling.add_divergence(effective, *solution.rhs.pressure);
+  const BlockSystem& blocks = system_.blocks(0, false);
+  const double incompatibility = relative_part_removed(blocks.null_space, *solution.rhs.pressure);
+  solution.unknowns.pressure = make_vector(fluid.pressure_map());
+  components_.strategy->prepare(blocks);
+  gas_.solve_advection(step.dt, effective, blocks,
+                       solve_request(fluid, name, tolerance_, step, step.dt), solution);
+  gas_.project(*solution.unknowns.pressure, solution.gas_pressure);
+  return {solution.report, incompatibility};
+}
+
+template class AdvectionVelocity<2>;
+template class AdvectionVelocity<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,33 @@
+#pragma once
+#include "coupling/coupled_system.hpp"
+#include "output/timers.hpp"
+#include "stepping/step/trapped_gas.hpp"
+
+namespace lockstep {
+
+/// What making the advection velocity took.
+struct AdvectionReport {
+  SolveReport solve;           ///< empty where u^n is it
+  double incompatibility = 0;  ///< see CoupledSolution
+};
+
+/// Makes the advection velocity u_ADV: u^n without divergence, with the effective velocity of the
+/// solids, (x^{n+1} - x^n) / dt, as Neumann data, so that no fluid passes a solid.
+template <int dim>
+class AdvectionVelocity {
+ public:
+  AdvectionVelocity(Components<dim>& components, CoupledSystem<dim>& system, double tolerance)
+      : components_(components), system_(system), gas_(components), tolerance_(tolerance) {}
+
+  /// Leaves u_ADV in u*; the solids have moved. `is_projected`: u^n has no divergence on the
+  /// present cells. Throws SolveError. Collective.
+  AdvectionReport make(const StepTime& step, const std::string& name, bool is_projected);
+
+ private:
+  Components<dim>& components_;
+  CoupledSystem<dim>& system_;
+  TrappedGas<dim> gas_;
+  double tolerance_;
+};
+
+}  // namespace lockstep

@@ -1,0 +1,32 @@
+#include "stepping/step/coupled_solution.hpp"
+
+#include <Tpetra_Vector.hpp>
+#include <cmath>
+
+namespace lockstep {
+
+template <int dim>
+RCP<Vector> last_pressure(const FluidDiscretization<dim>& fluid, const StepTime& step, double dt) {
+  const RCP<Vector> pressure = fluid.last_scaled_pressure();
+  if (step.last_dt > 0)
+    pressure->scale(dt / step.last_dt);
+  return pressure;
+}
+
+template <int dim>
+SolveRequest solve_request(const FluidDiscretization<dim>& fluid, const std::string& name,
+                           double tolerance, const StepTime& step, double dt) {
+  const double speed = fluid.largest_speed() + dt * fluid.gravity().norm();
+  const double area = std::pow(fluid.smallest_length(), dim - 1);
+  const auto n_cells = static_cast<double>(fluid.pressure_map()->getGlobalNumElements());
+  return {name, tolerance, 1e-15 * speed * area * std::sqrt(n_cells), step.number};
+}
+
+template RCP<Vector> last_pressure(const FluidDiscretization<2>&, const StepTime&, double);
+template RCP<Vector> last_pressure(const FluidDiscretization<3>&, const StepTime&, double);
+template SolveRequest solve_request(const FluidDiscretization<2>&, const std::string&, double,
+                                    const StepTime&, double);
+template SolveRequest solve_request(const FluidDiscretization<3>&, const std::string&, double,
+                                    const StepTime&, double);
+
+}  // namespace lockstep

@@ -1,0 +1,66 @@
+#pragma once
+#include "coupling/coupled_system.hpp"
+#include "output/timers.hpp"
+#include "stepping/step/implicit_motion.hpp"
+#include "stepping/step/solid_forces.hpp"
+#include "stepping/step/trapped_gas.hpp"
+
+namespace lockstep {
+
+struct CoupledSolveOptions {
+  double tolerance = 1e-8;    ///< of the residual of each block, relative
+  int newton_iterations = 1;  ///< solves with implicit forces linearised anew
+};
+
+/// The velocities at the end of a step.
+template <int dim>
+struct EndOfStep {
+  CoupledSolution solution;
+  ContactReport<dim> contact;  ///< on V_S*, before the pressure
+};
+
+/// Finds p̂ and V of Eq. 16 at frozen geometry, with implicit forces of solids, gas and contact.
+template <int dim>
+class CoupledSolve {
+ public:
+  /// Throws InputError if the fluid has gas that the coupling does not know.
+  CoupledSolve(Components<dim>& components, CoupledSystem<dim>& system,
+               const CoupledSolveOptions& options, StageTimers& timers);
+  /// Throws InputError if what is prescribed at the start of a run has no solution. Collective.
+  void check_start(double time) const;
+
+  /// One linear solve with the explicit `momentum` M_S V_S*; `name` is for messages. It begins at
+  /// `nearby`, the unknowns of a similar solve; null: at the last step's. Throws SolveError.
+  /// Collective.
+  CoupledSolution solve(const StepContext<dim>& context, const RCP<Vector>& momentum,
+                        const std::string& name, const BlockVector* nearby = nullptr);
+  /// As `solve`, with implicit forces that are those at the velocity found: Newton's method, and
+  /// where velocities are found also a search that lowers the energy. `momentum` changes with the
+  /// linearisation. Collective.
+  CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
+                           const BlockVector* nearby = nullptr);
+  /// The end of the step: contact acts on V_S*, then the pressure is found. `drag`: viscous impulse
+  /// on the solids; null: none. Throws SolveError if what is prescribed has no solution, but for
+  /// what the grid makes of the solids' shapes. Collective.
+  EndOfStep<dim> velocities(const StepContext<dim>& context, const SolidMomentum<dim>& solids,
+                            const RCP<const Vector>& drag);
+  /// u* -= M^-1 G p, and u*_F = W V; `viscous_pressure`: what the pressure for the next step has
+  /// besides; null: nothing. Collective.
+  void project(const CoupledSolution& solution, const RCP<const Vector>& viscous_pressure);
+  /// u^{n+1} = u*, V^{n+1} = V, and joints take note of what they gave; `reactions`: of constraints
+  /// in the solve. Collective.
+  void accept(const StepContext<dim>& context, const EndOfStep<dim>& end,
+              const RCP<const Vector>& reactions);
+
+ private:
+  bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution);
+  ContactReport<dim> hold_contacts(const StepContext<dim>& context, Vector& momentum);
+
+  Components<dim>& components_;
+  CoupledSystem<dim>& system_;
+  CoupledSolveOptions options_;
+  TrappedGas<dim> gas_;
+  StageTimers& timers_;
+};
+
+}  // namespace lockstep

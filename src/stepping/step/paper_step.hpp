@@ -1,0 +1,55 @@
+#pragma once
+#include <functional>
+
+#include "stepping/step/fluid_transport.hpp"
+#include "stepping/step/step_audit.hpp"
+
+namespace lockstep {
+
+struct StepOptions {
+  CoupledSolveOptions solve;  ///< its tolerance is that of F2, too
+  PredictionOptions prediction;
+  bool energy_book = false;  ///< reports have it
+};
+
+/// The scheme of time of Section 7, a script on collaborators that do not know it.
+template <int dim>
+class PaperStep {
+ public:
+  /// Freezes the geometry of the start. Throws InputError for plug-ins that do not fit together and
+  /// for prescribed motions without a solution. Collective.
+  PaperStep(Components<dim>& components, const StepOptions& options, double start_time,
+            StageTimers& timers);
+
+  /// Advances by dt. Throws SolveError if a solve fails, or if what is prescribed has no solution.
+  /// `between_stages` is called between the stages; once it has thrown, fluid and solids are
+  /// somewhere within the step, and of no use. Collective.
+  StepReport<dim> advance(
+      double dt, const std::function<void()>& between_stages = [] {});
+  double time() const { return time_; }  ///< [s]
+  /// For restart, after fluid and solids were loaded: freezes the geometry anew. `last_dt`: length
+  /// of the last of the `n_steps` [s]. Collective.
+  void resume(double time, long long n_steps, double last_dt);
+  CoupledSystem<dim>& system() { return system_; }
+
+ private:
+  StepContext<dim> positions(const StepTime& step) const;
+  StepContext<dim> velocities(const StepTime& step, const StartImpulse& joints) const;
+  bool begin(const StepTime& step);
+
+  Components<dim>& components_;
+  CoupledSystem<dim> system_;
+  FluidTransport<dim> transport_;
+  CoupledSolve<dim> solve_;
+  Prediction<dim> prediction_;
+  SolidForces<dim> solid_forces_;
+  PositionUpdate<dim> positions_;
+  AdvectionVelocity<dim> advection_;
+  StepAudit<dim> audit_;
+  StageTimers& timers_;
+  double time_;
+  double last_dt_ = 0;     ///< 0 before the first step [s]
+  long long n_steps_ = 0;  ///< taken
+};
+
+}  // namespace lockstep

@@ -1,0 +1,182 @@
+#include "stepping/step/position_update.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include "linear/matrix_rows.hpp"
+#include "linear/overlap.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// q := q without what acts on marked dofs, and on combinations of them.
+void drop_with_followers(const Reduction& reduction, const Vector& marks, Vector& momentum) {
+  Vector dropped(marks, Teuchos::Copy);
+  if (reduction.has_combinations()) {
+    const CrsMatrix& combinations = *reduction.combinations();
+    const RCP<const Vector> terms = on_columns(combinations, marks);
+    const auto is_marked = terms->getData();
+    const auto values = dropped.getDataNonConst();
+    for_each_entry(combinations, [&](int row, GlobalIndex column, double) {
+      if (is_marked[combinations.getColMap()->getLocalElement(column)] != 0)
+        values[row] = 1;
+    });
+  }
+  const auto drop = dropped.getData();
+  const auto values = momentum.getDataNonConst();
+  for (int row = 0; row < drop.size(); ++row) {
+    if (drop[row] != 0)
+      values[row] = 0;
+  }
+}
+
+/// Closes the joints of a motion that was found with `correction`, by changing its velocity.
+ClosedFlight closed_flight(ConstraintModel& joints, const StepTime& step, const Vector& correction,
+                           const Vector& solved, Vector& velocity) {
+  if (auto* const flights = side_of<FreeFlight>(joints))
+    return flights->close_flight(step.begin, step.dt, correction, solved, velocity);
+  ClosedFlight motion;
+  motion.drift = joints.close(step.begin, step.dt, velocity).drift;
+  return motion;
+}
+
+}  // namespace
+
+template <int dim>
+PositionUpdate<dim>::PositionUpdate(Components<dim>& components, CoupledSystem<dim>& system,
+                                    CoupledSolve<dim>& solve, StageTimers& timers)
+    : components_(components),
+      system_(system),
+      solve_(solve),
+      solid_forces_(components, system),
+      timers_(timers) {}
+
+/// The coupled solve, the rates at which it has soft solids sweep volumes, and with joints the
+/// impulses that these give.
+template <int dim>
+void PositionUpdate<dim>::solve(const StepContext<dim>& context, const RCP<const Vector>& drag,
+                                const RCP<const Vector>& correction, const BlockVector* nearby,
+                                Found& found) {
+  ScopedStage stage(timers_, context.solve);
+  const auto& solids = *components_.solids;
+  const RCP<Vector> momentum = solid_forces_.momentum(context, correction).momentum;
+  if (!drag.is_null())
+    momentum->update(1, *drag, 1);
+  found.solution = solve_.converge(context, momentum, nearby);
+  found.velocity = found.solution.velocity;
+  found.path.report = found.solution.report;
+  found.path.incompatibility = found.solution.incompatibility;
+  if (solids.joints()) {
+    Vector given(*momentum, Teuchos::Copy);
+    if (!found.solution.gas_momentum.is_null())
+      given.update(1, *found.solution.gas_momentum, 1);
+    found.joint_impulse = system_.reactions(context.dt, context.constraints, given,
+                                            {found.solution.unknowns.pressure, found.velocity});
+  }
+  found.swept = swept_rates(*components_.fluid, solids, *components_.coupling, *found.velocity);
+}
+
+/// Limits of strain, volumes of closed regions, contacts.
+template <int dim>
+void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& found) {
+  auto& solids = *components_.solids;
+  const double dt = context.step.dt;
+  const bool is_implicit = solids.has_unknowns() && solids.has_implicit_forces();
+  solids.limit_motion(dt, *found.velocity);
+  found.path.stretch_beyond_limit = solids.stretch_beyond_limit();
+  // Shells push the fluid of closed regions, bodies only take back what straight steps add.
+  const auto sweep_shells = [&](Vector& velocity) {
+    sweep_volumes(rates_of_kind(found.swept, solids, false), solids, dt, velocity);
+  };
+  sweep_shells(*found.velocity);
+  const Vector as_solved(*found.velocity, Teuchos::Copy);
+  sweep_volumes(rates_of_kind(found.swept, solids, true), solids, dt, *found.velocity);
+  if (is_implicit)
+    bound_sweep<dim>(solids, context.dt, as_solved, *found.velocity);
+  if (solids.joints())
+    found.solved = rcp(new Vector(*found.velocity, Teuchos::Copy));
+  if (is_implicit) {
+    const SettledMotion<dim> settled =
+        settle_motion<dim>(solids, components_.contact.get(), context, sweep_shells, as_solved,
+                           *found.velocity, *found.solution.momentum);
+    found.velocity = settled.velocity;
+    found.path.is_converged = settled.is_settled;
+    found.path.contact = settled.contact;
+  } else if (components_.contact && solids.has_unknowns()) {
+    found.path.contact =
+        components_.contact->resolve(solids, ContactPhase::position, dt, *found.velocity,
+                                     joint_response<dim>(solids, context.dt));
+  }
+}
+
+/// `correction`: see `SolidForces::momentum`; `nearby`: see `CoupledSolve::solve`.
+template <int dim>
+typename PositionUpdate<dim>::Found PositionUpdate<dim>::find_once(
+    const StepContext<dim>& context, const RCP<const Vector>& drag,
+    const RCP<const Vector>& correction, const BlockVector* nearby) {
+  Found found;
+  if (components_.solids->has_unknowns())
+    solve(context, drag, correction, nearby, found);
+  else
+    found.velocity = make_vector(components_.solids->map());
+  ScopedStage stage(timers_, "solid motion");
+  keep_limits(context, found);
+  found.path.velocity = found.velocity;
+  return found;
+}
+
+/// Velocities that joints let take bodies off them by O(dt^2) all the same. Closing finds what
+/// brings them back, by the bodies' own masses; the solve about that knows the mass of the fluid,
+/// and what is still left to close is of higher order. How bodies turn on the way depends on the
+/// impulses at its begin, so that the midpoint correction is found with them.
+template <int dim>
+SolidPath<dim> PositionUpdate<dim>::find_with_joints(StepContext<dim> context,
+                                                     const RCP<const Vector>& drag) {
+  auto& solids = *components_.solids;
+  const auto close = [&](const Vector& correction, Found& found) {
+    // Solutions may share it.
+    found.velocity = rcp(new Vector(*found.velocity, Teuchos::Copy));
+    found.path.velocity = found.velocity;
+    return closed_flight(*solids.joints(), context.step, correction, *found.solved,
+                         *found.velocity);
+  };
+  const RCP<const Vector> correction = solid_forces_.midpoint_correction(context.dt);
+  Found found = find_once(context, drag, correction, nullptr);
+  ClosedFlight motion = close(*correction, found);
+  if (!motion.drift.is_null()) {
+    const Found first = found;
+    context.constraints = solids.constraints(context.step.begin, context.step.end(), motion.drift);
+    RCP<const Vector> next = correction;
+    if (!motion.correction.is_null())
+      next = motion.correction;
+    found = find_once(context, drag, next, &first.solution.unknowns);
+    found.path.report.add_work(first.path.report);
+    found.path.is_converged = found.path.is_converged && first.path.is_converged;
+    motion = close(*next, found);
+  }
+  if (motion.drift.is_null())
+    return found.path;
+  const RCP<Vector> impulse = found.joint_impulse;
+  if (!motion.at_end.is_null())
+    drop_with_followers(solids.reduction(), *motion.at_end, *impulse);
+  found.path.joints.held = solids.reduction().on_given(*impulse);
+  solids.reduction().drop_given(*impulse);
+  if (!motion.later_impulse.is_null())
+    impulse->update(1, *motion.later_impulse, 1);
+  found.path.joints.given = impulse;
+  return found.path;
+}
+
+template <int dim>
+SolidPath<dim> PositionUpdate<dim>::find(const StepContext<dim>& context,
+                                         const RCP<const Vector>& drag) {
+  if (components_.solids->has_unknowns() && components_.solids->joints())
+    return find_with_joints(context, drag);
+  return find_once(context, drag, {}, nullptr).path;
+}
+
+template class PositionUpdate<2>;
+template class PositionUpdate<3>;
+
+}  // namespace lockstep

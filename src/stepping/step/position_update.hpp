@@ -1,0 +1,58 @@
+#pragma once
+#include "coupling/swept_volumes.hpp"
+#include "interfaces/free_flight.hpp"
+#include "stepping/step/coupled_solve.hpp"
+
+namespace lockstep {
+
+/// How the solids get to their next positions.
+template <int dim>
+struct SolidPath {
+  RCP<const Vector>
+      velocity;         ///< of all dofs: positions move by its product with the step's length
+  StartImpulse joints;  ///< for the velocities at the end of the step
+  ContactReport<dim> contact;
+  SolveReport report;               ///< of the coupled solves
+  double incompatibility = 0;       ///< see CoupledSolution
+  bool is_converged = true;         ///< see CoupledSolution
+  double stretch_beyond_limit = 0;  ///< see SolidOutput
+};
+
+/// Finds the velocity that moves the solids over a step: from a coupled solve, changed so that
+/// elements keep their limits of strain, closed regions their volume, contacts their gaps and
+/// joints their bodies.
+template <int dim>
+class PositionUpdate {
+ public:
+  PositionUpdate(Components<dim>& components, CoupledSystem<dim>& system, CoupledSolve<dim>& solve,
+                 StageTimers& timers);
+
+  /// `drag`: viscous impulse on the solids in the coupled solve; null: none. Moves nothing.
+  /// Collective.
+  SolidPath<dim> find(const StepContext<dim>& context, const RCP<const Vector>& drag);
+
+ private:
+  /// A path with what closing its joints asks of it.
+  struct Found {
+    SolidPath<dim> path;
+    RCP<Vector> velocity;       ///< that of the path
+    RCP<const Vector> solved;   ///< before contact; null without joints
+    RCP<Vector> joint_impulse;  ///< of the solve; null without joints
+    SweptRates swept;           ///< of the solve
+    CoupledSolution solution;   ///< empty without unknowns
+  };
+  Found find_once(const StepContext<dim>& context, const RCP<const Vector>& drag,
+                  const RCP<const Vector>& correction, const BlockVector* nearby);
+  void solve(const StepContext<dim>& context, const RCP<const Vector>& drag,
+             const RCP<const Vector>& correction, const BlockVector* nearby, Found& found);
+  void keep_limits(const StepContext<dim>& context, Found& found);
+  SolidPath<dim> find_with_joints(StepContext<dim> context, const RCP<const Vector>& drag);
+
+  Components<dim>& components_;
+  CoupledSystem<dim>& system_;
+  CoupledSolve<dim>& solve_;
+  SolidForces<dim> solid_forces_;
+  StageTimers& timers_;
+};
+
+}  // namespace lockstep

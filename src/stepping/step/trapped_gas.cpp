@@ -1,0 +1,131 @@
+#include "stepping/step/trapped_gas.hpp"
+
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+
+template <int dim>
+TrappedGas<dim>::TrappedGas(const Components<dim>& components)
+    : components_(components),
+      fluid_(components.fluid->gas()),
+      coupling_(side_of<GasCoupling<dim>>(*components.coupling)) {
+  check_input(!fluid_ || coupling_,
+              "The coupling \"{}\" knows no gas that pushes on solids; take another one, or leave "
+              "\"Trapped Air\" at \"void\".",
+              components.coupling->name());
+}
+
+template <int dim>
+bool TrappedGas<dim>::is_there() const {
+  return fluid_ && !fluid_->gas_pockets().empty();
+}
+
+template <int dim>
+std::vector<double> TrappedGas<dim>::expected_pressure(double dt) const {
+  std::vector<double> result;
+  if (!is_there())
+    return result;
+  for (const GasPocket& pocket : fluid_->gas_pockets())
+    result.push_back(dt * pocket.pressure);
+  return result;
+}
+
+template <int dim>
+void TrappedGas<dim>::project(const Vector& scaled_pressure,
+                              const std::vector<double>& gas_pressure) const {
+  if (gas_pressure.empty())
+    components_.fluid->project(scaled_pressure);
+  else
+    fluid_->project(scaled_pressure, gas_pressure);
+}
+
+template <int dim>
+GasProblem TrappedGas<dim>::problem(double dt, double step_dt) const {
+  GasProblem gas;
+  gas.pockets = fluid_->gas_pockets();
+  gas.conductance = fluid_->gas_conductance();
+  gas.dt = dt;
+  gas.step_dt = step_dt;
+  return gas;
+}
+
+template <int dim>
+void TrappedGas<dim>::solve(const StepContext<dim>& context, const BlockSystem& blocks,
+                            const SolveRequest& request, CoupledSolution& solution) const {
+  if (!is_there()) {
+    solution.report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns, request);
+    return;
+  }
+  const Reduction& constraints = context.constraints;
+  const auto& solids = *components_.solids;
+  GasProblem gas = problem(context.dt, context.step.dt);
+  const int n = static_cast<int>(gas.pockets.size());
+  const auto& conductance = gas.conductance;
+  if (std::find(conductance.begin(), conductance.end(), 0.) != conductance.end())
+    gas.push_size = coupling_->gas_push_size(n);
+  gas.push = [&](const std::vector<double>& pressure, BlockVector& rhs) {
+    fluid_->add_gas_push(pressure, *rhs.pressure);
+    if (rhs.solid.is_null())
+      return;
+    const RCP<Vector> given = make_vector(solids.map());
+    coupling_->add_gas_push(pressure, *given);
+    constraints.restrict(*given);
+    rhs.solid->update(1, *given, 1);
+  };
+  gas.rates = [&](const BlockVector& unknowns, bool is_change) {
+    Vector velocity(solids.map());
+    if (!unknowns.solid.is_null()) {
+      velocity.update(1, *unknowns.solid, 0);
+      if (!constraints.is_identity())
+        is_change ? constraints.expand_change(velocity) : constraints.expand(velocity);
+    }
+    std::vector<double> rates =
+        coupling_->gas_rates(coupling_->closed_velocity(velocity, !is_change), n);
+    const std::vector<double> answer = fluid_->gas_answer(*unknowns.pressure);
+    const std::vector<double> before = is_change ? std::vector<double>(n, 0) : fluid_->gas_rates();
+    for (int k = 0; k < n; ++k)
+      rates[k] += before[k] - answer[k];
+    return rates;
+  };
+  solution.gas_pressure = solve_with_gas(gas, *components_.strategy, blocks, request, solution.rhs,
+                                         solution.unknowns, solution.report);
+  solution.gas_momentum = make_vector(solids.map());
+  coupling_->add_gas_push(solution.gas_pressure, *solution.gas_momentum);
+}
+
+template <int dim>
+void TrappedGas<dim>::solve_advection(double dt, const std::vector<double>& effective,
+                                      const BlockSystem& blocks, const SolveRequest& request,
+                                      CoupledSolution& solution) const {
+  if (!is_there()) {
+    solution.report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns, request);
+    return;
+  }
+  GasProblem gas = problem(dt, dt);
+  const int n = static_cast<int>(gas.pockets.size());
+  gas.with_springs = false;
+  for (GasPocket& pocket : gas.pockets)
+    pocket.pressure = 0;  // u^n has felt it
+  gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
+    fluid_->add_gas_push(pressure, *to.pressure);
+  };
+  gas.rates = [&](const BlockVector& unknowns, bool is_change) {
+    std::vector<double> rates = fluid_->gas_answer(*unknowns.pressure);
+    const std::vector<double> none(n, 0);
+    const std::vector<double> before = is_change ? none : fluid_->gas_rates();
+    const std::vector<double> solids = is_change ? none : coupling_->gas_rates(effective, n);
+    for (int k = 0; k < n; ++k)
+      rates[k] = before[k] + solids[k] - rates[k];
+    return rates;
+  };
+  solution.gas_pressure = solve_with_gas(gas, *components_.strategy, blocks, request, solution.rhs,
+                                         solution.unknowns, solution.report);
+}
+
+template class TrappedGas<2>;
+template class TrappedGas<3>;
+
+}  // namespace lockstep
