@@ -64,9 +64,8 @@ double summary_number(const RunResults& run, const std::string& name) {
 void add_cost(StudyRow& row, const Rung& rung) {
   const auto n = static_cast<double>(rung.runs.size());
   for (const RunResults& run : rung.runs) {
-    const double seconds = summary_number(run, "wall_seconds");
-    row.wall_seconds += seconds / n;
-    row.core_seconds += seconds * row.ranks / n;
+    row.wall_seconds += run.wall_seconds / n;
+    row.core_seconds += run.cpu_seconds / n;
     row.iterations_median += std::max(summary_number(run, "iterations.s1.median"),
                                       summary_number(run, "iterations.s2.median")) /
                              n;
@@ -208,7 +207,9 @@ std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
       "# title: {}\n# abscissa: {}\n# ladder: {}\n"
       "# cells: of the whole box; h [m], dt [s]: mean of a run; error: relative to the reference "
       "unless that is 0\n"
-      "# wall_seconds, core_seconds [s]: of one run; spread: standard deviation over the samples\n"
+      "# wall_seconds, core_seconds [s]: of one run; core_seconds: CPU seconds of all ranks; MPI "
+      "ranks that wait count\n"
+      "# spread: standard deviation over the samples\n"
       "# at_a_time: runs of the study, at most, while this one went; more than 1 take longer\n"
       "{}series,cells,h,dt,ranks,quantity,value,reference,error,order,wall_seconds,core_seconds,"
       "iterations_median,iterations_max,peak_memory_mb,spread,samples,abscissa,at_a_time\n",
@@ -248,6 +249,7 @@ std::string table_markdown(const Study& study, const std::vector<StudyRow>& rows
     }
     page += "\n";
   }
+  page += "Core seconds are CPU seconds of all ranks of a run; MPI ranks that wait count.\n\n";
   if (std::any_of(rows.begin(), rows.end(),
                   [](const StudyRow& row) { return row.n_at_a_time > 1; }))
     page +=

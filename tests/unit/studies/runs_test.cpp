@@ -78,6 +78,17 @@ TEST_F(Runs, ErrorsAndOrders) {
   EXPECT_THAT(table_csv(study_, rows), testing::HasSubstr("\nall,256,0.0625,"));
 }
 
+/// A busy machine lengthens the wall time, so that times the ranks is no measure of the work.
+TEST_F(Runs, CoreSecondsAreCpuSecondsOfAllRanks) {
+  study_.ladder_values = {4};
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].wall_seconds, 2.0);
+  EXPECT_EQ(rows[0].core_seconds, 1.5);
+  EXPECT_THAT(table_csv(study_, rows), testing::HasSubstr("core_seconds: CPU seconds"));
+  EXPECT_THAT(table_markdown(study_, rows), testing::HasSubstr("Core seconds are CPU seconds"));
+}
+
 TEST_F(Runs, SelfConvergenceAndReductions) {
   study_.quantities[0].reference = "self";
   study_.quantities[0].relative = false;
@@ -321,7 +332,7 @@ TEST_F(Runs, SecondsOfRunsSideBySideAreMarked) {
   options_.n_jobs = 1;
   const auto again = table();  // they are used again, with their mark
   EXPECT_EQ(again[0].n_at_a_time, 2);
-  EXPECT_THAT(table_markdown(study_, again), testing::HasSubstr("| 2 (2) | 6, 9 |"));
+  EXPECT_THAT(table_markdown(study_, again), testing::HasSubstr("| 1.5 (2) | 6, 9 |"));
   EXPECT_THAT(table_markdown(study_, again), testing::HasSubstr("shared the machine"));
   EXPECT_THAT(table_csv(study_, again), testing::EndsWith(",0.125,2\n"));
 }
