@@ -107,6 +107,18 @@ StudyRow make_row(const Study& study, const Quantity& quantity, const Rung& rung
   return row;
 }
 
+/// Of rows along a ladder of resolutions, each from the one before it.
+void add_orders(std::vector<StudyRow>& rows) {
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    const StudyRow& before = rows[r - 1];
+    StudyRow& row = rows[r];
+    const bool ordered = row.error && *before.error > 0 && *row.error > 0 && before.abscissa > 0 &&
+                         row.abscissa > 0 && before.abscissa != row.abscissa;
+    if (ordered)
+      row.order = std::log(*before.error / *row.error) / std::log(before.abscissa / row.abscissa);
+  }
+}
+
 /// Of `rows`, one of each of `rungs`. `is_whole`: the last of them is the last of the series.
 void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
                 const std::vector<const Rung*>& rungs, bool is_whole) {
@@ -124,12 +136,6 @@ void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
                                        fmt::format("Reference of \"{}\"", quantity.name));
     const double scale = quantity.relative && *row.reference != 0 ? std::abs(*row.reference) : 1.0;
     row.error = std::abs(row.value - *row.reference) / scale;
-    const StudyRow* before = r > 0 ? &rows[r - 1] : nullptr;
-    const bool ordered = before != nullptr && *before->error > 0 && *row.error > 0 &&
-                         before->abscissa > 0 && row.abscissa > 0 &&
-                         before->abscissa != row.abscissa;
-    if (ordered)
-      row.order = std::log(*before->error / *row.error) / std::log(before->abscissa / row.abscissa);
   }
 }
 
@@ -155,6 +161,8 @@ std::vector<StudyRow> rows_of(const Study& study, const Quantity& quantity,
                     "reference, is missing.",
                     quantity.name, rows.front().series));
   add_errors(rows, quantity, measured, is_whole);
+  if (is_resolution(study))
+    add_orders(rows);
   return rows;
 }
 
