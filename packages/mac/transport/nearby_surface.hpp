@@ -94,8 +94,8 @@ class NearbySurface {
   bool any_image(const Box<dim>& box, const Function& f) const;
   /// The box without its rim: what touches that alone still reaches into this, by its bounds.
   Box<dim> interior(const Box<dim>& box) const;
-  /// Takes the hit on one simplex if it comes before the one found, or is as near and the simplex
-  /// comes first.
+  /// Takes the hit on one simplex if it comes before the one found, or is as near, within the
+  /// tolerance, and the simplex comes first.
   void look_at(int near, const Point<dim>& a, const Point<dim>& b, double length, Hit& hit) const;
 
   Snapshot snapshot_;
