@@ -165,7 +165,7 @@ int run(int argc, char** argv, const Communicator& comm) {
 
   // 2. The scene file, read strictly: what it includes, its constants, defaults and copies.
   Document document = read_xml(arguments.run.scene_file, comm, FormulaPolicy::kept);
-  expand_scene(document, arguments.settings, comm);
+  expand_scene(document, arguments.settings, shipped_plug_ins<3>().solids.schemas(), comm);
   return scene_dimension(document) == 2 ? simulate<2>(std::move(document), arguments, comm)
                                         : simulate<3>(std::move(document), arguments, comm);
 }

@@ -100,8 +100,8 @@ int run(int argc, char** argv, const Communicator& comm) {
                      "[--restart CHECKPOINT]");
   }
   Document scene = read_xml(options.scene_file, comm, FormulaPolicy::kept);
-  expand_scene(scene, settings, comm);
   const Registries<2> registries = plug_ins();
+  expand_scene(scene, settings, registries.solids.schemas(), comm);
   complete_scene(scene, settings, scene_parameters<2>(registries, scene_fluid(scene, settings)),
                  comm);
   const Log log(comm, std::cout, LogLevel::normal);

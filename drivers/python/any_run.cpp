@@ -182,7 +182,7 @@ class SteppedRun : public AnyRun {
 std::unique_ptr<AnyRun> open_run(OpenRequest request) {
   const Communicator comm = Tpetra::getDefaultComm();
   Document document = read_xml(request.scene, comm, FormulaPolicy::kept);
-  expand_scene(document, request.settings, comm);
+  expand_scene(document, request.settings, shipped_plug_ins<3>().solids.schemas(), comm);
   if (scene_dimension(document) == 2)
     return std::make_unique<SteppedRun<2>>(std::move(document), request, comm);
   return std::make_unique<SteppedRun<3>>(std::move(document), request, comm);

@@ -344,8 +344,11 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
     return;
   const auto take = [&](const Barycentric<dim>& barycentric, const Point<dim>& position,
                         double fraction) {
-    if (first.point &&
-        (fraction > first.point->fraction || (fraction == first.point->fraction && i > first.near)))
+    // Simplices that share the edge under the segment are as near but for round-off. Their normals
+    // differ: bodies that a plane of the grid cuts in two equal halves must not slip by another one
+    // because a solve stopped elsewhere.
+    const double farther = first.point ? (fraction - first.point->fraction) * length : 0;
+    if (first.point && (farther > tolerance_ || (farther >= -tolerance_ && i > first.near)))
       return;
     first.near = i;
     first.point = SurfacePoint<dim>{near.simplex, barycentric, position - near.shift, fraction};

@@ -95,8 +95,8 @@ class NearbySurface {
   /// The box shrunk by the tolerance: bounds that touch only the box's boundary do not reach into
   /// it.
   Box<dim> interior(const Box<dim>& box) const;
-  /// Takes the hit on one simplex if it comes before the one found, or is as near and the simplex
-  /// comes first.
+  /// Takes the hit on one simplex if it comes before the one found, or is as near, within the
+  /// tolerance, and the simplex comes first.
   void look_at(int near, const Point<dim>& a, const Point<dim>& b, double length, Hit& hit) const;
 
   Snapshot snapshot_;

@@ -22,6 +22,15 @@ struct SplitPoints {
   std::array<const RowSplit<dim>*, dim> splits;
 };
 
+/// What is beyond the last sample of a row moves as the first does. What is stored there depends on
+/// how far the halo reaches, and points in step and others are summed in ways that differ by
+/// round-off: a restarted run, whose halos know no earlier steps, must sum as the straight one.
+template <int dim>
+void move_along(RowPoints<dim>& velocity, int n_in_row) {
+  for (RowValues<dim>& component : velocity)
+    component.tail(tile_width<dim> - n_in_row).setConstant(component[0]);
+}
+
 }  // namespace
 
 template <int dim>
@@ -45,8 +54,14 @@ template <int dim>
 bool TileBlock<dim>::enter(const Index<dim>& tile_begin) {
   for (int a = 0; a < dim; ++a) {
     begin_[a] = tile_begin[a] - margin_[a];
+    // What is beyond the domain asks for no samples: they might be stored or not.
+    const int samples_end = lattice_.n_cells()[a] + (lattice_.periodic(a) ? 0 : 1);
+    const int n_samples = std::min(tile_width<dim>, samples_end - tile_begin[a]);
+    if (a == 0)
+      n_in_row_ = n_samples;
     for (int on_faces = 0; on_faces < 2; ++on_faces)
-      runs_[a][on_faces] = lattice_.find_runs(a, on_faces == 1, begin_[a], width_[a]);
+      runs_[a][on_faces] =
+          lattice_.find_runs(a, on_faces == 1, begin_[a], n_samples + 2 * margin_[a]);
     // Whatever the velocity is where there is no fluid, no ray may look outside the block.
     // All places of the tile are inside, even if nothing moves: the margin is the stencil's then.
     lower_[a] = stencil_reach_ - 0.5;
@@ -155,23 +170,25 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, 
     for (int a = 0; a < dim; ++a)
       velocity[a] = velocity_at_samples(a, place);
   }
-  return rays_from(start, velocity, factor, cubic);
+  move_along<dim>(velocity, n_in_row_);
+  return rays_from(start, velocity, factor, n_in_row_, cubic);
 }
 
 template <int dim>
 RowRays<dim> TileBlock<dim>::follow(const RowPoints<dim>& start, double direction) const {
   return rays_from(start, velocity_at(start, false), direction * tracer_.cells_per_velocity(),
-                   false);
+                   tile_width<dim>, false);
 }
 
 template <int dim>
 RowRays<dim> TileBlock<dim>::rays_from(const RowPoints<dim>& start, const RowPoints<dim>& velocity,
-                                       double factor, bool cubic) const {
+                                       double factor, int n_in_row, bool cubic) const {
   RowRays<dim> rays;
   for (int a = 0; a < dim; ++a)
     rays.middle[a] =
         clamped(RowValues<dim>(start[a] + 0.5 * factor * velocity[a]), lower_[a], upper_[a]);
-  const RowPoints<dim> halfway = velocity_at(rays.middle, cubic);
+  RowPoints<dim> halfway = velocity_at(rays.middle, cubic);
+  move_along<dim>(halfway, n_in_row);
   rays.clipped.setZero();
   for (int a = 0; a < dim; ++a) {
     const RowValues<dim> wanted = start[a] + factor * halfway[a];

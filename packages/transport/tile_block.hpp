@@ -66,8 +66,9 @@ class TileBlock {
   /// Velocity component at a row of samples of the loaded field, the first at that place.
   RowValues<dim> velocity_at_samples(int axis, int place) const;
   /// The midpoint rule, given the velocity at the start; displacements are `factor` times velocity.
+  /// The first `n_in_row` points count.
   RowRays<dim> rays_from(const RowPoints<dim>& start, const RowPoints<dim>& velocity, double factor,
-                         bool cubic) const;
+                         int n_in_row, bool cubic) const;
 
   using Runs = std::vector<typename SampleLattice<dim>::Run>;
   using Values = std::vector<double, Eigen::aligned_allocator<double>>;
@@ -81,6 +82,7 @@ class TileBlock {
   std::array<int, dim> margin_, width_;
   int stencil_reach_;
   Index<dim> begin_{};                         ///< first cell of the block
+  int n_in_row_ = 0;                           ///< samples of the tile along x, of any kind
   std::array<std::array<Runs, 2>, dim> runs_;  ///< [axis][of faces normal to it]
   std::array<int, dim> stride_{};              ///< strides of neighbours in the block
   std::array<double, dim> lower_{}, upper_{};  ///< where rays may go, relative to the block

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <ctime>
 #include <sstream>
 
 #include "base/errors.hpp"
@@ -84,6 +85,10 @@ std::string timing_table(const std::vector<StageTime>& stages) {
                         stage.calls, stage.min_seconds, stage.mean_seconds, stage.max_seconds);
   }
   return text;
+}
+
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 PeakMemory peak_memory_mb(const Communicator& comm) {

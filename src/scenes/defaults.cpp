@@ -40,34 +40,23 @@ void fill_in(ParameterList& given, const std::string& path, const ParameterList&
   }
 }
 
-/// Lists of the defaults that bear the name of a type of solids.
-bool names_a_type(const ParameterList& defaults, const std::string& name,
-                  const ParameterList& solids) {
-  for (const auto& [solid, entry] : entries(solids)) {
-    if (entry.isList() && solids.sublist(solid).isType<std::string>("Type") &&
-        solids.sublist(solid).get<std::string>("Type") == name)
-      return defaults.isSublist(name);
-  }
-  return false;
-}
-
 }  // namespace
 
-void apply_defaults(Document& document) {
+void apply_defaults(Document& document, const std::vector<TypedSchema>& types) {
   ParameterList& list = document.list;
   if (!list.isParameter(defaults_path))
     return;
   check_input(list.isSublist(defaults_path), "{}: \"Defaults\" must be a list.",
               document.source.place(defaults_path));
-  check_input(list.isSublist(solids_path),
-              "{}: \"Defaults\" are for the list \"Solids\", which is missing.",
-              document.source.place(defaults_path));
   const ParameterList defaults = list.sublist(defaults_path);
+  list.remove(defaults_path);
+  if (!list.isSublist(solids_path))  // a preset has defaults for scenes without solids, too
+    return;
   ParameterList& solids = list.sublist(solids_path);
   ParameterList general = defaults;
-  for (const auto& [name, entry] : entries(defaults)) {
-    if (entry.isList() && names_a_type(defaults, name, solids))
-      general.remove(name);
+  for (const TypedSchema& schema : types) {
+    if (defaults.isSublist(schema.type))
+      general.remove(schema.type);
   }
   for (const auto& [name, entry] : entries(solids)) {
     if (!entry.isList())
@@ -81,12 +70,11 @@ void apply_defaults(Document& document) {
     }
     const std::string type =
         solid.isType<std::string>("Type") ? solid.get<std::string>("Type") : "";
-    if (!type.empty() && names_a_type(defaults, type, solids)) {
+    if (!type.empty() && defaults.isSublist(type)) {
       fill_in(solid, path, defaults.sublist(type), join_path(defaults_path, type), document.source);
     }
     fill_in(solid, path, general, defaults_path, document.source);
   }
-  list.remove(defaults_path);
 }
 
 }  // namespace lockstep

@@ -18,6 +18,30 @@ bool concerns_the_language(const std::string& setting) {
          (path.rfind("Solids/", 0) == 0 && path.find("/Copies/") != std::string::npos);
 }
 
+bool is_include(const std::string& setting) {
+  return trimmed(setting.substr(0, setting.find('='))) == "Include";
+}
+
+/// Merges what the document includes; what `--set "Include=FILE"` names goes before the document
+/// itself, as in a file that includes both, and paths are relative to the scene.
+void include_all(Document& document, std::vector<std::string>& settings, const Communicator& comm) {
+  include_scenes(document, comm);
+  const auto others = std::stable_partition(settings.begin(), settings.end(), is_include);
+  if (others == settings.begin())
+    return;
+  Document whole{ParameterList(document.list.name()), {document.source.file, {}}};
+  for (auto setting = settings.begin(); setting != others; ++setting) {
+    Document included{ParameterList(), {document.source.file, {}}};
+    included.list.set("Include", ParameterArray<std::string>());  // one path is such an array, too
+    set_unchecked(included, *setting);
+    include_scenes(included, comm);
+    merge(whole, "", included);
+  }
+  settings.erase(settings.begin(), others);
+  merge(whole, "", document);
+  document = std::move(whole);
+}
+
 /// A number, or a formula: in brackets like those of the scene, or a string as in studies.
 double constant_value(const ParameterEntry& entry, const Variables& known,
                       const std::string& where) {
@@ -74,15 +98,15 @@ int scene_dimension(const Document& document) {
 }
 
 void expand_scene(Document& document, std::vector<std::string>& settings,
-                  const Communicator& comm) {
-  include_scenes(document, comm);
+                  const std::vector<TypedSchema>& solid_types, const Communicator& comm) {
+  include_all(document, settings, comm);
   const auto others =
       std::stable_partition(settings.begin(), settings.end(), concerns_the_language);
   for (auto setting = settings.begin(); setting != others; ++setting)
     set_unchecked(document, *setting);
   settings.erase(settings.begin(), others);
   const Variables constants = take_constants(document);
-  apply_defaults(document);
+  apply_defaults(document, solid_types);
   make_copies(document, scene_dimension(document), constants);
   evaluate_formulas(document.list, constants, document.source);
 }
@@ -91,15 +115,16 @@ void declare_scene_language(ParameterList& scene, int dimension) {
   declare_optional<std::string>(
       scene, "Include",
       "Another scene file, relative to this one, whose parameters hold where this file is silent; "
-      "an Array(string) names several.");
+      "an Array(string) names several. With --set they win over this file.");
   declare_free_sublist(
       scene, "Constants",
       "Named numbers (double or int). Any number of the scene may be a formula of them in "
       "brackets, "
       "value=\"[2*R]\" or \"{[R], 0}\", in the syntax of muParser; a constant of those before it.");
-  declare_free_sublist(scene, "Defaults",
-                       "Values for all solids that do not say otherwise; a list that bears the "
-                       "name of a type, \"rigid body\", for those of that type.");
+  declare_free_sublist(
+      scene, "Defaults",
+      "Values for all solids that do not say otherwise; a list that bears the name of a type, "
+      "\"rigid body\", for those of that type, of which there may be none.");
   declare_copies(
       declare_list(scene, "(any solid)", "Parameters that every solid may have beside its own."),
       dimension);

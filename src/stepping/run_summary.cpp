@@ -116,6 +116,7 @@ nlohmann::ordered_json RunSummary::json(const nlohmann::ordered_json& header, co
                                         {"preconditioner_reuses", preconditioner_reuses_},
                                         {"stored_nonzeros", stored_nonzeros_},
                                         {"wall_seconds", run.wall_seconds},
+                                        {"cpu_seconds", sum_all(comm, run.cpu_seconds)},
                                         {"peak_memory_mb", memory.all_ranks_mb},
                                         {"peak_memory_largest_rank_mb", memory.largest_rank_mb},
                                         {"stages", stage_times}});

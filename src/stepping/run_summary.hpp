@@ -19,7 +19,7 @@ struct RunFacts {
   double n_cells = 0;          ///< of the boxes in frames
   double smallest_length = 0;  ///< that the fluid resolves [m]
   GlobalIndex n_solid_unknowns = 0;
-  double wall_seconds = 0;
+  double wall_seconds = 0, cpu_seconds = 0;  ///< of this rank, once the scene is built
 };
 
 /// What summary.json says before the first step already: versions, ranks, machine, command, and the

@@ -66,6 +66,13 @@ void check_flat_joints(const Document& document, const ParameterList& valid) {
   }
 }
 
+/// Before a schema is chosen by the "Type" of the strategy.
+void check_strategy(const Document& document) {
+  if (document.list.isSublist("Solver") && document.list.sublist("Solver").isSublist("Strategy"))
+    check_strategy_is_not_gone(document.list.sublist("Solver").sublist("Strategy"),
+                               document.source.place("Solver/Strategy/Type"));
+}
+
 }  // namespace
 
 void complete_scene(Document& document, const std::vector<std::string>& settings,
@@ -81,15 +88,15 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
     merge(document, "Solver/Strategy",
           read_solver_file(resolve_path(document.source.file, file), comm));
   }
+  check_strategy(document);
   for (const std::string& setting : settings) {
-    if (setting.rfind(solver_file_setting, 0) != 0)
-      set_from_command_line(document, setting, valid);
+    if (setting.rfind(solver_file_setting, 0) == 0)
+      continue;
+    set_from_command_line(document, setting, valid);
+    check_strategy(document);
   }
   if (dimension == 2)
     check_flat_joints(document, valid);
-  if (document.list.isSublist("Solver") && document.list.sublist("Solver").isSublist("Strategy"))
-    check_strategy_is_not_gone(document.list.sublist("Solver").sublist("Strategy"),
-                               document.source.place("Solver/Strategy/Type"));
   const bool tolerance_of_strategy = strategy_sets_tolerance(document);
   validate(document, valid);
   if (tolerance_of_strategy) {

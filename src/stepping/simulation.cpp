@@ -207,6 +207,7 @@ int Simulation<dim>::run() {
 template <int dim>
 void Simulation<dim>::begin() {
   start_ = Clock::now();
+  cpu_seconds_at_start_ = cpu_seconds();
   begin_outputs();
   recorded([&] { begin_tables(); });
 }
@@ -302,7 +303,7 @@ void Simulation<dim>::end() {
   recorded([&] {
     if (!is_within_step_)
       write_checkpoint();
-    end_outputs(seconds_since(start_));
+    end_outputs();
   });
   folder_lock_.reset();
 }
@@ -318,7 +319,7 @@ void Simulation<dim>::stop(const std::string& message) {
 }
 
 template <int dim>
-void Simulation<dim>::end_outputs(double wall_seconds) {
+void Simulation<dim>::end_outputs() {
   const FluidDiscretization<dim>& fluid = *components_.fluid;
   const RunFacts facts{signal_ == 0 ? "done" : "stopped by a signal",
                        step_ - first_step_,
@@ -328,7 +329,8 @@ void Simulation<dim>::end_outputs(double wall_seconds) {
                        n_cells(fluid),
                        fluid.smallest_length(),
                        components_.solids->n_unknowns(),
-                       wall_seconds};
+                       seconds_since(start_),
+                       cpu_seconds() - cpu_seconds_at_start_};
   write_summary(comm_, options_.output_directory,
                 summary_.json(header_, facts, timers_.report(comm_), comm_));
   log_.normal("{}", timing_table(timers_.report(comm_)));

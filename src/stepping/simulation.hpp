@@ -83,7 +83,7 @@ class Simulation {
   /// Throws InputError if another run writes to the folder.
   void lock_folder();
   void begin_tables();
-  void end_outputs(double wall_seconds);
+  void end_outputs();
   /// On rank 0, not collective: others may have failed elsewhere.
   void record_ending(const std::string& status, const std::string& message) const noexcept;
   RunView<dim> view(const std::vector<SolidState<dim>>& states) const;
@@ -125,6 +125,7 @@ class Simulation {
       false;             ///< in memory is no state between steps, because a signal ended one
   bool failed_ = false;  ///< what is in memory is of no use
   std::chrono::steady_clock::time_point start_;
+  double cpu_seconds_at_start_ = 0;  ///< used by this process before `start_`
   RunSummary summary_;
   nlohmann::ordered_json header_;
 };

@@ -134,6 +134,8 @@ RunResults read_run(const std::string& directory) {
   };
   run.n_cells = fact("cells");
   run.spacing = fact("smallest_length");
+  run.wall_seconds = fact("wall_seconds");
+  run.cpu_seconds = fact("cpu_seconds");
   for (const Variables& row : run.rows)
     run.mean_step += row.at("dt") / static_cast<double>(run.rows.size());
   return run;

@@ -264,6 +264,11 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
 
 }  // namespace
 
+bool is_resolution(const Study& study) {
+  const std::string abscissa = trimmed(study.abscissa);
+  return abscissa == "h" || abscissa == "dt" || abscissa != study.ladder_name;
+}
+
 ParameterList study_parameters() {
   ParameterList study("Study");
   declare(study, "Title", "", "One line on what the study shows.");
@@ -281,8 +286,10 @@ ParameterList study_parameters() {
   declare_at_least(ladder, "Usual Rungs", 0, 0,
                    "Number of rungs that are run unless --rungs says otherwise; 0: all.");
   declare(ladder, "Abscissa", "h",
-          "Formula of the abscissa, against which errors are plotted and orders are taken, of "
-          "constants, h, dt, cells, ranks.");
+          "Formula of the abscissa, against which errors are plotted, of constants, h, dt, cells, "
+          "ranks. Orders "
+          "of convergence are taken in it, unless it is the ladder's constant itself (and not h or "
+          "dt): along density ratios, say, there are none.");
   declare_named_sublists(study, "Series", "The lines of the plot; without any there is one.",
                          series_parameters());
   declare_named_sublists(
@@ -332,6 +339,11 @@ Study read_study(const std::string& file) {
         {name, curve.get<std::string>("Expression"), curve.get<std::string>("Exact")});
   }
   check_input(!study.quantities.empty(), "{}: the study measures nothing; name a quantity.", file);
+  for (const Quantity& quantity : study.quantities)
+    check_input(!quantity.extrapolate || is_resolution(study),
+                "{}: \"Extrapolate\" of \"{}\" needs a ladder of resolutions; its \"Abscissa\" "
+                "is the ladder's constant itself, \"{}\", not h, dt or a formula such as 1/n.",
+                file, quantity.name, study.ladder_name);
   check_input(!study.ladder_values.empty(), "{}: the ladder has no \"Values\".", file);
   return study;
 }

@@ -70,6 +70,10 @@ struct Study {
   std::vector<Curve> curves;
 };
 
+/// Whether finer rungs resolve more, so that errors have orders: the abscissa is h, dt or a formula
+/// such as 1/n. One that is the ladder's own constant (a density ratio, the ranks) is none.
+bool is_resolution(const Study& study);
+
 /// Schema of a study file.
 ParameterList study_parameters();
 

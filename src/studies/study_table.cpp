@@ -64,9 +64,8 @@ double summary_number(const RunResults& run, const std::string& name) {
 void add_cost(StudyRow& row, const Rung& rung) {
   const auto n = static_cast<double>(rung.runs.size());
   for (const RunResults& run : rung.runs) {
-    const double seconds = summary_number(run, "wall_seconds");
-    row.wall_seconds += seconds / n;
-    row.core_seconds += seconds * row.ranks / n;
+    row.wall_seconds += run.wall_seconds / n;
+    row.core_seconds += run.cpu_seconds / n;
     row.iterations_median += std::max(summary_number(run, "iterations.s1.median"),
                                       summary_number(run, "iterations.s2.median")) /
                              n;
@@ -108,6 +107,18 @@ StudyRow make_row(const Study& study, const Quantity& quantity, const Rung& rung
   return row;
 }
 
+/// Adds the orders of rows along a ladder of resolutions, each from the one before it.
+void add_orders(std::vector<StudyRow>& rows) {
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    const StudyRow& before = rows[r - 1];
+    StudyRow& row = rows[r];
+    const bool ordered = row.error && *before.error > 0 && *row.error > 0 && before.abscissa > 0 &&
+                         row.abscissa > 0 && before.abscissa != row.abscissa;
+    if (ordered)
+      row.order = std::log(*before.error / *row.error) / std::log(before.abscissa / row.abscissa);
+  }
+}
+
 /// Adds the errors of `rows`, which belong to `rungs` one by one. `is_whole`: the last rung is the
 /// last of the series.
 void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
@@ -126,12 +137,6 @@ void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
                                        fmt::format("Reference of \"{}\"", quantity.name));
     const double scale = quantity.relative && *row.reference != 0 ? std::abs(*row.reference) : 1.0;
     row.error = std::abs(row.value - *row.reference) / scale;
-    const StudyRow* before = r > 0 ? &rows[r - 1] : nullptr;
-    const bool ordered = before != nullptr && *before->error > 0 && *row.error > 0 &&
-                         before->abscissa > 0 && row.abscissa > 0 &&
-                         before->abscissa != row.abscissa;
-    if (ordered)
-      row.order = std::log(*before->error / *row.error) / std::log(before->abscissa / row.abscissa);
   }
 }
 
@@ -157,6 +162,8 @@ std::vector<StudyRow> rows_of(const Study& study, const Quantity& quantity,
                     "reference, is missing.",
                     quantity.name, rows.front().series));
   add_errors(rows, quantity, measured, is_whole);
+  if (is_resolution(study))
+    add_orders(rows);
   return rows;
 }
 
@@ -209,7 +216,9 @@ std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
       "# title: {}\n# abscissa: {}\n# ladder: {}\n"
       "# cells: of the whole box; h [m], dt [s]: mean of a run; error: relative to the reference "
       "unless that is 0\n"
-      "# wall_seconds, core_seconds [s]: of one run; spread: standard deviation over the samples\n"
+      "# wall_seconds, core_seconds [s]: of one run; core_seconds: CPU seconds of all ranks; MPI "
+      "ranks that wait count\n"
+      "# spread: standard deviation over the samples\n"
       "# at_a_time: runs of the study, at most, while this one went; more than 1 take longer\n"
       "{}series,cells,h,dt,ranks,quantity,value,reference,error,order,wall_seconds,core_seconds,"
       "iterations_median,iterations_max,peak_memory_mb,spread,samples,abscissa,at_a_time\n",
@@ -249,6 +258,7 @@ std::string table_markdown(const Study& study, const std::vector<StudyRow>& rows
     }
     page += "\n";
   }
+  page += "Core seconds are CPU seconds of all ranks of a run; MPI ranks that wait count.\n\n";
   if (std::any_of(rows.begin(), rows.end(),
                   [](const StudyRow& row) { return row.n_at_a_time > 1; }))
     page +=

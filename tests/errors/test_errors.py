@@ -183,6 +183,11 @@ CASES = [
            sets=["Solver/File=old.xml"],
            files={"old.xml": f'<ParameterList name="Solver">{value("Type", "string", name)}</ParameterList>'})
       for name, file in (("gauss-seidel", "gauss-seidel"), ("solid-schur", "minres-teko"))],
+    Case("a strategy that is a list now, by --set", ['no strategy "gauss-seidel" any more', "xml-params/solvers/gauss-seidel.xml"],
+         sets=["Solver/Strategy/Type=gauss-seidel", "Solver/Strategy/Tolerance=1e-9"]),
+    Case("a strategy that is a list now, in the scene", ['no strategy "uzawa" any more', "xml-params/solvers/uzawa.xml"],
+         files={"old.xml": f'<ParameterList name="Scene"><ParameterList name="Solver"><ParameterList name="Strategy">{value("Type", "string", "uzawa")}</ParameterList></ParameterList></ParameterList>'},
+         sets=["Include=old.xml", "Solver/Strategy/Tolerance=1e-9"]),
     *[Case(f"a list of Stratimikos with {what}", expected, sets=["Solver/File=list.xml"], files={"list.xml": MINRES_TEKO.replace(*change)})
       for what, change, expected in (
           ("a misspelt key of Teko", ("Fluid Inverse Type", "Fluid Inverse Tipe"), '"Fluid Inverse Tipe" is not a parameter of "SPD Block Diagonal"'),

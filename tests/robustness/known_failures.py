@@ -9,8 +9,6 @@ LOOP = "a loop of joints that cannot close"
 CRUSHED = "crushed elements; the run is refused"
 
 KNOWN = {
-    18: "a run that goes on from a checkpoint on two ranks differs from the straight one in the last bits of step 5: between F2, which is "
-        "equal to the bit, and S2, so in what the fluid does there; older than the strategy: b127825a has it with schur-cg at 1e-9",
     1565: LIQUID,
     2462: "a cell lies at the surface of the liquid to round-off: wet on one number of ranks and dry on another, which makes 6e-6",
     3473: LOOP,

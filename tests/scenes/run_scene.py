@@ -3,6 +3,7 @@
 Usage: run_scene.py SIMULATE SCENE.xml RANKS MPIEXEC
 """
 import csv
+import json
 import math
 import re
 import subprocess
@@ -62,6 +63,12 @@ def check_frames(folder, n_cells):
     assert "Xdmf" in (folder / "frames.xmf").read_text(), "frames.xmf"
 
 
+def check_summary(folder):
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["steps"] == N_STEPS, summary
+    assert summary["cpu_seconds"] > 0, summary
+
+
 def volumes(scene):
     """Names of the deformable volumes, as frames have them."""
     bodies = xml.etree.ElementTree.parse(scene).getroot().findall("ParameterList[@name='Solids']/ParameterList")
@@ -95,6 +102,7 @@ def main():
         print(" ".join(command), result.stdout, sep="\n")
         assert result.returncode == 0, f"exit code {result.returncode}"
         check_history(Path(folder))
+        check_summary(Path(folder))
         check_frames(Path(folder), n_cells)
         check_elements(Path(folder), volumes(scene))
 

@@ -59,10 +59,10 @@ class Presets(unittest.TestCase):
         self.assertEqual(result.returncode, BAD_INPUT, result.stdout)
         self.assertIn('"Order in Time" 2 and "Free Surface" do not go together', result.stdout)
 
-    def used(self, scene):
+    def used(self, scene, *options):
         """The parameters of a step, by the names of their lists."""
         output = Path(self.folder.name) / "used"
-        simulate(scene, output, "--steps", "1", "--set", "Domain/Cells={24, 12}")
+        simulate(scene, output, "--steps", "1", "--set", "Domain/Cells={24, 12}", *options)
         root = ElementTree.parse(output / "used-parameters.xml").getroot()
         return lambda *names: root.find("/".join([*(f"ParameterList[@name='{name}']" for name in names[:-1]), f"Parameter[@name='{names[-1]}']"])).get("value")
 
@@ -73,6 +73,10 @@ class Presets(unittest.TestCase):
         self.assertEqual(self.used(self.both(scene, fast))("Coupling", "Type"), "flux")
         own = '<ParameterList name="Fluid"><Parameter name="Advection" type="string" value="cubic"/></ParameterList>'
         self.assertEqual(self.used(self.both(fast, scene, own))("Fluid", "Advection"), "cubic")
+
+    def test_the_command_line_includes_before_the_scene(self):
+        used = self.used(ROOT / "xml-params/scenes/pendulum-in-water.xml", "--set", "Include=../presets/fast.xml")
+        self.assertEqual(used("Coupling", "Type"), "mixed face")
 
     def test_a_preset_before_the_scene_names_the_strategy(self):
         used = self.used(self.both(PRESETS / "paper.xml", ROOT / "xml-params/scenes/pendulum-in-water.xml"))

@@ -97,6 +97,15 @@ TEST(StageTimers, NestAndReduceOverTheRanks) {
   EXPECT_GE(memory.all_ranks_mb, memory.largest_rank_mb);
 }
 
+TEST(CpuSeconds, PassWhileAProcessWorksAndNotWhileItSleeps) {
+  const double start = cpu_seconds();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const double slept = cpu_seconds();
+  EXPECT_LT(slept - start, 0.05);
+  while (cpu_seconds() < slept + 0.05) {
+  }
+}
+
 TEST(Signals, AreSeenByAllRanks) {
   const Communicator comm = Tpetra::getDefaultComm();
   install_signal_handlers();

@@ -16,12 +16,14 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+const std::vector<TypedSchema> solid_types = {{"rigid body", "", {}}, {"cloth", "", {}}};
+
 Document expanded(const std::string& body, std::vector<std::string> settings = {}) {
   const std::string head =
       "<ParameterList name=\"Scene\">\n<Parameter name=\"Dimension\" type=\"int\" value=\"2\"/>\n";
   Document document =
       read_xml_string(head + body + "</ParameterList>", "case.xml", FormulaPolicy::kept);
-  expand_scene(document, settings, Tpetra::getDefaultComm());
+  expand_scene(document, settings, solid_types, Tpetra::getDefaultComm());
   return document;
 }
 
@@ -118,6 +120,18 @@ TEST(SceneLanguage, DefaultsHoldWhereTheSolidIsSilent) {
   EXPECT_FALSE(solids.sublist("B").sublist("Geometry").isParameter("Radius"));
   EXPECT_EQ(solids.sublist("C").get<double>("Density"), 1);
   EXPECT_THAT(document.source.place("Solids/A/Density"), HasSubstr("line 4"));
+}
+
+/// As presets have them, which scenes of other solids include.
+TEST(SceneLanguage, DefaultsOfATypeThatNoSolidHasAreOfNoEffect) {
+  const std::string defaults =
+      list("Defaults", list("cloth", parameter("Mass", "string", "lumped")) +
+                           list("Material", parameter("Poisson", "double", "0.3")));
+  const Document document =
+      expanded(defaults + list("Solids", list("A", parameter("Type", "string", "rigid body"))));
+  EXPECT_FALSE(document.list.sublist("Solids").sublist("A").isParameter("cloth"));
+  EXPECT_TRUE(document.list.sublist("Solids").sublist("A").isSublist("Material"));
+  EXPECT_FALSE(expanded(defaults).list.isParameter("Defaults"));
 }
 
 TEST(SceneLanguage, ALatticeWithFormulasAndOverrides) {
@@ -243,11 +257,10 @@ class Includes : public testing::Test {
       std::ofstream(folder_ / name) << list("Scene", body);
     comm->barrier();
   }
-  Document read(const std::string& name) const {
+  Document read(const std::string& name, std::vector<std::string> settings = {}) const {
     Document document =
         read_xml((folder_ / name).string(), Tpetra::getDefaultComm(), FormulaPolicy::kept);
-    std::vector<std::string> settings;
-    expand_scene(document, settings, Tpetra::getDefaultComm());
+    expand_scene(document, settings, solid_types, Tpetra::getDefaultComm());
     return document;
   }
   std::filesystem::path folder_;
@@ -269,6 +282,36 @@ TEST_F(Includes, WhatTheFileSaysWinsAndMeshesMoveAlong) {
   EXPECT_EQ(document.list.sublist("Fluid").get<double>("Density"), 5);
   EXPECT_EQ(document.list.sublist("Fluid").get<double>("Viscosity"), 4);
   EXPECT_EQ(document.list.sublist("Solids").sublist("A").get<std::string>("File"), "parts/a.obj");
+}
+
+TEST_F(Includes, WhatTheCommandLineIncludesWinsOverTheFile) {
+  write("parts/first.xml", list("Fluid", parameter("Advection", "string", "cubic")));
+  write("parts/second.xml", list("Fluid", parameter("Advection", "string", "maccormack") +
+                                              parameter("Viscosity", "double", "7")) +
+                                list("Solids", list("A", parameter("File", "string", "a.obj"))));
+  write("base.xml", list("Fluid", parameter("Density", "double", "1")));
+  write("scene.xml", parameter("Include", "string", "base.xml") +
+                         parameter("Dimension", "int", "2") +
+                         list("Fluid", parameter("Viscosity", "double", "4")));
+
+  for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{
+           {"Include=parts/first.xml", "Include=parts/second.xml", "Fluid/Density=1"},
+           {"Include={parts/first.xml, parts/second.xml}", "Fluid/Density=1"}}) {
+    std::vector<std::string> left = settings;
+    const Document document = read("scene.xml", left);
+    const ParameterList& fluid = document.list.sublist("Fluid");
+    EXPECT_EQ(fluid.get<std::string>("Advection"), "cubic");
+    EXPECT_EQ(fluid.get<double>("Viscosity"), 7);
+    EXPECT_EQ(fluid.get<double>("Density"), 1);  // of what the scene itself includes
+    EXPECT_EQ(document.list.sublist("Solids").sublist("A").get<std::string>("File"), "parts/a.obj");
+  }
+  try {
+    read("scene.xml", {"Include=none.xml"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--set \"Include=none.xml\""));
+    EXPECT_THAT(error.what(), HasSubstr((folder_ / "none.xml").filename().string()));
+  }
 }
 
 TEST_F(Includes, CirclesAreRefused) {

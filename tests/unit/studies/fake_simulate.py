@@ -41,7 +41,7 @@ h = 1 / cells[0]
 (folder / "Wire 1.csv").write_text("step,time,height\n0,0,5\n2,0.2,7\n")
 (folder / "Probes.csv").write_text("step,time,point,p\n" + "".join(f"{k},0,{i},{10 * k + i}\n" for k in range(4) for i in (1, 2)))
 (folder / "summary.json").write_text(json.dumps({
-    "cells": cells[0] * cells[1], "smallest_length": h, "wall_seconds": 2.0, "ranks": ranks, "peak_memory_mb": 10 * ranks,
+    "cells": cells[0] * cells[1], "smallest_length": h, "wall_seconds": 2.0, "cpu_seconds": 1.5 * ranks, "ranks": ranks, "peak_memory_mb": 10 * ranks,
     "iterations": {"s1": {"median": 4, "max": 9}, "s2": {"median": 6, "max": 7}}}))
 (folder / "used-parameters.xml").write_text(f"""<ParameterList name="Scene">
   <ParameterList name="Domain">

@@ -78,6 +78,32 @@ TEST_F(Runs, ErrorsAndOrders) {
   EXPECT_THAT(table_csv(study_, rows), testing::HasSubstr("\nall,256,0.0625,"));
 }
 
+/// Along a parameter that is no resolution, a density ratio say, errors do not converge.
+TEST_F(Runs, OrdersOnlyWhereTheLadderIsAResolution) {
+  for (const auto& [abscissa, has_orders] : {std::pair("n", false), std::pair(" n ", false),
+                                             std::pair("1/n", true), std::pair("dt*h", true)}) {
+    study_.abscissa = abscissa;
+    const auto rows = table();
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_TRUE(rows[2].error);
+    EXPECT_EQ(rows[2].order.has_value(), has_orders) << abscissa;
+  }
+  study_.ladder_name = "h";  // by its name
+  study_.abscissa = "h";
+  EXPECT_TRUE(is_resolution(study_));
+}
+
+/// A busy machine lengthens the wall time, so that times the ranks is no measure of the work.
+TEST_F(Runs, CoreSecondsAreCpuSecondsOfAllRanks) {
+  study_.ladder_values = {4};
+  const auto rows = table();
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].wall_seconds, 2.0);
+  EXPECT_EQ(rows[0].core_seconds, 1.5);
+  EXPECT_THAT(table_csv(study_, rows), testing::HasSubstr("core_seconds: CPU seconds"));
+  EXPECT_THAT(table_markdown(study_, rows), testing::HasSubstr("Core seconds are CPU seconds"));
+}
+
 TEST_F(Runs, SelfConvergenceAndReductions) {
   study_.quantities[0].reference = "self";
   study_.quantities[0].relative = false;
@@ -321,7 +347,7 @@ TEST_F(Runs, SecondsOfRunsSideBySideAreMarked) {
   options_.n_jobs = 1;
   const auto again = table();  // they are used again, with their mark
   EXPECT_EQ(again[0].n_at_a_time, 2);
-  EXPECT_THAT(table_markdown(study_, again), testing::HasSubstr("| 2 (2) | 6, 9 |"));
+  EXPECT_THAT(table_markdown(study_, again), testing::HasSubstr("| 1.5 (2) | 6, 9 |"));
   EXPECT_THAT(table_markdown(study_, again), testing::HasSubstr("shared the machine"));
   EXPECT_THAT(table_csv(study_, again), testing::EndsWith(",0.125,2\n"));
 }
@@ -389,6 +415,30 @@ TEST_F(Runs, SymbolsOfAStudyFileAreStrict) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("Did you mean \"Expression\""));
+  }
+}
+
+TEST_F(Runs, ALimitIsAskedForAlongResolutionsOnly) {
+  const std::string file = folder_ + "/study.xml";
+  std::ofstream(file) << R"xml(<ParameterList name="Study">
+  <Parameter name="Scene" type="string" value="scene.xml"/>
+  <ParameterList name="Ladder">
+    <Parameter name="Name" type="string" value="ratio"/>
+    <Parameter name="Values" type="Array(double)" value="{4, 8, 16}"/>
+    <Parameter name="Abscissa" type="string" value="ratio"/>
+  </ParameterList>
+  <ParameterList name="Quantities">
+    <ParameterList name="speed">
+      <Parameter name="Expression" type="string" value="step"/>
+      <Parameter name="Extrapolate" type="bool" value="true"/>
+    </ParameterList>
+  </ParameterList>
+</ParameterList>)xml";
+  try {
+    read_study(file);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("needs a ladder of resolutions"));
   }
 }
 

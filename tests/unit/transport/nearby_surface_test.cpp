@@ -156,6 +156,39 @@ TEST(NearbySurface, LooksAroundAsItLooksAtOneCorner) {
   }
 }
 
+/// Through an edge that two simplices share, but for round-off: it is always the same one.
+TEST(NearbySurface, AnEdgeIsThatOfTheFirstOfItsSimplices) {
+  BallInTank<3> tank(0.04);
+  const Point<3> center(0.93, 0.5, 0.5);
+  int n_edges = 0;
+  for (int s = 0; s < tank.snapshot->n_simplices(); ++s) {
+    const auto corners = tank.snapshot->corners(s);
+    const Point<3> middle = 0.5 * (corners[0] + corners[1]);
+    if (!tank.surface->reached().contains(middle) || middle[0] > 0.95)
+      continue;
+    ++n_edges;
+    const Point<3> out = (middle - center).normalized();
+    const Point<3> beside = 1e-12 * out.cross(corners[1] - corners[0]).normalized();
+    std::vector<int> found;
+    for (const double side : {-1., 1.}) {
+      const Point<3> a = middle + 0.02 * out + side * beside, b = a - 0.04 * out;
+      const auto hit = tank.surface->first_hit(a, b);
+      ASSERT_TRUE(hit);
+      found.push_back(hit->simplex);
+      NearbySurface<3>::Corners places;
+      NearbySurface<3>::Hits hits;
+      for (int axis = 0; axis < 3; ++axis)
+        places[axis].setConstant(b[axis]);
+      tank.surface->look_around(a, Box<3>(a.cwiseMin(b), a.cwiseMax(b)), places, hits);
+      ASSERT_TRUE(hits[0]);
+      found.push_back(hits[0]->simplex);
+    }
+    EXPECT_EQ(std::count(found.begin(), found.end(), found[0]), 4);
+    EXPECT_LE(found[0], s);
+  }
+  EXPECT_GT(n_edges, 50);
+}
+
 /// A point on the surface is hidden from itself, whichever question is asked.
 TEST(NearbySurface, APointOnTheSurfaceIsHidden) {
   BallInTank<3> tank(0.04);
