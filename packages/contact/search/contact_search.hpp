@@ -38,7 +38,6 @@ struct ContactReach {
   std::vector<double> half_thickness;  ///< of the skin of each solid [m]
   double dt = 0;                       ///< of the motion that is followed [s]
   bool swept = true;                   ///< also what the motion over dt meets beyond `near`
-  bool self = true;                    ///< also solids that are not rigid against themselves
   bool unheld = true;                  ///< nothing has acted on the motion: see `touching_side`
   /// Of a solid against itself, leave out what may neither overlap nor be violated by the motion:
   /// most of a sheet that is flat, whose parts lie side by side.
