@@ -353,7 +353,7 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
     scalar.values.swap(carried);
   }
   invalid_ = transport.invalid();
-  scalars_.feed(geometry_, time, dt);
+  scalars_.feed(geometry_, time);
   for (Scalar& scalar : scalars_.all())
     domain_.halo.fill(scalar.values);
 }

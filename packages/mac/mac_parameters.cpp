@@ -43,9 +43,10 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
       "and forces. 2: what they did in the last step is averaged along the rays (trapezoidal rule) "
       "and the advection velocity is taken in the middle of the step; with maccormack, errors fall "
       "with h^2 where the flow is smooth, at the cost of memory for 4 velocity fields.");
-  declare_at_least(list, "Thermal Expansion", 0.0, 0.0,
-                   "Boussinesq coefficient beta: warm fluid feels -beta (T - T0) g [1/K].");
-  declare(list, "Reference Temperature", 0.0, "T0, at which fluid has no buoyancy [K].");
+  declare_at_least(
+      list, "Thermal Expansion", 0.0, 0.0,
+      "Boussinesq coefficient beta: fluid of temperature T feels -beta (T - T0) g, where T0 "
+      "is the ambient temperature [1/K].");
   declare(list, "Smoke Weight", 0.0,
           "Relative excess density of fluid with smoke density 1: smoke s feels weight s g [1]; "
           "negative: it rises.");
@@ -67,7 +68,8 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   parameters.forces.gravity = point_value<dim>(fluid, "Gravity");
   parameters.forces.body = point_value<dim>(fluid, "Body Force");
   parameters.forces.expansion = fluid.get<double>("Thermal Expansion");
-  parameters.forces.reference_temperature = fluid.get<double>("Reference Temperature");
+  if (fluid.isSublist("Temperature"))
+    parameters.forces.reference_temperature = fluid.sublist("Temperature").get<double>("Ambient");
   parameters.forces.smoke_weight = fluid.get<double>("Smoke Weight");
   parameters.advection = advection_schemes().at(fluid.get<std::string>("Advection"));
   parameters.order_in_time = fluid.get<int>("Order in Time");

@@ -7,7 +7,6 @@ namespace lockstep {
 
 /// What a scene says of its free surface, beside its interface model.
 struct FreeSurfaceParameters {
-  double smallest_distance = 1e-5;  ///< see FreeSurface
   int pressure_order = 2;
   double tension = 0;  ///< of the surface [N/m]
   bool tension_is_implicit = false;

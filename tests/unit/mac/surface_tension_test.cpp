@@ -115,7 +115,7 @@ Held<dim> held_back(int n, const std::function<void(Case<dim>&)>& add_liquid,
   add_liquid(scene);
   scene.fluid.sublist("Free Surface")
       .set("Surface Tension", tension)
-      .set("Tension Integration", "semi-implicit");
+      .set("Time Integration", "semi-implicit");
   const auto fluid = make_liquid<dim>(scene);
   fluid->set_geometry(nullptr, BlockedFaces<dim>());
   EXPECT_TRUE(fluid->is_viscous());
