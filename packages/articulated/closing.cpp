@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/round_off.hpp"
 #include "linear/least_squares.hpp"
 #include "motion/free_rotation.hpp"
 
@@ -135,7 +136,7 @@ class Impulses {
 
   /// Of all bodies, those that change what `rows` read by `values`; the smallest ones.
   Eigen::VectorXd that_change(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values) const {
-    constexpr double dependent = 1e-9;
+    constexpr double dependent = rounding::differences;
     return impulses_ * least_squares(scale_.asDiagonal() * rows * response_,
                                      scale_.cwiseProduct(values), dependent);
   }
