@@ -21,7 +21,6 @@ struct Series {
   Formulas constants;
   std::vector<std::string> assignments;  ///< "Path=value" with [formulas]
   std::vector<double> values;            ///< of this series' own ladder; empty: the study's
-  int ranks = 1;
 };
 
 /// One column of results, and what it is compared with.
