@@ -55,8 +55,8 @@ class Pages(unittest.TestCase):
 
     def test_the_right_page(self):
         self.assertIn("| Dry Points | Array(double) | unset | m |", page("fluid-mac"))
-        self.assertIn("| Reseed Interval | int |", page("interface-particle-level-set"))
-        self.assertNotIn("Reseed Interval", page("fluid-mac"))
+        self.assertIn("| Drops | string |", page("interface-particle-level-set"))
+        self.assertNotIn("| Drops |", page("fluid-mac"))
         self.assertIn("| Stretch Limit | double | 0 | 1 | at least 0 |", page("solid-cloth"))
 
 

@@ -21,7 +21,7 @@ SOFT = """<Parameter name="Density" type="double" value="500"/>
       </ParameterList>
       <Parameter name="Time Integration" type="string" value="fully-implicit"/>"""
 N_STEPS = 50  # of the whole run
-CHECKPOINTS = ["--set", "Output/Checkpoint Interval=0.1"]
+CHECKPOINTS = ["--set", "Output/Checkpoints/Interval=0.1"]
 
 
 def read_table(path):
@@ -321,7 +321,7 @@ class Faults(unittest.TestCase):
         other = with_gauges("old").replace('value="points"', 'value="flow"').replace(
             '<Parameter name="Points" type="Array(double)" value="{.5, 1.5}"/>',
             '<Parameter name="Lower" type="Array(double)" value="{0, 1.5}"/><Parameter name="Upper" type="Array(double)" value="{1, 1.5}"/>')
-        often = ("--set", "Output/Checkpoint Interval=1e-9", "--set", "Output/Keep Checkpoints=10")
+        often = ("--set", "Output/Checkpoints/Interval=1e-9", "--set", "Output/Checkpoints/Count=10")
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(simulate(folder, "--steps", 4, *often, scene=with_gauges("old")).returncode, 0)
             output = Path(folder) / "output"
