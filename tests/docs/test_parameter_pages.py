@@ -47,7 +47,7 @@ class Pages(unittest.TestCase):
         for dimension in ("2", "3"):
             names = set(re.findall(r"^ +(\S.*?) : (?:int|double|bool|string|Array)", printed("--parameters", "--dimension", dimension),
                                    re.MULTILINE))
-            self.assertGreater(len(names), 150)
+            self.assertGreater(len(names), 100)
             self.assertEqual(names - written - {"Type"}, set())
 
     def test_help_is_our_own(self):

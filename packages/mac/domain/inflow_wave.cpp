@@ -88,15 +88,10 @@ void declare_inflow_wave(ParameterList& side) {
       side, "Wave",
       "An inflow sends a regular wave into a tank of liquid: at the side the water moves as below "
       "a wave of linear theory that goes inwards, less that wave's mean flow. The still water is "
-      "the \"level\" in \"Liquid\", down to the side of the domain below it. The wave begins with "
-      "a "
+      "the \"level\" in \"Liquid\", down to the side of the domain below it. It begins with a "
       "crest, and grows during \"Ramp Time\".");
   declare_required_positive(wave, "Height", "From trough to crest [m].");
   declare_required_positive(wave, "Frequency", "Crests per second [1/s].");
-  declare_required<double>(
-      wave, "Level",
-      "Of the still water, measured against gravity from the origin [m]; it is as deep "
-      "as the domain.");
 }
 
 namespace {
