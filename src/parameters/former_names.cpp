@@ -72,7 +72,8 @@ const std::vector<FormerName>& former_names() {
       {"Coupling", "Soft Weights", "is called \"Weights\" now"},
       {"Solver", "Viscous Tolerance",
        "is called \"Tolerance\" now and stands in the list \"Viscous Solve\""},
-      {"", "Krylov Method", "is gone: a list of the strategy \"stratimikos\" names a method of Belos"},
+      {"", "Krylov Method",
+       "is gone: a list of the strategy \"stratimikos\" names a method of Belos"},
       {"", "Krylov Solver", "is gone: viscosity is solved for by conjugate gradients"},
       {"", "Largest Solid", "is always 18 now: leave it out"},
       {"", "Maximum Unknowns", "is always 300000 now: leave it out"},
@@ -91,7 +92,8 @@ const std::vector<FormerName>& former_names() {
       {"Quantities", "Component", "stands in the name of the \"Field\" now: \"velocity[1]\""},
       {"Output", "Checkpoint Interval",
        "is called \"Interval\" now and stands in the list \"Checkpoints\""},
-      {"Output", "Keep Checkpoints", "is called \"Count\" now and stands in the list \"Checkpoints\""},
+      {"Output", "Keep Checkpoints",
+       "is called \"Count\" now and stands in the list \"Checkpoints\""},
       {"", "Ranks", "is the constant \"ranks\" now, in the list \"Constants\""},
   };
   return names;
