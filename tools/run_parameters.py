@@ -43,7 +43,7 @@ def view_of(values):
     return {
         "up": up,
         "direction": numbers(values.get("View/Direction", "{0.45, -1, 0.35}" if up == 2 else "{0.45, 0.35, 1}")),
-        "centre": numbers(values["View/Centre"]) if "View/Centre" in values else None,
+        "centre": numbers(values["View/Center"]) if "View/Center" in values else None,
         "zoom": float(values.get("View/Zoom", 1)),
         "field": values.get("View/Field"),
         "volume": values.get("View/Style") == "volume",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/round_off.hpp"
 #include "linear/least_squares.hpp"
 #include "motion/free_rotation.hpp"
 
@@ -136,7 +137,7 @@ class Impulses {
 
   /// Returns the smallest impulses on all bodies that change the values of `rows` by `values`.
   Eigen::VectorXd that_change(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values) const {
-    constexpr double dependent = 1e-9;
+    constexpr double dependent = rounding::differences;
     return impulses_ * least_squares(scale_.asDiagonal() * rows * response_,
                                      scale_.cwiseProduct(values), dependent);
   }

@@ -7,6 +7,7 @@
 #include "articulated/articulation.hpp"
 #include "articulated/lone_mechanism.hpp"
 #include "base/errors.hpp"
+#include "base/round_off.hpp"
 
 namespace lockstep {
 
@@ -68,7 +69,7 @@ double largest_turn(const ClosingProblem<dim>& problem,
 template <int dim>
 bool differ(const ClosingProblem<dim>& problem, const std::vector<BodyMotion<dim>>& motions,
             const std::vector<BodyMotion<dim>>& others) {
-  constexpr double negligible = 1e-9;  // part of the mechanism's reach [1], and angle [rad]
+  constexpr double negligible = rounding::differences;  // of the mechanism's reach, rad
   const double unit = reach(problem.mechanism, problem.joints);
   return std::any_of(
       problem.mechanism.bodies.begin(), problem.mechanism.bodies.end(), [&](int body) {

@@ -11,6 +11,7 @@ namespace lockstep {
 
 namespace {
 
+const std::string limits_list = "Limits";
 constexpr double none = std::numeric_limits<double>::infinity();
 
 template <int dim>
@@ -23,21 +24,23 @@ bool turns_about_any(const JointKind& kind) {
 Eigen::VectorXd bounds(const ParameterList& joint, const std::string& name, const std::string& side,
                        int n, double absent) {
   Eigen::VectorXd values = Eigen::VectorXd::Constant(n, absent);
+  const ParameterList& shared = joint.sublist(limits_list);
   if (n == 1) {
-    if (joint.isParameter(side))
-      values[0] = joint.get<double>(side);
+    if (shared.isParameter(side))
+      values[0] = shared.get<double>(side);
     return values;
   }
-  if (joint.isParameter(side)) {
-    const auto& all = joint.get<ParameterArray<double>>(side);
-    check_input(all.size() == n, "The \"{}\" of the joint \"{}\" has {} numbers; give {}.", side,
-                name, all.size(), n);
+  if (shared.isParameter(side)) {
+    const auto& all = shared.get<ParameterArray<double>>(side);
+    check_input(all.size() == n,
+                "\"{}\" of the limits of the joint \"{}\" has {} numbers; give {}.", side, name,
+                all.size(), n);
     values = Eigen::Map<const Eigen::VectorXd>(all.getRawPtr(), n);
   }
   for (int k = 0; k < n; ++k) {
     const std::string own = coordinate_list(k);
-    if (joint.isSublist(own) && joint.sublist(own).isParameter(side))
-      values[k] = joint.sublist(own).get<double>(side);
+    if (joint.isSublist(own) && joint.sublist(own).sublist(limits_list).isParameter(side))
+      values[k] = joint.sublist(own).sublist(limits_list).get<double>(side);
   }
   return values;
 }
@@ -48,25 +51,26 @@ template <int dim>
 void declare_limits(ParameterList& joint, const JointKind& kind) {
   const int n = n_rates<dim>(kind);
   if (turns_about_any<dim>(kind)) {
-    declare_optional<double>(
-        joint, "Upper Limit",
-        "Largest turn from the start, about any axis [rad]. Absent: unlimited.");
-    set_between(joint, "Upper Limit", 0, 3.14159);
+    ParameterList& limits = declare_list(joint, limits_list, "What stops it.");
+    declare_optional<double>(limits, "Upper",
+                             "How far it may turn from where it is at the start, about whatever "
+                             "axis [rad]. Absent: as far as it likes.");
+    set_between(limits, "Upper", 0, 3.14159);
     return;
   }
   declare_limit_pair(joint, n);
 }
 
 void declare_limit_pair(ParameterList& list, int n) {
-  for (const auto& [side, least] :
-       {std::pair{"Lower Limit", "Least"}, {"Upper Limit", "Largest"}}) {
+  ParameterList& limits = declare_list(list, limits_list, "What stops it.");
+  for (const auto& [side, least] : {std::pair{"Lower", "least"}, {"Upper", "largest"}}) {
     const std::string doc =
         fmt::format("{} value of {} [rad, m]; 0 at the start. Absent: none.", least,
                     n == 1 ? "the coordinate" : "each of the coordinates");
     if (n == 1)
-      declare_optional<double>(list, side, doc);
+      declare_optional<double>(limits, side, doc);
     else
-      declare_optional<ParameterArray<double>>(list, side, doc);
+      declare_optional<ParameterArray<double>>(limits, side, doc);
   }
 }
 
@@ -75,16 +79,19 @@ JointLimits read_limits(const ParameterList& joint, const std::string& name,
                         const JointKind& kind) {
   JointLimits limits;
   if (turns_about_any<dim>(kind)) {
-    if (joint.isParameter("Upper Limit"))
-      limits.largest_turn = joint.get<double>("Upper Limit");
+    const ParameterList& list = joint.sublist(limits_list);
+    if (list.isParameter("Upper"))
+      limits.largest_turn = list.get<double>("Upper");
     check_input(limits.largest_turn > 0,
                 "The joint \"{}\" may turn by 0 at most, about any axis; make it a weld.", name);
     return limits;
   }
   const int n = n_rates<dim>(kind);
-  const Eigen::VectorXd lowest = bounds(joint, name, "Lower Limit", n, -none);
-  const Eigen::VectorXd highest = bounds(joint, name, "Upper Limit", n, none);
-  if (n == 0 || (lowest.maxCoeff() == -none && highest.minCoeff() == none))
+  if (n == 0)
+    return limits;
+  const Eigen::VectorXd lowest = bounds(joint, name, "Lower", n, -none);
+  const Eigen::VectorXd highest = bounds(joint, name, "Upper", n, none);
+  if (lowest.maxCoeff() == -none && highest.minCoeff() == none)
     return limits;
   limits.lower = lowest;
   limits.upper = highest;

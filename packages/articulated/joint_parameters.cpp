@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/errors.hpp"
+#include "base/round_off.hpp"
 #include "motion/list_values.hpp"
 #include "parameters/suggestion.hpp"
 
@@ -142,7 +143,7 @@ Axes<3> axes_of(const Point<3>& axis, const ParameterList& list, const std::stri
   axes.col(1) = axis.unitOrthogonal();
   if (kind.turn == JointTurn::two_axes) {
     axes.col(1) = direction<3>(list, "Second Axis", name);
-    check_input(std::abs(axis.dot(axes.col(1))) <= 1e-9,
+    check_input(std::abs(axis.dot(axes.col(1))) <= rounding::differences,
                 "The \"Second Axis\" of the joint \"{}\" must be at right angles to its \"Axis\".",
                 name);
   }

@@ -35,11 +35,10 @@ JointTarget swinging(const Eigen::VectorXd& middle, const Eigen::VectorXd& ampli
 ParameterList swing_schema(int n) {
   ParameterList list;
   declare_per_coordinate(list, "Amplitude", n, 0, "Largest excursion [rad, m].");
-  declare_per_coordinate(list, "Middle", n, 0,
-                         "Coordinates about which the joint swings [rad, m].");
+  declare_per_coordinate(list, "Value", n, 0, "What it swings about [rad, m].");
   declare_required_positive(list, "Frequency", "Oscillations per second [1/s].");
   declare(list, "Phase", 0.0,
-          "The target is middle plus amplitude times sin(2 pi frequency time + phase) [rad].");
+          "The target is value plus amplitude times sin(2 pi frequency time + phase) [rad].");
   declare_at_least(list, "Ramp Time", 0.0, 0.0,
                    "The amplitude grows from nothing until then [s]: a soft start.");
   return list;
@@ -96,7 +95,7 @@ void declare_target(ParameterList& joint, int n) {
   declare_required<ParameterArray<double>>(
       table, "Values", "Coordinates at each time, straight lines between them [rad, m].");
   ParameterList wave = swing_schema(n);
-  declare_required_positive(wave, "Wave Length",
+  declare_required_positive(wave, "Wavelength",
                             "Joints lag behind by a whole oscillation for each of it that they are "
                             "farther along \"Direction\" [m].");
   declare_required<ParameterArray<double>>(
@@ -128,8 +127,8 @@ JointTarget read_target(const ParameterList& joint, int n,
   double phase = list.get<double>("Phase");
   if (type == "wave")
     phase -= 2 * pi * place(list.get<ParameterArray<double>>("Direction")) /
-             list.get<double>("Wave Length");
-  return swinging(per_coordinate(list, "Middle", n), per_coordinate(list, "Amplitude", n),
+             list.get<double>("Wavelength");
+  return swinging(per_coordinate(list, "Value", n), per_coordinate(list, "Amplitude", n),
                   list.get<double>("Frequency"), phase, list.get<double>("Ramp Time"));
 }
 

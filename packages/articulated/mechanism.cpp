@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "base/round_off.hpp"
+
 namespace lockstep {
 
 template <int dim>
@@ -184,7 +186,7 @@ MotionBasis<dim> motion_basis(const Mechanism& mechanism,
                               const std::vector<Joint<dim>>& joints,
                               const std::vector<BodyPose<dim>>& poses, const RateDofs& dofs,
                               const std::vector<char>& given) {
-  constexpr double dependent = 1e-9;  // part of the motions that are compared [1]
+  constexpr double dependent = rounding::differences;  // of the motions that are compared
   TreeMotion<dim> tree(mechanism, bodies, joints, poses, dofs);
   MotionBasis<dim>& basis = tree.basis();
   if (mechanism.loops.empty())

@@ -1,6 +1,8 @@
 // Active set of contacts and joint limits, found round by round.
 #include <algorithm>
 
+#include "base/interruption.hpp"
+#include "base/round_off.hpp"
 #include "contact/contact_problem.hpp"
 
 namespace lockstep {
@@ -68,7 +70,7 @@ int ContactProblem<dim>::activate_violated(const SolidMotion<dim>& motion, int m
         for (const Point<dim>& x : chosen)
           distance = std::min(distance, (candidates_[k].contact.x - x).norm());
         const double value = chosen.empty() ? lack : lack * distance;
-        if (!candidates_[k].active && value > best * (1 + 1e-9)) {
+        if (!candidates_[k].active && value > best * (1 + rounding::differences)) {
           best = value;
           next = k;
         }
@@ -102,7 +104,7 @@ int ContactProblem<dim>::activate_limits(const std::vector<double>& velocity, do
 template <int dim>
 void ContactProblem<dim>::extend_search(const std::vector<double>& velocity) {
   const SolidMotion<dim> motion(system_, shapes_, velocity);
-  const double allowed = 0.5 * options_.margin * spacing_ / dt_;
+  const double allowed = 0.5 * watched_gap * spacing_ / dt_;
   bool farther = false;
   for (int i = 0; i < shapes_.n_solids(); ++i) {
     if (motion.range(i).isEmpty())
@@ -118,7 +120,8 @@ void ContactProblem<dim>::extend_search(const std::vector<double>& velocity) {
 
 template <int dim>
 int ContactProblem<dim>::sweep(ImpulseSolver<dim>& solver, int most) const {
-  constexpr double round_off = 1e-9;  // in cells: limits of a loop may leave no play between them
+  // In cells: limits of a loop may leave no play between them.
+  constexpr double round_off = rounding::differences;
   const double tolerance = options_.tolerance * scale_;
   return solver.iterate(most, tolerance, std::max(tolerance, round_off * spacing_ / dt_));
 }
@@ -168,7 +171,7 @@ std::vector<Contact<dim>> ContactProblem<dim>::impacts_of(
   const SolidMotion<dim> motion(system_, shapes_, velocity);
   SurfacePath<dim> path(shapes_, motion, dt_);
   path.unheld = unheld_;
-  for (const FoundImpact<dim>& found : find_impacts(shapes_, path, options_.self_contact)) {
+  for (const FoundImpact<dim>& found : find_impacts(shapes_, path)) {
     const double apart = clearance_between(found.pair.solid, found.pair.other);
     contacts.push_back(impact_contact(shapes_, motion, path, found, apart, dt_));
   }

@@ -3,12 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/round_off.hpp"
+
 namespace lockstep {
 
 namespace {
 /// Gap that surfaces keep between them where they would have met, and overlap of skins that is left
 /// alone, both as a part of the sum of their half thicknesses [1].
 constexpr double clearance = 0.25;
+// Chosen so that a resting pile is quiet and overlaps stay small beside a cell; no page varies any
+// of these. Lengths are in units of the grid spacing h.
+/// Overlap that is left alone, and gap up to which solids count as touching.
+constexpr double usual_slop = 0.05;
+/// Overlap with a solid that is recognised.
+constexpr double deepest = 0.5;
+/// Part of an overlap beyond the slop that one step removes.
+constexpr double push_out_rate = 0.2;
+/// No restitution below this speed of approach [m/s]: forces of a step alone do not bounce.
+constexpr double least_bounce = 1e-3;
 
 /// Hash of a place, the same for equal places.
 template <int dim>
@@ -25,7 +37,7 @@ double half_thickness_of(const SolidDescription& solid, const GaussSeidelOptions
   const auto own = options.thickness_of.find(solid.name);
   if (own != options.thickness_of.end())
     return 0.5 * own->second;
-  return solid.closed && solid.rigid ? 0 : 0.5 * options.shell_thickness * spacing;
+  return solid.closed && solid.rigid ? 0 : 0.5 * options.thickness * spacing;
 }
 }  // namespace
 
@@ -58,12 +70,11 @@ ContactReach ContactProblem<dim>::reach(const SolidMotion<dim>& motion) const {
   }
   ContactReach reach;
   reach.swept = phase_ == ContactPhase::position;
-  reach.near = spacing_ * std::max(options_.slop, options_.margin) +
-               std::min(dt_ * speed, 2 * options_.margin * spacing_);
-  reach.depth = spacing_ * options_.deepest;
+  reach.near = spacing_ * std::max(usual_slop, watched_gap) +
+               std::min(dt_ * speed, 2 * watched_gap * spacing_);
+  reach.depth = spacing_ * deepest;
   reach.half_thickness = half_thickness_;
   reach.dt = dt_;
-  reach.self = options_.self_contact;
   return reach;
 }
 
@@ -105,7 +116,7 @@ double ContactProblem<dim>::clearance_between(int solid, int other) const {
 /// Rigid bodies may overlap a little so that contacts stay; skins do the same without touching.
 template <int dim>
 double ContactProblem<dim>::slop(const Contact<dim>& contact) const {
-  const double usual = options_.slop * spacing_;
+  const double usual = usual_slop * spacing_;
   if (contact.other < 0 || !any_bends({contact.solid, contact.other}))
     return usual;
   return std::min(usual, clearance_between(contact.solid, contact.other));
@@ -117,12 +128,12 @@ double ContactProblem<dim>::target(const Contact<dim>& contact, double normal_ve
   const double free = -std::max(contact.gap, 0.0) / dt_;
   if (phase_ == ContactPhase::position) {
     const double excess = -contact.gap - slop(contact);
-    return excess <= 0 ? free : std::min(options_.push_rate * excess, 0.25 * spacing_) / dt_;
+    return excess <= 0 ? free : std::min(push_out_rate * excess, 0.25 * spacing_) / dt_;
   }
   // Forces of this step alone, as those on a resting body, do not bounce. What arrives exactly at
   // the end of the step does so in the next, whatever the round-off.
   const double closing = std::min(-normal_velocity, -before);
-  if (normal_velocity < free - 1e-9 * closing && closing > options_.bounce_speed)
+  if (normal_velocity < free - rounding::differences * closing && closing > least_bounce)
     return std::max(
         free, closing * mean(contact, &SolidDescription::restitution, options_.wall_restitution));
   return free;
@@ -146,7 +157,7 @@ bool ContactProblem<dim>::is_known(const Contact<dim>& contact) const {
     const Contact<dim>& one = candidates_[k].contact;
     return one.solid == contact.solid && one.other == contact.other &&
            one.point.position == contact.point.position &&
-           one.normal.dot(contact.normal) > 1 - 1e-9;
+           one.normal.dot(contact.normal) > 1 - rounding::differences;
   });
 }
 

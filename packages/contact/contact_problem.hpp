@@ -10,6 +10,11 @@
 
 namespace lockstep {
 
+/// Gap below which surfaces are watched whatever their motion [h]; faster motion is followed along
+/// its path, and what moves farther than half of it is looked for again (`extend_search`). Chosen,
+/// not varied by a page.
+constexpr double watched_gap = 0.1;
+
 /// One resolution of contacts: candidates from the search, of which those that would be violated
 /// become active, a few for every pair of rigid solids, until none is left violated; for positions
 /// also the impacts of surfaces that are not rigid. Local, the same on all ranks.

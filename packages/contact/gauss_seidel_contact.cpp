@@ -138,8 +138,8 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   }
   std::vector<double> resolved = solver.velocity();
   if (phase == ContactPhase::position) {
-    ZonedMotion<dim> zoned = join_impact_zones(solids, shapes, inverse_mass, options_.self_contact,
-                                               dt, resolved, problem.unheld());
+    ZonedMotion<dim> zoned =
+        join_impact_zones(solids, shapes, inverse_mass, dt, resolved, problem.unheld());
     report.n_crossings = zoned.n_left;
     held_back_ = std::move(zoned.held_back);
   }

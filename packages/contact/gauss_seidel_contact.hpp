@@ -17,20 +17,13 @@ namespace lockstep {
 
 using SolidPairs = std::set<std::pair<int, int>>;
 
-/// Lengths are in units of the grid spacing h.
 struct GaussSeidelOptions {
-  int sweeps = 200;         ///< sweeps of projected Gauss-Seidel over the final set of contacts
+  int sweeps = 200;         ///< of projected Gauss-Seidel over the final set of contacts
   double tolerance = 1e-4;  ///< change of velocities over the largest one wanted [1]
-  double margin = 0.1;      ///< gaps that are watched whatever the motion [h]
-  double slop = 0.05;       ///< overlap that is left alone [h]
-  double shell_thickness = 0.1;  ///< thickness of shells and of the skins of deformable bodies [h]
-  double deepest = 0.5;          ///< overlap that is recognised [h]
-  double push_rate = 0.2;        ///< part of an overlap that one step removes [1]
-  double bounce_speed = 1e-3;    ///< no restitution below this speed of approach [m/s]
+  double thickness = 0.1;   ///< of shells and of the skins of deformable bodies [h]
   std::map<std::string, double> thickness_of;              ///< instead, by name of the solid [m]
   std::vector<std::pair<std::string, std::string>> apart;  ///< pairs that do not touch, by name
-  bool self_contact = true;  ///< true if solids that are not rigid touch themselves
-  std::optional<double> wall_friction, wall_restitution;  ///< default: those of the solid
+  std::optional<double> wall_friction, wall_restitution;   ///< default: those of the solid
 };
 
 /// Speculative contacts solved by projected Gauss-Seidel through M_S. A contact with gap g must

@@ -10,47 +10,29 @@ namespace lockstep {
 ParameterList contact_parameters() {
   const GaussSeidelOptions usual;
   ParameterList list;
-  declare_positive(list, "Iterations", usual.sweeps,
+  declare_positive(list, "Maximum Iterations", usual.sweeps,
                    "Sweeps of projected Gauss-Seidel over the final set of contacts, at most; an "
                    "eighth of it while the set grows.");
   declare_tolerance(list, "Tolerance", usual.tolerance,
                     "Sweeps end when velocities at contacts change by less than this part of the "
                     "largest change that contact asks for [1].");
-  declare_positive(list, "Margin", usual.margin,
-                   "Gap below which surfaces are watched whatever their motion [cells]. Faster "
-                   "motion is followed along its path.");
-  declare_positive(list, "Slop", usual.slop,
-                   "Overlap that is left alone, and gap up to which solids count as touching "
-                   "[cells].");
-  declare_positive(list, "Shell Thickness", usual.shell_thickness,
+  declare_positive(list, "Thickness", usual.thickness,
                    "Thickness for contact of thin shells and of the skins of deformable bodies "
                    "[cells]. Surfaces that touch stay the mean of their thicknesses apart; of one "
                    "that touches itself it should be below half the spacing of the mesh.");
   ParameterList skin;
-  declare_required_positive(skin, "Thickness",
-                            "Thickness for contact instead of \"Shell Thickness\" [m].");
-  declare_named_sublists(list, "Skins", "Thickness for contact of single solids, by their names.",
-                         skin);
-  declare_positive(list, "Deepest Overlap", usual.deepest,
-                   "Largest depth inside a solid at which a vertex is recognised [cells].");
-  declare_between(list, "Push Out Rate", usual.push_rate, 0.0, 1.0,
-                  "Part of an overlap beyond the slop that one step removes [1].");
-  declare_at_least(list, "Bounce Speed", usual.bounce_speed, 0.0,
-                   "Speed of approach below which there is no restitution [m/s].");
-  declare(list, "Self-Contact", usual.self_contact,
-          "Deformable bodies and cloth touch themselves. Neighbours across one edge of a mesh are "
-          "kept from crossing, not apart.");
-  declare(list, "Between Jointed Solids", false,
-          "Solids that a joint connects touch each other; else they may overlap there.");
-  declare_optional<double>(list, "Wall Friction",
-                           "Coulomb's coefficient of the domain's walls [1]; without it that of "
-                           "the solid counts. Two solids, or a solid and a wall, have the "
-                           "geometric mean of their coefficients.");
-  declare_optional<double>(list, "Wall Restitution",
-                           "Restitution of the domain's walls [1]; without it that of the solid "
-                           "counts. Pairs have the geometric mean.");
-  set_at_least(list, "Wall Friction", 0);
-  set_between(list, "Wall Restitution", 0, 1);
+  declare_required_positive(skin, "Thickness", "Instead of that of all [m].");
+  declare_named_sublists(list, "Skins", "By name of a solid: its own thickness for contact.", skin);
+  ParameterList& walls = declare_list(list, "Walls", "The closed sides of the domain.");
+  declare_optional<double>(walls, "Friction",
+                           "Coulomb's coefficient of the walls [1]; without it that of the solid "
+                           "counts. Two solids, or a solid and a wall, have the geometric mean of "
+                           "their coefficients.");
+  declare_optional<double>(walls, "Restitution",
+                           "Restitution of the walls [1]; without it that of the solid counts. "
+                           "Pairs have the geometric mean.");
+  set_at_least(walls, "Friction", 0);
+  set_between(walls, "Restitution", 0, 1);
   return list;
 }
 
@@ -62,22 +44,16 @@ std::optional<double> optional_value(const ParameterList& list, const std::strin
 
 GaussSeidelOptions options_from(const ParameterList& list) {
   GaussSeidelOptions options;
-  options.sweeps = list.get<int>("Iterations");
+  options.sweeps = list.get<int>("Maximum Iterations");
   options.tolerance = list.get<double>("Tolerance");
-  options.margin = list.get<double>("Margin");
-  options.slop = list.get<double>("Slop");
-  options.shell_thickness = list.get<double>("Shell Thickness");
-  options.deepest = list.get<double>("Deepest Overlap");
-  options.push_rate = list.get<double>("Push Out Rate");
-  options.bounce_speed = list.get<double>("Bounce Speed");
+  options.thickness = list.get<double>("Thickness");
   const ParameterList& skins = list.sublist("Skins");
   for (auto skin = skins.begin(); skin != skins.end(); ++skin) {
     const std::string& name = skins.name(skin);
     options.thickness_of[name] = skins.sublist(name).get<double>("Thickness");
   }
-  options.self_contact = list.get<bool>("Self-Contact");
-  options.wall_friction = optional_value(list, "Wall Friction");
-  options.wall_restitution = optional_value(list, "Wall Restitution");
+  options.wall_friction = optional_value(list.sublist("Walls"), "Friction");
+  options.wall_restitution = optional_value(list.sublist("Walls"), "Restitution");
   return options;
 }
 
@@ -100,8 +76,7 @@ void register_contact(ContactRegistry<dim>& contacts) {
                [](const ParameterList& list, const ContactSetting<dim>& setting) {
                  GaussSeidelOptions options = options_from(list);
                  check_names(options.thickness_of, setting.solids);
-                 if (!list.get<bool>("Between Jointed Solids"))
-                   options.apart = setting.jointed;
+                 options.apart = setting.jointed;
                  return std::make_unique<GaussSeidelContact<dim>>(
                      options, walls_of<dim>(setting.domain, setting.closed_sides),
                      setting.smallest_length, setting.wall_velocity);

@@ -12,25 +12,41 @@ namespace lockstep {
 
 namespace {
 
+/// Least quality of an element that is accepted: 1 for the regular simplex, 0 for a flat one [1].
+/// Chosen so that meshes of other programs are taken unless an element is all but flat; not varied
+/// by a page.
+constexpr double worst_quality = 1e-3;
+
 const std::vector<ShapeSizes>& volume_shapes() {
-  static const std::vector<ShapeSizes> all{
-      {"ball", {"Radius"}},
-      {"box", {"Size"}},
-      {"cylinder", {"Radius", "Length"}},
-      {"torus", {"Radius", "Tube Radius"}, {}, 3},
-      {"hollow ball", {"Radius", "Thickness"}},
-      {"tube", {"Radius", "Thickness", "Length"}, {}, 3},
-      {"spindle", {"Stations", "Half Heights"}, {"Half Widths"}},
-      {"file", {"File"}, mesh_repair_parameters()}};
+  static const std::vector<ShapeSizes> all{{"ball", {"Radius"}},
+                                           {"box", {"Size"}},
+                                           {"cylinder", {"Radius", "Length"}},
+                                           {"torus", {"Radius", "Tube Radius"}, {}, 3},
+                                           {"hollow ball", {"Radius", "Thickness"}},
+                                           {"tube", {"Radius", "Thickness", "Length"}, {}, 3},
+                                           {"spindle", {"Sections"}},
+                                           {"file", {"File"}, mesh_repair_parameters()}};
   return all;
 }
 
+template <int dim>
 SpindleShape spindle_of(const ParameterList& list) {
-  const auto numbers = [&](const char* parameter) {
-    return list.isParameter(parameter) ? list.get<ParameterArray<double>>(parameter).toVector()
-                                       : std::vector<double>();
-  };
-  return {numbers("Stations"), numbers("Half Heights"), numbers("Half Widths")};
+  const auto& numbers = list.get<ParameterArray<double>>("Sections");
+  check_input(
+      numbers.size() % dim == 0,
+      "\"Sections\" of a spindle has {} numbers; it takes {} a section: its place along x, half "
+      "height{}.",
+      numbers.size(), dim, dim == 2 ? "" : " and half width");
+  SpindleShape shape;
+  for (int i = 0; i < numbers.size(); i += dim) {
+    shape.stations.push_back(numbers[i]);
+    shape.half_heights.push_back(numbers[i + 1]);
+    check_input(numbers[i + 1] > 0 && numbers[i + dim - 1] > 0,
+                "\"Sections\" of a spindle: half heights and half widths must be greater than 0.");
+    if (dim == 3)
+      shape.half_widths.push_back(numbers[i + 2]);
+  }
+  return shape;
 }
 
 template <int dim>
@@ -43,7 +59,7 @@ VolumeMesh<dim> generate(const ParameterList& list, const std::string& shape, do
   if (shape == "cylinder")
     return cylinder_volume<dim>(number("Radius"), number("Length"), spacing);
   if (shape == "spindle")
-    return spindle_volume<dim>(spindle_of(list), spacing);
+    return spindle_volume<dim>(spindle_of<dim>(list), spacing);
   if (shape == "hollow ball")
     return hollow_ball_volume<dim>(number("Radius"), number("Thickness"), spacing);
   if (shape == "tube") {
@@ -75,14 +91,12 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_optional<double>(list, "Tube Radius", "Radius of the section of a torus [m].");
   declare_optional<ParameterArray<double>>(list, "Size", "Edges of a box [m].");
   set_length(list, "Size", dim);
-  declare_optional<ParameterArray<double>>(list, "Stations",
-                                           "Places along a spindle, ascending [m].");
   declare_optional<ParameterArray<double>>(
-      list, "Half Heights",
-      "Half heights of a spindle at its stations, along y, linear between them [m].");
-  declare_optional<ParameterArray<double>>(
-      list, "Half Widths",
-      "Half widths of a spindle at its stations, along z; its sections are ellipses (3D) [m].");
+      list, "Sections",
+      dim == 2 ? "Of a spindle, one after the other [m]: place along x, ascending, and half height "
+                 "along y; straight between them."
+               : "Of a spindle, one after the other [m]: place along x, ascending, half height "
+                 "along y and half width along z of an ellipse; straight between them.");
   declare_optional<std::string>(list, "File",
                                 "Mesh: .msh of Gmsh (version 2.2 or 4.1) or legacy .vtk, both "
                                 "ASCII; relative to the folder of "
@@ -91,13 +105,8 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest step of the lattice of a generated mesh [m]; default one grid "
                            "cell.");
-  for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "Half Heights",
-                           "Half Widths", "Mesh Spacing"})
+  for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "Mesh Spacing"})
     set_positive(list, size);
-  declare_between(
-      list, "Worst Quality", 1e-3, 0.0, 1.0,
-      "Least quality of an element that is accepted: 1 for the regular simplex, 0 for a "
-      "flat one [1].");
 }
 
 template <int dim>
@@ -105,8 +114,6 @@ VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacin
                                const std::string& name, MeshNames& names) {
   const auto& shape = geometry.get<std::string>("Shape");
   check_shape_sizes(geometry, volume_shapes(), name);
-  check_input(dim == 3 || !geometry.isParameter("Half Widths"),
-              "In \"{}/Geometry\", a spindle in 2D has no \"Half Widths\"; leave them out.", name);
   VolumeMesh<dim> mesh;
   if (shape == "file") {
     mesh = read_volume_mesh<dim>(geometry.get<std::string>("File"), names);
@@ -120,7 +127,7 @@ VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacin
     check_mesh_size(geometry, spacing, dim, name);
     mesh = generate<dim>(geometry, shape, spacing);
   }
-  check_volume_mesh(mesh, name, geometry.get<double>("Worst Quality"), names);
+  check_volume_mesh(mesh, name, worst_quality, names);
   return mesh;
 }
 

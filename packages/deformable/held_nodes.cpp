@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/round_off.hpp"
+
 namespace lockstep {
 
 template <int dim>
@@ -18,7 +20,7 @@ void HeldNodes<dim>::hold(int node, int axis, const Point<dim>& at, int number) 
 
 template <int dim>
 bool HeldNodes<dim>::begin_step(double time) {
-  constexpr double round_off = 1e-12;
+  constexpr double round_off = rounding::sums;
   const std::vector<char> before = released_;
   for (std::size_t h = 0; h < holds_.size(); ++h)
     released_[h] = holds_[h].release_time <= time + round_off * std::abs(time);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "base/round_off.hpp"
 #include "motion/list_values.hpp"
 
 namespace lockstep {
@@ -40,7 +41,7 @@ std::vector<int> nodes_in_region(const ParameterList& list, const std::vector<Po
   for (const auto& x : nodes)
     body.extend(x);
   // Nodes on the sides of the box are not lost to round-off.
-  const double margin = 1e-9 * body.diagonal().norm();
+  const double margin = rounding::differences * body.diagonal().norm();
   box.min().array() -= margin;
   box.max().array() += margin;
   std::vector<int> found;

@@ -59,16 +59,16 @@ void declare_pinned(ParameterList& body) {
   declare_node_region<dim>(pinned);
   std::vector<std::string> axes{"x", "y", "z"};
   axes.resize(dim);
-  declare(pinned, "Directions", ParameterArray<std::string>(axes),
+  declare(pinned, "Locked", ParameterArray<std::string>(axes),
           "Axes of space along which the nodes are held.");
-  set_choices(pinned, "Directions", axes);
+  set_choices(pinned, "Locked", axes);
   declare_typed_sublist(pinned, "Motion",
                         "Motion of the nodes from their start; turns are about the origin of the "
                         "body's coordinates at the start.",
                         motions<dim>(), "static");
-  declare_optional<double>(pinned, "Release Time",
-                           "Time at which the nodes are let go, with the velocity they have: at "
-                           "the begin of the first step at or after it [s]. Absent: never.");
+  declare_optional<double>(pinned, "End",
+                           "When they are let go, with the velocity they have: at the begin of "
+                           "the first step at or after it [s]. Absent: never.");
   declare_named_sublists(body, "Pinned", "Nodes held at rest, or moved by a script.", pinned);
 }
 
@@ -85,11 +85,11 @@ void read_pinned(const ParameterList& list, const std::vector<Point<dim>>& rest,
     hold.nodes = nodes_in_region<dim>(region, rest, where);
     hold.script = read_script<dim>(region.sublist("Motion"), where + "/Motion");
     hold.origin = origin;
-    for (const auto& direction : region.get<ParameterArray<std::string>>("Directions"))
+    for (const auto& direction : region.get<ParameterArray<std::string>>("Locked"))
       hold.axes[direction[0] - 'x'] = true;
-    const bool released = region.isParameter("Release Time");
+    const bool released = region.isParameter("End");
     if (released)
-      hold.release_time = region.get<double>("Release Time");
+      hold.release_time = region.get<double>("End");
     const bool special = released || hold.script;
     check_overlap<dim>(hold, special, held, where);
     for (const int n : hold.nodes) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/round_off.hpp"
+
 namespace lockstep {
 
 /// (1 - k/n)^2, the first one halved: a convex sequence, whose cosine sums are never negative.
@@ -18,7 +20,7 @@ double longest_sub_stepped(double stable, int most) {
 SubSteps sub_steps_for(double dt, double stable, int most) {
   if (most <= 1 || dt <= stable)
     return {1, dt};
-  const double wanted = std::ceil(2 * dt / stable * (1 - 1e-12));
+  const double wanted = std::ceil(2 * dt / stable * (1 - rounding::sums));
   const int n = static_cast<int>(std::min<double>(most, wanted));
   return {n, 2 * dt / n};
 }

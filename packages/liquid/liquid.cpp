@@ -95,9 +95,8 @@ FreeSurface<dim> Liquid<dim>::surface() {
     const double lead = (1 - part) * lead_[wet] + part * lead_[dry];
     return lead == 0 ? part
                      : std::clamp(part - lead / (phi[dry] - phi[wet]),
-                                  parameters_.smallest_distance, 1.0);
+                                  FreeSurface<dim>::smallest_distance, 1.0);
   };
-  surface.smallest_distance = parameters_.smallest_distance;
   surface.at_true_place = parameters_.pressure_order == 2;
   surface.gas = gas_.get();
   return surface;

@@ -16,7 +16,7 @@ namespace lockstep {
 namespace {
 constexpr double very_far = 1e9;  ///< [m], from the liquid of a tank that is empty
 
-/// A level with waves a cos(k (x - x0)) along the first axis across gravity.
+/// A level with waves a cos(k x) along the first axis across gravity.
 template <int dim>
 SignedDistance<dim> level(const std::string& name, const ParameterList& list,
                           const Point<dim>& gravity) {
@@ -27,12 +27,12 @@ SignedDistance<dim> level(const std::string& name, const ParameterList& list,
       name);
   const Point<dim> up = -gravity.normalized();
   const double height = list.get<double>("Height"), amplitude = list.get<double>("Amplitude");
-  const double k = 2 * M_PI / list.get<double>("Wavelength"), crest = list.get<double>("Crest");
+  const double k = 2 * M_PI / list.get<double>("Wavelength");
   int along = 0;
   while (std::abs(up[along]) > 0.9)
     ++along;
   return [=](const Point<dim>& x) {
-    const double phase = k * (x[along] - crest);
+    const double phase = k * x[along];
     const double slope = amplitude * k * std::sin(phase);
     return (x.dot(up) - height - amplitude * std::cos(phase)) / std::sqrt(1 + slope * slope);
   };
@@ -83,11 +83,10 @@ SignedDistance<dim> mesh(const std::string& name, const ParameterList& list) {
 template <int dim>
 std::vector<TypedSchema> liquid_schemas() {
   ParameterList level, box, ball, mesh;
-  declare(level, "Height", 0.0,
-          "Height of the surface, measured against gravity from the origin [m].");
-  declare_at_least(level, "Amplitude", 0.0, 0.0, "Amplitude of waves on the surface [m].");
-  declare_positive(level, "Wavelength", 1.0, "Wavelength of these waves [m].");
-  declare(level, "Crest", 0.0, "Place of a crest along the first axis across gravity [m].");
+  declare(level, "Height", 0.0, "Of the surface, measured against gravity from the origin [m].");
+  declare_at_least(level, "Amplitude", 0.0, 0.0,
+                   "Of waves on it [m], with a crest at 0 along the first axis across gravity.");
+  declare_positive(level, "Wavelength", 1.0, "Of these waves [m].");
   declare_vector(box, "Lower", filled_array(dim, 0.0), dim, "Lower corner [m].");
   declare_vector(box, "Upper", filled_array(dim, 1.0), dim, "Upper corner [m].");
   declare_vector(ball, "Center", filled_array(dim, 0.0), dim, "Centre [m].");
@@ -150,16 +149,14 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
                          "\"Fluid/Sources\" bring it.",
                          sink);
   declare_watches<dim>(list);
-  declare_between(
-      list, "Smallest Distance", 1e-5, 1e-6, 1.0,
-      "Pressures are taken to be no nearer to the surface than this part of a cell [1].");
   declare_at_least(
       list, "Surface Tension", 0.0, 0.0,
       "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature; the surface meets "
       "solids and sides at 90 degrees. 0: none.");
   declare_choice(
-      list, "Tension Integration", "explicit", {"explicit", "semi-implicit"},
-      "explicit: steps are at most 0.28 sqrt(density h^3 / sigma). semi-implicit: 8 times that; "
+      list, "Time Integration", "explicit", {"explicit", "semi-implicit"},
+      "Of surface tension. explicit: steps are at most 0.28 sqrt(density h^3 / sigma). "
+      "semi-implicit: 8 times that; "
       "what the surface does within the step is foreseen by a viscous solve in which sigma dt "
       "times the surface Laplacian holds the velocity back, and one more pressure solve before "
       "it. Damps ripples a few cells long, and what turns and swings, the more the longer the "
@@ -171,9 +168,8 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
 }
 
 FreeSurfaceParameters read_free_surface(const ParameterList& list) {
-  return {list.get<double>("Smallest Distance"), list.get<int>("Pressure Order"),
-          list.get<double>("Surface Tension"),
-          list.get<std::string>("Tension Integration") == "semi-implicit"};
+  return {list.get<int>("Pressure Order"), list.get<double>("Surface Tension"),
+          list.get<std::string>("Time Integration") == "semi-implicit"};
 }
 
 template <int dim>

@@ -7,7 +7,6 @@ namespace lockstep {
 
 /// Parameters of a free surface, beside those of its interface model.
 struct FreeSurfaceParameters {
-  double smallest_distance = 1e-5;  ///< see FreeSurface
   int pressure_order = 2;
   double tension = 0;  ///< surface tension [N/m]
   bool tension_is_implicit = false;

@@ -322,7 +322,7 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
   flow_.domain.halo.fill(flow_.prediction);
   advect_scalars(transport);
   invalid_ = transport.invalid();
-  flow_.scalars.feed(flow_.geometry, time, dt);
+  flow_.scalars.feed(flow_.geometry, time);
   for (Scalar& scalar : flow_.scalars.all())
     flow_.domain.halo.fill(scalar.values);
 }

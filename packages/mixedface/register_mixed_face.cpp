@@ -16,7 +16,7 @@ ParameterList valid_parameters() {
       "Lumping of fluid mass on the solid: 'diagonal' row sums for nodes (the paper's choice; "
       "rigid bodies carry their full block), 'consistent' W^T M_F W, 'paper diagonal' the literal "
       "Eqs. 22-24 for rigid bodies, which lose momentum: for comparison.");
-  declare_choice(list, "Soft Weights", "barycentric", {"barycentric", "rigid motions"},
+  declare_choice(list, "Weights", "barycentric", {"barycentric", "rigid motions"},
                  "W of deformable solids. 'barycentric': a mixed face takes the velocity of the "
                  "surface in its "
                  "dual cell (Section 5). 'rigid motions': carried to the centre of the face by the "
@@ -26,7 +26,7 @@ ParameterList valid_parameters() {
       list, "Fluid Mass", "fluid part", {"fluid part", "whole cell"},
       "Fluid mass of a mixed dual cell: density times the part outside the solids, or times the "
       "whole dual cell.");
-  declare(list, "Balance Masses", true,
+  declare(list, "Correct Buoyancy", true,
           "Correct the lumped masses of every closed body, axis by axis, so that a neutrally "
           "buoyant one rests "
           "exactly.");
@@ -42,9 +42,9 @@ MixedFaceOptions options_from(const ParameterList& list) {
     options.lumping = Lumping::consistent;
   else if (list.get<std::string>("Lumping") == "paper diagonal")
     options.lumping = Lumping::paper_diagonal;
-  options.carry_rotations = list.get<std::string>("Soft Weights") == "rigid motions";
+  options.carry_rotations = list.get<std::string>("Weights") == "rigid motions";
   options.whole_cell_mass = list.get<std::string>("Fluid Mass") == "whole cell";
-  options.balance = list.get<bool>("Balance Masses");
+  options.balance = list.get<bool>("Correct Buoyancy");
   return options;
 }
 

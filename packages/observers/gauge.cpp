@@ -25,19 +25,21 @@ const LiquidFluid<dim>& liquid_of(const FluidDiscretization<dim>& fluid) {
 template <int dim>
 ParameterList gauge_parameters() {
   ParameterList list;
-  declare_required_vector<double>(list, "Foot", dim, "The end that lengths are measured from [m].");
-  declare_required_vector<double>(list, "Head", dim, "The other end [m].");
+  declare_required_vector<double>(list, "Points", 2 * dim,
+                                  "The two ends, a component an axis [m]; lengths are measured "
+                                  "from the first.");
   return list;
 }
 
 template <int dim>
 Gauge<dim>::Gauge(const ParameterList& list) {
+  const auto& ends = list.get<ParameterArray<double>>("Points");
   for (int a = 0; a < dim; ++a) {
-    foot_[a] = list.get<ParameterArray<double>>("Foot")[a];
-    head_[a] = list.get<ParameterArray<double>>("Head")[a];
+    foot_[a] = ends[a];
+    head_[a] = ends[dim + a];
   }
   check_input(foot_ != head_,
-              "In \"Observers\", \"Foot\" and \"Head\" of a gauge are one point; it needs a line.");
+              "In \"Observers\", the two \"Points\" of a gauge are one; it needs a line.");
 }
 
 template <int dim>
@@ -52,8 +54,8 @@ std::vector<std::vector<double>> Gauge<dim>::observe(const RunView<dim>& run) {
   const double length = (head_ - foot_).norm();
   const double wanted = std::ceil(2 * length / run.fluid.smallest_length());
   check_input(wanted < most_samples,
-              "A \"gauge\" of {:g} m is {:g} cells long, more than a gauge can be; bring \"Foot\" "
-              "and \"Head\" nearer to each other.",
+              "A \"gauge\" of {:g} m is {:g} cells long, more than a gauge can be; bring its "
+              "\"Points\" nearer to each other.",
               length, wanted / 2);
   const int n = std::max(1, static_cast<int>(wanted));
   std::vector<Point<dim>> points;

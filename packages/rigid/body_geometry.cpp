@@ -77,9 +77,9 @@ void declare_geometry(ParameterList& body) {
   declare_mesh_repair(list);
   for (const char* size : {"Radius", "Length", "Tube Radius"})
     set_positive(list, size);
-  declare_optional<double>(list, "Surface Spacing",
+  declare_optional<double>(list, "Mesh Spacing",
                            "Longest edge of a generated surface [m]; default 0.7 grid cells.");
-  set_positive(list, "Surface Spacing");
+  set_positive(list, "Mesh Spacing");
   declare(list, "Thin Shell", false,
           "Take a closed surface as a thin shell with fluid on both sides.");
 }
@@ -89,9 +89,8 @@ BodyGeometry<dim> make_body_geometry(const ParameterList& geometry, double grid_
                                      const std::string& name) {
   const auto& shape = geometry.get<std::string>("Shape");
   check_shape_sizes(geometry, shapes(), name);
-  const double spacing = geometry.isParameter("Surface Spacing")
-                             ? geometry.get<double>("Surface Spacing")
-                             : 0.7 * grid_spacing;
+  const double spacing = geometry.isParameter("Mesh Spacing") ? geometry.get<double>("Mesh Spacing")
+                                                              : 0.7 * grid_spacing;
   const bool open = shape == "open box" || shape == "plate";
   check_mesh_size(geometry, spacing, dim - 1, name);
   BodyGeometry<dim> body;

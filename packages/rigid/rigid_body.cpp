@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/round_off.hpp"
 #include "motion/free_rotation.hpp"
 
 namespace lockstep {
@@ -26,7 +27,7 @@ bool turns_without_effect(const RigidBody<dim>& body) {
   if (!body.center_of_mass.isZero(0))
     return false;
   const double mean = body.inertia.trace() / n_rotations<dim>;
-  return (body.inertia - mean * Inertia<dim>::Identity()).norm() <= 1e-12 * mean;
+  return (body.inertia - mean * Inertia<dim>::Identity()).norm() <= rounding::sums * mean;
 }
 
 }  // namespace
@@ -148,7 +149,7 @@ std::optional<RigidVector<dim>> middle_velocity(const RigidBody<dim>& body,
         velocity_of(body, middle, carried_momentum(body, momentum, now, middle, dt / 2));
     const double change = dt / 2 * (next - velocity).template tail<n_turns>().norm();
     velocity = next;
-    if (change <= 1e-14 * std::max(1.0, turn.norm()))
+    if (change <= rounding::few * std::max(1.0, turn.norm()))
       return velocity;
   }
   return std::nullopt;

@@ -34,20 +34,12 @@ void declare_mass(ParameterList& list) {
 template <int dim>
 void declare_pose(ParameterList& list) {
   declare_vector(list, "Position", ParameterArray<double>(dim, 0.0), dim,
-                 "Position of the origin of the body's coordinates at the start [m].");
-  if constexpr (dim == 2) {
-    declare(list, "Orientation", 0.0,
-            "Angle by which the body is turned about that origin at the start [rad].");
-  } else {
-    declare_optional<ParameterArray<double>>(
-        list, "Orientation",
-        "Unit quaternion (w, x, y, z) that turns the body about that origin at the start [1]; "
-        "default (1, 0, 0, 0). Instead: \"Rotation Axis\" and \"Rotation Angle\".");
-    set_length(list, "Orientation", 4);
-    declare_vector(list, "Rotation Axis", {0.0, 0.0, 1.0}, 3,
-                   "Axis of \"Rotation Angle\", of any length [1].");
-    declare(list, "Rotation Angle", 0.0, "Turn about \"Rotation Axis\" at the start [rad].");
-  }
+                 "Where the origin of the body's coordinates lies at the start [m].");
+  declare_rotation<dim>(list, "Rotation",
+                        dim == 2 ? "Angle by which the body is turned about that origin at the "
+                                   "start [rad]."
+                                 : "Rotation vector (axis times angle) by which the body is turned "
+                                   "about that origin at the start [rad].");
   declare_vector(list, "Velocity", ParameterArray<double>(dim, 0.0), dim,
                  "Velocity of the reference point (centre of mass, or pivot) at the start [m/s].");
   declare_rotation<dim>(list, "Angular Velocity", "Angular velocity at the start [rad/s].");
@@ -56,29 +48,6 @@ void declare_pose(ParameterList& list) {
       "Reference point, in coordinates of the body [m]: what locked translations hold (a hinge) "
       "and scripts turn about. Default: the centre of mass.");
   set_length(list, "Pivot", dim);
-}
-
-template <int dim>
-Orientation<dim> read_orientation(const ParameterList& list, const std::string& name) {
-  if constexpr (dim == 2) {
-    return Orientation<2>(list.get<double>("Orientation"));
-  } else {
-    const Point<3> axis = vector_value<3>(list, "Rotation Axis");
-    const double angle = list.get<double>("Rotation Angle");
-    check_input(axis.norm() > 0, "The \"Rotation Axis\" of the solid \"{}\" must not be zero.",
-                name);
-    if (!list.isParameter("Orientation"))
-      return rotation_of<3>(angle * axis.normalized());
-    check_input(angle == 0,
-                "The solid \"{}\" has both \"Orientation\" and \"Rotation Angle\"; leave out one.",
-                name);
-    const auto q = vector_value<4>(list, "Orientation");
-    check_input(std::abs(q.norm() - 1) < 1e-3,
-                "The \"Orientation\" of the solid \"{}\" must be a quaternion of length 1, but its "
-                "length is {}.",
-                name, q.norm());
-    return Orientation<3>(q[0], q[1], q[2], q[3]).normalized();
-  }
 }
 
 /// Density per unit of measure (volume or surface); 0 for a prescribed body that names none.
@@ -188,7 +157,7 @@ RigidBody<dim> read_rigid_body(const std::string& name, const ParameterList& lis
   RigidVector<dim> velocity;
   velocity << vector_value<dim>(list, "Velocity"), rotation_value<dim>(list, "Angular Velocity");
   set_locks(body, list, velocity);
-  body.pose.orientation = read_orientation<dim>(list, name);
+  body.pose.orientation = rotation_of<dim>(rotation_value<dim>(list, "Rotation"));
   body.pose.position = vector_value<dim>(list, "Position") + body.pose.orientation * reference;
   body.initial_pose = body.pose;
   if (body.dynamic())

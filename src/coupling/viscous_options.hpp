@@ -15,7 +15,7 @@ struct ViscousOptions {
   ParameterList solid_inverse;
 };
 
-/// Declares "Viscous Tolerance" and the list "Viscous Solve" of a scene's "Solver".
+/// Declares the list "Viscous Solve" of a scene's "Solver".
 void declare_viscous_solve(ParameterList& solver);
 /// Throws InputError if an inverse is none.
 ViscousOptions viscous_options(const ParameterList& solver);

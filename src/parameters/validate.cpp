@@ -4,6 +4,7 @@
 
 #include "base/errors.hpp"
 #include "base/shortened.hpp"
+#include "parameters/former_names.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 
@@ -125,6 +126,9 @@ class Validator {
 
 std::string unknown_name(const std::string& place, const std::string& path, const std::string& name,
                          const ParameterList& valid) {
+  const std::string fate = fate_of(path, name);
+  if (!fate.empty())
+    return fmt::format("{}: {}, \"{}\" {}.", place, in_list(path), name, fate);
   std::vector<std::string> names;
   for (const auto& [known, entry] : entries(valid))
     names.push_back(known);

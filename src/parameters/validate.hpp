@@ -15,7 +15,8 @@ void validate(ParameterList& given, const ParameterList& valid, const Source& so
               const std::string& path = "");
 void validate(Document& document, const ParameterList& valid);
 
-/// The message for `name`, which `valid` does not have: suggestion and list of names included.
+/// The message for `name`, which `valid` does not have: what became of a name that once was there,
+/// else a suggestion and the list of names.
 std::string unknown_name(const std::string& place, const std::string& path, const std::string& name,
                          const ParameterList& valid);
 

@@ -59,9 +59,9 @@ Places lattice(const ParameterList& copies, const std::vector<double>& first,
 }
 
 Places given_positions(const ParameterList& copies, int dimension, const std::string& where) {
-  const std::vector<double> numbers = reals(copies, "Positions");
+  const std::vector<double> numbers = reals(copies, "Points");
   check_input(!numbers.empty() && numbers.size() % dimension == 0,
-              "{}: \"Positions\" has {} numbers; it takes {} a copy, one after the other.", where,
+              "{}: \"Points\" has {} numbers; it takes {} a copy, one after the other.", where,
               numbers.size(), dimension);
   Places places;
   for (std::size_t i = 0; i < numbers.size(); i += dimension)
@@ -172,13 +172,13 @@ class Copier {
   Places random_places(const ParameterList& copies, const Written& written,
                        const std::string& where) const {
     std::vector<double> radii;
-    for (int number = 1; number <= copies.get<int>("Number"); ++number) {
-      const bool given = copies.isParameter("Smallest Distance");
+    for (int number = 1; number <= copies.get<int>("Count"); ++number) {
+      const bool given = copies.isParameter("Spacing");
       radii.push_back(
-          given ? copies.get<double>("Smallest Distance") / 2
+          given ? copies.get<double>("Spacing") / 2
                 : ball_radius(evaluated(own_list(written, number).list, written.path, number)));
       check_input(radii.back() > 0,
-                  "{}: \"Smallest Distance\" [m] between the places is required for solids that "
+                  "{}: \"Spacing\" [m] between the places is required for solids that "
                   "are no balls.",
                   where);
     }
@@ -254,18 +254,17 @@ void declare_copies(ParameterList& solid, int dimension) {
   declare_required_vector<double>(lattice, "Spacing", dimension,
                                   "Spacing from one copy to the next along each axis [m].");
   declare_required<ParameterArray<double>>(
-      positions, "Positions",
-      "Positions of the copies, a component an axis, one after the other [m].");
-  declare_required<int>(random, "Number", "Number of copies.");
-  set_between(random, "Number", 1, most_copies);
+      positions, "Points", "Where they stand, a component an axis, one copy after the other [m].");
+  declare_required<int>(random, "Count", "How many.");
+  set_between(random, "Count", 1, most_copies);
   declare_required_vector<double>(random, "Lower", dimension,
                                   "Corner of the box that holds their positions [m].");
   declare_required_vector<double>(random, "Upper", dimension,
                                   "Corner of the box that holds their positions [m].");
   declare_optional<double>(
-      random, "Smallest Distance",
+      random, "Spacing",
       "Least distance between two positions [m]; balls touch at most if it is left out.");
-  declare(random, "Seed", 1, "Seed of the random positions.");
+  declare(random, "Seed", 1, "Another one gives other places.");
   declare_typed_sublist(
       solid, "Copies",
       "Makes many solids of one, named \"NAME 1\", \"NAME 2\" and so on. Formulas of the solid may "

@@ -50,13 +50,13 @@ void declare_output(ParameterList& scene) {
   declare_at_least(output, "Frame Interval", 0., 0.,
                    "Simulated time between frames [s]: each comes with the first step at or past a "
                    "multiple of it after the start, the last at the end. 0: every step.");
+  ParameterList& checkpoints = declare_list(output, "Checkpoints", "From which a run goes on.");
   declare_at_least(
-      output, "Checkpoint Interval", 0., 0.,
-      "Simulated time between checkpoints [s], counted as that of frames; 0: only at the "
-      "end and when stopped.");
-  declare_at_least(output, "Keep Checkpoints", 2, 1, "Number of checkpoints that are kept.");
-  declare_choice(output, "Precision", "single", {"single", "double"},
-                 "Precision of the fields in frames.");
+      checkpoints, "Interval", 0., 0.,
+      "Simulated time between two [s], counted as that of frames; 0: only at the end and when "
+      "stopped.");
+  declare_at_least(checkpoints, "Count", 2, 1, "How many are kept.");
+  declare_choice(output, "Precision", "single", {"single", "double"}, "Of the fields in frames.");
 }
 
 void declare_solver(ParameterList& scene, const StrategyRegistry& strategies) {
@@ -274,8 +274,8 @@ SceneOptions scene_options(const ParameterList& scene) {
   const ParameterList& output = scene.sublist("Output");
   options.output.frames = output.get<bool>("Frames");
   options.output.frame_interval = output.get<double>("Frame Interval");
-  options.output.checkpoint_interval = output.get<double>("Checkpoint Interval");
-  options.output.keep_checkpoints = output.get<int>("Keep Checkpoints");
+  options.output.checkpoint_interval = output.sublist("Checkpoints").get<double>("Interval");
+  options.output.keep_checkpoints = output.sublist("Checkpoints").get<int>("Count");
   options.output.precision = output.get<std::string>("Precision");
   const ParameterList& solver = scene.sublist("Solver");
   options.step.solve.tolerance = solver.get<double>("Tolerance");

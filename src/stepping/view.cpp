@@ -22,9 +22,9 @@ void declare_view(ParameterList& scene, int dim) {
       view, "Direction",
       "Direction from the scene to the eye [1]; default from the front, the right and above.");
   declare_optional<ParameterArray<double>>(
-      view, "Centre", "Middle of the picture [m]; default that of the domain.");
+      view, "Center", "Middle of the picture [m]; default that of the domain.");
   set_length(view, "Direction", dim);
-  set_length(view, "Centre", dim);
+  set_length(view, "Center", dim);
   declare_positive(view, "Zoom", 1., "1: all of the domain is in the picture; 2: half of it [1].");
   declare_choice(view, "Style", "slice", {"slice", "volume"},
                  "Style of the field: across a plane, or as a cloud.");

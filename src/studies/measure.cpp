@@ -71,7 +71,7 @@ double row_value(const Quantity& quantity, const std::vector<Variables>& rows,
     times.push_back(row.at("time"));
     values.push_back(expression.value());
   }
-  check_input(!values.empty(), "{}: no row is later than \"From Time\" = {} s.", where,
+  check_input(!values.empty(), "{}: no row is later than \"Start\" = {} s.", where,
               quantity.from_time);
   return reduce(quantity.over, times, values);
 }

@@ -17,8 +17,6 @@ Series combined(const Series& before, const Series& option, const Series& plain)
     result.scene_file = option.scene_file;
   if (!option.values.empty())
     result.values = option.values;
-  if (option.ranks != plain.ranks)
-    result.ranks = option.ranks;
   return result;
 }
 

@@ -19,11 +19,15 @@ const char* const assignments_doc =
     "of the constants: \"Domain/Cells={[n], [n]}\".";
 const char* const constants_doc =
     "Numbers, or formulas of those before, under names of their own; all are evaluated anew for "
-    "each "
-    "case. A series may replace those of the study; its additional ones come before them.";
+    "each case. A series may replace those of the study; its additional ones come before them. "
+    "\"ranks\" is the number of MPI ranks.";
 
-/// Beyond these a typing error is likelier than a study, and takes the machine down.
-constexpr int most_ranks = 4096, most_samples = 10000;
+const char* const field_doc =
+    "Field of the last frame, such as \"pressure\", or a component of it, \"velocity[1]\"; without "
+    "brackets the first.";
+
+/// Beyond this a typing error is likelier than a study, and takes the machine down.
+constexpr int most_samples = 10000;
 
 ParameterList series_parameters() {
   ParameterList series;
@@ -32,7 +36,6 @@ ParameterList series_parameters() {
   declare(series, "Set", "", assignments_doc);
   declare_optional<ParameterArray<double>>(series, "Values",
                                            "Ladder of this series, instead of the study's.");
-  declare_between(series, "Ranks", 1, 1, most_ranks, "MPI ranks to run on.");
   return series;
 }
 
@@ -61,9 +64,9 @@ void declare_reference(ParameterList& list) {
 void declare_reduction(ParameterList& list) {
   declare_choice(list, "Over", "last",
                  {"last", "first", "max", "min", "mean", "rms", "amplitude", "frequency"},
-                 "Reduction of the rows of a run to one number; every row counts the same. "
-                 "amplitude: half of max - min. frequency: of the rises through 0 [1/s].");
-  declare_optional<double>(list, "From Time", "Rows before this time do not count [s].");
+                 "How the rows of a run become one number; every row counts the same. amplitude: "
+                 "half of max - min. frequency: of the rises through 0 [1/s].");
+  declare_optional<double>(list, "Start", "Rows before this time do not count [s].");
   declare_reference(list);
   declare_targets(list);
   declare(list, "Extrapolate", false,
@@ -92,17 +95,16 @@ std::vector<TypedSchema> quantity_types() {
       "area0 and so on; constants, parameters and "
       "h, dt, cells, ranks.");
   declare_reduction(surface);
-  declare_required<std::string>(field, "Field", "Field of the last frame, such as \"velocity\".");
-  declare_at_least(field, "Component", 0, 0, "Component of a vector: 0, 1, 2.");
-  declare_required<std::string>(field, "Exact", "Formula of x, y, z, t, constants and parameters.");
-  declare_choice(field, "Norm", "L2", {"L1", "L2", "max"},
-                 "Norm of the difference, per unit volume: mean of |e|, root of the mean of e^2, "
-                 "max |e|. It is value and error at once.");
+  declare_required<std::string>(field, "Field", field_doc);
+  declare_required<std::string>(field, "Reference",
+                                "Formula of x, y, z, t, constants and parameters.");
+  declare_choice(field, "Over", "L2", {"L1", "L2", "max"},
+                 "Of the difference, per unit volume: mean of |e|, root of the mean of e^2, max "
+                 "|e|. It is value and error at once.");
   declare_targets(field);
-  declare_required<std::string>(line, "Field", "Field of the last frame, such as \"velocity\".");
-  declare_at_least(line, "Component", 0, 0, "Component of a vector: 0, 1, 2.");
-  declare_choice(line, "Axis", "x", {"x", "y", "z"}, "Axis along which the line runs.");
-  declare_required<ParameterArray<double>>(line, "Point", "A point on the line [m].");
+  declare_required<std::string>(line, "Field", field_doc);
+  declare_choice(line, "Axis", "x", {"x", "y", "z"}, "Along which the line runs.");
+  declare_required<ParameterArray<double>>(line, "Point", "That the line goes through [m].");
   declare_choice(
       line, "Over", "max", {"max", "min"},
       "The extremum wanted: of the parabola through three neighbouring centres of cells; "
@@ -121,7 +123,7 @@ ParameterList curve_parameters() {
   ParameterList curve;
   declare_required<std::string>(curve, "Expression",
                                 "Formula of the columns of the tables, as for a quantity.");
-  declare(curve, "Exact", "", "Formula of the exact value, of the same names; drawn dashed.");
+  declare(curve, "Reference", "", "Formula of what it should be, of the same; drawn dashed.");
   return curve;
 }
 
@@ -162,7 +164,6 @@ Series read_series(const ParameterList& list, const std::string& name, const std
   series.assignments = read_assignments(list.get<std::string>("Set"), where);
   if (list.isParameter("Values"))
     series.values = list.get<ParameterArray<double>>("Values").toVector();
-  series.ranks = list.get<int>("Ranks");
   return series;
 }
 
@@ -174,7 +175,7 @@ std::vector<Series> read_all_series(const ParameterList& study, const std::strin
       all.push_back(read_series(Teuchos::getValue<ParameterList>(entry), name, file, scene));
     return all;
   };
-  const Series plain{"", resolve_path(file, scene), {}, {}, {}, 1};
+  const Series plain{"", resolve_path(file, scene), {}, {}, {}};
   std::vector<Series> series = read_list(study.sublist("Series"));
   std::vector<std::vector<Series>> factors;
   for (const auto& [name, entry] : entries(study.sublist("Factors"))) {
@@ -205,10 +206,22 @@ void read_point(const ParameterList& list, const std::string& name, Quantity& qu
   std::copy(point.begin(), point.end(), quantity.point.begin());
 }
 
+/// "velocity[1]" or, without brackets, the only component or the first.
+void read_field(const ParameterList& list, const std::string& name, Quantity& quantity) {
+  const auto& text = list.get<std::string>("Field");
+  std::smatch parts;
+  check_input(
+      std::regex_match(text, parts, std::regex(R"(([^\[\]]+)(?:\[(\d)\])?)")),
+      "In quantity \"{}\", \"Field\" is \"{}\"; it is the name of a field, or of a component "
+      "of it as in \"velocity[1]\".",
+      name, text);
+  quantity.field = parts[1];
+  quantity.component = parts[2].matched ? std::stoi(parts[2]) : 0;
+}
+
 void read_line(const ParameterList& list, const std::string& name, Quantity& quantity) {
   read_point(list, name, quantity);
-  quantity.field = list.get<std::string>("Field");
-  quantity.component = list.get<int>("Component");
+  read_field(list, name, quantity);
   quantity.axis = choice<int>(list.get<std::string>("Axis"), {{"x", 0}, {"y", 1}, {"z", 2}});
   quantity.over = choice<Quantity::Over>(
       list.get<std::string>("Over"), {{"max", Quantity::Over::max}, {"min", Quantity::Over::min}});
@@ -229,10 +242,9 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
                                                                {"field", From::field},
                                                                {"line", From::line}});
   if (quantity.from == From::field) {
-    quantity.expression = list.get<std::string>("Exact");
-    quantity.field = list.get<std::string>("Field");
-    quantity.component = list.get<int>("Component");
-    quantity.norm = choice<Norm>(list.get<std::string>("Norm"),
+    quantity.expression = list.get<std::string>("Reference");
+    read_field(list, name, quantity);
+    quantity.norm = choice<Norm>(list.get<std::string>("Over"),
                                  {{"L1", Norm::l1}, {"L2", Norm::l2}, {"max", Norm::max}});
     quantity.reference = "0";
     return quantity;
@@ -254,8 +266,8 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
     quantity.solid = list.get<std::string>("Solid");
     read_point(list, name, quantity);
   }
-  if (list.isParameter("From Time"))
-    quantity.from_time = list.get<double>("From Time");
+  if (list.isParameter("Start"))
+    quantity.from_time = list.get<double>("Start");
   quantity.reference = list.get<std::string>("Reference");
   quantity.relative = list.get<bool>("Relative");
   quantity.extrapolate = list.get<bool>("Extrapolate");
@@ -303,7 +315,7 @@ ParameterList study_parameters() {
       "offset_y, offset_z in [-1/2, 1/2) are additive sequences of irrational steps, the same on "
       "every "
       "machine; sample is 0, 1, ...");
-  declare_between(samples, "Number", 1, 1, most_samples, "Number of copies.");
+  declare_between(samples, "Count", 1, 1, most_samples, "How many.");
   declare(samples, "Set", "", assignments_doc);
   declare_named_sublists(study, "Quantities", "Measured quantities, one sublist each.",
                          quantity_types(), "table");
@@ -328,7 +340,7 @@ Study read_study(const std::string& file) {
   study.usual_rungs = ladder.get<int>("Usual Rungs");
   study.abscissa = ladder.get<std::string>("Abscissa");
   study.series = read_all_series(list, file);
-  study.n_samples = list.sublist("Samples").get<int>("Number");
+  study.n_samples = list.sublist("Samples").get<int>("Count");
   study.sample_assignments =
       read_assignments(list.sublist("Samples").get<std::string>("Set"), file);
   for (const auto& [name, entry] : entries(list.sublist("Quantities")))
@@ -336,7 +348,7 @@ Study read_study(const std::string& file) {
   for (const auto& [name, entry] : entries(list.sublist("Curves"))) {
     const auto& curve = Teuchos::getValue<ParameterList>(entry);
     study.curves.push_back(
-        {name, curve.get<std::string>("Expression"), curve.get<std::string>("Exact")});
+        {name, curve.get<std::string>("Expression"), curve.get<std::string>("Reference")});
   }
   check_input(!study.quantities.empty(), "{}: the study measures nothing; name a quantity.", file);
   for (const Quantity& quantity : study.quantities)

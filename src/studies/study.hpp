@@ -20,8 +20,7 @@ struct Series {
   std::string scene_file;
   Formulas constants;
   std::vector<std::string> assignments;  ///< "Path=value" with [formulas]
-  std::vector<double> values;            ///< ladder of this series; empty: the study's
-  int ranks = 1;
+  std::vector<double> values;            ///< of this series' own ladder; empty: the study's
 };
 
 /// One column of results, and what it is compared with.

@@ -32,6 +32,9 @@ void add_constants(Variables& variables, const Formulas& formulas, const Formula
   }
 }
 
+/// Beyond this a typing error is likelier than a study, and takes the machine down.
+constexpr int most_ranks = 4096;
+
 void add_assignments(StudyCase& result, const std::vector<std::string>& assignments,
                      const std::string& where) {
   for (const std::string& assignment : assignments)
@@ -64,21 +67,20 @@ StudyCase make_case(const Study& study, int series_number, int rung, int sample,
   result.series = series_number;
   result.rung = rung;
   result.sample = sample;
-  result.ranks = series.ranks;
   result.scene_file = series.scene_file;
   Variables& constants = result.constants;
+  constants["ranks"] = 1;
   constants[study.ladder_name] = value;
-  if (study.ladder_name == "ranks") {
-    check_input(value >= 1 && value == std::floor(value),
-                "{}: a number of ranks must be a whole number, at least 1.", where);
-    result.ranks = static_cast<int>(value);
-  }
-  constants["ranks"] = result.ranks;
   constants["rung"] = rung + 1;
   constants["sample"] = sample;
   for (int axis = 0; axis < 3; ++axis)
     constants[std::string("offset_") + "xyz"[axis]] = sample_offset(sample, axis);
   add_constants(constants, study.constants, series.constants, where);
+  const double ranks = constants["ranks"];
+  check_input(ranks >= 1 && ranks <= most_ranks && ranks == std::floor(ranks),
+              "{}: \"ranks\" is {:g}, but must be a whole number, at least 1 and at most {}.",
+              where, ranks, most_ranks);
+  result.ranks = static_cast<int>(ranks);
   add_assignments(result, study.assignments, where);
   add_assignments(result, series.assignments, where);
   add_assignments(result, study.sample_assignments, where);

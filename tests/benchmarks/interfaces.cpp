@@ -29,11 +29,8 @@ int main(int argc, char** argv) {
     for (const std::string model : {"level set", "particle level set", "volume of fluid"})
       for (const bool corrects : {false, true}) {
         ParameterList list;
-        const bool is_vof = model == "volume of fluid";
-        const std::string correction = is_vof     ? (corrects ? "return" : "keep")
-                                       : corrects ? "component"
-                                                  : "none";
-        list.set(is_vof ? "Crumbs" : "Volume Correction", correction);
+        const std::string correction = corrects ? "component" : "none";
+        list.set("Volume Correction", correction);
         const Return found = run(argv[i], model, list);
         std::printf("%s,%s,%s,%.5f,%.5f,%.2e,%d,%d,%.3f,%.0f\n", argv[i], model.c_str(),
                     correction.c_str(), found.loss, found.shape, found.ledger, found.n_components,

@@ -47,7 +47,7 @@ class Pages(unittest.TestCase):
         for dimension in ("2", "3"):
             names = set(re.findall(r"^ +(\S.*?) : (?:int|double|bool|string|Array)", printed("--parameters", "--dimension", dimension),
                                    re.MULTILINE))
-            self.assertGreater(len(names), 150)
+            self.assertGreater(len(names), 100)
             self.assertEqual(names - written - {"Type"}, set())
 
     def test_help_is_our_own(self):
@@ -55,8 +55,8 @@ class Pages(unittest.TestCase):
 
     def test_the_right_page(self):
         self.assertIn("| Dry Points | Array(double) | unset | m |", page("fluid-mac"))
-        self.assertIn("| Reseed Interval | int |", page("interface-particle-level-set"))
-        self.assertNotIn("Reseed Interval", page("fluid-mac"))
+        self.assertIn("| Drops | string |", page("interface-particle-level-set"))
+        self.assertNotIn("| Drops |", page("fluid-mac"))
         self.assertIn("| Stretch Limit | double | 0 | 1 | at least 0 |", page("solid-cloth"))
 
 

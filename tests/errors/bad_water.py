@@ -30,16 +30,16 @@ def filled(name, text=None):
 def wave(*sets, **scene):
     """A side that sends in waves, and what is wrong with it."""
     side = "Domain/Sides/x lower/"
-    good = ["Type=inflow", "Wave/Height=0.02", "Wave/Period=1", "Wave/Level=1.2"]
+    good = ["Type=inflow", "Wave/Height=0.02", "Wave/Frequency=1"]
     return {"sets": [side + assignment for assignment in good] + [s if s.startswith("Fluid") else side + s for s in sets],
             **(scene or water())}
 
 
-def gauge(foot, head):
-    """Returns the change that puts a gauge into a scene."""
+def gauge(ends):
+    """What puts one into a scene."""
     time = '<ParameterList name="Time">'
     return time, ('<ParameterList name="Observers"> <ParameterList name="G">' + value("Type", "string", "gauge") +
-                  value("Foot", "Array(double)", foot) + value("Head", "Array(double)", head) +
+                  value("Points", "Array(double)", ends) +
                   "</ParameterList> </ParameterList>" + time)
 
 
@@ -64,9 +64,6 @@ CASES = [
     Case("drops of nothing", ["\"Drops\"", "\"Volume Correction\"", "no drops"],
          **water('<ParameterList name="Interface">' + value("Type", "string", "particle level set") +
                  value("Drops", "string", "ballistic") + value("Volume Correction", "string", "none") + "</ParameterList>")),
-    Case("particles beyond what is known", ["\"Particle Band\" 3", "\"Band\" of 5 or more"],
-         **water('<ParameterList name="Interface">' + value("Type", "string", "particle level set") + value("Band", "int", "4") +
-                 "</ParameterList>")),
     Case("a dry point in a solid", ["dry point 0.5, 0.5", "inside a solid"], **water(value("Dry Points", "Array(double)", "{0.5, 0.5}"))),
     Case("a dry point outside", ["dry point 0.5, 9", "outside of the domain"], **water(value("Dry Points", "Array(double)", "{0.5, 9}"))),
     Case("a wave on a wall", ["x lower", "\"Wave\" is for inflows", "\"wall\""], **wave("Type=wall")),
@@ -74,11 +71,13 @@ CASES = [
     Case("a wave and a stream", ["x lower", "leave \"Velocity\""], **wave("Velocity={1, 0}")),
     Case("a wave along gravity", ["x lower", "gravity along the side"], **wave("Fluid/Gravity={-9.8, 0}")),
     Case("a wave on tilted water", ["x lower", "along an axis"], **wave("Fluid/Gravity={-1, -9.8}")),
-    Case("a wave above the domain", ["x lower", "\"Level\"", "from 0 to 2 m"], **wave("Wave/Level=2.5")),
+    Case("a wave above the domain", ["x lower", "\"Height\"", "from 0 to 2 m"], **wave("Fluid/Free Surface/Liquid/Pool/Height=2.5")),
+    Case("a wave on water of no level", ["x lower", "the one \"level\"", "there are 0"],
+         **wave(**water(liquid=value("Type", "string", "box")))),
     Case("a wave that breaks", ["x lower", "breaks where it is 0.2"], **wave("Wave/Height=0.3")),
-    Case("a wave of no period", ["\"Period\"", "greater than 0"], **wave("Wave/Period=0")),
-    Case("a gauge without a length", ["gauge", "one point"], gauge("{0.1, 1}", "{0.1, 1}"), **water()),
-    Case("a gauge in a full tank", ["gauge", "fills the domain"], gauge("{0.1, 1}", "{0.1, 2}")),
+    Case("a wave that does not swing", ["\"Frequency\"", "greater than 0"], **wave("Wave/Frequency=0")),
+    Case("a gauge without a length", ["gauge", "\"Points\"", "are one"], gauge("{0.1, 1, 0.1, 1}"), **water()),
+    Case("a gauge in a full tank", ["gauge", "fills the domain"], gauge("{0.1, 1, 0.1, 2}")),
     Case("liquid in no file", ["pool.obj", "cannot open this surface file"], **filled("pool.obj")),
     Case("liquid in an open line", ["Pool", "pool.obj"], **filled("pool.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\n")),
 ]

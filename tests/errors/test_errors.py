@@ -27,6 +27,10 @@ def joint(kind, solids, more="", second=""):
     return {"change": ('<ParameterList name="Solids">', text)}
 
 
+def limits(bounds):
+    return f'<ParameterList name="Limits">{bounds}</ParameterList>'
+
+
 BONE = """<ParameterList name="Bone">
       <Parameter name="Type" type="string" value="rigid body"/>
       <ParameterList name="Geometry">
@@ -48,8 +52,7 @@ WINDOW = """  <ParameterList name="Observers">
   </ParameterList>
   <ParameterList name="Time">"""
 
-SPINDLE = (value("Shape", "string", "spindle") + value("Stations", "Array(double)", "{-0.2, 0, 0.2}") +
-           value("Half Heights", "Array(double)", "{0.1, 0.2, 0.1}") + value("Half Widths", "Array(double)", "{0.1, 0.2, 0.1}"))
+SPINDLE = value("Shape", "string", "spindle") + value("Sections", "Array(double)", "{-0.2, 0.1, 0.1, 0, 0.2, 0.2, 0.2}")
 
 
 def source(shape, sizes):
@@ -97,13 +100,13 @@ CASES = [
     Case("a target of a free joint", ["\"Neck\" has \"Target\"", "\"Control\""],
          **joint("hinge", "space, Ball", '<ParameterList name="Target">' + value("Value", "double", 1) + "</ParameterList>")),
     Case("a limit above another", ["\"Neck\"", "lower limit 0.5 above its upper limit -0.5"],
-         **joint("hinge", "space, Ball", value("Lower Limit", "double", .5) + value("Upper Limit", "double", -.5))),
+         **joint("hinge", "space, Ball", limits(value("Lower", "double", .5) + value("Upper", "double", -.5)))),
     Case("a limit beyond the start", ["\"Neck\" starts at 0", "above its upper limit -0.5"],
-         **joint("hinge", "space, Ball", value("Upper Limit", "double", -.5))),
+         **joint("hinge", "space, Ball", limits(value("Upper", "double", -.5)))),
     Case("limits of a motor", ["\"Neck\" is under \"prescribed\" control", "leave out its limits"],
-         **joint("hinge", "space, Ball", value("Upper Limit", "double", .5) + value("Control", "string", "prescribed"))),
+         **joint("hinge", "space, Ball", limits(value("Upper", "double", .5)) + value("Control", "string", "prescribed"))),
     Case("limits without contact", ["\"Neck\" has limits", "\"Contact/Type\" must not be \"none\""],
-         sets=["Contact/Type=none"], **joint("hinge", "space, Ball", value("Upper Limit", "double", .5))),
+         sets=["Contact/Type=none"], **joint("hinge", "space, Ball", limits(value("Upper", "double", .5)))),
     Case("joints and the paper's masses", ["\"paper diagonal\"", "cannot be combined with joints"],
          sets=["Coupling/Lumping=paper diagonal"], **joint("hinge", "space, Ball")),
     Case("a slider without axis", "\"Axis\"", **joint("slider", "space, Ball")),
@@ -111,6 +114,9 @@ CASES = [
     Case("--set without value", "--set \"Time/End\"", sets=["Time/End"]),
     Case("--set of a list that is not there", ["--set", "\"Tim\"", "Did you mean \"Time\""], sets=["Tim/End=1"]),
     Case("--set of an unknown name", ["\"Ned\"", "Did you mean \"End\""], sets=["Time/Ned=1"]),
+    Case("--set of a former name", ["in \"Contact\", \"Slop\" is always 0.05 cells now"], sets=["Contact/Slop=0.1"]),
+    Case("--set of a renamed one", ["in \"Solver\", \"Viscous Tolerance\" is called \"Tolerance\" now", "\"Viscous Solve\""],
+         sets=["Solver/Viscous Tolerance=1e-9"]),
     Case("--set of a wrong type", ["--set \"Time/End=soon\"", "not a number"], sets=["Time/End=soon"]),
     Case("--set out of bounds", ["--set", "greater than 0"], sets=["Time/CFL=-1"]),
     Case("--set of a whole list", "is a list", sets=["Time=1"]),
@@ -166,7 +172,7 @@ CASES = [
     Case("an unknown strategy", ["\"schur\"", "one of"], sets=["Solver/Strategy/Type=schur"]),
     *[Case(f"{name} of {number}", ["--set", f"is {number}, but must be greater than 0 and less than 1"],
            sets=[f"Solver/{name}={number}"])
-      for name in ("Tolerance", "Viscous Tolerance", "Strategy/Tolerance") for number in ("0", "1", "1e30")],
+      for name in ("Tolerance", "Viscous Solve/Tolerance", "Strategy/Tolerance") for number in ("0", "1", "1e30")],
     *[Case(f"an inverse with {name} {number}", [expected],
            sets=["Solver/File=inverse.xml"], files=inverse_file(kind, value(name, of, number), where))
       for where, kind, name, of, number, expected in (
@@ -214,7 +220,7 @@ CASES = [
          change=(SIDE, value("Type", "string", "open") + value("Velocity", "Array(double)", "{1, 0}"))),
     *[Case(f"{parameter} of an open side", f"\"{parameter}\" has no meaning on a side of type \"open\"",
            change=(SIDE, value("Type", "string", "open") + value(parameter, "double", "1")))
-      for parameter in ("Ramp Time", "End Time", "Smoke", "Temperature")],
+      for parameter in ("Ramp Time", "End", "Smoke", "Temperature")],
     Case("a warm inflow of a fluid without temperature", ["x lower", "the fluid carries none", "\"Fluid/Temperature\""],
          change=(SIDE, INFLOW + value("Temperature", "double", "300"))),
     Case("an end before the start of the file", "must be later", change=(END, value("End", "double", "-1"))),
@@ -230,7 +236,7 @@ CASES = [
     Case("a box with a radius", "the shape \"box\" has no \"Radius\"", **source("box", value("Radius", "double", 1))),
 
     # The bodies.
-    Case("a flat spindle with widths", ["Ball/Geometry", "no \"Half Widths\""],
+    Case("a flat spindle with widths", ["\"Sections\"", "has 7 numbers; it takes 2"],
          change=[(BODY_TYPE, value("Type", "string", "deformable body")), (GEOMETRY, SPINDLE),
                  (DENSITY, DENSITY + '<ParameterList name="Material">' + value("Young's Modulus", "double", "1e4") + "</ParameterList>")]),
     Case("a body without mass", ["\"Ball\"", "no mass"], change=(DENSITY, "")),

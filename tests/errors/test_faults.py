@@ -20,8 +20,8 @@ SOFT = """<Parameter name="Density" type="double" value="500"/>
         <Parameter name="Young's Modulus" type="double" value="1e5"/>
       </ParameterList>
       <Parameter name="Time Integration" type="string" value="fully-implicit"/>"""
-N_STEPS = 50  # steps of the whole run
-CHECKPOINTS = ["--set", "Output/Checkpoint Interval=0.1"]
+N_STEPS = 50  # of the whole run
+CHECKPOINTS = ["--set", "Output/Checkpoints/Interval=0.1"]
 
 
 def read_table(path):
@@ -311,7 +311,7 @@ class Faults(unittest.TestCase):
         other = with_gauges("old").replace('value="points"', 'value="flow"').replace(
             '<Parameter name="Points" type="Array(double)" value="{.5, 1.5}"/>',
             '<Parameter name="Lower" type="Array(double)" value="{0, 1.5}"/><Parameter name="Upper" type="Array(double)" value="{1, 1.5}"/>')
-        often = ("--set", "Output/Checkpoint Interval=1e-9", "--set", "Output/Keep Checkpoints=10")
+        often = ("--set", "Output/Checkpoints/Interval=1e-9", "--set", "Output/Checkpoints/Count=10")
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(simulate(folder, "--steps", 4, *often, scene=with_gauges("old")).returncode, 0)
             output = Path(folder) / "output"

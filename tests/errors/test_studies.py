@@ -67,9 +67,9 @@ class Studies(unittest.TestCase):
                 self.assertFalse((self.folder / "results").exists(), "nothing may have run")
 
     def test_absurd_numbers(self):
-        for name, absurd in [("Samples", '<Parameter name="Number" type="int" value="2000000000"/>'),
-                             ("Series", '<ParameterList name="a"><Parameter name="Ranks" type="int" value="100000"/>'
-                                        '</ParameterList>')]:
+        for name, absurd in [("Samples", '<Parameter name="Count" type="int" value="2000000000"/>'),
+                             ("Series", '<ParameterList name="a"><ParameterList name="Constants">'
+                                        '<Parameter name="ranks" type="int" value="100000"/></ParameterList></ParameterList>')]:
             with self.subTest(name):
                 part = f'<ParameterList name="{name}">{absurd}</ParameterList>\n  <ParameterList name="Quantities">'
                 result = self.converge(study=STUDY.replace('<ParameterList name="Quantities">', part))

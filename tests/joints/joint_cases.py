@@ -68,7 +68,7 @@ def square_end(bodies):
     return np.array([bodies[name][-1][axis] for name in "ABCD" for axis in ("x", "y", "z", "wx", "wy", "wz")])
 
 
-BOX = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.4, .12)}, "Density": 300., "Orientation": 0.}
+BOX = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.4, .12)}, "Density": 300., "Rotation": 0.}
 HALF = {**BOX, "Geometry": {"Shape": "box", "Size": (.2, .12)}, "Seen by Fluid": False}
 WHOLE = {"Whole": {**BOX, "Position": (.5, .5), "Density": 300.000001}}
 WELDS = {"left": joint("weld", ("Hull", "Left"), (.4, .5)), "right": joint("weld", ("Left", "Right"), (.5, .5))}
@@ -77,19 +77,19 @@ WELDS = {"left": joint("weld", ("Hull", "Left"), (.4, .5)), "right": joint("weld
 def parts(turn=0.):
     """A hull of no weight that the fluid sees, with what weighs as much as the whole in two parts inside."""
     along = np.array([math.cos(turn), math.sin(turn)]) * .1
-    return {"Hull": {**BOX, "Density": 1e-6, "Position": (.5, .5), "Orientation": turn},
-            "Left": {**HALF, "Position": tuple(np.array((.5, .5)) - along), "Orientation": turn},
-            "Right": {**HALF, "Position": tuple(np.array((.5, .5)) + along), "Orientation": turn}}
+    return {"Hull": {**BOX, "Density": 1e-6, "Position": (.5, .5), "Rotation": turn},
+            "Left": {**HALF, "Position": tuple(np.array((.5, .5)) - along), "Rotation": turn},
+            "Right": {**HALF, "Position": tuple(np.array((.5, .5)) + along), "Rotation": turn}}
 
 
 def cut_in_two(turn=0., viscosity=0., end=.1):
     """A body, and its halves, both seen by the fluid, welded where they meet without a gap. Without the correction of
     buoyancy where it is aslant: half a body has no whole columns for that."""
     along = np.array([math.cos(turn), math.sin(turn)]) * .1
-    half = {**HALF, "Seen by Fluid": True, "Orientation": turn}
+    half = {**HALF, "Seen by Fluid": True, "Rotation": turn}
     halves = {"Left": {**half, "Position": tuple(np.array((.5, .5)) - along)},
               "Right": {**half, "Position": tuple(np.array((.5, .5)) + along)}}
-    scenes = [tank({"Whole": {**BOX, "Position": (.5, .5), "Orientation": turn}}, {}, "flux", viscosity, end=end),
+    scenes = [tank({"Whole": {**BOX, "Position": (.5, .5), "Rotation": turn}}, {}, "flux", viscosity, end=end),
               tank(halves, {"weld": WELDS["right"]}, "flux", viscosity, end=end)]
     for scene in scenes:
         scene["Coupling"]["Correct Buoyancy"] = turn == 0

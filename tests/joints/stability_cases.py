@@ -25,10 +25,10 @@ N_STEPS = 60
 
 def limits_of(kind):
     if kind == "ball":
-        return {"Upper Limit": .3}
+        return {"Limits": {"Upper": .3}}
     if kind == "hinge":
-        return {"Lower Limit": -.3, "Upper Limit": .3}
-    return {"Lower Limit": (-.3, -.3), "Upper Limit": (.3, .3)}
+        return {"Limits": {"Lower": -.3, "Upper": .3}}
+    return {"Limits": {"Lower": (-.3, -.3), "Upper": (.3, .3)}}
 
 
 def limited(solids, joints):
@@ -90,7 +90,7 @@ def chain_of_cubes(step, n_steps):
 def driven_in(depth, step, n_steps):
     """Three links at rest, the last of which hangs and stands in the floor."""
     def link(place, turn):
-        return {**{key: value for key, value in unseen_box(place, 0.).items() if key != "Seen by Fluid"}, "Orientation": turn}
+        return {**{key: value for key, value in unseen_box(place, 0.).items() if key != "Seen by Fluid"}, "Rotation": turn}
     down = -math.pi / 3
     solids = {"A": link((-1 - .5 * math.cos(.4), .5 * math.sin(.4)), math.pi - .4), "B": link((-.5, 0.), 0.),
               "C": link((.5 * math.cos(down), .5 * math.sin(down)), down)}

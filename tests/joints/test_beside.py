@@ -43,7 +43,7 @@ class Beside(unittest.TestCase):
     def test_a_mechanism_that_flies(self):
         """A chain that a step turns by up to 1 and 4 rad, beside a pendulum whose joint gives all of its impulse at the end of the
         step, since a spring or a limit is there: it flies all the same, and keeps its energy."""
-        for name, more in (("spring", {"Control": "proportional derivative", "Stiffness": 1e-9}), ("limit", {"Upper Limit": 1e4})):
+        for name, more in (("spring", {"Control": "proportional derivative", "Stiffness": 1e-9}), ("limit", {"Limits": {"Upper": 1e4}})):
             for step in (.5, 2.):
                 with self.subTest(beside=name, step=step):
                     solids = {**CHAIN, "P": {**unseen_box((0., 3.5), 20.), "Torque": 20.}}

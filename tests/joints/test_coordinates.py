@@ -98,7 +98,7 @@ class Coordinates(unittest.TestCase):
             self.assertAlmostEqual(of_all[name][-1]["q"], of_one[name][-1]["q"], delta=1e-12)
 
     def test_each_coordinate_has_limits_of_its_own(self):
-        scene = cylinder(**{"Coordinate 1": {"Upper Limit": .1}, "Coordinate 2": driven(**SWING)})
+        scene = cylinder(**{"Coordinate 1": {"Limits": {"Upper": .1}}, "Coordinate 2": driven(**SWING)})
         scene["Contact"] = {"Type": "gauss seidel"}
         rows = joints_of(scene)
         self.assertAlmostEqual(rows["C 1"][-1]["q"], .1, delta=1e-9)
@@ -106,7 +106,7 @@ class Coordinates(unittest.TestCase):
 
     def test_limits_alone_leave_the_control_of_the_joint(self):
         spring = {"Control": "proportional derivative", "Natural Frequency": 3.}
-        scenes = [cylinder(**spring), cylinder(**spring, **{"Coordinate 1": {"Upper Limit": 9.}})]
+        scenes = [cylinder(**spring), cylinder(**spring, **{"Coordinate 1": {"Limits": {"Upper": 9.}}})]
         scenes[1]["Contact"] = {"Type": "gauss seidel"}
         alone, limited = map(joints_of, scenes)
         self.assertLess(abs(alone["C 1"][-1]["q"]), .1)  # free, it would be at .4
@@ -114,7 +114,7 @@ class Coordinates(unittest.TestCase):
             self.assertAlmostEqual(alone[name][-1]["q"], limited[name][-1]["q"], delta=1e-12)
 
     def test_messages(self):
-        for more, parts in (({"Coordinate 2": {**driven(**SWING), "Upper Limit": 1.}}, ("\"C\"", "prescribed", "limits of coordinate 2")),
+        for more, parts in (({"Coordinate 2": {**driven(**SWING), "Limits": {"Upper": 1.}}}, ("\"C\"", "prescribed", "limits of coordinate 2")),
                             ({"Coordinate 1": {"Control": "prescribed rate"}}, ("\"C/Coordinate 1\"", "Natural Frequency")),
                             ({"Coordinate 3": {"Control": "free"}}, ("Coordinate 3", "is not a parameter"))):
             code, text = message(cylinder(**more))

@@ -116,7 +116,7 @@ class InWater(unittest.TestCase):
         the step, since they are not by themselves."""
         for turn in (0., .3):
             along = np.array([math.cos(turn), math.sin(turn)])
-            plate = {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (.2, 0.), "Normal": "y"}, "Surface Density": 500., "Orientation": turn}
+            plate = {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (.2, 0.), "Normal": "y"}, "Surface Density": 500., "Rotation": turn}
             plates = {name: {**plate, "Position": tuple(np.array((.5, .5)) + .12 * side * along), "Angular Velocity": 40. * side}
                       for name, side in (("A", -1), ("B", 1))}
             scene = tank(plates, {"AB": joint("hinge", ("A", "B"), (.5, .5))}, "flux", step=.05, end=.05)
@@ -140,7 +140,7 @@ class InWater(unittest.TestCase):
 
     def test_contact_leaves_alone_what_joints_let_not_part(self):
         """The outer two of three overlap, and no impulse between them moves anything."""
-        boxes = {name: {**BOX, "Position": (.5 + x, .5 + y), "Orientation": .1 * k}
+        boxes = {name: {**BOX, "Position": (.5 + x, .5 + y), "Rotation": .1 * k}
                  for k, (name, x, y) in enumerate((("A", -.05, 0.), ("B", 0., .03), ("C", .06, -.02)))}
         welds = {"left": joint("weld", ("A", "B"), (.4, .5)), "right": joint("weld", ("B", "C"), (.5, .5))}
         scene = tank(boxes, welds, "mixed face")
@@ -153,7 +153,7 @@ class InWater(unittest.TestCase):
                 self.assertAlmostEqual(bodies[name][-1][axis], free[name][-1][axis], delta=1e-9)
 
     def test_welded_parts_that_turn_do_so_to_second_order(self):
-        whole = {"Whole": {**BOX, "Position": (.42, .5), "Density": 300.000001, "Orientation": .3}}
+        whole = {"Whole": {**BOX, "Position": (.42, .5), "Density": 300.000001, "Rotation": .3}}
         shifted = {name: {**body, "Position": tuple(np.array(body["Position"]) - (.08, 0.))}
                    for name, body in parts(.3).items()}
         errors = []

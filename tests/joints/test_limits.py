@@ -43,7 +43,7 @@ class Limits(unittest.TestCase):
         """Freely until it is there, by the sine's law of energy, and no farther; it stays."""
         for step in (.05, .02):
             free = joints_of(arm(step, 1.))["H"]
-            rows = joints_of(arm(step, 1., **{"Lower Limit": -.8}))["H"]
+            rows = joints_of(arm(step, 1., **{"Limits": {"Lower": -.8}}))["H"]
             fallen = next(k for k, row in enumerate(rows) if row["at_limit"] == 1)
             self.assertGreater(fallen * step, .3)
             for row, other in zip(rows[:fallen - 1], free):
@@ -57,7 +57,7 @@ class Limits(unittest.TestCase):
 
     def test_limits_are_known_below_and_above(self):
         for spin in (3., -3.):
-            rows = joints_of(arm(.02, 1., 0., spin, **{"Lower Limit": -.3, "Upper Limit": .5}))["H"]
+            rows = joints_of(arm(.02, 1., 0., spin, **{"Limits": {"Lower": -.3, "Upper": .5}}))["H"]
             self.assertAlmostEqual(rows[-1]["q"], .5 if spin > 0 else -.3, delta=1e-9)
 
     def test_a_hanging_chain_comes_to_rest_at_its_limits(self):
@@ -65,7 +65,7 @@ class Limits(unittest.TestCase):
         n = 10
         solids, hinges = links(n)
         for hinge in hinges.values():
-            hinge.update({"Lower Limit": -.06, "Upper Limit": .06})
+            hinge.update({"Limits": {"Lower": -.06, "Upper": .06}})
         scene = limited(solids, hinges, .02, 2., GRAVITY)
         history, bodies = run(scene)
         turn = .02 * max(abs(row["wz"]) for rows in bodies.values() for row in rows)  # in a step
@@ -86,7 +86,7 @@ class Limits(unittest.TestCase):
         hinges.pop("H0")
         bounded = [f"H{k}" for k in (4, 11, 12, 13, 25)]
         for name in bounded:
-            hinges[name]["Lower Limit"] = 0.
+            hinges[name]["Limits"] = {"Lower": 0.}
         _, bodies = run(limited(solids, hinges, 1e-7, 1e-7))
         rows = np.zeros((2 * (n - 1), 3 * n))
         for k in range(n - 1):  # the right end of one moves as the left end of the next
@@ -121,7 +121,7 @@ class Limits(unittest.TestCase):
         """A tossed chain whose hinges all reach their limits: strictly so with impulses at the end of steps, else they do
         not add to the swing that energy has without them."""
         solids, free = links(4, (2., -3., 4., -1.))
-        hinges = {name: {**hinge, "Lower Limit": -.4, "Upper Limit": .4} for name, hinge in free.items()}
+        hinges = {name: {**hinge, "Limits": {"Lower": -.4, "Upper": .4}} for name, hinge in free.items()}
 
         def gain(joints):
             kinetic = energy(*run(limited(solids, joints, step, 2.)), 0.)
@@ -136,13 +136,13 @@ class Limits(unittest.TestCase):
 
     def test_a_spring_pushes_against_a_limit_in_vain(self):
         rows = joints_of(arm(.05, 3., 0., Control="proportional derivative", Stiffness=4., Damping=1.,
-                             **{"Upper Limit": .25, "Target": {"Type": "constant", "Value": 1.}}))["H"]
+                             **{"Limits": {"Upper": .25}, "Target": {"Type": "constant", "Value": 1.}}))["H"]
         self.assertAlmostEqual(rows[-1]["q"], .25, delta=1e-9)
         self.assertAlmostEqual(rows[-1]["torque"], 4. * .75, delta=1e-6)
 
     def test_a_ball_turns_so_far_about_any_axis(self):
         solids = {"A": {**unseen_box((0., 0., 0.), (1., 2., -1.)), "Geometry": {"Shape": "box", "Size": (.5, .3, .4)}}}
-        rows = joints_of(limited(solids, {"S": joint("ball", ("space", "A"), (.1, .2, 0.), **{"Upper Limit": .7})}, .02, 2.))
+        rows = joints_of(limited(solids, {"S": joint("ball", ("space", "A"), (.1, .2, 0.), **{"Limits": {"Upper": .7}})}, .02, 2.))
         turns = [math.sqrt(sum(rows[f"S {k}"][n]["q"] ** 2 for k in (1, 2, 3))) for n in range(len(rows["S 1"]))]
         self.assertLess(max(turns), .7 + 1e-3)
         self.assertGreater(max(turns), .7 - 1e-9)
@@ -151,13 +151,13 @@ class Limits(unittest.TestCase):
         """A cylinder slides and turns, a universal joint turns about two axes: one is stopped, the other goes on."""
         solids = {"A": {**unseen_box((0., 0., 0.), (0., 0., 1.)), "Velocity": (0., 0., .5)}}
         along = joint("cylinder", ("space", "A"), (0., 0., 0.), Axis=(0., 0., 1.),
-                      **{"Lower Limit": (-.1, -.2), "Upper Limit": (.1, 50.)})
+                      **{"Limits": {"Lower": (-.1, -.2), "Upper": (.1, 50.)}})
         rows = joints_of(limited(solids, {"C": along}, .02, 1.))
         self.assertAlmostEqual(rows["C 1"][-1]["q"], .1, delta=1e-9)
         self.assertAlmostEqual(rows["C 2"][-1]["q"], 1., delta=1e-9)
         solids = {"A": unseen_box((0., 0., 0.), (.7, 0., .4))}
         cross = joint("universal", ("space", "A"), (0., 0., 0.), Axis=(1., 0., 0.), **{"Second Axis": (0., 0., 1.)},
-                      **{"Lower Limit": (-.1, -.2), "Upper Limit": (.2, 50.)})
+                      **{"Limits": {"Lower": (-.1, -.2), "Upper": (.2, 50.)}})
         rows = joints_of(limited(solids, {"U": cross}, .02, 1.))
         self.assertAlmostEqual(rows["U 1"][-1]["q"], .2, delta=1e-6)
         self.assertGreater(rows["U 2"][-1]["q"], .3)
@@ -166,11 +166,11 @@ class Limits(unittest.TestCase):
         """A square of four links whose rates depend on one another stops where one of them does."""
         places = {"A": (.5, 0.), "B": (1., .5), "C": (.5, 1.), "D": (0., .5)}
         spins = {"A": 0., "B": -1., "C": 0., "D": -1.}
-        solids = {name: {**unseen_box(places[name], spins[name]), "Orientation": 0. if name in "AC" else math.pi / 2}
+        solids = {name: {**unseen_box(places[name], spins[name]), "Rotation": 0. if name in "AC" else math.pi / 2}
                   for name in places}
         corners = {"AB": (1., 0.), "BC": (1., 1.), "CD": (0., 1.), "DA": (0., 0.)}
         hinges = {name: joint("hinge", tuple(name), corner) for name, corner in corners.items()}
-        hinges["CD"].update({"Lower Limit": -.3, "Upper Limit": .3})
+        hinges["CD"].update({"Limits": {"Lower": -.3, "Upper": .3}})
         rows = joints_of(limited(solids, hinges, .02, 2.))
         self.assertAlmostEqual(max(abs(row["q"]) for row in rows["CD"]), .3, delta=1e-6)
         self.assertAlmostEqual(abs(rows["CD"][-1]["q"]), .3, delta=1e-6)
@@ -179,15 +179,15 @@ class Limits(unittest.TestCase):
         """No impulse can hold it: what is wrong there is no measure of what may be wrong elsewhere."""
         solids, hinges = links(6)
         for hinge in hinges.values():
-            hinge.update({"Lower Limit": -.06, "Upper Limit": .06})
+            hinge.update({"Limits": {"Lower": -.06, "Upper": .06}})
         _, alone = run(limited(solids, hinges, .02, .5, GRAVITY))
         mill = {"Left": unseen_box((0., 9.5), 0.), "Top": unseen_box((.5, 10.), 0.), "Right": unseen_box((1., 9.5), 0.)}
         for name in ("Left", "Right"):
-            mill[name]["Orientation"] = math.pi / 2
+            mill[name]["Rotation"] = math.pi / 2
         swing = {"Type": "sinusoid", "Amplitude": .8, "Frequency": 1.}
         bars = {"M0": joint("hinge", ("space", "Left"), (0., 9.), Control="prescribed", Target=swing),
                 "M1": joint("hinge", ("Left", "Top"), (0., 10.)), "M3": joint("hinge", ("Right", "space"), (1., 9.)),
-                "M2": joint("hinge", ("Top", "Right"), (1., 10.), **{"Lower Limit": -.01, "Upper Limit": .01})}
+                "M2": joint("hinge", ("Top", "Right"), (1., 10.), **{"Limits": {"Lower": -.01, "Upper": .01}})}
         both = limited({**mill, **solids}, {**bars, **hinges}, .02, .5, GRAVITY)
         _, beside = run(both)
         for name, rows in alone.items():
@@ -198,7 +198,7 @@ class Limits(unittest.TestCase):
     def test_restart_at_a_limit(self):
         solids, hinges = links(3)
         for hinge in hinges.values():
-            hinge.update({"Lower Limit": -.3, "Upper Limit": .3})
+            hinge.update({"Limits": {"Lower": -.3, "Upper": .3}})
         scene = limited(solids, hinges, .02, .6, GRAVITY)
         with tempfile.TemporaryDirectory() as folder:
             _, straight = run(scene, folder=folder)
@@ -216,8 +216,8 @@ class Limits(unittest.TestCase):
         last = {}
         for limit in (-.3, -9.):
             for ranks in (1, 2, 4):
-                hinges = {"A": joint("hinge", ("space", "Rod"), (.25, .62), **{"Lower Limit": limit}),
-                          "B": joint("hinge", ("Rod", "Ball"), (.55, .62), **{"Lower Limit": -.5, "Upper Limit": .5})}
+                hinges = {"A": joint("hinge", ("space", "Rod"), (.25, .62), **{"Limits": {"Lower": limit}}),
+                          "B": joint("hinge", ("Rod", "Ball"), (.55, .62), **{"Limits": {"Lower": -.5, "Upper": .5}})}
                 scene = tank({"Rod": rod, "Ball": ball}, hinges, "flux", step=.02, end=.9)
                 scene["Contact"] = {"Type": "gauss seidel"}
                 history, bodies = run(scene, ranks)

@@ -22,7 +22,7 @@ def motor(**target):
 def square(size, amplitude):
     """Four links of which three motors turn as they please."""
     places = {"A": (.5, 0.), "B": (1., .5), "C": (.5, 1.), "D": (0., .5)}
-    solids = {name: {**unseen_box((size * x, size * y), 0.), "Orientation": 0. if name in "AC" else 1.5707963,
+    solids = {name: {**unseen_box((size * x, size * y), 0.), "Rotation": 0. if name in "AC" else 1.5707963,
                      "Geometry": {"Shape": "box", "Size": (size, .2 * size)}} for name, (x, y) in places.items()}
     corners = {"AB": (size, 0.), "BC": (size, size), "CD": (0., size), "DA": (0., 0.)}
     joints = {name: joint("hinge", tuple(name), corner) for name, corner in corners.items()}
@@ -50,7 +50,7 @@ class Messages(unittest.TestCase):
 
     def test_a_ball_that_may_not_turn(self):
         solids = {"A": unseen_box((0., 0., 0.), (1., 2., -1.))}
-        code, text = message(vacuum(solids, {"S": joint("ball", ("space", "A"), (.1, .2, 0.), **{"Upper Limit": 0.})}, .02, 1.))
+        code, text = message(vacuum(solids, {"S": joint("ball", ("space", "A"), (.1, .2, 0.), **{"Limits": {"Upper": 0.}})}, .02, 1.))
         self.assertEqual(code, 2, text)
         for part in ("\"S\"", "make it a weld"):
             self.assertIn(part, text)

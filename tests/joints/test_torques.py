@@ -30,7 +30,7 @@ def links(points):
     solids = {}
     for name, one, other in zip(names, points, points[1:]):
         way = np.subtract(other, one)
-        solids[name] = {**unseen_box(tuple(np.add(one, other) / 2), 0.), "Orientation": math.atan2(way[1], way[0])}
+        solids[name] = {**unseen_box(tuple(np.add(one, other) / 2), 0.), "Rotation": math.atan2(way[1], way[0])}
     ends = ["space", *names, "space"]
     return solids, {f"H{k}": joint("hinge", (ends[k], ends[k + 1]), tuple(map(float, point)))
                     for k, point in enumerate(points)}
@@ -56,7 +56,7 @@ class Torques(unittest.TestCase):
         solids, hinges = links([(0., 0.), (1., 0.), (2., 0.)])
         hinges.pop("H2")
         hinges["H0"].update(HOLD)
-        hinges["H1"]["Lower Limit"] = 0.
+        hinges["H1"]["Limits"] = {"Lower": 0.}
         rows = joints_of(limited(solids, hinges, .02, .2, GRAVITY))
         for one, other in zip(rows["H0"][1:], rows["H1"][1:]):
             self.assertAlmostEqual(one["torque"], 2 * GRAVITY, delta=1e-6)
@@ -69,7 +69,7 @@ class Torques(unittest.TestCase):
         sign = {"H0": 1, "H1": -1, "H2": 1, "H3": -1}
         for name in sign:
             solids, hinges = links(PARALLELOGRAM)
-            hinges[name].update({"Lower Limit": -.4, "Upper Limit": .4})
+            hinges[name].update({"Limits": {"Lower": -.4, "Upper": .4}})
             rows = joints_of(limited(solids, hinges, .02, 2., GRAVITY))
             self.assertAlmostEqual(abs(rows[name][-1]["q"]), .4, delta=1e-6)
             angle = .1 + rows["H0"][-1]["q"]  # leans that far to the left
@@ -93,7 +93,7 @@ class Torques(unittest.TestCase):
         for name in ("H1", "H2", "H3", "H4"):
             solids, hinges = links(FIVE_BAR)
             hinges["H0"].update(HOLD)
-            hinges[name].update({"Lower Limit": -.2, "Upper Limit": .2})
+            hinges[name].update({"Limits": {"Lower": -.2, "Upper": .2}})
             scene = limited(solids, hinges, .02, 3., GRAVITY)
             rows = joints_of(scene)
             _, bodies = run(scene)

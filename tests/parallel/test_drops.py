@@ -41,7 +41,7 @@ def scene(drops, moving_tiles=False):
     return xml("Scene", {
         "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (1.6, 1.), "Cells": (48, 30), "Sides": SIDES},
         "Fluid": fluid, "Solids": solids, "Contact": {"Type": "none"}, "Solver": {"Tolerance": 1e-11},
-        "Time": {"End": 10., "Fixed Step": .01}, "Output": {"Checkpoint Interval": .35, "Keep Checkpoints": 9, "Precision": "double"}})
+        "Time": {"End": 10., "Fixed Step": .01}, "Output": {"Checkpoints": {"Interval": .35, "Count": 9}, "Precision": "double"}})
 
 
 def run(file, output, steps, ranks=1, restart=()):
@@ -119,7 +119,7 @@ class Drops(unittest.TestCase):
             "Dimension": 2, "Domain": {"Upper": (1.6, 1.), "Cells": (48, 30), "Sides": sides},
             "Fluid": {"Density": 1000., "Gravity": (0., -9.8), "Free Surface": {
                 "Interface": {"Type": "particle level set", "Drops": "ballistic"}, "Liquid": {"Pool": {"Type": "level", "Height": .34}}}},
-            "Solver": {"Tolerance": 1e-12}, "Output": {"Checkpoint Interval": .01},
+            "Solver": {"Tolerance": 1e-12}, "Output": {"Checkpoints": {"Interval": .01}},
             "Time": {"End": 10., "Fixed Step": .01}})
         volume = 3e-5
         for ranks in 1, 2:

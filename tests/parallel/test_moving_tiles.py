@@ -28,7 +28,7 @@ def plume(tiles):
         "Solids": {"Disc": {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .3}, "Density": 1.6,
                             "Position": (1., 13.)}},
         "Solver": {"Tolerance": 1e-10},
-        "Time": {"End": 2., "Fixed Step": .025}, "Output": {"Checkpoint Interval": .25, "Keep Checkpoints": 9}})
+        "Time": {"End": 2., "Fixed Step": .025}, "Output": {"Checkpoints": {"Interval": .25, "Count": 9}}})
 
 
 def dam_break(tiles):
@@ -40,7 +40,7 @@ def dam_break(tiles):
     return xml("Scene", {
         "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (2., 12.), "Cells": (48, 288)}, "Fluid": fluid,
         "Solver": {"Tolerance": 1e-11},
-        "Time": {"End": 2., "Fixed Step": .02}, "Output": {"Checkpoint Interval": .4, "Keep Checkpoints": 9}})
+        "Time": {"End": 2., "Fixed Step": .02}, "Output": {"Checkpoints": {"Interval": .4, "Count": 9}}})
 
 
 def few_tiles(tiles):
@@ -55,8 +55,8 @@ def soft_disc(tiles):
     soft = xml("Disc", {"Type": "deformable body", "Geometry": {"Shape": "ball", "Radius": .3}, "Density": 1.6,
                         "Material": {"Young's Modulus": 1e3}, "Time Integration": "fully-implicit", "Position": (1., 13.)})
     assert rigid in plume(tiles)
-    return plume(tiles).replace(rigid, soft).replace('name="Checkpoint Interval" type="double" value="0.25"',
-                                                     'name="Checkpoint Interval" type="double" value="0.025"')
+    return plume(tiles).replace(rigid, soft).replace('name="Interval" type="double" value="0.25"',
+                                                     'name="Interval" type="double" value="0.025"')
 
 
 SCENES = {"plume": plume, "few": few_tiles, "dam": dam_break, "soft": soft_disc}

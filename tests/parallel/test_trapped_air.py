@@ -25,10 +25,10 @@ def scene(air, coupling):
         "Fluid": {"Density": 1000., "Gravity": (0., -9.8), "Free Surface": {
             "Liquid": water, "Trapped Air": air, "Atmospheric Pressure": 2e4}},
         "Solids": {"Cup": {"Type": "rigid body", "Geometry": {"Shape": "open box", "Size": (.5, .4)}, "Mass": 60.,
-                           "Position": (.3, 1.), "Orientation": 3.14159265358979}},
+                           "Position": (.3, 1.), "Rotation": 3.14159265358979}},
         "Coupling": {"Type": coupling}, "Solver": {"Tolerance": 1e-11},
         "Time": {"End": 10., "Fixed Step": .005},
-        "Output": {"Frames": False, "Checkpoint Interval": .1, "Keep Checkpoints": 9}})
+        "Output": {"Frames": False, "Checkpoints": {"Interval": .1, "Count": 9}}})
 
 
 class TrappedAir(unittest.TestCase):

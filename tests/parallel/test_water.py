@@ -22,7 +22,7 @@ def scene(dimension, interface, coupling, tension):
     surface = {"Interface": {"Type": interface}, "Liquid": {"Pool": {"Type": "level", "Height": .6}},
                "Dry Points": point(1.3, .55), "Watch": {"Inside": {"Point": point(1.3, .55), "Solid": "Boat",
                                                                    "Radius": .15}},
-               "Surface Tension": tension, "Tension Integration": "semi-implicit"}
+               "Surface Tension": tension, "Time Integration": "semi-implicit"}
     solids = {
         "Boat": {"Type": "rigid body", "Geometry": {"Shape": "open box", "Size": (.5, .4, .4)[:dimension]},
                  "Surface Density": 25., "Position": point(1.3, .6, .47)},
@@ -34,7 +34,7 @@ def scene(dimension, interface, coupling, tension):
                    "Cells": (54, 36) if dimension == 2 else (27, 18, 15)},
         "Fluid": {"Density": 1000., "Gravity": point(0., -9.8, 0.), "Sources": {"Jet": jet}, "Free Surface": surface},
         "Solids": solids, "Coupling": {"Type": coupling}, "Contact": {"Type": "none"}, "Solver": {"Tolerance": 1e-11},
-        "Time": {"End": 10., "Fixed Step": .01}, "Output": {"Checkpoint Interval": .1, "Keep Checkpoints": 9}})
+        "Time": {"End": 10., "Fixed Step": .01}, "Output": {"Checkpoints": {"Interval": .1, "Count": 9}}})
 
 
 def duct(interface):

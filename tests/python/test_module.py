@@ -261,7 +261,7 @@ class Module(unittest.TestCase):
             self.assertEqual(len(vertices) - len(triangles) // 2, 2)  # Euler
 
     def test_goes_on_from_a_checkpoint(self):
-        scene = tank(solids={"Ball": ball()}, Output={"Checkpoint Interval": .02, "Keep Checkpoints": 9})
+        scene = tank(solids={"Ball": ball()}, Output={"Checkpoints": {"Interval": .02, "Count": 9}})
         found = []
         for restart in ("", str(self.root / "run" / "checkpoint-000002.h5")):
             with self.open(scene, restart=restart) as run:

@@ -23,7 +23,7 @@ BASE = """<ParameterList name="Scene">
       <Parameter name="Density" type="double" value="[100*copy]"/>
       <ParameterList name="Copies">
         <Parameter name="Type" type="string" value="random"/>
-        <Parameter name="Number" type="int" value="3"/>
+        <Parameter name="Count" type="int" value="3"/>
         <Parameter name="Lower" type="Array(double)" value="{[gap], [gap]}"/>
         <Parameter name="Upper" type="Array(double)" value="{[1 - gap], [1 - gap]}"/>
         <ParameterList name="Overrides">

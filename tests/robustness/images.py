@@ -55,18 +55,7 @@ def product(a, b):
 THIRD = quaternion([1, 1, 1], 2 * math.pi / 3)
 
 
-def turn_rigid(body, dimension):
-    if dimension == 2:
-        body["Orientation"] = body.get("Orientation", 0.0) + QUARTER
-        return
-    if "Rotation Angle" in body:
-        given = quaternion(body.pop("Rotation Axis"), body.pop("Rotation Angle"))
-    else:
-        given = body.get("Orientation", [1.0, 0.0, 0.0, 0.0])
-    body["Orientation"] = product(THIRD, given)
-
-
-def turn_soft(body, dimension):
+def turn_body(body, dimension):
     if dimension == 2:
         body["Rotation"] = body.get("Rotation", 0.0) + QUARTER
         return
@@ -82,7 +71,7 @@ def turn_list(content, name, dimension):
     for key, value in content.items():
         if isinstance(value, dict):
             turn_list(value, key, dimension)
-        elif key in ("Locked", "Directions"):
+        elif key == "Locked":
             content[key] = turn_axes(value, dimension)
         elif key == "Displacements":
             content[key] = [x for i in range(0, len(value), dimension) for x in turn(value[i:i + dimension])]
@@ -109,7 +98,7 @@ def image(content):
     domain["Cells"] = [abs(n) for n in turn(domain["Cells"])]
     domain["Sides"] = {turn_side(name, dimension): side for name, side in domain["Sides"].items()}
     for body in content["Solids"].values():
-        (turn_rigid if body["Type"] == "rigid body" else turn_soft)(body, dimension)
+        turn_body(body, dimension)
     return content
 
 

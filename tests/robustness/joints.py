@@ -59,12 +59,13 @@ def add_limits(content, seed):
         if number % 2 == 0 or one["Type"] == "weld":
             continue
         if one["Type"] == "ball":
-            one["Upper Limit"] = rng.uniform(.01, 1.)
+            one["Limits"] = {"Upper": rng.uniform(.01, 1.)}
             continue
         n = COORDINATES[one["Type"]]
-        for side, sign in (("Lower Limit", -1), ("Upper Limit", 1)):
+        one["Limits"] = {}
+        for side, sign in (("Lower", -1), ("Upper", 1)):
             values = [sign * 10 ** rng.uniform(-3, 0) for _ in range(n)]
-            one[side] = values if n > 1 else values[0]
+            one["Limits"][side] = values if n > 1 else values[0]
 
 
 def add_joints(world, content, seed):

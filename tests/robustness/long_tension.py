@@ -24,4 +24,4 @@ def lengthen(world, content, seed):
         surface["Interface"]["Drops"] = "ballistic"
     times = rng.uniform(.5, .95 * LONGEST)
     surface["Surface Tension"] = world.density * world.h ** 3 * (times * EXPLICIT / world.dt) ** 2
-    surface["Tension Integration"] = "semi-implicit"
+    surface["Time Integration"] = "semi-implicit"

@@ -46,7 +46,7 @@ def geometry(world, reach):
     if not is_shell and rng.random() < 0.15:
         sizes["Thin Shell"] = is_shell = world.facts.closed_shell = True
     if shape != "file" and rng.random() < 0.2:
-        sizes["Surface Spacing"] = rng.uniform(0.4, 1.5) * world.h
+        sizes["Mesh Spacing"] = rng.uniform(0.4, 1.5) * world.h
     return sizes, is_shell
 
 
@@ -113,11 +113,13 @@ def hinge(world, body, reach):
 def turned(world):
     rng = world.rng
     if world.dimension == 2:
-        return {"Orientation": rng.uniform(-3, 3)}
+        return {"Rotation": rng.uniform(-3, 3)}
     if rng.random() < 0.5:
-        return {"Rotation Axis": world.vector(1.0), "Rotation Angle": rng.uniform(-3, 3)}
-    q = [rng.gauss(0, 1) for _ in range(4)]
-    return {"Orientation": [x / math.hypot(*q) for x in q]}
+        axis, angle = world.vector(1.0), rng.uniform(-3, 3)
+        return {"Rotation": [angle * x / math.hypot(*axis) for x in axis]}
+    w, *v = [rng.gauss(0, 1) for _ in range(4)]  # a quaternion: any rotation is as likely as any other
+    angle = 2 * math.atan2(math.hypot(*v), w)
+    return {"Rotation": [angle * x / math.hypot(*v) for x in v]}
 
 
 def rigid_body(world, center, reach):

@@ -139,7 +139,7 @@ def sides(world):
             if rng.random() < 0.3:
                 side["Ramp Time"] = rng.uniform(0, 2) * world.dt
             if rng.random() < 0.2:
-                side["End Time"] = world.start + rng.uniform(0, 4) * world.dt
+                side["End"] = world.start + rng.uniform(0, 4) * world.dt
         lists[name] = side
     world.facts.open_sides = any(side["Type"] in ("open", "inflow") for side in kinds.values())
     world.facts.periodic = any(side["Type"] == "periodic" for side in kinds.values())
@@ -176,7 +176,7 @@ def region(world):
 
 
 def scalars(world, fluid, side_lists):
-    """Smoke and temperature with their regions, sources and weights; Facts.scalar_range without rates."""
+    """Smoke and temperature with their regions, sources and weights; Facts.scalar_range."""
     rng = world.rng
     for name, weight in (("Smoke", "Smoke Weight"), ("Temperature", "Thermal Expansion")):
         if rng.random() > 0.3:
@@ -198,12 +198,11 @@ def scalars(world, fluid, side_lists):
             if world.does_work(0.4):
                 source["Velocity"] = world.vector(0.3 * world.speed)
             if rng.random() < 0.3:
-                source["Begin Time"] = world.start + world.dt
+                source["Start"] = world.start + world.dt
             fluid.setdefault("Sources", {})[f"Source of {name}"] = source
         if rng.random() < 0.2:
-            rate = rng.uniform(0, 1) / world.dt
-            fluid.setdefault("Sources", {})[f"Rate of {name}"] = {**region(world), f"{name} Rate": rate}
-            values.append(max(values) + rate * world.dt * world.n_steps)
+            values.append(rng.uniform(0, 1))
+            fluid.setdefault("Sources", {})[f"Second source of {name}"] = {**region(world), name: values[-1]}
         if world.does_work(0.5):
             fluid[weight] = rng.uniform(0, 0.3) * (1 if name == "Temperature" else rng.choice([-1, 1]))
         world.facts.scalar_range[name.lower()] = [min(values), max(values)]
@@ -289,8 +288,8 @@ def coupling(world):
     if lumping == "paper diagonal":
         world.facts.exact_momentum = False
     return {"Type": "mixed face", "Mixed Rule": rng.choice(["voxel", "voxel", "every cut cell"]), "Lumping": lumping,
-            "Soft Weights": rng.choice(["barycentric", "rigid motions"]),
-            "Fluid Mass": rng.choice(["fluid part", "fluid part", "whole cell"]), "Balance Masses": rng.random() < 0.8}
+            "Weights": rng.choice(["barycentric", "rigid motions"]),
+            "Fluid Mass": rng.choice(["fluid part", "fluid part", "whole cell"]), "Correct Buoyancy": rng.random() < 0.8}
 
 
 def contact(world, solid_lists):
@@ -300,10 +299,11 @@ def contact(world, solid_lists):
         return {"Type": "none"}
     chosen = {"Type": "gauss seidel"}
     if rng.random() < 0.3:
-        chosen.update({"Margin": rng.uniform(0.05, 0.3), "Shell Thickness": rng.uniform(0.05, 0.2),
-                       "Self-Contact": rng.random() < 0.5})
+        rng.uniform(0.05, 0.3)  # drawn once for a parameter that is no more: seeds keep their scenes
+        chosen["Thickness"] = rng.uniform(0.05, 0.2)
+        rng.random()  # the same
     if rng.random() < 0.2:
-        chosen.update({"Wall Friction": rng.uniform(0, 1), "Wall Restitution": rng.uniform(0, 1)})
+        chosen["Walls"] = {"Friction": rng.uniform(0, 1), "Restitution": rng.uniform(0, 1)}
     if solid_lists and rng.random() < 0.2:
         chosen["Skins"] = {rng.choice(sorted(solid_lists)): {"Thickness": rng.uniform(0.05, 0.2) * world.h}}
     return chosen
@@ -360,5 +360,5 @@ def random_scene(seed):
     content["Solver"] = solvers.solver(world, content["Coupling"], content["Solids"])
     content["Time"] = time(world)
     content["Observers"] = observers(world)
-    content["Output"] = {"Precision": "double", "Checkpoint Interval": 1e-9 * world.dt, "Keep Checkpoints": 10}
+    content["Output"] = {"Precision": "double", "Checkpoints": {"Interval": 1e-9 * world.dt, "Count": 10}}
     return Scene(seed, to_xml("Scene", content), world.files, world.facts, content, world.n_steps, world.dt)

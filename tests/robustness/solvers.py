@@ -49,7 +49,7 @@ def solver(world, coupling_list, solid_lists):
     chosen = {"Tolerance": TOLERANCE, "Strategy": strategy(world, coupling_list, solid_lists)}
     if chosen["Strategy"]["Type"] in LISTS:
         chosen["File"] = str(SOLVERS / f"{chosen['Strategy'].pop('Type')}.xml")
-    chosen["Viscous Tolerance"] = 1e-12
+    chosen["Viscous Solve"] = {"Tolerance": 1e-12}
     if world.facts.soft and world.rng.random() < 0.25:
         chosen["Newton Iterations"] = world.rng.randint(2, 3)
     return chosen

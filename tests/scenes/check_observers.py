@@ -67,10 +67,9 @@ LEVEL = """    <ParameterList name="Free Surface"> <ParameterList name="Liquid">
 """
 GAUGES = "".join(f"""    <ParameterList name="{name}">
       <Parameter name="Type" type="string" value="gauge"/>
-      <Parameter name="Foot" type="Array(double)" value="{foot}"/>
-      <Parameter name="Head" type="Array(double)" value="{head}"/>
+      <Parameter name="Points" type="Array(double)" value="{ends}"/>
     </ParameterList>
-""" for name, foot, head in (("standing", "{0.4, 0.2}", "{0.4, 2.9}"), ("slanting", "{0.4, 2.83}", "{1.6, 0.83}")))
+""" for name, ends in (("standing", "{0.4, 0.2, 0.4, 2.9}"), ("slanting", "{0.4, 2.83, 1.6, 0.83}")))
 GRAVITY = '<Parameter name="Gravity" type="Array(double)" value="{0, -10}"/>\n'
 GAUGED = SCENE.replace(GRAVITY, GRAVITY + LEVEL).replace('  <ParameterList name="Observers">\n', '  <ParameterList name="Observers">\n' + GAUGES)
 

@@ -132,7 +132,7 @@ class Torus(unittest.TestCase):
 
 def bag_settings(spacing, jet_end):
     return (f"Solids/Left bag/Geometry/Mesh Spacing={spacing}", f"Solids/Right bag/Geometry/Mesh Spacing={spacing}",
-            f"Fluid/Sources/Jet/End Time={jet_end}", "Time/CFL=1.8")
+            f"Fluid/Sources/Jet/End={jet_end}", "Time/CFL=1.8")
 
 
 class Bags(unittest.TestCase):

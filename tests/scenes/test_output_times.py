@@ -14,7 +14,7 @@ from simulation import simulate, table  # noqa: E402
 SCENE = xml("Scene", {
     "Dimension": 2, "Domain": {"Cells": (4, 4)}, "Fluid": {"Gravity": (0., -1.)},
     "Observers": {"gauge": {"Type": "points", "Points": (.5, .5), "Interval": .025}},
-    "Output": {"Frame Interval": .025, "Checkpoint Interval": .025, "Keep Checkpoints": 99},
+    "Output": {"Frame Interval": .025, "Checkpoints": {"Interval": .025, "Count": 99}},
     "Time": {"Start": -7., "End": -6.89, "Fixed Step": .01}})
 DUE = [3, 5, 8, 10]
 
@@ -48,14 +48,14 @@ class OutputTimes(unittest.TestCase):
         self.assertEqual(self.checkpoints(), [*DUE, 11])
 
     def test_a_restarted_run_keeps_to_the_times_of_the_straight_one(self):
-        self.run_scene("--set", "Output/Checkpoint Interval=0.01")
+        self.run_scene("--set", "Output/Checkpoints/Interval=0.01")
         for step in (3, 4, 7):
             with self.subTest(step=step):
                 self.run_scene(restart=step)
                 self.assertEqual(self.frames(), [0, *DUE, 11])
                 self.assertEqual(self.looks(), [0, *DUE, 11])
                 self.assertEqual([n for n in self.checkpoints() if n > step], [n for n in (*DUE, 11) if n > step])
-                self.run_scene("--set", "Output/Checkpoint Interval=0.01")
+                self.run_scene("--set", "Output/Checkpoints/Interval=0.01")
 
     def test_what_came_at_an_end_that_is_none_any_more_is_dropped(self):
         """A frame and a look that a longer run would not have; the run that does not go on keeps them."""

@@ -92,7 +92,7 @@ class SolidsAlone(unittest.TestCase):
         sheet = {**cloth, "Geometry": {"Shape": "sheet", "Size": (.6, 0.), "Normal": "y", "Mesh Spacing": .05}}
         ring = {**cloth, "Geometry": {"Shape": "ball", "Radius": .15, "Mesh Spacing": .06}, "Position": (0., .2),
                 "Velocity": (0., -3.)}
-        output = self.run_scene(scene({"Sheet": sheet, "Ring": ring}, .004, .08, contact="gauss seidel", Iterations=20000, Tolerance=1e-11))
+        output = self.run_scene(scene({"Sheet": sheet, "Ring": ring}, .004, .08, contact="gauss seidel", **{"Maximum Iterations": 20000, "Tolerance": 1e-11}))
         rows = table(output / "bodies.csv")
         self.assertGreater(max(abs(row) for row in column(rows[-2:], "vy")), 1.)
         self.assertLess(max(map(abs, column(rows, "vx"))), 1e-9)

@@ -44,7 +44,7 @@ class Strategies(unittest.TestCase):
                 contact = ["--set", OF_CONTACT] if has_contact(scene) else []
                 for run in runs:
                     simulate(scene, run, "--steps", "3", "--set", f"Domain/Cells={cells}", "--set", "Output/Frames=false", *contact,
-                             "--set", "Solver/Tolerance=1e-11", "--set", "Solver/Viscous Tolerance=3e-13",
+                             "--set", "Solver/Tolerance=1e-11", "--set", "Solver/Viscous Solve/Tolerance=3e-13",
                              "--set", f"Solver/File={ROOT}/xml-params/solvers/{run.name}.xml")
                 greatest = compare_runs(runs, 1e-8).greatest()
                 self.assertLess(greatest.size, 1e-8, str(greatest))

@@ -144,7 +144,7 @@ class Data(Pages):
         (run,) = data_of(self.page(self.folder / "run"))["runs"]
         self.assertEqual(run["view"], {"up": 1, "direction": [0.45, 0.35, 1], "centre": None, "zoom": 1, "field": None,
                                        "volume": False, "time": None})
-        values = {"Fluid/Gravity": "{0, 0, -9.8}", "View/Zoom": "2", "View/Centre": "{1, 2, 3}", "View/Style": "volume",
+        values = {"Fluid/Gravity": "{0, 0, -9.8}", "View/Zoom": "2", "View/Center": "{1, 2, 3}", "View/Style": "volume",
                   "View/Time": "0.5", "View/Field": "smoke"}
         self.assertEqual(view_of(values), {"up": 2, "direction": [0.45, -1, 0.35], "centre": [1, 2, 3], "zoom": 2,
                                            "field": "smoke", "volume": True, "time": 0.5})

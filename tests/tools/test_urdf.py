@@ -82,11 +82,10 @@ class Robots(unittest.TestCase):
         self.assert_near(self.numbers(root, "Solids", "base", "Position"), (0, 0, 1.2))
         # The shoulder turns z of the arm to x of space, and x to -z.
         self.assert_near(self.numbers(root, "Solids", "arm", "Position"), (.2, 0, 1.5))
-        half = math.sqrt(.5)
-        self.assert_near(self.numbers(root, "Solids", "arm", "Orientation"), (half, 0, half, 0))
+        self.assert_near(self.numbers(root, "Solids", "arm", "Rotation"), (0, math.pi / 2, 0))
         self.assert_near(self.numbers(root, "Joints", "shoulder", "Axis"), (0, 1, 0))
         self.assert_near(self.numbers(root, "Joints", "shoulder", "Point"), (0, 0, 1.5))
-        self.assert_near(self.numbers(root, "Joints", "shoulder", "Lower Limit"), (-.5,))
+        self.assert_near(self.numbers(root, "Joints", "shoulder", "Limits", "Lower"), (-.5,))
         self.assert_near(self.numbers(root, "Solids", "wheel", "Position"), (.4, 0, 1.2))
         self.assert_near(self.numbers(root, "Joints", "axle", "Damping"), (.5,))
         self.assert_near(self.numbers(root, "Solids", "tip", "Position"), (.75, 0, 1.5))

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 
+#include "base/round_off.hpp"
 #include "contact/bodies/inverse_mass.hpp"
 #include "geometry/simplex_queries.hpp"
 #include "linear/matrix_rows.hpp"
@@ -342,7 +343,7 @@ template <int dim>
 template <typename ForEach>
 bool ContactShapes<dim>::inside_of(const ForEach& for_each_simplex, const Point<dim>& x,
                                    double radius) const {
-  const double tie = 1e-9 * radius;
+  const double tie = rounding::differences * radius;
   double nearest = radius, alignment = 0;
   for_each_simplex([&](int s) {
     if (bounds_[s].squaredExteriorDistance(x) > nearest * nearest)

@@ -332,7 +332,7 @@ class ImpactZones {
 
 template <int dim>
 ZonedMotion<dim> join_impact_zones(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
-                                   const InverseMass& inverse_mass, bool self, double dt,
+                                   const InverseMass& inverse_mass, double dt,
                                    std::vector<double>& velocity,
                                    const std::vector<Point<dim>>& unheld) {
   ImpactZones<dim> zones(system, shapes, inverse_mass, dt, velocity);
@@ -341,7 +341,7 @@ ZonedMotion<dim> join_impact_zones(const SolidSystem<dim>& system, const Contact
     const SolidMotion<dim> motion(system, shapes, velocity);
     SurfacePath<dim> path(shapes, motion, dt);
     path.unheld = unheld;
-    const auto impacts = find_impacts(shapes, path, self);
+    const auto impacts = find_impacts(shapes, path);
     zoned.n_left = static_cast<int>(impacts.size());
     if (zoned.n_left == 0)
       break;
@@ -352,10 +352,10 @@ ZonedMotion<dim> join_impact_zones(const SolidSystem<dim>& system, const Contact
 }
 
 template ZonedMotion<2> join_impact_zones<2>(const SolidSystem<2>&, const ContactShapes<2>&,
-                                             const InverseMass&, bool, double, std::vector<double>&,
+                                             const InverseMass&, double, std::vector<double>&,
                                              const std::vector<Point<2>>&);
 template ZonedMotion<3> join_impact_zones<3>(const SolidSystem<3>&, const ContactShapes<3>&,
-                                             const InverseMass&, bool, double, std::vector<double>&,
+                                             const InverseMass&, double, std::vector<double>&,
                                              const std::vector<Point<3>>&);
 
 }  // namespace lockstep

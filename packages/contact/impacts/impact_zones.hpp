@@ -26,7 +26,7 @@ struct ZonedMotion {
 /// Local; the same on all ranks.
 template <int dim>
 ZonedMotion<dim> join_impact_zones(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
-                                   const InverseMass& inverse_mass, bool self, double dt,
+                                   const InverseMass& inverse_mass, double dt,
                                    std::vector<double>& velocity,
                                    const std::vector<Point<dim>>& unheld = {});
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/round_off.hpp"
 #include "contact/search/meeting_pairs.hpp"
 #include "contact/search/touching_side.hpp"
 
@@ -22,11 +23,11 @@ namespace {
 /// Solids of which at least one is not rigid whose swept boxes meet, and such with themselves.
 template <int dim>
 std::vector<std::array<int, 2>> pairs_to_follow(const ContactShapes<dim>& shapes,
-                                                const std::vector<Box<dim>>& swept, bool self) {
+                                                const std::vector<Box<dim>>& swept) {
   const auto& solids = shapes.solids();
   auto pairs =
       meeting_pairs<dim>(swept, [&](int i, int j) { return !solids[i].rigid || !solids[j].rigid; });
-  for (int i = 0; self && i < shapes.n_solids(); ++i) {
+  for (int i = 0; i < shapes.n_solids(); ++i) {
     if (!solids[i].rigid && !swept[i].isEmpty())
       pairs.push_back({i, i});
   }
@@ -48,7 +49,7 @@ bool hang_together(const ContactShapes<dim>& shapes, const PrimitivePair<dim>& p
 
 template <int dim>
 std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
-                                           const SurfacePath<dim>& path, bool self) {
+                                           const SurfacePath<dim>& path) {
   std::vector<Box<dim>> swept, solid_swept(shapes.n_solids());
   for (std::size_t v = 0; v < path.before.size(); ++v) {
     swept.emplace_back(path.before[v]);
@@ -63,7 +64,7 @@ std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
   const PrimitivePair<dim>* current = nullptr;
   const SideAtStart<dim> side = [&](const PrimitiveWeights<dim>& weights,
                                     const Point<dim>& normal) -> Point<dim> {
-    constexpr double negligible = 1e-9;  // part of an edge [1]
+    constexpr double negligible = rounding::differences;  // of an edge
     const auto start = points_of(*current, path.before);
     const Point<dim> motion =
         weighted<dim>(weights, points_of(*current, unheld)) - weighted<dim>(weights, start);
@@ -81,7 +82,7 @@ std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
     }
   };
   PrimitivePairs<dim> primitives(shapes, std::move(swept));
-  for (const auto& [i, j] : pairs_to_follow(shapes, solid_swept, self))
+  for (const auto& [i, j] : pairs_to_follow(shapes, solid_swept))
     primitives.for_each(0, i, j, keep_impacts);
   return found;
 }
@@ -110,10 +111,10 @@ Contact<dim> impact_contact(const ContactShapes<dim>& shapes, const SolidMotion<
 
 template struct SurfacePath<2>;
 template struct SurfacePath<3>;
-template std::vector<FoundImpact<2>> find_impacts<2>(const ContactShapes<2>&, const SurfacePath<2>&,
-                                                     bool);
-template std::vector<FoundImpact<3>> find_impacts<3>(const ContactShapes<3>&, const SurfacePath<3>&,
-                                                     bool);
+template std::vector<FoundImpact<2>> find_impacts<2>(const ContactShapes<2>&,
+                                                     const SurfacePath<2>&);
+template std::vector<FoundImpact<3>> find_impacts<3>(const ContactShapes<3>&,
+                                                     const SurfacePath<3>&);
 template Contact<2> impact_contact<2>(const ContactShapes<2>&, const SolidMotion<2>&,
                                       const SurfacePath<2>&, const FoundImpact<2>&, double, double);
 template Contact<3> impact_contact<3>(const ContactShapes<3>&, const SolidMotion<3>&,

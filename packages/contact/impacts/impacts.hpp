@@ -24,11 +24,11 @@ struct SurfacePath {
 };
 
 /// First impacts of all pairs of primitives of which at least one is of a solid that is not rigid;
-/// also of a solid with itself if `self`; not where one is glued to the other (`hangs_on`). Local;
+/// also of a solid with itself; not where one is glued to the other (`hangs_on`). Local;
 /// the same on all ranks.
 template <int dim>
 std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
-                                           const SurfacePath<dim>& path, bool self);
+                                           const SurfacePath<dim>& path);
 
 /// Makes the contact that keeps the primitives of an impact `clearance` apart at the end (but at
 /// most half of their distance at the start): its gap over dt is the largest normal speed of

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "base/round_off.hpp"
 #include "linear/least_squares.hpp"
 
 namespace lockstep {
@@ -93,7 +94,7 @@ MemberMotion<dim> RigidMember<dim>::momentum(const Point<dim>& about,
 
 template <int dim>
 bool RigidMember<dim>::move(const MemberMotion<dim>& twist, std::vector<double>& velocity) const {
-  constexpr double round_off = 1e-9;
+  constexpr double round_off = rounding::differences;
   const Eigen::VectorXd wanted = at_points<dim>(twist, center_, center_, arm_);
   Eigen::VectorXd present(wanted.size());
   for (int p = 0; p <= dim; ++p) {

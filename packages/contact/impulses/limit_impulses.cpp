@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/round_off.hpp"
 
 namespace lockstep {
 
@@ -68,7 +69,7 @@ bool exchange_blocks(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, Eigen::
 /// other joins those that push, and rows that would pull leave, so that the sum falls in every
 /// round.
 Eigen::VectorXd descend(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
-  constexpr double round_off = 1e-12;
+  constexpr double round_off = rounding::sums;
   const auto n = static_cast<int>(b.size());
   const double scale = b.cwiseAbs().maxCoeff();
   std::vector<char> pushes(n, 0), idle(n, 0);  // idle: joined last without an effect
@@ -93,7 +94,7 @@ Eigen::VectorXd descend(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
       x += part * (whole - x);
       pulls = false;
       for (int k = 0; k < n; ++k) {
-        if (!pushes[k] || whole[k] > 0 || x[k] > 1e-14 * x.maxCoeff())
+        if (!pushes[k] || whole[k] > 0 || x[k] > rounding::few * x.maxCoeff())
           continue;
         pushes[k] = 0;
         x[k] = 0;

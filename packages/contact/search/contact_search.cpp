@@ -87,7 +87,7 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
     const SolidDescription& solid = solids[i];
     if (solid.prescribed || solid.simplex_begin == solid.simplex_end)
       continue;
-    if (reach.self && !solid.rigid)
+    if (!solid.rigid)
       add_surface_contacts(shapes, motion, primitives, reach, i, i, contacts);
     for (const HalfSpace& wall : walls) {
       const double nearest = wall.sign > 0 ? boxes[i].min()[wall.axis] - wall.coordinate

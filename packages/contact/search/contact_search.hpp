@@ -35,13 +35,12 @@ struct HalfSpace {
 struct ContactReach {
   double near = 0;                     ///< gaps up to this are contacts whatever the motion [m]
   double depth = 0;                    ///< deepest overlap that is recognised [m]
-  std::vector<double> half_thickness;  ///< half thickness of the skin of each solid [m]
-  double dt = 0;                       ///< time over which the motion is followed [s]
-  bool swept = true;   ///< true: contacts that the motion over dt meets beyond `near`, too
-  bool self = true;    ///< true: solids that are not rigid against themselves, too
-  bool unheld = true;  ///< nothing has acted on the motion: see `touching_side`
-  /// True: a solid against itself is searched only where it may overlap or where the motion
-  /// violates a contact, which leaves out most of a flat sheet, whose parts lie side by side.
+  std::vector<double> half_thickness;  ///< of the skin of each solid [m]
+  double dt = 0;                       ///< of the motion that is followed [s]
+  bool swept = true;                   ///< also what the motion over dt meets beyond `near`
+  bool unheld = true;                  ///< nothing has acted on the motion: see `touching_side`
+  /// Of a solid against itself, leave out what may neither overlap nor be violated by the motion:
+  /// most of a sheet that is flat, whose parts lie side by side.
   bool violated_only = false;
 };
 

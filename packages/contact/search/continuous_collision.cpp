@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/round_off.hpp"
 #include "geometry/simplex_queries.hpp"
 
 namespace lockstep {
 
 namespace {
 
-constexpr double rim = 1e-6;        // barycentric coordinates: no gap between neighbours
-constexpr double parallel = 1e-10;  // square of the sine between edges
+/// Barycentric coordinates by which a simplex is widened, so that there is no gap between
+/// neighbours: chosen far above round-off, and far below what a mesh resolves.
+constexpr double rim = 1e-6;
+/// Square of the sine of the angle below which edges count as parallel: their common normal has
+/// lost five digits there. Vertices against simplices find what such edges touch.
+constexpr double parallel = 1e-10;
 
 double value_at(const std::array<double, 4>& c, double t) {
   return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
@@ -133,13 +138,13 @@ std::vector<double> roots_in_unit_interval(const std::array<double, 4>& c) {
   std::vector<double> roots;
   if (size == 0)
     return roots;
-  const double zero = 1e-14 * size;
+  const double zero = rounding::few * size;
   std::vector<double> ends{0};
   for (const double t : turning_points(c))
     ends.push_back(t);
   ends.push_back(1);
   const auto add = [&roots](double t) {
-    if (roots.empty() || t - roots.back() > 1e-12)
+    if (roots.empty() || t - roots.back() > rounding::sums)
       roots.push_back(t);
   };
   for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -194,8 +199,8 @@ std::optional<Impact<dim>> first_impact(PrimitiveKind kind, const PrimitivePoint
     const Point<dim> start = weighted<dim>(impact->weights, before);
     const Point<dim> motion = weighted<dim>(impact->weights, after) - start;
     const double approach = impact->normal.dot(motion);
-    const double negligible = 1e-14 * (before[1] - before[2]).norm();
-    double out = -approach;  // a point that slides does not cross
+    const double negligible = rounding::few * (before[1] - before[2]).norm();
+    double out = -approach;  // what slides does not cross
     if (start.norm() <= negligible) {
       constexpr double steep = 0.5;
       if (!side || std::abs(approach) <= negligible)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/round_off.hpp"
 #include "contact/search/approach.hpp"
 #include "contact/search/touching_side.hpp"
 
@@ -76,7 +77,7 @@ class SurfaceContacts {
 
   /// True if the points are so near that they tell no direction.
   bool touches(const NearPair<dim>& near) const {
-    return near.closest.distance <= 1e-9 * range(near);
+    return near.closest.distance <= rounding::differences * range(near);
   }
 
   Point<dim> normal_where_they_touch(const NearPair<dim>& near) const {
@@ -93,7 +94,7 @@ class SurfaceContacts {
     const Point<dim> velocity = motion_.at(pair.solid, near.points[0], near.points[0].position) -
                                 motion_.at(pair.other, near.points[1], near.points[1].position);
     return touching_side(shapes_, pair, near.closest.weights, normal,
-                         Point<dim>(reach_.dt * velocity), 1e-9 * range(near));
+                         Point<dim>(reach_.dt * velocity), rounding::differences * range(near));
   }
 
   bool on_outer_sides(const NearPair<dim>& near) const {
@@ -117,7 +118,7 @@ class SurfaceContacts {
     for (const NearPair<dim>& one : near)
       least = std::min(least, one.closest.distance);
     std::size_t first = 0;
-    while (near[first].closest.distance > least + 1e-9 * range(near[first]))
+    while (near[first].closest.distance > least + rounding::differences * range(near[first]))
       ++first;
     return first;
   }

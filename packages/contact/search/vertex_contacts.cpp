@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/round_off.hpp"
 #include "geometry/simplex_queries.hpp"
 
 namespace lockstep {
@@ -210,7 +211,8 @@ std::optional<typename VertexContacts<dim>::Hit> VertexContacts<dim>::swept(
       continue;
     Point<dim> face = shapes_.normal(s);
     const double approach = face.dot(displacement);
-    if (std::abs(approach) < 1e-9 * displacement.norm() || (other_closed_ && approach > 0))
+    if (std::abs(approach) < rounding::differences * displacement.norm() ||
+        (other_closed_ && approach > 0))
       continue;
     if (approach > 0)
       face = -face;

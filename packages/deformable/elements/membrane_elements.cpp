@@ -1,6 +1,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "base/round_off.hpp"
 #include "deformable/elements/element_list.hpp"
 #include "deformable/elements/shell_elements.hpp"
 
@@ -127,8 +128,8 @@ class MembraneElements : public ElementList<dim, MembraneElement<dim>, MembraneE
     for (const auto& element : elements_) {
       const SurfaceGradient<dim> f = gradient(element, x);
       const Eigen::SelfAdjointEigenSolver<SurfaceTensor<dim>> eigen(stress(strain_of(f)));
-      const double roundoff = 1e-12 * (lambda_ + mu_);
-      if (eigen.eigenvalues().minCoeff() < -roundoff && element.corners[0] < stiffness.n_rows())
+      const double round_off = rounding::sums * (lambda_ + mu_);
+      if (eigen.eigenvalues().minCoeff() < -round_off && element.corners[0] < stiffness.n_rows())
         ++n_clamped;
       const SurfaceTensor<dim> tension = eigen.eigenvectors() *
                                          eigen.eigenvalues().cwiseMax(0).asDiagonal() *

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/round_off.hpp"
 #include "deformable/elements/element_list.hpp"
 #include "deformable/elements/shell_elements.hpp"
 
@@ -46,7 +47,7 @@ class SpringElements : public ElementList<dim, Spring, SpringElements<dim>> {
       const double length = edge.norm();
       const Square along = along_edge(edge);
       double across = length > 0 ? 1 - spring.length / length : -1;
-      if (across < -1e-12 && spring.corners[0] < stiffness.n_rows())
+      if (across < -rounding::sums && spring.corners[0] < stiffness.n_rows())
         ++n_clamped;
       across = std::max(0.0, across);
       add(spring, spring.stiffness * (along + across * (Square::Identity() - along)), stiffness);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/errors.hpp"
+#include "base/round_off.hpp"
 #include "geometry/surface_builder.hpp"
 
 namespace lockstep {
@@ -126,7 +127,7 @@ SurfaceMesh<3> icosahedron() {
     }
   }
   const auto adjacent = [&](int a, int b) {
-    return std::abs((mesh.vertices[a] - mesh.vertices[b]).norm() - 2) < 1e-9;
+    return std::abs((mesh.vertices[a] - mesh.vertices[b]).norm() - 2) < rounding::differences;
   };
   for (int a = 0; a < 12; ++a) {
     for (int b = 0; b < a; ++b) {
@@ -273,11 +274,9 @@ VolumeMesh<dim> spindle_volume(const SpindleShape& shape, double spacing) {
   const auto& at = shape.stations;
   const std::size_t n = at.size();
   check_input(n >= 2 && std::adjacent_find(at.begin(), at.end(), ascends) == at.end(),
-              "Spindle: \"Stations\" must ascend, two or more.");
+              "Spindle: the places of the sections must ascend, two or more.");
   check_input(shape.half_heights.size() == n && (dim == 2 || shape.half_widths.size() == n),
-              "Spindle: there are {} \"Stations\", so \"Half Heights\"{} must have as many "
-              "numbers.",
-              n, dim == 2 ? "" : " and \"Half Widths\"");
+              "Spindle: there are {} places, so there must be as many half heights and widths.", n);
   const double length = at.back() - at.front();
   double half = *std::max_element(shape.half_heights.begin(), shape.half_heights.end());
   if constexpr (dim == 2) {

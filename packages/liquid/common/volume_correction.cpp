@@ -20,9 +20,6 @@ void declare_volume_correction(ParameterList& list) {
                  "Shifts the surface so that no volume is gained or lost. component: each liquid "
                  "component keeps its own, and nothing goes through a shell; global: all together; "
                  "none: volume is measured only.");
-  declare_between(list, "Largest Shift", 0.2, 0.0, 1.0,
-                  "Largest shift of the surface by the correction in a step that carries it over "
-                  "no more than a cell; in longer steps as many times as much [cells].");
 }
 
 VolumeParameters read_volume_correction(const ParameterList& list) {
@@ -31,7 +28,6 @@ VolumeParameters read_volume_correction(const ParameterList& list) {
   parameters.correction = correction == "component" ? VolumeCorrection::component
                           : correction == "global"  ? VolumeCorrection::global
                                                     : VolumeCorrection::none;
-  parameters.largest_shift = list.get<double>("Largest Shift");
   return parameters;
 }
 

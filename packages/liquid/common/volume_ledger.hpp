@@ -16,11 +16,12 @@ enum class VolumeCorrection {
 /// Parameters of volume conservation.
 struct VolumeParameters {
   VolumeCorrection correction = VolumeCorrection::component;
-  double largest_shift =
-      0.2;  ///< largest shift of the surface in a step in which nothing crosses a cell [cells]
+  /// Most that the surface shifts in a step that carries it over no more than a cell; in longer
+  /// steps as many times as much [cells]. Chosen small beside a cell, not varied by a page.
+  static constexpr double largest_shift = 0.2;
 };
 
-/// Declares "Volume Correction" and "Largest Shift".
+/// Declares "Volume Correction".
 void declare_volume_correction(ParameterList& list);
 VolumeParameters read_volume_correction(const ParameterList& list);
 

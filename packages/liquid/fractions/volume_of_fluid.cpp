@@ -23,24 +23,17 @@ constexpr double largest_courant_number = 100;
 
 ParameterList volume_of_fluid_parameters() {
   ParameterList list;
-  declare_between(list, "Band", 6, 4, 20,
-                  "Cells on both sides of the surface in which its distance is known.");
-  declare_choice(list, "Crumbs", "return", {"return", "keep"},
-                 "Treatment of liquid and air too thin for a pressure: cells less than half full "
-                 "that touch no fuller one, and the reverse. return: it goes to the surface of the "
-                 "nearest liquid component; keep: it goes on with the flow, where that is given.");
-  declare_between(list, "Largest Shift", 0.1, 0.0, 1.0,
-                  "Largest shift of the surface in a step that carries it over no more than a "
-                  "cell, to take up the volume that crumbs and moving solids have displaced; in "
-                  "longer steps as many times as much [cells].");
+  declare_choice(list, "Volume Correction", "component", {"component", "none"},
+                 "What becomes of liquid and void too thin for a pressure: cells less than half "
+                 "full that touch no fuller one, and the reverse. component: it goes to the "
+                 "surface of the nearest body; none: it goes on with the flow, where that is "
+                 "given.");
   return list;
 }
 
 VolumeOfFluidParameters read_volume_of_fluid_parameters(const ParameterList& list) {
   VolumeOfFluidParameters parameters;
-  parameters.band = list.get<int>("Band");
-  parameters.removes_crumbs = list.get<std::string>("Crumbs") == "return";
-  parameters.largest_shift = list.get<double>("Largest Shift");
+  parameters.removes_crumbs = list.get<std::string>("Volume Correction") == "component";
   return parameters;
 }
 

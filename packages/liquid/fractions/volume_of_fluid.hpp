@@ -10,9 +10,12 @@ namespace lockstep {
 
 /// The numbers of a volume of fluid.
 struct VolumeOfFluidParameters {
-  int band = 6;                ///< cells around the surface in which phi is known
-  bool removes_crumbs = true;  ///< true: fragments too thin for the grid go back to their component
-  double largest_shift = 0.1;  ///< see VolumeParameters [cells]
+  /// Cells around the surface in which phi is known: as many as a level set has.
+  static constexpr int band = 6;
+  bool removes_crumbs = true;  ///< what is too thin for the grid goes back to its body
+  /// Most that the surface shifts in a step, to take up what crumbs and moving solids have
+  /// displaced: half of VolumeParameters::largest_shift [cells]. Chosen, not varied by a page.
+  static constexpr double largest_shift = 0.1;
 };
 
 /// Schema of the interface "volume of fluid".

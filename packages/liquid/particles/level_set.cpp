@@ -28,8 +28,6 @@ constexpr double negligible_motion = 0.05;
 template <int dim>
 ParameterList level_set_parameters() {
   ParameterList list;
-  declare_between(list, "Band", 6, 4, 20,
-                  "Cells on both sides of the surface in which its distance is known.");
   declare_at_least(list, "Smallest Void", dim == 2 ? 8 : 27, 0,
                    "Largest air pocket, in cells, that is filled if liquid touches it: it would "
                    "drain the liquid around it. 0: none is.");
@@ -46,16 +44,10 @@ ParameterList particle_level_set_parameters() {
 
 LevelSetParameters read_level_set_parameters(const ParameterList& list) {
   LevelSetParameters parameters;
-  parameters.band = list.get<int>("Band");
   parameters.smallest_void = list.get<int>("Smallest Void");
   parameters.volume = read_volume_correction(list);
-  if (list.isParameter("Particles per Cell"))
+  if (list.isParameter("Drops"))
     parameters.particles = read_particles(list);
-  check_input(!parameters.particles || parameters.band >= parameters.particles->band + 2,
-              "{}: \"Band\" is {} and \"Particle Band\" {}: where particles are, and two cells "
-              "beyond, the distance to the surface must be known. Take a \"Band\" of {} or more.",
-              list.name(), parameters.band, parameters.particles ? parameters.particles->band : 0,
-              parameters.particles ? parameters.particles->band + 2 : 0);
   check_input(!parameters.particles || !parameters.particles->drops ||
                   parameters.volume.correction != VolumeCorrection::none,
               "{}: \"Drops\" take their volume from the liquid and give it back, which \"Volume "

@@ -14,8 +14,11 @@ struct TransportFrame;
 
 /// The numbers of a level set.
 struct LevelSetParameters {
-  int band = 6;           ///< cells around the surface in which phi is known
-  int smallest_void = 0;  ///< cells of the largest air component that is filled
+  /// Cells around the surface in which phi is known. Chosen, not varied by a page; the particles
+  /// ask for two more than their own band.
+  static constexpr int band = 6;
+  static_assert(band >= ParticleParameters::band + 2);
+  int smallest_void = 0;  ///< cells of the largest void that is closed
   VolumeParameters volume;
   std::optional<ParticleParameters> particles;  ///< none: phi alone
 };

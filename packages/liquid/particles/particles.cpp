@@ -23,28 +23,16 @@ Particle<dim> placed(const TiledGrid<dim>& grid, int cell, const Point<dim>& in_
 }  // namespace
 
 void declare_particles(ParameterList& list) {
-  declare_between(
-      list, "Particles per Cell", 16, 1, 64,
-      "Particles of each side in a cell of their band; 64 cost four times as much as 16 "
-      "and lose a little less.");
-  declare_between(list, "Particle Band", 3, 2, 6,
-                  "Cells on both sides of the surface in which there are particles.");
-  declare_positive(list, "Reseed Interval", 20,
-                   "Steps after which particles are added where there are too few and taken away "
-                   "where there are too many.");
-  declare_choice(
-      list, "Drops", "none", {"none", "ballistic"},
-      "Particles of the liquid that no wet cell is around. none: they follow the velocity that is "
-      "extended into the air, and their volume is that of other liquid. ballistic: they leave with "
-      "h^dim / \"Particles per Cell\" and the velocity there, fly and hit solids, and give volume "
-      "and momentum back in the first wet cell.");
+  declare_choice(list, "Drops", "none", {"none", "ballistic"},
+                 "Of particles of the liquid that no wet cell is around. none: they go with the "
+                 "velocity that is carried on into the void, and their volume is that of other "
+                 "liquid. ballistic: they leave with h^dim / 16 and the velocity there, fly and "
+                 "hit solids, and give volume and momentum back in the "
+                 "first wet cell.");
 }
 
 ParticleParameters read_particles(const ParameterList& list) {
   ParticleParameters parameters;
-  parameters.per_cell = list.get<int>("Particles per Cell");
-  parameters.band = list.get<int>("Particle Band");
-  parameters.interval = list.get<int>("Reseed Interval");
   parameters.drops = list.get<std::string>("Drops") == "ballistic";
   return parameters;
 }

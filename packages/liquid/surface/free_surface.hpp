@@ -17,9 +17,10 @@ struct FreeSurface {
   /// Part of the way from the centre of a wet cell to that of a dry neighbour at which the surface
   /// is, in (0, 1]. Local.
   std::function<double(int wet, int dry)> crossing;
-  double smallest_distance = 1e-5;  ///< least distance of a pressure from the surface [cells]
-  /// True: p = 0 at the free surface, second order (ghost fluid). False: at the centre of the dry
-  /// cell, first order.
+  /// Pressures are no nearer to the surface than this [cells]: less costs iterations
+  /// (docs/method.md).
+  static constexpr double smallest_distance = 1e-5;
+  /// True: p = 0 where the surface is. False: at the centre of the dry cell, first order.
   bool at_true_place = true;
   GasPockets<dim>* gas = nullptr;  ///< null: no air is closed in
 

@@ -49,16 +49,13 @@ template <int dim>
 ScalarSource<dim> read_source(const ParameterList& list) {
   ScalarSource<dim> source;
   source.shape = read_shape<dim>(list);
-  source.begin_time = list.get<double>("Begin Time");
-  if (list.isParameter("End Time"))
-    source.end_time = list.get<double>("End Time");
-  for (const std::string name : {"Smoke", "Temperature"}) {
-    const std::string scalar = name == "Smoke" ? "smoke" : "temperature";
-    if (list.isParameter(name))
-      source.feeds.push_back({scalar, false, list.get<double>(name)});
-    if (list.isParameter(name + " Rate"))
-      source.feeds.push_back({scalar, true, list.get<double>(name + " Rate")});
-  }
+  source.begin_time = list.get<double>("Start");
+  if (list.isParameter("End"))
+    source.end_time = list.get<double>("End");
+  if (list.isParameter("Smoke"))
+    source.feeds.push_back({"smoke", list.get<double>("Smoke")});
+  if (list.isParameter("Temperature"))
+    source.feeds.push_back({"temperature", list.get<double>("Temperature")});
   source.liquid = list.get<bool>("Liquid");
   if (list.isParameter("Velocity"))
     source.velocity = point_value<dim>(list, "Velocity");
@@ -75,15 +72,12 @@ void declare_scalars(ParameterList& fluid) {
   ParameterList source;
   declare_shape<dim>(source);
   declare_optional<double>(source, "Smoke", "Smoke density held inside [1].");
-  declare_optional<double>(source, "Smoke Rate", "Smoke density added inside [1/s].");
   declare_optional<double>(source, "Temperature", "Temperature held inside [K].");
-  declare_optional<double>(source, "Temperature Rate", "Heating inside [K/s].");
   declare_optional<ParameterArray<double>>(
       source, "Velocity", "Velocity given to the fluid inside at every step [m/s].");
   set_length(source, "Velocity", dim);
-  declare(source, "Begin Time", 0.0, "Time at which the source starts [s].");
-  declare_optional<double>(source, "End Time",
-                           "Time at which the source stops [s]; never if it is left out.");
+  declare(source, "Start", 0.0, "When the source starts [s].");
+  declare_optional<double>(source, "End", "When it stops [s]; never if it is left out.");
   declare(
       source, "Liquid", false,
       "Fill it with liquid at every step, which its velocity carries away: a jet. For fluids with "
@@ -125,7 +119,7 @@ const Scalar* Scalars<dim>::find(const std::string& name) const {
 }
 
 template <int dim>
-void Scalars<dim>::feed(const MacGeometry<dim>& geometry, double time, double dt) {
+void Scalars<dim>::feed(const MacGeometry<dim>& geometry, double time) {
   const TiledGrid<dim>& grid = domain_.grid;
   for (const ScalarSource<dim>& source : sources_) {
     if (!source.active(time) || source.feeds.empty())
@@ -137,7 +131,7 @@ void Scalars<dim>::feed(const MacGeometry<dim>& geometry, double time, double dt
       for (const auto& feed : source.feeds)
         for (Scalar& scalar : scalars_)
           if (scalar.name == feed.scalar)
-            scalar.values[cell] = feed.rate ? scalar.values[cell] + dt * feed.value : feed.value;
+            scalar.values[cell] = feed.value;
     });
   }
 }

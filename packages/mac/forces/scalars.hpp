@@ -15,8 +15,7 @@ template <int dim>
 struct ScalarSource {
   struct Feed {
     std::string scalar;
-    bool rate = false;  ///< value is added per second; else it is set
-    double value = 0;
+    double value = 0;  ///< that the scalar has inside
   };
   RegionShape<dim> shape;
   std::vector<Feed> feeds;
@@ -47,10 +46,9 @@ class Scalars {
   const std::vector<Scalar>& all() const { return scalars_; }
   /// A scalar, or null if the scene has none of that name.
   const Scalar* find(const std::string& name) const;
-  /// Feeds the fluid cells inside the sources that are active at `time`, over dt. Sets owned cells.
-  /// Local.
-  void feed(const MacGeometry<dim>& geometry, double time, double dt);
-  /// Distance functions [m] of the shapes that are filled with liquid at `time`.
+  /// Feeds the fluid cells inside the sources that are active at `time`. Sets owned cells. Local.
+  void feed(const MacGeometry<dim>& geometry, double time);
+  /// Of the shapes that are filled with liquid at `time`, the distance from each [m].
   std::vector<std::function<double(const Point<dim>&)>> liquid_sources(double time) const;
   /// True if a source that is active at `time` sets the velocity.
   bool sources_push(double time) const;

@@ -23,7 +23,7 @@ template <int dim>
 VelocityProfile<dim> taylor_green(const ParameterList& list) {
   const double amplitude = list.get<double>("Amplitude");
   const double k = 2 * M_PI / list.get<double>("Wavelength");
-  const Point<dim> mean = point_value<dim>(list, "Mean Velocity");
+  const Point<dim> mean = point_value<dim>(list, "Velocity");
   return [=](const Point<dim>& x) {
     Point<dim> u = mean;
     u[0] += amplitude * std::sin(k * x[0]) * std::cos(k * x[1]);
@@ -50,8 +50,7 @@ void declare_initial_state(ParameterList& fluid) {
                  "Velocity everywhere [m/s].");
   declare(vortex, "Amplitude", 1.0, "Largest velocity U [m/s].");
   declare_positive(vortex, "Wavelength", 1.0, "Length of one period, 2 pi / k [m].");
-  declare_vector(vortex, "Mean Velocity", filled_array(dim, 0.0), dim,
-                 "Uniform velocity on top [m/s].");
+  declare_vector(vortex, "Velocity", filled_array(dim, 0.0), dim, "Uniform velocity on top [m/s].");
   declare_vector(rotation_list, "Angular Velocity", filled_array(n_rotations<dim>, 0.0),
                  n_rotations<dim>, "Rate of the rotation, about z in 2D [rad/s].");
   declare_vector(rotation_list, "Center", filled_array(dim, 0.0), dim, "A point at rest [m].");

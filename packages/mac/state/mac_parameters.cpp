@@ -40,15 +40,16 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
                  "clamped to the values around; cubic: semi-lagrangian with cubic interpolation, "
                  "third order, damps least, within the range of the 4 samples around along each "
                  "axis. Any step is stable with all; near surfaces all are semi-lagrangian.");
-  declare_between(list, "Order in Time", 1, 1, 2,
-                  "Order of the splitting of advection from all else. 1: as in the paper, "
-                  "advection knows nothing of pressure and forces. 2: what they did in the last "
-                  "step is averaged along the rays (trapezoidal rule) and the advection velocity "
-                  "is taken in the middle of the step; with maccormack, errors fall with h^2 where "
-                  "the flow is smooth, at the cost of memory for 4 velocity fields.");
-  declare_at_least(list, "Thermal Expansion", 0.0, 0.0,
-                   "Boussinesq coefficient beta: warm fluid feels -beta (T - T0) g [1/K].");
-  declare(list, "Reference Temperature", 0.0, "T0, at which fluid has no buoyancy [K].");
+  declare_between(
+      list, "Order in Time", 1, 1, 2,
+      "Of advection and all else together. 1: as in the paper, advection knows nothing of pressure "
+      "and forces. 2: what they did in the last step is averaged along the rays (trapezoidal rule) "
+      "and the advection velocity is taken in the middle of the step; with maccormack, errors fall "
+      "with h^2 where the flow is smooth, at the cost of memory for 4 velocity fields.");
+  declare_at_least(
+      list, "Thermal Expansion", 0.0, 0.0,
+      "Boussinesq coefficient beta: fluid of temperature T feels -beta (T - T0) g, where T0 "
+      "is the ambient temperature [1/K].");
   declare(list, "Smoke Weight", 0.0,
           "Relative excess density of fluid with smoke density 1: smoke s feels weight s g [1]; "
           "negative: it rises.");
@@ -70,7 +71,8 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   parameters.forces.gravity = point_value<dim>(fluid, "Gravity");
   parameters.forces.body = point_value<dim>(fluid, "Body Force");
   parameters.forces.expansion = fluid.get<double>("Thermal Expansion");
-  parameters.forces.reference_temperature = fluid.get<double>("Reference Temperature");
+  if (fluid.isSublist("Temperature"))
+    parameters.forces.reference_temperature = fluid.sublist("Temperature").get<double>("Ambient");
   parameters.forces.smoke_weight = fluid.get<double>("Smoke Weight");
   parameters.advection = advection_schemes().at(fluid.get<std::string>("Advection"));
   parameters.order_in_time = fluid.get<int>("Order in Time");

@@ -70,7 +70,7 @@ MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescriptio
       ask_for(fluid.sublist(scalar).sublist("Regions"), only_at_start);
   for_each_sublist(fluid.sublist("Sources"), [&](const ParameterList& source) {
     asked_.push_back({read_shape<dim>(source).bounds(),
-                      source.isParameter("End Time") ? source.get<double>("End Time") : for_ever});
+                      source.isParameter("End") ? source.get<double>("End") : for_ever});
   });
   if (fluid.sublist("Initial State").get<std::string>("Type") != "at rest") {
     const Point<dim> far = Point<dim>::Constant(1e300);

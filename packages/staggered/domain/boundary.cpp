@@ -30,8 +30,8 @@ BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, i
   side.type = side_type(list.get<std::string>("Type"));
   side.velocity = point_value<dim>(list, "Velocity");
   side.ramp_time = list.get<double>("Ramp Time");
-  if (list.isParameter("End Time"))
-    side.end_time = list.get<double>("End Time");
+  if (list.isParameter("End"))
+    side.end_time = list.get<double>("End");
   side.shape = read_inflow_shape<dim>(list, domain, axis, "Domain/Sides/" + side_name(axis, end));
   check_input(
       !side.closed() || side.velocity[axis] == 0,
@@ -46,7 +46,7 @@ BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, i
   };
   check_meaning("Velocity", side.velocity != Point<dim>::Zero());
   check_meaning("Ramp Time", side.ramp_time > 0);
-  check_meaning("End Time", list.isParameter("End Time"));
+  check_meaning("End", list.isParameter("End"));
   return side;
 }
 
@@ -85,7 +85,7 @@ ParameterList domain_parameters() {
                      "Velocity of the inflow, or of a wall along itself [m/s].");
       declare_at_least(side, "Ramp Time", 0.0, 0.0,
                        "Time during which \"Velocity\" grows linearly from 0 [s].");
-      declare_optional<double>(side, "End Time", "After it \"Velocity\" is 0 [s].");
+      declare_optional<double>(side, "End", "After it \"Velocity\" is 0 [s].");
       declare_inflow_shape<dim>(side);
       declare_inflow_wave(side);
       declare_inflow_scalars(side);

@@ -87,16 +87,11 @@ void declare_inflow_wave(ParameterList& side) {
   ParameterList& wave = declare_optional_list(
       side, "Wave",
       "An inflow sends a regular wave into a tank of liquid: at the side the water moves as below "
-      "a wave of linear theory that goes inwards, less that wave's mean flow. It begins with a "
+      "a wave of linear theory that goes inwards, less that wave's mean flow. The still water is "
+      "the \"level\" in \"Liquid\", down to the side of the domain below it. It begins with a "
       "crest, and grows during \"Ramp Time\".");
-  declare_required_positive(wave, "Height", "Height of the wave from trough to crest [m].");
-  declare_required_positive(wave, "Period", "[s].");
-  declare_required<double>(
-      wave, "Level", "Level of the still water, measured against gravity from the origin [m].");
-  declare_optional<double>(
-      wave, "Depth",
-      "Depth of the still water [m]. Absent: down to the side of the domain below it.");
-  set_positive(wave, "Depth");
+  declare_required_positive(wave, "Height", "From trough to crest [m].");
+  declare_required_positive(wave, "Frequency", "Crests per second [1/s].");
 }
 
 namespace {
@@ -112,6 +107,26 @@ int axis_along(const Point<dim>& gravity) {
     axis = a;
   }
   return axis;
+}
+
+/// Height of the still water: that of the one level among the fluid's liquids [m].
+double still_level(const ParameterList& fluid, const std::string& where) {
+  const ParameterList& liquids = fluid.sublist("Free Surface").sublist("Liquid");
+  std::optional<double> height;
+  int n_levels = 0;
+  for (auto it = liquids.begin(); it != liquids.end(); ++it) {
+    const ParameterList& liquid = liquids.sublist(liquids.name(it));
+    if (liquid.get<std::string>("Type") != "level")
+      continue;
+    height = liquid.get<double>("Height");
+    ++n_levels;
+  }
+  check_input(
+      n_levels == 1,
+      "In \"{}\", a \"Wave\" runs on the one \"level\" of \"Fluid/Free Surface/Liquid\", but "
+      "there are {}.",
+      where, n_levels);
+  return *height;
 }
 
 /// Waves that are steeper or higher break (Miche 1944).
@@ -154,18 +169,18 @@ std::optional<InflowWave<dim>> read_inflow_wave(const ParameterList& side,
   const ParameterList& list = side.sublist("Wave");
   InflowWave<dim> wave;
   wave.height = list.get<double>("Height");
-  wave.period = list.get<double>("Period");
-  wave.level = list.get<double>("Level");
+  wave.period = 1 / list.get<double>("Frequency");
+  wave.level = still_level(fluid, where);
   wave.gravity = gravity.norm();
   wave.up = -gravity.normalized();
   wave.inward = Point<dim>::Unit(axis) * (end == 0 ? 1 : -1);
   const double one = domain.min().dot(wave.up), other = domain.max().dot(wave.up);
   const double bottom = std::min(one, other), top = std::max(one, other);
   check_input(wave.level > bottom && wave.level < top,
-              "In \"{}\", the \"Level\" of the wave is {:g} m, but the side reaches from {:g} to "
+              "In \"{}\", the \"Height\" of the water is {:g} m, but the side reaches from {:g} to "
               "{:g} m, measured against gravity.",
               where, wave.level, bottom, top);
-  wave.depth = list.isParameter("Depth") ? list.get<double>("Depth") : wave.level - bottom;
+  wave.depth = wave.level - bottom;
   wave.number = wave_number(wave.frequency(), wave.gravity, wave.depth);
   check_height(wave, where);
   return wave;

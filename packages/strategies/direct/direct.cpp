@@ -9,23 +9,25 @@
 
 namespace lockstep {
 
+namespace {
+/// Larger systems are refused, for the factorisation lives on one rank, whose memory it would fill.
+/// Chosen, not varied by a page.
+constexpr int most_unknowns = 300000;
+}  // namespace
+
 ParameterList Direct::valid_parameters() {
-  ParameterList list = common_strategy_parameters();
-  declare_positive(list, "Maximum Unknowns", 300000,
-                   "Larger systems are refused, for the factorisation lives on one rank");
-  return list;
+  return common_strategy_parameters();
 }
 
 Direct::Direct(const ParameterList& given)
-    : RefinedStrategy(with_defaults(given, valid_parameters())),
-      maximum_unknowns_(with_defaults(given, valid_parameters()).get<int>("Maximum Unknowns")) {}
+    : RefinedStrategy(with_defaults(given, valid_parameters())) {}
 
 void Direct::build(const BlockSystem& system, bool geometry_changed, bool) {
   const auto n_pressure = system.pressure_block()->domain()->dim();
-  check_solve(n_pressure <= maximum_unknowns_,
-              "The strategy direct refuses the {}: its {} pressure unknowns are more than the "
-              "\"Maximum Unknowns\" {}. Choose an iterative strategy.",
-              system.name, n_pressure, maximum_unknowns_);
+  check_solve(n_pressure <= most_unknowns,
+              "The strategy direct refuses the {}: its {} pressure unknowns are more than "
+              "{}. Choose an iterative strategy.",
+              system.name, n_pressure, most_unknowns);
   if (geometry_changed)
     factors_ = {};
   Factors& factors = factors_[system.has_solid()];

@@ -26,7 +26,6 @@ class Direct : public RefinedStrategy {
     MergedSystem merged;
     RCP<const LinearOperator> inverse;
   };
-  int maximum_unknowns_;
   std::array<Factors, 2> factors_;  ///< without and with the solid block
 };
 

@@ -14,21 +14,16 @@ ParameterList PressureSchur::valid_parameters() {
   declare_pressure_inverse(list,
                            "Approximate inverse of the pressure block A, which is extended to one "
                            "of A + B C^-1 B^T. Default: Automatic.");
-  declare_positive(list, "Largest Solid", 18,
-                   "With at most so many solid unknowns the inverse of A is extended by "
-                   "Woodbury's formula, which stores a vector of pressures for each; with more, "
-                   "multigrid stays that of A, and others invert A + B diag(C)^-1 B^T");
   return list;
 }
 
 PressureSchur::PressureSchur(const ParameterList& given)
     : MinresStrategy(with_defaults(given, valid_parameters()),
                      pressure_inverse_list(given, "Automatic")),
-      largest_solid_(with_defaults(given, valid_parameters()).get<int>("Largest Solid")),
       pressure_list_(pressure_inverse_list(given, "Automatic")) {}
 
 RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system) {
-  if (system.solid_block()->domain()->dim() <= largest_solid_ &&
+  if (system.solid_block()->domain()->dim() <= largest_woodbury_rank &&
       !assembled(system.solid_block()).is_null())
     return woodbury_inverse(system, pressure_inverse());
   if (layout() != nullptr)

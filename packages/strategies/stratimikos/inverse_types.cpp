@@ -22,9 +22,6 @@ namespace lockstep {
 
 namespace {
 
-/// One vector of pressures is stored for each: three rigid bodies in space.
-constexpr int usual_largest_solid = 18;
-
 /// factor * op; a block of Eq. 16 has factor 1 (A) or -1 (C).
 struct SignedOperator {
   RCP<const LinearOperator> op;
@@ -122,7 +119,7 @@ class SchurType : public InverseType {
                 "The inverse \"Lockstep Schur\" stands for that of the pressure block A.");
     const auto factory =
         getInverseLibrary()->getInverseFactory(list().get<std::string>("Inverse Type"));
-    const int largest = value_of("Largest Solid", usual_largest_solid);
+    const int largest = value_of("Largest Solid", largest_woodbury_rank);
     const auto inverse_of = [&factory](const Teko::LinearOp& matrix) {
       return Teko::LinearOp(Teko::buildInverse(*factory, matrix));
     };

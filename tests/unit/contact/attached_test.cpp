@@ -133,10 +133,10 @@ TEST(ImpactZones, NodesOfConsistentMassWeighWhatTheyDo) {
   const ContactShapes<2> shapes(*world.solids, topology);
   const double dt = 0.01, fall = -2 * h / dt;
   std::vector<double> velocity{0, fall, 0, fall, 0, 0, 0, 0};
-  EXPECT_EQ(join_impact_zones(*world.solids, shapes, replicated_inverse_mass(*world.solids), false,
-                              dt, velocity)
-                .n_left,
-            0);
+  EXPECT_EQ(
+      join_impact_zones(*world.solids, shapes, replicated_inverse_mass(*world.solids), dt, velocity)
+          .n_left,
+      0);
   const std::vector<double> expected{0, fall / 3, 0, fall, 0, fall / 3, 0, fall / 3};
   for (int k = 0; k < 8; ++k)
     EXPECT_NEAR(velocity[k], expected[k], 1e-12 * -fall) << k;

@@ -238,8 +238,8 @@ TYPED_TEST(ClothContacts, ImpactZonesGoWithNodesThatAreMoved) {
       world.solids->velocity_row(shapes.at_vertex(v), shapes.mesh().vertices[v], row);
       set();
     }
-    EXPECT_EQ(join_impact_zones(*world.solids, shapes, replicated_inverse_mass(*world.solids),
-                                false, dt, velocity)
+    EXPECT_EQ(join_impact_zones(*world.solids, shapes, replicated_inverse_mass(*world.solids), dt,
+                                velocity)
                   .n_left,
               0);
     const SolidMotion<dim> motion(*world.solids, shapes, velocity);

@@ -76,11 +76,11 @@ TEST(Constraints, ScriptedNodesFollowTheirScript) {
 }
 
 TEST(Constraints, ReleasedNodesKeepTheirVelocity) {
-  Alone<2> alone(
-      model<2>({block + region("-0.5, -1", "0.5, 1",
-                               number("Release Time", "0.2") +
-                                   motion("constant velocity", numbers("Velocity", "3, 0")))},
-               {0, -10}));
+  Alone<2> alone(model<2>(
+      {block +
+       region("-0.5, -1", "0.5, 1",
+              number("End", "0.2") + motion("constant velocity", numbers("Velocity", "3, 0")))},
+      {0, -10}));
   const double dt = 0.01;
   EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(alone.solids.locked_dofs().size())), 30);
   EXPECT_NEAR(alone.solids.states()[0].velocity.x(), 3, 1e-14);
@@ -126,8 +126,8 @@ TEST(Constraints, RegionsThatMoveDoNotOverlap) {
     return block + list("Pinned", list("a", left) + list("b", left + more));
   };
   EXPECT_EQ(error([&] { body<2>(two("")); }), "");
-  EXPECT_EQ(error([&] { body<2>(two(texts("Directions", ""))); }), "");
-  EXPECT_THAT(error([&] { body<2>(two(number("Release Time", "1"))); }),
+  EXPECT_EQ(error([&] { body<2>(two(texts("Locked", ""))); }), "");
+  EXPECT_THAT(error([&] { body<2>(two(number("End", "1"))); }),
               ::testing::HasSubstr("body/Pinned/b"));
 }
 
@@ -303,7 +303,7 @@ TEST(SubSteps, MeansAreFoundAnewWhereTheyDiffer) {
       box("1, 0.5", "0.25") + material("corotated", "1e4") + number("Density", "1") +
       numbers("Stretch", "1.1, 0.95") + sub_steps("40") +
       list("Pinned", list("end", numbers("Lower", "-0.5, -0.25") + numbers("Upper", "-0.5, 0.25") +
-                                     number("Release Time", "1")));
+                                     number("End", "1")));
   const double dt = 4 / 20. * model<2>({content})->largest_stable_step();
   const auto solids = model<2>({content});
   for (const auto& [time, length] :

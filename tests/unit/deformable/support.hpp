@@ -34,7 +34,7 @@ inline std::string material(const std::string& type, const std::string& youngs_m
 inline std::string pinned(const std::string& lower, const std::string& upper,
                           const std::string& directions) {
   return list("Pinned", list("some", numbers("Lower", lower) + numbers("Upper", upper) +
-                                         texts("Directions", directions)));
+                                         texts("Locked", directions)));
 }
 
 /// A body as a scene file has it.

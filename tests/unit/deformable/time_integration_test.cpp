@@ -19,8 +19,8 @@ const char* const once = "The same on several ranks (RanksAgree), only slower.";
 std::string one_mode(const std::string& integration) {
   const auto pin = [](const std::string& name, const std::string& corner,
                       const std::string& directions) {
-    return list(name, numbers("Lower", corner) + numbers("Upper", corner) +
-                          texts("Directions", directions));
+    return list(name,
+                numbers("Lower", corner) + numbers("Upper", corner) + texts("Locked", directions));
   };
   return box("1, 1", "1") + material("linear", "100", "0") + number("Density", "3") +
          text("Time Integration", integration) + number("Viscosity", "0.7") +

@@ -258,12 +258,12 @@ TEST(VolumeOfFluid, LostLiquidIsTakenOffTheTarget) {
 /// A fragment in the air over a pool, on a tile that goes: it becomes a defect of the pool, or,
 /// where none is left, the target knows that it is lost.
 template <int dim>
-void expect_crumbs_of_gone_tiles_return(const std::string& crumbs, bool has_pool) {
+void expect_crumbs_of_gone_tiles_return(const std::string& correction, bool has_pool) {
   constexpr int n = 3 * tile_width<dim>;
   const double h = 1.0 / n, height = has_pool ? 4.3 * h : -1;
   Bath<dim> bath(closed_cube<dim>(n));
   ParameterList list;
-  list.set("Crumbs", crumbs);
+  list.set("Volume Correction", correction);
   auto model = bath.make(model_name, list);
   Point<dim> place = Point<dim>::Constant(0.5 * h);
   place[dim - 1] = 1 - 4.5 * h;
@@ -299,10 +299,10 @@ void expect_crumbs_of_gone_tiles_return(const std::string& crumbs, bool has_pool
 }
 
 TEST(VolumeOfFluid, CrumbsOfTilesThatGoAreNotForgotten) {
-  for (const std::string crumbs : {"keep", "return"})
+  for (const std::string correction : {"none", "component"})
     for (const bool has_pool : {true, false}) {
-      expect_crumbs_of_gone_tiles_return<2>(crumbs, has_pool);
-      expect_crumbs_of_gone_tiles_return<3>(crumbs, has_pool);
+      expect_crumbs_of_gone_tiles_return<2>(correction, has_pool);
+      expect_crumbs_of_gone_tiles_return<3>(correction, has_pool);
     }
 }
 

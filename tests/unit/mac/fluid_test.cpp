@@ -37,9 +37,12 @@ MovingSurface<dim> no_surface() {
 TEST(Fluid, BuoyancyByHand) {
   Case<2> scene({4, 4}, 0.5);
   scene.fluid.set("Density", 2.0).set("Thermal Expansion", 0.01);
-  scene.fluid.set("Reference Temperature", 300.0).set("Smoke Weight", 0.5);
+  scene.fluid.set("Smoke Weight", 0.5);
   scene.fluid.set("Gravity", numbers({0.0, -10.0}));
-  scene.fluid.sublist("Temperature").set("Ambient", 310.0);
+  ParameterList& temperature = scene.fluid.sublist("Temperature").set("Ambient", 300.0);
+  ParameterList& everywhere = temperature.sublist("Regions").sublist("all");
+  everywhere.set("Shape", "box").set("Lower", numbers({-1.0, -1.0}));
+  everywhere.set("Upper", numbers({9.0, 9.0})).set("Value", 310.0);
   scene.fluid.sublist("Smoke").set("Ambient", 0.4);
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
@@ -214,7 +217,7 @@ TEST(Fluid, AJetEntersThroughItsOpeningUntilItEnds) {
   scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
   scene.side("y lower", "slip wall").side("y upper", "slip wall");
   ParameterList& jet = scene.domain.sublist("Sides").sublist("x lower");
-  jet.set("Profile", "parabolic").set("End Time", 1.0);
+  jet.set("Profile", "parabolic").set("End", 1.0);
   jet.sublist("Opening").set("Lower", numbers({0.0, 0.25})).set("Upper", numbers({0.0, 0.75}));
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
@@ -235,7 +238,7 @@ TEST(Fluid, TheFlowThatCarriesFollowsRampsAndNoJumps) {
   Case<2> scene({16, 8}, 0.125);
   scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
   scene.side("y lower", "slip wall").side("y upper", "slip wall");
-  scene.domain.sublist("Sides").sublist("x lower").set("Ramp Time", 10.0).set("End Time", 1.0);
+  scene.domain.sublist("Sides").sublist("x lower").set("Ramp Time", 10.0).set("End", 1.0);
   scene.fluid.set("Order in Time", 2);
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
@@ -280,7 +283,7 @@ TEST(Fluid, TellsHowFastItsWallsAre) {
   Case<2> scene({16, 8}, 0.125);
   scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
   scene.side("y lower", "wall", Point<2>(3, 0)).side("y upper", "slip wall");
-  scene.domain.sublist("Sides").sublist("y lower").set("Ramp Time", 2.0).set("End Time", 4.0);
+  scene.domain.sublist("Sides").sublist("y lower").set("Ramp Time", 2.0).set("End", 4.0);
   const auto fluid = scene.make();
   EXPECT_EQ(fluid->wall_velocity(1, 0, 1), Point<2>(1.5, 0));
   EXPECT_EQ(fluid->wall_velocity(1, 0, 4), Point<2>(3, 0));
@@ -319,7 +322,7 @@ TEST(Fluid, SourcesFeedSmokeAndAFrameShowsIt) {
   Case<2> scene({20, 12}, 0.1);
   scene.fluid.sublist("Smoke");
   ParameterList& source = scene.fluid.sublist("Sources").sublist("Vent");
-  source.set("Shape", "box").set("Smoke Rate", 2.0);
+  source.set("Shape", "box").set("Smoke", 0.5);
   source.set("Lower", numbers({0.5, 0.0})).set("Upper", numbers({1.0, 0.3}));
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());

@@ -96,10 +96,10 @@ TEST(InflowWave, GoesInwardsFromEitherSide) {
     side.set("Ramp Time", 2.0);
     ParameterList& list = side.sublist("Wave");
     list.set("Height", 0.02);
-    list.set("Period", 0.8);
-    list.set("Level", 0.5);
+    list.set("Frequency", 1.25);
     scene.fluid.set("Gravity", numbers({0, -g}));
-    scene.fluid.sublist("Free Surface");
+    ParameterList& liquids = scene.fluid.sublist("Free Surface").sublist("Liquid");
+    liquids.sublist("Tank").set("Type", std::string("level")).set("Height", 0.5);
     validate(scene.domain, domain_parameters<2>(), Source{"test", {}}, "Domain");
     auto description = read_domain<2>(scene.domain);
     read_waves<2>(scene.fluid, scene.domain, description);

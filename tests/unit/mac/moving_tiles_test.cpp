@@ -97,7 +97,7 @@ TEST(MovingTiles, FluidAtRestStaysAtRest) {
   Case<2> scene = middle_of_tall_tank();
   scene.fluid.set("Density", 800.0).set("Gravity", numbers({0.0, -10.0}));
   scene.fluid.set("Body Force", numbers({3.0, 0.0})).set("Thermal Expansion", 0.01);
-  scene.fluid.set("Reference Temperature", 300.0).set("Smoke Weight", 0.5);
+  scene.fluid.set("Smoke Weight", 0.5);
   scene.fluid.sublist("Temperature").set("Ambient", 310.0);
   scene.fluid.sublist("Smoke").set("Ambient", 0.4);
   const auto fluid = scene.make();
@@ -109,9 +109,9 @@ TEST(MovingTiles, FluidAtRestStaysAtRest) {
   EXPECT_LE(largest_difference(*fluid, rest), 1e-10);
   fluid->accept();
   const auto pressure = fluid->last_scaled_pressure();
-  // p̂ = dt rho f (x - x0) about the middle of the tank, f = (3, -11).
+  // p̂ = dt rho f (x - x0) about the middle of the tank, f = (3, -12).
   const auto expected = pressure_vector<2>(
-      *fluid, [](const Point<2>& x) { return 0.1 * 800 * (3 * (x[0] - 4) - 11 * (x[1] - 10)); });
+      *fluid, [](const Point<2>& x) { return 0.1 * 800 * (3 * (x[0] - 4) - 12 * (x[1] - 10)); });
   pressure->update(-1, *expected, 1);
   EXPECT_LE(pressure->normInf(), 1e-8);
 }

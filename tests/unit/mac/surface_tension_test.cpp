@@ -116,7 +116,7 @@ Held<dim> held_back(int n, const std::function<void(Case<dim>&)>& add_liquid,
   add_liquid(scene);
   scene.fluid.sublist("Free Surface")
       .set("Surface Tension", tension)
-      .set("Tension Integration", "semi-implicit");
+      .set("Time Integration", "semi-implicit");
   const auto fluid = make_liquid<dim>(scene);
   fluid->set_geometry(nullptr, BlockedFaces<dim>());
   EXPECT_NE(fluid->viscosity(), nullptr);

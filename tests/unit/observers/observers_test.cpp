@@ -144,8 +144,7 @@ TEST(Flow, TooManySquaresAreRefused) {
 
 ParameterList line(double x0, double y0, double x1, double y1) {
   ParameterList list;
-  list.set("Foot", make_array<double>({x0, y0}));
-  list.set("Head", make_array<double>({x1, y1}));
+  list.set("Points", make_array<double>({x0, y0, x1, y1}));
   return list;
 }
 

@@ -55,6 +55,15 @@ TEST(Validate, MisspeltNameGetsPlacePathAndSuggestion) {
             "\"Solver\".");
 }
 
+TEST(Validate, WhatBecameOfAFormerNameIsTold) {
+  EXPECT_EQ(in_fluid(R"xml(<Parameter name="Crest" type="double" value="1"/>)xml"),
+            "case.xml, line 3: in \"Fluid\", \"Crest\" is always 0 now: leave it out.");
+  // Of another list than the one that had it, a name was never known.
+  EXPECT_EQ(in_fluid(R"xml(<Parameter name="Margin" type="double" value="1"/>)xml"),
+            "case.xml, line 3: in \"Fluid\", \"Margin\" is not a parameter.\nValid here: "
+            "\"Density\", \"Viscosity\", \"Gravity\", \"Steps\", \"Fixed step\".");
+}
+
 TEST(Validate, WrongTypesAreExplained) {
   EXPECT_EQ(in_fluid(R"xml(<Parameter name="Density" type="int" value="1000"/>)xml"),
             "case.xml, line 3: in \"Fluid\", \"Density\" has type \"int\", but needs \"double\": "

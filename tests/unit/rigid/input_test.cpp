@@ -57,12 +57,15 @@ TEST(RigidInput, LocksAndMotions) {
               HasSubstr("has 3 numbers, but 2 times need 4"));
 }
 
-TEST(RigidInput, Orientation) {
+TEST(RigidInput, RotationIsAnAxisTimesAnAngle) {
   const std::string ball = disc + number("Mass", "1");
-  EXPECT_THAT(error<3>(ball + numbers("Orientation", "1, 1, 0, 0")), HasSubstr("length 1"));
-  EXPECT_THAT(error<3>(ball + numbers("Orientation", "1, 0, 0, 0") + number("Rotation Angle", "1")),
-              HasSubstr("leave out one"));
-  EXPECT_THAT(error<3>(ball + numbers("Rotation Axis", "0, 0, 0")), HasSubstr("must not be zero"));
+  const double right = 0.5 * M_PI;
+  const auto turned = body<3>(ball + numbers("Rotation", "0, 0, 1.5707963267948966"));
+  EXPECT_LE((turned.pose.orientation * Point<3>(1, 0, 0) - Point<3>(0, 1, 0)).norm(), 1e-15);
+  EXPECT_NEAR(body<2>(ball + number("Rotation", "1.5707963267948966")).pose.orientation.angle(),
+              right, 1e-15);
+  EXPECT_THAT(error<3>(ball + numbers("Orientation", "1, 0, 0, 0")),
+              HasSubstr("\"Orientation\" is called \"Rotation\" now"));
 }
 
 }  // namespace

@@ -49,8 +49,7 @@ TEST(Mass, Shells) {
 
 TEST(Mass, MatrixAboutAPivotGivesThePhysicalMomentum) {
   const auto b = body<3>(geometry("box", numbers("Size", "1, 2, 3")) + number("Mass", "12") +
-                         numbers("Pivot", "0.5, -1, 0") + numbers("Rotation Axis", "1, 1, 0") +
-                         number("Rotation Angle", "0.7"));
+                         numbers("Pivot", "0.5, -1, 0") + numbers("Rotation", "0.5, 0.5, 0"));
   RigidVector<3> velocity;
   velocity << 1, -2, 0.5, 0.3, 0.8, -0.4;
   const RigidVector<3> momentum = mass_matrix(b, b.pose.orientation) * velocity;

@@ -161,7 +161,7 @@ TEST(SceneLanguage, RandomCopiesKeepApartFromEachOtherAndFromOtherBalls) {
     return expanded(list(
         "Solids",
         list("Ball", ball(list("Copies", parameter("Type", "string", "random") +
-                                             parameter("Number", "int", "30") +
+                                             parameter("Count", "int", "30") +
                                              parameter("Seed", "int", seed) +
                                              parameter("Lower", "Array(double)", "{0, 0}") +
                                              parameter("Upper", "Array(double)", "{2, 1.5}")))) +
@@ -186,7 +186,7 @@ TEST(SceneLanguage, RandomCopiesKeepApartFromEachOtherAndFromOtherBalls) {
 TEST(SceneLanguage, RandomCopiesOfManySizesKeepApart) {
   const std::string larger = list("3", list("Geometry", parameter("Radius", "double", "0.3")));
   const std::string copies =
-      list("Copies", parameter("Type", "string", "random") + parameter("Number", "int", "20") +
+      list("Copies", parameter("Type", "string", "random") + parameter("Count", "int", "20") +
                          parameter("Lower", "Array(double)", "{0, 0}") +
                          parameter("Upper", "Array(double)", "{2, 2}") + list("Overrides", larger));
   const std::string growing = list("Geometry", parameter("Shape", "string", "ball") +
@@ -209,15 +209,15 @@ TEST(SceneLanguage, CopiesThatCannotBeAreRefused) {
   const std::string box =
       parameter("Lower", "Array(double)", "{0, 0}") + parameter("Upper", "Array(double)", "{1, 1}");
   EXPECT_THAT(
-      copies(parameter("Type", "string", "random") + parameter("Number", "int", "900") + box),
+      copies(parameter("Type", "string", "random") + parameter("Count", "int", "900") + box),
       HasSubstr("of 900 places"));
   EXPECT_THAT(copies(parameter("Type", "string", "rows")), HasSubstr("lattice"));
   EXPECT_THAT(copies(parameter("Type", "string", "positions") +
-                     parameter("Positions", "Array(double)", "{1, 2, 3}")),
+                     parameter("Points", "Array(double)", "{1, 2, 3}")),
               HasSubstr("3 numbers"));
   EXPECT_THAT(
       copies(parameter("Type", "string", "positions") +
-             parameter("Positions", "Array(double)", "{1, 2}") + list("Overrides", list("2", ""))),
+             parameter("Points", "Array(double)", "{1, 2}") + list("Overrides", list("2", ""))),
       HasSubstr("1 to 1"));
 }
 

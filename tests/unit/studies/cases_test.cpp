@@ -20,8 +20,8 @@ Study two_series() {
   study.ladder_name = "n";
   study.ladder_values = {8, 16, 32};
   study.usual_rungs = 2;
-  study.series = {{"light one", "scene.xml", {{"density", "1/2"}}, {"Time/Fixed Step=[h]"}, {}, 1},
-                  {"two ranks", "scene.xml", {}, {}, {64}, 2}};
+  study.series = {{"light one", "scene.xml", {{"density", "1/2"}}, {"Time/Fixed Step=[h]"}, {}},
+                  {"two ranks", "scene.xml", {{"ranks", "2"}}, {}, {64}}};
   study.n_samples = 2;
   study.sample_assignments = {"Solids/Ball/Position={[h*offset_x], 0}"};
   return study;
@@ -140,7 +140,7 @@ TEST(Cases, ALadderOfRanks) {
 }
 
 TEST(Cases, AProductOfFactorsIsOneSeriesForEveryChoice) {
-  const Series plain{"", "scene.xml", {}, {}, {}, 1};
+  const Series plain{"", "scene.xml", {}, {}, {}};
   Series voxel = plain, flux = plain, fine = plain, coarse = plain;
   voxel.name = "voxel";
   flux.name = "flux";
@@ -169,7 +169,7 @@ TEST(Cases, OfSeveralReplacementsTheLastCounts) {
   study.constants = {{"number", "1"}};
   study.ladder_name = "n";
   study.ladder_values = {4};
-  study.series = {{"both", "scene.xml", {{"number", "2"}, {"number", "3"}}, {}, {}, 1}};
+  study.series = {{"both", "scene.xml", {{"number", "2"}, {"number", "3"}}, {}, {}}};
   EXPECT_EQ(study_cases(study, {}).at(0).constants.at("number"), 3);
 }
 

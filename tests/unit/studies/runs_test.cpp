@@ -27,7 +27,7 @@ class Runs : public testing::Test {
     study_.ladder_values = {4, 8, 16};
     study_.abscissa = "h";
     study_.assignments = {"Domain/Cells={[n], [n]}"};
-    study_.series = {{"all", folder_ + "/scene.xml", {}, {}, {}, 1}};
+    study_.series = {{"all", folder_ + "/scene.xml", {}, {}, {}}};
     Quantity speed;
     speed.name = "speed";
     speed.expression = "Ball_1.vx / step";
