@@ -17,7 +17,7 @@ bool DeformableSolids<dim>::has_implicit_forces() const {
 /// V. The model is -dt f.V + s dt^2/2 V.K V, with the f that `linearise` leaves. Elements' energies
 /// are differences of numbers as large as they are at a strain of one.
 template <int dim>
-std::vector<ComputedEnergy> DeformableSolids<dim>::unlinear_energies(double dt,
+std::vector<ComputedEnergy> DeformableSolids<dim>::nonlinear_energies(double dt,
                                                                      const Vector& velocity) const {
   const auto share = [this](int node) { return elastic_share(bodies_[body_of_node_[node]]); };
   const Nodes v = space_.with_ghosts(velocity);
@@ -160,9 +160,9 @@ template void DeformableSolids<2>::add_midpoint_correction(double, Vector&) cons
 template void DeformableSolids<3>::add_midpoint_correction(double, Vector&) const;
 template bool DeformableSolids<2>::has_implicit_forces() const;
 template bool DeformableSolids<3>::has_implicit_forces() const;
-template std::vector<ComputedEnergy> DeformableSolids<2>::unlinear_energies(double,
+template std::vector<ComputedEnergy> DeformableSolids<2>::nonlinear_energies(double,
                                                                             const Vector&) const;
-template std::vector<ComputedEnergy> DeformableSolids<3>::unlinear_energies(double,
+template std::vector<ComputedEnergy> DeformableSolids<3>::nonlinear_energies(double,
                                                                             const Vector&) const;
 
 }  // namespace lockstep

@@ -31,7 +31,7 @@ struct SubSteps;
 template <int dim>
 class DeformableSolids : public SolidModel<dim>,
                          public AuditedSolids<dim>,
-                         public UnlinearSolids<dim>,
+                         public NonlinearSolids<dim>,
                          public NearNullSpaces<dim>,
                          public SolidOutput<dim>,
                          public VolumeSweeper<dim>,
@@ -72,7 +72,7 @@ class DeformableSolids : public SolidModel<dim>,
   bool linearise(double dt, const Vector& velocity) override;
   bool has_implicit_forces() const override;
   RCP<const Vector> linearisation() const override { return linearisation_; }
-  std::vector<ComputedEnergy> unlinear_energies(double dt, const Vector& velocity) const override;
+  std::vector<ComputedEnergy> nonlinear_energies(double dt, const Vector& velocity) const override;
   SolidWork solid_work(double time, double dt, const Vector& velocity,
                        const Vector& mean) const override;
   void limit_motion(double dt, Vector& velocity) override;

@@ -238,16 +238,16 @@ template <int dim>
 bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   bool any = false;
   for (int m = 0; m < n_models(); ++m) {
-    if (unlinear(m))
-      any = side_of<UnlinearSolids<dim>>(model(m))->linearise(dt, *part(velocity, m)) || any;
+    if (nonlinear(m))
+      any = side_of<NonlinearSolids<dim>>(model(m))->linearise(dt, *part(velocity, m)) || any;
   }
   ++linearisation_number_;
   return any;
 }
 
 template <int dim>
-const UnlinearSolids<dim>* SolidSystem<dim>::unlinear(int m) const {
-  const auto* forces = side<UnlinearSolids<dim>>(m);
+const NonlinearSolids<dim>* SolidSystem<dim>::nonlinear(int m) const {
+  const auto* forces = side<NonlinearSolids<dim>>(m);
   return forces && forces->has_implicit_forces() ? forces : nullptr;
 }
 
@@ -255,7 +255,7 @@ template <int dim>
 bool SolidSystem<dim>::has_implicit_forces() const {
   bool any = false;
   for (int m = 0; m < n_models(); ++m)
-    any = any || unlinear(m);
+    any = any || nonlinear(m);
   return any;
 }
 
@@ -271,7 +271,7 @@ template <int dim>
 RCP<const Vector> SolidSystem<dim>::linearisation() const {
   RCP<Vector> all;
   for (int m = 0; m < n_models(); ++m) {
-    const auto* forces = unlinear(m);
+    const auto* forces = nonlinear(m);
     const RCP<const Vector> velocity = forces ? forces->linearisation() : Teuchos::null;
     if (velocity.is_null())
       continue;
@@ -283,14 +283,14 @@ RCP<const Vector> SolidSystem<dim>::linearisation() const {
 }
 
 template <int dim>
-std::vector<ComputedEnergy> SolidSystem<dim>::unlinear_energies(double dt,
+std::vector<ComputedEnergy> SolidSystem<dim>::nonlinear_energies(double dt,
                                                                 const Vector& velocity) const {
   std::vector<ComputedEnergy> all;
   for (int m = 0; m < n_models(); ++m) {
-    const auto* forces = unlinear(m);
+    const auto* forces = nonlinear(m);
     const std::size_t end = all.size() + model(m).solids().size();
     if (forces) {
-      for (const ComputedEnergy& energy : forces->unlinear_energies(dt, *part(velocity, m)))
+      for (const ComputedEnergy& energy : forces->nonlinear_energies(dt, *part(velocity, m)))
         all.push_back(energy);
     }
     all.resize(end);

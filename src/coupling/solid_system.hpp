@@ -109,10 +109,10 @@ class SolidSystem {
   /// linearises anew, a motion, velocities. Local.
   unsigned linearisation_number() const { return linearisation_number_; }
   /// Nonlinear implicit forces: true if any model has them; the linearisation of all models; the
-  /// energies of each solid (see UnlinearSolids).
+  /// energies of each solid (see NonlinearSolids).
   bool has_implicit_forces() const;
   RCP<const Vector> linearisation() const;
-  std::vector<ComputedEnergy> unlinear_energies(double dt, const Vector& velocity) const;
+  std::vector<ComputedEnergy> nonlinear_energies(double dt, const Vector& velocity) const;
   void limit_motion(double dt, Vector& velocity);
   void move(const Vector& velocity, double time, double dt);
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.
@@ -132,7 +132,7 @@ class SolidSystem {
     return side_of<Side>(model(m));
   }
   /// Returns the model's side of nonlinear forces; null if it has none in this scene.
-  const UnlinearSolids<dim>* unlinear(int m) const;
+  const NonlinearSolids<dim>* nonlinear(int m) const;
   void find_reduction();
   void move_attached(const Vector& velocity, double time, double dt);
   std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;

@@ -36,9 +36,9 @@ struct ComputedEnergy {
 
 /// Nonlinear implicit forces: forces at the positions that the solve leads to.
 template <int dim>
-class UnlinearSolids {
+class NonlinearSolids {
  public:
-  virtual ~UnlinearSolids() = default;
+  virtual ~NonlinearSolids() = default;
   /// True if this scene has such forces; else the functions below are not called. Local, the same
   /// on all ranks.
   virtual bool has_implicit_forces() const = 0;
@@ -51,7 +51,7 @@ class UnlinearSolids {
   /// Returns for each solid the potential of these forces [J] at the velocity V of the solve over
   /// dt, less the quadratic model whose gradient `explicit_momentum` and D are, up to a constant.
   /// Global, collective.
-  virtual std::vector<ComputedEnergy> unlinear_energies(double dt,
+  virtual std::vector<ComputedEnergy> nonlinear_energies(double dt,
                                                         const Vector& velocity) const = 0;
   /// The solid of each local row of `dof_map`. Rows are velocities of nodes, along all axes of one
   /// after those of another. Local.

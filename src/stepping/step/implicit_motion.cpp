@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coupling/unlinear_bodies.hpp"
+#include "coupling/nonlinear_bodies.hpp"
 #include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
@@ -44,7 +44,7 @@ class Descent {
           const Vector& from, const Vector& gradient, const Vector& to)
       : solids_(solids), dt_(dt), from_(from), change_(to, Teuchos::Copy) {
     change_.update(-1, from, 1);
-    const UnlinearBodies<dim> bodies(solids);
+    const NonlinearBodies<dim> bodies(solids);
     // A translation strains nothing, and how large it is depends on the frame.
     const RCP<const Vector> strains = bodies.without_translations(change_);
     slopes_ = bodies.dot(gradient, *strains);
@@ -54,7 +54,7 @@ class Descent {
     apply(block, change_, product);
     whole_slopes_ = bodies.dot(gradient, change_);
     whole_curvatures_ = bodies.dot(product, change_);
-    start_ = solids.unlinear_energies(dt, from);
+    start_ = solids.nonlinear_energies(dt, from);
   }
 
   RCP<Vector> at(double part) const {
@@ -65,7 +65,7 @@ class Descent {
   /// What the potential of a solid exceeds the model by, over the change of the model: of the worst
   /// one.
   double excess(double part) const {
-    const std::vector<ComputedEnergy> end = solids_.unlinear_energies(dt_, *at(part));
+    const std::vector<ComputedEnergy> end = solids_.nonlinear_energies(dt_, *at(part));
     constexpr double unseen = 1e-12;  // of what a flight brings, round-off is strain
     const auto change = [part](double slope, double curvature) {
       return std::abs(part * slope + 0.5 * part * part * curvature);
@@ -185,7 +185,7 @@ void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before
   const RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   Vector change(velocity, Teuchos::Copy), product(solids.map());
   change.update(-1, before, 1);
-  const UnlinearBodies<dim> bodies(solids);
+  const NonlinearBodies<dim> bodies(solids);
   apply(*block, before, product);
   const std::vector<double> energy = bodies.dot(product, before);
   apply(*block, change, product);
@@ -196,13 +196,13 @@ void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before
     velocity.update(1, before, 0);
     return;
   }
-  const std::vector<ComputedEnergy> start = solids.unlinear_energies(dt, before);
+  const std::vector<ComputedEnergy> start = solids.nonlinear_energies(dt, before);
   std::vector<double> parts(cost.size(), 1);
   for (int k = 0; k <= most_halvings; ++k) {
     Vector changed(change, Teuchos::Copy);
     bodies.scale(parts, changed);
     velocity.update(1, before, 1, changed, 0);
-    const std::vector<ComputedEnergy> end = solids.unlinear_energies(dt, velocity);
+    const std::vector<ComputedEnergy> end = solids.nonlinear_energies(dt, velocity);
     bool all = true;
     for (std::size_t s = 0; s < parts.size(); ++s) {
       const double rise = 0.5 * parts[s] * parts[s] * cost[s] + end[s].value - start[s].value;

@@ -2,7 +2,7 @@
 
 #include <Tpetra_Vector.hpp>
 
-#include "coupling/unlinear_bodies.hpp"
+#include "coupling/nonlinear_bodies.hpp"
 
 namespace lockstep {
 
@@ -12,7 +12,7 @@ namespace {
 /// solid's own frame: a translation is no motion that forces would have to resolve.
 template <int dim>
 std::vector<double> resolved_parts(const SolidSystem<dim>& solids,
-                                   const UnlinearBodies<dim>& bodies,
+                                   const NonlinearBodies<dim>& bodies,
                                    const RCP<const CrsMatrix>& added_mass, double dt) {
   const RCP<const Vector> velocity = bodies.without_translations(*solids.velocity());
   const std::vector<double> given = bodies.dot(*velocity, *solids.implicit_impulse(dt, *velocity));
@@ -39,7 +39,7 @@ RCP<Vector> SolidForces<dim>::midpoint_correction(double dt) const {
   const RCP<Vector> correction = make_vector(solids.map());
   solids.add_midpoint_correction(dt, *correction);
   if (solids.has_implicit_forces()) {
-    const UnlinearBodies<dim> bodies(solids);
+    const NonlinearBodies<dim> bodies(solids);
     bodies.scale(resolved_parts(solids, bodies, components_.coupling->added_mass(), dt),
                  *correction);
   }

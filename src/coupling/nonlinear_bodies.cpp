@@ -1,16 +1,16 @@
-#include "coupling/unlinear_bodies.hpp"
+#include "coupling/nonlinear_bodies.hpp"
 
 #include <Tpetra_Vector.hpp>
 
 namespace lockstep {
 
 template <int dim>
-UnlinearBodies<dim>::UnlinearBodies(const SolidSystem<dim>& solids) : solids_(solids) {
+NonlinearBodies<dim>::NonlinearBodies(const SolidSystem<dim>& solids) : solids_(solids) {
   int first = 0;
   for (int m = 0; m < solids.n_models(); ++m) {
     const SolidModel<dim>& model = solids.model(m);
     const auto n_rows = static_cast<int>(model.dof_map()->getNodeNumElements());
-    const auto* forces = side_of<UnlinearSolids<dim>>(model);
+    const auto* forces = side_of<NonlinearSolids<dim>>(model);
     const std::vector<int> own = forces && forces->has_implicit_forces()
                                      ? forces->solid_of_row()
                                      : std::vector<int>(n_rows, -1);
@@ -46,7 +46,7 @@ UnlinearBodies<dim>::UnlinearBodies(const SolidSystem<dim>& solids) : solids_(so
 }
 
 template <int dim>
-std::vector<double> UnlinearBodies<dim>::dot(const Vector& one, const Vector& other) const {
+std::vector<double> NonlinearBodies<dim>::dot(const Vector& one, const Vector& other) const {
   std::vector<double> sums(solids_.solids().size(), 0);
   const auto a = one.getData(), b = other.getData();
   for (std::size_t row = 0; row < solid_of_row_.size(); ++row) {
@@ -58,7 +58,7 @@ std::vector<double> UnlinearBodies<dim>::dot(const Vector& one, const Vector& ot
 }
 
 template <int dim>
-RCP<Vector> UnlinearBodies<dim>::without_translations(const Vector& velocity) const {
+RCP<Vector> NonlinearBodies<dim>::without_translations(const Vector& velocity) const {
   const auto result = rcp(new Vector(velocity, Teuchos::Copy));
   const RCP<Vector> momentum = make_vector(solids_.map());
   apply(*solids_.mass(), velocity, *momentum);
@@ -83,7 +83,7 @@ RCP<Vector> UnlinearBodies<dim>::without_translations(const Vector& velocity) co
 }
 
 template <int dim>
-void UnlinearBodies<dim>::scale(const std::vector<double>& by_solid, Vector& stacked) const {
+void NonlinearBodies<dim>::scale(const std::vector<double>& by_solid, Vector& stacked) const {
   const auto values = stacked.getDataNonConst();
   for (std::size_t row = 0; row < solid_of_row_.size(); ++row) {
     if (solid_of_row_[row] >= 0)
@@ -91,7 +91,7 @@ void UnlinearBodies<dim>::scale(const std::vector<double>& by_solid, Vector& sta
   }
 }
 
-template class UnlinearBodies<2>;
-template class UnlinearBodies<3>;
+template class NonlinearBodies<2>;
+template class NonlinearBodies<3>;
 
 }  // namespace lockstep

@@ -10,10 +10,10 @@ namespace lockstep {
 /// numbered as in `SolidSystem::solids`; those of models without such forces have none of these
 /// dofs. For the present dofs and masses.
 template <int dim>
-class UnlinearBodies {
+class NonlinearBodies {
  public:
   /// Collective.
-  explicit UnlinearBodies(const SolidSystem<dim>& solids);
+  explicit NonlinearBodies(const SolidSystem<dim>& solids);
 
   /// The product of two stacked vectors over the dofs of each solid. Collective.
   std::vector<double> dot(const Vector& one, const Vector& other) const;
