@@ -262,7 +262,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       if (has_rim && result == FaceState::free && leads_to_empty(state.cells, face))
         geometry.rim.push_back({axis, cell});
       if (result == FaceState::free && face.at_side())
-        geometry.face_table.set_closeness(axis, cell, 2);
+        geometry.face_table.set_distance_factor(axis, cell, 2);
     });
     if (grid.comm()->getSize() > 1)
       fill_flags(domain.full_halo, state.faces[axis]);
@@ -273,7 +273,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
                                   gas_volumes.end());
   complete_ghost_faces(domain, geometry);
   if (free_surface)
-    set_closeness_to_void(domain, *free_surface, geometry);
+    set_distance_factor_to_air(domain, *free_surface, geometry);
   share_open_fractions(domain, geometry);
   return geometry;
 }

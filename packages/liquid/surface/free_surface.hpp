@@ -27,7 +27,7 @@ struct FreeSurface {
   bool wet(int cell) const { return (*distance)[cell] < 0; }
   /// Distance factor w = 1/theta of the face between them, h over the distance of the pressure from
   /// the surface.
-  double closeness(int wet, int dry, double least = 0) const {
+  double distance_factor(int wet, int dry, double least = 0) const {
     return at_true_place ? 1 / std::max({crossing(wet, dry), smallest_distance, least}) : 1;
   }
 };
@@ -39,7 +39,7 @@ void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_su
 /// Sets the distance factor 1/theta of faces beside air (ghost fluid: p = 0 at the free surface),
 /// for owned faces and the upper ones of owned cells. Local.
 template <int dim>
-void set_closeness_to_void(const MacDomain<dim>& domain, const FreeSurface<dim>& free_surface,
+void set_distance_factor_to_air(const MacDomain<dim>& domain, const FreeSurface<dim>& free_surface,
                            MacGeometry<dim>& geometry);
 
 }  // namespace lockstep

@@ -48,7 +48,7 @@ void MacLiquid<dim>::bound_pressure(CellField& pressure) const {
     double value = flow_.geometry.in_pocket(dry) ? pressure[dry] : 0;
     if (tension > 0) {
       const int face = end == 0 ? wet : dry;
-      const double place = 1 / flow_.geometry.face_table(axis, face).closeness;
+      const double place = 1 / flow_.geometry.face_table(axis, face).distance_factor;
       value += tension * curvature(flow_.domain, phi, wet, axis, end, place);
     }
     return value;

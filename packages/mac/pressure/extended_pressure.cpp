@@ -76,14 +76,14 @@ void bound_beside_void(const MacDomain<dim>& domain, const MacGeometry<dim>& geo
       const int axis = side / 2, face = side % 2 == 0 ? cell : other;
       if (geometry.state.faces[axis][face] != FaceState::free)
         continue;
-      const double closeness = geometry.face_table(axis, face).closeness;
-      if (closeness <= nearest)
+      const double distance_factor = geometry.face_table(axis, face).distance_factor;
+      if (distance_factor <= nearest)
         continue;
-      nearest = closeness;
+      nearest = distance_factor;
       const int opposite = neighbors[side ^ 1];
       const bool is_wet = opposite >= 0 && cells[opposite] == CellState::fluid;
       const double beyond = at_surface(cell, other, axis, side % 2);
-      value = beyond + (is_wet ? (pressure[opposite] - beyond) / (1 + closeness) : 0);
+      value = beyond + (is_wet ? (pressure[opposite] - beyond) / (1 + distance_factor) : 0);
     }
     if (nearest > near)
       bounded.emplace_back(cell, value);

@@ -13,9 +13,9 @@ FaceTable<dim>::FaceTable(const MacDomain<dim>& domain, double density)
 
 template <int dim>
 void FaceTable<dim>::derive(FaceWorth& face) const {
-  face.mass = face.density * volume_ * face.open / face.closeness;
-  face.coefficient = face.open * face.closeness * (regular_.density / face.density);
-  face.gradient = face.closeness / (face.density * spacing_);
+  face.mass = face.density * volume_ * face.open / face.distance_factor;
+  face.coefficient = face.open * face.distance_factor * (regular_.density / face.density);
+  face.gradient = face.distance_factor / (face.density * spacing_);
 }
 
 template <int dim>
@@ -37,9 +37,9 @@ void FaceTable<dim>::set_open(int axis, int cell, double open) {
 }
 
 template <int dim>
-void FaceTable<dim>::set_closeness(int axis, int cell, double closeness) {
+void FaceTable<dim>::set_distance_factor(int axis, int cell, double distance_factor) {
   FaceWorth& face = own(axis, cell);
-  face.closeness = closeness;
+  face.distance_factor = distance_factor;
   derive(face);
 }
 

@@ -9,7 +9,7 @@ namespace lockstep {
 /// Coefficients of a face: three given ones, and those that follow from them.
 struct FaceWorth {
   double open = 1;  ///< aperture alpha: the part of its area that no solid covers [1]
-  double closeness =
+  double distance_factor =
       1;  ///< distance factor w = 1/theta: h over the distance of the pressures at both sides [1]
   double density = 0;  ///< density of the fluid in its dual cell [kg/m^dim]
 
@@ -40,7 +40,7 @@ class FaceTable {
     return block_of_tile_[axis][TiledGrid<dim>::tile_of(cell)] < 0;
   }
   void set_open(int axis, int cell, double open);
-  void set_closeness(int axis, int cell, double closeness);
+  void set_distance_factor(int axis, int cell, double distance_factor);
 
   const FaceWorth& regular() const { return regular_; }
   double area() const { return area_; }  ///< area of a whole face [m^(dim-1)]

@@ -34,7 +34,7 @@ void complete_ghost_faces(const MacDomain<dim>& domain, MacGeometry<dim>& geomet
       continue;
     for (int cell = grid.n_owned_cells(); cell < grid.n_stored_cells(); ++cell)
       if (state.cells[cell] == CellState::outside && state.faces[axis][cell] == FaceState::free)
-        geometry.face_table.set_closeness(axis, cell, 2);
+        geometry.face_table.set_distance_factor(axis, cell, 2);
   }
 }
 

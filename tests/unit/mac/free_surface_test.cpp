@@ -74,7 +74,7 @@ TEST(FreeSurface, FacesOfAColumnByHand) {
   EXPECT_EQ(geometry.state.faces[1][dry], FaceState::free);
   EXPECT_EQ(geometry.state.faces[0][dry], FaceState::inactive);
   // theta = 0.4: two and a half times as near, and so much less mass.
-  EXPECT_NEAR(geometry.face_table(1, dry).closeness, 2.5, 1e-12);
+  EXPECT_NEAR(geometry.face_table(1, dry).distance_factor, 2.5, 1e-12);
   EXPECT_NEAR(geometry.mass(1, dry), 2 * 0.25 / 2.5, 1e-12);
   EXPECT_NEAR(geometry.face_table(1, dry).gradient, 2.5 / (2 * 0.5), 1e-12);
 }

@@ -171,8 +171,8 @@ TEST(Geometry, TheFaceTableStoresOnlyWhatIsNotRegular) {
       const FaceWorth& face = table(axis, cell);
       const double x = grid.face_center(axis, cell)[axis];
       const bool at_side = axis == 0 && (x == 0 || x == 24);
-      EXPECT_DOUBLE_EQ(face.closeness, at_side ? 2 : 1);
-      EXPECT_DOUBLE_EQ(face.mass, density * h * h * face.open / face.closeness);
+      EXPECT_DOUBLE_EQ(face.distance_factor, at_side ? 2 : 1);
+      EXPECT_DOUBLE_EQ(face.mass, density * h * h * face.open / face.distance_factor);
       // Eq. 9: A, the projection and the momentum are of one area and one mass.
       const double area = face.open * table.area();
       EXPECT_DOUBLE_EQ(face.gradient, area / face.mass);
