@@ -51,11 +51,11 @@ class Rules(unittest.TestCase):
         self.assertEqual(list(words.violations_of_file("src/old/a.cpp", "/// The void.\n", "cpp", words=table)), [])
 
     def test_names(self):
-        table = {"nonlinear": ("nonlinear", []), "FaceWorth": ("FaceCoefficients", [])}
-        for text in ("int nonlinear_bodies = 0;", "class NonlinearSolids;", "FaceWorth worth;", "bool isNonlinear();"):
+        table = {"nonlinear": ("nonlinear", []), "FaceProperties": ("FaceCoefficients", [])}
+        for text in ("int nonlinear_bodies = 0;", "class NonlinearSolids;", "FaceProperties worth;", "bool isNonlinear();"):
             with self.subTest(text=text):
                 self.assertEqual(len(self.found(text + "\n", names=table)), 1)
-        self.assertEqual(self.found("int nonlinear = 0;  // nonlinear\nint FaceWorths;\n", words={}, names=table), [])
+        self.assertEqual(self.found("int nonlinear = 0;  // nonlinear\nint FacePropertiess;\n", words={}, names=table), [])
 
     def test_the_list_of_folders_shrinks_only(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -12,14 +12,14 @@ FaceTable<dim>::FaceTable(const MacDomain<dim>& domain, double density)
 }
 
 template <int dim>
-void FaceTable<dim>::derive(FaceWorth& face) const {
+void FaceTable<dim>::derive(FaceProperties& face) const {
   face.mass = face.density * volume_ * face.open / face.distance_factor;
   face.coefficient = face.open * face.distance_factor * (regular_.density / face.density);
   face.gradient = face.distance_factor / (face.density * spacing_);
 }
 
 template <int dim>
-FaceWorth& FaceTable<dim>::own(int axis, int cell) {
+FaceProperties& FaceTable<dim>::own(int axis, int cell) {
   int& block = block_of_tile_[axis][TiledGrid<dim>::tile_of(cell)];
   auto& faces = special_[axis];
   if (block < 0) {
@@ -31,14 +31,14 @@ FaceWorth& FaceTable<dim>::own(int axis, int cell) {
 
 template <int dim>
 void FaceTable<dim>::set_open(int axis, int cell, double open) {
-  FaceWorth& face = own(axis, cell);
+  FaceProperties& face = own(axis, cell);
   face.open = open;
   derive(face);
 }
 
 template <int dim>
 void FaceTable<dim>::set_distance_factor(int axis, int cell, double distance_factor) {
-  FaceWorth& face = own(axis, cell);
+  FaceProperties& face = own(axis, cell);
   face.distance_factor = distance_factor;
   derive(face);
 }

@@ -7,7 +7,7 @@
 namespace lockstep {
 
 /// Coefficients of a face: three given ones, and those that follow from them.
-struct FaceWorth {
+struct FaceProperties {
   double open = 1;  ///< aperture alpha: the part of its area that no solid covers [1]
   double distance_factor =
       1;  ///< distance factor w = 1/theta: h over the distance of the pressures at both sides [1]
@@ -31,7 +31,7 @@ class FaceTable {
   FaceTable(const MacDomain<dim>& domain, double density);
 
   /// Coefficients of any stored face, whatever its state.
-  const FaceWorth& operator()(int axis, int cell) const {
+  const FaceProperties& operator()(int axis, int cell) const {
     const int block = block_of_tile_[axis][TiledGrid<dim>::tile_of(cell)];
     return block < 0 ? regular_ : special_[axis][place(block, cell)];
   }
@@ -42,9 +42,9 @@ class FaceTable {
   void set_open(int axis, int cell, double open);
   void set_distance_factor(int axis, int cell, double distance_factor);
 
-  const FaceWorth& regular() const { return regular_; }
+  const FaceProperties& regular() const { return regular_; }
   double area() const { return area_; }  ///< area of a whole face [m^(dim-1)]
-  /// Entry of A for a unit of `FaceWorth::coefficient`: area / (rho_0 h).
+  /// Entry of A for a unit of `FaceProperties::coefficient`: area / (rho_0 h).
   double unit_coefficient() const { return area_ * regular_.gradient; }
   std::size_t n_stored() const;  ///< faces that are not taken from the regular one
 
@@ -53,13 +53,13 @@ class FaceTable {
     return (static_cast<std::size_t>(block)
             << log_tile_volume<dim>)+(cell & (tile_volume<dim> - 1));
   }
-  FaceWorth& own(int axis, int cell);
-  void derive(FaceWorth& face) const;
+  FaceProperties& own(int axis, int cell);
+  void derive(FaceProperties& face) const;
 
   double area_ = 0, volume_ = 0, spacing_ = 0;
-  FaceWorth regular_;
+  FaceProperties regular_;
   std::array<std::vector<int>, dim> block_of_tile_;  ///< -1: all its faces are regular
-  std::array<std::vector<FaceWorth>, dim> special_;  ///< block after block
+  std::array<std::vector<FaceProperties>, dim> special_;  ///< block after block
 };
 
 }  // namespace lockstep

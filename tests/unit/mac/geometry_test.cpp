@@ -168,7 +168,7 @@ TEST(Geometry, TheFaceTableStoresOnlyWhatIsNotRegular) {
     grid.for_each_owned_face(axis, [&](int cell) {
       if (geometry.state.faces[axis][cell] != FaceState::free)
         return;
-      const FaceWorth& face = table(axis, cell);
+      const FaceProperties& face = table(axis, cell);
       const double x = grid.face_center(axis, cell)[axis];
       const bool at_side = axis == 0 && (x == 0 || x == 24);
       EXPECT_DOUBLE_EQ(face.distance_factor, at_side ? 2 : 1);
