@@ -95,8 +95,8 @@ void FaceCoupling<dim>::add_pushes_of_gas(const std::vector<double>& scaled_pres
     return;
   for (std::size_t f = 0; f < volumes_.size(); ++f)
     for (int side = 0; side < 2; ++side)
-      if (const int pocket = volumes_[f].sides[side].pocket; pocket >= 0)
-        result[f] += push(f, side) * scaled_pressure[pocket];
+      if (const int bubble = volumes_[f].sides[side].bubble; bubble >= 0)
+        result[f] += push(f, side) * scaled_pressure[bubble];
 }
 
 template <int dim>
@@ -112,29 +112,29 @@ void FaceCoupling<dim>::add_gas_push(const std::vector<double>& scaled_pressure,
 }
 
 template <int dim>
-std::vector<double> FaceCoupling<dim>::gas_push_size(int n_pockets) const {
-  std::vector<double> size(n_pockets, 0);
+std::vector<double> FaceCoupling<dim>::gas_push_size(int n_bubbles) const {
+  std::vector<double> size(n_bubbles, 0);
   for (int f = 0; f < weights_.n_rows(); ++f) {
     double weight = 0;
     for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k)
       weight += std::abs(weights_.values[k]);
     for (int side = 0; side < 2; ++side)
-      if (const int pocket = volumes_[f].sides[side].pocket; pocket >= 0)
-        size[pocket] += std::abs(push(f, side)) * weight;
+      if (const int bubble = volumes_[f].sides[side].bubble; bubble >= 0)
+        size[bubble] += std::abs(push(f, side)) * weight;
   }
-  sum_all(pressure_import_->getSourceMap()->getComm(), size.data(), n_pockets);
+  sum_all(pressure_import_->getSourceMap()->getComm(), size.data(), n_bubbles);
   return size;
 }
 
 template <int dim>
 std::vector<double> FaceCoupling<dim>::gas_rates(const std::vector<double>& coupled_velocity,
-                                                 int n_pockets) const {
-  std::vector<double> rates(n_pockets, 0);
+                                                 int n_bubbles) const {
+  std::vector<double> rates(n_bubbles, 0);
   for (std::size_t f = 0; f < volumes_.size(); ++f)
     for (int side = 0; side < 2; ++side)
-      if (const int pocket = volumes_[f].sides[side].pocket; pocket >= 0)
-        rates[pocket] -= push(f, side) * coupled_velocity[f];
-  sum_all(pressure_import_->getSourceMap()->getComm(), rates.data(), n_pockets);
+      if (const int bubble = volumes_[f].sides[side].bubble; bubble >= 0)
+        rates[bubble] -= push(f, side) * coupled_velocity[f];
+  sum_all(pressure_import_->getSourceMap()->getComm(), rates.data(), n_bubbles);
   return rates;
 }
 

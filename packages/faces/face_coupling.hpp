@@ -28,9 +28,9 @@ class FaceCoupling : public Coupling<dim>,
   void add_divergence(const std::vector<double>& coupled_velocity, Vector& rhs) const override;
   void add_prescribed_divergence(Vector& rhs) const override;
   void add_gas_push(const std::vector<double>& scaled_pressure, Vector& momentum) const override;
-  std::vector<double> gas_push_size(int n_pockets) const override;
+  std::vector<double> gas_push_size(int n_bubbles) const override;
   std::vector<double> gas_rates(const std::vector<double>& coupled_velocity,
-                                int n_pockets) const override;
+                                int n_bubbles) const override;
   std::vector<double> closed_velocity(const Vector& solid_velocity,
                                       bool with_prescribed) const override;
   std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,

@@ -58,7 +58,7 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
   if (!watches.empty())
     audit_ = std::make_unique<LeakAudit<dim>>(domain, std::move(watches));
   if (const auto gas = read_gas<dim>(fluid); gas.kind != TrappedAir::none)
-    gas_ = std::make_unique<GasPockets<dim>>(domain, gas, gravity);
+    gas_ = std::make_unique<GasBubbles<dim>>(domain, gas, gravity);
   const ParameterList& interface = list.sublist("Interface");
   interface_ = interfaces.create(interface.get<std::string>("Type"), interface, domain);
 }

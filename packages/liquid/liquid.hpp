@@ -4,7 +4,7 @@
 
 #include "interfaces/liquid.hpp"
 #include "liquid/common/interface_model.hpp"
-#include "liquid/gas/gas_pockets.hpp"
+#include "liquid/gas/gas_bubbles.hpp"
 #include "liquid/liquid_parameters.hpp"
 #include "liquid/surface/free_surface.hpp"
 #include "liquid/surface/velocity_extension.hpp"
@@ -47,8 +47,8 @@ class Liquid {
   void forget();
   /// True if no liquid is given: sources are to bring it.
   bool starts_empty() const { return starts_empty_; }
-  GasPockets<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
-  const GasPockets<dim>* gas() const { return gas_.get(); }
+  GasBubbles<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
+  const GasBubbles<dim>* gas() const { return gas_.get(); }
   Drops<dim>* drops() const { return interface_->drops(); }  ///< null: there are never any
   InterfaceModel<dim>& interface() { return *interface_; }
   const InterfaceModel<dim>& interface() const { return *interface_; }
@@ -71,7 +71,7 @@ class Liquid {
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
   std::unique_ptr<InterfaceModel<dim>> interface_;
   std::unique_ptr<LeakAudit<dim>> audit_;  ///< null: nothing is watched
-  std::unique_ptr<GasPockets<dim>> gas_;
+  std::unique_ptr<GasBubbles<dim>> gas_;
 };
 
 }  // namespace lockstep

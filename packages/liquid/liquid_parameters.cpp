@@ -105,14 +105,14 @@ std::vector<TypedSchema> liquid_schemas() {
 
 void declare_trapped_air(ParameterList& list) {
   declare_choice(list, "Trapped Air", "void", {"void", "ideal gas", "constant volume"},
-                 "Content of closed air pockets above the liquid: \"void\", p = 0, as in the "
+                 "Content of closed air bubbles above the liquid: \"void\", p = 0, as in the "
                  "atmosphere; \"ideal gas\", whose pressure follows from its volume; \"constant "
-                 "volume\", a gas that cannot be compressed. Of more than 8 pockets the largest "
-                 "have gas. Pockets of at most \"Smallest Void\" cells are filled all the same.");
+                 "volume\", a gas that cannot be compressed. Of more than 8 bubbles the largest "
+                 "have gas. Bubbles of at most \"Smallest Void\" cells are filled all the same.");
   declare_optional<ParameterArray<double>>(
       list, "Atmosphere",
       "Points, a component an axis, one after the other [m]: air that can be reached from them or "
-      "from an open side is no pocket. Absent: nor is air at the side of the domain that "
+      "from an open side is no bubble. Absent: nor is air at the side of the domain that "
       "gravity points away from.");
   declare_positive(list, "Atmospheric Pressure", 101325.0,
                    "Pressure of the atmosphere for an ideal gas [Pa].");
@@ -120,7 +120,7 @@ void declare_trapped_air(ParameterList& list) {
                    "gamma of an ideal gas, p V^gamma = const.: 1.4 for air without, 1 with time to "
                    "take the liquid's temperature [1].");
   declare(list, "Gas Pressure", 0.0,
-          "Gas pressure in pockets at the start, above that of the atmosphere [Pa]; for a gas of "
+          "Gas pressure in bubbles at the start, above that of the atmosphere [Pa]; for a gas of "
           "constant volume a guess.");
 }
 }  // namespace

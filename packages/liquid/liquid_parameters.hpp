@@ -1,6 +1,6 @@
 #pragma once
 #include "liquid/common/interface_model.hpp"
-#include "liquid/gas/gas_pockets.hpp"
+#include "liquid/gas/gas_bubbles.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {

@@ -229,7 +229,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   if (free_surface)
     empty_dry_cells(grid, *free_surface, state.cells);
   if (free_surface && free_surface->gas)
-    find_pockets<dim>(*free_surface, marks, fractions, geometry);
+    find_bubbles<dim>(*free_surface, marks, fractions, geometry);
   number_pressures(domain, geometry);
   geometry.plain = find_plain_tiles(grid, geometry);
   std::vector<ControlVolume<dim>> gas_volumes;
@@ -246,7 +246,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       result = state_far_from_surfaces(domain, state.cells, axis, face);
       // A closed face behind a cut cell need not be near the surface.
       const bool asked = geometry.near_surface(cell) || (cut && fractions[axis][cell] == 0);
-      const bool only_gas = asked && only_gas_beside(state.cells, geometry.pocket, face);
+      const bool only_gas = asked && only_gas_beside(state.cells, geometry.bubble, face);
       if (asked && (result == FaceState::free || only_gas)) {
         ControlVolume<dim> volume = control_volume(domain, geometry, axis, cell);
         volume.open_fraction =

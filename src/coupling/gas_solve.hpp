@@ -9,7 +9,7 @@ namespace lockstep {
 
 /// The gas bubbles, as a solve sees them.
 struct GasProblem {
-  std::vector<GasPocket> pockets;
+  std::vector<GasBubble> bubbles;
   std::vector<double> conductance;  ///< GasFluid::gas_conductance
   /// GasCoupling::gas_push_size, where a bubble without conductance pushes on solids.
   std::vector<double> push_size;

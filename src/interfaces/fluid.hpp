@@ -29,7 +29,7 @@ struct PressureSide {
   GlobalIndex unknown = no_index;          ///< id in `pressure_map` if the kind is `unknown`
   Point<dim> center = Point<dim>::Zero();  ///< where the pressure lives [m]
   int solid = -1;                          ///< index in the snapshot if the kind is `solid`, or -1
-  int pocket =
+  int bubble =
       -1;  ///< gas bubble (interfaces/gas.hpp) if the kind is `empty` and it is in one, or -1
 };
 

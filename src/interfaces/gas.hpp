@@ -7,7 +7,7 @@ namespace lockstep {
 
 /// A closed gas bubble beside a liquid. It has no mass and one pressure, which pushes on all that
 /// is around it. Global.
-struct GasPocket {
+struct GasBubble {
   double volume = 0;     ///< [m^dim]
   double pressure = 0;   ///< above the pressure of the air: a function of the volume, or the last
                          ///< step's if the bubble keeps its volume [Pa]
@@ -17,12 +17,12 @@ struct GasPocket {
 };
 
 /// Side interface of fluids with gas bubbles: the bubbles of the frozen geometry, the same on all
-/// ranks. Vectors have one entry per bubble, indexed by `PressureSide::pocket`.
+/// ranks. Vectors have one entry per bubble, indexed by `PressureSide::bubble`.
 template <int dim>
 class GasFluid {
  public:
   virtual ~GasFluid() = default;
-  virtual const std::vector<GasPocket>& gas_pockets() const = 0;
+  virtual const std::vector<GasBubble>& gas_bubbles() const = 0;
   /// rhs += volume rate that scaled bubble pressures p̂ = dt p [Pa s] push out of the pressure
   /// unknowns beside them [m^dim/s]. Local.
   virtual void add_gas_push(const std::vector<double>& scaled_pressure, Vector& rhs) const = 0;
@@ -50,11 +50,11 @@ class GasCoupling {
   virtual void add_gas_push(const std::vector<double>& scaled_pressure, Vector& momentum) const = 0;
   /// Returns per bubble the sum of the magnitudes of the impulses of a unit of its p̂ on all dofs,
   /// before any cancel: the scale of the round-off of `add_gas_push`. Collective.
-  virtual std::vector<double> gas_push_size(int n_pockets) const = 0;
+  virtual std::vector<double> gas_push_size(int n_bubbles) const = 0;
   /// Returns the rate at which coupled volumes of these velocities open each bubble [m^dim/s].
   /// Collective.
   virtual std::vector<double> gas_rates(const std::vector<double>& coupled_velocity,
-                                        int n_pockets) const = 0;
+                                        int n_bubbles) const = 0;
   /// Returns W V_S of the closed parts, for `gas_rates`, plus the part of prescribed solids if
   /// asked for [m/s]. Collective.
   virtual std::vector<double> closed_velocity(const Vector& solid_velocity,

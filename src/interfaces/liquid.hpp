@@ -22,7 +22,7 @@ struct WatchedLiquid {
 
 /// The gas that is trapped. Global.
 struct GasReport {
-  long long n_pockets = 0;
+  long long n_bubbles = 0;
   double volume = 0;  ///< volume of all bubbles [m^dim]
   double pressure =
       0;  ///< in the largest bubble, above the pressure of the air, in the last step [Pa]

@@ -83,7 +83,7 @@ class TrappedAir(unittest.TestCase):
                 file.write_text(text)
                 simulate(file, output, "--steps", 1)
                 row, = table(output / "history.csv")
-                self.assertEqual(row["gas_pockets"], "1")
+                self.assertEqual(row["gas_bubbles"], "1")
                 self.assertAlmostEqual(float(row["gas_volume"]), height - .31, delta=1e-6)
 
     def test_air_carries_the_cup(self):

@@ -1,6 +1,6 @@
 #include "liquid/gas/gas_faces.hpp"
 
-#include "liquid/gas/gas_pockets.hpp"
+#include "liquid/gas/gas_bubbles.hpp"
 
 namespace lockstep {
 
@@ -18,12 +18,12 @@ std::vector<GasFace> find_gas_faces(const MacDomain<dim>& domain,
     for (int axis = 0; axis < dim; ++axis)
       for (int end = 0; end < 2; ++end) {
         const int other = neighbors[2 * axis + end];
-        if (other < 0 || geometry.pocket[other] < 0 || cells[other] != CellState::empty)
+        if (other < 0 || geometry.bubble[other] < 0 || cells[other] != CellState::empty)
           continue;
         const int face = end == 0 ? cell : other;
         const double open = geometry.open_fraction(axis, face);
         if (open > 0)
-          result.push_back({geometry.pocket[other],
+          result.push_back({geometry.bubble[other],
                             row,
                             {axis, face},
                             end == 1 ? 1. : -1.,
@@ -34,17 +34,17 @@ std::vector<GasFace> find_gas_faces(const MacDomain<dim>& domain,
   return result;
 }
 
-bool only_gas_beside(const std::vector<CellState>& cells, const std::vector<int>& pocket,
+bool only_gas_beside(const std::vector<CellState>& cells, const std::vector<int>& bubble,
                      const FaceCells& face) {
-  if (pocket.empty() || face.at_side())
+  if (bubble.empty() || face.at_side())
     return false;
-  const auto gas = [&](int cell) { return cells[cell] == CellState::empty ? pocket[cell] : -1; };
+  const auto gas = [&](int cell) { return cells[cell] == CellState::empty ? bubble[cell] : -1; };
   return cells[face.lower] != CellState::fluid && cells[face.upper] != CellState::fluid &&
          gas(face.lower) != gas(face.upper);
 }
 
 template <int dim>
-void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>& marks,
+void find_bubbles(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>& marks,
                   const std::array<CellField, dim>& fractions, MacGeometry<dim>& geometry) {
   SolidCells<dim> voids;
   voids.state.surface = geometry.state.surface;
@@ -61,7 +61,7 @@ void find_pockets(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>&
       voids.blocked[face] = static_cast<char>(fractions[axis][face] == 0 ? others | bit : others);
     }
   free_surface.gas->find(voids, *free_surface.distance);
-  geometry.pocket = free_surface.gas->of_cell();
+  geometry.bubble = free_surface.gas->of_cell();
 }
 
 template <int dim>
@@ -72,7 +72,7 @@ Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>
   const double area = geometry.face_table.area(), half = 0.5 * grid.spacing();
   Momentum<dim> impulse;
   grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
-    if (geometry.pocket[cell] < 0 || cells[cell] != CellState::empty)
+    if (geometry.bubble[cell] < 0 || cells[cell] != CellState::empty)
       return;
     for (int axis = 0; axis < dim; ++axis)
       for (int end = 0; end < 2; ++end) {
@@ -81,7 +81,7 @@ Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>
           continue;
         Point<dim> x = grid.center(cell);
         x[axis] += end == 0 ? -half : half;
-        impulse.add(x, axis, (end == 0 ? area : -area) * scaled_pressure[geometry.pocket[cell]]);
+        impulse.add(x, axis, (end == 0 ? area : -area) * scaled_pressure[geometry.bubble[cell]]);
       }
   });
   return impulse;
@@ -89,9 +89,9 @@ Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>
 
 template std::vector<GasFace> find_gas_faces<2>(const MacDomain<2>&, const MacGeometry<2>&);
 template std::vector<GasFace> find_gas_faces<3>(const MacDomain<3>&, const MacGeometry<3>&);
-template void find_pockets<2>(const FreeSurface<2>&, const SurfaceMarks<2>&,
+template void find_bubbles<2>(const FreeSurface<2>&, const SurfaceMarks<2>&,
                               const std::array<CellField, 2>&, MacGeometry<2>&);
-template void find_pockets<3>(const FreeSurface<3>&, const SurfaceMarks<3>&,
+template void find_bubbles<3>(const FreeSurface<3>&, const SurfaceMarks<3>&,
                               const std::array<CellField, 3>&, MacGeometry<3>&);
 template Momentum<2> push_of_sides<2>(const MacDomain<2>&, const MacGeometry<2>&,
                                       const std::vector<double>&);

@@ -29,7 +29,7 @@ template <int dim>
 ParameterList level_set_parameters() {
   ParameterList list;
   declare_at_least(list, "Smallest Void", dim == 2 ? 8 : 27, 0,
-                   "Largest air pocket, in cells, that is filled if liquid touches it: it would "
+                   "Largest air bubble, in cells, that is filled if liquid touches it: it would "
                    "drain the liquid around it. 0: none is.");
   declare_volume_correction(list);
   return list;

@@ -27,7 +27,7 @@ void set_distance_factor_to_air(const MacDomain<dim>& domain, const FreeSurface<
         geometry.state.faces[axis][face] == FaceState::free)
       geometry.face_table.set_distance_factor(
           axis, face,
-          free_surface.distance_factor(wet, dry, geometry.in_pocket(dry) ? least_distance_from_gas : 0));
+          free_surface.distance_factor(wet, dry, geometry.in_bubble(dry) ? least_distance_from_gas : 0));
   };
   grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
     for (int axis = 0; axis < dim; ++axis) {

@@ -7,7 +7,7 @@
 namespace lockstep {
 
 template <int dim>
-class GasPockets;
+class GasBubbles;
 
 /// The free surface at one instant, as pressures and faces see it: ghost fluid with p = 0 above it.
 template <int dim>
@@ -22,7 +22,7 @@ struct FreeSurface {
   static constexpr double smallest_distance = 1e-5;
   /// True: p = 0 where the surface is. False: at the centre of the dry cell, first order.
   bool at_true_place = true;
-  GasPockets<dim>* gas = nullptr;  ///< null: no air is closed in
+  GasBubbles<dim>* gas = nullptr;  ///< null: no air is closed in
 
   bool wet(int cell) const { return (*distance)[cell] < 0; }
   /// Distance factor w = 1/theta of the face between them, h over the distance of the pressure from

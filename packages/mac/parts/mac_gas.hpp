@@ -12,9 +12,9 @@ template <int dim>
 class MacGas : public GasFluid<dim> {
  public:
   /// `flow` holds gas.
-  explicit MacGas(MacFlow<dim>& flow) : flow_(flow), pockets_(*flow.liquid->gas()) {}
+  explicit MacGas(MacFlow<dim>& flow) : flow_(flow), bubbles_(*flow.liquid->gas()) {}
 
-  const std::vector<GasPocket>& gas_pockets() const override { return pockets_.all(); }
+  const std::vector<GasBubble>& gas_bubbles() const override { return bubbles_.all(); }
   void add_gas_push(const std::vector<double>& scaled_pressure, Vector& rhs) const override;
   std::vector<double> gas_conductance() const override;
   std::vector<double> gas_rates() const override;
@@ -23,15 +23,15 @@ class MacGas : public GasFluid<dim> {
   Momentum<dim> gas_side_impulse(const std::vector<double>& scaled_pressure) const override;
 
   void settle();                                   ///< for the frozen geometry. Collective.
-  void accept(double dt) { pockets_.accept(dt); }  ///< a step of dt
+  void accept(double dt) { bubbles_.accept(dt); }  ///< a step of dt
 
  private:
   /// Sums value(face) over the faces of each bubble. Collective.
   template <typename Value>
-  std::vector<double> sum_of_pockets(const Value& value) const;
+  std::vector<double> sum_of_bubbles(const Value& value) const;
 
   MacFlow<dim>& flow_;
-  GasPockets<dim>& pockets_;
+  GasBubbles<dim>& bubbles_;
   std::vector<GasFace> faces_;
 };
 

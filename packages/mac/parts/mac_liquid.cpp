@@ -45,7 +45,7 @@ void MacLiquid<dim>::bound_pressure(CellField& pressure) const {
   const CellField& phi = liquid_.interface().distance();
   const double tension = flow_.accepted_step * liquid_.tension();
   const auto at_surface = [&](int wet, int dry, int axis, int end) {
-    double value = flow_.geometry.in_pocket(dry) ? pressure[dry] : 0;
+    double value = flow_.geometry.in_bubble(dry) ? pressure[dry] : 0;
     if (tension > 0) {
       const int face = end == 0 ? wet : dry;
       const double place = 1 / flow_.geometry.face_table(axis, face).distance_factor;

@@ -12,8 +12,8 @@ struct CoupledSolution {
   BlockVector rhs;
   std::vector<double> coupled_before;  ///< u*_F
   RCP<Vector> momentum;                ///< M_S V_S* as it entered row 2
-  RCP<Vector> gas_momentum;            ///< what pockets of gas gave besides; null: there are none
-  std::vector<double> gas_pressure;    ///< p̂ of the pockets; empty: there are none
+  RCP<Vector> gas_momentum;            ///< what bubbles of gas gave besides; null: there are none
+  std::vector<double> gas_pressure;    ///< p̂ of the bubbles; empty: there are none
   SolveReport report;                  ///< of all the solves that led here
   double incompatibility = 0;          ///< part of the right-hand side that was removed [1]
   bool is_converged = true;  ///< implicit forces of solids are those at the velocity that was found

@@ -57,7 +57,7 @@ Friction<dim> Prediction<dim>::add_viscosity(const StepContext<dim>& context,
   return friction;
 }
 
-/// p̂ of fluid and pockets of gas in the last step. In the first two steps that of a solve without
+/// p̂ of fluid and bubbles of gas in the last step. In the first two steps that of a solve without
 /// viscosity: what the first step's pressure did to velocities that were no flow at the start is an
 /// impulse, and comes once. A fluid may ask for the latter in every step.
 template <int dim>

@@ -51,7 +51,7 @@ class Prediction {
   /// The pressure that the viscous solve expects of the coupled solve after it.
   struct Expected {
     RCP<const Vector> of_fluid;  ///< p̂; null: none is
-    std::vector<double> of_gas;  ///< p̂ of pockets
+    std::vector<double> of_gas;  ///< p̂ of bubbles
     SolveReport work;            ///< of finding it
   };
   Expected expected_pressure(const StepContext<dim>& context);

@@ -20,7 +20,7 @@ TrappedGas<dim>::TrappedGas(const Components<dim>& components)
 
 template <int dim>
 bool TrappedGas<dim>::is_there() const {
-  return fluid_ && !fluid_->gas_pockets().empty();
+  return fluid_ && !fluid_->gas_bubbles().empty();
 }
 
 template <int dim>
@@ -28,8 +28,8 @@ std::vector<double> TrappedGas<dim>::expected_pressure(double dt) const {
   std::vector<double> result;
   if (!is_there())
     return result;
-  for (const GasPocket& pocket : fluid_->gas_pockets())
-    result.push_back(dt * pocket.pressure);
+  for (const GasBubble& bubble : fluid_->gas_bubbles())
+    result.push_back(dt * bubble.pressure);
   return result;
 }
 
@@ -45,7 +45,7 @@ void TrappedGas<dim>::project(const Vector& scaled_pressure,
 template <int dim>
 GasProblem TrappedGas<dim>::problem(double dt, double step_dt) const {
   GasProblem gas;
-  gas.pockets = fluid_->gas_pockets();
+  gas.bubbles = fluid_->gas_bubbles();
   gas.conductance = fluid_->gas_conductance();
   gas.dt = dt;
   gas.step_dt = step_dt;
@@ -62,7 +62,7 @@ void TrappedGas<dim>::solve(const StepContext<dim>& context, const BlockSystem& 
   const Reduction& constraints = context.constraints;
   const auto& solids = *components_.solids;
   GasProblem gas = problem(context.dt, context.step.dt);
-  const int n = static_cast<int>(gas.pockets.size());
+  const int n = static_cast<int>(gas.bubbles.size());
   const auto& conductance = gas.conductance;
   if (std::find(conductance.begin(), conductance.end(), 0.) != conductance.end())
     gas.push_size = coupling_->gas_push_size(n);
@@ -105,10 +105,10 @@ void TrappedGas<dim>::solve_advection(double dt, const std::vector<double>& effe
     return;
   }
   GasProblem gas = problem(dt, dt);
-  const int n = static_cast<int>(gas.pockets.size());
+  const int n = static_cast<int>(gas.bubbles.size());
   gas.with_springs = false;
-  for (GasPocket& pocket : gas.pockets)
-    pocket.pressure = 0;  // u^n has felt it
+  for (GasBubble& bubble : gas.bubbles)
+    bubble.pressure = 0;  // u^n has felt it
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
     fluid_->add_gas_push(pressure, *to.pressure);
   };

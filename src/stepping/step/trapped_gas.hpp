@@ -5,24 +5,24 @@
 
 namespace lockstep {
 
-/// The pockets of gas beside a liquid in the solves of a step; without gas its solves are those of
-/// the strategy. Vectors of pressures have one entry per pocket.
+/// The bubbles of gas beside a liquid in the solves of a step; without gas its solves are those of
+/// the strategy. Vectors of pressures have one entry per bubble.
 template <int dim>
 class TrappedGas {
  public:
   /// Throws InputError if the fluid has gas that the coupling does not know.
   explicit TrappedGas(const Components<dim>& components);
 
-  /// p̂ of the pockets at the start of a solve over dt. Empty: there are none.
+  /// p̂ of the bubbles at the start of a solve over dt. Empty: there are none.
   std::vector<double> expected_pressure(double dt) const;
-  /// Takes the gradients of p̂ of fluid and pockets from u*. Collective.
+  /// Takes the gradients of p̂ of fluid and bubbles from u*. Collective.
   void project(const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const;
-  /// Solves Eq. 16 with the pockets' pressures: from the right-hand side in `solution`, and from
+  /// Solves Eq. 16 with the bubbles' pressures: from the right-hand side in `solution`, and from
   /// its unknowns on. Collective.
   void solve(const StepContext<dim>& context, const BlockSystem& blocks,
              const SolveRequest& request, CoupledSolution& solution) const;
   /// Solves for u_ADV, as `solve`, with solids at their `effective` velocities at coupled volumes.
-  /// Pockets that keep their volume do so in u_ADV, too; others have the solids change it by no
+  /// Bubbles that keep their volume do so in u_ADV, too; others have the solids change it by no
   /// more than the next solve answers. Collective.
   void solve_advection(double dt, const std::vector<double>& effective, const BlockSystem& blocks,
                        const SolveRequest& request, CoupledSolution& solution) const;

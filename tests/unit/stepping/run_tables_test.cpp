@@ -191,7 +191,7 @@ void expect_liquid(Texts& texts, const LiquidReport& liquid) {
       {"watch_Bowl_volume", liquid.watches[1].volume},
       {"watch_Bowl_volume_target", liquid.watches[1].target},
       {"watch_Bowl_leak", liquid.watches[1].leak},
-      {"gas_pockets", double(liquid.gas->n_pockets)},
+      {"gas_bubbles", double(liquid.gas->n_bubbles)},
       {"gas_volume", liquid.gas->volume},
       {"gas_pressure", liquid.gas->pressure},
       {"drops", double(liquid.drops->n)},

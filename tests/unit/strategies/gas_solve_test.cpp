@@ -28,12 +28,12 @@ TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
   blocks.coupling_transposed()->apply(one, area);
   ASSERT_GT(area.norm2(), 0);
 
-  GasPocket pocket;
-  pocket.volume = 1;
-  pocket.pressure = 3;
-  pocket.keeps_volume = true;
-  pocket.missing = 0.1;
-  GasProblem gas{{pocket}, {0.}, {area.norm1()}, 0.5, 0.5, true, {}, {}};
+  GasBubble bubble;
+  bubble.volume = 1;
+  bubble.pressure = 3;
+  bubble.keeps_volume = true;
+  bubble.missing = 0.1;
+  GasProblem gas{{bubble}, {0.}, {area.norm1()}, 0.5, 0.5, true, {}, {}};
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
     to.solid->update(pressure[0], area, 1);
   };
@@ -64,12 +64,12 @@ TEST(GasSolve, GasWithinOneShellPushesOnNothing) {
   const SaddleProblem problem(world(), options);
   BlockVector rhs = problem.zero(), unknowns = problem.zero();
   const double perimeter = 0.25, leftover = 1e-17;
-  GasPocket pocket;
-  pocket.volume = 1;
-  pocket.pressure = 3;
-  pocket.keeps_volume = true;
-  pocket.missing = 1e-12;
-  GasProblem gas{{pocket}, {0.}, {perimeter}, 0.5, 0.5, true, {}, {}};
+  GasBubble bubble;
+  bubble.volume = 1;
+  bubble.pressure = 3;
+  bubble.keeps_volume = true;
+  bubble.missing = 1e-12;
+  GasProblem gas{{bubble}, {0.}, {perimeter}, 0.5, 0.5, true, {}, {}};
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
     Vector pushed(to.solid->getMap());
     pushed.putScalar(leftover * pressure[0]);
@@ -120,13 +120,13 @@ TEST(GasSolve, TheOnlyVoidCannotOpen) {
   Vector one(rhs.pressure->getMap()), beside(rhs.pressure->getMap());
   one.putScalar(1);
   apply(*blocks.pressure_block(), one, beside);
-  GasPocket pocket;
-  pocket.volume = 1;
-  pocket.pressure = 3;
-  pocket.keeps_volume = true;
-  pocket.missing = 0.1;
+  GasBubble bubble;
+  bubble.volume = 1;
+  bubble.pressure = 3;
+  bubble.keeps_volume = true;
+  bubble.missing = 0.1;
   GasProblem gas;
-  gas.pockets = {pocket};
+  gas.bubbles = {bubble};
   gas.conductance = {beside.dot(one)};
   gas.push_size = {0.};
   gas.dt = gas.step_dt = 0.5;
@@ -149,7 +149,7 @@ TEST(GasSolve, TheOnlyVoidCannotOpen) {
 }
 
 /// S1 finds the velocity at half a step, by which solids move over the whole of it.
-TEST(GasSolve, WhatAPocketLacksIsMadeGoodInTheStep) {
+TEST(GasSolve, WhatABubbleLacksIsMadeGoodInTheStep) {
   SaddleOptions options;
   options.open_top = true;
   const SaddleProblem problem(world(), options);
@@ -159,12 +159,12 @@ TEST(GasSolve, WhatAPocketLacksIsMadeGoodInTheStep) {
   if (beside.getMap()->getMinAllGlobalIndex() == beside.getMap()->getMinGlobalIndex())
     beside.replaceLocalValue(0, 1.0);
 
-  GasPocket pocket;
-  pocket.volume = 1;
-  pocket.keeps_volume = true;
-  pocket.missing = 0.1;
+  GasBubble bubble;
+  bubble.volume = 1;
+  bubble.keeps_volume = true;
+  bubble.missing = 0.1;
   const double conductance = 1e6, step_dt = 0.5;
-  GasProblem gas{{pocket}, {conductance}, {0.}, step_dt / 2, step_dt, true, {}, {}};
+  GasProblem gas{{bubble}, {conductance}, {0.}, step_dt / 2, step_dt, true, {}, {}};
   gas.push = [&](const std::vector<double>& pressure, BlockVector& to) {
     to.pressure->update(pressure[0], beside, 1);
   };
@@ -178,7 +178,7 @@ TEST(GasSolve, WhatAPocketLacksIsMadeGoodInTheStep) {
   SolveReport report;
   const std::vector<double> pressure =
       solve_with_gas(gas, *strategy, blocks, {"S1", 1e-10, 1e-12}, rhs, unknowns, report);
-  EXPECT_NEAR(conductance * pressure[0] + gas.rates(unknowns, false)[0], pocket.missing / step_dt,
+  EXPECT_NEAR(conductance * pressure[0] + gas.rates(unknowns, false)[0], bubble.missing / step_dt,
               1e-9);
 }
 

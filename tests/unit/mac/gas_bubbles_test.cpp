@@ -1,4 +1,4 @@
-#include "liquid/gas/gas_pockets.hpp"
+#include "liquid/gas/gas_bubbles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ void expect_forgotten(double left_before, double right_before, double shift) {
   const MacDomain<dim> domain(description, world());
   GasParameters<dim> parameters;
   parameters.kind = TrappedAir::ideal_gas;
-  GasPockets<dim> gas(domain, parameters, -Point<dim>::Unit(1));
+  GasBubbles<dim> gas(domain, parameters, -Point<dim>::Unit(1));
   const CellField phi(domain.grid.n_stored_cells(), h);
   gas.find(find_solid_cells<dim>(domain, nullptr), phi);
   gas.settle(phi);
@@ -61,14 +61,14 @@ void expect_forgotten(double left_before, double right_before, double shift) {
   EXPECT_EQ(sum_all(world(), n_forgotten), 2 * std::pow(8, dim - 1));
 }
 
-TEST(GasPockets, SurfacesPassOverCellsBeyondAPeriodicSide) {
+TEST(GasBubbles, SurfacesPassOverCellsBeyondAPeriodicSide) {
   expect_forgotten<2>(0.83, 1.02, 0.04);
   expect_forgotten<3>(0.83, 1.02, 0.04);
 }
 
 /// A projection finds the pressure in a bubble that it is given with the others, and none of an
 /// earlier one.
-TEST(GasPockets, ProjectWithTheirOwnPressureOrNone) {
+TEST(GasBubbles, ProjectWithTheirOwnPressureOrNone) {
   Case<2> scene({16, 16}, 1.0 / 16);
   ParameterList& surface = scene.fluid.sublist("Free Surface");
   surface.set("Trapped Air", "ideal gas");
@@ -89,7 +89,7 @@ TEST(GasPockets, ProjectWithTheirOwnPressureOrNone) {
   const auto fluid = make_liquid<2>(scene);
   fluid->set_geometry(nullptr, BlockedFaces<2>());
   fluid->begin_prediction();
-  ASSERT_EQ(fluid->gas()->gas_pockets().size(), 1U);
+  ASSERT_EQ(fluid->gas()->gas_bubbles().size(), 1U);
   const Vector no_pressure(fluid->pressure_map());
   const double pressure = 3, opens = pressure * fluid->gas()->gas_conductance()[0];
   EXPECT_GT(opens, 0);

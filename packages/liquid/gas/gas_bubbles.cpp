@@ -1,4 +1,4 @@
-#include "liquid/gas/gas_pockets.hpp"
+#include "liquid/gas/gas_bubbles.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ Index<dim> lattice_cell(const TiledGrid<dim>& grid, const Point<dim>& x) {
 }  // namespace
 
 template <int dim>
-GasPockets<dim>::GasPockets(const MacDomain<dim>& domain, GasParameters<dim> parameters,
+GasBubbles<dim>::GasBubbles(const MacDomain<dim>& domain, GasParameters<dim> parameters,
                             const Point<dim>& gravity)
     : domain_(domain), parameters_(std::move(parameters)), gravity_(gravity), measure_(domain) {
   for (CellField* field : {&number_, &amount_, &last_pressure_})
@@ -52,7 +52,7 @@ GasPockets<dim>::GasPockets(const MacDomain<dim>& domain, GasParameters<dim> par
 }
 
 template <int dim>
-std::vector<char> GasPockets<dim>::open_groups(const CellGroups& groups,
+std::vector<char> GasBubbles<dim>::open_groups(const CellGroups& groups,
                                                const CellField& phi) const {
   const TiledGrid<dim>& grid = domain_.grid;
   const auto is_open_side = [](const auto& side) { return side.type == SideType::open; };
@@ -76,7 +76,7 @@ std::vector<char> GasPockets<dim>::open_groups(const CellGroups& groups,
 }
 
 template <int dim>
-std::vector<int> GasPockets<dim>::choose(const std::vector<char>& is_open,
+std::vector<int> GasBubbles<dim>::choose(const std::vector<char>& is_open,
                                          const std::vector<double>& volumes) const {
   std::vector<int> chosen;
   for (int group = 0; group < static_cast<int>(is_open.size()); ++group)
@@ -92,7 +92,7 @@ std::vector<int> GasPockets<dim>::choose(const std::vector<char>& is_open,
 }
 
 template <int dim>
-void GasPockets<dim>::find(const SolidCells<dim>& voids, const CellField& phi) {
+void GasBubbles<dim>::find(const SolidCells<dim>& voids, const CellField& phi) {
   const TiledGrid<dim>& grid = domain_.grid;
   is_void_.assign(grid.n_stored_cells(), 0);
   CellField height = phi;
@@ -102,15 +102,15 @@ void GasPockets<dim>::find(const SolidCells<dim>& voids, const CellField& phi) {
   }
   const CellGroups groups = find_groups(domain_, voids, is_void_);
   const std::vector<char> is_open = open_groups(groups, phi);
-  std::vector<int> pocket_of_group(groups.n, -1);
-  pockets_.clear();
+  std::vector<int> bubble_of_group(groups.n, -1);
+  bubbles_.clear();
   if (std::find(is_open.begin(), is_open.end(), 0) != is_open.end()) {
     measure_.prepare(voids, height);
     const std::vector<double> volumes = measure_.measure(height, groups).volume;
     for (const int group : choose(is_open, volumes)) {
-      pocket_of_group[group] = static_cast<int>(pockets_.size());
-      pockets_.push_back({});
-      pockets_.back().volume = volumes[group];
+      bubble_of_group[group] = static_cast<int>(bubbles_.size());
+      bubbles_.push_back({});
+      bubbles_.back().volume = volumes[group];
     }
   }
   of_cell_.assign(grid.n_stored_cells(), -1);
@@ -118,12 +118,12 @@ void GasPockets<dim>::find(const SolidCells<dim>& voids, const CellField& phi) {
     const int group = groups.of_cell[cell];
     is_void_[cell] = group >= 0;
     if (group >= 0)
-      of_cell_[cell] = pocket_of_group[group];
+      of_cell_[cell] = bubble_of_group[group];
   }
 }
 
 template <int dim>
-void GasPockets<dim>::pass_over(const MovingSurface<dim>& surface) {
+void GasBubbles<dim>::pass_over(const MovingSurface<dim>& surface) {
   if (!surface.before || !surface.after || surface.before == surface.after)
     return;
   const TiledGrid<dim>& grid = domain_.grid;
@@ -151,17 +151,17 @@ void GasPockets<dim>::pass_over(const MovingSurface<dim>& surface) {
 }
 
 template <int dim>
-void GasPockets<dim>::settle(const CellField& phi) {
-  for (GasPocket& pocket : pockets_)
-    pocket.volume = std::max(pocket.volume, 1e-3 * domain_.cell_volume());
+void GasBubbles<dim>::settle(const CellField& phi) {
+  for (GasBubble& bubble : bubbles_)
+    bubble.volume = std::max(bubble.volume, 1e-3 * domain_.cell_volume());
   inherit(phi);
-  scaled_pressure_.assign(pockets_.size(), 0);
+  scaled_pressure_.assign(bubbles_.size(), 0);
 }
 
 template <int dim>
-void GasPockets<dim>::inherit(const CellField& phi) {
+void GasBubbles<dim>::inherit(const CellField& phi) {
   const TiledGrid<dim>& grid = domain_.grid;
-  const int n = static_cast<int>(pockets_.size());
+  const int n = static_cast<int>(bubbles_.size());
   double most_number = 0, n_known = 0;
   grid.for_each_owned_cell([&](int cell) {
     most_number = std::max(most_number, number_[cell]);
@@ -190,20 +190,20 @@ void GasPockets<dim>::inherit(const CellField& phi) {
   amounts_.assign(n, 0);
   std::vector<double> last(n, 0);
   for (int to = 0; to < n; ++to) {
-    double from_pockets = 0;
+    double from_bubbles = 0;
     for (int from = 0; from < n_before; ++from)
-      from_pockets += went[from * (n + 1) + to];
+      from_bubbles += went[from * (n + 1) + to];
     for (int from = 0; from < n_before; ++from) {
       const auto row = went.begin() + from * (n + 1);
       const double all = std::accumulate(row, row + n + 1, 0.0);
       if (row[to] == 0)
         continue;
       amounts_[to] += before[2 * from] * (row[to] / all);
-      last[to] += before[2 * from + 1] * (row[to] / from_pockets);
+      last[to] += before[2 * from + 1] * (row[to] / from_bubbles);
     }
     const double gained = went[n_before * (n + 1) + to] * domain_.cell_volume();
-    if (from_pockets == 0)
-      amounts_[to] = pockets_[to].volume;
+    if (from_bubbles == 0)
+      amounts_[to] = bubbles_[to].volume;
     else
       amounts_[to] += gained;
     if (is_start && parameters_.kind == TrappedAir::ideal_gas)
@@ -211,39 +211,39 @@ void GasPockets<dim>::inherit(const CellField& phi) {
                                1 / parameters_.exponent);
     if (is_start)
       last[to] = parameters_.pressure_at_start;
-    pockets_[to] = pocket_of(pockets_[to].volume, amounts_[to], last[to]);
+    bubbles_[to] = bubble_of(bubbles_[to].volume, amounts_[to], last[to]);
   }
   for (int cell = 0; cell < grid.n_stored_cells(); ++cell) {
-    const int pocket = of_cell_[cell];
-    number_[cell] = pocket >= 0 ? pocket + 1 : is_void_[cell] ? -1 : 0;
-    amount_[cell] = pocket >= 0 ? amounts_[pocket] : 0;
-    last_pressure_[cell] = pocket >= 0 ? last[pocket] : 0;
+    const int bubble = of_cell_[cell];
+    number_[cell] = bubble >= 0 ? bubble + 1 : is_void_[cell] ? -1 : 0;
+    amount_[cell] = bubble >= 0 ? amounts_[bubble] : 0;
+    last_pressure_[cell] = bubble >= 0 ? last[bubble] : 0;
   }
 }
 
 template <int dim>
-GasPocket GasPockets<dim>::pocket_of(double volume, double amount, double last_pressure) const {
-  GasPocket pocket;
-  pocket.volume = volume;
+GasBubble GasBubbles<dim>::bubble_of(double volume, double amount, double last_pressure) const {
+  GasBubble bubble;
+  bubble.volume = volume;
   if (parameters_.kind == TrappedAir::constant_volume) {
-    pocket.keeps_volume = true;
-    pocket.missing = part_made_good * (amount - volume);
-    pocket.pressure = last_pressure;
-    return pocket;
+    bubble.keeps_volume = true;
+    bubble.missing = part_made_good * (amount - volume);
+    bubble.pressure = last_pressure;
+    return bubble;
   }
   const double compressed = std::clamp(amount / volume, 1 / most_compressed, most_compressed);
   const double absolute =
       parameters_.atmospheric_pressure * std::pow(compressed, parameters_.exponent);
-  pocket.pressure = absolute - parameters_.atmospheric_pressure;
-  pocket.stiffness = parameters_.exponent * absolute / volume;
-  return pocket;
+  bubble.pressure = absolute - parameters_.atmospheric_pressure;
+  bubble.stiffness = parameters_.exponent * absolute / volume;
+  return bubble;
 }
 
 template <int dim>
-void GasPockets<dim>::fill(const std::vector<double>& of_pockets, CellField& scaled_pressure) {
-  scaled_pressure_ = of_pockets;
-  scaled_pressure_.resize(pockets_.size(), 0);
-  if (pockets_.empty())
+void GasBubbles<dim>::fill(const std::vector<double>& of_bubbles, CellField& scaled_pressure) {
+  scaled_pressure_ = of_bubbles;
+  scaled_pressure_.resize(bubbles_.size(), 0);
+  if (bubbles_.empty())
     return;
   for (std::size_t cell = 0; cell < of_cell_.size(); ++cell)
     if (of_cell_[cell] >= 0)
@@ -251,12 +251,12 @@ void GasPockets<dim>::fill(const std::vector<double>& of_pockets, CellField& sca
 }
 
 template <int dim>
-void GasPockets<dim>::accept(double dt) {
+void GasBubbles<dim>::accept(double dt) {
   accepted_pressure_.clear();
-  for (std::size_t k = 0; k < pockets_.size(); ++k) {
+  for (std::size_t k = 0; k < bubbles_.size(); ++k) {
     accepted_pressure_.push_back(scaled_pressure_[k] / dt);
-    if (pockets_[k].keeps_volume)  // as a run finds it that goes on from here
-      pockets_[k].pressure = accepted_pressure_[k];
+    if (bubbles_[k].keeps_volume)  // as a run finds it that goes on from here
+      bubbles_[k].pressure = accepted_pressure_[k];
   }
   for (std::size_t cell = 0; cell < of_cell_.size(); ++cell)
     if (of_cell_[cell] >= 0)
@@ -264,27 +264,27 @@ void GasPockets<dim>::accept(double dt) {
 }
 
 template <int dim>
-GasReport GasPockets<dim>::report() const {
+GasReport GasBubbles<dim>::report() const {
   GasReport report;
-  report.n_pockets = static_cast<int>(pockets_.size());
+  report.n_bubbles = static_cast<int>(bubbles_.size());
   double largest = 0;
-  for (const GasPocket& pocket : pockets_)
-    report.volume += pocket.volume;
-  for (std::size_t k = 0; k < pockets_.size(); ++k)
-    if (pockets_[k].volume > largest) {
-      largest = pockets_[k].volume;
+  for (const GasBubble& bubble : bubbles_)
+    report.volume += bubble.volume;
+  for (std::size_t k = 0; k < bubbles_.size(); ++k)
+    if (bubbles_[k].volume > largest) {
+      largest = bubbles_[k].volume;
       report.pressure = accepted_pressure_.size() > k ? accepted_pressure_[k] : 0;
     }
   return report;
 }
 
 template <int dim>
-std::vector<StoredField> GasPockets<dim>::fields() {
+std::vector<StoredField> GasBubbles<dim>::fields() {
   return {
-      {"gas_pocket", {&number_}}, {"gas_amount", {&amount_}}, {"gas_pressure", {&last_pressure_}}};
+      {"gas_bubble", {&number_}}, {"gas_amount", {&amount_}}, {"gas_pressure", {&last_pressure_}}};
 }
 
-template class GasPockets<2>;
-template class GasPockets<3>;
+template class GasBubbles<2>;
+template class GasBubbles<3>;
 
 }  // namespace lockstep

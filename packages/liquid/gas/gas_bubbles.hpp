@@ -29,12 +29,12 @@ struct GasParameters {
 /// inherited by the bubble with the same cells a step later: a merger adds, a split shares, an
 /// opening loses.
 template <int dim>
-class GasPockets {
+class GasBubbles {
  public:
   static constexpr int most = 8;
 
   /// `domain` must outlive this. Throws InputError for points that are nowhere. Collective.
-  GasPockets(const MacDomain<dim>& domain, GasParameters<dim> parameters,
+  GasBubbles(const MacDomain<dim>& domain, GasParameters<dim> parameters,
              const Point<dim>& gravity);
 
   /// Finds the bubbles of an instant. `voids`: the cells that are not solid, and the surfaces
@@ -49,10 +49,10 @@ class GasPockets {
   const std::vector<int>& of_cell() const {
     return of_cell_;
   }  ///< bubble of stored cells; -1: none
-  const std::vector<GasPocket>& all() const { return pockets_; }
+  const std::vector<GasBubble>& all() const { return bubbles_; }
 
   /// Gives the cells of the bubbles these pressures p̂; empty: zero. Local.
-  void fill(const std::vector<double>& of_pockets, CellField& scaled_pressure);
+  void fill(const std::vector<double>& of_bubbles, CellField& scaled_pressure);
   void accept(double dt);  ///< keeps the pressures last given, in a step of dt. Local.
   GasReport report() const;
   std::vector<StoredField> fields();
@@ -63,7 +63,7 @@ class GasPockets {
   std::vector<int> choose(const std::vector<char>& is_open,
                           const std::vector<double>& volumes) const;
   void inherit(const CellField& phi);
-  GasPocket pocket_of(double volume, double amount, double last_pressure) const;
+  GasBubble bubble_of(double volume, double amount, double last_pressure) const;
 
   const MacDomain<dim>& domain_;
   GasParameters<dim> parameters_;
@@ -71,7 +71,7 @@ class GasPockets {
   LiquidVolume<dim> measure_;
   std::vector<char> is_void_;  ///< stored cells that are air and not solid
   std::vector<int> of_cell_;
-  std::vector<GasPocket> pockets_;
+  std::vector<GasBubble> bubbles_;
   std::vector<double> amounts_;  ///< V_0 by bubble [m^dim]
   std::vector<double> scaled_pressure_, accepted_pressure_;
   /// Number of each cell's bubble, from 1; -1 in the atmosphere, 0 elsewhere; V_0 and last pressure
