@@ -61,7 +61,7 @@ const std::vector<FormerName>& former_names() {
       {"Fluid", "Particles per Cell", "is always 16 now: leave it out"},
       {"Fluid", "Reseed Interval", "is always 20 steps now: leave it out"},
       {"Fluid", "Largest Shift", "is a constant now: leave it out"},
-      {"Fluid", "Crumbs",
+      {"Fluid", "Fragments",
        "is called \"Volume Correction\" now: \"component\" in place of \"return\", \"none\" in "
        "place of \"keep\""},
       {"Wave", "Period", "is \"Frequency\" now, one over it"},

@@ -232,16 +232,16 @@ class Books {
 }  // namespace
 
 template <int dim>
-void remove_crumbs(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+void remove_fragments(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                    const std::vector<char>& tiles, Fractions& fractions) {
-  std::vector<int> crumbs;
+  std::vector<int> fragments;
   for_each_owned_cell_of(domain.grid, tiles, [&](int cell) {
     if (const double liquid = fractions.liquid[cell];
         is_mixed(liquid) && solids.is_fluid(cell) &&
         !touches(domain, solids, fractions.liquid, cell, liquid <= 0.5))
-      crumbs.push_back(cell);
+      fragments.push_back(cell);
   });
-  for (const int cell : crumbs)
+  for (const int cell : fragments)
     fractions.set(cell, fractions.liquid[cell] > 0.5 ? 1 : 0);
   domain.halo.fill(fractions.liquid);
 }
@@ -296,9 +296,9 @@ double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   return lost;
 }
 
-template void remove_crumbs<2>(const MacDomain<2>&, const SolidCells<2>&, const std::vector<char>&,
+template void remove_fragments<2>(const MacDomain<2>&, const SolidCells<2>&, const std::vector<char>&,
                                Fractions&);
-template void remove_crumbs<3>(const MacDomain<3>&, const SolidCells<3>&, const std::vector<char>&,
+template void remove_fragments<3>(const MacDomain<3>&, const SolidCells<3>&, const std::vector<char>&,
                                Fractions&);
 template Repayment pay_back<2>(const MacDomain<2>&, const SolidCells<2>&, const CellField&, double,
                                Fractions&);

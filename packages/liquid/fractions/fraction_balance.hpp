@@ -9,7 +9,7 @@ namespace lockstep {
 /// air, which no pressure closes. The change is a volume defect. Sets the halo of width 1 of the
 /// fractions. Collective.
 template <int dim>
-void remove_crumbs(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+void remove_fragments(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                    const std::vector<char>& tiles, Fractions& fractions);
 
 /// Result of a redistribution of volume defects.

@@ -33,7 +33,7 @@ ParameterList volume_of_fluid_parameters() {
 
 VolumeOfFluidParameters read_volume_of_fluid_parameters(const ParameterList& list) {
   VolumeOfFluidParameters parameters;
-  parameters.removes_crumbs = list.get<std::string>("Volume Correction") == "component";
+  parameters.removes_fragments = list.get<std::string>("Volume Correction") == "component";
   return parameters;
 }
 
@@ -263,8 +263,8 @@ void VolumeOfFluid<dim>::advance(const InterfaceStep<dim>& step) {
     add_sources(step);
     tiles.assign(tiles.size(), 1);
   }
-  if (parameters_.removes_crumbs)
-    remove_crumbs(domain_, solids_, tiles, fractions_);
+  if (parameters_.removes_fragments)
+    remove_fragments(domain_, solids_, tiles, fractions_);
   const Repayment repayment = pay_back(
       domain_, solids_, phi_, parameters_.largest_shift * std::max(1.0, courant_), fractions_);
   n_bodies_ = repayment.n_bodies;

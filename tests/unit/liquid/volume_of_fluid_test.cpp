@@ -258,7 +258,7 @@ TEST(VolumeOfFluid, LostLiquidIsTakenOffTheTarget) {
 /// A fragment in the air over a pool, on a tile that goes: it becomes a defect of the pool, or,
 /// where none is left, the target knows that it is lost.
 template <int dim>
-void expect_crumbs_of_gone_tiles_return(const std::string& correction, bool has_pool) {
+void expect_fragments_of_gone_tiles_return(const std::string& correction, bool has_pool) {
   constexpr int n = 3 * tile_width<dim>;
   const double h = 1.0 / n, height = has_pool ? 4.3 * h : -1;
   Bath<dim> bath(closed_cube<dim>(n));
@@ -298,11 +298,11 @@ void expect_crumbs_of_gone_tiles_return(const std::string& correction, bool has_
   }
 }
 
-TEST(VolumeOfFluid, CrumbsOfTilesThatGoAreNotForgotten) {
+TEST(VolumeOfFluid, FragmentsOfTilesThatGoAreNotForgotten) {
   for (const std::string correction : {"none", "component"})
     for (const bool has_pool : {true, false}) {
-      expect_crumbs_of_gone_tiles_return<2>(correction, has_pool);
-      expect_crumbs_of_gone_tiles_return<3>(correction, has_pool);
+      expect_fragments_of_gone_tiles_return<2>(correction, has_pool);
+      expect_fragments_of_gone_tiles_return<3>(correction, has_pool);
     }
 }
 
