@@ -170,7 +170,7 @@ std::optional<double> SurfaceTransport<dim>::look_up(const CarriedField<dim>& fi
 }
 
 template <int dim>
-std::optional<double> SurfaceTransport<dim>::carry(const CarriedField<dim>& field,
+std::optional<double> SurfaceTransport<dim>::advect(const CarriedField<dim>& field,
                                                    const Point<dim>& x) {
   std::optional<SurfacePoint<dim>> hit;
   const Ray<dim> ray = trace(x, hit);
@@ -206,7 +206,7 @@ std::optional<double> SurfaceTransport<dim>::fetch(const CarriedField<dim>& fiel
 }
 
 template <int dim>
-double SurfaceTransport<dim>::carry_beside(const CarriedField<dim>& field, const Point<dim>& x,
+double SurfaceTransport<dim>::advect_beside(const CarriedField<dim>& field, const Point<dim>& x,
                                            double own) {
   std::optional<SurfacePoint<dim>> hit;
   const Ray<dim> ray = trace(x, hit);

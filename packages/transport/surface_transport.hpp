@@ -58,14 +58,14 @@ class SurfaceTransport {
   /// it, so that it can be advected as if there were none. Possible where `clear` is false.
   bool sees_all(SampleKind kind, const Point<dim>& x, const Ray<dim>& ray) const;
   /// Returns the value advected to the sample at x; none if it sees no valid sample.
-  std::optional<double> carry(const CarriedField<dim>& field, const Point<dim>& x);
+  std::optional<double> advect(const CarriedField<dim>& field, const Point<dim>& x);
   /// Returns the place that fluid at x reaches in the step. Where a surface would pass it, it is
   /// kept a tenth of a cell from the surface, on its side; none if there is no room.
   std::optional<Point<dim>> follow(const Point<dim>& x);
   /// Advects a velocity `own` of a sample whose fluid is at x, beside it: it changes as the
   /// velocity seen at x does, and relaxes to that as fluid passes, so that no error accumulates in
   /// it.
-  double carry_beside(const CarriedField<dim>& field, const Point<dim>& x, double own);
+  double advect_beside(const CarriedField<dim>& field, const Point<dim>& x, double own);
 
  private:
   /// Cells that a distance in cells reaches from any place in a cell.

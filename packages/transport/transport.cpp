@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "transport/field_carrier.hpp"
+#include "transport/field_advection.hpp"
 
 namespace lockstep {
 
@@ -130,67 +130,67 @@ template <int dim>
 void Transport<dim>::advect_faces(AdvectionScheme scheme, const FaceField<dim>& u,
                                   FaceField<dim>& result) {
   TransportFrame<dim>& frame = implementation_->frame;
-  std::vector<Passenger<dim>> passengers(dim);
+  std::vector<AdvectedField<dim>> fields(dim);
   for (int a = 0; a < dim; ++a) {
-    Passenger<dim>& passenger = passengers[a];
-    passenger.scheme = scheme;
-    passenger.start = &u[a];
-    passenger.result = &result[a];
-    passenger.invalid = &frame.invalid.faces[a];
-    passenger.field.kind = a;
-    passenger.field.inflow = [&frame, a](const Ray<dim>& ray) {
+    AdvectedField<dim>& advected = fields[a];
+    advected.scheme = scheme;
+    advected.start = &u[a];
+    advected.result = &result[a];
+    advected.invalid = &frame.invalid.faces[a];
+    advected.field.kind = a;
+    advected.field.inflow = [&frame, a](const Ray<dim>& ray) {
       const TiledGrid<dim>& grid = frame.setting.grid;
       const Point<dim> place = grid.lower() + grid.spacing() * ray.end;
       return frame.setting.sides[ray.inflow_axis][ray.inflow_side].velocity(place)[a];
     };
   }
-  FieldCarrier<dim>(frame).carry(passengers);
+  FieldAdvection<dim>(frame).advect(fields);
 }
 
 template <int dim>
 void Transport<dim>::advect_scalar(AdvectionScheme scheme, const CellField& s,
                                    const SideValues<dim>& inflow_values, CellField& result,
                                    const std::vector<char>* tiles, double beyond) {
-  std::vector<Passenger<dim>> passengers(1);
-  Passenger<dim>& passenger = passengers[0];
-  passenger.beyond = beyond;
-  passenger.scheme = scheme;
-  passenger.start = &s;
-  passenger.result = &result;
-  passenger.invalid = &implementation_->frame.invalid.cells;
-  passenger.field.kind = cell_centers;
-  passenger.field.inflow = [&](const Ray<dim>& ray) {
+  std::vector<AdvectedField<dim>> fields(1);
+  AdvectedField<dim>& advected = fields[0];
+  advected.beyond = beyond;
+  advected.scheme = scheme;
+  advected.start = &s;
+  advected.result = &result;
+  advected.invalid = &implementation_->frame.invalid.cells;
+  advected.field.kind = cell_centers;
+  advected.field.inflow = [&](const Ray<dim>& ray) {
     return inflow_values[ray.inflow_axis][ray.inflow_side];
   };
-  FieldCarrier<dim>(implementation_->frame).carry(passengers, tiles);
+  FieldAdvection<dim>(implementation_->frame).advect(fields, tiles);
 }
 
 template <int dim>
 void Transport<dim>::advect_distance(const CellField& distance, double cut_off,
                                      const std::vector<char>& tiles, CellField& result) {
   TransportFrame<dim>& frame = implementation_->frame;
-  std::vector<Passenger<dim>> passengers(1);
-  Passenger<dim>& passenger = passengers[0];
-  passenger.beyond = cut_off;
-  passenger.start = &distance;
-  passenger.result = &result;
-  passenger.invalid = &frame.invalid.cells;
-  passenger.field.kind = cell_centers;
-  passenger.field.inflow_depth = bounded_depth;
+  std::vector<AdvectedField<dim>> fields(1);
+  AdvectedField<dim>& advected = fields[0];
+  advected.beyond = cut_off;
+  advected.start = &distance;
+  advected.result = &result;
+  advected.invalid = &frame.invalid.cells;
+  advected.field.kind = cell_centers;
+  advected.field.inflow_depth = bounded_depth;
   // The air beyond the side has its true distance. A surface along the side goes on to it from the
   // first two samples; one at right angles to it must not be pushed.
-  passenger.field.enters = [&frame, &passenger](const Ray<dim>& ray, double inside) {
+  advected.field.enters = [&frame, &advected](const Ray<dim>& ray, double inside) {
     const double h = frame.setting.grid.spacing(), past = ray.past;
     Point<dim> place = ray.end;
     place[ray.inflow_axis] =
         ray.inflow_side == 0 ? 1.5 : frame.lattice->n_cells()[ray.inflow_axis] - 1.5;
     const Stencil<dim> stencil = frame.lattice->locate(cell_centers, place);
     const double deeper =
-        stencil.complete() ? interpolate<dim>(stencil, passenger.field.values) : inside;
+        stencil.complete() ? interpolate<dim>(stencil, advected.field.values) : inside;
     const double slope = std::clamp((inside - deeper) / h, 0.0, 1.0);
     return std::max(inside + slope * std::max(0.0, 0.5 + past) * h, past * h);
   };
-  FieldCarrier<dim>(frame).carry(passengers, &tiles);
+  FieldAdvection<dim>(frame).advect(fields, &tiles);
 }
 
 template <int dim>

@@ -116,7 +116,7 @@ std::vector<char> VolumeOfFluid<dim>::tiles_within(int reach, bool arrived) cons
 }
 
 template <int dim>
-std::vector<char> VolumeOfFluid<dim>::carry(const InterfaceStep<dim>& step) {
+std::vector<char> VolumeOfFluid<dim>::advect(const InterfaceStep<dim>& step) {
   FaceField<dim> velocity = step.advection_velocity;  // upper faces may be another rank's
   domain_.halo.fill(velocity);
   courant_ =
@@ -253,7 +253,7 @@ double VolumeOfFluid<dim>::sum_of_liquid() const {
 template <int dim>
 void VolumeOfFluid<dim>::advance(const InterfaceStep<dim>& step) {
   find_solids(step.surface.before);
-  std::vector<char> tiles = carry(step);
+  std::vector<char> tiles = advect(step);
   if (move_solids(step, tiles)) {
     const std::vector<char> reached = tiles_within(parameters_.band + 1, true);
     for (std::size_t tile = 0; tile < tiles.size(); ++tile)

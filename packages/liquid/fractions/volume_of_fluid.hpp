@@ -54,7 +54,7 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   /// was made.
   std::vector<char> tiles_within(int reach, bool arrived = false) const;
   /// Returns the flags of the tiles in which anything may have changed.
-  std::vector<char> carry(const InterfaceStep<dim>& step);
+  std::vector<char> advect(const InterfaceStep<dim>& step);
   /// Moves solids to the end of the step; cells that change sides do so without their liquid.
   /// Returns true if surfaces have taken liquid along, on any rank.
   bool move_solids(const InterfaceStep<dim>& step, const std::vector<char>& tiles);

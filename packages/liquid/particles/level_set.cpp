@@ -108,7 +108,7 @@ void LevelSet<dim>::initialise(const SignedDistance<dim>& distance, const Surfac
 }
 
 template <int dim>
-double LevelSet<dim>::carry(const InterfaceStep<dim>& step) {
+double LevelSet<dim>::advect(const InterfaceStep<dim>& step) {
   const TiledGrid<dim>& grid = domain_.grid;
   TransportSetting<dim> setting{grid,          solids_.state, step.surface, step.advection_velocity,
                                 step.ray_halo, step.kept,     {},           step.dt};
@@ -278,7 +278,7 @@ void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
   volume_.flow_out(solids_, phi_, step);
   if (drops_)
     volume_.lose(drops_->fly(step.surface, step.gravity, step.dt));
-  const double displacement = carry(step);
+  const double displacement = advect(step);
   add_sources(step);
   if (drops_)
     collect_drops(step);

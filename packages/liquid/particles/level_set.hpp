@@ -67,7 +67,7 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   /// Classifies cells for a surface; returns the solids before, if they have changed.
   std::optional<SolidCells<dim>> find_solids(const Surface& surface);
   /// Returns how far the fastest fluid goes [cells].
-  double carry(const InterfaceStep<dim>& step);
+  double advect(const InterfaceStep<dim>& step);
   /// Redistances phi and corrects it by the particles. Sets the halo of width 1.
   void restore(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
   /// Fills small air components and takes their particles out of them.

@@ -8,7 +8,7 @@ namespace lockstep {
 
 /// One advected field, and the data of MacCormack's first half.
 template <int dim>
-struct Passenger {
+struct AdvectedField {
   AdvectionScheme scheme = AdvectionScheme::semi_lagrangian;
   const CellField* start = nullptr;  ///< the field at t^n
   CarriedField<dim> field;           ///< kind and inflow set by the caller
@@ -40,37 +40,37 @@ struct Passenger {
 /// Advects fields along the rays of one frame: whole tiles by strips; near surfaces and inflow
 /// sides, and where rays are long, one sample at a time.
 template <int dim>
-class FieldCarrier {
+class FieldAdvection {
  public:
-  explicit FieldCarrier(TransportFrame<dim>& frame) : frame_(frame) {}
+  explicit FieldAdvection(TransportFrame<dim>& frame) : frame_(frame) {}
   /// Advects the fields. `tiles`: a flag for each owned tile, 0 where nothing is advected; null:
   /// all are. Collective.
-  void carry(std::vector<Passenger<dim>>& passengers, const std::vector<char>* tiles = nullptr);
+  void advect(std::vector<AdvectedField<dim>>& fields, const std::vector<char>* tiles = nullptr);
 
  private:
-  void begin(Passenger<dim>& passenger);
-  bool carry_rows(std::vector<Passenger<dim>>& passengers, int tile);
-  void carry_singles(Passenger<dim>& passenger, int tile);
+  void begin(AdvectedField<dim>& advected);
+  bool advect_strips(std::vector<AdvectedField<dim>>& fields, int tile);
+  void advect_samples(AdvectedField<dim>& advected, int tile);
   /// Advects the samples near surfaces; `by_rows`: all have been advected as if there were none.
-  void carry_near_surfaces(std::vector<Passenger<dim>>& passengers, int tile, bool by_rows);
+  void advect_near_surfaces(std::vector<AdvectedField<dim>>& fields, int tile, bool by_rows);
   /// Returns the ray from a sample; `by_rows`: the one that advection by strips used.
-  Ray<dim> trace(const Passenger<dim>& passenger, int id, const Point<dim>& x, double direction,
+  Ray<dim> trace(const AdvectedField<dim>& advected, int id, const Point<dim>& x, double direction,
                  bool cubic, bool by_rows) const;
   /// True for samples of a tile advected by strips that are far from all surfaces.
-  bool is_far(const Passenger<dim>& passenger, int id, const Point<dim>& x) const;
+  bool is_far(const AdvectedField<dim>& advected, int id, const Point<dim>& x) const;
   /// Advects one sample; `wide`: by cubics.
-  void carry_single(Passenger<dim>& passenger, int id, const Point<dim>& x, bool wide);
-  void carry_with_care(Passenger<dim>& passenger, int id, const Point<dim>& x, bool by_rows);
-  void carry_seeing(Passenger<dim>& passenger, int id, const Point<dim>& x);
+  void advect_sample(AdvectedField<dim>& advected, int id, const Point<dim>& x, bool wide);
+  void advect_beside_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x, bool by_rows);
+  void advect_near_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x);
   /// Advects a partly open face whose centre a solid holds or passes: it keeps its own value and
   /// takes the change where its fluid is. Returns false if it is no such face.
-  bool carry_open_part(Passenger<dim>& passenger, int id, const Point<dim>& x);
+  bool advect_open_part(AdvectedField<dim>& advected, int id, const Point<dim>& x);
   /// Corrects by half of the error that semi-Lagrangian advection there and back again shows
   /// (MacCormack).
-  void correct(std::vector<Passenger<dim>>& passengers);
-  bool correct_rows(std::vector<Passenger<dim>>& passengers,
+  void correct(std::vector<AdvectedField<dim>>& fields);
+  bool correct_rows(std::vector<AdvectedField<dim>>& fields,
                     const std::vector<const double*>& carried, int tile);
-  void correct_single(Passenger<dim>& passenger, const double* carried, int id,
+  void correct_single(AdvectedField<dim>& advected, const double* carried, int id,
                       const Point<dim>& x) const;
 
   /// True if transport advects a sample; if not, `has_value` says whether it has a value
@@ -81,7 +81,7 @@ class FieldCarrier {
   /// True if these are free faces, all advected.
   bool all_free(SampleKind kind, int first, int n) const;
   /// Leaves a sample as it was.
-  void keep(Passenger<dim>& passenger, int id, bool has_value) const;
+  void keep(AdvectedField<dim>& advected, int id, bool has_value) const;
 
   TransportFrame<dim>& frame_;
 };
