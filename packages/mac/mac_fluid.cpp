@@ -10,7 +10,7 @@
 #include "mac/pressure/extended_pressure.hpp"
 #include "mac/pressure/pressure_system.hpp"
 #include "staggered/state/face_moments.hpp"
-#include "transport/revalidation.hpp"
+#include "transport/uncovered_samples.hpp"
 
 namespace lockstep {
 
@@ -328,14 +328,14 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
 }
 
 template <int dim>
-void MacFluid<dim>::revalidate(const MovingSurface<dim>& surface) {
+void MacFluid<dim>::populate_uncovered(const MovingSurface<dim>& surface) {
   const GridState<dim>& state = flow_.geometry.state;
   if (state.surface) {
     const MacDomain<dim>& domain = flow_.domain;
-    revalidate_faces<dim>(domain.grid, domain.halo, state, surface, flow_.nearby, invalid_,
+    populate_uncovered_faces<dim>(domain.grid, domain.halo, state, surface, flow_.nearby, invalid_,
                           flow_.prediction);
     for (Scalar& scalar : flow_.scalars.all())
-      revalidate_scalar(domain.grid, domain.halo, state, surface, flow_.nearby, invalid_,
+      populate_uncovered_scalar(domain.grid, domain.halo, state, surface, flow_.nearby, invalid_,
                         scalar.ambient, scalar.values);
     invalid_ = {};
   }

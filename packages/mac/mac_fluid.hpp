@@ -45,7 +45,7 @@ class MacFluid : public FluidDiscretization<dim> {
   bool begin_advection_velocity(double dt) override;
   ForceImpulse<dim> add_forces(double time, double dt) override;
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;
-  void revalidate(const MovingSurface<dim>& surface) override;
+  void populate_uncovered(const MovingSurface<dim>& surface) override;
   RCP<Vector> last_scaled_pressure() const override;
   void correct_pressure(const Vector& inflow) override;
   void accept() override;

@@ -184,7 +184,7 @@ class FluidDiscretization : public PlugIn {
   virtual void advect(double time, double dt, const MovingSurface<dim>& surface) = 0;
   /// Gives values to samples that a surface swept over or uncovered, from visible neighbours.
   /// Called after `set_geometry` of the new surfaces. Default: nothing is stored there.
-  virtual void revalidate(const MovingSurface<dim>&) {}
+  virtual void populate_uncovered(const MovingSurface<dim>&) {}
   virtual void accept() = 0;  ///< u^n := u* (end of the step)
 
   // Scales and properties that the step and the solids need to know.

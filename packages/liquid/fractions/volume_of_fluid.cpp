@@ -10,7 +10,7 @@
 #include "liquid/fractions/fraction_solids.hpp"
 #include "output/checkpoint.hpp"
 #include "staggered/state/stored_fields.hpp"
-#include "transport/revalidation.hpp"
+#include "transport/uncovered_samples.hpp"
 
 namespace lockstep {
 
@@ -183,7 +183,7 @@ bool VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
     fractions_.owed[cell] += liquid[cell] * (part_before - fractions_.open_part(cell));
   });
   const CellField kept = liquid;
-  revalidate_scalar(domain_.grid, domain_.halo, solids_.state, step.surface, step.kept, invalid, 0,
+  populate_uncovered_scalar(domain_.grid, domain_.halo, solids_.state, step.surface, step.kept, invalid, 0,
                     liquid);
   domain_.grid.for_each_owned_cell([&](int cell) {
     fractions_.owed[cell] += (kept[cell] - liquid[cell]) * fractions_.open_part(cell);

@@ -14,7 +14,7 @@
 #include "liquid/particles/particle_storage.hpp"
 #include "output/checkpoint.hpp"
 #include "staggered/state/stored_fields.hpp"
-#include "transport/revalidation.hpp"
+#include "transport/uncovered_samples.hpp"
 #include "transport/transport.hpp"
 
 namespace lockstep {
@@ -132,7 +132,7 @@ double LevelSet<dim>::advect(const InterfaceStep<dim>& step) {
   const bool had_solids = solids_.state.surface != nullptr;
   const auto replaced = find_solids(step.surface.after);
   if (had_solids || solids_.state.surface)
-    revalidate_scalar(grid, domain_.halo, solids_.state, step.surface, step.kept,
+    populate_uncovered_scalar(grid, domain_.halo, solids_.state, step.surface, step.kept,
                       transport.invalid(), grid.spacing(), phi_);
   domain_.halo.fill(phi_);
   if (moved_ >= negligible_motion)

@@ -3,7 +3,7 @@
 namespace lockstep {
 
 namespace {
-/// Revalidation looks from its own faces at the neighbours, which may be other ranks'.
+/// UncoveredSamples looks from its own faces at the neighbours, which may be other ranks'.
 template <int dim>
 void share_open_centers(const MacDomain<dim>& domain, int axis, GridState<dim>& state) {
   const TiledGrid<dim>& grid = domain.grid;

@@ -85,7 +85,7 @@ void add_momentum(Columns<HistoryRow<dim>>& columns) {
                   "pressure and friction of walls and sides",
                   [](const Row& row) { return row.report.boundary_impulse.linear; });
   add_vector<dim>(columns, "transport_change_", "kg m/s",
-                  "advection, revalidation, occlusion resets, change of lumped masses",
+                  "advection, uncovered, occlusion resets, change of lumped masses",
                   [](const Row& row) { return row.report.transport_change.linear; });
   add_rotation<dim>(columns, "lever_impulse_", "kg m^2/s",
                     "soft solids take forces at their nodes, fluid gives them at its faces",

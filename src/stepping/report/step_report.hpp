@@ -25,7 +25,7 @@ struct StepReport {
   MomentumLedger<dim> ledger;
   double momentum_error = 0, angular_momentum_error = 0;
   Momentum<dim> fluid_momentum, solid_momentum, boundary_impulse;
-  /// What advection, revalidation, occlusion resets and the change of lumped masses did to the
+  /// What advection, uncovered, occlusion resets and the change of lumped masses did to the
   /// momentum.
   Momentum<dim> transport_change;
   /// Numerical torques over dt, see AuditedCoupling::lever_impulse and

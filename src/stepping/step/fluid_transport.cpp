@@ -72,7 +72,7 @@ void FluidTransport<dim>::carry(const StepTime& step) {
     if (!stays || fluid.geometry_changes())
       freeze(after);
   }
-  fluid.revalidate(moving);
+  fluid.populate_uncovered(moving);
   reset_unseen_faces();
 }
 

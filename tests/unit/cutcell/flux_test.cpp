@@ -369,7 +369,7 @@ TEST(Flux, PartlyOpenFacesKeepTheVelocityOfTheirFluid) {
                                [](const SurfacePoint<2>&) { return Point<2>(0, 0); }};
   fluid.advect(0, 1e-5, still);
   fluid.set_geometry(c.surface, c.coupling);
-  fluid.revalidate(still);
+  fluid.populate_uncovered(still);
   GlobalIndex n_inside = 0;
   const std::vector<double> velocity = fluid.coupled_velocity();
   for (std::size_t f = 0; f < velocity.size(); ++f) {
@@ -399,7 +399,7 @@ TEST(Flux, JetsInPartlyOpenFacesDoNotLast) {
                                [](const SurfacePoint<2>&) { return Point<2>(0, 0); }};
   fluid.advect(0, 0.25, still);  // 0.23 m/s: 0.9 cells
   fluid.set_geometry(c.surface, c.coupling);
-  fluid.revalidate(still);
+  fluid.populate_uncovered(still);
   const std::vector<double> velocity = fluid.coupled_velocity();
   for (std::size_t f = 0; f < velocity.size(); ++f) {
     const ControlVolume<2>& volume = fluid.coupled_volumes()[f];

@@ -258,7 +258,7 @@ TEST(Fluid, TheFlowThatCarriesFollowsRampsAndNoJumps) {
       }
     });
     fluid->advect(time, dt, no_surface<2>());
-    fluid->revalidate(no_surface<2>());
+    fluid->populate_uncovered(no_surface<2>());
     fluid->add_forces(time, dt);
     make_divergence_free(*fluid);
     fluid->accept();

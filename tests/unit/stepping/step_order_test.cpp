@@ -78,7 +78,7 @@ TEST(StepOrder, IsThatOfSection7) {
                             "solids: limit over 0.5", "contact: positions over 0.5",
                             "solids: move over 0.5",                                        // S1
                             "fluid: u* to advect over 0.5", "solve: F2", "fluid: project",  // F2
-                            "fluid: advect over 0.5", "fluid: geometry", "fluid: revalidate",
+                            "fluid: advect over 0.5", "fluid: geometry", "fluid: populate_uncovered",
                             "fluid: forces over 0.5",  // F3
                             "solids: forces over 0.5", "contact: velocities over 0.5",
                             "solve: S2",                                       // S2
@@ -92,7 +92,7 @@ TEST(StepOrder, FluidAloneTakesOneSolve) {
   EXPECT_EQ(count(recorded.step(), "solve: F2"), 1);  // u^0 may have a divergence
   EXPECT_THAT(recorded.step(),
               ElementsAre("contact: step from 3.5", "fluid: u* to advect over 0.5",
-                          "fluid: advect over 0.5", "fluid: revalidate", "fluid: forces over 0.5",
+                          "fluid: advect over 0.5", "fluid: populate_uncovered", "fluid: forces over 0.5",
                           "solve: S2", "fluid: project", "fluid: u = u*"));
 }
 

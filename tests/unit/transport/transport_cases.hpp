@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "support/world.hpp"
-#include "transport/revalidation.hpp"
+#include "transport/uncovered_samples.hpp"
 #include "transport/transport.hpp"
 
 namespace lockstep::test {

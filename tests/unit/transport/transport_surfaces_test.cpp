@@ -44,16 +44,16 @@ void move(FullTank<dim>& tank, std::shared_ptr<const SurfaceSnapshot<dim>> befor
   };
 }
 
-/// One step of a scalar: carried, then revalidated in the geometry after it.
+/// One step of a scalar: carried, then populated in the geometry after it.
 template <int dim>
-RevalidationReport step(FullTank<dim>& tank, AdvectionScheme scheme, double dt, CellField& s) {
+UncoveredReport step(FullTank<dim>& tank, AdvectionScheme scheme, double dt, CellField& s) {
   Transport<dim> transport(tank.setting(dt));
   CellField next;
   transport.advect_scalar(scheme, s, {}, next);
   s.swap(next);
   GridState<dim> after = tank.state;
   after.surface = tank.surface.after;
-  return revalidate_scalar<dim>(tank.grid, tank.halo, after, tank.surface, tank.kept,
+  return populate_uncovered_scalar<dim>(tank.grid, tank.halo, after, tank.surface, tank.kept,
                                 transport.invalid(), 0, s);
 }
 
@@ -194,7 +194,7 @@ void expect_stream_undisturbed(double cfl) {
   state_after.surface = after;
   for (int a = 0; a < dim; ++a)
     std::fill(state_after.faces[a].begin(), state_after.faces[a].end(), FaceState::free);
-  const auto report = revalidate_faces<dim>(tank.grid, tank.halo, state_after, tank.surface,
+  const auto report = populate_uncovered_faces<dim>(tank.grid, tank.halo, state_after, tank.surface,
                                             tank.kept, transport.invalid(), u);
   EXPECT_GT(report.n_invalid, 10);
   for (int a = 0; a < dim; ++a)
@@ -285,7 +285,7 @@ TEST(TransportNearSurfaces, LeftOverFacesTakeTheSurfaceVelocity) {
   transport.advect_faces(AdvectionScheme::semi_lagrangian, u, moved);
   GridState<2> after = tank.state;
   after.surface = tank.surface.after;
-  const auto report = revalidate_faces<2>(tank.grid, tank.halo, after, tank.surface, tank.kept,
+  const auto report = populate_uncovered_faces<2>(tank.grid, tank.halo, after, tank.surface, tank.kept,
                                           transport.invalid(), moved);
   EXPECT_EQ(report.n_left_over, 1);
   EXPECT_EQ(report.n_invalid, 2);

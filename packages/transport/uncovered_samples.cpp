@@ -1,4 +1,4 @@
-#include "transport/revalidation.hpp"
+#include "transport/uncovered_samples.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,8 +50,8 @@ class Fronts {
     halo.fill(valid_);
   }
 
-  RevalidationReport fill(CellField& values) {
-    RevalidationReport report;
+  UncoveredReport fill(CellField& values) {
+    UncoveredReport report;
     report.n_invalid = sum_all(grid_.comm(), static_cast<GlobalIndex>(waiting_.size()));
     halo_.fill(values);
     GlobalIndex n_left = report.n_invalid;
@@ -197,15 +197,15 @@ class Fronts {
 }  // namespace
 
 template <int dim>
-RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
+UncoveredReport populate_uncovered_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                     const GridState<dim>& after, const MovingSurface<dim>& surface,
                                     KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
                                     FaceField<dim>& u) {
-  RevalidationReport total;
+  UncoveredReport total;
   const auto nearby = kept.of(after.surface, grid, sight);
   for (int a = 0; a < dim; ++a) {
     Fronts<dim> fronts(grid, halo, after, surface, *nearby, a, invalid.faces[a]);
-    const RevalidationReport report = fronts.fill(u[a]);
+    const UncoveredReport report = fronts.fill(u[a]);
     for (const auto& sample : fronts.left_over())
       u[a][sample.id] = fronts.surface_velocity(sample.id);
     if (report.n_left_over > 0)
@@ -218,13 +218,13 @@ RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchan
 }
 
 template <int dim>
-RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
+UncoveredReport populate_uncovered_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                      const GridState<dim>& after, const MovingSurface<dim>& surface,
                                      KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
                                      double ambient, CellField& s) {
   const auto nearby = kept.of(after.surface, grid, sight);
   Fronts<dim> fronts(grid, halo, after, surface, *nearby, cell_centers, invalid.cells);
-  const RevalidationReport report = fronts.fill(s);
+  const UncoveredReport report = fronts.fill(s);
   for (const auto& sample : fronts.left_over())
     s[sample.id] = ambient;
   if (report.n_left_over > 0)
@@ -232,19 +232,19 @@ RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExcha
   return report;
 }
 
-template RevalidationReport revalidate_faces<2>(const TiledGrid<2>&, const HaloExchange<2>&,
+template UncoveredReport populate_uncovered_faces<2>(const TiledGrid<2>&, const HaloExchange<2>&,
                                                 const GridState<2>&, const MovingSurface<2>&,
                                                 KeptSurface<2>&, const InvalidSamples<2>&,
                                                 FaceField<2>&);
-template RevalidationReport revalidate_faces<3>(const TiledGrid<3>&, const HaloExchange<3>&,
+template UncoveredReport populate_uncovered_faces<3>(const TiledGrid<3>&, const HaloExchange<3>&,
                                                 const GridState<3>&, const MovingSurface<3>&,
                                                 KeptSurface<3>&, const InvalidSamples<3>&,
                                                 FaceField<3>&);
-template RevalidationReport revalidate_scalar<2>(const TiledGrid<2>&, const HaloExchange<2>&,
+template UncoveredReport populate_uncovered_scalar<2>(const TiledGrid<2>&, const HaloExchange<2>&,
                                                  const GridState<2>&, const MovingSurface<2>&,
                                                  KeptSurface<2>&, const InvalidSamples<2>&, double,
                                                  CellField&);
-template RevalidationReport revalidate_scalar<3>(const TiledGrid<3>&, const HaloExchange<3>&,
+template UncoveredReport populate_uncovered_scalar<3>(const TiledGrid<3>&, const HaloExchange<3>&,
                                                  const GridState<3>&, const MovingSurface<3>&,
                                                  KeptSurface<3>&, const InvalidSamples<3>&, double,
                                                  CellField&);

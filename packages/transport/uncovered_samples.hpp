@@ -6,7 +6,7 @@
 namespace lockstep {
 
 /// Result of populating uncovered cells, over all ranks.
-struct RevalidationReport {
+struct UncoveredReport {
   GlobalIndex n_invalid = 0;  ///< samples in the fluid that had no value
   GlobalIndex n_left_over =
       0;             ///< invalid samples without a valid one in sight, directly or over others
@@ -19,13 +19,13 @@ struct RevalidationReport {
 /// three cells, or zero. `halo` has width 1 or more; ghost values of u are set on return.
 /// Collective.
 template <int dim>
-RevalidationReport revalidate_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
+UncoveredReport populate_uncovered_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                     const GridState<dim>& after, const MovingSurface<dim>& surface,
                                     KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
                                     FaceField<dim>& u);
 /// Populates the invalid cells of a scalar; those left over get `ambient`.
 template <int dim>
-RevalidationReport revalidate_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
+UncoveredReport populate_uncovered_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
                                      const GridState<dim>& after, const MovingSurface<dim>& surface,
                                      KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
                                      double ambient, CellField& s);
