@@ -55,7 +55,7 @@ class PressureLayoutOf final : public PressureLayout {
     if (has_schur_inverse() && !schur_depends_on_solid_block_)
       return;
     const auto schur = schur_stencil(system, solid_inverse, empty_rows_);
-    schur_depends_on_solid_block_ = !system.soft_nodes.empty();
+    schur_depends_on_solid_block_ = !system.near_null_space.empty();
     if (!schur) {
       schur_multigrid_.reset();
       of_schur_ = own_;

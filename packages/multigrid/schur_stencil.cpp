@@ -24,8 +24,8 @@ RCP<const Vector> flow_from_even_pressure(const BlockSystem& system,
   coupling.apply(*pressure, force);
   {
     const auto values = force.getDataNonConst();
-    for (std::size_t row = 0; row < system.soft_nodes.body_of_row.size(); ++row) {
-      if (system.soft_nodes.body_of_row[row] < 0)
+    for (std::size_t row = 0; row < system.near_null_space.body_of_row.size(); ++row) {
+      if (system.near_null_space.body_of_row[row] < 0)
         values[row] = 0;
     }
   }
@@ -69,7 +69,7 @@ std::optional<std::vector<float>> reaction_of_solids(const BlockSystem& system,
 std::optional<FaceCoefficients> schur_stencil(const BlockSystem& system,
                                               const LinearOperator& solid_inverse,
                                               const std::vector<int>& empty_rows) {
-  if (!system.has_solid() || system.soft_nodes.empty())
+  if (!system.has_solid() || system.near_null_space.empty())
     return {};
   std::optional<FaceCoefficients> result = conducting_through_sheets(system, empty_rows);
   auto reaction = reaction_of_solids(system, solid_inverse, empty_rows);

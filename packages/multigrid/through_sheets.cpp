@@ -11,7 +11,7 @@
 
 #include "linear/matrix_rows.hpp"
 #include "linear/overlap.hpp"
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 #include "multigrid/lattice_layout.hpp"
 
 namespace lockstep {
@@ -72,7 +72,7 @@ RCP<Vector> cell_numbers(const FaceCoefficients& coefficients, const std::vector
 }
 
 /// The axis that a node's row of C belongs to; -1: no node's.
-std::vector<int> axes_of_rows(const SoftNodes& space) {
+std::vector<int> axes_of_rows(const NearNullSpace& space) {
   std::vector<int> axes(space.body_of_row.size(), -1);
   for (int axis = 0; axis < space.n_axes(); ++axis) {
     const auto translation = space.motions->getData(axis);
@@ -167,14 +167,14 @@ std::vector<std::vector<Touched>> touched_cells(const CrsMatrix& coupling,
 MultiVector conductances(const BlockSystem& system, const Vector& numbers,
                          const std::array<int, 3>& n_cells) {
   const CrsMatrix& coupling = *system.coupling_transposed();
-  const std::vector<int> axes = axes_of_rows(system.soft_nodes);
+  const std::vector<int> axes = axes_of_rows(system.near_null_space);
   std::vector<std::vector<Touched>> rows = touched_cells(coupling, axes, numbers, n_cells);
   const auto solid_block = assembled(system.solid_block());
   SoftestDirections softest(*solid_block, axes);
-  const auto masses = system.soft_nodes.mass->getData();
-  MultiVector result(coupling.getColMap(), system.soft_nodes.n_axes());
+  const auto masses = system.near_null_space.mass->getData();
+  MultiVector result(coupling.getColMap(), system.near_null_space.n_axes());
   std::vector<Teuchos::ArrayRCP<double>> by_axis;
-  for (int axis = 0; axis < system.soft_nodes.n_axes(); ++axis)
+  for (int axis = 0; axis < system.near_null_space.n_axes(); ++axis)
     by_axis.push_back(result.getDataNonConst(axis));
   for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
     if (rows[row].empty() || !(masses[row] > 0))
@@ -195,7 +195,7 @@ MultiVector conductances(const BlockSystem& system, const Vector& numbers,
 
 std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& system,
                                                           const std::vector<int>& empty_rows) {
-  if (!system.has_solid() || system.soft_nodes.empty() || assembled(system.solid_block()).is_null())
+  if (!system.has_solid() || system.near_null_space.empty() || assembled(system.solid_block()).is_null())
     return {};
   const FaceCoefficients& a = *stencil_of(system.pressure_block());
   const CrsMatrix& coupling = *system.coupling_transposed();

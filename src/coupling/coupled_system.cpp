@@ -34,7 +34,7 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   ++blocks_.solids.stamp;
   blocks_.set_blocks(fluid_.pressure_block());
   blocks_.solids.blocks = solids_.blocks();
-  blocks_.soft_nodes = solids_.soft_nodes(coupling_.added_mass());
+  blocks_.near_null_space = solids_.near_null_space(coupling_.added_mass());
   blocks_.null_space = null_spaces.coupled;
   blocks_.pressure_null_space = null_spaces.pressure;
 

@@ -75,9 +75,9 @@ RCP<const CrsMatrix> SolidSystem<dim>::lumped_block() const {
 }
 
 template <int dim>
-SoftNodes SolidSystem<dim>::soft_nodes(const RCP<const CrsMatrix>& added) const {
+NearNullSpace SolidSystem<dim>::near_null_space(const RCP<const CrsMatrix>& added) const {
   constexpr int n_motions = dim + n_rotations<dim>;
-  SoftNodes all;
+  NearNullSpace all;
   RCP<MultiVector> motions;
   for (int m = 0; m < n_models(); ++m) {
     const auto* known = side<NearNullSpaces<dim>>(m);
@@ -149,7 +149,7 @@ template RCP<const LinearOperator> SolidSystem<2>::solid_block(const RCP<const C
 template RCP<const LinearOperator> SolidSystem<2>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
 template RCP<const CrsMatrix> SolidSystem<2>::lumped_block() const;
-template SoftNodes SolidSystem<2>::soft_nodes(const RCP<const CrsMatrix>&) const;
+template NearNullSpace SolidSystem<2>::near_null_space(const RCP<const CrsMatrix>&) const;
 template RCP<const LinearOperator> SolidSystem<2>::mass_inverse() const;
 template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&,
                                                  const LinearOperator&) const;
@@ -159,7 +159,7 @@ template RCP<const LinearOperator> SolidSystem<3>::solid_block(const RCP<const C
 template RCP<const LinearOperator> SolidSystem<3>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
 template RCP<const CrsMatrix> SolidSystem<3>::lumped_block() const;
-template SoftNodes SolidSystem<3>::soft_nodes(const RCP<const CrsMatrix>&) const;
+template NearNullSpace SolidSystem<3>::near_null_space(const RCP<const CrsMatrix>&) const;
 template RCP<const LinearOperator> SolidSystem<3>::mass_inverse() const;
 template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&,
                                                  const LinearOperator&) const;

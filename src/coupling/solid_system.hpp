@@ -71,7 +71,7 @@ class SolidSystem {
   /// The models' dofs in vectors of this rank, by the models' names.
   std::vector<Block> blocks() const;
   /// The models' rigid motions on `map`, with the masses M_S + added. Collective.
-  SoftNodes soft_nodes(const RCP<const CrsMatrix>& added) const;
+  NearNullSpace near_null_space(const RCP<const CrsMatrix>& added) const;
   /// Velocity of the solids without fluid: V = P y + b with P^T (M_S - dt D) V = P^T q for a
   /// stacked momentum q. `inverse`: of `solid_block` without added mass. Collective.
   RCP<Vector> velocity_of(const Vector& momentum, double dt, const Reduction& constraints,

@@ -140,7 +140,7 @@ struct ViscousPreconditioner {
 
 template <int dim>
 ViscousPreconditioner make_preconditioner(const ViscousOperator<dim>& op,
-                                          const SoftNodes& soft_nodes,
+                                          const NearNullSpace& near_null_space,
                                           const ViscousOptions& options) {
   ViscousPreconditioner result{op.rows, inverse_diagonal<dim>(op), Teuchos::null, Teuchos::null};
   if (options.fluid_inverse.numParams() > 0)
@@ -152,8 +152,8 @@ ViscousPreconditioner make_preconditioner(const ViscousOperator<dim>& op,
     return result;
   result.solid =
       options.solid_inverse.numParams() > 0
-          ? preconditioner_from_list(op.solid_block, options.solid_inverse, name, soft_nodes)
-          : inverse_if_stiff(op.solid_block, soft_nodes, name);
+          ? preconditioner_from_list(op.solid_block, options.solid_inverse, name, near_null_space)
+          : inverse_if_stiff(op.solid_block, near_null_space, name);
   return result;
 }
 
@@ -238,7 +238,7 @@ template <int dim>
 ViscousResult<dim> solve_viscous(
     const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid, const SolidSystem<dim>& solids,
     const ViscousCoupling<dim>& coupling, const RCP<const LinearOperator>& solid_block,
-    const SoftNodes& soft_nodes, const RCP<const Vector>& lumped_momentum, double dt,
+    const NearNullSpace& near_null_space, const RCP<const Vector>& lumped_momentum, double dt,
     const Reduction& constraints, const ViscousOptions& options, bool with_dissipation) {
   // Where the solve is for surface tension alone, nothing ties solids to it.
   const bool with_solids =
@@ -272,7 +272,7 @@ ViscousResult<dim> solve_viscous(
   }
   ViscousResult<dim> result;
   result.iterations =
-      solve_from_guess<dim>(op, make_preconditioner<dim>(op, soft_nodes, options), rhs, x, options);
+      solve_from_guess<dim>(op, make_preconditioner<dim>(op, near_null_space, options), rhs, x, options);
 
   const RCP<const Vector> fluid_velocity = op.rows.fluid_of(std::as_const(x));
   if (with_solids) {
@@ -312,12 +312,12 @@ ViscousResult<dim> solve_viscous(
 
 template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, ViscousFluid<2>&,
                                            const SolidSystem<2>&, const ViscousCoupling<2>&,
-                                           const RCP<const LinearOperator>&, const SoftNodes&,
+                                           const RCP<const LinearOperator>&, const NearNullSpace&,
                                            const RCP<const Vector>&, double, const Reduction&,
                                            const ViscousOptions&, bool);
 template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, ViscousFluid<3>&,
                                            const SolidSystem<3>&, const ViscousCoupling<3>&,
-                                           const RCP<const LinearOperator>&, const SoftNodes&,
+                                           const RCP<const LinearOperator>&, const NearNullSpace&,
                                            const RCP<const Vector>&, double, const Reduction&,
                                            const ViscousOptions&, bool);
 

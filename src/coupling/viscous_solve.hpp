@@ -32,7 +32,7 @@ template <int dim>
 ViscousResult<dim> solve_viscous(
     const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid, const SolidSystem<dim>& solids,
     const ViscousCoupling<dim>& coupling, const RCP<const LinearOperator>& solid_block,
-    const SoftNodes& soft_nodes, const RCP<const Vector>& lumped_momentum, double dt,
+    const NearNullSpace& near_null_space, const RCP<const Vector>& lumped_momentum, double dt,
     const Reduction& constraints, const ViscousOptions& options, bool with_dissipation = false);
 
 }  // namespace lockstep

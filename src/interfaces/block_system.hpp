@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "linear/null_space.hpp"
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace Thyra {
 template <typename Scalar>
@@ -52,7 +52,7 @@ class BlockSystem {
   bool has_solid() const { return !solid_block_.is_null(); }
 
   BlockGroup solids;     ///< the unknowns of C
-  SoftNodes soft_nodes;  ///< in the rows of C; empty without soft solids
+  NearNullSpace near_null_space;  ///< in the rows of C; empty without soft solids
   /// Orthonormal basis of the null space over (p̂, V_S = 0); empty for a regular system.
   NullSpace null_space;
   /// Null vectors of A alone (regions without a Dirichlet face), for preconditioners. Orthonormal.

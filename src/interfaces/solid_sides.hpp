@@ -1,6 +1,6 @@
 #pragma once
 #include "interfaces/solid.hpp"
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 #include "motion/rotation.hpp"
 
 namespace lockstep {

@@ -80,12 +80,12 @@ T value_or(const ParameterList& list, const std::string& name, T standard) {
 
 RCP<const LinearOperator> inner_iteration(const RCP<const LinearOperator>& op,
                                           const ParameterList& list, const std::string& name,
-                                          const SoftNodes& soft_nodes) {
+                                          const NearNullSpace& near_null_space) {
   const double tolerance = value_or(list, "Tolerance", 1e-10);
   const int most = value_or(list, "Maximum Iterations", 1000);
   if (!list.isSublist("Preconditioner"))
     return conjugate_gradient_inverse(op, tolerance, most, name);
-  const auto inner = preconditioner_from_list(op, list.sublist("Preconditioner"), name, soft_nodes);
+  const auto inner = preconditioner_from_list(op, list.sublist("Preconditioner"), name, near_null_space);
   return conjugate_gradient_inverse(op, {inner, Teuchos::null, tolerance, most, name, nullptr});
 }
 
@@ -159,13 +159,13 @@ void check_preconditioner_list(const ParameterList& list, const std::string& whe
 RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperator>& op,
                                                    const ParameterList& list,
                                                    const std::string& name,
-                                                   const SoftNodes& soft_nodes) {
+                                                   const NearNullSpace& near_null_space) {
   check_preconditioner_list(list, "the inverse of the " + name);
   const std::string type = type_of(list, name);
   if (type == "Exact")
     return exact_inverse(op, name);
   if (type == "Conjugate Gradients")
-    return inner_iteration(op, list, name, soft_nodes);
+    return inner_iteration(op, list, name, near_null_space);
   const auto matrix = assembled(op);
   check_solve(
       !matrix.is_null(),
@@ -179,18 +179,18 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
   if (type == "Jacobi")
     return as_operator(jacobi_inverse(*matrix, name));
   if (type == "Additive Multilevel")
-    return additive_multilevel_inverse(matrix, soft_nodes, name);
+    return additive_multilevel_inverse(matrix, near_null_space, name);
   if (type == "Block Diagonal")
     return as_operator(
         block_diagonal_inverse(matrix, value_or(list, "Largest Block", largest_dense_block), name)
             .inverse);
   if (type == "Block Diagonal Mass")
-    return block_diagonal_mass_inverse(matrix, soft_nodes, name);
+    return block_diagonal_mass_inverse(matrix, near_null_space, name);
   ParameterList package = without_type(list);
   if (type == "MueLu" && package.numParams() == 0)
     package = default_muelu();
-  if (type == "MueLu" && !soft_nodes.empty())
-    return rigid_motion_multigrid(matrix, soft_nodes, package, name);
+  if (type == "MueLu" && !near_null_space.empty())
+    return rigid_motion_multigrid(matrix, near_null_space, package, name);
   const auto inverse = stratimikos_preconditioner(as_operator(matrix), type, package, name);
   if (type != "MueLu")
     return inverse;
@@ -217,13 +217,13 @@ ParameterList inverse_list(const ParameterList& list, const std::string& name,
 }
 
 RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
-                                           const SoftNodes& soft_nodes, const std::string& name) {
+                                           const NearNullSpace& near_null_space, const std::string& name) {
   const auto matrix = assembled(op);
-  if (matrix.is_null() || !is_stiff(stiffness_number(*matrix, soft_nodes)))
+  if (matrix.is_null() || !is_stiff(stiffness_number(*matrix, near_null_space)))
     return Teuchos::null;
   ParameterList list;
   list.set("Type", "MueLu");
-  return InverseByCost(op, soft_nodes, name).with([&](const InverseByCost::Rest& rest) {
+  return InverseByCost(op, near_null_space, name).with([&](const InverseByCost::Rest& rest) {
     return preconditioner_from_list(rest.op, list, name, rest.motions);
   });
 }

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -16,7 +16,7 @@ namespace lockstep {
 ///                           incomplete_cholesky_inverse
 ///   "Direct"                gathered KLU2
 ///   "Block Diagonal"        exact inverses of small dense blocks ("Largest Block", 24)
-///   "Block Diagonal Mass"   the same of the mass in C = M̃ - dt D, see soft_nodes.hpp
+///   "Block Diagonal Mass"   the same of the mass in C = M̃ - dt D, see near_null_space.hpp
 ///   "Jacobi"                the diagonal
 ///   "Additive Multilevel"   the same on coarser and coarser aggregates of nodes besides, see
 ///                           additive_multilevel_inverse
@@ -28,12 +28,12 @@ namespace lockstep {
 RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperator>& op,
                                                    const Teuchos::ParameterList& list,
                                                    const std::string& name,
-                                                   const SoftNodes& soft_nodes = {});
+                                                   const NearNullSpace& near_null_space = {});
 
 /// For a soft solid's C in a larger system: an approximate inverse, direct or "MueLu", if dt D
 /// outweighs its mass (is_stiff), else null, and the diagonal will do. Collective.
 RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
-                                           const SoftNodes& soft_nodes, const std::string& name);
+                                           const NearNullSpace& near_null_space, const std::string& name);
 
 /// Throws InputError unless the list is one that preconditioner_from_list takes. `where` is for
 /// messages, and so are the types that the caller takes besides.

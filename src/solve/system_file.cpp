@@ -221,7 +221,7 @@ RCP<const CrsMatrix> read_solid_block(const Hdf5File& file, GlobalIndex n_stored
 
 const char* const soft_group = "/soft nodes";
 
-void write_soft_nodes(Hdf5File& file, const SoftNodes& nodes) {
+void write_near_null_space(Hdf5File& file, const NearNullSpace& nodes) {
   const MultiVector& motions = *nodes.motions;
   const int n_motions = static_cast<int>(motions.getNumVectors());
   const std::size_t n = motions.getLocalLength();
@@ -281,9 +281,9 @@ RCP<const Map> map_of_whole_nodes(const std::vector<long long>& bodies, int n_ax
   return make_map(n_local, comm);
 }
 
-SoftNodes read_soft_nodes(const Hdf5File& file, const std::vector<long long>& bodies,
+NearNullSpace read_near_null_space(const Hdf5File& file, const std::vector<long long>& bodies,
                           const RCP<const Map>& map) {
-  SoftNodes nodes;
+  NearNullSpace nodes;
   const std::string path = soft_group;
   const auto values = file.read_all<double>(path + "/motions");
   const auto masses = file.read_all<double>(path + "/mass");
@@ -363,7 +363,7 @@ StoredSystem read_parts(const Hdf5File& file) {
           : map_of_whole_nodes(
                 bodies, file.shape(std::string(soft_group) + "/motions")[1] == 3 ? 2 : 3, comm);
   if (!bodies.empty())
-    system.soft_nodes = read_soft_nodes(file, bodies, solids);
+    system.near_null_space = read_near_null_space(file, bodies, solids);
   system.set_blocks(pressure_block,
                     assemble_triplets(read_entries(file, "/B transposed", n_solid, n_pressure),
                                       solids, pressures),
@@ -394,8 +394,8 @@ void write_system(const std::string& path, const BlockSystem& system, const Bloc
     write_matrix(file, "/B transposed", *system.coupling_transposed());
     write_matrix(file, "/C", *solid);
     write_vector(file, "/solid rhs", *rhs.solid);
-    if (!system.soft_nodes.empty())
-      write_soft_nodes(file, system.soft_nodes);
+    if (!system.near_null_space.empty())
+      write_near_null_space(file, system.near_null_space);
   }
   file.close_with_checksum();
 }

@@ -225,7 +225,7 @@ void RefinedStrategy::relay(const BlockSystem& system) {
   // Another C on the same geometry.
   relaid.set_blocks(relaid.pressure_block(), relaid.coupling_transposed(), system.solid_block());
   relaid.solids = system.solids;
-  relaid.soft_nodes = system.soft_nodes;
+  relaid.near_null_space = system.near_null_space;
 }
 
 bool RefinedStrategy::is_ready(const BlockSystem& system) const {

@@ -111,7 +111,7 @@ SolidInverse::Iterated SolidInverse::prepared(const InverseByCost::Rest& rest) c
 }
 
 void SolidInverse::build_automatic(const BlockSystem& system) {
-  split_.emplace(system.solid_block(), system.soft_nodes, name_, &costly_);
+  split_.emplace(system.solid_block(), system.near_null_space, name_, &costly_);
   for (const InverseByCost::Rest& rest : split_->rests())
     iterated_.push_back(prepared(rest));
   if (!iterates())
@@ -140,14 +140,14 @@ const RCP<const LinearOperator>& SolidInverse::approximate() const {
 
 void SolidInverse::build_named(const BlockSystem& system) {
   const RCP<const LinearOperator>& c = system.solid_block();
-  approximate_ = preconditioner_from_list(c, list_, name_, system.soft_nodes);
+  approximate_ = preconditioner_from_list(c, list_, name_, system.near_null_space);
   if (type_ == "Direct") {
     exact_ = approximate_;
     return;
   }
   const auto preconditioner =
       type_ == "Conjugate Gradients"
-          ? preconditioner_from_list(c, of_inner_iteration(list_), name_, system.soft_nodes)
+          ? preconditioner_from_list(c, of_inner_iteration(list_), name_, system.near_null_space)
           : approximate_;
   iterated_.push_back({c, preconditioner, Teuchos::null, "", {}, 1});
 }

@@ -54,7 +54,7 @@ class SolidInverse {
     RCP<const LinearOperator> preconditioner;  ///< preconditioner of `op`; null: none
     RCP<const LinearOperator> rounded;         ///< it in single precision; null: not had
     std::string preconditioner_type;           ///< type that "Automatic" has chosen
-    SoftNodes motions;
+    NearNullSpace motions;
     double stiffness = 1;
   };
 

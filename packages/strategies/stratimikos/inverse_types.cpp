@@ -103,7 +103,7 @@ class SolidType : public InverseType {
                                inverses.system().name;
       if (list().isSublist("Inverse"))
         return preconditioner_from_list(block.op, list().sublist("Inverse"), name,
-                                        is_own ? inverses.system().soft_nodes : SoftNodes());
+                                        is_own ? inverses.system().near_null_space : NearNullSpace());
       if (!is_own)
         return exact_inverse(block.op, name);
       return is_exact ? inverses.solid().exact() : inverses.solid().approximate();

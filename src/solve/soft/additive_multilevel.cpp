@@ -17,7 +17,7 @@ namespace {
 /// Rows of a level that is solved exactly, which then takes less time than its messages.
 constexpr GlobalIndex few_rows = 300;
 
-RowsOfNodes nodes_of(const SoftNodes& space) {
+RowsOfNodes nodes_of(const NearNullSpace& space) {
   RowsOfNodes nodes{space.n_axes(), first_rows_of_nodes(space),
                     std::vector<int>(space.body_of_row.size(), -1)};
   for (std::size_t node = 0; node < nodes.first.size(); ++node) {
@@ -106,7 +106,7 @@ RCP<const LinearOperator> inverse_on_levels(const RCP<const CrsMatrix>& matrix,
 }  // namespace
 
 RCP<const LinearOperator> additive_multilevel_inverse(const RCP<const CrsMatrix>& c,
-                                                      const SoftNodes& space,
+                                                      const NearNullSpace& space,
                                                       const std::string& name) {
   if (space.empty())
     return as_operator(jacobi_inverse(*c, name));

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
@@ -14,7 +14,7 @@ namespace lockstep {
 /// `space`; aggregates do not cross ranks. Without nodes the diagonal alone. `name` is for
 /// messages. Throws SolveError if C is not positive definite. Collective.
 RCP<const LinearOperator> additive_multilevel_inverse(const RCP<const CrsMatrix>& c,
-                                                      const SoftNodes& space,
+                                                      const NearNullSpace& space,
                                                       const std::string& name);
 
 }  // namespace lockstep

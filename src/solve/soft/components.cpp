@@ -70,7 +70,7 @@ std::vector<GlobalIndex> occurrences(const std::vector<GlobalIndex>& ids,
 
 }  // namespace
 
-std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const SoftNodes& space) {
+std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const NearNullSpace& space) {
   const auto row_map = matrix.getRowMap();
   const auto column_map = matrix.getColMap();
   const std::vector<int> column_of = own_columns(matrix);

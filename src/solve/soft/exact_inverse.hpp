@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 

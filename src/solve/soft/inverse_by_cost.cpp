@@ -81,10 +81,10 @@ std::vector<GlobalIndex> large_components(const std::vector<RowComponent>& compo
 }
 
 /// With the bodies that it holds on any rank, numbered anew. Collective.
-SoftNodes restricted(const SoftNodes& all, const MatrixPart& part) {
+NearNullSpace restricted(const NearNullSpace& all, const MatrixPart& part) {
   if (all.empty())
     return all;
-  SoftNodes result;
+  NearNullSpace result;
   const auto motions = rcp(new MultiVector(part.map(), all.motions->getNumVectors()));
   for (std::size_t j = 0; j < motions->getNumVectors(); ++j)
     part.restrict_to(*all.motions->getVector(j), *motions->getVectorNonConst(j));
@@ -106,15 +106,15 @@ SoftNodes restricted(const SoftNodes& all, const MatrixPart& part) {
   return result;
 }
 
-InverseByCost::Rest rest_of(const std::shared_ptr<const MatrixPart>& part, const SoftNodes& space) {
-  const SoftNodes motions = restricted(space, *part);
+InverseByCost::Rest rest_of(const std::shared_ptr<const MatrixPart>& part, const NearNullSpace& space) {
+  const NearNullSpace motions = restricted(space, *part);
   return {as_operator(RCP<const CrsMatrix>(part->matrix())), motions,
           stiffness_number(*part->matrix(), motions), part};
 }
 
 }  // namespace
 
-InverseByCost::InverseByCost(const RCP<const LinearOperator>& op, const SoftNodes& space,
+InverseByCost::InverseByCost(const RCP<const LinearOperator>& op, const NearNullSpace& space,
                              const std::string& name, Costly* costly)
     : map_(domain_map(*op)), costly_(costly) {
   const auto matrix = assembled(op);
@@ -124,7 +124,7 @@ InverseByCost::InverseByCost(const RCP<const LinearOperator>& op, const SoftNode
     split(matrix, space, name);
 }
 
-void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const SoftNodes& space,
+void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space,
                           const std::string& name) {
   const Communicator comm = map_->getComm();
   const std::vector<RowComponent> components = components_of_rows(*matrix, space);
@@ -152,7 +152,7 @@ void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const SoftNodes& s
 }
 
 /// All of them at once: those whose factors are cheap, and the others as one rest.
-void InverseByCost::take_small(const CrsMatrix& matrix, const SoftNodes& space,
+void InverseByCost::take_small(const CrsMatrix& matrix, const NearNullSpace& space,
                                const std::vector<RowComponent>& components,
                                std::vector<bool> is_small, const std::string& name) {
   const auto part = std::make_shared<const MatrixPart>(matrix, is_small);
@@ -169,7 +169,7 @@ void InverseByCost::take_small(const CrsMatrix& matrix, const SoftNodes& space,
     rests_.push_back(rest_of(std::make_shared<const MatrixPart>(matrix, is_small), space));
 }
 
-void InverseByCost::take_large(const CrsMatrix& matrix, const SoftNodes& space,
+void InverseByCost::take_large(const CrsMatrix& matrix, const NearNullSpace& space,
                                const std::vector<bool>& rows, const std::string& name) {
   const Rest rest = rest_of(std::make_shared<const MatrixPart>(matrix, rows), space);
   const auto& part = rest.part;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "linear/matrix_part.hpp"
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
@@ -22,7 +22,7 @@ class InverseByCost {
   /// Rows left to an iteration.
   struct Rest {
     RCP<const LinearOperator> op;            ///< C on them, numbered anew
-    SoftNodes motions;                       ///< the rigid motions of bodies in them
+    NearNullSpace motions;                       ///< the rigid motions of bodies in them
     double stiffness = 1;                    ///< stiffness_number; 1 where C is matrix-free
     std::shared_ptr<const MatrixPart> part;  ///< null: all rows
   };
@@ -35,7 +35,7 @@ class InverseByCost {
   /// be slow. `name` is for messages. `costly`, if given, is kept from one C to the next, so that
   /// what costs too much is found out once. Throws SolveError if C is not positive definite.
   /// Collective.
-  InverseByCost(const RCP<const LinearOperator>& op, const SoftNodes& space,
+  InverseByCost(const RCP<const LinearOperator>& op, const NearNullSpace& space,
                 const std::string& name, Costly* costly = nullptr);
 
   /// Nothing is left.
@@ -45,11 +45,11 @@ class InverseByCost {
   RCP<const LinearOperator> with(const InverseOfRest& inverse_of_rest) const;
 
  private:
-  void split(const RCP<const CrsMatrix>& matrix, const SoftNodes& space, const std::string& name);
-  void take_small(const CrsMatrix& matrix, const SoftNodes& space,
+  void split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space, const std::string& name);
+  void take_small(const CrsMatrix& matrix, const NearNullSpace& space,
                   const std::vector<RowComponent>& components, std::vector<bool> is_small,
                   const std::string& name);
-  void take_large(const CrsMatrix& matrix, const SoftNodes& space, const std::vector<bool>& rows,
+  void take_large(const CrsMatrix& matrix, const NearNullSpace& space, const std::vector<bool>& rows,
                   const std::string& name);
 
   RCP<const Map> map_;

@@ -89,7 +89,7 @@ class DeflatedMotions {
 }  // namespace
 
 RCP<const LinearOperator> rigid_motion_multigrid(const RCP<const CrsMatrix>& c,
-                                                 const SoftNodes& space,
+                                                 const NearNullSpace& space,
                                                  const Teuchos::ParameterList& list,
                                                  const std::string& name) {
   std::vector<bool> is_node, is_other;

@@ -2,7 +2,7 @@
 #include <Teuchos_ParameterList.hpp>
 #include <string>
 
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
@@ -13,7 +13,7 @@ namespace lockstep {
 /// to MueLu. Symmetric positive definite for symmetric smoothers. Throws SolveError if MueLu fails.
 /// Collective.
 RCP<const LinearOperator> rigid_motion_multigrid(const RCP<const CrsMatrix>& c,
-                                                 const SoftNodes& space,
+                                                 const NearNullSpace& space,
                                                  const Teuchos::ParameterList& list,
                                                  const std::string& name);
 

@@ -123,7 +123,7 @@ RCP<const LinearOperator> copy_in_blocks(const RCP<const CrsMatrix>& matrix) {
 }
 
 /// Largest ratio C_ii / mass of the nodes' rows [1]. Collective.
-double largest_stiffness(const CrsMatrix& c, const SoftNodes& space) {
+double largest_stiffness(const CrsMatrix& c, const NearNullSpace& space) {
   const RCP<const Vector> diagonal = diagonal_of(c);
   const auto mass = space.mass->getData(), entry = diagonal->getData();
   double largest = 0;
@@ -137,7 +137,7 @@ double largest_stiffness(const CrsMatrix& c, const SoftNodes& space) {
 }  // namespace
 
 RCP<const LinearOperator> single_precision_copy(const RCP<const CrsMatrix>& c,
-                                                const SoftNodes& space) {
+                                                const NearNullSpace& space) {
   constexpr double most_stiffness = 1e4;
   if (space.empty() || largest_stiffness(*c, space) > most_stiffness)
     return Teuchos::null;

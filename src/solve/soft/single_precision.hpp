@@ -1,5 +1,5 @@
 #pragma once
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 
 namespace lockstep {
 
@@ -11,6 +11,6 @@ namespace lockstep {
 /// than 1e4, for rounding it would eat up what the mass does. Collective, and so is every
 /// application.
 RCP<const LinearOperator> single_precision_copy(const RCP<const CrsMatrix>& c,
-                                                const SoftNodes& space);
+                                                const NearNullSpace& space);
 
 }  // namespace lockstep

@@ -97,11 +97,11 @@ Friction<dim> Prediction<dim>::solve(const StepContext<dim>& context, const Expe
   const double dt = context.dt;
   const auto& fluid = *components_.fluid;
   RCP<const LinearOperator> block;
-  SoftNodes soft_nodes;
+  NearNullSpace near_null_space;
   if (components_.solids->has_unknowns()) {
     const BlockSystem& blocks = system_.blocks(dt);
     block = blocks.solid_block();
-    soft_nodes = blocks.soft_nodes;
+    near_null_space = blocks.near_null_space;
   }
   const RCP<Vector> row = solid_row(context, expected);
   if (!expected.of_fluid.is_null())
@@ -111,7 +111,7 @@ Friction<dim> Prediction<dim>::solve(const StepContext<dim>& context, const Expe
   friction.pressure_work = expected.work;
   friction.viscous = solve_viscous<dim>(
       *viscous, *sides_.viscous_fluid, *components_.solids, *sides_.viscous_coupling, block,
-      soft_nodes, row, dt, context.constraints, options_.viscous, !context.moves_positions);
+      near_null_space, row, dt, context.constraints, options_.viscous, !context.moves_positions);
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)
     friction.viscous_number =

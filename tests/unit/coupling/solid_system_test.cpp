@@ -122,7 +122,7 @@ TEST(SolidSystem, DoesWithoutSideInterfaces) {
   EXPECT_FALSE(solids.has_implicit_forces());
   EXPECT_FALSE(solids.linearise(0.1, *solids.velocity()));
   EXPECT_TRUE(solids.linearisation().is_null());
-  EXPECT_TRUE(solids.soft_nodes(Teuchos::null).empty());
+  EXPECT_TRUE(solids.near_null_space(Teuchos::null).empty());
   EXPECT_EQ(solids.n_clamped_elements(), 0);
 }
 

@@ -72,9 +72,9 @@ std::vector<ClosedFace> make_sheet(Problem<dim>& problem, int faces_per_node = 1
                             as_operator(RCP<const CrsMatrix>(matrix_from_rows(map, mass))));
   const auto motions = rcp(new MultiVector(map, dim == 2 ? 3 : 6));
   motions->getVectorNonConst(0)->putScalar(1);
-  problem.system.soft_nodes = {motions, std::vector<int>(n_nodes, 0), 1, Teuchos::null};
-  problem.system.soft_nodes.mass =
-      lumped_mass(*problem.system.solid_block(), problem.system.soft_nodes);
+  problem.system.near_null_space = {motions, std::vector<int>(n_nodes, 0), 1, Teuchos::null};
+  problem.system.near_null_space.mass =
+      lumped_mass(*problem.system.solid_block(), problem.system.near_null_space);
   return faces;
 }
 
@@ -185,7 +185,7 @@ TEST(SchurStencil, ASolidWithFluidOnOneSideYields) {
   EXPECT_LE(iterations_with(problem, *layout, layout->schur_inverse()), 13);
 
   // A rigid body is left to the Krylov method.
-  auto& bodies = problem.system.soft_nodes.body_of_row;
+  auto& bodies = problem.system.near_null_space.body_of_row;
   std::fill(bodies.begin(), bodies.end(), -1);
   EXPECT_FALSE(schur_stencil(problem.system, *solid_inverse(problem), {}).has_value());
 }

@@ -46,7 +46,7 @@ struct Nodes {
   }
 
   RCP<const CrsMatrix> c;
-  SoftNodes space;
+  NearNullSpace space;
 };
 
 }  // namespace

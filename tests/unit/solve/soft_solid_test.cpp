@@ -169,7 +169,7 @@ TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
   ASSERT_EQ(split.rests().size(), 1u);
   const auto rest = assembled(split.rests()[0].op);
   EXPECT_EQ(rest->getGlobalNumRows(), 2 * 160 * 160);
-  const SoftNodes& motions = split.rests()[0].motions;
+  const NearNullSpace& motions = split.rests()[0].motions;
   EXPECT_EQ(std::count(motions.body_of_row.begin(), motions.body_of_row.end(), -1), 0);
   EXPECT_NEAR(motions.mass->norm1(), 2 * 160 * 160, 1e-6);
   const auto inverse = split.with([](const InverseByCost::Rest& one) {
@@ -211,7 +211,7 @@ TEST(SoftSolid, LargePartsAreIteratedOnOneByOne) {
       rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
                   Teuchos::arrayViewFromVector(ids), 0, Tpetra::getDefaultComm()));
   const RCP<const CrsMatrix> both = sum_of({{one.c, 0, 1}, {other.c, n, 1}}, map);
-  SoftNodes space;
+  NearNullSpace space;
   space.n_bodies = 2;
   const auto motions = rcp(new MultiVector(map, 3));
   const auto mass = make_vector(map);

@@ -67,7 +67,7 @@ struct Lattice {
   }
 
   RCP<const CrsMatrix> c;
-  SoftNodes space;
+  NearNullSpace space;
 };
 
 inline Teuchos::ParameterList type(const std::string& name) {

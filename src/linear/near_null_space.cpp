@@ -1,4 +1,4 @@
-#include "linear/soft_nodes.hpp"
+#include "linear/near_null_space.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -14,7 +14,7 @@ namespace lockstep {
 namespace {
 
 /// Rows of a node that no other row is tied to are held, or feel no D.
-std::vector<bool> tied_rows(const CrsMatrix& c, const SoftNodes& space) {
+std::vector<bool> tied_rows(const CrsMatrix& c, const NearNullSpace& space) {
   std::vector<bool> tied(space.body_of_row.size(), false);
   const std::vector<int> own = own_columns(c);
   for (int row = 0; row < static_cast<int>(tied.size()); ++row) {
@@ -58,7 +58,7 @@ RCP<Vector> lumped_mass(const LinearOperator& mass, const RigidMotions& space) {
   return masses;
 }
 
-double stiffness_number(const CrsMatrix& c, const SoftNodes& space) {
+double stiffness_number(const CrsMatrix& c, const NearNullSpace& space) {
   if (space.empty())
     return 1;
   const std::vector<bool> tied = tied_rows(c, space);
@@ -81,7 +81,7 @@ bool is_stiff(double stiffness_number) {
 }
 
 RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>& c,
-                                                      const SoftNodes& space,
+                                                      const NearNullSpace& space,
                                                       const std::string& name) {
   if (space.empty())
     return as_operator(block_diagonal_inverse(c, largest_dense_block, name).inverse);

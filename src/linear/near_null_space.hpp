@@ -22,7 +22,7 @@ struct RigidMotions {
 
 /// Rigid motions and masses of the nodes of soft solids, of which inverses of C = M̃ - dt D make
 /// their near null space; the mass tells M̃ and dt D apart.
-struct SoftNodes : RigidMotions {
+struct NearNullSpace : RigidMotions {
   /// M̃ of the nodes' rows, lumped (`lumped_mass`); 1 in the rows of held nodes, as in C; other
   /// rows
   /// 0 [kg]. It cannot be computed from C, whose rows beside held nodes do not sum to M̃. Null: no
@@ -36,7 +36,7 @@ std::vector<int> first_rows_of_nodes(const RigidMotions& space);
 /// Ratio of stiffness to mass of the soft solids in this step: trace(C) / trace(M̃) over the nodes'
 /// rows that are not held. If none is held, it is the reciprocal of a Rayleigh quotient of
 /// diag(C)^-1 C, whose condition number it bounds from below. 1 where D = 0. Collective.
-double stiffness_number(const CrsMatrix& c, const SoftNodes& space);
+double stiffness_number(const CrsMatrix& c, const NearNullSpace& space);
 /// True if dt D outweighs M̃ so far that a multigrid cycle is worth its price, which is that of ten
 /// iterations with the diagonal: a stiffness number of 150 or more (measured on a ball of 8 000
 /// nodes, where both take as long at 200).
@@ -50,7 +50,7 @@ RCP<Vector> lumped_mass(const LinearOperator& mass, const RigidMotions& space);
 /// paper's block-diagonal mass, which knows nothing of D. Throws SolveError where a mass is not
 /// positive. Collective.
 RCP<const LinearOperator> block_diagonal_mass_inverse(const RCP<const CrsMatrix>& c,
-                                                      const SoftNodes& space,
+                                                      const NearNullSpace& space,
                                                       const std::string& name);
 
 }  // namespace lockstep
