@@ -240,7 +240,7 @@ void PressureLayout::from_layout(const Vector& layout, Vector& rows) const {
     to[row] = from[entry_of_row_[row]];
 }
 
-BlockSystem PressureLayout::relaid(const BlockSystem& system) const {
+BlockSystem PressureLayout::permuted(const BlockSystem& system) const {
   BlockSystem result = system;
   result.null_space = system.null_space.moved_to(map_, entry_of_row_);
   result.pressure_null_space = system.pressure_null_space.moved_to(map_, entry_of_row_);

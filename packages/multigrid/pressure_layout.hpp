@@ -26,7 +26,7 @@ class PressureLayout {
   static std::string why_not(const BlockSystem& system);
 
   /// The system with its pressures in this layout; other things shared. Collective.
-  BlockSystem relaid(const BlockSystem& system) const;
+  BlockSystem permuted(const BlockSystem& system) const;
   /// Reorders; the layout's other entries are set to zero.
   void to_layout(const Vector& rows, Vector& layout) const;
   void from_layout(const Vector& layout, Vector& rows) const;

@@ -217,20 +217,20 @@ BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
 }
 
 void RefinedStrategy::relay(const BlockSystem& system) {
-  BlockSystem& relaid = system.has_solid() ? relaid_ : relaid_pressure_;
-  if (relaid.op().is_null()) {
-    relaid = layout_->relaid(system);
+  BlockSystem& permuted = system.has_solid() ? permuted_ : permuted_pressure_;
+  if (permuted.op().is_null()) {
+    permuted = layout_->permuted(system);
     return;
   }
   // Another C on the same geometry.
-  relaid.set_blocks(relaid.pressure_block(), relaid.coupling_transposed(), system.solid_block());
-  relaid.solids = system.solids;
-  relaid.near_null_space = system.near_null_space;
+  permuted.set_blocks(permuted.pressure_block(), permuted.coupling_transposed(), system.solid_block());
+  permuted.solids = system.solids;
+  permuted.near_null_space = system.near_null_space;
 }
 
 bool RefinedStrategy::is_ready(const BlockSystem& system) const {
-  const bool is_relaid = !layout_ || !working(system).op().is_null();
-  return geometry_matches(system) && solid_matches(system) && is_relaid &&
+  const bool is_permuted = !layout_ || !working(system).op().is_null();
+  return geometry_matches(system) && solid_matches(system) && is_permuted &&
          (!has_pressures(system) || is_built_for(working(system)));
 }
 
@@ -245,7 +245,7 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
   is_prepared_ = false;
   if (geometry_changed) {
     solid_.reset();
-    relaid_ = relaid_pressure_ = {};
+    permuted_ = permuted_pressure_ = {};
     layout_ = has_pressures(system) ? layout_ : nullptr;
     if (pressure_list_ && has_pressures(system))
       build_pressure_inverse(system);

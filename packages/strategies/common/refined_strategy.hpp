@@ -104,7 +104,7 @@ class RefinedStrategy : public SolverStrategy {
 
   /// The system as `build` and `correct` see it.
   const BlockSystem& working(const BlockSystem& system) const {
-    return layout_ ? (system.has_solid() ? relaid_ : relaid_pressure_) : system;
+    return layout_ ? (system.has_solid() ? permuted_ : permuted_pressure_) : system;
   }
   void build_pressure_inverse(const BlockSystem& system);
   /// Updates the inverse for another C on the same geometry; returns true if it is another now.
@@ -127,7 +127,7 @@ class RefinedStrategy : public SolverStrategy {
   std::optional<Teuchos::ParameterList> pressure_list_;
   RCP<const LinearOperator> pressure_inverse_;
   std::shared_ptr<PressureLayout> layout_;  ///< null: pressures stay in the fluid's order
-  BlockSystem relaid_, relaid_pressure_;
+  BlockSystem permuted_, permuted_pressure_;
   double setup_seconds_ = 0;
   int n_builds_ = 0, n_reuses_ = 0;
 };

@@ -19,14 +19,14 @@ struct Solved {
 template <int dim>
 Solved solve(const Problem<dim>& problem, const MultigridOptions& options) {
   const auto layout = PressureLayout::make(problem.system, options, nullptr);
-  const BlockSystem relaid = layout->relaid(problem.system);
+  const BlockSystem permuted = layout->permuted(problem.system);
   const auto rhs = right_hand_side(problem);
   Vector b(layout->map()), x(layout->map());
   layout->to_layout(*rhs, b);
   ConjugateGradientsRequest request{"test", 1e-8 * rhs->norm2(), 100, {}};
   Solved result;
   result.n_iterations = conjugate_gradients(
-      [&](const Vector& u, Vector& v) { apply(*relaid.pressure_block(), u, v); },
+      [&](const Vector& u, Vector& v) { apply(*permuted.pressure_block(), u, v); },
       [&](const Vector& u, Vector& v) { apply(*layout->inverse(), u, v); }, b, x, request);
   Vector p(rhs->getMap()), residual(*rhs, Teuchos::Copy);
   layout->from_layout(x, p);

@@ -102,15 +102,15 @@ RCP<const LinearOperator> solid_inverse(const Problem<dim>& problem) {
 template <int dim>
 int iterations_with(const Problem<dim>& problem, const PressureLayout& layout,
                     const RCP<const LinearOperator>& preconditioner) {
-  const BlockSystem relaid = layout.relaid(problem.system);
-  const CrsMatrix& coupling = *relaid.coupling_transposed();
+  const BlockSystem permuted = layout.permuted(problem.system);
+  const CrsMatrix& coupling = *permuted.coupling_transposed();
   const auto inverse = solid_inverse(problem);
   Vector b(layout.map()), x(layout.map()), force(coupling.getRangeMap()), velocity(force.getMap());
   layout.to_layout(*right_hand_side(problem), b);
   const ConjugateGradientsRequest request{"test", 1e-8 * b.norm2(), 200, {}};
   return conjugate_gradients(
       [&](const Vector& u, Vector& v) {
-        apply(*relaid.pressure_block(), u, v);
+        apply(*permuted.pressure_block(), u, v);
         coupling.apply(u, force);
         apply(*inverse, force, velocity);
         coupling.apply(velocity, v, Teuchos::TRANS, 1, 1);
