@@ -100,7 +100,7 @@ void back_substitute(const BlockSystem& system, const BlockVector& rhs, const So
 }
 
 /// The norm of B C^-1, by a few steps of the power method.
-double gain(const CrsMatrix& coupling_transposed, const LinearOperator& solid_inverse) {
+double operator_norm(const CrsMatrix& coupling_transposed, const LinearOperator& solid_inverse) {
   constexpr int n_steps = 4;
   Vector force(coupling_transposed.getRangeMap()), velocity(force.getMap()), back(force.getMap());
   Vector pressure(coupling_transposed.getDomainMap());
@@ -200,15 +200,15 @@ bool RefinedStrategy::update_pressure_inverse(const BlockSystem& system) {
 BlockKrylovRequest RefinedStrategy::block_krylov(const BlockSystem& system,
                                                  const CorrectionRequest& request,
                                                  Presumes presumes) {
-  if (solid_gain_ < 0) {
+  if (solid_norm_ < 0) {
     // Set-up, which a restarted run does in another solve than the straight one.
     const int counted = solid_.take_iterations();
-    solid_gain_ = gain(*system.coupling_transposed(), *solid_.to(rough));
+    solid_norm_ = operator_norm(*system.coupling_transposed(), *solid_.to(rough));
     solid_.restart_count(counted);
   }
   // No residual can be asked below the round-off of row 2; the next correction takes the rest.
   const double solid_target = std::max(
-      solid_gain_ > 0 ? request.target / solid_gain_ : request.target, request.solid_round_off);
+      solid_norm_ > 0 ? request.target / solid_norm_ : request.target, request.solid_round_off);
   const double least = presumes == Presumes::symmetry && is_single_precision_
                            ? strongest_single_reduction * request.residual_norm
                            : 0;
@@ -255,7 +255,7 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
       (solid_changed && pressure_list_ && has_pressures(system) && update_pressure_inverse(system));
   if (solid_changed) {
     solid_.build(system);
-    solid_gain_ = -1;
+    solid_norm_ = -1;
   }
   if (layout_) {
     relay(system);

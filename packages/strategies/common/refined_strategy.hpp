@@ -123,7 +123,7 @@ class RefinedStrategy : public SolverStrategy {
   bool is_prepared_ = false;
   Prepared prepared_;
   SolidInverse solid_;
-  double solid_gain_ = -1;  ///< |B C^-1|; negative: not known yet
+  double solid_norm_ = -1;  ///< |B C^-1|; negative: not known yet
   std::optional<Teuchos::ParameterList> pressure_list_;
   RCP<const LinearOperator> pressure_inverse_;
   std::shared_ptr<PressureLayout> layout_;  ///< null: pressures stay in the fluid's order
