@@ -39,7 +39,7 @@ class SaddleProblem {
       system.set_blocks(a, coupling(), as_operator(solid_block()));
     else
       system.set_blocks(a);
-    system.geometry_stamp = system.solids.stamp = 1;
+    system.geometry_version = system.solids.version = 1;
     if (!options.open_top)
       add_null_vectors();
   }

@@ -75,15 +75,15 @@ void check_fluid_alone(SolverStrategy& strategy, const SaddleProblem& problem,
   expect_true(found, second.empty(), "solve: fails after the fluid alone" + where + ": " + second);
 }
 
-/// A second system of the same name: the strategy must see by the stamps that C is another.
-void check_stamps(SolverStrategy& strategy, SaddleProblem& problem, const std::string& where,
+/// A second system of the same name: the strategy must see by the versions that C is another.
+void check_versions(SolverStrategy& strategy, SaddleProblem& problem, const std::string& where,
                   Violations& found) {
   SaddleOptions heavier = problem.options();
   heavier.plate_mass *= 100;
   const SaddleProblem other(problem.comm(), heavier);
   problem.system.set_blocks(problem.system.pressure_block(), problem.system.coupling_transposed(),
                             other.system.solid_block());
-  problem.system.solids.stamp = 2;
+  problem.system.solids.version = 2;
   const BlockVector rhs = problem.random_rhs(), solution = problem.zero();
   BlockVector x = solution;
   const std::string refusal = refusal_of([&] {
@@ -92,7 +92,7 @@ void check_stamps(SolverStrategy& strategy, SaddleProblem& problem, const std::s
     check_solution(problem, rhs, x, report, where + ", another C", found);
   });
   expect_true(found, refusal.empty(),
-              "prepare: fails where C changed and its stamp says so" + where + ": " + refusal);
+              "prepare: fails where C changed and its version says so" + where + ": " + refusal);
   // A strategy that solves for another system than it is given may crash on vectors without solids.
   if (found.empty())
     check_fluid_alone(strategy, problem, where, found);
@@ -159,7 +159,7 @@ void check_system(const Make& make, const SaddleOptions& options, bool may_refus
   check_easy_solves(*strategy, problem, rhs, x, where, found);
   check_refusals(make, problem, where, found);
   if (problem.system.has_solid())
-    check_stamps(*strategy, problem, where, found);
+    check_versions(*strategy, problem, where, found);
 }
 
 SaddleOptions tank(bool open_top, bool elastic_wall, double plate_mass, bool with_solid = true) {

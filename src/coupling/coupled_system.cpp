@@ -30,8 +30,8 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   const NullSpaces null_spaces =
       find_null_spaces(fluid_.regions(), fluid_.pressure_map(), coupling_transposed_);
 
-  ++blocks_.geometry_stamp;
-  ++blocks_.solids.stamp;
+  ++blocks_.geometry_version;
+  ++blocks_.solids.version;
   blocks_.set_blocks(fluid_.pressure_block());
   blocks_.solids.blocks = solids_.blocks();
   blocks_.near_null_space = solids_.near_null_space(coupling_.added_mass());
@@ -51,7 +51,7 @@ const BlockSystem& CoupledSystem<dim>::blocks(double dt, bool with_solid) {
   if (!blocks_.has_solid() || (solid_depends_on_dt_ && !is_present)) {
     blocks_.set_blocks(blocks_.pressure_block(), coupling_transposed_,
                        solids_.solid_block(coupling_.added_mass(), dt));
-    ++blocks_.solids.stamp;
+    ++blocks_.solids.version;
     block_dt_ = dt;
     block_linearisation_ = linearisation;
   }

@@ -23,7 +23,7 @@ struct Block {
 /// Blocks of the same kind, which follow one another in one vector and are solved for as one.
 struct BlockGroup {
   std::vector<Block> blocks = {};  ///< by name; empty: the group has no names within
-  long stamp = 0;                  ///< changes whenever the group's operator changes
+  long version = 0;                  ///< changes whenever the group's operator changes
 };
 
 /// The coupled system, Eq. 16, as one Thyra operator of blocks in two groups:
@@ -58,7 +58,7 @@ class BlockSystem {
   /// Null vectors of A alone (regions without a Dirichlet face), for preconditioners. Orthonormal.
   NullSpace pressure_null_space;
   std::string name = "coupled system";
-  long geometry_stamp = 0;  ///< changes whenever A, B or the maps change
+  long geometry_version = 0;  ///< changes whenever A, B or the maps change
 
  private:
   RCP<const BlockedOperator> op_;

@@ -336,7 +336,7 @@ StoredSystem read_parts(const Hdf5File& file) {
   StoredSystem stored;
   BlockSystem& system = stored.system;
   system.name = file.read_attribute<std::string>("/", "name");
-  system.geometry_stamp = system.solids.stamp = 1;
+  system.geometry_version = system.solids.version = 1;
   const GlobalIndex n_pressure = n_unknowns(file, "pressure unknowns", 1);
   const GlobalIndex n_solid = n_unknowns(file, "solid unknowns", 0);
   check_size(file, "/pressure rhs", n_pressure);

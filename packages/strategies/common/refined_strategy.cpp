@@ -142,14 +142,14 @@ bool has_pressures(const BlockSystem& system) {
 }  // namespace
 
 bool RefinedStrategy::geometry_matches(const BlockSystem& system) const {
-  return is_prepared_ && prepared_.geometry_stamp == system.geometry_stamp &&
+  return is_prepared_ && prepared_.geometry_version == system.geometry_version &&
          prepared_.system_name == system.name &&
          prepared_.pressure_map->isSameAs(*domain_map(*system.pressure_block()));
 }
 
 bool RefinedStrategy::solid_matches(const BlockSystem& system) const {
   return !system.has_solid() ||
-         (solid_.is_built() && prepared_.solid_stamp == system.solids.stamp &&
+         (solid_.is_built() && prepared_.solid_version == system.solids.version &&
           prepared_.solid_map->isSameAs(*domain_map(*system.solid_block())));
 }
 
@@ -266,10 +266,10 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
     build(working(system), inverse_changed, solid_changed);
   solid_.restart_count(0);
   prepared_.system_name = system.name;
-  prepared_.geometry_stamp = system.geometry_stamp;
+  prepared_.geometry_version = system.geometry_version;
   prepared_.pressure_map = domain_map(*system.pressure_block());
   if (system.has_solid()) {
-    prepared_.solid_stamp = system.solids.stamp;
+    prepared_.solid_version = system.solids.version;
     prepared_.solid_map = domain_map(*system.solid_block());
   }
   is_prepared_ = true;

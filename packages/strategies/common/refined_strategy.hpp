@@ -25,7 +25,7 @@ namespace lockstep {
 /// given the system with its pressures reordered, and never notice.
 class RefinedStrategy : public SolverStrategy {
  public:
-  /// Reuses what was built last for a system of the same name, stamps and maps. What belongs to A
+  /// Reuses what was built last for a system of the same name, versions and maps. What belongs to A
   /// alone serves the system with and without its solid block (S1, F2 and S2 of one geometry).
   /// Collective.
   void prepare(const BlockSystem& system) final;
@@ -98,7 +98,7 @@ class RefinedStrategy : public SolverStrategy {
  private:
   struct Prepared {
     std::string system_name;
-    long geometry_stamp = 0, solid_stamp = 0;
+    long geometry_version = 0, solid_version = 0;
     RCP<const Map> pressure_map, solid_map;
   };
 

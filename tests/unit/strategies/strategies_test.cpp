@@ -167,14 +167,14 @@ INSTANTIATE_TEST_SUITE_P(Strategies, EveryStrategy,
                                            "block-elimination", "steepest-descent", "minres-teko",
                                            "block-lu", "gauss-seidel", "simple"));
 
-TEST(Strategies, PreparedPartsAreReusedByStamp) {
+TEST(Strategies, PreparedPartsAreReusedByVersion) {
   SaddleProblem problem(world(), {});
   const auto strategy = make("schur-cg");
   EXPECT_EQ(solve(*strategy, problem).report.preconditioner_builds, 1);
   const SolveReport again = solve(*strategy, problem).report;
   EXPECT_EQ(again.preconditioner_builds, 0);
   EXPECT_EQ(again.preconditioner_reuses, 1);
-  ++problem.system.solids.stamp;
+  ++problem.system.solids.version;
   EXPECT_EQ(solve(*strategy, problem).report.preconditioner_builds, 1);
 }
 
