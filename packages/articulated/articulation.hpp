@@ -2,9 +2,9 @@
 #include <memory>
 #include <vector>
 
-#include "articulated/flight.hpp"
+#include "articulated/free_motion.hpp"
 #include "articulated/mechanism.hpp"
-#include "interfaces/free_flight.hpp"
+#include "interfaces/free_rigid_motion.hpp"
 #include "interfaces/limited_torques.hpp"
 #include "interfaces/steering.hpp"
 
@@ -76,7 +76,7 @@ class Articulation {
 /// The ties between the bodies of an articulation.
 template <int dim>
 class JointConstraints : public ConstraintModel,
-                         public FreeFlight,
+                         public FreeRigidMotion,
                          public SteeredJoints,
                          public LimitedTorques {
  public:
@@ -85,7 +85,7 @@ class JointConstraints : public ConstraintModel,
   std::string name() const override { return "joints"; }
   std::vector<Combination> combinations() const override;
   ClosedMotion close(double time, double dt, Vector& velocity) override;
-  ClosedFlight close_flight(double time, double dt, const Vector& correction, const Vector& solved,
+  ClosedFreeMotion close_free_motion(double time, double dt, const Vector& correction, const Vector& solved,
                             Vector& velocity) override;
   std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const override;
   std::vector<GivenMotion> given_motions() const override;
@@ -104,26 +104,26 @@ class JointConstraints : public ConstraintModel,
   struct StepMotions {
     std::vector<BodyMass<dim>> masses;
     std::vector<BodyMotion<dim>> solved, motions;  ///< before contact; after it, then as they go
-    std::vector<TwistVector<dim>> corrections, later, drift;  ///< see ClosedFlight
+    std::vector<TwistVector<dim>> corrections, later, drift;  ///< see ClosedFreeMotion
   };
   /// Free motions of a mechanism, by its own numbers (LoneMechanism).
-  struct FoundFlights {
-    Flight<dim> free, pushed;  ///< without contact; with what it did
+  struct FoundFreeMotions {
+    FreeMotion<dim> free, pushed;  ///< without contact; with what it did
   };
   std::vector<TwistVector<dim>> gather_twists(const Vector& velocity) const;
   Eigen::VectorXd gather_rates(const Vector& velocity) const;
   void set_twists(const std::vector<TwistVector<dim>>& twists, Vector& velocity) const;
   void set_rates(const Mechanism& mechanism, const std::vector<Eigen::VectorXd>& coordinates,
                  double dt, Vector& velocity) const;
-  std::optional<FlightSteps> flight_steps(const Mechanism& mechanism, double turn,
+  std::optional<FreeMotionSteps> free_motion_steps(const Mechanism& mechanism, double turn,
                                           bool touched) const;
-  std::optional<FoundFlights> flights(const Mechanism& mechanism,
+  std::optional<FoundFreeMotions> free_motions(const Mechanism& mechanism,
                                       const ClosingProblem<dim>& problem,
                                       const std::vector<BodyMotion<dim>>& solved,
                                       const std::vector<BodyMotion<dim>>& motions) const;
   StepMotions motions_of(const Vector& correction, const Vector& solved,
                          const Vector& velocity) const;
-  void take(const Mechanism& mechanism, const FoundFlights& found, StepMotions& step) const;
+  void take(const Mechanism& mechanism, const FoundFreeMotions& found, StepMotions& step) const;
   RCP<Vector> marks_at_end(const RCP<const Map>& map) const;
   void follow(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
               std::vector<BodyMotion<dim>>& motions) const;

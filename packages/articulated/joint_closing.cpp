@@ -11,7 +11,7 @@
 
 namespace lockstep {
 
-/// Sets the rates with which q goes to the end of a flight (see `advanced`).
+/// Sets the rates with which q goes to the end of a free_motion (see `advanced`).
 template <int dim>
 void JointConstraints<dim>::set_rates(const Mechanism& mechanism,
                                       const std::vector<Eigen::VectorXd>& coordinates, double dt,
@@ -83,7 +83,7 @@ bool differ(const ClosingProblem<dim>& problem, const std::vector<BodyMotion<dim
 
 /// Nothing: bodies had better follow the rates of their joints.
 template <int dim>
-std::optional<FlightSteps> JointConstraints<dim>::flight_steps(const Mechanism& mechanism,
+std::optional<FreeMotionSteps> JointConstraints<dim>::free_motion_steps(const Mechanism& mechanism,
                                                                double turn, bool touched) const {
   constexpr double farthest_turn = 0.5;  // rad, where joints are closed in one part
   constexpr double finest_turn =
@@ -105,30 +105,30 @@ std::optional<FlightSteps> JointConstraints<dim>::flight_steps(const Mechanism& 
                      std::all_of(mechanism.joints.begin(), mechanism.joints.end(), joint_is_free) &&
                      std::all_of(mechanism.bodies.begin(), mechanism.bodies.end(), body_is_free);
   if (alone)
-    return FlightSteps{least, finest_turn};
+    return FreeMotionSteps{least, finest_turn};
   if (!far)
-    return FlightSteps{};
+    return FreeMotionSteps{};
   return std::nullopt;
 }
 
-/// Finds the flights of a mechanism; empty if joints could not be closed about the motions as they
+/// Finds the free_motions of a mechanism; empty if joints could not be closed about the motions as they
 /// were found, before contact and after it. `problem`: that of the mechanism alone.
 template <int dim>
-std::optional<typename JointConstraints<dim>::FoundFlights> JointConstraints<dim>::flights(
+std::optional<typename JointConstraints<dim>::FoundFreeMotions> JointConstraints<dim>::free_motions(
     const Mechanism& mechanism, const ClosingProblem<dim>& problem,
     const std::vector<BodyMotion<dim>>& solved, const std::vector<BodyMotion<dim>>& motions) const {
   if (!articulation_->options().two_halves)
     return std::nullopt;
   const bool touched = differ(problem, solved, motions);
   const double turn = std::max(largest_turn(problem, solved), largest_turn(problem, motions));
-  const std::optional<FlightSteps> steps = flight_steps(mechanism, turn, touched);
+  const std::optional<FreeMotionSteps> steps = free_motion_steps(mechanism, turn, touched);
   if (!steps)
     return std::nullopt;
-  std::optional<Flight<dim>> free = fly(problem, *steps, solved);
+  std::optional<FreeMotion<dim>> free = fly(problem, *steps, solved);
   if (!free || !touched)
-    return free ? std::make_optional(FoundFlights{*free, *free}) : std::nullopt;
-  std::optional<Flight<dim>> pushed = fly(problem, *steps, motions);
-  return pushed ? std::make_optional(FoundFlights{*free, *pushed}) : std::nullopt;
+    return free ? std::make_optional(FoundFreeMotions{*free, *free}) : std::nullopt;
+  std::optional<FreeMotion<dim>> pushed = fly(problem, *steps, motions);
+  return pushed ? std::make_optional(FoundFreeMotions{*free, *pushed}) : std::nullopt;
 }
 
 /// Bodies follow the rates of their joints; loops are closed if they can be.
@@ -190,9 +190,9 @@ typename JointConstraints<dim>::StepMotions JointConstraints<dim>::motions_of(
   return step;
 }
 
-/// Impulses are those of the flight without contact, which S2 is to know nothing of.
+/// Impulses are those of the free_motion without contact, which S2 is to know nothing of.
 template <int dim>
-void JointConstraints<dim>::take(const Mechanism& mechanism, const FoundFlights& found,
+void JointConstraints<dim>::take(const Mechanism& mechanism, const FoundFreeMotions& found,
                                  StepMotions& step) const {
   for (std::size_t own = 0; own < mechanism.bodies.size(); ++own) {
     const int body = mechanism.bodies[own];
@@ -235,11 +235,11 @@ RCP<Vector> JointConstraints<dim>::marks_at_end(const RCP<const Map>& map) const
 template <int dim>
 ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& velocity) {
   const Vector solved(velocity, Teuchos::Copy);
-  return close_flight(time, dt, *make_vector(velocity.getMap()), solved, velocity);
+  return close_free_motion(time, dt, *make_vector(velocity.getMap()), solved, velocity);
 }
 
 template <int dim>
-ClosedFlight JointConstraints<dim>::close_flight(double time, double dt, const Vector& correction,
+ClosedFreeMotion JointConstraints<dim>::close_free_motion(double time, double dt, const Vector& correction,
                                                  const Vector& solved, Vector& velocity) {
   const Eigen::VectorXd change = dt * gather_rates(velocity);
   const std::vector<BodyPose<dim>> poses = articulation_->poses();
@@ -253,8 +253,8 @@ ClosedFlight JointConstraints<dim>::close_flight(double time, double dt, const V
     const std::vector<BodyMass<dim>> masses = lone.of_bodies(step.masses);
     const ClosingProblem<dim> problem{lone.mechanism, lone.joints, begins, goals, masses, dt};
     std::vector<BodyMotion<dim>> motions = lone.of_bodies(step.motions);
-    const std::optional<FoundFlights> found =
-        flights(mechanism, problem, lone.of_bodies(step.solved), motions);
+    const std::optional<FoundFreeMotions> found =
+        free_motions(mechanism, problem, lone.of_bodies(step.solved), motions);
     if (!found) {
       follow(problem, change, motions);
       for (std::size_t own = 0; own < mechanism.bodies.size(); ++own)
@@ -271,7 +271,7 @@ ClosedFlight JointConstraints<dim>::close_flight(double time, double dt, const V
   for (const BodyMotion<dim>& motion : step.motions)
     twists.push_back(motion.twist);
   set_twists(twists, velocity);
-  ClosedFlight motion;
+  ClosedFreeMotion motion;
   if (any_closed) {
     motion.drift = drift(step.drift, velocity.getMap());
     motion.correction = rcp(new Vector(correction, Teuchos::Copy));
@@ -284,10 +284,10 @@ ClosedFlight JointConstraints<dim>::close_flight(double time, double dt, const V
 }
 
 template ClosedMotion JointConstraints<2>::close(double, double, Vector&);
-template ClosedFlight JointConstraints<2>::close_flight(double, double, const Vector&,
+template ClosedFreeMotion JointConstraints<2>::close_free_motion(double, double, const Vector&,
                                                         const Vector&, Vector&);
 template ClosedMotion JointConstraints<3>::close(double, double, Vector&);
-template ClosedFlight JointConstraints<3>::close_flight(double, double, const Vector&,
+template ClosedFreeMotion JointConstraints<3>::close_free_motion(double, double, const Vector&,
                                                         const Vector&, Vector&);
 
 }  // namespace lockstep

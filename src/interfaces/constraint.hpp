@@ -67,7 +67,7 @@ class ConstraintModel : public PlugIn {
   /// Returns the combinations at the present positions. Local, the same on all ranks.
   virtual std::vector<Combination> combinations() const = 0;
   /// S1: changes V (stacked, of all dofs), which is about to move all solids from `time` by dt, as
-  /// if they had no midpoint corrections: who adds these asks for a `FreeFlight`. Collective.
+  /// if they had no midpoint corrections: who adds these asks for a `FreeRigidMotion`. Collective.
   virtual ClosedMotion close(double time, double dt, Vector& velocity) = 0;
   /// Returns the limits at the present positions that motions with about the velocity V (by dof, of
   /// all solids) may meet within dt. Local, the same on all ranks.

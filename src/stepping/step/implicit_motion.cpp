@@ -66,7 +66,7 @@ class Descent {
   /// one.
   double excess(double part) const {
     const std::vector<ComputedEnergy> end = solids_.nonlinear_energies(dt_, *at(part));
-    constexpr double unseen = 1e-12;  // of what a flight brings, round-off is strain
+    constexpr double unseen = 1e-12;  // of what a free_motion brings, round-off is strain
     const auto change = [part](double slope, double curvature) {
       return std::abs(part * slope + 0.5 * part * part * curvature);
     };

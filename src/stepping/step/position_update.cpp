@@ -32,11 +32,11 @@ void drop_with_followers(const Reduction& reduction, const Vector& marks, Vector
 }
 
 /// Closes the joints of a motion that was found with `correction`, by changing its velocity.
-ClosedFlight closed_flight(ConstraintModel& joints, const StepTime& step, const Vector& correction,
+ClosedFreeMotion closed_flight(ConstraintModel& joints, const StepTime& step, const Vector& correction,
                            const Vector& solved, Vector& velocity) {
-  if (auto* const flights = side_of<FreeFlight>(joints))
-    return flights->close_flight(step.begin, step.dt, correction, solved, velocity);
-  ClosedFlight motion;
+  if (auto* const free_motions = side_of<FreeRigidMotion>(joints))
+    return free_motions->close_free_motion(step.begin, step.dt, correction, solved, velocity);
+  ClosedFreeMotion motion;
   motion.drift = joints.close(step.begin, step.dt, velocity).drift;
   return motion;
 }
@@ -143,7 +143,7 @@ SolidPath<dim> PositionUpdate<dim>::find_with_joints(StepContext<dim> context,
   };
   const RCP<const Vector> correction = solid_forces_.midpoint_correction(context.dt);
   Found found = find_once(context, drag, correction, nullptr);
-  ClosedFlight motion = close(*correction, found);
+  ClosedFreeMotion motion = close(*correction, found);
   if (!motion.drift.is_null()) {
     const Found first = found;
     context.constraints = solids.constraints(context.step.begin, context.step.end(), motion.drift);

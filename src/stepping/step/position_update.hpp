@@ -1,6 +1,6 @@
 #pragma once
 #include "coupling/swept_volumes.hpp"
-#include "interfaces/free_flight.hpp"
+#include "interfaces/free_rigid_motion.hpp"
 #include "stepping/step/coupled_solve.hpp"
 
 namespace lockstep {

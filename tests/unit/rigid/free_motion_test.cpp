@@ -115,11 +115,11 @@ TEST(FreeMotion, AFlyingBodyKeepsMomentumAndSpinWhateverItsPivot) {
   RigidBody<2> b = body<2>(geometry("box", numbers("Size", "1, 2")) + number("Mass", "2") +
                            numbers("Pivot", "0.5, 0.3") + numbers("Velocity", "3, 1") +
                            number("Angular Velocity", "1"));
-  const Point<2> flight = b.velocity_of_center();
+  const Point<2> free_motion = b.velocity_of_center();
   for (int step = 0; step < 100; ++step)
     free_step(b, 0, 0.05);
   EXPECT_NEAR(b.angular_velocity()(0), 1, 1e-12);
-  EXPECT_LE((b.velocity_of_center() - flight).norm(), 1e-12);
+  EXPECT_LE((b.velocity_of_center() - free_motion).norm(), 1e-12);
 }
 
 TEST(FreeMotion, HingedPlateTurnsUniformly) {

@@ -1,5 +1,5 @@
 // Mechanisms that nothing acts on but their joints: what a step of any length keeps.
-#include "articulated/flight.hpp"
+#include "articulated/free_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,15 +36,15 @@ class Chain {
     hold();
   }
 
-  bool fly_for(double dt, const FlightSteps& steps) {
+  bool fly_for(double dt, const FreeMotionSteps& steps) {
     const std::vector<BodyMass<3>> all = masses();
     const ClosingProblem<3> problem{mechanism_, joints_, poses_, poses_, all, dt};
-    const auto flight = fly(problem, steps, motions_);
-    if (!flight)
+    const auto free_motion = fly(problem, steps, motions_);
+    if (!free_motion)
       return false;
-    poses_ = poses_after(problem, flight->motions);
+    poses_ = poses_after(problem, free_motion->motions);
     for (int b = 0; b < 3; ++b)
-      motions_[b].momentum += flight->given[b];
+      motions_[b].momentum += free_motion->given[b];
     hold();
     return true;
   }
@@ -106,7 +106,7 @@ class Chain {
   Mechanism mechanism_;
 };
 
-TEST(Flight, KeepsEnergyAndMomentumAtAnyTurn) {
+TEST(FreeMotion, KeepsEnergyAndMomentumAtAnyTurn) {
   for (const double turn : {0.1, 0.2, 0.5, 1., 2., 4.}) {
     Chain chain;
     const double energy = chain.energy(), dt = turn / chain.fastest_turn();
@@ -122,7 +122,7 @@ TEST(Flight, KeepsEnergyAndMomentumAtAnyTurn) {
   }
 }
 
-TEST(Flight, IsOfSecondOrder) {
+TEST(FreeMotion, IsOfSecondOrder) {
   const auto end = [](int n_steps) {
     Chain chain;
     for (int step = 0; step < n_steps; ++step)
@@ -135,9 +135,9 @@ TEST(Flight, IsOfSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / half), 2, 0.15);
 }
 
-/// A flight is reversible, so that no energy can drift: with momenta turned round it goes back the
+/// A free_motion is reversible, so that no energy can drift: with momenta turned round it goes back the
 /// way it came.
-TEST(Flight, GoesBackTheWayItCame) {
+TEST(FreeMotion, GoesBackTheWayItCame) {
   Chain chain;
   const std::vector<BodyPose<3>> start = chain.poses();
   for (int step = 0; step < 5; ++step)

@@ -1,4 +1,4 @@
-#include "articulated/flight.hpp"
+#include "articulated/free_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -73,9 +73,9 @@ class Flyer {
 
   const std::vector<BodyMotion<dim>>& motions() const { return motions_; }
 
-  Flight<dim> flight(const std::vector<BodyMotion<dim>>& start,
+  FreeMotion<dim> free_motion(const std::vector<BodyMotion<dim>>& start,
                      const std::vector<BodyMotion<dim>>& first) const {
-    Flight<dim> result{first, std::vector<TwistVector<dim>>(first.size(), TwistVector<dim>::Zero()),
+    FreeMotion<dim> result{first, std::vector<TwistVector<dim>>(first.size(), TwistVector<dim>::Zero()),
                        coordinates_};
     for (const int body : problem_.mechanism.bodies) {
       const Axes<dim> turn = poses_[body].rotation * problem_.poses[body].rotation.transpose();
@@ -125,7 +125,7 @@ class Flyer {
 }  // namespace
 
 template <int dim>
-std::optional<Flight<dim>> fly(const ClosingProblem<dim>& problem, const FlightSteps& steps,
+std::optional<FreeMotion<dim>> fly(const ClosingProblem<dim>& problem, const FreeMotionSteps& steps,
                                const std::vector<BodyMotion<dim>>& motions) {
   constexpr int most = 2000;
   constexpr double negligible = 1e-12, shortest = 1e-6;  // parts of the step [1]
@@ -144,15 +144,15 @@ std::optional<Flight<dim>> fly(const ClosingProblem<dim>& problem, const FlightS
       first = flyer.motions();
     left -= dt;
     if (left <= negligible * problem.dt)
-      return flyer.flight(motions, first);
+      return flyer.free_motion(motions, first);
     flyer.hold();
   }
   return std::nullopt;
 }
 
-template std::optional<Flight<2>> fly(const ClosingProblem<2>&, const FlightSteps&,
+template std::optional<FreeMotion<2>> fly(const ClosingProblem<2>&, const FreeMotionSteps&,
                                       const std::vector<BodyMotion<2>>&);
-template std::optional<Flight<3>> fly(const ClosingProblem<3>&, const FlightSteps&,
+template std::optional<FreeMotion<3>> fly(const ClosingProblem<3>&, const FreeMotionSteps&,
                                       const std::vector<BodyMotion<3>>&);
 
 }  // namespace lockstep

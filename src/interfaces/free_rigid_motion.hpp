@@ -4,7 +4,7 @@
 namespace lockstep {
 
 /// A closed motion between whose begin and end bodies turn as their momenta have it.
-struct ClosedFlight : ClosedMotion {
+struct ClosedFreeMotion : ClosedMotion {
   /// With `drift`: momentum that S1 adds in place of the solids' own
   /// `SolidModel::add_midpoint_correction`, now that the impulses at its begin are known.
   RCP<Vector> correction;
@@ -18,13 +18,13 @@ struct ClosedFlight : ClosedMotion {
 };
 
 /// A side of a ConstraintModel whose bodies have midpoint corrections.
-class FreeFlight {
+class FreeRigidMotion {
  public:
-  virtual ~FreeFlight() = default;
+  virtual ~FreeRigidMotion() = default;
   /// Does what `ConstraintModel::close` does, for velocities that were found with `correction`;
   /// `solved` are those before contact changed them. The impulses belong to the motion without
   /// contact, since S1 drops what pushes solids out of one another. Collective.
-  virtual ClosedFlight close_flight(double time, double dt, const Vector& correction,
+  virtual ClosedFreeMotion close_free_motion(double time, double dt, const Vector& correction,
                                     const Vector& solved, Vector& velocity) = 0;
 };
 

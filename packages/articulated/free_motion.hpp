@@ -8,7 +8,7 @@ namespace lockstep {
 
 /// Result of the free motion of a mechanism.
 template <int dim>
-struct Flight {
+struct FreeMotion {
   std::vector<BodyMotion<dim>> motions;  ///< by body; momenta just after the first impulse
   /// Impulses of the joints, the first one included, but not the impulse that the end of the step
   /// still needs: by body, about its reference point, which has moved meanwhile.
@@ -17,7 +17,7 @@ struct Flight {
 };
 
 /// Resolution of a mechanism's own motion.
-struct FlightSteps {
+struct FreeMotionSteps {
   int least = 1;           ///< least number of parts
   double longest = 1e300;  ///< largest turn of a body in a part [rad]
 };
@@ -29,7 +29,7 @@ struct FlightSteps {
 /// prescribed bodies. With one part there is only the impulse that closes joints at the begin, and
 /// motors and prescribed bodies may act. Local.
 template <int dim>
-std::optional<Flight<dim>> fly(const ClosingProblem<dim>& problem, const FlightSteps& steps,
+std::optional<FreeMotion<dim>> fly(const ClosingProblem<dim>& problem, const FreeMotionSteps& steps,
                                const std::vector<BodyMotion<dim>>& motions);
 
 }  // namespace lockstep
