@@ -104,7 +104,7 @@ class JointConstraints : public ConstraintModel,
   struct StepMotions {
     std::vector<BodyMass<dim>> masses;
     std::vector<BodyMotion<dim>> solved, motions;  ///< before contact; after it, then as they go
-    std::vector<TwistVector<dim>> corrections, later, drift;  ///< see ClosedFreeMotion
+    std::vector<TwistVector<dim>> corrections, later, constraint_error;  ///< see ClosedFreeMotion
   };
   /// Free motions of a mechanism, by its own numbers (LoneMechanism).
   struct FoundFreeMotions {
@@ -127,7 +127,7 @@ class JointConstraints : public ConstraintModel,
   RCP<Vector> marks_at_end(const RCP<const Map>& map) const;
   void follow(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
               std::vector<BodyMotion<dim>>& motions) const;
-  RCP<Vector> drift(const std::vector<TwistVector<dim>>& change, const RCP<const Map>& map) const;
+  RCP<Vector> constraint_error(const std::vector<TwistVector<dim>>& change, const RCP<const Map>& map) const;
 
   std::shared_ptr<Articulation<dim>> articulation_;
   Communicator comm_;

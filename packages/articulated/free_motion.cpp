@@ -29,11 +29,11 @@ class Flyer {
   double n_parts(double time, double longest) const {
     constexpr double farthest = 0.5;     // rad
     constexpr double negligible = 0.01;  // part of the energy [1]
-    const TwistVector<dim> drift = mean_velocity();
+    const TwistVector<dim> constraint_error = mean_velocity();
     std::vector<double> energies, turns;
     double sum = 0;
     for (const int body : problem_.mechanism.bodies) {
-      const TwistVector<dim> velocity = masses_[body].inverse * motions_[body].momentum - drift;
+      const TwistVector<dim> velocity = masses_[body].inverse * motions_[body].momentum - constraint_error;
       energies.push_back(velocity.dot(masses_[body].matrix * velocity));
       turns.push_back(time * velocity.template tail<n_rotations<dim>>().norm());
       sum += energies.back();

@@ -147,7 +147,7 @@ void JointConstraints<dim>::follow(const ClosingProblem<dim>& problem,
 /// Velocity beside the terms of those bodies that are combinations, less the part that the root
 /// carries along.
 template <int dim>
-RCP<Vector> JointConstraints<dim>::drift(const std::vector<TwistVector<dim>>& change,
+RCP<Vector> JointConstraints<dim>::constraint_error(const std::vector<TwistVector<dim>>& change,
                                          const RCP<const Map>& map) const {
   const RCP<Vector> result = make_vector(map);
   std::vector<TwistVector<dim>> own = change;
@@ -175,7 +175,7 @@ typename JointConstraints<dim>::StepMotions JointConstraints<dim>::motions_of(
   step.solved.resize(n);
   step.motions.resize(n);
   step.later.assign(n, TwistVector<dim>::Zero());
-  step.drift.assign(n, TwistVector<dim>::Zero());
+  step.constraint_error.assign(n, TwistVector<dim>::Zero());
   const std::vector<TwistVector<dim>> before = gather_twists(solved), now = gather_twists(velocity);
   for (std::size_t b = 0; b < n; ++b) {
     if (bodies[b].prescribed())
@@ -199,7 +199,7 @@ void JointConstraints<dim>::take(const Mechanism& mechanism, const FoundFreeMoti
     const BodyMotion<dim>& free = found.free.motions[own];
     step.later[body] = found.free.given[own];
     step.corrections[body] = step.masses[body].matrix * free.twist - free.momentum;
-    step.drift[body] = free.twist - step.solved[body].twist;
+    step.constraint_error[body] = free.twist - step.solved[body].twist;
     step.motions[body] = found.pushed.motions[own];
   }
 }
@@ -273,7 +273,7 @@ ClosedFreeMotion JointConstraints<dim>::close_free_motion(double time, double dt
   set_twists(twists, velocity);
   ClosedFreeMotion motion;
   if (any_closed) {
-    motion.drift = drift(step.drift, velocity.getMap());
+    motion.constraint_error = constraint_error(step.constraint_error, velocity.getMap());
     motion.correction = rcp(new Vector(correction, Teuchos::Copy));
     set_twists(step.corrections, *motion.correction);
     motion.later_impulse = make_vector(velocity.getMap());

@@ -28,11 +28,11 @@ RCP<const Vector> reactions_of(const SolidSystem<dim>& solids, const Vector& imp
 
 /// Returns the velocities that combinations have beside their terms. Collective.
 template <int dim>
-RCP<Vector> drift_of(const SolidSystem<dim>& solids, const Vector& velocity) {
-  const auto drift = rcp(new Vector(velocity, Teuchos::Copy));
-  solids.reduction().follow(*drift);
-  drift->update(1, velocity, -1);
-  return drift;
+RCP<Vector> constraint_error_of(const SolidSystem<dim>& solids, const Vector& velocity) {
+  const auto constraint_error = rcp(new Vector(velocity, Teuchos::Copy));
+  solids.reduction().follow(*constraint_error);
+  constraint_error->update(1, velocity, -1);
+  return constraint_error;
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   move_walls(phase, dt);
   ContactShapes<dim> shapes(solids, topology_);
   if (solids.joints())
-    shapes.set_drift(replicated(solids, *drift_of(solids, velocity)));
+    shapes.set_constraint_error(replicated(solids, *constraint_error_of(solids, velocity)));
   ContactProblem<dim> problem(solids, shapes, walls_, options_, apart_among(shapes.solids()),
                               spacing_, phase, dt);
   if (phase == ContactPhase::position)

@@ -21,7 +21,7 @@ struct ClosedMotion {
   /// the stacked map. Null: some joints could not be closed, or are not to be; then V is the
   /// velocity of bodies which follow the rates of their joints, and the whole impulse of the joints
   /// belongs to the end of the step.
-  RCP<Vector> drift;
+  RCP<Vector> constraint_error;
 };
 
 /// A coordinate of a joint after a step, for joints.csv: an angle [rad] or a displacement [m].

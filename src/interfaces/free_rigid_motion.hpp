@@ -5,14 +5,14 @@ namespace lockstep {
 
 /// A closed motion between whose begin and end bodies turn as their momenta have it.
 struct ClosedFreeMotion : ClosedMotion {
-  /// With `drift`: momentum that S1 adds in place of the solids' own
+  /// With `constraint_error`: momentum that S1 adds in place of the solids' own
   /// `SolidModel::add_midpoint_correction`, now that the impulses at its begin are known.
   RCP<Vector> correction;
-  /// With `drift`: impulse of the joints beside the reactions that S1 found, at the begin and on
+  /// With `constraint_error`: impulse of the joints beside the reactions that S1 found, at the begin and on
   /// the way; part of the momentum of S2.
   RCP<Vector> later_impulse;
-  /// With `drift`: 1 at the dofs of bodies and joints that could not be closed while others were, 0
-  /// elsewhere; their part of `drift` is zero, and their whole impulse belongs to the end of the
+  /// With `constraint_error`: 1 at the dofs of bodies and joints that could not be closed while others were, 0
+  /// elsewhere; their part of `constraint_error` is zero, and their whole impulse belongs to the end of the
   /// step. Null: all were closed.
   RCP<Vector> at_end;
 };

@@ -187,7 +187,7 @@ Point<dim> ContactShapes<dim>::rigid_velocity(int solid, const Point<dim>& x,
                                               const std::vector<double>& velocity) const {
   VelocityRow<dim> row;
   system_.rigid_row(solid, x, row);
-  Point<dim> sum = drift_of(row);
+  Point<dim> sum = constraint_error_of(row);
   resolve(row);
   for (std::size_t k = 0; k < row.dofs.size(); ++k)
     sum += velocity[row.dofs[k]] * row.coefficients[k];
@@ -254,19 +254,19 @@ std::vector<GlobalIndex> ContactShapes<dim>::leading_dofs() const {
 }
 
 template <int dim>
-Point<dim> ContactShapes<dim>::drift(const SurfacePoint<dim>& point, const Point<dim>& x) const {
-  if (drift_.empty())
+Point<dim> ContactShapes<dim>::constraint_error(const SurfacePoint<dim>& point, const Point<dim>& x) const {
+  if (constraint_error_.empty())
     return Point<dim>::Zero();
   VelocityRow<dim> row;
   system_.velocity_row(point, x, row);
-  return drift_of(row);
+  return constraint_error_of(row);
 }
 
 template <int dim>
-Point<dim> ContactShapes<dim>::drift_of(const VelocityRow<dim>& row) const {
+Point<dim> ContactShapes<dim>::constraint_error_of(const VelocityRow<dim>& row) const {
   Point<dim> sum = Point<dim>::Zero();
-  for (std::size_t k = 0; k < row.dofs.size() && !drift_.empty(); ++k)
-    sum += drift_[row.dofs[k]] * row.coefficients[k];
+  for (std::size_t k = 0; k < row.dofs.size() && !constraint_error_.empty(); ++k)
+    sum += constraint_error_[row.dofs[k]] * row.coefficients[k];
   return sum;
 }
 

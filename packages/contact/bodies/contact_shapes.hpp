@@ -90,10 +90,10 @@ class ContactShapes {
       const std::vector<std::pair<GlobalIndex, double>>& terms) const;
   /// Returns the dofs that others are combinations of.
   std::vector<GlobalIndex> leading_dofs() const;
-  /// Sets the velocities that combinations have beside their terms (`ClosedMotion::drift`), by id.
-  void set_drift(std::vector<double> drift) { drift_ = std::move(drift); }
-  /// Returns the part of a point's velocity that is due to `set_drift`.
-  Point<dim> drift(const SurfacePoint<dim>& point, const Point<dim>& x) const;
+  /// Sets the velocities that combinations have beside their terms (`ClosedMotion::constraint_error`), by id.
+  void set_constraint_error(std::vector<double> constraint_error) { constraint_error_ = std::move(constraint_error); }
+  /// Returns the part of a point's velocity that is due to `set_constraint_error`.
+  Point<dim> constraint_error(const SurfacePoint<dim>& point, const Point<dim>& x) const;
   Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const {
     return system_.prescribed_velocity(point, x);
   }
@@ -118,7 +118,7 @@ class ContactShapes {
   void find_combinations();
   void find_carriers();
   void resolve(VelocityRow<dim>& row) const;
-  Point<dim> drift_of(const VelocityRow<dim>& row) const;
+  Point<dim> constraint_error_of(const VelocityRow<dim>& row) const;
   void find_held();
 
   const SolidSystem<dim>& system_;
@@ -127,7 +127,7 @@ class ContactShapes {
   SurfaceMesh<dim> mesh_;
   std::vector<Box<dim>> bounds_, solid_bounds_;
   std::unordered_map<GlobalIndex, std::vector<std::pair<GlobalIndex, double>>> combinations_;
-  std::vector<double> drift_;  ///< empty: none
+  std::vector<double> constraint_error_;  ///< empty: none
   std::vector<int> carriers_;  ///< carrier of each vertex; empty: no node is attached
   std::vector<bool> held_;
 };

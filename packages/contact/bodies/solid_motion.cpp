@@ -32,7 +32,7 @@ Point<dim> point_velocity(const ContactShapes<dim>& shapes, bool prescribed,
     return shapes.prescribed_velocity(point, x);
   VelocityRow<dim> row;
   shapes.velocity_row(point, x, row);
-  Point<dim> sum = shapes.drift(point, x);
+  Point<dim> sum = shapes.constraint_error(point, x);
   for (std::size_t k = 0; k < row.dofs.size(); ++k)
     sum += velocity[row.dofs[k]] * row.coefficients[k];
   return sum;

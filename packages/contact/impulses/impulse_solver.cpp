@@ -61,12 +61,12 @@ void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& 
     return;
   }
   if (description.rigid) {
-    row.prescribed += sign * shapes_.drift(point, x);
+    row.prescribed += sign * shapes_.constraint_error(point, x);
     add_entries(row, point, x, sign * Factor::Identity());
     return;
   }
   for_each_carrier(shapes_, point, x, [&](const SurfacePoint<dim>& corner, const Factor& factor) {
-    row.prescribed += sign * factor * shapes_.drift(corner, x);
+    row.prescribed += sign * factor * shapes_.constraint_error(corner, x);
     add_entries(row, corner, x, sign * factor);
   });
 }
