@@ -196,7 +196,7 @@ void FluxCoupling<dim>::add_thin_impulses(std::size_t f, double velocity_before,
 // The fluid gives to the closed part of a face at its centroid, and what is lumped on thin parts at
 // the centre; nodes take both where the surface is.
 template <int dim>
-AngularVector<dim> FluxCoupling<dim>::lever_impulse(const SolidSystem<dim>& solids,
+AngularVector<dim> FluxCoupling<dim>::lumping_torque_error(const SolidSystem<dim>& solids,
                                                     const std::vector<double>& velocity_before,
                                                     const std::vector<double>& velocity_after,
                                                     const BlockVector& solution,

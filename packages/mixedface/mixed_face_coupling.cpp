@@ -179,7 +179,7 @@ std::vector<Momentum<dim>> MixedFaceCoupling<dim>::prescribed_impulses(
 }
 
 template <int dim>
-AngularVector<dim> MixedFaceCoupling<dim>::lever_impulse(
+AngularVector<dim> MixedFaceCoupling<dim>::lumping_torque_error(
     const SolidSystem<dim>& solids, const std::vector<double>& velocity_before,
     const std::vector<double>& velocity_after, const BlockVector& solution,
     const std::vector<double>& gas_pressure) const {

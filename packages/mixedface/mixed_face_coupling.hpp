@@ -43,7 +43,7 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   std::vector<Momentum<dim>> prescribed_impulses(
       const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
       const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const override;
-  AngularVector<dim> lever_impulse(const SolidSystem<dim>& solids,
+  AngularVector<dim> lumping_torque_error(const SolidSystem<dim>& solids,
                                    const std::vector<double>& velocity_before,
                                    const std::vector<double>& velocity_after,
                                    const BlockVector& solution,

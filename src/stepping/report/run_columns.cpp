@@ -87,9 +87,9 @@ void add_momentum(Columns<HistoryRow<dim>>& columns) {
   add_vector<dim>(columns, "transport_change_", "kg m/s",
                   "advection, uncovered, occlusion resets, change of lumped masses",
                   [](const Row& row) { return row.report.transport_change.linear; });
-  add_rotation<dim>(columns, "lever_impulse_", "kg m^2/s",
+  add_rotation<dim>(columns, "lumping_torque_error_", "kg m^2/s",
                     "soft solids take forces at their nodes, fluid gives them at its faces",
-                    [](const Row& row) { return row.report.lever_impulse; });
+                    [](const Row& row) { return row.report.lumping_torque_error; });
   add_rotation<dim>(columns, "linearisation_impulse_", "kg m^2/s",
                     "torque over dt of forces that were linearised",
                     [](const Row& row) { return row.report.linearisation_impulse; });

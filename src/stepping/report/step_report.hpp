@@ -28,9 +28,9 @@ struct StepReport {
   /// What advection, uncovered, occlusion resets and the change of lumped masses did to the
   /// momentum.
   Momentum<dim> transport_change;
-  /// Numerical torques over dt, see AuditedCoupling::lever_impulse and
+  /// Numerical torques over dt, see AuditedCoupling::lumping_torque_error and
   /// SolidSystem::implicit_impulse.
-  AngularVector<dim> lever_impulse = AngularVector<dim>::Zero();
+  AngularVector<dim> lumping_torque_error = AngularVector<dim>::Zero();
   AngularVector<dim> linearisation_impulse = AngularVector<dim>::Zero();
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]
   std::optional<EnergyBook> energy;  ///< if it was asked for

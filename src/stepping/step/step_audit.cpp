@@ -161,10 +161,10 @@ void StepAudit<dim>::book_solids(const StepContext<dim>& context, const StageRes
   report.ledger.add("locks", solids.momentum(*reactions));
   report.reactions = reactions;
   if (sides_.audited_coupling)
-    report.lever_impulse = sides_.audited_coupling->lever_impulse(
+    report.lumping_torque_error = sides_.audited_coupling->lumping_torque_error(
         solids, solution.coupled_before, components_.coupling->velocity(*whole.solid), whole,
         solution.gas_pressure);
-  report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lever_impulse});
+  report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lumping_torque_error});
   const RCP<const Vector> implicit = solids.implicit_impulse(context.dt, *whole.solid);
   report.linearisation_impulse =
       solids.momentum(*implicit).angular + solids.inner_angular_impulse(context.dt);

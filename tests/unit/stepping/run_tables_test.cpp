@@ -99,7 +99,7 @@ StepReport<dim> numbered_report() {
   for (Momentum<dim>* momentum : {&report.fluid_momentum, &report.solid_momentum,
                                   &report.boundary_impulse, &report.transport_change})
     *momentum = next_momentum<dim>(number);
-  report.lever_impulse = next_vector<n_rotations<dim>>(number);
+  report.lumping_torque_error = next_vector<n_rotations<dim>>(number);
   report.linearisation_impulse = next_vector<n_rotations<dim>>(number);
   report.liquid = next_liquid(number);
   for (int s = 0; s < 2; ++s)
@@ -174,7 +174,7 @@ Texts expected_history(const StepReport<dim>& report) {
   expect_vector(texts, "solid_momentum_", report.solid_momentum.linear);
   expect_vector(texts, "boundary_impulse_", report.boundary_impulse.linear);
   expect_vector(texts, "transport_change_", report.transport_change.linear);
-  expect_vector(texts, "lever_impulse_", report.lever_impulse);
+  expect_vector(texts, "lumping_torque_error_", report.lumping_torque_error);
   expect_vector(texts, "linearisation_impulse_", report.linearisation_impulse);
   return texts;
 }
