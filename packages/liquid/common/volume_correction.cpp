@@ -12,7 +12,7 @@ namespace {
 constexpr int shifted_layers = 3;
 /// Total volume defect, as a part of the components' targets, above which other components take it
 /// over [1].
-constexpr double negligible_share_owed = 1e-6;
+constexpr double negligible_defect = 1e-6;
 }  // namespace
 
 void declare_volume_correction(ParameterList& list) {
@@ -53,29 +53,29 @@ template <int dim>
 std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& solids,
                                                       const std::vector<double>& left) const {
   std::vector<double> shift = wanted_shifts(volumes_);
-  double debt = 0, target = 0;
-  std::vector<double> owed(groups_.n);
+  double total_defect = 0, target = 0;
+  std::vector<double> defect(groups_.n);
   for (int body = 0; body < groups_.n; ++body) {
     const double missing = targets_.of_group[body] - volumes_.volume[body];
     shift[body] = std::clamp(shift[body], -left[body], left[body]);
-    owed[body] = missing - shift[body] * volumes_.area[body];
-    debt += std::abs(owed[body]);
+    defect[body] = missing - shift[body] * volumes_.area[body];
+    total_defect += std::abs(defect[body]);
     target += targets_.of_group[body];
   }
   if (parameters_.correction != VolumeCorrection::component ||
-      !(debt > negligible_share_owed * std::abs(target)))
+      !(total_defect > negligible_defect * std::abs(target)))
     return shift;
   const CellGroups& spaces = find_closed_spaces(domain_, solids);
   const std::vector<int> space = places_among(spaces, groups_);
-  std::vector<double> owed_in(spaces.n, 0.0), area_in(spaces.n, 0.0);
+  std::vector<double> defect_in(spaces.n, 0.0), area_in(spaces.n, 0.0);
   const auto stands_in = [&](int body) { return std::abs(shift[body]) < left[body]; };
   for (int body = 0; body < groups_.n; ++body) {
-    owed_in[space[body]] += owed[body];
+    defect_in[space[body]] += defect[body];
     area_in[space[body]] += stands_in(body) ? volumes_.area[body] : 0;
   }
   for (int body = 0; body < groups_.n; ++body)
     if (stands_in(body) && area_in[space[body]] > 0)
-      shift[body] = std::clamp(shift[body] + owed_in[space[body]] / area_in[space[body]],
+      shift[body] = std::clamp(shift[body] + defect_in[space[body]] / area_in[space[body]],
                                -left[body], left[body]);
   return shift;
 }

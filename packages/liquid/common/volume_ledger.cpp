@@ -225,7 +225,7 @@ std::vector<int> VolumeLedger<dim>::places_of(const std::vector<char>& vanished,
 template <int dim>
 void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
                                         const CellGroups& groups, const std::vector<int>& places,
-                                        std::vector<char> homeless, std::vector<double>& target) {
+                                        std::vector<char> unassigned, std::vector<double>& target) {
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<int> nearest = groups.of_cell;
   spread_labels(domain_, solids, phi, giving_reach, nearest);
@@ -242,10 +242,10 @@ void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const Cel
   }
   for (const auto& [old, best] : heir) {
     target[best.second] += targets_.of_group[old];
-    homeless[old] = 0;
+    unassigned[old] = 0;
   }
-  if (std::count(homeless.begin(), homeless.end(), 1) > 0)
-    share_out(solids, groups, places, homeless, target);
+  if (std::count(unassigned.begin(), unassigned.end(), 1) > 0)
+    share_out(solids, groups, places, unassigned, target);
 }
 
 template <int dim>
@@ -268,13 +268,13 @@ std::vector<int> VolumeLedger<dim>::places_among(const CellGroups& spaces,
 
 template <int dim>
 void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
-                                  const std::vector<int>& places, const std::vector<char>& homeless,
+                                  const std::vector<int>& places, const std::vector<char>& unassigned,
                                   std::vector<double>& target) {
   const CellGroups& spaces = find_closed_spaces(domain_, solids);
   Overlaps of_old;
   domain_.grid.for_each_owned_cell([&](int cell) {
     const int old = places[cell];
-    if (old >= 0 && homeless[old] && solids.is_fluid(cell))
+    if (old >= 0 && unassigned[old] && solids.is_fluid(cell))
       of_old[{old, spaces.of_cell[cell]}] += 1;
   });
   const std::vector<int> space = places_among(spaces, groups);
@@ -289,7 +289,7 @@ void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroup
   }
   std::vector<double> given(spaces.n, 0.0);
   for (int old = 0; old < groups_.n; ++old) {
-    if (!homeless[old])
+    if (!unassigned[old])
       continue;
     const auto found = space_of_old.find(old);
     if (found != space_of_old.end() && volume_in_space[found->second.second] > 0)

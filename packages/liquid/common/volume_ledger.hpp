@@ -96,11 +96,11 @@ class VolumeLedger {
   /// `places`: old bodies that have vanished.
   void give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
                        const CellGroups& groups, const std::vector<int>& places,
-                       std::vector<char> homeless, std::vector<double>& target);
+                       std::vector<char> unassigned, std::vector<double>& target);
   /// Gives the targets of vanished components without another one near to all components in the
   /// same closed space.
   void share_out(const SolidCells<dim>& solids, const CellGroups& groups,
-                 const std::vector<int>& places, const std::vector<char>& homeless,
+                 const std::vector<int>& places, const std::vector<char>& unassigned,
                  std::vector<double>& target);
   /// Returns the group that each component is in: a closed space, or an earlier component.
   std::vector<int> places_among(const CellGroups& spaces, const CellGroups& bodies) const;

@@ -12,7 +12,7 @@ namespace {
 /// Reach within which a component takes volume defects [cells].
 constexpr int reach_of_labels = 3;
 /// Volume defects below this wait for others [cells].
-constexpr double negligible_debt = 1e-13;
+constexpr double negligible_unassigned = 1e-13;
 /// Rest of a shift below which no other component takes it over [cells].
 constexpr double negligible_left = 1e-6;
 
@@ -65,16 +65,16 @@ class Books {
 
   Repayment settle(double largest_shift) {
     add_up();
-    if (homeless_ > negligible_debt)
+    if (unassigned_ > negligible_unassigned)
       share_out();
     Repayment result{n_, 0};
     std::vector<double> wanted(n_), paid(n_, 0.0);
     ratio_.assign(n_, 0.0);
     double left = 0;
     for (int body = 0; body < n_; ++body) {
-      wanted[body] = owed_[body] + share_[body];
+      wanted[body] = defect_[body] + share_[body];
       const double room = rooms_[wanted[body] > 0][body];
-      if (std::abs(wanted[body]) > negligible_debt && room > 0)
+      if (std::abs(wanted[body]) > negligible_unassigned && room > 0)
         ratio_[body] = std::clamp(wanted[body] / room, -largest_shift, largest_shift);
       paid[body] = ratio_[body] * room;
       left += std::abs(wanted[body] - paid[body]);
@@ -93,7 +93,7 @@ class Books {
  private:
   /// Capacity of a cell: the liquid it takes (or gives) per cell that the surface moves, roughly
   /// the area of the surface in it [1].
-  double willingness(int cell, bool takes) const {
+  double redistribution_weight(int cell, bool takes) const {
     const double liquid = fractions_.liquid[cell];
     if (is_mixed(liquid))
       return 4 * liquid * (1 - liquid);
@@ -105,23 +105,23 @@ class Books {
   void add_up() {
     std::vector<double> sums(3 * n_ + 1, 0.0);
     domain_.grid.for_each_owned_cell([&](int cell) {
-      const double owed = fractions_.owed[cell];
+      const double defect = fractions_.defect[cell];
       const int body = body_[cell];
       if (body < 0) {
-        sums.back() += std::abs(owed);
+        sums.back() += std::abs(defect);
         return;
       }
-      sums[body] += owed;
+      sums[body] += defect;
       if (!solids_.is_fluid(cell))
         return;
       for (const int takes : {0, 1})
-        sums[(1 + takes) * n_ + body] += willingness(cell, takes) * fractions_.open_part(cell);
+        sums[(1 + takes) * n_ + body] += redistribution_weight(cell, takes) * fractions_.open_part(cell);
     });
     sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
-    owed_.assign(sums.begin(), sums.begin() + n_);
+    defect_.assign(sums.begin(), sums.begin() + n_);
     rooms_[0].assign(sums.begin() + n_, sums.begin() + 2 * n_);
     rooms_[1].assign(sums.begin() + 2 * n_, sums.end() - 1);
-    homeless_ = sums.back();
+    unassigned_ = sums.back();
     share_.assign(n_, 0.0);
   }
   void find_spaces() {
@@ -146,21 +146,21 @@ class Books {
   /// Shares defects beside no component among the components in the same closed space.
   void share_out() {
     find_spaces();
-    owed_in_space_.assign(spaces_.n, 0.0);
+    defect_in_space_.assign(spaces_.n, 0.0);
     domain_.grid.for_each_owned_cell([&](int cell) {
       if (const int space = spaces_.of_cell[cell]; space >= 0 && body_[cell] < 0)
-        owed_in_space_[space] += fractions_.owed[cell];
+        defect_in_space_[space] += fractions_.defect[cell];
     });
-    sum_all(domain_.grid.comm(), owed_in_space_.data(), spaces_.n);
-    const auto room = [&](int body) { return rooms_[owed_in(body) > 0][body]; };
+    sum_all(domain_.grid.comm(), defect_in_space_.data(), spaces_.n);
+    const auto room = [&](int body) { return rooms_[defect_in(body) > 0][body]; };
     std::vector<double> rooms(spaces_.n, 0.0);
     for (int body = 0; body < n_; ++body)
       rooms[space_of_body_[body]] += room(body);
     for (int body = 0; body < n_; ++body)
       if (rooms[space_of_body_[body]] > 0)
-        share_[body] = owed_in(body) * room(body) / rooms[space_of_body_[body]];
+        share_[body] = defect_in(body) * room(body) / rooms[space_of_body_[body]];
   }
-  double owed_in(int body) const { return owed_in_space_[space_of_body_[body]]; }
+  double defect_in(int body) const { return defect_in_space_[space_of_body_[body]]; }
   /// Bodies of a few cells cannot take all they should at once; others of the same closed space
   /// take it.
   void stand_in(double largest_shift, const std::vector<double>& wanted,
@@ -185,16 +185,16 @@ class Books {
     }
   }
   void write_off(const std::vector<double>& paid) {
-    std::vector<double> paid_in_space(owed_in_space_.size(), 0.0);
+    std::vector<double> paid_in_space(defect_in_space_.size(), 0.0);
     for (int body = 0; body < n_ && !paid_in_space.empty(); ++body)
       if (share_[body] != 0)
-        paid_in_space[space_of_body_[body]] += share_[body] * paid[body] / owed_in(body);
+        paid_in_space[space_of_body_[body]] += share_[body] * paid[body] / defect_in(body);
     domain_.grid.for_each_owned_cell([&](int cell) {
       const int body = body_[cell];
       if (body >= 0)
-        fractions_.owed[cell] *= 1 - paid[body];
+        fractions_.defect[cell] *= 1 - paid[body];
       else if (!paid_in_space.empty() && spaces_.of_cell[cell] >= 0)
-        fractions_.owed[cell] *= 1 - paid_in_space[spaces_.of_cell[cell]];
+        fractions_.defect[cell] *= 1 - paid_in_space[spaces_.of_cell[cell]];
     });
   }
   void pay() {
@@ -203,7 +203,7 @@ class Books {
       const int body = body_[cell];
       if (body < 0 || ratio_[body] == 0 || !solids_.is_fluid(cell))
         return;
-      if (const double most = willingness(cell, ratio_[body] > 0); most > 0)
+      if (const double most = redistribution_weight(cell, ratio_[body] > 0); most > 0)
         changes.emplace_back(cell, ratio_[body] * most);
     });
     for (const auto& [cell, change] : changes) {
@@ -221,12 +221,12 @@ class Books {
   Fractions& fractions_;
   int n_ = 0;
   std::vector<int> body_;             ///< component beside each stored cell, or -1
-  std::vector<double> owed_, share_;  ///< defect beside each component, and its share from afar
+  std::vector<double> defect_, share_;  ///< defect beside each component, and its share from afar
   std::vector<double> ratio_;         ///< shift of its surface [cells]
   std::array<std::vector<double>, 2> rooms_;  ///< for giving and for taking
-  double homeless_ = 0;                       ///< defects beside no component
+  double unassigned_ = 0;                       ///< defects beside no component
   CellGroups spaces_;
-  std::vector<double> owed_in_space_;
+  std::vector<double> defect_in_space_;
   std::vector<int> space_of_body_;
 };
 }  // namespace
@@ -265,7 +265,7 @@ double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   };
   GlobalIndex n_leaving = 0;
   grid.for_each_owned_cell([&](int cell) {
-    n_leaving += is_going(cell) && (liquid_in(cell) != 0 || fractions.owed[cell] != 0);
+    n_leaving += is_going(cell) && (liquid_in(cell) != 0 || fractions.defect[cell] != 0);
   });
   if (sum_all(grid.comm(), n_leaving) == 0)
     return 0;
@@ -278,7 +278,7 @@ double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   grid.for_each_owned_cell([&](int cell) {
     const int space = spaces.of_cell[cell] < 0 ? spaces.n : spaces.of_cell[cell];
     if (is_going(cell))
-      sums[2 * space] += liquid_in(cell) + fractions.owed[cell];
+      sums[2 * space] += liquid_in(cell) + fractions.defect[cell];
     else if (takes(cell))
       sums[2 * space + 1] += liquid_in(cell);
   });
@@ -287,7 +287,7 @@ double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
     if (!takes(cell))
       return;
     const int space = spaces.of_cell[cell];
-    fractions.owed[cell] += sums[2 * space] * liquid_in(cell) / sums[2 * space + 1];
+    fractions.defect[cell] += sums[2 * space] * liquid_in(cell) / sums[2 * space + 1];
   });
   double lost = 0;
   for (int space = 0; space <= spaces.n; ++space)

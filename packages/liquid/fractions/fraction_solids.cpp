@@ -28,7 +28,7 @@ void for_each_fluid_neighbor(const TiledGrid<dim>& grid, const SolidCells<dim>& 
 template <int dim>
 struct Arrival {
   Point<dim> place;
-  double liquid = 0, owed = 0;
+  double liquid = 0, defect = 0;
 };
 
 /// Gathers the arrivals of all ranks, in their order, on every rank.
@@ -38,7 +38,7 @@ std::vector<Arrival<dim>> gather_arrivals(const Communicator& comm,
   std::vector<double> flat;
   for (const Arrival<dim>& arrival : mine) {
     flat.insert(flat.end(), arrival.place.data(), arrival.place.data() + dim);
-    flat.insert(flat.end(), {arrival.liquid, arrival.owed});
+    flat.insert(flat.end(), {arrival.liquid, arrival.defect});
   }
   std::vector<Arrival<dim>> all;
   const std::vector<double> sent = gather_all(comm, flat);
@@ -148,23 +148,23 @@ template <int dim>
 void bring_out_of_solids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                          Fractions& fractions) {
   const TiledGrid<dim>& grid = domain.grid;
-  CellField share(fractions.owed.size(), 0.0);
+  CellField share(fractions.defect.size(), 0.0);
   grid.for_each_owned_cell([&](int cell) {
-    if (solids.is_fluid(cell) || fractions.owed[cell] == 0)
+    if (solids.is_fluid(cell) || fractions.defect[cell] == 0)
       return;
     int n = 0;
     for_each_fluid_neighbor(grid, solids, cell, [&](int) { ++n; });
     if (n == 0)
       return;
-    share[cell] = fractions.owed[cell] / n;
-    fractions.owed[cell] = 0;
+    share[cell] = fractions.defect[cell] / n;
+    fractions.defect[cell] = 0;
   });
   domain.halo.fill(share);
   grid.for_each_stored_cell([&](int cell) {
     if (share[cell] != 0)
       for_each_fluid_neighbor(grid, solids, cell, [&](int other) {
         if (grid.owned(other))
-          fractions.owed[other] += share[cell];
+          fractions.defect[other] += share[cell];
       });
   });
 }
@@ -203,21 +203,21 @@ std::vector<TakenLiquid> give_up_cells(const MacDomain<dim>& domain, const Solid
       if (!grid.owned(cell) || layer[cell] != depth)
         continue;
       const double liquid = fractions.liquid[cell] * fractions.open_part(cell);
-      const double owed = fractions.owed[cell], amount = liquid + owed;
-      fractions.owed[cell] = fractions.liquid[cell] = 0;
+      const double defect = fractions.defect[cell], amount = liquid + defect;
+      fractions.defect[cell] = fractions.liquid[cell] = 0;
       int n = 0;
       if (depth <= deepest_sweep)
         for_each_nearer(cell, [&](int) { ++n; });
       share[cell] = n > 0 ? amount / n : 0;
-      if (n == 0 && (liquid != 0 || owed != 0))
-        stranded.push_back({cell, liquid, owed});
+      if (n == 0 && (liquid != 0 || defect != 0))
+        stranded.push_back({cell, liquid, defect});
     }
     domain.halo.fill(share);
     for (const int cell : donors)
       if (layer[cell] == depth && depth <= deepest_sweep)
         for_each_nearer(cell, [&](int other) {
           if (grid.owned(other))
-            fractions.owed[other] += share[cell];
+            fractions.defect[other] += share[cell];
         });
   }
   return stranded;
@@ -235,9 +235,9 @@ double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
     const auto nearest =
         surface.before ? surface.before->closest(x, farthest_taken * grid.spacing()) : std::nullopt;
     if (nearest)
-      mine.push_back({x + dt * surface.velocity(*nearest), part.liquid, part.owed});
+      mine.push_back({x + dt * surface.velocity(*nearest), part.liquid, part.defect});
     else
-      lost += part.liquid + part.owed;
+      lost += part.liquid + part.defect;
   }
   lost = sum_all(grid.comm(), lost);
   const std::vector<Arrival<dim>> all = gather_arrivals<dim>(grid.comm(), mine);
@@ -245,14 +245,14 @@ double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   const std::vector<int> cells = cells_to_arrive_in<dim>(all, grid, solids, after, nobody_sees);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (nobody_sees[i])
-      lost += all[i].liquid + all[i].owed;
+      lost += all[i].liquid + all[i].defect;
     if (cells[i] < 0)
       continue;
     double& liquid = fractions.liquid[cells[i]];
     const double open = fractions.open_part(cells[i]);
     const double taken_in = std::max(0.0, std::min(all[i].liquid, (1 - liquid) * open));
     liquid += taken_in > 0 ? taken_in / open : 0;
-    fractions.owed[cells[i]] += all[i].owed + (all[i].liquid - taken_in);
+    fractions.defect[cells[i]] += all[i].defect + (all[i].liquid - taken_in);
   }
   domain.halo.fill(fractions.liquid);
   return lost;

@@ -18,7 +18,7 @@ void bring_out_of_solids(const MacDomain<dim>& domain, const SolidCells<dim>& so
 /// Liquid that a surface takes along, of an owned cell [cells].
 struct TakenLiquid {
   int cell = 0;
-  double liquid = 0, owed = 0;
+  double liquid = 0, defect = 0;
 };
 /// Moves the liquid and the defects of cells that are about to leave their side of a surface to the
 /// defects of their neighbours on that side; the cells are empty then. `leaves`: marks of stored

@@ -130,7 +130,7 @@ void FractionTransport<dim>::leave_covered_cells(const SolidCells<dim>& solids,
       if (domain_.boundary.side(axis, side).type == SideType::open)
         inwards = std::min(inwards, 0.0);
       const double real = open_part(axis, face) * inwards * fractions.liquid[cell];
-      fractions.owed[cell] += real;
+      fractions.defect[cell] += real;
       left_ -= real;
     }
   });
@@ -161,7 +161,7 @@ double FractionTransport<dim>::advance(const SolidCells<dim>& solids,
       liquid = 0;
     if (liquid > 1 - negligible_fraction)
       liquid = 1;
-    fractions.owed[cell] += arrived_[cell] - (liquid - before_[cell]) * fractions.open_part(cell);
+    fractions.defect[cell] += arrived_[cell] - (liquid - before_[cell]) * fractions.open_part(cell);
   });
   domain_.halo.fill(fractions.liquid);
   return left_;

@@ -10,13 +10,13 @@ struct Fractions {
   CellField liquid;  ///< liquid part of each stored cell, extrapolated into solids [1]
   /// Volume defect of a stored cell [cells]: liquid that has come to it but finds no room in it,
   /// less liquid in it that has come from nowhere.
-  CellField owed;
+  CellField defect;
   CellField open;  ///< part of a cell outside closed solids; empty: 1 everywhere
 
   double open_part(int cell) const { return open.empty() ? 1 : open[cell]; }
   /// Changes the liquid of a cell; the difference goes to its defect.
   void set(int cell, double fraction) {
-    owed[cell] += (liquid[cell] - fraction) * open_part(cell);
+    defect[cell] += (liquid[cell] - fraction) * open_part(cell);
     liquid[cell] = fraction;
   }
 };

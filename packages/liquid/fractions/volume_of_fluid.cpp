@@ -48,7 +48,7 @@ VolumeOfFluid<dim>::VolumeOfFluid(const MacDomain<dim>& domain,
       transport_(domain),
       planes_(domain) {
   fractions_.liquid.assign(phi_.size(), 0);
-  fractions_.owed.assign(phi_.size(), 0);
+  fractions_.defect.assign(phi_.size(), 0);
 }
 
 template <int dim>
@@ -98,7 +98,7 @@ void VolumeOfFluid<dim>::initialise(const SignedDistance<dim>& distance, const S
   domain_.halo.fill(fractions_.liquid);
   const std::vector<char> all(domain_.grid.n_owned_tiles(), 1);
   make_distance(all);
-  fractions_.owed.assign(phi_.size(), 0);
+  fractions_.defect.assign(phi_.size(), 0);
   n_bodies_ = pay_back(domain_, solids_, phi_, 0, fractions_).n_bodies;
   volume_ = target_ = sum_of_liquid();
   n_sweeps_ = 0;
@@ -180,13 +180,13 @@ bool VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
   CellField& liquid = fractions_.liquid;
   domain_.grid.for_each_owned_cell([&](int cell) {
     const double part_before = open_before.empty() ? 1 : open_before[cell];
-    fractions_.owed[cell] += liquid[cell] * (part_before - fractions_.open_part(cell));
+    fractions_.defect[cell] += liquid[cell] * (part_before - fractions_.open_part(cell));
   });
   const CellField kept = liquid;
   populate_uncovered_scalar(domain_.grid, domain_.halo, solids_.state, step.surface, step.kept, invalid, 0,
                     liquid);
   domain_.grid.for_each_owned_cell([&](int cell) {
-    fractions_.owed[cell] += (kept[cell] - liquid[cell]) * fractions_.open_part(cell);
+    fractions_.defect[cell] += (kept[cell] - liquid[cell]) * fractions_.open_part(cell);
   });
   const bool takes_along = sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(taken.size())) > 0;
   if (takes_along) {
@@ -296,7 +296,7 @@ WatchedLiquid VolumeOfFluid<dim>::liquid_in(const std::vector<char>& cells) cons
     if (!cells[cell])
       return;
     sums[0] += fractions_.liquid[cell] * fractions_.open_part(cell);
-    sums[1] += fractions_.owed[cell];
+    sums[1] += fractions_.defect[cell];
   });
   sum_all(domain_.grid.comm(), sums.data(), 2);
   const double cell = domain_.cell_volume();
@@ -305,10 +305,10 @@ WatchedLiquid VolumeOfFluid<dim>::liquid_in(const std::vector<char>& cells) cons
 
 template <int dim>
 void VolumeOfFluid<dim>::save(CheckpointWriter& checkpoint) const {
-  CellField phi = phi_, liquid = fractions_.liquid, owed = fractions_.owed;
+  CellField phi = phi_, liquid = fractions_.liquid, defect = fractions_.defect;
   save_fields(
       domain_,
-      {{"interface_distance", {&phi}}, {"liquid_part", {&liquid}}, {"liquid_owed", {&owed}}},
+      {{"interface_distance", {&phi}}, {"liquid_part", {&liquid}}, {"liquid_defect", {&defect}}},
       checkpoint);
   checkpoint.file().write_replicated(
       "fluid/liquid_ledger",
@@ -321,7 +321,7 @@ void VolumeOfFluid<dim>::load(const CheckpointReader& checkpoint) {
   load_fields(domain_,
               {{"interface_distance", {&phi_}},
                {"liquid_part", {&fractions_.liquid}},
-               {"liquid_owed", {&fractions_.owed}}},
+               {"liquid_defect", {&fractions_.defect}}},
               checkpoint);
   domain_.full_halo.fill(phi_);
   const auto numbers = checkpoint.file().read_all<double>("fluid/liquid_ledger");
@@ -340,7 +340,7 @@ std::function<void()> VolumeOfFluid<dim>::migrate(const TileMigration<dim>& migr
   lost_ += lost;
   migration.move(phi_, cut_off());
   migration.move(fractions_.liquid);
-  migration.move(fractions_.owed);
+  migration.move(fractions_.defect);
   return [this] {
     solids_ = find_solid_cells(domain_, solids_.state.surface);
     continuation_.forget_layers();

@@ -139,7 +139,7 @@ void expect_nothing_is_lost(double cfl, bool is_solenoidal) {
   const auto& vof = dynamic_cast<VolumeOfFluid<dim>&>(*model);
   double all = 0;
   bath.domain.grid.for_each_owned_cell([&](int c) {
-    all += vof.fractions().liquid[c] + vof.fractions().owed[c];
+    all += vof.fractions().liquid[c] + vof.fractions().defect[c];
     EXPECT_GE(vof.fractions().liquid[c], 0);
     EXPECT_LE(vof.fractions().liquid[c], 1);
   });
@@ -277,7 +277,7 @@ void expect_fragments_of_gone_tiles_return(const std::string& correction, bool h
   const auto all = [&] {
     double sum = 0;
     bath.domain.grid.for_each_owned_cell(
-        [&](int c) { sum += vof.fractions().liquid[c] + vof.fractions().owed[c]; });
+        [&](int c) { sum += vof.fractions().liquid[c] + vof.fractions().defect[c]; });
     return sum_all(world(), sum) * bath.domain.cell_volume();
   };
   ASSERT_NEAR(all(), start, 1e-14);
