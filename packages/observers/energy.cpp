@@ -8,38 +8,38 @@ namespace lockstep {
 namespace {
 
 /// A number of the book, and its column.
-struct BookColumn {
+struct BudgetColumn {
   ObservedColumn column;
-  double EnergyBook::*value;
+  double EnergyBudget::*value;
 };
 
 /// Columns in the order of the table and of checkpoints.
-std::vector<BookColumn> book_columns() {
+std::vector<BudgetColumn> book_columns() {
   return {
-      {{"joints", "J", "work of what controls joints, as joints.csv has it"}, &EnergyBook::joints},
+      {{"joints", "J", "work of what controls joints, as joints.csv has it"}, &EnergyBudget::joints},
       {{"loads", "J", "work of gravity, loads, contact and drops, on fluid and solids"},
-       &EnergyBook::loads},
+       &EnergyBudget::loads},
       {{"kinetic_change", "J", "of the energy of motion of fluid and solids"},
-       &EnergyBook::kinetic_change},
-      {{"elastic_change", "J", "of the elastic energy"}, &EnergyBook::elastic_change},
+       &EnergyBudget::kinetic_change},
+      {{"elastic_change", "J", "of the elastic energy"}, &EnergyBudget::elastic_change},
       {{"fluid_friction", "J", "what viscosity took from fluid and solids"},
-       &EnergyBook::fluid_friction},
+       &EnergyBudget::fluid_friction},
       {{"solid_friction", "J", "what the damping of soft solids took"},
-       &EnergyBook::solid_friction},
+       &EnergyBudget::solid_friction},
       {{"transport", "J", "what advection, and the change of the fluid's place, took"},
-       &EnergyBook::transport},
+       &EnergyBudget::transport},
       {{"pressure", "J", "what pressure took; less what moving sides and prescribed solids gave"},
-       &EnergyBook::pressure},
-      {{"lumping", "J", "what was lost where fluid is lumped on solids"}, &EnergyBook::lumping},
+       &EnergyBudget::pressure},
+      {{"lumping", "J", "what was lost where fluid is lumped on solids"}, &EnergyBudget::lumping},
       {{"elasticity", "J", "what elastic forces took beside the change of elastic energy"},
-       &EnergyBook::elasticity},
+       &EnergyBudget::elasticity},
       {{"ties", "J", "what joints and attachments took from velocities they do not let"},
-       &EnergyBook::ties}};
+       &EnergyBudget::ties}};
 }
 
-std::vector<double> values_of(const EnergyBook& book) {
+std::vector<double> values_of(const EnergyBudget& book) {
   std::vector<double> values;
-  for (const BookColumn& entry : book_columns())
+  for (const BudgetColumn& entry : book_columns())
     values.push_back(book.*entry.value);
   return values;
 }
@@ -56,7 +56,7 @@ ParameterList energy_parameters() {
 template <int dim>
 std::vector<ObservedColumn> Energy<dim>::columns() const {
   std::vector<ObservedColumn> columns;
-  for (const BookColumn& entry : book_columns())
+  for (const BudgetColumn& entry : book_columns())
     columns.push_back(entry.column);
   columns.push_back({"left", "J", "of joints and loads, what is in none of these"});
   return columns;
@@ -91,7 +91,7 @@ void Energy<dim>::load(const CheckpointReader& checkpoint) {
               "{}: the checkpoint's \"{}\" is incomplete; restart from another one.",
               checkpoint.file().path(), stored);
   auto value = values.begin();
-  for (const BookColumn& entry : book_columns())
+  for (const BudgetColumn& entry : book_columns())
     total_.*entry.value = *value++;
 }
 

@@ -21,7 +21,7 @@ class Energy : public Observer<dim> {
   void load(const CheckpointReader& checkpoint) override;
 
  private:
-  EnergyBook total_;  ///< since the start of the run
+  EnergyBudget total_;  ///< since the start of the run
 };
 
 }  // namespace lockstep

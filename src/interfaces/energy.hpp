@@ -45,7 +45,7 @@ class WorkingSolids {
 
 /// Budget of the energy of a step [J]: sources, change, sinks. Each term is measured where it
 /// arises, none is the remainder of the others; `left` is their imbalance.
-struct EnergyBook {
+struct EnergyBudget {
   // Sources.
   double joints = 0;  ///< work of their control, as joints.csv has it
   double loads = 0;   ///< work of gravity, loads, contact and drops
@@ -65,10 +65,10 @@ struct EnergyBook {
     return joints + loads - kinetic_change - elastic_change - fluid_friction - solid_friction -
            transport - pressure - lumping - elasticity - ties;
   }
-  EnergyBook& operator+=(const EnergyBook& other);
+  EnergyBudget& operator+=(const EnergyBudget& other);
 };
 
-inline EnergyBook& EnergyBook::operator+=(const EnergyBook& other) {
+inline EnergyBudget& EnergyBudget::operator+=(const EnergyBudget& other) {
   joints += other.joints;
   loads += other.loads;
   kinetic_change += other.kinetic_change;

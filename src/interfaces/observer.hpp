@@ -14,7 +14,7 @@ struct RunView {
   double time = 0, dt = 0;  ///< [s]; the end of the step, and its length (0 at the start of a run)
   const FluidDiscretization<dim>& fluid;
   const std::vector<SolidState<dim>>& solids;  ///< in the order of bodies.csv
-  const EnergyBook* energy =
+  const EnergyBudget* energy =
       nullptr;  ///< budget of the step; null: there was none, or no observer wants it
 };
 

@@ -82,7 +82,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
     components_.strategy = std::move(dumping);
   }
   ScopedStage stage(timers_, "start");
-  scene_options_.step.energy_book = observers_.want_energy();
+  scene_options_.step.energy_budget = observers_.want_energy();
   scheme_ = std::make_unique<PaperStep<dim>>(components_, scene_options_.step,
                                              scene_options_.time.start, timers_);
   check_names();

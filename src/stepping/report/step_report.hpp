@@ -33,7 +33,7 @@ struct StepReport {
   AngularVector<dim> lumping_torque_error = AngularVector<dim>::Zero();
   AngularVector<dim> linearisation_impulse = AngularVector<dim>::Zero();
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]
-  std::optional<EnergyBook> energy;  ///< if it was asked for
+  std::optional<EnergyBudget> energy;  ///< if it was asked for
   double fluid_volume = 0;
   std::optional<LiquidReport> liquid;  ///< if it has a free surface
   bool is_settled = true;  ///< implicit forces of solids are those of where they move to

@@ -26,7 +26,7 @@ PaperStep<dim>::PaperStep(Components<dim>& components, const StepOptions& option
       solid_forces_(components, system_),
       positions_(components, system_, solve_, timers),
       advection_(components, system_, options.solve.tolerance),
-      audit_(components, system_, options.energy_book),
+      audit_(components, system_, options.energy_budget),
       timers_(timers),
       time_(start_time) {
   transport_.freeze();

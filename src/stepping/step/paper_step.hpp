@@ -9,7 +9,7 @@ namespace lockstep {
 struct StepOptions {
   CoupledSolveOptions solve;  ///< its tolerance is that of F2, too
   PredictionOptions prediction;
-  bool energy_book = false;  ///< reports have it
+  bool energy_budget = false;  ///< reports have it
 };
 
 /// The scheme of time of Section 7, a script on collaborators that do not know it.

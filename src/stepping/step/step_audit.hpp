@@ -19,12 +19,12 @@ struct StageResults {
   EndOfStep<dim> end;
 };
 
-/// Makes the report of a step: the momentum ledger, the energy book, the divergence that is left.
+/// Makes the report of a step: the momentum ledger, the energy budget, the divergence that is left.
 /// Told where the step is, it looks at fluid and solids, and changes nothing. All collective.
 template <int dim>
 class StepAudit {
  public:
-  /// `with_energy`: it keeps the energy book.
+  /// `with_energy`: it keeps the energy budget.
   StepAudit(Components<dim>& components, CoupledSystem<dim>& system, bool with_energy);
 
   /// Momentum that changes from the last step on is transport: the geometry is frozen at the start

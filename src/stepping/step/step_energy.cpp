@@ -157,7 +157,7 @@ void StepEnergy<dim>::add_lumping(const CoupledSolution& solution) {
 }
 
 template <int dim>
-EnergyBook StepEnergy<dim>::end(double time, double dt) {
+EnergyBudget StepEnergy<dim>::end(double time, double dt) {
   const SolidSystem<dim>& solids = *components_.solids;
   if (solids.joints()) {
     for (const JointState& joint : solids.joints()->states(time))

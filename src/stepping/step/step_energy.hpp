@@ -9,7 +9,7 @@
 
 namespace lockstep {
 
-/// Keeps the energy book of a step: told where the step is, it looks at fluid and solids. All
+/// Keeps the energy budget of a step: told where the step is, it looks at fluid and solids. All
 /// collective. Of a fluid without an EnergyFluid only solids are in the book.
 template <int dim>
 class StepEnergy {
@@ -27,7 +27,7 @@ class StepEnergy {
   void end_solve(const StepContext<dim>& context, const CoupledSolution& solution,
                  const RCP<const Vector>& friction, const RCP<const Vector>& reactions);
   /// Solids and joints are at the end of the step, at `time`, whose length is dt.
-  EnergyBook end(double time, double dt);
+  EnergyBudget end(double time, double dt);
 
  private:
   double fluid_energy() const;
@@ -40,7 +40,7 @@ class StepEnergy {
   const CoupledSystem<dim>& system_;
   EnergyFluid<dim>* fluid_;             ///< null: it cannot tell
   const AuditedFluid<dim>* audited_;    ///< likewise
-  EnergyBook book_;                     ///< of this step, as far as it is known
+  EnergyBudget book_;                     ///< of this step, as far as it is known
   RCP<const Vector> velocity_;          ///< V^n
   std::vector<double> coupled_before_;  ///< u*_F before forces
   double fluid_energy_ = 0, elastic_energy_ = 0, kinetic_energy_ = 0;  ///< at the begin

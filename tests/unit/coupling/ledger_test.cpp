@@ -14,7 +14,7 @@ Momentum<3> momentum_3d(const Point<3>& linear, const Point<3>& angular) {
 
 }  // namespace
 
-TEST(MomentumLedger, BalancedBooksHaveNoError) {
+TEST(MomentumLedger, BalancedBudgetsHaveNoError) {
   MomentumLedger<3> ledger;
   ledger.open(momentum_3d({1, 0, 0}, {0, 0, 2}));
   ledger.add("gravity", momentum_3d({0, 0, -3}, {1, 0, 0}));

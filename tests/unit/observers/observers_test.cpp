@@ -175,7 +175,7 @@ TEST(Gauge, WhatHasNoSurfaceOrNoLengthIsRefused) {
 
 TEST(Energy, SaysOfEachColumnWhatItsNameSays) {
   const EnergyTeller fluid;
-  EnergyBook book;
+  EnergyBudget book;
   book.joints = 1000;
   book.loads = 2000;
   book.kinetic_change = 1;
