@@ -46,7 +46,7 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
                     const MacDomain<dim>& domain)
     : domain_(domain),
       acceleration_(acceleration.norm()),
-      lead_(domain.grid.n_stored_cells(), 0.0) {
+      filter_shift_(domain.grid.n_stored_cells(), 0.0) {
   check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
   const ParameterList& list = fluid.sublist("Free Surface");
   parameters_ = read_free_surface(list);
@@ -92,7 +92,7 @@ FreeSurface<dim> Liquid<dim>::surface() {
   // drive the fluid between two such places, by its difference over next to no distance.
   surface.crossing = [this, &phi = interface_->distance()](int wet, int dry) {
     const double part = interface_->crossing(wet, dry);
-    const double lead = (1 - part) * lead_[wet] + part * lead_[dry];
+    const double lead = (1 - part) * filter_shift_[wet] + part * filter_shift_[dry];
     return lead == 0 ? part
                      : std::clamp(part - lead / (phi[dry] - phi[wet]),
                                   FreeSurface<dim>::smallest_distance, 1.0);
@@ -122,7 +122,7 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
     stop_beyond<dim>(geometry.state, velocity);
   }
   if (acceleration_ > 0)
-    lead_ = lead_of_short_waves<dim>(domain_, geometry, interface_->distance(), advection_velocity,
+    filter_shift_ = short_wave_filter<dim>(domain_, geometry, interface_->distance(), advection_velocity,
                                      acceleration_, step.dt);
   if (audit_)
     audit_->open(step, *interface_);
@@ -169,7 +169,7 @@ std::vector<std::string> Liquid<dim>::watch_names() const {
 
 template <int dim>
 std::vector<StoredField> Liquid<dim>::fields() {
-  std::vector<StoredField> fields = {{"surface_lead", {&lead_}}};
+  std::vector<StoredField> fields = {{"surface_filter_shift", {&filter_shift_}}};
   const auto add = [&](std::vector<StoredField> more) {
     fields.insert(fields.end(), more.begin(), more.end());
   };

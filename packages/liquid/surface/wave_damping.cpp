@@ -13,7 +13,7 @@ namespace {
 /// [cells].
 constexpr double reach_of_motion = 4, reach_of_first = 3, reach_of_second = 1.75;
 /// [cells]; what moves fast is not to be damped, and must not be shaken.
-constexpr double largest_lead = 0.05;
+constexpr double largest_shift = 0.05;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
@@ -116,7 +116,7 @@ NearSurface<dim> normal_speed(const MacDomain<dim>& domain, const std::vector<ch
 }  // namespace
 
 template <int dim>
-CellField lead_of_short_waves(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+CellField short_wave_filter(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                               const CellField& distance, const FaceField<dim>& velocity,
                               double gravity, double dt) {
   const TiledGrid<dim>& grid = domain.grid;
@@ -138,13 +138,13 @@ CellField lead_of_short_waves(const MacDomain<dim>& domain, const MacGeometry<di
   CellField lead(distance.size(), 0.0);
   for (std::size_t cell = 0; cell < lead.size(); ++cell)
     if (const double value = second.values[static_cast<int>(cell)]; value != unknown)
-      lead[cell] = std::clamp(-ahead * value, -largest_lead * h, largest_lead * h);
+      lead[cell] = std::clamp(-ahead * value, -largest_shift * h, largest_shift * h);
   return lead;
 }
 
-template CellField lead_of_short_waves<2>(const MacDomain<2>&, const MacGeometry<2>&,
+template CellField short_wave_filter<2>(const MacDomain<2>&, const MacGeometry<2>&,
                                           const CellField&, const FaceField<2>&, double, double);
-template CellField lead_of_short_waves<3>(const MacDomain<3>&, const MacGeometry<3>&,
+template CellField short_wave_filter<3>(const MacDomain<3>&, const MacGeometry<3>&,
                                           const CellField&, const FaceField<3>&, double, double);
 
 }  // namespace lockstep

@@ -13,7 +13,7 @@ namespace lockstep {
 /// near and where the liquid's moves as a plane. `distance`: phi; `velocity`: extended into the
 /// air, as marked in `geometry`; both with valid halos. `gravity` [m/s^2], not 0. Collective.
 template <int dim>
-CellField lead_of_short_waves(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+CellField short_wave_filter(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                               const CellField& distance, const FaceField<dim>& velocity,
                               double gravity, double dt);
 

@@ -213,7 +213,7 @@ TEST(SurfaceTension, ThePressuresSurfaceStaysBetweenCentres) {
   Liquid<2> liquid(scene.fluid, none, none, interfaces, domain);
   liquid.begin(nullptr);
   const std::vector<StoredField> fields = liquid.fields();
-  ASSERT_EQ(fields[0].name, "surface_lead");
+  ASSERT_EQ(fields[0].name, "surface_filter_shift");
   for (const double lead : {0.0, -0.4, -2.0, 0.4, 2.0}) {
     fields[0].components[0]->assign(domain.grid.n_stored_cells(), lead / 16);
     const FreeSurface<2> surface = liquid.surface();

@@ -187,7 +187,7 @@ TEST(VelocityExtension, ShortWavesAloneAreDamped) {
     const auto result = extended<2>(*fluid, distance, 6 * h, velocity);
     MacGeometry<2> geometry = fluid->geometry();
     geometry.state = result.state;
-    const CellField found = lead_of_short_waves<2>(fluid->domain(), geometry, distance,
+    const CellField found = short_wave_filter<2>(fluid->domain(), geometry, distance,
                                                    result.velocity, gravity.norm(), dt);
     grid.for_each_owned_cell([&](int cell) {
       const Point<2> x = grid.center(cell);
