@@ -50,7 +50,7 @@ DeformableSolids<dim>::DeformableSolids(const std::string& type,
   held_.begin_step(start_time);
   assemble_mass(bodies);
   distribute_surface(bodies);
-  find_rims();
+  find_boundary_nodes();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     for (const auto& [node, solid] : bodies[b].attached) {
       const int local = space_.numbers().local[bodies_[b].node_begin + node];

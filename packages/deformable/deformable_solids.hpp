@@ -153,8 +153,8 @@ class DeformableSolids : public SolidModel<dim>,
   /// Collective.
   std::vector<Nodes> surface_values(std::initializer_list<const Nodes*> of_nodes) const;
   std::array<Point<dim>, dim> of_corners(int simplex, const Nodes& of_vertices) const;
-  void find_rims();
-  std::vector<char> free_rims() const;
+  void find_boundary_nodes();
+  std::vector<char> free_boundary_nodes() const;
   Nodes area_shares() const;
   Nodes swelling() const;
   int body_of_node(int local) const { return body_of_node_[local]; }
@@ -177,7 +177,7 @@ class DeformableSolids : public SolidModel<dim>,
   std::vector<int> own_surface_vertices_;       ///< local nodes, in the order of gathering
   std::vector<int> gathered_surface_vertices_;  ///< the vertex of each gathered value
   Nodes surface_velocity_;                      ///< velocity of the last move [m/s]
-  std::vector<int> rim_nodes_;                  ///< owned ones, where shells end
+  std::vector<int> boundary_nodes_;                  ///< owned ones, where shells end
 
   StrainLimit<dim> strain_limit_;
   double stretch_beyond_limit_ = 0;

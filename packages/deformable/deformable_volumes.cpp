@@ -50,8 +50,8 @@ std::array<Point<dim>, dim> DeformableSolids<dim>::of_corners(int simplex,
 
 /// A shell ends at sides that one simplex alone has.
 template <int dim>
-void DeformableSolids<dim>::find_rims() {
-  std::vector<char> is_rim(space_.n_owned(), 0);
+void DeformableSolids<dim>::find_boundary_nodes() {
+  std::vector<char> is_boundary(space_.n_owned(), 0);
   for (const SolidDescription& solid : solids_) {
     if (solid.closed)
       continue;
@@ -68,24 +68,24 @@ void DeformableSolids<dim>::find_rims() {
       for (const int v : side) {
         const GlobalIndex dof = dim * surface_node_[v];
         if (n == 1 && space_.dof_map()->isNodeGlobalElement(dof))
-          is_rim[space_.dof_map()->getLocalElement(dof) / dim] = 1;
+          is_boundary[space_.dof_map()->getLocalElement(dof) / dim] = 1;
       }
     }
   }
   for (int i = 0; i < space_.n_owned(); ++i) {
-    if (is_rim[i])
-      rim_nodes_.push_back(i);
+    if (is_boundary[i])
+      boundary_nodes_.push_back(i);
   }
 }
 
 /// Per solid: does a shell end at nodes that are not held?
 template <int dim>
-std::vector<char> DeformableSolids<dim>::free_rims() const {
+std::vector<char> DeformableSolids<dim>::free_boundary_nodes() const {
   std::vector<int> n_held(space_.n_owned(), 0);  // axes
   for (const int dof : held_.dofs())
     ++n_held[dof / dim];
   std::vector<double> n_free(solids_.size(), 0);
-  for (const int node : rim_nodes_) {
+  for (const int node : boundary_nodes_) {
     if (n_held[node] < dim)
       ++n_free[body_of_node_[node]];
   }
@@ -115,14 +115,14 @@ std::vector<char> DeformableSolids<dim>::can_sweep(const Box<dim>& domain) const
   sum_all(comm_, attached.data(), static_cast<int>(attached.size()));
   const bool any_shell =
       std::any_of(solids_.begin(), solids_.end(), [](const auto& solid) { return !solid.closed; });
-  std::vector<char> has_free_rim(solids_.size(), 0);
+  std::vector<char> has_free_boundary(solids_.size(), 0);
   if (any_shell)
-    has_free_rim = free_rims();
+    has_free_boundary = free_boundary_nodes();
   const Point<dim> margin = 1e-6 * domain.sizes();  // a rim on the floor is inside
   const Box<dim> reach(domain.min() - margin, domain.max() + margin);
   std::vector<char> can(solids_.size());
   for (std::size_t b = 0; b < can.size(); ++b) {
-    can[b] = attached[b] == 0 && !has_free_rim[b];
+    can[b] = attached[b] == 0 && !has_free_boundary[b];
     for (int v = solids_[b].vertex_begin; v < solids_[b].vertex_end; ++v)
       can[b] = can[b] && reach.contains(surface_.vertices[v]);
   }
@@ -236,8 +236,8 @@ void DeformableSolids<dim>::sweep(double dt, const std::vector<double>& volumes,
 
 template std::array<Point<2>, 2> DeformableSolids<2>::of_corners(
     int, const std::vector<Point<2>>&) const;
-template void DeformableSolids<2>::find_rims();
-template std::vector<char> DeformableSolids<2>::free_rims() const;
+template void DeformableSolids<2>::find_boundary_nodes();
+template std::vector<char> DeformableSolids<2>::free_boundary_nodes() const;
 template std::vector<char> DeformableSolids<2>::can_sweep(const Box<2>&) const;
 template std::vector<Point<2>> DeformableSolids<2>::area_shares() const;
 template RCP<const Vector> DeformableSolids<2>::swept_per_velocity() const;
@@ -246,8 +246,8 @@ template std::vector<Point<2>> DeformableSolids<2>::swelling() const;
 template void DeformableSolids<2>::sweep(double, const std::vector<double>&, Vector&) const;
 template std::array<Point<3>, 3> DeformableSolids<3>::of_corners(
     int, const std::vector<Point<3>>&) const;
-template void DeformableSolids<3>::find_rims();
-template std::vector<char> DeformableSolids<3>::free_rims() const;
+template void DeformableSolids<3>::find_boundary_nodes();
+template std::vector<char> DeformableSolids<3>::free_boundary_nodes() const;
 template std::vector<char> DeformableSolids<3>::can_sweep(const Box<3>&) const;
 template std::vector<Point<3>> DeformableSolids<3>::area_shares() const;
 template RCP<const Vector> DeformableSolids<3>::swept_per_velocity() const;

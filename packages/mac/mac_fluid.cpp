@@ -240,7 +240,7 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   const ForceField<dim> force(flow_.domain, geometry, flow_.parameters.forces, flow_.scalars);
   Momentum<dim> mine = push_faces(force, dt);
   if (tiles_.move())
-    mine += tiles_.push_at_rim(force.of_surroundings(), dt);
+    mine += tiles_.push_at_band_edge(force.of_surroundings(), dt);
   if (flow_.has_drops())
     mine += speed_up_drops(flow_);
   mine.angular +=

@@ -211,8 +211,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   GridState<dim>& state = geometry.state;
   state.cells.assign(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { state.cells[cell] = CellState::fluid; });
-  empty_rim(domain, state.cells);
-  const bool has_rim = !grid.is_complete() && !free_surface;
+  clear_band_edge(domain, state.cells);
+  const bool has_band_edge = !grid.is_complete() && !free_surface;
   SurfaceMarks<dim> marks;
   if (surface && !surface->empty()) {
     state.surface = surface;
@@ -259,8 +259,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       }
       if (result == FaceState::prescribed)
         geometry.prescribed.push_back({axis, cell});
-      if (has_rim && result == FaceState::free && leads_to_empty(state.cells, face))
-        geometry.rim.push_back({axis, cell});
+      if (has_band_edge && result == FaceState::free && leads_to_empty(state.cells, face))
+        geometry.band_edge.push_back({axis, cell});
       if (result == FaceState::free && face.at_side())
         geometry.face_table.set_distance_factor(axis, cell, 2);
     });

@@ -94,12 +94,12 @@ typename NearbySurface<dim>::Near NearbySurface<dim>::picture(int simplex,
   };
   near.plane = plane(area_vector<dim>(points), points[0]);
   for (int k = 0; k < dim; ++k) {
-    const Point<dim>&rim = points[(k + 1) % dim], &end = points[(k + dim - 1) % dim];
-    const Point<dim> along = end - rim, inward = points[k] - rim;
+    const Point<dim>&facet = points[(k + 1) % dim], &end = points[(k + dim - 1) % dim];
+    const Point<dim> along = end - facet, inward = points[k] - facet;
     const double square = along.squaredNorm();
-    static_cast<Plane&>(near.rims[k]) =
-        plane(inward - (square > 0 ? along.dot(inward) / square : 0) * along, rim);
-    near.rims[k].height = near.rims[k](points[k]);
+    static_cast<Plane&>(near.facets[k]) =
+        plane(inward - (square > 0 ? along.dot(inward) / square : 0) * along, facet);
+    near.facets[k].height = near.facets[k](points[k]);
   }
   return near;
 }
@@ -316,8 +316,8 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       // plane, and do not pass by the simplex.
       const Values drop = from - to, size = drop.abs();
       Values inside = Values::Constant(std::numeric_limits<double>::infinity());
-      for (const Rim& rim : near.rims)
-        inside = inside.min(drop * (from * at_corners(rim) - rim(eye) * to));
+      for (const Facet& facet : near.facets)
+        inside = inside.min(drop * (from * at_corners(facet) - facet(eye) * to));
       const Values reaches = (tolerance - to.min(from)).min(tolerance + to.max(from));
       const Values passes = (-2 * tolerance_ * length * size - inside)
                                 .min(size - 1e-9 * length)
@@ -353,7 +353,7 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
     first.near = i;
     first.point = SurfacePoint<dim>{near.simplex, barycentric, position - near.shift, fraction};
   };
-  // Most that cross the plane pass by the simplex, and most others cross it clear of its rims,
+  // Most that cross the plane pass by the simplex, and most others cross it clear of its facets,
   // where its neighbours are.
   const double drop = from - to;
   if (length > tolerance_ && std::abs(drop) > 1e-9 * length) {
@@ -361,12 +361,12 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
     Barycentric<dim> shares;
     bool is_clear = from * to < 0;
     for (int k = 0; k < dim; ++k) {
-      const Rim& rim = near.rims[k];
-      const double inside = std::copysign(1.0, drop) * (from * rim(b) - to * rim(a));
+      const Facet& facet = near.facets[k];
+      const double inside = std::copysign(1.0, drop) * (from * facet(b) - to * facet(a));
       if (inside < -slack)
         return;
       is_clear = is_clear && inside > slack;
-      shares[k] = inside / rim.height;
+      shares[k] = inside / facet.height;
     }
     if (is_clear) {
       const double fraction = from / drop;

@@ -61,7 +61,7 @@ class NearbySurface {
   };
   /// Edge opposite to a corner: as a plane that gives the distance of a point inside of it, and the
   /// corner's distance `height` [m].
-  struct Rim : Plane {
+  struct Facet : Plane {
     double height = 0;
   };
   /// The image of a simplex near here.
@@ -69,7 +69,7 @@ class NearbySurface {
     int simplex = -1;
     Point<dim> shift;  ///< from the real place to the image
     Plane plane;       ///< its own, [m]; zero if it is degenerate
-    std::array<Rim, dim> rims;
+    std::array<Facet, dim> facets;
   };
   /// The simplices whose middles are in one bin: all their points lie within `half_thickness` [m]
   /// of `plane`.

@@ -28,7 +28,7 @@ SurfaceMesh<dim> open_box_surface(const Point<dim>& size, double spacing);
 template <int dim>
 SurfaceMesh<dim> tube_surface(double radius, double length, double spacing);
 /// A sphere (2D: an arc) with a round hole of radius `opening` at its top (y is up). The vertices
-/// lie on the sphere, the rim in one plane.
+/// lie on the sphere, the facet in one plane.
 template <int dim>
 SurfaceMesh<dim> open_ball_surface(double radius, double opening, double spacing);
 template <int dim>

@@ -252,7 +252,7 @@ SurfaceMesh<3> tube_surface<3>(double radius, double length, double spacing) {
 }
 
 namespace {
-/// The arc from the lower pole to the rim of the hole [rad].
+/// The arc from the lower pole to the facet of the hole [rad].
 double open_arc(double radius, double opening, double spacing) {
   check_shape("Open ball", std::min(radius, opening), radius, spacing);
   check_input(opening < radius, "Open ball: the radius of the opening ({}) must be less than {}.",

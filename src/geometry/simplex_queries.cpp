@@ -55,7 +55,7 @@ Barycentric<dim> projected_barycentric(const std::array<Point<dim>, dim>& corner
   return barycentric;
 }
 
-/// Volumes spanned by the segment direction, seen from a, and each rim of the simplex: all of one
+/// Volumes spanned by the segment direction, seen from a, and each facet of the simplex: all of one
 /// sign if the line passes through the simplex; their sum is direction x area vector (times two in
 /// 3D).
 template <int dim>
@@ -75,9 +75,9 @@ Barycentric<dim> line_volumes(const std::array<Point<dim>, dim>& corners, const 
   return volumes;
 }
 
-/// Length of the rim opposite to corner k (2D: the rim is a point and has "length" one).
+/// Length of the facet opposite to corner k (2D: the facet is a point and has "length" one).
 template <int dim>
-double rim_length(const std::array<Point<dim>, dim>& corners, int k) {
+double facet_length(const std::array<Point<dim>, dim>& corners, int k) {
   if constexpr (dim == 2) {
     static_cast<void>(corners);
     static_cast<void>(k);
@@ -97,7 +97,7 @@ std::optional<SimplexHit<dim>> hit_in_plane(const std::array<Point<dim>, dim>& c
   const Barycentric<dim> at_b = projected_barycentric<dim>(corners, b);
   double first = 0, last = 1;
   for (int k = 0; k < dim; ++k) {
-    const double height = (dim - 1) * measure / rim_length<dim>(corners, k);
+    const double height = (dim - 1) * measure / facet_length<dim>(corners, k);
     const double from = at_a[k] + slack / height, to = at_b[k] + slack / height;
     if (from < 0 && to < 0)
       return std::nullopt;
@@ -180,7 +180,7 @@ std::optional<SimplexHit<dim>> hit_simplex(const std::array<Point<dim>, dim>& co
   if (volumes.sum() < 0)
     volumes = -volumes;
   for (int k = 0; k < dim; ++k)
-    if (volumes[k] < -slack * length * rim_length<dim>(corners, k))
+    if (volumes[k] < -slack * length * facet_length<dim>(corners, k))
       return std::nullopt;
 
   SimplexHit<dim> hit;

@@ -24,7 +24,7 @@ struct SimplexHit {
   Barycentric<dim> barycentric = Barycentric<dim>::Zero();
   Point<dim> position = Point<dim>::Zero();
 };
-/// Ends and rim are included, and widened by `tolerance` [m] plus 1e-12 of the size, so that a
+/// Ends and facet are included, and widened by `tolerance` [m] plus 1e-12 of the size, so that a
 /// segment through an edge hits at least one of the two simplices. A segment inside the plane of
 /// the simplex meets it at its first common point.
 template <int dim>

@@ -16,24 +16,24 @@ std::string count_text(int n, const std::string& word, const std::string& plural
   return fmt::format("{} {}", n, n == 1 ? word : plural);
 }
 
-/// Rims of one kind of defect: how many places, and the first of them.
+/// Facets of one kind of defect: how many places, and the first of them.
 struct Places {
   int n = 0;
-  Rim first;
-  void add(const Rim& rim) {
+  Facet first;
+  void add(const Facet& facet) {
     if (n++ == 0)
-      first = rim;
+      first = facet;
   }
 };
 
-/// Rims at which the surface is not closed.
-struct OpenRims {
+/// Facets at which the surface is not closed.
+struct OpenFacets {
   Places lone, crowded, opposed;  ///< edges of one simplex, of more than two, of two that disagree
-  int n_holes = 0;                ///< connected runs of lone rims (3D)
+  int n_holes = 0;                ///< connected runs of lone facets (3D)
   bool none() const { return lone.n + crowded.n + opposed.n == 0; }
 };
 
-int count_runs(const std::vector<Rim>& rims, std::size_t n_vertices) {
+int count_runs(const std::vector<Facet>& facets, std::size_t n_vertices) {
   std::vector<int> parent(n_vertices);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int v) {
@@ -42,27 +42,27 @@ int count_runs(const std::vector<Rim>& rims, std::size_t n_vertices) {
     return v;
   };
   std::vector<int> roots;
-  for (const Rim& rim : rims)
-    parent[root(rim.first)] = root(rim.second);
-  for (const Rim& rim : rims)
-    roots.push_back(root(rim.first));
+  for (const Facet& facet : facets)
+    parent[root(facet.first)] = root(facet.second);
+  for (const Facet& facet : facets)
+    roots.push_back(root(facet.first));
   std::sort(roots.begin(), roots.end());
   return static_cast<int>(std::unique(roots.begin(), roots.end()) - roots.begin());
 }
 
 template <int dim>
-OpenRims find_open_rims(const SurfaceMesh<dim>& mesh) {
-  const std::vector<Rim> rims = sorted_rims(mesh);
-  OpenRims open;
-  std::vector<Rim> lone;
-  for_each_place(rims, [&](int i, int n) {
+OpenFacets find_open_facets(const SurfaceMesh<dim>& mesh) {
+  const std::vector<Facet> facets = sorted_facets(mesh);
+  OpenFacets open;
+  std::vector<Facet> lone;
+  for_each_place(facets, [&](int i, int n) {
     if (n == 1) {
-      lone.push_back(rims[i]);
-      open.lone.add(rims[i]);
+      lone.push_back(facets[i]);
+      open.lone.add(facets[i]);
     } else if (n > 2) {
-      open.crowded.add(rims[i]);
-    } else if (rims[i].direction == rims[i + 1].direction) {
-      open.opposed.add(rims[i]);
+      open.crowded.add(facets[i]);
+    } else if (facets[i].direction == facets[i + 1].direction) {
+      open.opposed.add(facets[i]);
     }
   });
   open.n_holes = lone.empty() ? 0 : count_runs(lone, mesh.vertices.size());
@@ -103,7 +103,7 @@ class SurfaceChecker {
                        point_text<dim>(mesh_.vertices[mesh_.simplices[s][0]]));
   }
   std::string vertex(int v) const { return vertex_text<dim>(names_, v, mesh_.vertices[v]); }
-  std::string rim(const Rim& r) const {
+  std::string facet(const Facet& r) const {
     const std::string of = simplex_text(names_, r.simplex, dim);
     if (dim == 2)
       return fmt::format("{} of {}", vertex(r.first), of);
@@ -150,11 +150,11 @@ class SurfaceChecker {
   }
 
   /// Returns the faults of the surface, one clause a kind.
-  std::vector<std::string> clauses(const OpenRims& open) const {
+  std::vector<std::string> clauses(const OpenFacets& open) const {
     std::vector<std::string> list;
     const auto add = [&](const Places& places, const std::string& what) {
       if (places.n > 0)
-        list.push_back(fmt::format("{}, the first {}", what, rim(places.first)));
+        list.push_back(fmt::format("{}, the first {}", what, facet(places.first)));
     };
     const int n = open.lone.n, m = open.crowded.n, o = open.opposed.n;
     if (dim == 2) {
@@ -173,7 +173,7 @@ class SurfaceChecker {
     return list;
   }
   void check_closure() const {
-    const OpenRims open = find_open_rims(mesh_);
+    const OpenFacets open = find_open_facets(mesh_);
     if (open.none())
       return;
     std::vector<std::string> remedies;
@@ -192,7 +192,7 @@ class SurfaceChecker {
 
   /// The bending stiffness of a shell, its area and what it sweeps go by its sides.
   void check_orientation() const {
-    OpenRims open = find_open_rims(mesh_);
+    OpenFacets open = find_open_facets(mesh_);
     open.lone = open.crowded = {};
     check_input(open.none(), "{} is a shell of two sides, but has {}. \"Orient\" turns them.",
                 heading_, fmt::join(clauses(open), "; "));
@@ -265,7 +265,7 @@ class SurfaceChecker {
 
 template <int dim>
 bool is_closed(const SurfaceMesh<dim>& mesh) {
-  return find_open_rims(mesh).none();
+  return find_open_facets(mesh).none();
 }
 
 template <int dim>

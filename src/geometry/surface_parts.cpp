@@ -7,7 +7,7 @@ namespace lockstep {
 
 namespace {
 
-/// For each simplex, those that share a rim with it and no third one: {simplex, agrees}.
+/// For each simplex, those that share a facet with it and no third one: {simplex, agrees}.
 struct Neighbour {
   int simplex;
   bool agrees;
@@ -15,19 +15,19 @@ struct Neighbour {
 
 template <int dim>
 std::vector<std::vector<Neighbour>> neighbours(const SurfaceMesh<dim>& mesh,
-                                               std::vector<char>& at_odd_rim) {
+                                               std::vector<char>& at_odd_facet) {
   std::vector<std::vector<Neighbour>> result(mesh.simplices.size());
-  at_odd_rim.assign(mesh.simplices.size(), 0);
-  const std::vector<Rim> rims = sorted_rims(mesh);
-  for_each_place(rims, [&](int i, int n) {
+  at_odd_facet.assign(mesh.simplices.size(), 0);
+  const std::vector<Facet> facets = sorted_facets(mesh);
+  for_each_place(facets, [&](int i, int n) {
     if (n == 2) {
-      const int a = rims[i].simplex, b = rims[i + 1].simplex;
-      const bool agrees = rims[i].direction != rims[i + 1].direction;
+      const int a = facets[i].simplex, b = facets[i + 1].simplex;
+      const bool agrees = facets[i].direction != facets[i + 1].direction;
       result[a].push_back({b, agrees});
       result[b].push_back({a, agrees});
     } else {
       for (int k = i; k < i + n; ++k)
-        at_odd_rim[rims[k].simplex] = 1;
+        at_odd_facet[facets[k].simplex] = 1;
     }
   });
   return result;
@@ -139,38 +139,38 @@ void walk(const std::vector<std::vector<Neighbour>>& next, const Begin& begin, c
 }  // namespace
 
 template <int dim>
-std::vector<Rim> sorted_rims(const SurfaceMesh<dim>& mesh) {
-  std::vector<Rim> rims;
-  rims.reserve(mesh.simplices.size() * dim);
+std::vector<Facet> sorted_facets(const SurfaceMesh<dim>& mesh) {
+  std::vector<Facet> facets;
+  facets.reserve(mesh.simplices.size() * dim);
   for (int s = 0; s < static_cast<int>(mesh.simplices.size()); ++s) {
     const auto& simplex = mesh.simplices[s];
     if constexpr (dim == 2) {
-      rims.push_back({simplex[0], simplex[0], 1, s});
-      rims.push_back({simplex[1], simplex[1], -1, s});
+      facets.push_back({simplex[0], simplex[0], 1, s});
+      facets.push_back({simplex[1], simplex[1], -1, s});
     } else {
       for (int k = 0; k < 3; ++k) {
         const int a = simplex[k], b = simplex[(k + 1) % 3];
-        rims.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1, s});
+        facets.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1, s});
       }
     }
   }
-  std::sort(rims.begin(), rims.end(), [](const Rim& l, const Rim& r) {
+  std::sort(facets.begin(), facets.end(), [](const Facet& l, const Facet& r) {
     return std::array<int, 3>{l.first, l.second, l.simplex} <
            std::array<int, 3>{r.first, r.second, r.simplex};
   });
-  return rims;
+  return facets;
 }
 
 template <int dim>
 std::vector<SurfacePart<dim>> surface_parts(const SurfaceMesh<dim>& mesh) {
-  std::vector<char> at_odd_rim;
-  const auto next = neighbours(mesh, at_odd_rim);
+  std::vector<char> at_odd_facet;
+  const auto next = neighbours(mesh, at_odd_facet);
   std::vector<SurfacePart<dim>> parts;
   walk(
       next, [&](int) { parts.emplace_back().closed = true; },
       [&](int s, bool) {
         parts.back().simplices.push_back(s);
-        parts.back().closed = parts.back().closed && !at_odd_rim[s];
+        parts.back().closed = parts.back().closed && !at_odd_facet[s];
       });
   for (SurfacePart<dim>& part : parts)
     part.volume = part.closed ? signed_volume(mesh, part.simplices) : 0;
@@ -182,9 +182,9 @@ std::vector<SurfacePart<dim>> surface_parts(const SurfaceMesh<dim>& mesh) {
 template <int dim>
 void orient_surface(SurfaceMesh<dim>& mesh) {
   const auto turn = [&](int s) { std::swap(mesh.simplices[s][0], mesh.simplices[s][1]); };
-  std::vector<char> at_odd_rim;
+  std::vector<char> at_odd_facet;
   walk(
-      neighbours(mesh, at_odd_rim), [](int) {},
+      neighbours(mesh, at_odd_facet), [](int) {},
       [&](int s, bool agrees) {
         if (!agrees)
           turn(s);
@@ -195,8 +195,8 @@ void orient_surface(SurfaceMesh<dim>& mesh) {
   }
 }
 
-template std::vector<Rim> sorted_rims(const SurfaceMesh<2>&);
-template std::vector<Rim> sorted_rims(const SurfaceMesh<3>&);
+template std::vector<Facet> sorted_facets(const SurfaceMesh<2>&);
+template std::vector<Facet> sorted_facets(const SurfaceMesh<3>&);
 template std::vector<SurfacePart<2>> surface_parts(const SurfaceMesh<2>&);
 template std::vector<SurfacePart<3>> surface_parts(const SurfaceMesh<3>&);
 template void orient_surface(SurfaceMesh<2>&);

@@ -12,7 +12,7 @@ namespace {
 
 /// Barycentric coordinates by which a simplex is widened, so that there is no gap between
 /// neighbours: chosen far above round-off, and far below what a mesh resolves.
-constexpr double rim = 1e-6;
+constexpr double facet = 1e-6;
 /// Square of the sine of the angle below which edges count as parallel: their common normal has
 /// lost five digits there. Vertices against simplices find what such edges touch.
 constexpr double parallel = 1e-10;
@@ -103,7 +103,7 @@ std::optional<Impact<dim>> touching(PrimitiveKind kind, const PrimitivePoints<di
   if constexpr (dim == 3) {
     if (kind == PrimitiveKind::edge_edge) {
       const auto crossing = crossing_of(x);
-      if (!crossing || !within(crossing->s, rim) || !within(crossing->t, rim))
+      if (!crossing || !within(crossing->s, facet) || !within(crossing->t, facet))
         return {};
       impact.weights = weights_of(*crossing);
       impact.normal = crossing->normal.normalized();
@@ -126,7 +126,7 @@ std::optional<Impact<dim>> touching(PrimitiveKind kind, const PrimitivePoints<di
     impact.weights << 1, t - 1, -t;
     impact.normal = Point<2>(-along.y(), along.x()) / std::sqrt(square);
   }
-  if (impact.weights.template tail<dim>().maxCoeff() > rim)
+  if (impact.weights.template tail<dim>().maxCoeff() > facet)
     return {};
   return impact;
 }
@@ -167,7 +167,7 @@ std::optional<ClosestPrimitives<dim>> closest_primitives(PrimitiveKind kind,
   if constexpr (dim == 3) {
     if (kind == PrimitiveKind::edge_edge) {
       const auto crossing = crossing_of(points);
-      if (!crossing || !within(crossing->s, -rim) || !within(crossing->t, -rim))
+      if (!crossing || !within(crossing->s, -facet) || !within(crossing->t, -facet))
         return {};
       closest.weights = weights_of(*crossing);
       closest.interior = true;
@@ -179,7 +179,7 @@ std::optional<ClosestPrimitives<dim>> closest_primitives(PrimitiveKind kind,
   std::copy(points.begin() + 1, points.end(), corners.begin());
   const ClosestOnSimplex<dim> on_simplex = closest_on_simplex<dim>(corners, points[0]);
   closest.weights << 1, -on_simplex.barycentric;
-  closest.interior = on_simplex.barycentric.minCoeff() > rim;
+  closest.interior = on_simplex.barycentric.minCoeff() > facet;
   closest.distance = on_simplex.distance;
   return closest;
 }

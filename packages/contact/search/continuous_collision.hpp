@@ -36,7 +36,7 @@ template <int dim>
 struct ClosestPrimitives {
   PrimitiveWeights<dim> weights = PrimitiveWeights<dim>::Zero();
   double distance = 0;    ///< [m]
-  bool interior = false;  ///< the point of the simplex is not on its rim
+  bool interior = false;  ///< the point of the simplex is not on its facet
 };
 template <int dim>
 std::optional<ClosestPrimitives<dim>> closest_primitives(PrimitiveKind kind,

@@ -16,7 +16,7 @@ struct EdgeGeometry {
   Box<3> box;
 
   /// True if a plane with this normal that holds the edge has both faces behind it, or nearly: of
-  /// faces that lie flush on each other but for a little tilt all crossings of rims carry, as
+  /// faces that lie flush on each other but for a little tilt all crossings of facets carry, as
   /// before it tilted, not those alone that the tilt has made deeper.
   bool supports(const Point<3>& normal) const {
     constexpr double tilt = 0.05;
@@ -86,8 +86,8 @@ bool crossing(const EdgeGeometry& a, const EdgeGeometry& b, double& s, double& t
   const Point<3> arm = b.start - a.start;
   s = arm.cross(b.along).dot(normal) / square;
   t = arm.cross(a.along).dot(normal) / square;
-  const double rim = 1e-6;
-  return s > rim && s < 1 - rim && t > rim && t < 1 - rim;
+  const double facet = 1e-6;
+  return s > facet && s < 1 - facet && t > facet && t < 1 - facet;
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ void add_edge_contacts(const ContactShapes<3>& shapes, const ContactReach& reach
       const bool backward = b.supports(-normal) && a.supports(normal);
       if (!forward && !backward)
         continue;
-      // Two rims of shells fit both ways; then the side on which they are decides.
+      // Two facets of shells fit both ways; then the side on which they are decides.
       if (!forward || (backward && arm.dot(normal) < 0))
         normal = -normal;
       contact.solid = solid;

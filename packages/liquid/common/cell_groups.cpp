@@ -135,7 +135,7 @@ std::pair<std::vector<int>, int> number_groups(const std::vector<GlobalIndex>& s
 
 /// Beside cells that are not stored, though inside the domain.
 template <int dim>
-bool at_rim(const TiledGrid<dim>& grid, int cell) {
+bool at_band_edge(const TiledGrid<dim>& grid, int cell) {
   for (int i = 0; i < 2 * dim; ++i) {
     const int axis = i / 2, last = i % 2 == 0 ? 0 : grid.n_cells()[axis] - 1;
     if (grid.neighbor(cell, axis, i % 2) < 0 &&
@@ -147,12 +147,12 @@ bool at_rim(const TiledGrid<dim>& grid, int cell) {
 
 /// All groups at the rim of the cells that are stored become the first of them.
 template <int dim>
-void join_at_rim(const TiledGrid<dim>& grid, CellGroups& groups) {
+void join_at_band_edge(const TiledGrid<dim>& grid, CellGroups& groups) {
   std::vector<double> touches(groups.n, 0.0);
   grid.for_each_owned_cell([&](int cell) {
     const int group = groups.of_cell[cell];
     if (group >= 0 && touches[group] == 0)
-      touches[group] = at_rim(grid, cell);
+      touches[group] = at_band_edge(grid, cell);
   });
   sum_all(grid.comm(), touches.data(), groups.n);
   int first = 0;
@@ -228,7 +228,7 @@ CellGroups closed_spaces_of(const MacDomain<dim>& domain, const SolidCells<dim>&
     return spaces;
   spaces = find_groups(domain, solids, std::vector<char>(n_cells, 1));
   if (!domain.grid.is_complete())
-    join_at_rim(domain.grid, spaces);
+    join_at_band_edge(domain.grid, spaces);
   return spaces;
 }
 }  // namespace

@@ -44,9 +44,9 @@ template <int dim>
 void LeakAudit<dim>::begin(const Surface& surface) {
   const TiledGrid<dim>& grid = domain_.grid;
   const Surface present = surface && !surface->empty() ? surface : nullptr;
-  rimless_.clear();
+  without_boundary_.clear();
   for (std::size_t s = 0; present && s < present->solids().size(); ++s)
-    rimless_.push_back(is_closed<dim>(present->mesh_of_solid(static_cast<int>(s))));
+    without_boundary_.push_back(is_closed<dim>(present->mesh_of_solid(static_cast<int>(s))));
   const Near near(present, grid, 2);
   std::vector<CellState> cells(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { cells[cell] = CellState::fluid; });

@@ -102,7 +102,7 @@ class LeakAudit {
   const MacDomain<dim>& domain_;
   std::vector<Watch<dim>> watches_;
   std::vector<Anchor<dim>> anchors_;
-  std::vector<char> rimless_;  ///< by solid
+  std::vector<char> without_boundary_;  ///< by solid
   Look before_;
   std::optional<Look> last_;  ///< after the last step
   CellField places_;          ///< the bits of `Look::watched` as they were last found

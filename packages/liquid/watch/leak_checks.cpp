@@ -91,7 +91,7 @@ int LeakAudit<dim>::parting_solid(const SurfaceSnapshot<dim>& surface, int axis,
       if (crossing.coordinate > low && crossing.coordinate <= high)
         ++n_crossings[surface.solid_of(crossing.simplex)];
   for (const auto& [solid, n] : n_crossings)
-    if (n % 2 == 1 && rimless_[solid])
+    if (n % 2 == 1 && without_boundary_[solid])
       return solid;
   return -1;
 }

@@ -221,16 +221,16 @@ void MacTiles<dim>::regrid(const TileOwners& owners) {
   flow_.blocks = lattice_blocks(flow_.domain.grid);
   owners_ = owners;
   has_room_ = true;
-  rest_at_rim();
+  rest_at_band_edge();
   flow_.prediction = flow_.velocity;
   flow_.scaled_pressure = flow_.accepted_pressure;
 }
 
 /// Nothing of what left the tiles that are gone may come back from their rim.
 template <int dim>
-void MacTiles<dim>::rest_at_rim() {
+void MacTiles<dim>::rest_at_band_edge() {
   const TiledGrid<dim>& grid = flow_.domain.grid;
-  const std::vector<char> rim = find_rim(flow_.domain);
+  const std::vector<char> rim = find_band_edge(flow_.domain);
   if (rim.empty())
     return;
   grid.for_each_owned_cell([&](int cell) {
@@ -258,13 +258,13 @@ void MacTiles<dim>::rest_at_rim() {
 }
 
 template <int dim>
-Momentum<dim> MacTiles<dim>::push_at_rim(const Point<dim>& force, double dt) {
+Momentum<dim> MacTiles<dim>::push_at_band_edge(const Point<dim>& force, double dt) {
   Momentum<dim> given;
   if (force == Point<dim>::Zero())
     return given;
   const TiledGrid<dim>& grid = flow_.domain.grid;
   const Point<dim> origin = origin_of_pressure(flow_.domain, flow_.domain.bounds());
-  for (const auto& [axis, cell] : flow_.geometry.rim) {
+  for (const auto& [axis, cell] : flow_.geometry.band_edge) {
     const bool is_above = flow_.geometry.state.cells[cell] == CellState::empty;
     const Point<dim> face = grid.face_center(axis, cell);
     const Point<dim> beyond =

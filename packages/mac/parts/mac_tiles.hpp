@@ -30,7 +30,7 @@ class MacTiles {
   void accept();
   /// Applies the pressure beyond the stored tiles to the faces at the band edge over dt, that of
   /// fluid at rest under this acceleration; returns this rank's impulse.
-  Momentum<dim> push_at_rim(const Point<dim>& force, double dt);
+  Momentum<dim> push_at_band_edge(const Point<dim>& force, double dt);
 
   void save(CheckpointWriter& checkpoint) const;
   void load(const CheckpointReader& checkpoint);
@@ -43,7 +43,7 @@ class MacTiles {
   bool share_work();
   /// Other tiles: all fields move; what else was made of the grid waits until geometry is frozen.
   void regrid(const TileOwners& owners);
-  void rest_at_rim();
+  void rest_at_band_edge();
   /// Interface of the liquid; null: it cannot live on other tiles.
   MigratingInterface<dim>* migrating_interface();
 

@@ -232,7 +232,7 @@ MacDomain<dim> make_domain(const ParameterList& fluid, const ParameterList& doma
 }
 
 template <int dim>
-std::vector<char> find_rim(const MacDomain<dim>& domain) {
+std::vector<char> find_band_edge(const MacDomain<dim>& domain) {
   const TiledGrid<dim>& grid = domain.grid;
   if (grid.is_complete())
     return {};
@@ -252,8 +252,8 @@ std::vector<char> find_rim(const MacDomain<dim>& domain) {
 }
 
 template <int dim>
-void empty_rim(const MacDomain<dim>& domain, std::vector<CellState>& cells) {
-  const std::vector<char> rim = find_rim(domain);
+void clear_band_edge(const MacDomain<dim>& domain, std::vector<CellState>& cells) {
+  const std::vector<char> rim = find_band_edge(domain);
   for (std::size_t cell = 0; cell < rim.size(); ++cell)
     if (rim[cell] && cells[cell] == CellState::fluid)
       cells[cell] = CellState::empty;
@@ -265,9 +265,9 @@ template void declare_moving_tiles<2>(ParameterList&);
 template void declare_moving_tiles<3>(ParameterList&);
 template MacDomain<2> make_domain(const ParameterList&, const ParameterList&, const Communicator&);
 template MacDomain<3> make_domain(const ParameterList&, const ParameterList&, const Communicator&);
-template void empty_rim(const MacDomain<2>&, std::vector<CellState>&);
-template void empty_rim(const MacDomain<3>&, std::vector<CellState>&);
-template std::vector<char> find_rim(const MacDomain<2>&);
-template std::vector<char> find_rim(const MacDomain<3>&);
+template void clear_band_edge(const MacDomain<2>&, std::vector<CellState>&);
+template void clear_band_edge(const MacDomain<3>&, std::vector<CellState>&);
+template std::vector<char> find_band_edge(const MacDomain<2>&);
+template std::vector<char> find_band_edge(const MacDomain<3>&);
 
 }  // namespace lockstep

@@ -80,9 +80,9 @@ MacDomain<dim> make_domain(const ParameterList& fluid, const ParameterList& doma
 /// Marks the domain's cells beside tiles that do not exist, among all stored cells: the fluid is at
 /// rest there. Empty if all tiles exist. Collective.
 template <int dim>
-std::vector<char> find_rim(const MacDomain<dim>& domain);
+std::vector<char> find_band_edge(const MacDomain<dim>& domain);
 /// Makes the fluid cells of the rim empty. Collective.
 template <int dim>
-void empty_rim(const MacDomain<dim>& domain, std::vector<CellState>& cells);
+void clear_band_edge(const MacDomain<dim>& domain, std::vector<CellState>& cells);
 
 }  // namespace lockstep

@@ -90,13 +90,13 @@ void expect_open_ball(double area, double tolerance) {
   const auto shell = open_ball_surface<dim>(0.5, 0.3, 0.05);
   EXPECT_FALSE(is_closed(shell));
   EXPECT_NEAR(shell_properties(shell).measure, area, tolerance);
-  int n_rim = 0;
+  int n_boundary = 0;
   for (const auto& x : shell.vertices) {
     EXPECT_NEAR(x.norm(), 0.5, 1e-14);
     EXPECT_LE(x.y(), 0.4 + 1e-14);  // sqrt(0.5^2 - 0.3^2)
-    n_rim += x.y() > 0.4 - 1e-12;
+    n_boundary += x.y() > 0.4 - 1e-12;
   }
-  EXPECT_GE(n_rim, dim == 2 ? 2 : 37);  // 2 pi 0.3 / 0.05
+  EXPECT_GE(n_boundary, dim == 2 ? 2 : 37);  // 2 pi 0.3 / 0.05
   for (const auto& s : shell.simplices) {
     std::array<Point<dim>, dim> corners;
     for (int k = 0; k < dim; ++k)
