@@ -63,7 +63,7 @@ std::unique_ptr<ViscousSystem<dim>> FakeFluid<dim>::viscous_system() const {
       } else if (other.kind == FaceKind::wall) {
         system->wall_force->sumIntoLocalValue(row, bond() * predicted_[neighbour]);
       } else {
-        ViscousLink<dim> link;
+        ViscousCouplingTerm<dim> link;
         link.row = row;
         link.direction = face.volume.direction;
         link.coefficient = bond();

@@ -166,7 +166,7 @@ void check_viscosity(FluidDiscretization<dim>& fluid, Violations& found) {
   double bad = 0;
   for (const double mass : system->mass->getData())
     bad += !(mass > 0);
-  for (const ViscousLink<dim>& link : system->links)
+  for (const ViscousCouplingTerm<dim>& link : system->links)
     bad += !(link.coefficient >= 0) || link.row < 0 ||
            link.row >= static_cast<int>(system->map->getNodeNumElements());
   expect_true(found, sum_all(comm, bad) == 0, "viscous_system: a mass or a link that cannot be");

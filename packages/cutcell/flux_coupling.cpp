@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "faces/added_mass.hpp"
-#include "faces/link_end.hpp"
+#include "faces/coupling_end.hpp"
 #include "faces/solid_fluxes.hpp"
 #include "faces/wet_volume.hpp"
 #include "interfaces/fluid_sides.hpp"
@@ -229,11 +229,11 @@ AngularVector<dim> FluxCoupling<dim>::lumping_torque_error(const SolidSystem<dim
 
 template <int dim>
 void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
-                                   const SolidSystem<dim>& solids, LinkRow<dim>& row) const {
+                                   const SolidSystem<dim>& solids, EndVelocity<dim>& row) const {
   VelocityRow<dim> scratch;
   std::vector<GlobalIndex> dofs;
   std::vector<double> values;
-  LinkEnd<dim> end(solids, direction, row);
+  CouplingEnd<dim> end(solids, direction, row);
   for (const FluxShare<dim>& share : shares) {
     const bool rigid = solids.solids()[share.solid].rigid;
     if (!end.add(share.weight, share.point, share.solid, share.center,
@@ -247,8 +247,8 @@ void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, in
 }
 
 template <int dim>
-void FluxCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                                 LinkRow<dim>& row) const {
+void FluxCoupling<dim>::link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
+                                 EndVelocity<dim>& row) const {
   row = {};
   if (link.coupled_volume >= 0) {
     row.position = volumes_[link.coupled_volume].center;

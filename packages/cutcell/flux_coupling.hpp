@@ -47,8 +47,8 @@ class FluxCoupling : public FaceCoupling<dim> {
                                    const std::vector<double>& velocity_after,
                                    const BlockVector& solution,
                                    const std::vector<double>& gas_pressure) const override;
-  void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                LinkRow<dim>& row) const override;
+  void link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
+                EndVelocity<dim>& row) const override;
 
  private:
   double closed_area(const ControlVolume<dim>& volume) const override {
@@ -60,7 +60,7 @@ class FluxCoupling : public FaceCoupling<dim> {
   void add_thin_impulses(std::size_t f, double velocity_before,
                          std::vector<Momentum<dim>>& impulses) const;
   void add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
-                  const SolidSystem<dim>& solids, LinkRow<dim>& row) const;
+                  const SolidSystem<dim>& solids, EndVelocity<dim>& row) const;
 
   using FaceCoupling<dim>::added_mass_;
   using FaceCoupling<dim>::coupling_transposed_;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "faces/link_end.hpp"
+#include "faces/coupling_end.hpp"
 #include "faces/solid_fluxes.hpp"
 #include "geometry/clipping.hpp"
 #include "interfaces/fluid_sides.hpp"
@@ -202,8 +202,8 @@ AngularVector<dim> MixedFaceCoupling<dim>::lumping_torque_error(
 template <int dim>
 void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& shares,
                                        const Point<dim>& x, int direction,
-                                       const SolidSystem<dim>& solids, LinkRow<dim>& row) const {
-  LinkEnd<dim> end(solids, direction, row);
+                                       const SolidSystem<dim>& solids, EndVelocity<dim>& row) const {
+  CouplingEnd<dim> end(solids, direction, row);
   for (const SurfaceShare<dim>& share : shares) {
     const bool at_x = solids.solids()[share.solid].rigid || share.rotation;
     end.add(share.weight, share.point, share.solid, x, at_x ? x : share.point.position);
@@ -218,8 +218,8 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
 }
 
 template <int dim>
-void MixedFaceCoupling<dim>::link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                                      LinkRow<dim>& row) const {
+void MixedFaceCoupling<dim>::link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
+                                      EndVelocity<dim>& row) const {
   row = {};
   if (link.coupled_volume >= 0) {
     row.position = volumes_[link.coupled_volume].center;

@@ -48,14 +48,14 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
                                    const std::vector<double>& velocity_after,
                                    const BlockVector& solution,
                                    const std::vector<double>& gas_pressure) const override;
-  void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                LinkRow<dim>& row) const override;
+  void link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
+                EndVelocity<dim>& row) const override;
 
  private:
   double closed_area(const ControlVolume<dim>& volume) const override { return volume.area; }
   /// Adds the rows of the shares, taken at x along one axis.
   void share_row(const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x, int direction,
-                 const SolidSystem<dim>& solids, LinkRow<dim>& row) const;
+                 const SolidSystem<dim>& solids, EndVelocity<dim>& row) const;
   /// Diagonal masses need positive rows: W without rotations. Then momentum goes by those as well,
   /// from the mixed faces to the nodes and back; volume and pressure go by W.
   bool masses_are_plain() const {

@@ -26,7 +26,7 @@ Motions<dim> motions_at(const Point<dim>& arm, int direction, double length) {
 
 /// mu area [kg m/s] of the coupling: the weight of its end, as of a patch of surface.
 template <int dim>
-double weight_of(const ViscousLink<dim>& link) {
+double weight_of(const ViscousCouplingTerm<dim>& link) {
   return link.coefficient * link.reach.norm();
 }
 
@@ -47,8 +47,8 @@ struct SpinCouples<dim>::Fit {
 };
 
 template <int dim>
-void SpinCouples<dim>::place_centers(const std::vector<ViscousLink<dim>>& links,
-                                     const std::vector<LinkRow<dim>>& ends) {
+void SpinCouples<dim>::place_centers(const std::vector<ViscousCouplingTerm<dim>>& links,
+                                     const std::vector<EndVelocity<dim>>& ends) {
   std::vector<double> sums((dim + 1) * center_.size(), 0);
   for (std::size_t l = 0; l < links.size(); ++l) {
     if (solid_[l] < 0)
@@ -70,7 +70,7 @@ void SpinCouples<dim>::place_centers(const std::vector<ViscousLink<dim>>& links,
 
 template <int dim>
 std::vector<typename SpinCouples<dim>::Fit> SpinCouples<dim>::fit(
-    const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow<dim>>& ends) const {
+    const std::vector<ViscousCouplingTerm<dim>>& links, const std::vector<EndVelocity<dim>>& ends) const {
   constexpr int n_normal = n_motions<dim> * n_motions<dim>;
   constexpr int n_each = n_normal + n_rotations<dim>;
   std::vector<double> sums(n_each * center_.size(), 0);
@@ -106,8 +106,8 @@ std::vector<typename SpinCouples<dim>::Fit> SpinCouples<dim>::fit(
 }
 
 template <int dim>
-SpinCouples<dim>::SpinCouples(const std::vector<ViscousLink<dim>>& links,
-                              const std::vector<LinkRow<dim>>& ends,
+SpinCouples<dim>::SpinCouples(const std::vector<ViscousCouplingTerm<dim>>& links,
+                              const std::vector<EndVelocity<dim>>& ends,
                               const std::vector<SolidDescription>& solids, const Communicator& comm)
     : comm_(comm),
       solid_(links.size(), -1),
@@ -132,8 +132,8 @@ SpinCouples<dim>::SpinCouples(const std::vector<ViscousLink<dim>>& links,
 /// Numbers those that turn anew: what is summed over ranks in every product should be theirs alone.
 template <int dim>
 void SpinCouples<dim>::keep_turning(const std::vector<Fit>& fits,
-                                    const std::vector<ViscousLink<dim>>& links,
-                                    const std::vector<LinkRow<dim>>& ends,
+                                    const std::vector<ViscousCouplingTerm<dim>>& links,
+                                    const std::vector<EndVelocity<dim>>& ends,
                                     const std::vector<AngularVector<dim>>& strength) {
   std::vector<int> number(strength.size(), -1);
   for (std::size_t s = 0; s < strength.size(); ++s) {

@@ -18,7 +18,7 @@ template <int dim>
 class SpinCouples {
  public:
   /// `ends`: of the links. Collective.
-  SpinCouples(const std::vector<ViscousLink<dim>>& links, const std::vector<LinkRow<dim>>& ends,
+  SpinCouples(const std::vector<ViscousCouplingTerm<dim>>& links, const std::vector<EndVelocity<dim>>& ends,
               const std::vector<SolidDescription>& solids, const Communicator& comm);
   /// True if no solid is turned by them. The same on all ranks.
   bool empty() const { return empty_; }
@@ -28,13 +28,13 @@ class SpinCouples {
 
  private:
   struct Fit;
-  void keep_turning(const std::vector<Fit>& fits, const std::vector<ViscousLink<dim>>& links,
-                    const std::vector<LinkRow<dim>>& ends,
+  void keep_turning(const std::vector<Fit>& fits, const std::vector<ViscousCouplingTerm<dim>>& links,
+                    const std::vector<EndVelocity<dim>>& ends,
                     const std::vector<AngularVector<dim>>& strength);
-  void place_centers(const std::vector<ViscousLink<dim>>& links,
-                     const std::vector<LinkRow<dim>>& ends);
-  std::vector<Fit> fit(const std::vector<ViscousLink<dim>>& links,
-                       const std::vector<LinkRow<dim>>& ends) const;
+  void place_centers(const std::vector<ViscousCouplingTerm<dim>>& links,
+                     const std::vector<EndVelocity<dim>>& ends);
+  std::vector<Fit> fit(const std::vector<ViscousCouplingTerm<dim>>& links,
+                       const std::vector<EndVelocity<dim>>& ends) const;
 
   Communicator comm_;
   bool empty_ = true;

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
-#include "coupling/viscous_bonds.hpp"
+#include "coupling/viscous_couplings.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/conjugate_gradients.hpp"
 #include "linear/matrix_rows.hpp"
@@ -42,7 +42,7 @@ struct ViscousRows {
 template <int dim>
 struct ViscousOperator {
   const ViscousSystem<dim>& system;
-  const ViscousBonds<dim>& links;
+  const ViscousCouplings<dim>& links;
   const RCP<const LinearOperator>& solid_block;
   const Reduction& constraints;
   double dt;
@@ -223,7 +223,7 @@ int solve_from_guess(const ViscousOperator<dim>& op, const ViscousPreconditioner
 
 /// The quadratic form of K with all velocities, but for those of sides. `ends`: of links.
 template <int dim>
-double dissipation(const ViscousSystem<dim>& system, const ViscousBonds<dim>& links,
+double dissipation(const ViscousSystem<dim>& system, const ViscousCouplings<dim>& links,
                    const Vector& velocity, const Vector& ends, const Vector& couple_pull,
                    const Communicator& comm) {
   Vector pull(system.map);
@@ -244,7 +244,7 @@ ViscousResult<dim> solve_viscous(
   const bool with_solids =
       solids.has_unknowns() &&
       sum_all(solids.comm(), static_cast<GlobalIndex>(system.links.size())) > 0;
-  const ViscousBonds<dim> links(system, solids, coupling);
+  const ViscousCouplings<dim> links(system, solids, coupling);
   const ViscousOperator<dim> op{
       system,      links, solid_block,
       constraints, dt,    ViscousRows(system.map, with_solids ? solids.map() : RCP<const Map>())};

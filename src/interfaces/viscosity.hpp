@@ -12,7 +12,7 @@ class SolidSystem;
 /// A viscous coupling between a free velocity and the solid: a force coefficient * (u_row -
 /// v_solid) [N] on both, equal and opposite.
 template <int dim>
-struct ViscousLink {
+struct ViscousCouplingTerm {
   int row = -1;             ///< local row of `ViscousSystem::stiffness`
   int coupled_volume = -1;  ///< >= 0: the neighbour is this coupled control volume (index), W V_S
   /// The neighbour is a coupled control volume of another rank, W V_S (`coupled_volume` is -1).
@@ -38,7 +38,7 @@ struct ViscousSystem {
   RCP<Vector> velocity;            ///< u* [m/s]
   RCP<Vector> wall_force;          ///< pull of moving walls and inflows [N]
   double viscosity = 0;            ///< dynamic, mu [Pa s]
-  std::vector<ViscousLink<dim>> links;
+  std::vector<ViscousCouplingTerm<dim>> links;
 };
 
 /// A side of fluids: viscosity, taken implicitly together with the solids.
@@ -62,7 +62,7 @@ class ViscousFluid {
 /// Row of the dynamic solids (ids of SolidSystem's map) and the prescribed velocity at a viscous
 /// link.
 template <int dim>
-struct LinkRow {
+struct EndVelocity {
   std::vector<GlobalIndex> dofs;
   std::vector<double> weights;
   double prescribed = 0;                     ///< velocity that prescribed solids contribute [m/s]
@@ -80,8 +80,8 @@ class ViscousCoupling {
   virtual ~ViscousCoupling() = default;
   /// Computes the row of one coupling; `assemble` and the surface it was given must still be valid.
   /// Local.
-  virtual void link_row(const ViscousLink<dim>& link, const SolidSystem<dim>& solids,
-                        LinkRow<dim>& row) const = 0;
+  virtual void link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
+                        EndVelocity<dim>& row) const = 0;
 };
 
 }  // namespace lockstep

@@ -66,7 +66,7 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   MacParameters<dim> parameters;
   parameters.density = fluid.get<double>("Density");
   parameters.viscosity.viscosity = fluid.get<double>("Viscosity");
-  parameters.viscosity.smallest_link_fraction = fluid.get<double>("Smallest Link");
+  parameters.viscosity.smallest_coupling_fraction = fluid.get<double>("Smallest Link");
   parameters.viscosity.has_void = fluid.isSublist("Free Surface");
   parameters.forces.gravity = point_value<dim>(fluid, "Gravity");
   parameters.forces.body = point_value<dim>(fluid, "Body Force");

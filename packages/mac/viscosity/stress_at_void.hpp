@@ -39,7 +39,7 @@ class StressAtVoid {
   /// True if a face and its neighbour across have air beside them: they are not coupled.
   bool parts(const FaceId& face, int across, int end) const;
   /// Extra weight of couplings along a velocity's own axis, through this cell: 0 or 1.
-  double extra_bond(int cell) const {
+  double extra_weight(int cell) const {
     return dim == 3 && is_fluid(cell) && is_far_from_solids_[cell] ? 1 : 0;
   }
   /// Calls f(partner) for the faces with a velocity at right angles to this one.
@@ -83,7 +83,7 @@ class StressAtVoid {
       if (other < 0 || !has_velocity(across, other))
         continue;
       const double beside_void = (kind == Edge::whole ? 1 : 0) - (is_fluid(cell) ? 1 : 0);
-      const double weight = beside_void + extra_bond(cell);
+      const double weight = beside_void + extra_weight(cell);
       // The face is the cell's upper one if the cell is on its lower side.
       const double sign = (side == 0) == (end == 1) ? 1 : -1;
       const double from_outside = is_free(face.axis, cell, side) ? beside_void : weight;

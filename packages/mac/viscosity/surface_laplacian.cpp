@@ -68,7 +68,7 @@ double SurfaceLaplacian<dim>::part_in_domain(int axis, const Index<dim>& lowest)
 }
 
 template <int dim>
-bool SurfaceLaplacian<dim>::is_bonded(int axis, int lower, int upper, int along) const {
+bool SurfaceLaplacian<dim>::is_coupled_across(int axis, int lower, int upper, int along) const {
   const auto is_free = [&](int cell) {
     return cell >= 0 && geometry_.state.faces[axis][cell] == FaceState::free;
   };
@@ -115,24 +115,24 @@ bool SurfaceLaplacian<dim>::make_cube(int axis, const Index<dim>& lowest, Cube& 
     if (cube.cells[corner] >= 0 && !is_near(cube.cells[corner]))
       return false;
   }
-  std::array<std::bitset<dim>, n_corners> bonded;
+  std::array<std::bitset<dim>, n_corners> coupled;
   for (int upper = 0; upper < n_corners; ++upper) {
     for (int a = 0; a < dim; ++a) {
       const int lower = upper ^ 1 << a;
       if (upper >> a & 1)
-        bonded[lower][a] = bonded[upper][a] =
-            is_bonded(axis, cube.cells[lower], cube.cells[upper], a);
+        coupled[lower][a] = coupled[upper][a] =
+            is_coupled_across(axis, cube.cells[lower], cube.cells[upper], a);
     }
   }
   // The gradient is known best at the corners from which most couplings go.
-  std::array<int, n_corners> bonds{};
+  std::array<int, n_corners> couplings{};
   int most = 0, n_used = 0;
   for (int corner = 0; corner < n_corners; ++corner) {
-    bonds[corner] = static_cast<int>(bonded[corner].count());
-    if (bonds[corner] > most)
+    couplings[corner] = static_cast<int>(coupled[corner].count());
+    if (couplings[corner] > most)
       n_used = 0;
-    most = std::max(most, bonds[corner]);
-    n_used += bonds[corner] == most ? 1 : 0;
+    most = std::max(most, couplings[corner]);
+    n_used += couplings[corner] == most ? 1 : 0;
   }
   if (most == 0)
     return false;
@@ -140,11 +140,11 @@ bool SurfaceLaplacian<dim>::make_cube(int axis, const Index<dim>& lowest, Cube& 
   const double h = domain_.spacing();
   const double weight = part * domain_.cell_volume() * delta / n_used;
   for (int corner = 0; corner < n_corners; ++corner) {
-    if (bonds[corner] != most)
+    if (couplings[corner] != most)
       continue;
     Eigen::Matrix<double, dim, n_corners> gradient = Eigen::Matrix<double, dim, n_corners>::Zero();
     for (int a = 0; a < dim; ++a) {
-      if (!bonded[corner][a])
+      if (!coupled[corner][a])
         continue;
       gradient(a, corner | 1 << a) = 1 / h;
       gradient(a, (corner | 1 << a) ^ 1 << a) = -1 / h;

@@ -71,7 +71,7 @@ class SurfaceLaplacian {
   bool look(int axis, const Index<dim>& lowest, double& delta, Point<dim>& normal) const;
   double distance_at(Index<dim> cell) const;
   /// True if the velocities of neighbouring cells tell how u changes between them.
-  bool is_bonded(int axis, int lower, int upper, int along) const;
+  bool is_coupled_across(int axis, int lower, int upper, int along) const;
   double part_in_domain(int axis, const Index<dim>& lowest) const;
 
   const MacDomain<dim>& domain_;

@@ -3,7 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
-#include "mac/viscosity/viscous_links.hpp"
+#include "mac/viscosity/viscous_stencil.hpp"
 
 namespace lockstep {
 
@@ -11,7 +11,7 @@ template <int dim>
 Viscosity<dim>::Viscosity(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                           const ViscosityParameters& parameters, const ImplicitTension& tension)
     : domain_(domain) {
-  ViscousLinks<dim> found = find_viscous_links(domain, geometry, parameters, tension);
+  ViscousStencil<dim> found = find_viscous_stencil(domain, geometry, parameters, tension);
   map_ = found.map;
   faces_ = std::move(found.faces);
   stiffness_ = found.stiffness;
@@ -40,7 +40,7 @@ std::unique_ptr<ViscousSystem<dim>> Viscosity<dim>::system(const FaceField<dim>&
   for (std::size_t row = 0; row < faces_.size(); ++row)
     values[row] = velocity[faces_[row].axis][faces_[row].cell];
   const auto forces = result->wall_force->getDataNonConst();
-  for (const SideLink& side : sides_)
+  for (const SideCoupling& side : sides_)
     forces[side.row] += side.coefficient * side_velocity(side, time);
   for (const InflowPull& pull : inflow_pulls_)
     forces[pull.row] -= pull.coefficient * inflow_velocity(pull.from, time);
@@ -50,7 +50,7 @@ std::unique_ptr<ViscousSystem<dim>> Viscosity<dim>::system(const FaceField<dim>&
 /// The mean over what a face's control volume has of the side: what comes in there. At other sides,
 /// and at seams, half of the volume is outside.
 template <int dim>
-double Viscosity<dim>::side_velocity(const SideLink& side, double time) const {
+double Viscosity<dim>::side_velocity(const SideCoupling& side, double time) const {
   const auto [axis, cell] = faces_[side.row];
   const Point<dim> x = domain_.grid.face_center(axis, cell);
   const Point<dim> half = Point<dim>::Constant(domain_.grid.spacing() / 2);
@@ -79,7 +79,7 @@ Momentum<dim> Viscosity<dim>::impulse(const FaceField<dim>& velocity, double tim
                                       double dt) const {
   const TiledGrid<dim>& grid = domain_.grid;
   Momentum<dim> result;
-  for (const SideLink& side : sides_) {
+  for (const SideCoupling& side : sides_) {
     const auto [axis, cell] = faces_[side.row];
     const double pull = side.coefficient * (side_velocity(side, time) - velocity[axis][cell]);
     result.add(grid.face_center(axis, cell), axis, dt * pull);

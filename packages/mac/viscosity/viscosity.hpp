@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "mac/viscosity/viscous_links.hpp"
+#include "mac/viscosity/viscous_stencil.hpp"
 
 namespace lockstep {
 
@@ -35,7 +35,7 @@ class Viscosity {
  private:
   Momentum<dim> sum_of(const std::vector<CrossPull>& pulls, const FaceField<dim>& velocity,
                        double dt) const;
-  double side_velocity(const SideLink& side, double time) const;
+  double side_velocity(const SideCoupling& side, double time) const;
   double inflow_velocity(const FaceId& face, double time) const;
 
   const MacDomain<dim>& domain_;
@@ -43,8 +43,8 @@ class Viscosity {
   std::vector<FaceId> faces_;  ///< faces of the rows
   RCP<const CrsMatrix> stiffness_;
   RCP<Vector> mass_;
-  std::vector<ViscousLink<dim>> links_;
-  std::vector<SideLink> sides_;
+  std::vector<ViscousCouplingTerm<dim>> links_;
+  std::vector<SideCoupling> sides_;
   std::vector<CoupleEnd> couples_;
   std::vector<CrossPull> cross_pulls_, tension_pulls_;
   std::vector<InflowPull> inflow_pulls_;

@@ -78,8 +78,8 @@ TEST(MovingTiles, NoSidePullsAtInnerCorners) {
   GlobalIndex n_tiles = grid.n_owned_tiles();
   ASSERT_LT(sum_all(world(), n_tiles) * tile_volume<2>,
             GlobalIndex{end[0] - begin[0]} * (end[1] - begin[1]));
-  const ViscousLinks<2> links =
-      find_viscous_links<2>(fluid->domain(), fluid->geometry(), {3.0, 0.2, false}, {});
+  const ViscousStencil<2> links =
+      find_viscous_stencil<2>(fluid->domain(), fluid->geometry(), {3.0, 0.2, false}, {});
   EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(links.sides.size())), 0);
 }
 

@@ -99,7 +99,7 @@ Momentum<dim> impulse_of_links(MacFluid<dim>& fluid, const ViscousSystem<dim>& s
   const auto now = fluid.viscosity()->viscous_system();
   const auto u = now->velocity->getData();
   Momentum<dim> sum;
-  for (const ViscousLink<dim>& link : system.links)
+  for (const ViscousCouplingTerm<dim>& link : system.links)
     sum.add(link.position, link.direction, -dt * link.coefficient * u[link.row]);
   return sum_over_ranks(sum, world());
 }
@@ -170,7 +170,7 @@ TEST(Viscosity, LinksEndOnAPlate) {
   fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
   const auto system = fluid->viscosity()->viscous_system();
   int below = 0, above = 0, coupled = 0;
-  for (const ViscousLink<2>& link : system->links) {
+  for (const ViscousCouplingTerm<2>& link : system->links) {
     if (link.direction == 1) {
       // The y velocities beside the coupled ones at y = 2 h.
       EXPECT_TRUE(link.coupled_volume >= 0 || link.remote_volume);
@@ -202,7 +202,7 @@ TEST(Viscosity, LinksAcrossASeamEndWhereTheSolidIs) {
     fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
     const auto system = fluid->viscosity()->viscous_system();
     int left = 0, right = 0;
-    for (const ViscousLink<2>& link : system->links) {
+    for (const ViscousCouplingTerm<2>& link : system->links) {
       if (link.direction == 0)
         continue;  // beside the coupled faces of the seam
       const double distance =
@@ -230,7 +230,7 @@ TEST(Viscosity, HiddenSolidsAcrossASeamPull) {
   fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
   const auto system = fluid->viscosity()->viscous_system();
   GlobalIndex found = 0;
-  for (const ViscousLink<2>& link : system->links)
+  for (const ViscousCouplingTerm<2>& link : system->links)
     found += link.direction == 1 && (link.position - Point<2>(7.5, 2)).norm() < 1e-12 &&
              (link.end - Point<2>(0.5, 2)).norm() < 1e-12;
   EXPECT_EQ(sum_all(world(), found), 1);

@@ -10,10 +10,10 @@ namespace lockstep {
 /// All viscous links of this rank: link l pulls with c_l (u_row(l) - (L V)_l - prescribed_l) on
 /// fluid and solid; the couples of the transposed gradient come to the solid's end.
 template <int dim>
-class ViscousBonds {
+class ViscousCouplings {
  public:
   /// `system` must outlive it. Collective.
-  ViscousBonds(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
+  ViscousCouplings(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
                const ViscousCoupling<dim>& coupling);
 
   /// Velocities of the ends [m/s] for solid velocities V (null: none), prescribed velocities in or
@@ -45,12 +45,12 @@ class ViscousBonds {
                         std::vector<Momentum<dim>>& of_prescribed) const;
 
  private:
-  static std::vector<LinkRow<dim>> ends_of(const ViscousSystem<dim>& system,
+  static std::vector<EndVelocity<dim>> ends_of(const ViscousSystem<dim>& system,
                                            const SolidSystem<dim>& solids,
                                            const ViscousCoupling<dim>& coupling);
 
-  const std::vector<ViscousLink<dim>>& list_;
-  std::vector<LinkRow<dim>> ends_;  ///< dofs and weights emptied once assembled
+  const std::vector<ViscousCouplingTerm<dim>>& list_;
+  std::vector<EndVelocity<dim>> ends_;  ///< dofs and weights emptied once assembled
   SpinCouples<dim> couples_;
   RCP<const Map> map_;            ///< links
   RCP<const CrsMatrix> rows_;     ///< L: links x solid dofs; null without unknowns

@@ -6,9 +6,9 @@ namespace lockstep {
 
 /// Puts together what the shares of a viscous link's end say of it, but for the rows of dofs.
 template <int dim>
-class LinkEnd {
+class CouplingEnd {
  public:
-  LinkEnd(const SolidSystem<dim>& solids, int direction, LinkRow<dim>& row)
+  CouplingEnd(const SolidSystem<dim>& solids, int direction, EndVelocity<dim>& row)
       : solids_(solids), direction_(direction), row_(row) {}
 
   /// A share of a solid, whose velocity is taken at x; nodes are pulled at `pulled`, where the
@@ -25,7 +25,7 @@ class LinkEnd {
  private:
   const SolidSystem<dim>& solids_;
   int direction_;
-  LinkRow<dim>& row_;
+  EndVelocity<dim>& row_;
   Point<dim> pulled_ = Point<dim>::Zero();
   double dynamic_share_ = 0, largest_share_ = 0;
 };

@@ -1,9 +1,9 @@
-#include "faces/link_end.hpp"
+#include "faces/coupling_end.hpp"
 
 namespace lockstep {
 
 template <int dim>
-bool LinkEnd<dim>::add(double weight, const SurfacePoint<dim>& point, int solid,
+bool CouplingEnd<dim>::add(double weight, const SurfacePoint<dim>& point, int solid,
                        const Point<dim>& x, const Point<dim>& pulled) {
   if (weight > largest_share_) {
     largest_share_ = weight;
@@ -21,12 +21,12 @@ bool LinkEnd<dim>::add(double weight, const SurfacePoint<dim>& point, int solid,
 }
 
 template <int dim>
-void LinkEnd<dim>::finish() {
+void CouplingEnd<dim>::finish() {
   if (dynamic_share_ > 0)
     row_.position = pulled_ / dynamic_share_;
 }
 
-template class LinkEnd<2>;
-template class LinkEnd<3>;
+template class CouplingEnd<2>;
+template class CouplingEnd<3>;
 
 }  // namespace lockstep

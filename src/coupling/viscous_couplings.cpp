@@ -1,4 +1,4 @@
-#include "coupling/viscous_bonds.hpp"
+#include "coupling/viscous_couplings.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -8,17 +8,17 @@
 namespace lockstep {
 
 template <int dim>
-std::vector<LinkRow<dim>> ViscousBonds<dim>::ends_of(const ViscousSystem<dim>& system,
+std::vector<EndVelocity<dim>> ViscousCouplings<dim>::ends_of(const ViscousSystem<dim>& system,
                                                      const SolidSystem<dim>& solids,
                                                      const ViscousCoupling<dim>& coupling) {
-  std::vector<LinkRow<dim>> ends(system.links.size());
+  std::vector<EndVelocity<dim>> ends(system.links.size());
   for (std::size_t l = 0; l < system.links.size(); ++l)
     coupling.link_row(system.links[l], solids, ends[l]);
   return ends;
 }
 
 template <int dim>
-ViscousBonds<dim>::ViscousBonds(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
+ViscousCouplings<dim>::ViscousCouplings(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
                                 const ViscousCoupling<dim>& coupling)
     : list_(system.links),
       ends_(ends_of(system, solids, coupling)),
@@ -26,7 +26,7 @@ ViscousBonds<dim>::ViscousBonds(const ViscousSystem<dim>& system, const SolidSys
       map_(make_map(static_cast<int>(system.links.size()), solids.comm())) {
   std::vector<Triplet> rows, squares;
   for (std::size_t l = 0; l < list_.size(); ++l) {
-    LinkRow<dim>& end = ends_[l];
+    EndVelocity<dim>& end = ends_[l];
     const GlobalIndex id = map_->getGlobalElement(static_cast<int>(l));
     for (std::size_t i = 0; i < end.dofs.size(); ++i) {
       rows.push_back({id, end.dofs[i], end.weights[i]});
@@ -42,7 +42,7 @@ ViscousBonds<dim>::ViscousBonds(const ViscousSystem<dim>& system, const SolidSys
 }
 
 template <int dim>
-RCP<Vector> ViscousBonds<dim>::end_velocity(const RCP<const Vector>& solid, bool prescribed) const {
+RCP<Vector> ViscousCouplings<dim>::end_velocity(const RCP<const Vector>& solid, bool prescribed) const {
   const auto result = make_vector(map_);
   if (!rows_.is_null() && !solid.is_null())
     rows_->apply(*solid, *result);
@@ -55,7 +55,7 @@ RCP<Vector> ViscousBonds<dim>::end_velocity(const RCP<const Vector>& solid, bool
 }
 
 template <int dim>
-RCP<Vector> ViscousBonds<dim>::pull(const Vector& u, const Vector& end_velocity) const {
+RCP<Vector> ViscousCouplings<dim>::pull(const Vector& u, const Vector& end_velocity) const {
   const auto result = make_vector(map_);
   const auto values = result->getDataNonConst();
   const auto velocity = u.getData(), end = end_velocity.getData();
@@ -65,19 +65,19 @@ RCP<Vector> ViscousBonds<dim>::pull(const Vector& u, const Vector& end_velocity)
 }
 
 template <int dim>
-RCP<Vector> ViscousBonds<dim>::couple_pull(const Vector& end_velocity) const {
+RCP<Vector> ViscousCouplings<dim>::couple_pull(const Vector& end_velocity) const {
   const auto result = make_vector(map_);
   add_couples(end_velocity, *result);
   return result;
 }
 
 template <int dim>
-void ViscousBonds<dim>::add_couples(const Vector& end_velocity, Vector& pull) const {
+void ViscousCouplings<dim>::add_couples(const Vector& end_velocity, Vector& pull) const {
   couples_.add_pull(end_velocity.getData().getRawPtr(), pull.getDataNonConst().getRawPtr());
 }
 
 template <int dim>
-void ViscousBonds<dim>::take_from_fluid(double dt, const Vector& values, bool weighted,
+void ViscousCouplings<dim>::take_from_fluid(double dt, const Vector& values, bool weighted,
                                         Vector& fluid) const {
   const auto value = values.getData();
   const auto result = fluid.getDataNonConst();
@@ -86,13 +86,13 @@ void ViscousBonds<dim>::take_from_fluid(double dt, const Vector& values, bool we
 }
 
 template <int dim>
-void ViscousBonds<dim>::pull_on_solids(double alpha, const Vector& pull, double beta,
+void ViscousCouplings<dim>::pull_on_solids(double alpha, const Vector& pull, double beta,
                                        Vector& drag) const {
   rows_->apply(pull, drag, Teuchos::TRANS, alpha, beta);
 }
 
 template <int dim>
-double ViscousBonds<dim>::dissipation(const Vector& u, const Vector& end_velocity,
+double ViscousCouplings<dim>::dissipation(const Vector& u, const Vector& end_velocity,
                                       const Vector& couple_pull) const {
   double power = 0;
   const auto velocity = u.getData(), end = end_velocity.getData(), couples = couple_pull.getData();
@@ -104,7 +104,7 @@ double ViscousBonds<dim>::dissipation(const Vector& u, const Vector& end_velocit
 }
 
 template <int dim>
-RCP<Vector> ViscousBonds<dim>::strength_on_solids() const {
+RCP<Vector> ViscousCouplings<dim>::strength_on_solids() const {
   Vector strength(map_);
   for (std::size_t l = 0; l < list_.size(); ++l)
     strength.replaceLocalValue(static_cast<int>(l), list_[l].coefficient);
@@ -114,13 +114,13 @@ RCP<Vector> ViscousBonds<dim>::strength_on_solids() const {
 }
 
 template <int dim>
-Momentum<dim> ViscousBonds<dim>::impulse(const Vector& pull, const Vector& couple_pull, double dt,
+Momentum<dim> ViscousCouplings<dim>::impulse(const Vector& pull, const Vector& couple_pull, double dt,
                                          std::vector<Momentum<dim>>& of_prescribed) const {
   Momentum<dim> couple;
   const auto values = pull.getData(), couples = couple_pull.getData();
   for (std::size_t l = 0; l < list_.size(); ++l) {
-    const ViscousLink<dim>& link = list_[l];
-    const LinkRow<dim>& end = ends_[l];
+    const ViscousCouplingTerm<dim>& link = list_[l];
+    const EndVelocity<dim>& end = ends_[l];
     const Point<dim> axis = Point<dim>::Unit(link.direction);
     if (end.prescribed_share > 0)
       of_prescribed[end.prescribed_solid].add(
@@ -131,7 +131,7 @@ Momentum<dim> ViscousBonds<dim>::impulse(const Vector& pull, const Vector& coupl
   return couple;
 }
 
-template class ViscousBonds<2>;
-template class ViscousBonds<3>;
+template class ViscousCouplings<2>;
+template class ViscousCouplings<3>;
 
 }  // namespace lockstep

@@ -1,4 +1,4 @@
-#include "mac/viscosity/viscous_links.hpp"
+#include "mac/viscosity/viscous_stencil.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -68,7 +68,7 @@ class Builder {
       along_surface_.emplace(domain, geometry, *tension.distance);
   }
 
-  ViscousLinks<dim> build() {
+  ViscousStencil<dim> build() {
     number_faces();
     index_coupled_volumes();
     const int n_partners = at_void_ && dim == 3 ? 4 * (dim - 1) : 0;
@@ -179,7 +179,7 @@ class Builder {
       if (between < 0 || geometry_.state.cells[between] != CellState::fluid)
         return;
       if (at_void_)
-        coefficient *= 1 + at_void_->extra_bond(between);
+        coefficient *= 1 + at_void_->extra_weight(between);
     }
     const int other = grid_.neighbor(face_.cell, across, end);
     const FaceState state =
@@ -235,11 +235,11 @@ class Builder {
   }
 
   /// `coefficient` is that of a neighbour, which the link is to reach by `fraction`.
-  ViscousLink<dim> new_link(const FaceId& face, int across, int end, double coefficient,
+  ViscousCouplingTerm<dim> new_link(const FaceId& face, int across, int end, double coefficient,
                             double fraction) {
     coefficient /= fraction;
     diagonal_ += coefficient;
-    ViscousLink<dim> link;
+    ViscousCouplingTerm<dim> link;
     link.row = row_;
     link.position = grid_.face_center(face.axis, face.cell);
     link.direction = face.axis;
@@ -251,15 +251,15 @@ class Builder {
 
   void add_surface_link(const FaceId& face, int across, int end, const SurfacePoint<dim>& point,
                         double coefficient) {
-    const double fraction = std::max(point.fraction, parameters_.smallest_link_fraction);
-    ViscousLink<dim> link = new_link(face, across, end, coefficient, fraction);
+    const double fraction = std::max(point.fraction, parameters_.smallest_coupling_fraction);
+    ViscousCouplingTerm<dim> link = new_link(face, across, end, coefficient, fraction);
     link.point = point;
     link.end = image_near(point.position, link.end);
     result_.links.push_back(link);
   }
 
   void add_coupled_link(const FaceId& face, int across, int end, int other, double coefficient) {
-    ViscousLink<dim> link = new_link(face, across, end, coefficient, 1);
+    ViscousCouplingTerm<dim> link = new_link(face, across, end, coefficient, 1);
     if (grid_.owned(other)) {
       const Coupled key{{face.axis, other}, 0};
       const auto found = std::lower_bound(coupled_.begin(), coupled_.end(), key, before);
@@ -308,7 +308,7 @@ class Builder {
   std::optional<StressAtVoid<dim>> at_void_;
   double tension_ = 0;  ///< sigma dt
   std::optional<SurfaceLaplacian<dim>> along_surface_;
-  ViscousLinks<dim> result_;
+  ViscousStencil<dim> result_;
   std::array<std::vector<GlobalIndex>, dim> ids_;
   std::vector<Coupled> coupled_;
   // the present row
@@ -322,15 +322,15 @@ class Builder {
 }  // namespace
 
 template <int dim>
-ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+ViscousStencil<dim> find_viscous_stencil(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                      const ViscosityParameters& parameters,
                                      const ImplicitTension& tension) {
   return Builder<dim>(domain, geometry, parameters, tension).build();
 }
 
-template ViscousLinks<2> find_viscous_links<2>(const MacDomain<2>&, const MacGeometry<2>&,
+template ViscousStencil<2> find_viscous_stencil<2>(const MacDomain<2>&, const MacGeometry<2>&,
                                                const ViscosityParameters&, const ImplicitTension&);
-template ViscousLinks<3> find_viscous_links<3>(const MacDomain<3>&, const MacGeometry<3>&,
+template ViscousStencil<3> find_viscous_stencil<3>(const MacDomain<3>&, const MacGeometry<3>&,
                                                const ViscosityParameters&, const ImplicitTension&);
 
 }  // namespace lockstep

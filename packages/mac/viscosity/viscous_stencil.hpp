@@ -6,7 +6,7 @@ namespace lockstep {
 
 struct ViscosityParameters {
   double viscosity = 0;  ///< dynamic, mu [Pa s]
-  double smallest_link_fraction =
+  double smallest_coupling_fraction =
       0.2;                ///< part of h [1]: a link to a surface is never taken shorter
   bool has_void = false;  ///< above a free surface: the form is that of the symmetric stress there
 };
@@ -18,7 +18,7 @@ struct ImplicitTension {
 };
 
 /// A side of the domain pulls on a free velocity.
-struct SideLink {
+struct SideCoupling {
   int row = 0;             ///< local
   int axis = 0, end = 0;   ///< the side
   double coefficient = 0;  ///< [kg/s]
@@ -47,13 +47,13 @@ struct InflowPull : CrossPull {
 
 /// All viscous couplings of free velocities.
 template <int dim>
-struct ViscousLinks {
+struct ViscousStencil {
   RCP<const Map> map;
   std::vector<FaceId> faces;  ///< faces of the local rows
   RCP<const CrsMatrix> stiffness;
   RCP<Vector> mass;
-  std::vector<ViscousLink<dim>> links;
-  std::vector<SideLink> sides;
+  std::vector<ViscousCouplingTerm<dim>> links;
+  std::vector<SideCoupling> sides;
   std::vector<CoupleEnd> couples;
   std::vector<CrossPull> cross_pulls;    ///< at right angles, of air and of sides
   std::vector<InflowPull> inflow_pulls;  ///< at right angles
@@ -63,7 +63,7 @@ struct ViscousLinks {
 
 /// Collective.
 template <int dim>
-ViscousLinks<dim> find_viscous_links(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+ViscousStencil<dim> find_viscous_stencil(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                      const ViscosityParameters& parameters,
                                      const ImplicitTension& tension = {});
 
