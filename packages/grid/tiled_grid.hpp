@@ -24,7 +24,7 @@ using FaceField = std::array<CellField, dim>;
 /// axes neighbors[2 * axis + side] is the first cell of the neighbouring row, whose ids run along
 /// with the row's. -1 where there is nothing.
 template <int dim>
-struct CellRow {
+struct CellStrip {
   int begin = 0, n = 0;
   std::array<int, 2 * dim> neighbors{};
 
@@ -154,7 +154,7 @@ class TiledGrid {
   void for_each_owned_face_row(int axis, const Function& f) const;
   /// Calls f(row) for the rows of owned cells of the domain: the fastest way to apply a stencil.
   template <typename Function>
-  void for_each_owned_row(const Function& f) const;
+  void for_each_owned_strip(const Function& f) const;
   /// Calls f(cell, neighbors) for the owned cells of the domain; neighbors[2 * axis + side] is
   /// neighbor(cell, axis, side). Faster than asking for each.
   template <typename Function>

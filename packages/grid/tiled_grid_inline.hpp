@@ -196,7 +196,7 @@ inline void TiledGrid<dim>::for_each_owned_face_row(int axis, const Function& f)
 
 template <int dim>
 template <typename Function>
-inline void TiledGrid<dim>::for_each_owned_row(const Function& f) const {
+inline void TiledGrid<dim>::for_each_owned_strip(const Function& f) const {
   for (int t = 0; t < n_owned_tiles_; ++t) {
     Index<dim> rows = tiles_[t].domain_extent;
     const int n = rows[0];
@@ -205,7 +205,7 @@ inline void TiledGrid<dim>::for_each_owned_row(const Function& f) const {
     rows[0] = 1;
     const int first = t << log_tile_volume<dim>;
     for_each_offset(rows, [&](int offset) {
-      CellRow<dim> row;
+      CellStrip<dim> row;
       row.begin = first + offset;
       row.n = n;
       row.neighbors[0] = neighbor_in_lattice(tiles_[t], row.begin, 0, 0);
@@ -219,7 +219,7 @@ inline void TiledGrid<dim>::for_each_owned_row(const Function& f) const {
 
 template <int dim>
 template <typename Function>
-inline void CellRow<dim>::for_each_cell(const Function& f) const {
+inline void CellStrip<dim>::for_each_cell(const Function& f) const {
   std::array<int, 2 * dim> step{};
   for (int i = 2; i < 2 * dim; ++i)
     step[i] = neighbors[i] >= 0 ? 1 : 0;
@@ -236,7 +236,7 @@ inline void CellRow<dim>::for_each_cell(const Function& f) const {
 template <int dim>
 template <typename Function>
 inline void TiledGrid<dim>::for_each_owned_cell_with_neighbors(const Function& f) const {
-  for_each_owned_row([&](const CellRow<dim>& row) { row.for_each_cell(f); });
+  for_each_owned_strip([&](const CellStrip<dim>& row) { row.for_each_cell(f); });
 }
 
 }  // namespace lockstep

@@ -204,7 +204,7 @@ Momentum<dim> MacFluid<dim>::push_faces(const ForceField<dim>& force, double dt)
     };
     flow_.domain.grid.for_each_owned_face_row(axis, [&](int first, int n, int) {
       if (n == tile_width<dim> && force.is_uniform() && geometry.has_regular_faces(axis, first)) {
-        const auto change = RowValues<dim>::Constant(dt * force(axis, first));
+        const auto change = StripValues<dim>::Constant(dt * force(axis, first));
         row_of<dim>(velocity.data(), first) += change;
         moments.add_row(first, geometry.face_table.regular().mass * change);
         return;

@@ -57,7 +57,7 @@ class LayoutKernels final : public ConjugateGradientKernels {
     inverse_->fill_ghosts(halo_);
     for (int colour = 0; colour < 2; ++colour)
       halo_.for_each_ghost(colour, [&](std::ptrdiff_t slot) { turn(colour, slot, 1); });
-    const auto turn_slab = [&](int slab) { inverse_->for_each_row(slab, turn); };
+    const auto turn_slab = [&](int slab) { inverse_->for_each_strip(slab, turn); };
     double sum = 0;
     stencil_->for_each_product(
         d, turn_slab,

@@ -230,7 +230,7 @@ class LayoutInverse final : public LayoutOperator<TpetraOperator> {
 
   /// Calls f(colour, slot of the first cell, number of slots) for this rank's rows of a slab.
   template <typename Function>
-  void for_each_row(int slab, const Function& f) const {
+  void for_each_strip(int slab, const Function& f) const {
     const StencilLevel<dim>& level = multigrid_.finest();
     const auto rows = level.rows_of(slab);
     for (int j = rows.j_begin; j < rows.j_end; ++j) {
@@ -241,9 +241,9 @@ class LayoutInverse final : public LayoutOperator<TpetraOperator> {
     }
   }
   template <typename Function>
-  void for_each_row(const Function& f) const {
+  void for_each_strip(const Function& f) const {
     for (int slab = 0; slab < multigrid_.finest().grid().n_slabs(); ++slab)
-      for_each_row(slab, f);
+      for_each_strip(slab, f);
   }
 
   /// Leaves z / `back()` in the multigrid's solution, z of the empty rows in `empty_rows()`;
@@ -263,8 +263,8 @@ class LayoutInverse final : public LayoutOperator<TpetraOperator> {
     const auto add_products = [&](int colour, std::ptrdiff_t at, int n) {
       sum += sum_of_products(multigrid_.rhs(colour) + at, multigrid_.solution(colour) + at, n);
     };
-    multigrid_.cycle([&](int slab) { for_each_row(slab, take_over); },
-                     [&](int slab) { for_each_row(slab, add_products); });
+    multigrid_.cycle([&](int slab) { for_each_strip(slab, take_over); },
+                     [&](int slab) { for_each_strip(slab, add_products); });
     back_ = 1 / (scale * unit_);
     sum *= back_ / scale;
     for (EmptyRow& row : empty_rows_) {
@@ -286,14 +286,14 @@ class LayoutInverse final : public LayoutOperator<TpetraOperator> {
   void apply_to(const double* x, double* y) const override {
     const std::ptrdiff_t n_slots = multigrid_.finest().grid().n_slots;
     double sum = 0;
-    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+    for_each_strip([&](int colour, std::ptrdiff_t at, int n) {
       const double* row = x + colour * n_slots + at;
       sum += sum_of_products(row, row, n);
     });
     sum = sum_all(comm_, sum);
     check_solve(std::isfinite(sum), "The multigrid was given a residual that is not finite.");
     cycle(x, std::sqrt(sum));
-    for_each_row([&](int colour, std::ptrdiff_t at, int n) {
+    for_each_strip([&](int colour, std::ptrdiff_t at, int n) {
       const float* from = multigrid_.solution(colour) + at;
       double* to = y + colour * n_slots + at;
       for (int m = 0; m < n; ++m)

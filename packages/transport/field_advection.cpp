@@ -9,7 +9,7 @@ namespace {
 
 /// Calls f(row within the tile, id of its first sample) for the rows of a tile that have samples.
 template <int dim, typename Function>
-void for_each_row(const TransportFrame<dim>& frame, SampleKind kind, int tile, const Function& f) {
+void for_each_strip(const TransportFrame<dim>& frame, SampleKind kind, int tile, const Function& f) {
   constexpr int width = tile_width<dim>;
   const Index<dim>& tile_begin = frame.setting.grid.tile_begin(tile);
   for (int first = 0; first < tile_volume<dim>; first += width) {
@@ -91,10 +91,10 @@ void FieldAdvection<dim>::advect(std::vector<AdvectedField<dim>>& fields,
   for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
     if (tiles != nullptr && !(*tiles)[tile])
       continue;
-    const bool by_rows = frame_.plans[tile].by_rows && advect_strips(fields, tile);
+    const bool by_strips = frame_.plans[tile].by_strips && advect_strips(fields, tile);
     if (frame_.plans[tile].near_surface)
-      advect_near_surfaces(fields, tile, by_rows);
-    else if (!by_rows)
+      advect_near_surfaces(fields, tile, by_strips);
+    else if (!by_strips)
       for (AdvectedField<dim>& advected : fields)
         advect_samples(advected, tile);
   }
@@ -130,12 +130,12 @@ bool FieldAdvection<dim>::advect_strips(std::vector<AdvectedField<dim>>& fields,
       advected.forth.resize(tile_volume<dim> / tile_width<dim>);
     }
     block.load(kind, advected.field.values);
-    for_each_row(frame_, kind, tile, [&](const Index<dim>& row, int first) {
-      RowValues<dim> values, low, high;
-      const RowRays<dim> rays = block.trace(row, -1, advected.cubic());
+    for_each_strip(frame_, kind, tile, [&](const Index<dim>& row, int first) {
+      StripValues<dim> values, low, high;
+      const StripRays<dim> rays = block.trace(row, -1, advected.cubic());
       if (advected.corrects()) {
         block.look_up(rays.end, values, low, high);
-        const RowValues<dim> none_low = RowValues<dim>::Ones(), none_high = RowValues<dim>::Zero();
+        const StripValues<dim> none_low = StripValues<dim>::Ones(), none_high = StripValues<dim>::Zero();
         row_of<dim>(advected.low, first) = chosen(rays.clipped, none_low, low);
         row_of<dim>(advected.high.get(), first) = chosen(rays.clipped, none_high, high);
       } else if (advected.cubic()) {
@@ -226,7 +226,7 @@ void FieldAdvection<dim>::advect_near_solid(AdvectedField<dim>& advected, int id
 
 template <int dim>
 void FieldAdvection<dim>::advect_beside_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x,
-                                        bool by_rows) {
+                                        bool by_strips) {
   SurfaceTransport<dim>& near_surface = *frame_.near_surface;
   const SampleKind kind = advected.field.kind;
   bool has_value;
@@ -241,30 +241,30 @@ void FieldAdvection<dim>::advect_beside_solid(AdvectedField<dim>& advected, int 
     return Box<dim>(x).extend(ray.middle).extend(ray.end);
   };
   if (advected.cubic()) {
-    const Ray<dim> ray = trace(advected, id, x, -1, true, by_rows);
+    const Ray<dim> ray = trace(advected, id, x, -1, true, by_strips);
     if (ray.complete && near_surface.clear(way(ray), false, 2)) {
-      if (!by_rows)
+      if (!by_strips)
         advect_sample(advected, id, x, true);
       return;
     }
   }
-  const Ray<dim> ray = trace(advected, id, x, -1, false, by_rows);
+  const Ray<dim> ray = trace(advected, id, x, -1, false, by_strips);
   Box<dim> points = way(ray);
   if (!ray.complete || !near_surface.clear(points, false)) {
     if (may_hold_center(kind, id) &&
         near_surface.inside(x, state_of_center(frame_.setting.state, id)))
       keep(advected, id, false);
-    else if (by_rows && !advected.cubic() && near_surface.sees_all(kind, x, ray))
+    else if (by_strips && !advected.cubic() && near_surface.sees_all(kind, x, ray))
       advected.forbid_correction(id);
     else
       advect_near_solid(advected, id, x);
     return;
   }
-  if (!by_rows || advected.cubic())
+  if (!by_strips || advected.cubic())
     advect_sample(advected, id, x, false);
   if (!advected.may_correct(id))
     return;
-  const Ray<dim> forward = trace(advected, id, x, 1, false, by_rows);
+  const Ray<dim> forward = trace(advected, id, x, 1, false, by_strips);
   points.extend(forward.middle).extend(forward.end);
   if (!forward.complete || !near_surface.clear(points, true))
     advected.forbid_correction(id);
@@ -272,11 +272,11 @@ void FieldAdvection<dim>::advect_beside_solid(AdvectedField<dim>& advected, int 
 
 template <int dim>
 Ray<dim> FieldAdvection<dim>::trace(const AdvectedField<dim>& advected, int id, const Point<dim>& x,
-                                  double direction, bool cubic, bool by_rows) const {
-  if (!by_rows || cubic != advected.cubic())
+                                  double direction, bool cubic, bool by_strips) const {
+  if (!by_strips || cubic != advected.cubic())
     return frame_.tracer->trace(x, direction, cubic);
   const auto& rows = direction < 0 ? advected.back : advected.forth;
-  const RowRays<dim>& rays = rows[row_in_tile<dim>(id)];
+  const StripRays<dim>& rays = rows[row_in_tile<dim>(id)];
   const int i = id & (tile_width<dim> - 1);
   Ray<dim> ray;
   ray.middle = frame_.block->place(rays.middle, i);
@@ -316,13 +316,13 @@ bool FieldAdvection<dim>::advect_open_part(AdvectedField<dim>& advected, int id,
 
 template <int dim>
 void FieldAdvection<dim>::advect_near_surfaces(std::vector<AdvectedField<dim>>& fields, int tile,
-                                            bool by_rows) {
+                                            bool by_strips) {
   for (AdvectedField<dim>& advected : fields)
     frame_.for_each_sample(advected.field.kind, tile, [&](int id, const Point<dim>& x) {
       const bool near = frame_.near_surface->is_near(x);
-      if (near && !(by_rows && is_far(advected, id, x)))
-        advect_beside_solid(advected, id, x, by_rows);
-      else if (!by_rows)
+      if (near && !(by_strips && is_far(advected, id, x)))
+        advect_beside_solid(advected, id, x, by_strips);
+      else if (!by_strips)
         advect_sample(advected, id, x, advected.cubic());
     });
 }
@@ -334,7 +334,7 @@ void FieldAdvection<dim>::correct(std::vector<AdvectedField<dim>>& fields) {
     carried.push_back(
         frame_.setting.halo.fetch(advected.half_way, advected.storage, advected.beyond).data());
   for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
-    if (frame_.plans[tile].by_rows && correct_rows(fields, carried, tile))
+    if (frame_.plans[tile].by_strips && correct_rows(fields, carried, tile))
       continue;
     for (std::size_t p = 0; p < fields.size(); ++p)
       frame_.for_each_sample(fields[p].field.kind, tile, [&](int id, const Point<dim>& x) {
@@ -352,15 +352,15 @@ bool FieldAdvection<dim>::correct_rows(std::vector<AdvectedField<dim>>& fields,
   for (std::size_t p = 0; p < fields.size(); ++p) {
     AdvectedField<dim>& advected = fields[p];
     block.load(advected.field.kind, carried[p]);
-    for_each_row(frame_, advected.field.kind, tile, [&](const Index<dim>& row, int first) {
-      RowValues<dim> returned;
-      const RowRays<dim> rays = block.trace(row, 1);
+    for_each_strip(frame_, advected.field.kind, tile, [&](const Index<dim>& row, int first) {
+      StripValues<dim> returned;
+      const StripRays<dim> rays = block.trace(row, 1);
       block.look_up(rays.end, returned);
-      const RowValues<dim> start = row_of<dim>(advected.start->data(), first);
-      const RowValues<dim> half_way = row_of<dim>(advected.half_way.data(), first);
-      const RowValues<dim> low = row_of<dim>(advected.low, first);
-      const RowValues<dim> high = row_of<dim>(advected.high.get(), first);
-      const RowValues<dim> corrected = half_way - 0.5 * (returned - start);
+      const StripValues<dim> start = row_of<dim>(advected.start->data(), first);
+      const StripValues<dim> half_way = row_of<dim>(advected.half_way.data(), first);
+      const StripValues<dim> low = row_of<dim>(advected.low, first);
+      const StripValues<dim> high = row_of<dim>(advected.high.get(), first);
+      const StripValues<dim> corrected = half_way - 0.5 * (returned - start);
       row_of<dim>(advected.result->data(), first) =
           chosen(rays.clipped, half_way, within(corrected, low, high, half_way));
     });

@@ -22,7 +22,7 @@ struct AdvectedField {
   double* low = nullptr;
   std::unique_ptr<double[]> high;
   /// Rays of the strips of a tile near surfaces that is advected by strips.
-  std::vector<RowRays<dim>> back, forth;
+  std::vector<StripRays<dim>> back, forth;
 
   bool cubic() const { return scheme == AdvectionScheme::cubic; }
   bool corrects() const { return scheme == AdvectionScheme::maccormack; }
@@ -51,16 +51,16 @@ class FieldAdvection {
   void begin(AdvectedField<dim>& advected);
   bool advect_strips(std::vector<AdvectedField<dim>>& fields, int tile);
   void advect_samples(AdvectedField<dim>& advected, int tile);
-  /// Advects the samples near surfaces; `by_rows`: all have been advected as if there were none.
-  void advect_near_surfaces(std::vector<AdvectedField<dim>>& fields, int tile, bool by_rows);
-  /// Returns the ray from a sample; `by_rows`: the one that advection by strips used.
+  /// Advects the samples near surfaces; `by_strips`: all have been advected as if there were none.
+  void advect_near_surfaces(std::vector<AdvectedField<dim>>& fields, int tile, bool by_strips);
+  /// Returns the ray from a sample; `by_strips`: the one that advection by strips used.
   Ray<dim> trace(const AdvectedField<dim>& advected, int id, const Point<dim>& x, double direction,
-                 bool cubic, bool by_rows) const;
+                 bool cubic, bool by_strips) const;
   /// True for samples of a tile advected by strips that are far from all surfaces.
   bool is_far(const AdvectedField<dim>& advected, int id, const Point<dim>& x) const;
   /// Advects one sample; `wide`: by cubics.
   void advect_sample(AdvectedField<dim>& advected, int id, const Point<dim>& x, bool wide);
-  void advect_beside_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x, bool by_rows);
+  void advect_beside_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x, bool by_strips);
   void advect_near_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x);
   /// Advects a partly open face whose centre a solid holds or passes: it keeps its own value and
   /// takes the change where its fluid is. Returns false if it is no such face.

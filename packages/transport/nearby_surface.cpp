@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "geometry/simplex_queries.hpp"
-#include "transport/row_values.hpp"
+#include "transport/strip_values.hpp"
 
 namespace lockstep {
 

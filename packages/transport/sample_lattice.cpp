@@ -8,13 +8,13 @@ namespace lockstep {
 
 namespace {
 
-/// Copies rows of a tile with rows of `tile_row` values; `n` values of each, or those of `size`.
-template <int tile_row, int n>
+/// Copies rows of a tile with rows of `tile_strip` values; `n` values of each, or those of `size`.
+template <int tile_strip, int n>
 void copy_rows(const Index<3>& size, const double* from, const Index<3>& stride, double* to) {
   for (int z = 0; z < size[2]; ++z)
     for (int y = 0; y < size[1]; ++y) {
       double* target = to + z * stride[2] + y * stride[1];
-      const double* source = from + (z * tile_row + y) * tile_row;
+      const double* source = from + (z * tile_strip + y) * tile_strip;
       if constexpr (n > 0) {
         using Row = Eigen::Array<double, n, 1>;
         Row::Map(target) = Row::Map(source);
@@ -26,18 +26,18 @@ void copy_rows(const Index<3>& size, const double* from, const Index<3>& stride,
 }
 
 /// Copies a part of a tile to a block; zeros from nowhere.
-template <int tile_row>
+template <int tile_strip>
 void copy_part(const Index<3>& size, const double* from, const Index<3>& stride, double* to) {
   if (from == nullptr) {
     for (int z = 0; z < size[2]; ++z)
       for (int y = 0; y < size[1]; ++y)
         std::fill_n(to + z * stride[2] + y * stride[1], size[0], 0.0);
-  } else if (size[0] == tile_row) {
-    copy_rows<tile_row, tile_row>(size, from, stride, to);
+  } else if (size[0] == tile_strip) {
+    copy_rows<tile_strip, tile_strip>(size, from, stride, to);
   } else if (size[0] == 4) {
-    copy_rows<tile_row, 4>(size, from, stride, to);
+    copy_rows<tile_strip, 4>(size, from, stride, to);
   } else {
-    copy_rows<tile_row, 0>(size, from, stride, to);
+    copy_rows<tile_strip, 0>(size, from, stride, to);
   }
 }
 

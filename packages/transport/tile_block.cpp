@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "transport/row_cubic.hpp"
-#include "transport/row_stencil.hpp"
+#include "transport/strip_cubic.hpp"
+#include "transport/strip_stencil.hpp"
 
 namespace lockstep {
 
@@ -12,22 +12,22 @@ namespace {
 /// The points split along each axis, for samples at `offset` in their cells.
 template <int dim>
 struct SplitPoints {
-  SplitPoints(const RowPoints<dim>& points, const Point<dim>& offset) {
+  SplitPoints(const StripPoints<dim>& points, const Point<dim>& offset) {
     for (int a = 0; a < dim; ++a) {
       along[a].set(points[a], a, offset[a]);
       splits[a] = &along[a];
     }
   }
-  std::array<RowSplit<dim>, dim> along;
-  std::array<const RowSplit<dim>*, dim> splits;
+  std::array<StripSplit<dim>, dim> along;
+  std::array<const StripSplit<dim>*, dim> splits;
 };
 
 /// What is beyond the last sample of a row moves as the first does. What is stored there depends on
 /// how far the halo reaches, and points in step and others are summed in ways that differ by
 /// round-off: a restarted run, whose halos know no earlier steps, must sum as the straight one.
 template <int dim>
-void move_along(RowPoints<dim>& velocity, int n_in_row) {
-  for (RowValues<dim>& component : velocity)
+void move_along(StripPoints<dim>& velocity, int n_in_row) {
+  for (StripValues<dim>& component : velocity)
     component.tail(tile_width<dim> - n_in_row).setConstant(component[0]);
 }
 
@@ -99,8 +99,8 @@ void TileBlock<dim>::load(SampleKind kind, const double* field) {
 }
 
 template <int dim>
-RowValues<dim> TileBlock<dim>::velocity_at_samples(int axis, int place) const {
-  using Row = Eigen::Map<const RowValues<dim>>;
+StripValues<dim> TileBlock<dim>::velocity_at_samples(int axis, int place) const {
+  using Row = Eigen::Map<const StripValues<dim>>;
   const double* c = velocity_[axis].data() + first_place + place;
   // A sample lies at a face of the component, or half-way between two along one axis or two.
   if (axis == kind_)
@@ -122,8 +122,8 @@ std::array<double, 2> TileBlock<dim>::sample_limits(int axis, SampleKind kind) c
 }
 
 template <int dim>
-RowPoints<dim> TileBlock<dim>::velocity_at(const RowPoints<dim>& points, bool cubic) const {
-  RowPoints<dim> velocity;
+StripPoints<dim> TileBlock<dim>::velocity_at(const StripPoints<dim>& points, bool cubic) const {
+  StripPoints<dim> velocity;
   const auto look_up = [&](auto stencil, const auto& on_faces, const auto& at_centers) {
     for (int a = 0; a < dim; ++a) {
       std::array<decltype(on_faces.data()), dim> splits;
@@ -133,37 +133,37 @@ RowPoints<dim> TileBlock<dim>::velocity_at(const RowPoints<dim>& points, bool cu
     }
   };
   if (cubic) {
-    std::array<RowCubicSplit<dim>, dim> on_faces, at_centers;
+    std::array<StripCubicSplit<dim>, dim> on_faces, at_centers;
     for (int a = 0; a < dim; ++a) {
       on_faces[a].set(points[a], a, 0, sample_limits(a, a));
       at_centers[a].set(points[a], a, 0.5, sample_limits(a, cell_centers));
     }
-    look_up([&](const auto& splits) { return RowCubic<dim>(splits, stride_); }, on_faces,
+    look_up([&](const auto& splits) { return StripCubic<dim>(splits, stride_); }, on_faces,
             at_centers);
   } else {
-    std::array<RowSplit<dim>, dim> on_faces, at_centers;
+    std::array<StripSplit<dim>, dim> on_faces, at_centers;
     for (int a = 0; a < dim; ++a) {
       on_faces[a].set(points[a], a, 0);
       at_centers[a].set(points[a], a, 0.5);
     }
-    look_up([&](const auto& splits) { return RowStencil<dim>(splits, stride_); }, on_faces,
+    look_up([&](const auto& splits) { return StripStencil<dim>(splits, stride_); }, on_faces,
             at_centers);
   }
   return velocity;
 }
 
 template <int dim>
-RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, bool cubic) const {
+StripRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, bool cubic) const {
   const double factor = direction * tracer_.cells_per_velocity();
   int place = 0;
-  RowPoints<dim> start;
+  StripPoints<dim> start;
   for (int a = 0; a < dim; ++a) {
     const int cell = margin_[a] + (a == 0 ? 0 : in_tile[a]);
     start[a].setConstant(cell + offset_[a]);
     place += cell * stride_[a];
   }
   start[0] += steps<dim>();
-  RowPoints<dim> velocity;
+  StripPoints<dim> velocity;
   if (cubic) {
     velocity = velocity_at(start, true);
   } else {
@@ -175,23 +175,23 @@ RowRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, 
 }
 
 template <int dim>
-RowRays<dim> TileBlock<dim>::follow(const RowPoints<dim>& start, double direction) const {
+StripRays<dim> TileBlock<dim>::follow(const StripPoints<dim>& start, double direction) const {
   return rays_from(start, velocity_at(start, false), direction * tracer_.cells_per_velocity(),
                    tile_width<dim>, false);
 }
 
 template <int dim>
-RowRays<dim> TileBlock<dim>::rays_from(const RowPoints<dim>& start, const RowPoints<dim>& velocity,
+StripRays<dim> TileBlock<dim>::rays_from(const StripPoints<dim>& start, const StripPoints<dim>& velocity,
                                        double factor, int n_in_row, bool cubic) const {
-  RowRays<dim> rays;
+  StripRays<dim> rays;
   for (int a = 0; a < dim; ++a)
     rays.middle[a] =
-        clamped(RowValues<dim>(start[a] + 0.5 * factor * velocity[a]), lower_[a], upper_[a]);
-  RowPoints<dim> halfway = velocity_at(rays.middle, cubic);
+        clamped(StripValues<dim>(start[a] + 0.5 * factor * velocity[a]), lower_[a], upper_[a]);
+  StripPoints<dim> halfway = velocity_at(rays.middle, cubic);
   move_along<dim>(halfway, n_in_row);
   rays.clipped.setZero();
   for (int a = 0; a < dim; ++a) {
-    const RowValues<dim> wanted = start[a] + factor * halfway[a];
+    const StripValues<dim> wanted = start[a] + factor * halfway[a];
     rays.end[a] = clamped(wanted, lower_[a], upper_[a]);
     rays.clipped += (rays.end[a] - wanted).abs();
   }
@@ -199,29 +199,29 @@ RowRays<dim> TileBlock<dim>::rays_from(const RowPoints<dim>& start, const RowPoi
 }
 
 template <int dim>
-void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values) const {
+void TileBlock<dim>::look_up(const StripPoints<dim>& points, StripValues<dim>& values) const {
   const SplitPoints<dim> split(points, offset_);
-  RowStencil<dim>(split.splits, stride_).interpolate(field_, values);
+  StripStencil<dim>(split.splits, stride_).interpolate(field_, values);
 }
 
 template <int dim>
-void TileBlock<dim>::look_up(const RowPoints<dim>& points, RowValues<dim>& values,
-                             RowValues<dim>& low, RowValues<dim>& high) const {
+void TileBlock<dim>::look_up(const StripPoints<dim>& points, StripValues<dim>& values,
+                             StripValues<dim>& low, StripValues<dim>& high) const {
   const SplitPoints<dim> split(points, offset_);
-  const RowStencil<dim> stencil(split.splits, stride_);
+  const StripStencil<dim> stencil(split.splits, stride_);
   stencil.interpolate(field_, values);
   stencil.find_range(field_, low, high);
 }
 
 template <int dim>
-void TileBlock<dim>::look_up_cubic(const RowPoints<dim>& points, RowValues<dim>& values) const {
-  std::array<RowCubicSplit<dim>, dim> along;
-  std::array<const RowCubicSplit<dim>*, dim> splits;
+void TileBlock<dim>::look_up_cubic(const StripPoints<dim>& points, StripValues<dim>& values) const {
+  std::array<StripCubicSplit<dim>, dim> along;
+  std::array<const StripCubicSplit<dim>*, dim> splits;
   for (int a = 0; a < dim; ++a) {
     along[a].set(points[a], a, offset_[a], sample_limits(a, kind_));
     splits[a] = &along[a];
   }
-  RowCubic<dim>(splits, stride_).interpolate(field_, values);
+  StripCubic<dim>(splits, stride_).interpolate(field_, values);
 }
 
 template class TileBlock<2>;

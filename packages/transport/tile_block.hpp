@@ -3,16 +3,16 @@
 #include <vector>
 
 #include "transport/ray_tracer.hpp"
-#include "transport/row_values.hpp"
+#include "transport/strip_values.hpp"
 
 namespace lockstep {
 
 /// The rays of a row.
 template <int dim>
-struct RowRays {
-  RowPoints<dim> middle, end;  ///< where the midpoint rule looked, and the ends
+struct StripRays {
+  StripPoints<dim> middle, end;  ///< where the midpoint rule looked, and the ends
   /// Not 0 where a ray would have left the domain.
-  RowValues<dim> clipped;
+  StripValues<dim> clipped;
 };
 
 /// A tile and its surroundings as dense arrays, in which short rays are followed a strip at a time:
@@ -37,37 +37,37 @@ class TileBlock {
   /// Rays by the midpoint rule, against the flow (direction -1) or with it (+1), from the row of
   /// samples of the loaded field with these coordinates within the tile (x is ignored).
   /// `cubic`: the velocity is interpolated by cubics.
-  RowRays<dim> trace(const Index<dim>& in_tile, double direction, bool cubic = false) const;
+  StripRays<dim> trace(const Index<dim>& in_tile, double direction, bool cubic = false) const;
   /// Follows rays from any points of the tile, relative to the block; linear alone.
-  RowRays<dim> follow(const RowPoints<dim>& start, double direction) const;
+  StripRays<dim> follow(const StripPoints<dim>& start, double direction) const;
   /// Offset of the tile in the block: points count in cells from the tile's lower corner.
   int margin(int axis) const { return margin_[axis]; }
   /// Returns point i of a strip, in lattice units.
-  Point<dim> place(const RowPoints<dim>& points, int i) const {
+  Point<dim> place(const StripPoints<dim>& points, int i) const {
     Point<dim> x;
     for (int a = 0; a < dim; ++a)
       x[a] = begin_[a] + points[a][i];
     return x;
   }
   /// The loaded field at a row of points.
-  void look_up(const RowPoints<dim>& points, RowValues<dim>& values) const;
+  void look_up(const StripPoints<dim>& points, StripValues<dim>& values) const;
   /// Interpolates at these points, and finds the range of the samples used there.
-  void look_up(const RowPoints<dim>& points, RowValues<dim>& values, RowValues<dim>& low,
-               RowValues<dim>& high) const;
+  void look_up(const StripPoints<dim>& points, StripValues<dim>& values, StripValues<dim>& low,
+               StripValues<dim>& high) const;
   /// Interpolates by cubics, within the range of the 4^dim samples around each point.
-  void look_up_cubic(const RowPoints<dim>& points, RowValues<dim>& values) const;
+  void look_up_cubic(const StripPoints<dim>& points, StripValues<dim>& values) const;
 
  private:
   /// All components at a row of points.
-  RowPoints<dim> velocity_at(const RowPoints<dim>& points, bool cubic) const;
+  StripPoints<dim> velocity_at(const StripPoints<dim>& points, bool cubic) const;
   /// Places of the first and last sample of that kind along an axis in the block; without end if it
   /// is periodic.
   std::array<double, 2> sample_limits(int axis, SampleKind kind) const;
   /// Velocity component at a row of samples of the loaded field, the first at that place.
-  RowValues<dim> velocity_at_samples(int axis, int place) const;
+  StripValues<dim> velocity_at_samples(int axis, int place) const;
   /// The midpoint rule, given the velocity at the start; displacements are `factor` times velocity.
   /// The first `n_in_row` points count.
-  RowRays<dim> rays_from(const RowPoints<dim>& start, const RowPoints<dim>& velocity, double factor,
+  StripRays<dim> rays_from(const StripPoints<dim>& start, const StripPoints<dim>& velocity, double factor,
                          int n_in_row, bool cubic) const;
 
   using Runs = std::vector<typename SampleLattice<dim>::Run>;

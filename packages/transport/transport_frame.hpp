@@ -11,7 +11,7 @@ namespace lockstep {
 
 /// Way in which the samples of a tile are advected.
 struct TilePlan {
-  bool by_rows = false;  ///< short rays, far from inflow sides: first as if no surface was near
+  bool by_strips = false;  ///< short rays, far from inflow sides: first as if no surface was near
   bool near_surface = false;  ///< a surface may be in the way of some
 };
 

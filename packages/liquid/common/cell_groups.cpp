@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
-#include "grid/rows.hpp"
+#include "grid/strips.hpp"
 
 namespace lockstep {
 

@@ -71,17 +71,17 @@ Point<dim> PhiLookup<dim>::gradient(const Point<dim>& x) const {
 }
 
 template <int dim>
-RowValues<dim> PhiLookup<dim>::values(const RowPoints<dim>& x) const {
+StripValues<dim> PhiLookup<dim>::values(const StripPoints<dim>& x) const {
   constexpr int n = tile_width<dim>;
   Eigen::Array<int, n, 1> place = Eigen::Array<int, n, 1>::Zero();
-  RowPoints<dim> weight;
+  StripPoints<dim> weight;
   for (int a = 0; a < dim; ++a) {
-    const RowValues<dim> t = x[a] + (margin_ - 0.5);
+    const StripValues<dim> t = x[a] + (margin_ - 0.5);
     const Eigen::Array<int, n, 1> below = t.template cast<int>();
     weight[a] = t - below.template cast<double>();
     place += below * stride(a);
   }
-  std::array<RowValues<dim>, (1 << dim)> samples;
+  std::array<StripValues<dim>, (1 << dim)> samples;
   for (int k = 0; k < 1 << dim; ++k) {
     int offset = 0;
     for (int a = 0; a < dim; ++a)
@@ -90,15 +90,15 @@ RowValues<dim> PhiLookup<dim>::values(const RowPoints<dim>& x) const {
   }
   for (int a = 0; a < dim; ++a)
     for (int k = 0; k < 1 << (dim - 1 - a); ++k)
-      samples[k] = blend<RowValues<dim>>(samples[2 * k], samples[2 * k + 1], weight[a]);
+      samples[k] = blend<StripValues<dim>>(samples[2 * k], samples[2 * k + 1], weight[a]);
   return samples[0];
 }
 
 template <int dim>
-RowPoints<dim> PhiLookup<dim>::gradients(const RowPoints<dim>& x) const {
+StripPoints<dim> PhiLookup<dim>::gradients(const StripPoints<dim>& x) const {
   const double beyond = margin_ - 1;
-  RowPoints<dim> result, ahead = x, behind = x;
-  result.fill(RowValues<dim>::Zero());
+  StripPoints<dim> result, ahead = x, behind = x;
+  result.fill(StripValues<dim>::Zero());
   for (int a = 0; a < dim && is_complete_; ++a) {
     ahead[a] = (x[a] + difference_step).min(tile_width<dim> + beyond);
     behind[a] = (x[a] - difference_step).max(-beyond);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "liquid/common/solid_cells.hpp"
-#include "transport/row_values.hpp"
+#include "transport/strip_values.hpp"
 #include "transport/visible_interpolation.hpp"
 
 namespace lockstep {
@@ -40,9 +40,9 @@ class PhiLookup {
   /// Gradient as if there were no surface [phi / cells].
   Point<dim> gradient(const Point<dim>& x) const;
   /// Values at several points at once, as if there were no surface; of use where all samples exist.
-  RowValues<dim> values(const RowPoints<dim>& x) const;
+  StripValues<dim> values(const StripPoints<dim>& x) const;
   /// 0 where a sample does not exist.
-  RowPoints<dim> gradients(const RowPoints<dim>& x) const;
+  StripPoints<dim> gradients(const StripPoints<dim>& x) const;
   /// True if a surface comes between two points.
   bool hidden(const Point<dim>& a, const Point<dim>& b) const;
   /// True if a surface comes within two cells.

@@ -36,7 +36,7 @@ class Wishes {
       if (!has_entered)
         lookup_.enter(tile);
       has_entered = true;
-      const RowValues<dim> plain = lookup_.values(batch.x);
+      const StripValues<dim> plain = lookup_.values(batch.x);
       for (int i = 0; i < batch.n; ++i) {
         const Particle<dim>& particle = particles[batch.places[i]];
         const auto phi = lookup_.value(particle.position(), plain[i]);

@@ -59,18 +59,18 @@ class Mover {
     begin_ = domain_.grid.tile_begin(tile);
     is_near_surface_ = frame_.plans[tile].near_surface;
     // Rows know no inflow sides, but with the flow nothing comes from there.
-    const bool by_rows = frame_.block && frame_.block->enter(begin_);
+    const bool by_strips = frame_.block && frame_.block->enter(begin_);
     std::size_t n_kept = 0;
     for (std::size_t first = 0; first < particles.size(); first += tile_width<dim>) {
       const int n =
           static_cast<int>(std::min<std::size_t>(tile_width<dim>, particles.size() - first));
-      RowRays<dim> rays;
-      if (by_rows)
+      StripRays<dim> rays;
+      if (by_strips)
         rays = follow(particles.data() + first, n);
       for (int i = 0; i < n; ++i) {
         const Particle<dim> particle = particles[first + i];
         std::optional<Point<dim>> end;
-        if (by_rows && !needs_care(particle))
+        if (by_strips && !needs_care(particle))
           end = frame_.block->place(rays.end, i);
         else
           end = follow_single(particle);
@@ -96,8 +96,8 @@ class Mover {
   bool needs_care(const Particle<dim>& particle) const {
     return is_near_surface_ && frame_.near_surface->is_near(place(particle));
   }
-  RowRays<dim> follow(const Particle<dim>* particles, int n) const {
-    RowPoints<dim> start;
+  StripRays<dim> follow(const Particle<dim>* particles, int n) const {
+    StripPoints<dim> start;
     for (int a = 0; a < dim; ++a)
       for (int i = 0; i < tile_width<dim>; ++i)
         start[a][i] = particles[std::min(i, n - 1)].x[a] + frame_.block->margin(a);
@@ -179,7 +179,7 @@ void shift_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids
       if (!has_entered)
         lookup.enter(static_cast<int>(tile));
       has_entered = true;
-      const RowPoints<dim> slopes = lookup.gradients(batch.x);
+      const StripPoints<dim> slopes = lookup.gradients(batch.x);
       for (int i = 0; i < batch.n; ++i) {
         Particle<dim>& particle = particles[batch.places[i]];
         Point<dim> gradient;

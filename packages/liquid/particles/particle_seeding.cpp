@@ -203,7 +203,7 @@ void set_radii(const MacDomain<dim>& domain, const SolidCells<dim>& solids, Kept
       if (!has_entered)
         lookup.enter(static_cast<int>(tile));
       has_entered = true;
-      const RowValues<dim> plain = lookup.values(batch.x);
+      const StripValues<dim> plain = lookup.values(batch.x);
       for (int i = 0; i < batch.n; ++i) {
         Particle<dim>& particle = particles[batch.places[i]];
         const int side = particle.side();

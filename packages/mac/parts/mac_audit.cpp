@@ -49,7 +49,7 @@ Momentum<dim> MacAudit<dim>::momentum() const {
 template <int dim>
 double MacAudit<dim>::kinetic_energy() const {
   double mine = 0;
-  RowValues<dim> squares = RowValues<dim>::Zero();
+  StripValues<dim> squares = StripValues<dim>::Zero();
   for (int axis = 0; axis < dim; ++axis) {
     const double* u = flow_.prediction[axis].data();
     flow_.domain.grid.for_each_owned_face_row(axis, [&](int first, int n, int) {

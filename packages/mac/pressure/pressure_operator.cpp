@@ -21,7 +21,7 @@ double rounded_for_sums(double value) {
 
 /// True if all faces of a strip of cells are regular and lead to fluid.
 template <int dim>
-bool is_among_fluid(const MacGeometry<dim>& geometry, const CellRow<dim>& row) {
+bool is_among_fluid(const MacGeometry<dim>& geometry, const CellStrip<dim>& row) {
   const auto& cells = geometry.state.cells;
   if (!geometry.has_regular_faces(row) || row.neighbors[0] < 0 ||
       cells[row.neighbors[0]] != CellState::fluid || cells[row.neighbors[1]] != CellState::fluid)
@@ -72,7 +72,7 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
       result.stiff.push_back({cell, dirichlet, dirichlet + faces});
   };
   const auto regular = static_cast<float>(geometry.face_table.regular().coefficient);
-  domain.grid.for_each_owned_row([&](const CellRow<dim>& fluid) {
+  domain.grid.for_each_owned_strip([&](const CellStrip<dim>& fluid) {
     if (!is_among_fluid(geometry, fluid)) {
       fluid.for_each_cell(add_cell);
       return;
@@ -116,9 +116,9 @@ class MacPressureOperator final : public StencilOperator {
   template <typename Function>
   void with_faces(int cell, const std::array<int, 2 * dim>& neighbors, const Function& f) const;
   /// True if a whole strip of cells are unknowns, with cells on all sides.
-  bool is_whole(const CellRow<dim>& cells) const;
+  bool is_whole(const CellStrip<dim>& cells) const;
   /// A x over the unit coefficient for such a row.
-  RowValues<dim> product(const CellRow<dim>& cells) const;
+  StripValues<dim> product(const CellStrip<dim>& cells) const;
   void apply_to(const Vector& x, Vector& y, double alpha, double beta) const;
 
   const MacDomain<dim>& domain_;
@@ -144,7 +144,7 @@ void MacPressureOperator<dim>::with_faces(int cell, const std::array<int, 2 * di
 }
 
 template <int dim>
-bool MacPressureOperator<dim>::is_whole(const CellRow<dim>& cells) const {
+bool MacPressureOperator<dim>::is_whole(const CellStrip<dim>& cells) const {
   for (const int neighbor : cells.neighbors)
     if (neighbor < 0)
       return false;
@@ -154,12 +154,12 @@ bool MacPressureOperator<dim>::is_whole(const CellRow<dim>& cells) const {
 }
 
 template <int dim>
-RowValues<dim> MacPressureOperator<dim>::product(const CellRow<dim>& cells) const {
+StripValues<dim> MacPressureOperator<dim>::product(const CellStrip<dim>& cells) const {
   constexpr int width = tile_width<dim>;
   using Faces = Eigen::Map<const Eigen::Array<float, width, 1>>;
   const double* x = field_.data();
-  const RowValues<dim> own = row_of<dim>(x, cells.begin);
-  RowValues<dim> sum = Faces(coefficients_.dirichlet.data() + cells.begin).template cast<double>();
+  const StripValues<dim> own = row_of<dim>(x, cells.begin);
+  StripValues<dim> sum = Faces(coefficients_.dirichlet.data() + cells.begin).template cast<double>();
   sum *= own;
   // Over the faces along the row, the two at its ends too.
   const float* along = coefficients_.lower[0].data() + cells.begin;
@@ -202,13 +202,13 @@ void MacPressureOperator<dim>::apply_to(const Vector& x, Vector& y, double alpha
       out[row] = scale * sum + (beta == 0 ? 0 : beta * out[row]);
     });
   };
-  domain_.grid.for_each_owned_row([&](const CellRow<dim>& cells) {
+  domain_.grid.for_each_owned_strip([&](const CellStrip<dim>& cells) {
     if (!is_whole(cells)) {
       cells.for_each_cell(multiply_one);
       return;
     }
     auto result = row_of<dim>(out.getRawPtr(), coefficients_.row[cells.begin]);
-    const RowValues<dim> before = beta == 0 ? RowValues<dim>::Zero() : RowValues<dim>(result);
+    const StripValues<dim> before = beta == 0 ? StripValues<dim>::Zero() : StripValues<dim>(result);
     result = scale * product(cells) + beta * before;
   });
   for (const auto& [cell, dirichlet, diagonal] : coefficients_.stiff)

@@ -34,7 +34,7 @@ class ComponentFinder {
         grid_(domain.grid),
         geometry_(geometry),
         cells_(geometry.state.cells) {
-    grid_.for_each_owned_row([&](const CellRow<dim>& row) { join_row(row); });
+    grid_.for_each_owned_strip([&](const CellStrip<dim>& row) { join_row(row); });
     sets.flatten();
   }
 
@@ -50,7 +50,7 @@ class ComponentFinder {
     return all_are(cells_, begin, n, CellState::fluid) &&
            all_are(geometry_.state.faces[0], begin + 1, n - 1, FaceState::free);
   }
-  void join_row(const CellRow<dim>& row) {
+  void join_row(const CellStrip<dim>& row) {
     const bool one = is_one(row.begin, row.n);
     if (one) {
       if (!geometry_.is_plain(row.begin))
@@ -72,7 +72,7 @@ class ComponentFinder {
       for (int end = 0; end < 2; ++end)
         join_rows(row, one, axis, end);
   }
-  void join_rows(const CellRow<dim>& row, bool one, int axis, int end) {
+  void join_rows(const CellStrip<dim>& row, bool one, int axis, int end) {
     const int other = row.neighbors[2 * axis + end];
     if (geometry_.is_plain(row.begin) && other >= 0 &&
         TiledGrid<dim>::tile_of(other) == TiledGrid<dim>::tile_of(row.begin))
@@ -109,7 +109,7 @@ class ComponentFinder {
 
 /// Calls f(first, n) for runs of fluid cells in a row that are known to be connected.
 template <int dim, typename Function>
-void for_each_run(const MacGeometry<dim>& geometry, const CellRow<dim>& row, const Function& f) {
+void for_each_run(const MacGeometry<dim>& geometry, const CellStrip<dim>& row, const Function& f) {
   if (geometry.is_plain(row.begin))
     return f(row.begin, row.n);
   for (int cell = row.begin; cell < row.begin + row.n; ++cell)
@@ -126,7 +126,7 @@ LocalComponents local_components(const MacDomain<dim>& domain, const MacGeometry
   result.label.assign(grid.n_stored_cells(), no_index);
   // First the smallest lattice number of each set at its root, then that for all its cells. Numbers
   // grow along a row: only where another set begins one may be smaller.
-  grid.for_each_owned_row([&](const CellRow<dim>& row) {
+  grid.for_each_owned_strip([&](const CellStrip<dim>& row) {
     int last_root = -1;
     for_each_run(geometry, row, [&](int cell, int) {
       const int root = found.sets.root(cell);
@@ -137,7 +137,7 @@ LocalComponents local_components(const MacDomain<dim>& domain, const MacGeometry
       label = label == no_index ? id : std::min(label, id);
     });
   });
-  grid.for_each_owned_row([&](const CellRow<dim>& row) {
+  grid.for_each_owned_strip([&](const CellStrip<dim>& row) {
     for_each_run(geometry, row, [&](int cell, int n) {
       const int root = found.sets.root(cell);
       std::fill_n(result.label.begin() + cell, n, result.label[root]);
@@ -215,7 +215,7 @@ PressureRegions find_regions(const MacDomain<dim>& domain, const MacGeometry<dim
   regions.of_unknown.reserve(geometry.pressure_map->getNodeNumElements());
   GlobalIndex last_label = no_index;
   int last_region = -1;
-  grid.for_each_owned_row([&](const CellRow<dim>& row) {
+  grid.for_each_owned_strip([&](const CellStrip<dim>& row) {
     for_each_run(geometry, row, [&](int cell, int n) {
       if (std::exchange(last_label, mine.label[cell]) != mine.label[cell])
         last_region = region[position(last_label)];

@@ -8,9 +8,9 @@ namespace {
 
 /// Outflow of a strip of cells whose faces are all regular, per area.
 template <int dim>
-RowValues<dim> outflow_of_row(const FaceField<dim>& velocity, const CellRow<dim>& cells) {
-  const RowValues<dim> along = row_of<dim>(velocity[0].data(), cells.begin);
-  RowValues<dim> outflow = row_ahead<dim>(along, velocity[0][cells.neighbors[1]]) - along;
+StripValues<dim> outflow_of_row(const FaceField<dim>& velocity, const CellStrip<dim>& cells) {
+  const StripValues<dim> along = row_of<dim>(velocity[0].data(), cells.begin);
+  StripValues<dim> outflow = row_ahead<dim>(along, velocity[0][cells.neighbors[1]]) - along;
   for (int axis = 1; axis < dim; ++axis)
     outflow += row_of<dim>(velocity[axis].data(), cells.neighbors[2 * axis + 1]) -
                row_of<dim>(velocity[axis].data(), cells.begin);
@@ -20,8 +20,8 @@ RowValues<dim> outflow_of_row(const FaceField<dim>& velocity, const CellRow<dim>
 /// The jumps of a field across a row of faces normal to `axis`; `below` is the cell or row below
 /// the first.
 template <int dim>
-RowValues<dim> jumps_of_row(const double* field, int axis, int first, int below) {
-  const RowValues<dim> row = row_of<dim>(field, first);
+StripValues<dim> jumps_of_row(const double* field, int axis, int first, int below) {
+  const StripValues<dim> row = row_of<dim>(field, first);
   if (axis > 0)
     return row - row_of<dim>(field, below);
   return row - row_behind<dim>(row, field[below]);
@@ -48,7 +48,7 @@ void outflow_deficit(const MacDomain<dim>& domain, const MacGeometry<dim>& geome
     }
     values[row++] = -area * outflow;
   };
-  domain.grid.for_each_owned_row([&](const CellRow<dim>& cells) {
+  domain.grid.for_each_owned_strip([&](const CellStrip<dim>& cells) {
     if (geometry.has_regular_faces(cells)) {
       row_of<dim>(values.getRawPtr(), row) = -area * outflow_of_row<dim>(velocity, cells);
       row += tile_width<dim>;
@@ -105,7 +105,7 @@ Momentum<dim> whole_side_impulse(const MacDomain<dim>& domain, const MacGeometry
   const double area = geometry.face_table.area(), half = 0.5 * grid.spacing();
   Momentum<dim> impulse;
   // Closed upper sides have no stored face, so this goes by cells.
-  grid.for_each_owned_row([&](const CellRow<dim>& row) {
+  grid.for_each_owned_strip([&](const CellStrip<dim>& row) {
     for (int axis = 0; axis < dim; ++axis)
       for (int end = 0; end < 2; ++end) {
         const int other = row.neighbors[2 * axis + end];

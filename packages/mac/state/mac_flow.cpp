@@ -74,14 +74,14 @@ double MacFlow<dim>::largest_speed() const {
       sum += std::max(speed(axis, cell), speed(axis, neighbors[2 * axis + 1]));
     largest = std::max(largest, sum);
   };
-  RowValues<dim> largest_in_rows = RowValues<dim>::Zero();
-  domain.grid.for_each_owned_row([&](const CellRow<dim>& row) {
+  StripValues<dim> largest_in_rows = StripValues<dim>::Zero();
+  domain.grid.for_each_owned_strip([&](const CellStrip<dim>& row) {
     if (!geometry.has_regular_faces(row)) {
       row.for_each_cell(look_at_cell);
       return;
     }
-    const RowValues<dim> along = row_of<dim>(velocity[0].data(), row.begin).abs();
-    RowValues<dim> sum = along.max(row_ahead<dim>(along, speed(0, row.neighbors[1])));
+    const StripValues<dim> along = row_of<dim>(velocity[0].data(), row.begin).abs();
+    StripValues<dim> sum = along.max(row_ahead<dim>(along, speed(0, row.neighbors[1])));
     for (int axis = 1; axis < dim; ++axis) {
       const double* u = velocity[axis].data();
       sum += row_of<dim>(u, row.begin).abs().max(row_of<dim>(u, row.neighbors[2 * axis + 1]).abs());

@@ -1,5 +1,5 @@
 #pragma once
-#include "grid/rows.hpp"
+#include "grid/strips.hpp"
 #include "interfaces/momentum.hpp"
 #include "staggered/domain/mac_domain.hpp"
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include "grid/rows.hpp"
+#include "grid/strips.hpp"
 #include "interfaces/fluid.hpp"
 #include "staggered/domain/mac_domain.hpp"
 #include "staggered/state/face_table.hpp"

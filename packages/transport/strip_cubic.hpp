@@ -4,41 +4,41 @@
 #include <type_traits>
 
 #include "transport/cubic_weights.hpp"
-#include "transport/row_stencil.hpp"
+#include "transport/strip_stencil.hpp"
 
 namespace lockstep {
 
 /// The four samples around a row of points along one axis. Those before `first` and after `last` do
 /// not exist: they count for nothing, and points are moved between those that do.
 template <int dim>
-struct RowCubicSplit {
-  void set(const RowValues<dim>& x, int axis, double offset, const std::array<double, 2>& limits) {
+struct StripCubicSplit {
+  void set(const StripValues<dim>& x, int axis, double offset, const std::array<double, 2>& limits) {
     const auto [first, last] = limits;
     split.set(x.max(first + offset).min(last + offset), axis, offset);
-    const RowValues<dim>& f = split.weight;
-    RowValues<dim> share = (1 + f) / 3;
+    const StripValues<dim>& f = split.weight;
+    StripValues<dim> share = (1 + f) / 3;
     share = (split.below + 2 <= last).select(share, 0);
     share = (split.below - 1 >= first).select(share, 1);
-    weights = cubic_weights<RowValues<dim>>(f, share);
+    weights = cubic_weights<StripValues<dim>>(f, share);
   }
-  RowSplit<dim> split;
-  std::array<RowValues<dim>, 4> weights;
+  StripSplit<dim> split;
+  std::array<StripValues<dim>, 4> weights;
 };
 
 /// The 4^dim samples around each point of a row.
 template <int dim>
-class RowCubic {
+class StripCubic {
  public:
-  RowCubic(const std::array<const RowCubicSplit<dim>*, dim>& splits,
+  StripCubic(const std::array<const StripCubicSplit<dim>*, dim>& splits,
            const std::array<int, dim>& stride)
       : splits_(splits), stride_(stride) {}
 
-  void interpolate(const double* block, RowValues<dim>& values) const {
-    std::array<const RowSplit<dim>*, dim> along;
+  void interpolate(const double* block, StripValues<dim>& values) const {
+    std::array<const StripSplit<dim>*, dim> along;
     for (int a = 0; a < dim; ++a)
       along[a] = &splits_[a]->split;
     if (are_in_step(along))
-      values = sum<RowValues<dim>>(block + first_at(0), [&](int a, int k) -> const RowValues<dim>& {
+      values = sum<StripValues<dim>>(block + first_at(0), [&](int a, int k) -> const StripValues<dim>& {
         return splits_[a]->weights[k];
       });
     else
@@ -102,7 +102,7 @@ class RowCubic {
       return total;
     }
   }
-  const std::array<const RowCubicSplit<dim>*, dim>& splits_;
+  const std::array<const StripCubicSplit<dim>*, dim>& splits_;
   const std::array<int, dim>& stride_;
 };
 

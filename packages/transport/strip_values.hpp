@@ -5,13 +5,13 @@
 #include <array>
 #include <type_traits>
 
-#include "grid/rows.hpp"
+#include "grid/strips.hpp"
 
 namespace lockstep {
 
 /// Positions of a strip of samples, by axis, relative to a block's first cell.
 template <int dim>
-using RowPoints = std::array<RowValues<dim>, dim>;
+using StripPoints = std::array<StripValues<dim>, dim>;
 
 // Blends two strips. Always inlined: else strips go through memory, which takes twice the time of
 // the arithmetic.
@@ -22,11 +22,11 @@ template <typename Values>
 
 /// 0, 1, 2, ...
 template <int dim>
-RowValues<dim> steps() {
+StripValues<dim> steps() {
   alignas(64) static constexpr double counted[] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                    8, 9, 10, 11, 12, 13, 14, 15};
   static_assert(tile_width<dim> <= 16);
-  return Eigen::Map<const RowValues<dim>>(counted);
+  return Eigen::Map<const StripValues<dim>>(counted);
 }
 
 /// One sample, or those of a whole row that are neighbours in memory.
@@ -94,7 +94,7 @@ template <int n>
 
 /// Lesser and greater of each two values; the second if one is not a number. Written with
 /// conditions they would take two instructions, one of them slow.
-[[gnu::always_inline]] inline RowPart least_of(RowPart a, RowPart b) {
+[[gnu::always_inline]] inline StripPart least_of(StripPart a, StripPart b) {
 #ifdef __AVX512F__
   return _mm512_min_pd(a, b);
 #elif defined(__AVX2__)
@@ -103,7 +103,7 @@ template <int n>
   return a < b ? a : b;
 #endif
 }
-[[gnu::always_inline]] inline RowPart most_of(RowPart a, RowPart b) {
+[[gnu::always_inline]] inline StripPart most_of(StripPart a, StripPart b) {
 #ifdef __AVX512F__
   return _mm512_max_pd(a, b);
 #elif defined(__AVX2__)
@@ -119,7 +119,7 @@ template <int n, typename Function, typename... Rows>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> by_parts(
     const Function& f, const Eigen::Array<double, n, 1>& first, const Rows&... others) {
   Eigen::Array<double, n, 1> result;
-  for (int i = 0; i < n; i += row_part_size)
+  for (int i = 0; i < n; i += strip_part_size)
     part_of(result, i) = f(part_of(first, i), part_of(others, i)...);
   return result;
 }
@@ -129,26 +129,26 @@ template <int n>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> chosen(
     const Eigen::Array<double, n, 1>& flag, const Eigen::Array<double, n, 1>& first,
     const Eigen::Array<double, n, 1>& second) {
-  return by_parts([](RowPart f, RowPart a, RowPart b) -> RowPart { return f != 0 ? a : b; }, flag,
+  return by_parts([](StripPart f, StripPart a, StripPart b) -> StripPart { return f != 0 ? a : b; }, flag,
                   first, second);
 }
 template <int n>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> least(
     const Eigen::Array<double, n, 1>& a, const Eigen::Array<double, n, 1>& b) {
-  return by_parts([](RowPart x, RowPart y) { return least_of(x, y); }, a, b);
+  return by_parts([](StripPart x, StripPart y) { return least_of(x, y); }, a, b);
 }
 template <int n>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> most(const Eigen::Array<double, n, 1>& a,
                                                               const Eigen::Array<double, n, 1>& b) {
-  return by_parts([](RowPart x, RowPart y) { return most_of(x, y); }, a, b);
+  return by_parts([](StripPart x, StripPart y) { return most_of(x, y); }, a, b);
 }
 /// The values, but none below `low` nor above `high`; what is not a number becomes `low`.
 template <int n>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> clamped(
     const Eigen::Array<double, n, 1>& values, double low, double high) {
   return by_parts(
-      [low, high](RowPart x) -> RowPart {
-        return least_of(most_of(x, low + RowPart{}), high + RowPart{});
+      [low, high](StripPart x) -> StripPart {
+        return least_of(most_of(x, low + StripPart{}), high + StripPart{});
       },
       values);
 }
@@ -159,7 +159,7 @@ template <int n>
     const Eigen::Array<double, n, 1>& values, const Eigen::Array<double, n, 1>& low,
     const Eigen::Array<double, n, 1>& high, const Eigen::Array<double, n, 1>& otherwise) {
   return by_parts(
-      [](RowPart x, RowPart lowest, RowPart highest, RowPart other) -> RowPart {
+      [](StripPart x, StripPart lowest, StripPart highest, StripPart other) -> StripPart {
         return lowest <= highest ? least_of(most_of(x, lowest), highest) : other;
       },
       values, low, high, otherwise);

@@ -3,7 +3,7 @@
 #include <array>
 #include <type_traits>
 
-#include "transport/row_values.hpp"
+#include "transport/strip_values.hpp"
 
 namespace lockstep {
 
@@ -11,38 +11,38 @@ namespace lockstep {
 /// keep step if each lies one sample further than the one before it along x, and beside the same
 /// one along other axes. Where some are one sample ahead of that, the row is mixed.
 template <int dim>
-struct RowSplit {
-  void set(const RowValues<dim>& x, int axis, double offset) {
-    const RowValues<dim> place = x - offset;
+struct StripSplit {
+  void set(const StripValues<dim>& x, int axis, double offset) {
+    const StripValues<dim> place = x - offset;
     below = place.floor();
     weight = place - below;
-    RowValues<dim> ahead = below - below[0];
+    StripValues<dim> ahead = below - below[0];
     if (axis == 0)
       ahead -= steps<dim>();
     first = static_cast<int>(below[0]);
     is_mixed = has_nonzero(ahead);
-    by_rows = true;
+    by_strips = true;
     if (is_mixed)
       find_steps(ahead);
   }
 
-  RowValues<dim> below, weight;
+  StripValues<dim> below, weight;
   int first;      ///< sample of the first point, or one less if that is ahead of others
   bool is_mixed;  ///< not all points keep step
-  bool by_rows;   ///< true for a point by rows; others are one sample ahead
+  bool by_strips;   ///< true for a point by rows; others are one sample ahead
   /// Where mixed: 1 or 0, and the weight of the first or third of three samples.
-  RowValues<dim> is_ahead, weight_of_other;
+  StripValues<dim> is_ahead, weight_of_other;
 
  private:
-  void find_steps(const RowValues<dim>& ahead) {
-    const RowValues<dim> behind = ahead.min(0);
+  void find_steps(const StripValues<dim>& ahead) {
+    const StripValues<dim> behind = ahead.min(0);
     is_ahead = ahead;
     if (has_nonzero(behind)) {
       --first;
       is_ahead += 1;
     }
-    by_rows = !has_nonzero(RowValues<dim>(is_ahead * (is_ahead - 1)));
-    weight_of_other = chosen(is_ahead, weight, RowValues<dim>(1 - weight));
+    by_strips = !has_nonzero(StripValues<dim>(is_ahead * (is_ahead - 1)));
+    weight_of_other = chosen(is_ahead, weight, StripValues<dim>(1 - weight));
   }
 };
 
@@ -55,22 +55,22 @@ bool are_in_step(const Splits& splits) {
 /// while they keep step: then whole rows are loaded at once. Where some are one sample ahead of
 /// others, one row more is, and each point takes its own.
 template <int dim>
-class RowStencil {
+class StripStencil {
  public:
   /// The points split along each axis, and the strides of the block; both must live on.
-  RowStencil(const std::array<const RowSplit<dim>*, dim>& splits,
+  StripStencil(const std::array<const StripSplit<dim>*, dim>& splits,
              const std::array<int, dim>& stride)
       : splits_(splits), stride_(stride) {
     for (int a = 0; a < dim; ++a) {
       first_ += (a == 0 ? 1 : stride[a]) * splits[a]->first;
       mixed_ |= splits[a]->is_mixed ? 1 << a : 0;
-      by_rows_ = by_rows_ && splits[a]->by_rows;
+      by_strips_ = by_strips_ && splits[a]->by_strips;
     }
   }
 
   /// Whole rows are loaded: up to one place before the block and one behind it.
-  void interpolate(const double* block, RowValues<dim>& values) const {
-    if (!by_rows_) {
+  void interpolate(const double* block, StripValues<dim>& values) const {
+    if (!by_strips_) {
       for (int i = 0; i < tile_width<dim>; ++i)
         values[i] = single<dim - 1>(block + place_of(i), i);
       return;
@@ -78,8 +78,8 @@ class RowStencil {
     with_mixed_axes([&](auto mixed) { values = between<dim - 1, mixed>(block + first_); });
   }
   /// The range of the samples.
-  void find_range(const double* block, RowValues<dim>& low, RowValues<dim>& high) const {
-    if (by_rows_) {
+  void find_range(const double* block, StripValues<dim>& low, StripValues<dim>& high) const {
+    if (by_strips_) {
       with_mixed_axes([&](auto mixed) {
         const Range found = range<dim - 1, mixed>(block + first_);
         low = found.low;
@@ -101,7 +101,7 @@ class RowStencil {
 
  private:
   struct Range {
-    RowValues<dim> low, high;
+    StripValues<dim> low, high;
   };
 
   /// Calls f with bit a of a constant set where axis a is mixed.
@@ -145,23 +145,23 @@ class RowStencil {
     return step;
   }
 
-  static RowValues<dim> row_at(const double* c) { return Eigen::Map<const RowValues<dim>>(c); }
+  static StripValues<dim> row_at(const double* c) { return Eigen::Map<const StripValues<dim>>(c); }
 
   /// Interpolates along the axes up to this one, from the lowest samples of the strip. Of three
   /// samples along a mixed axis all points use the second; those ahead use the third, others the
   /// first.
   template <int axis, int mixed>
-  [[gnu::always_inline]] RowValues<dim> between(const double* c) const {
+  [[gnu::always_inline]] StripValues<dim> between(const double* c) const {
     if constexpr (axis < 0) {
       return row_at(c);
     } else {
       const int step = axis == 0 ? 1 : stride_[axis];
-      const RowValues<dim> lower = between<axis - 1, mixed>(c);
-      const RowValues<dim> upper = between<axis - 1, mixed>(c + step);
+      const StripValues<dim> lower = between<axis - 1, mixed>(c);
+      const StripValues<dim> upper = between<axis - 1, mixed>(c + step);
       if constexpr ((mixed >> axis & 1) == 0)
-        return blend<RowValues<dim>>(lower, upper, splits_[axis]->weight);
-      const RowValues<dim> last = between<axis - 1, mixed>(c + 2 * step);
-      return blend<RowValues<dim>>(upper, chosen(splits_[axis]->is_ahead, last, lower),
+        return blend<StripValues<dim>>(lower, upper, splits_[axis]->weight);
+      const StripValues<dim> last = between<axis - 1, mixed>(c + 2 * step);
+      return blend<StripValues<dim>>(upper, chosen(splits_[axis]->is_ahead, last, lower),
                                    splits_[axis]->weight_of_other);
     }
   }
@@ -176,7 +176,7 @@ class RowStencil {
       if constexpr ((mixed >> axis & 1) == 0)
         return {least(lower.low, upper.low), most(lower.high, upper.high)};
       const Range last = range<axis - 1, mixed>(c + 2 * step);
-      const RowValues<dim>& is_ahead = splits_[axis]->is_ahead;
+      const StripValues<dim>& is_ahead = splits_[axis]->is_ahead;
       return {least(upper.low, chosen(is_ahead, last.low, lower.low)),
               most(upper.high, chosen(is_ahead, last.high, lower.high))};
     }
@@ -191,11 +191,11 @@ class RowStencil {
                    splits_[axis]->weight[i]);
   }
 
-  const std::array<const RowSplit<dim>*, dim>& splits_;
+  const std::array<const StripSplit<dim>*, dim>& splits_;
   const std::array<int, dim>& stride_;
   int first_ = 0;        ///< place of the lowest sample of a point that is not ahead of others
   int mixed_ = 0;        ///< a bit for each axis
-  bool by_rows_ = true;  ///< no: point by point
+  bool by_strips_ = true;  ///< no: point by point
 };
 
 }  // namespace lockstep

@@ -1,4 +1,4 @@
-#include "transport/row_values.hpp"
+#include "transport/strip_values.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@ namespace {
 
 /// -3, 1, -1, ...: no two alike, of either sign.
 template <int dim>
-RowValues<dim> some_row() {
-  RowValues<dim> row;
+StripValues<dim> some_row() {
+  StripValues<dim> row;
   for (int i = 0; i < tile_width<dim>; ++i)
     row[i] = (i % 2 == 0 ? -3 : 1) + 0.25 * i;
   return row;
@@ -19,14 +19,14 @@ RowValues<dim> some_row() {
 
 template <int dim>
 void check_each_value() {
-  const RowValues<dim> a = some_row<dim>(), b = some_row<dim>().reverse();
-  const RowValues<dim> ahead = row_ahead<dim>(a, 100), behind = row_behind<dim>(a, -100);
-  const RowValues<dim> low = least(a, b), high = most(a, b), limited = clamped(a, -1, 2);
-  RowValues<dim> flag = RowValues<dim>::Zero();
+  const StripValues<dim> a = some_row<dim>(), b = some_row<dim>().reverse();
+  const StripValues<dim> ahead = row_ahead<dim>(a, 100), behind = row_behind<dim>(a, -100);
+  const StripValues<dim> low = least(a, b), high = most(a, b), limited = clamped(a, -1, 2);
+  StripValues<dim> flag = StripValues<dim>::Zero();
   flag[1] = -2;
   flag[tile_width<dim> - 1] = 1e-300;
-  const RowValues<dim> either = chosen(flag, a, b), between = within(a, low, high, b);
-  const RowValues<dim> nothing_between = within(a, high, low, b), one_value = within(b, a, a, flag);
+  const StripValues<dim> either = chosen(flag, a, b), between = within(a, low, high, b);
+  const StripValues<dim> nothing_between = within(a, high, low, b), one_value = within(b, a, a, flag);
   for (int i = 0; i < tile_width<dim>; ++i) {
     EXPECT_EQ(ahead[i], i + 1 < tile_width<dim> ? a[i + 1] : 100);
     EXPECT_EQ(behind[i], i > 0 ? a[i - 1] : -100);
@@ -43,16 +43,16 @@ void check_each_value() {
 
 }  // namespace
 
-TEST(RowValues, EachValue2D) {
+TEST(StripValues, EachValue2D) {
   check_each_value<2>();
 }
-TEST(RowValues, EachValue3D) {
+TEST(StripValues, EachValue3D) {
   check_each_value<3>();
 }
 
-TEST(RowValues, WhetherSomeValueIsNotZero) {
+TEST(StripValues, WhetherSomeValueIsNotZero) {
   for (int i = 0; i < tile_width<3>; ++i) {
-    RowValues<3> row = RowValues<3>::Zero();
+    StripValues<3> row = StripValues<3>::Zero();
     row[i] = -0.0;
     EXPECT_FALSE(has_nonzero(row));
     row[i] = -1e-300;
@@ -62,15 +62,15 @@ TEST(RowValues, WhetherSomeValueIsNotZero) {
   }
 }
 
-TEST(RowValues, WhatIsNotANumberBecomesTheLowerLimit) {
-  RowValues<3> row = RowValues<3>::Constant(5);
+TEST(StripValues, WhatIsNotANumberBecomesTheLowerLimit) {
+  StripValues<3> row = StripValues<3>::Constant(5);
   row[3] = std::numeric_limits<double>::quiet_NaN();
-  const RowValues<3> limited = clamped(row, 0, 7);
+  const StripValues<3> limited = clamped(row, 0, 7);
   EXPECT_EQ(limited[3], 0);
   EXPECT_EQ(limited[2], 5);
 }
 
-TEST(RowValues, TheBitsOfFourValues) {
+TEST(StripValues, TheBitsOfFourValues) {
   const Eigen::Array<double, 4, 1> values(-1, 0, std::numeric_limits<double>::quiet_NaN(), 2);
   EXPECT_EQ(bits_of_non_negative(values), 0b1010U);
 }
