@@ -170,9 +170,9 @@ void FakeFluid<dim>::classify(Face& face, const SurfaceSnapshot<dim>& surface,
   face.kind = FaceKind::free;
   if (surface.empty())
     return;
-  const bool blocked =
+  const bool occluded =
       surface.first_hit(volume.sides[0].center, volume.sides[1].center).has_value();
-  volume.open_fraction = rule.open_fraction(volume, blocked, surface);
+  volume.open_fraction = rule.open_fraction(volume, occluded, surface);
   if (volume.open_fraction < 1)
     face.kind = FaceKind::coupled;
 }

@@ -26,7 +26,7 @@ class FluxCoupling : public FaceCoupling<dim> {
   explicit FluxCoupling(const FluxOptions& options) : options_(options) {}
 
   std::string name() const override { return "flux"; }
-  double open_fraction(const ControlVolume<dim>& volume, bool blocked,
+  double open_fraction(const ControlVolume<dim>& volume, bool occluded,
                        const SurfaceSnapshot<dim>& surface) const override;
   bool cuts_cells() const override { return true; }
   Point<dim> open_center(const ControlVolume<dim>& volume,

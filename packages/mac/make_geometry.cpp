@@ -86,7 +86,7 @@ OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain,
       if (geometry.near_surface(cell))
         fraction =
             rule.open_fraction(control_volume(domain, geometry, axis, cell),
-                               (marks.blocked[cell] >> axis & 1) != 0, *geometry.state.surface);
+                               (marks.occluded[cell] >> axis & 1) != 0, *geometry.state.surface);
       else
         fraction = in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper) ? 0 : 1;
     });
@@ -251,7 +251,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
         ControlVolume<dim> volume = control_volume(domain, geometry, axis, cell);
         volume.open_fraction =
             cut ? fractions[axis][cell]
-                : ask_rule(rule, volume, geometry, face, (marks.blocked[cell] >> axis & 1) != 0);
+                : ask_rule(rule, volume, geometry, face, (marks.occluded[cell] >> axis & 1) != 0);
         if (!only_gas)
           take_fraction(rule, axis, cell, volume, geometry);
         else if (volume.open_fraction < 1)

@@ -26,10 +26,10 @@ bool cuts(const SurfaceSnapshot<dim>& surface, const Box<dim>& box) {
 }  // namespace
 
 template <int dim>
-double MixedFaceCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool blocked,
+double MixedFaceCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool occluded,
                                              const SurfaceSnapshot<dim>& surface) const {
   const bool below = volume.sides[0].kind == SideKind::solid;
-  if (blocked || below != (volume.sides[1].kind == SideKind::solid))
+  if (occluded || below != (volume.sides[1].kind == SideKind::solid))
     return 0;
   if (options_.rule == MixedRule::every_cut_cell && cuts<dim>(surface, volume.box))
     return 0;

@@ -9,7 +9,7 @@ namespace lockstep {
 
 /// Rule by which the coupling takes control volumes (docs/method.md: it decides the accuracy).
 enum class MixedRule {
-  voxel,  ///< the segment between the two cell centres is blocked, or one centre alone is inside
+  voxel,  ///< the segment between the two cell centres is occluded, or one centre alone is inside
   every_cut_cell  ///< any dual cell that the surface cuts
 };
 
@@ -29,7 +29,7 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   explicit MixedFaceCoupling(const MixedFaceOptions& options) : options_(options) {}
 
   std::string name() const override { return "mixed face"; }
-  double open_fraction(const ControlVolume<dim>& volume, bool blocked,
+  double open_fraction(const ControlVolume<dim>& volume, bool occluded,
                        const SurfaceSnapshot<dim>& surface) const override;
 
   void assemble(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,

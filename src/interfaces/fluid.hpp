@@ -66,8 +66,8 @@ template <int dim>
 class OpenFractionRule {
  public:
   virtual ~OpenFractionRule() = default;
-  /// `blocked`: the segment between its two pressure points meets the surface.
-  virtual double open_fraction(const ControlVolume<dim>& volume, bool blocked,
+  /// `occluded`: the segment between its two pressure points meets the surface.
+  virtual double open_fraction(const ControlVolume<dim>& volume, bool occluded,
                                const SurfaceSnapshot<dim>& surface) const = 0;
   /// True if cells are cut: every cell with an open face carries a pressure, wherever its centre
   /// is. False: cells whose centre is inside a closed solid carry none, and their faces are closed.

@@ -26,7 +26,7 @@ Membership membership_of(const SolidCells<dim>& solids, const std::vector<char>&
     return Membership::some;
   for (int row = begin; row < end; row += tile_width<dim>)
     if (!is_row_of<dim>(CellState::fluid, solids.state.cells.data() + row) ||
-        (!solids.blocked.empty() && !is_row_of<dim>('\0', solids.blocked.data() + row)))
+        (!solids.occluded.empty() && !is_row_of<dim>('\0', solids.occluded.data() + row)))
       return Membership::some;
   return Membership::all;
 }
@@ -95,7 +95,7 @@ class Joiner {
       if (other < 0 || (i % 2 == 1 && grid_.owned(other)) || !is_member(other))
         continue;
       const int face = i % 2 == 0 ? cell : other;
-      if (!solids_.blocked.empty() && (solids_.blocked[face] >> (i / 2) & 1))
+      if (!solids_.occluded.empty() && (solids_.occluded[face] >> (i / 2) & 1))
         continue;
       if (grid_.owned(other))
         sets_.join(cell, other);

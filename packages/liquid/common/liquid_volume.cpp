@@ -78,7 +78,7 @@ int point_away_from_center(const TiledGrid<dim>& grid, const SolidCells<dim>& so
   plane.normal.cwiseAbs().maxCoeff(&axis);
   const auto is_hidden = [&](int side) {
     const int beside = grid.neighbor(cell, axis, side);
-    return beside >= 0 && (solids.blocked[side == 0 ? cell : beside] >> axis & 1) != 0;
+    return beside >= 0 && (solids.occluded[side == 0 ? cell : beside] >> axis & 1) != 0;
   };
   const bool below = is_hidden(0), above = is_hidden(1);
   if (below != above ? (plane.normal[axis] > 0) == below
@@ -113,7 +113,7 @@ bool LiquidVolume<dim>::is_divided(const SolidCells<dim>& solids,
       if ((k >> a & 1) || upper == corners[k] || !solids.is_fluid(corners[k]) ||
           !solids.is_fluid(upper))
         continue;
-      if (solids.blocked[upper] >> a & 1)
+      if (solids.occluded[upper] >> a & 1)
         return true;
     }
   return false;

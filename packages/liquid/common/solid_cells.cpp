@@ -42,7 +42,7 @@ SolidCells<dim> find_solid_cells(const MacDomain<dim>& domain,
   if (surface && !surface->empty()) {
     state.surface = surface;
     SurfaceMarks<dim> marks = mark_surface(domain, *surface, state.cells);
-    result.blocked = std::move(marks.blocked);
+    result.occluded = std::move(marks.occluded);
     result.near = std::move(marks.near);
   }
   for (int axis = 0; axis < dim; ++axis)

@@ -17,7 +17,7 @@ struct SolidCells {
   GridState<dim> state;
   /// Bit a: a surface comes between the centres on both sides of the lower face normal to axis a.
   /// Empty without a surface.
-  std::vector<char> blocked;
+  std::vector<char> occluded;
   std::vector<char> near;  ///< a surface comes within h/2 of the cell; empty without a surface
   mutable std::shared_ptr<const CellGroups> closed_spaces;  ///< once somebody has looked for them
 
@@ -28,7 +28,7 @@ struct SolidCells {
     if (other < 0 || !is_fluid(other))
       return -1;
     const int face = side == 0 ? cell : other;
-    return !blocked.empty() && (blocked[face] >> axis & 1) ? -1 : other;
+    return !occluded.empty() && (occluded[face] >> axis & 1) ? -1 : other;
   }
 };
 

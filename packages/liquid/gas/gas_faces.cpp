@@ -52,13 +52,13 @@ void find_bubbles(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>&
   for (CellState& cell : voids.state.cells)
     if (cell == CellState::empty)
       cell = CellState::fluid;
-  voids.blocked = marks.blocked;
+  voids.occluded = marks.occluded;
   voids.near = geometry.near;
   // In cut cells every open part connects, also past a body that hides one centre from the other.
   for (int axis = 0; axis < dim; ++axis)
     for (std::size_t face = 0; face < fractions[axis].size(); ++face) {
-      const int bit = 1 << axis, others = voids.blocked[face] & ~bit;
-      voids.blocked[face] = static_cast<char>(fractions[axis][face] == 0 ? others | bit : others);
+      const int bit = 1 << axis, others = voids.occluded[face] & ~bit;
+      voids.occluded[face] = static_cast<char>(fractions[axis][face] == 0 ? others | bit : others);
     }
   free_surface.gas->find(voids, *free_surface.distance);
   geometry.bubble = free_surface.gas->of_cell();

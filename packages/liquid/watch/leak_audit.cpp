@@ -81,7 +81,7 @@ bool LeakAudit<dim>::sees(const Look& look, int cell, int axis, int side) const 
   const int other = domain_.grid.neighbor(cell, axis, side);
   if (other < 0 || look.cells[other] != CellState::fluid)
     return false;
-  return look.blocked.empty() || !(look.blocked[side == 0 ? cell : other] >> axis & 1);
+  return look.occluded.empty() || !(look.occluded[side == 0 ? cell : other] >> axis & 1);
 }
 
 template <int dim>
@@ -96,7 +96,7 @@ typename LeakAudit<dim>::Look LeakAudit<dim>::look(const Surface& surface,
   result.cells.assign(grid.n_stored_cells(), CellState::outside);
   grid.for_each_stored_cell([&](int cell) { result.cells[cell] = CellState::fluid; });
   if (present)
-    result.blocked = mark_surface(domain_, *present, result.cells).blocked;
+    result.occluded = mark_surface(domain_, *present, result.cells).occluded;
   LiquidCells liquid = interface.cells_with_liquid(present, kept);
   result.liquid = std::move(liquid.seen);
   result.hidden = std::move(liquid.hidden);

@@ -104,7 +104,7 @@ void LeakAudit<dim>::check_sides(const InterfaceStep<dim>& step, const Look& now
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<int> leaked;
   grid.for_each_owned_cell([&](int cell) {
-    const char freed = static_cast<char>(before_.blocked[cell] & ~now.blocked[cell]);
+    const char freed = static_cast<char>(before_.occluded[cell] & ~now.occluded[cell]);
     if (!freed || now.cells[cell] != CellState::fluid || before_.cells[cell] != CellState::fluid)
       return;
     for (int axis = 0; axis < dim; ++axis) {

@@ -14,8 +14,8 @@ namespace lockstep {
 
 namespace {
 /// Where the link to the neighbour meets a surface first, if it does. Both ends ask about the same
-/// segment, so that they agree whether it is blocked. Links along the velocity's own axis run
-/// inside two unblocked segments, or end on a coupled face.
+/// segment, so that they agree whether it is occluded. Links along the velocity's own axis run
+/// inside two unoccluded segments, or end on a coupled face.
 template <int dim>
 std::optional<SurfacePoint<dim>> surface_on_link(const MacDomain<dim>& domain,
                                                  const MacGeometry<dim>& geometry,

@@ -143,11 +143,11 @@ TEST(Geometry, AnOpenSideThatAPlateCovers) {
   }
 }
 
-/// Leaves 0.3 of a face open that is blocked.
+/// Leaves 0.3 of a face open that is occluded.
 struct LeakyFaces : OpenFractionRule<2> {
-  double open_fraction(const ControlVolume<2>&, bool blocked,
+  double open_fraction(const ControlVolume<2>&, bool occluded,
                        const SurfaceSnapshot<2>&) const override {
-    return blocked ? 0.3 : 1;
+    return occluded ? 0.3 : 1;
   }
 };
 

@@ -28,9 +28,9 @@ Index<dim> cube(int n) {
 /// The voxel rule: a face is closed where the surface blocks it.
 template <int dim>
 struct BlockedFaces : OpenFractionRule<dim> {
-  double open_fraction(const ControlVolume<dim>&, bool blocked,
+  double open_fraction(const ControlVolume<dim>&, bool occluded,
                        const SurfaceSnapshot<dim>&) const override {
-    return blocked ? 0 : 1;
+    return occluded ? 0 : 1;
   }
 };
 
