@@ -175,13 +175,13 @@ void take_fraction(const OpenFractionRule<dim>& rule, int axis, int cell, Contro
 
 /// Owned tiles all of whose cells are fluid, with no surface near.
 template <int dim>
-std::vector<char> find_plain_tiles(const TiledGrid<dim>& grid, const MacGeometry<dim>& geometry) {
+std::vector<char> find_regular_tiles(const TiledGrid<dim>& grid, const MacGeometry<dim>& geometry) {
   std::vector<char> plain(grid.n_owned_tiles());
   for (int tile = 0; tile < grid.n_owned_tiles(); ++tile) {
-    bool is_plain = true;
+    bool is_regular = true;
     for (int cell = tile * tile_volume<dim>; cell < (tile + 1) * tile_volume<dim>; ++cell)
-      is_plain &= geometry.state.cells[cell] == CellState::fluid && !geometry.near_surface(cell);
-    plain[tile] = is_plain;
+      is_regular &= geometry.state.cells[cell] == CellState::fluid && !geometry.near_surface(cell);
+    plain[tile] = is_regular;
   }
   return plain;
 }
@@ -231,13 +231,13 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   if (free_surface && free_surface->gas)
     find_bubbles<dim>(*free_surface, marks, fractions, geometry);
   number_pressures(domain, geometry);
-  geometry.plain = find_plain_tiles(grid, geometry);
+  geometry.regular_tiles = find_regular_tiles(grid, geometry);
   std::vector<ControlVolume<dim>> gas_volumes;
   for (int axis = 0; axis < dim; ++axis) {
     state.faces[axis].assign(grid.n_stored_cells(), FaceState::inactive);
     const int place_in_tile = (tile_width<dim> - 1) << (axis * log_tile_width<dim>);
     grid.for_each_owned_face(axis, [&](int cell) {
-      if (geometry.is_plain(cell) && (cell & place_in_tile) != 0) {
+      if (geometry.is_regular(cell) && (cell & place_in_tile) != 0) {
         state.faces[axis][cell] = FaceState::free;
         return;
       }

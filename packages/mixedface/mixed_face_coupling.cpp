@@ -78,16 +78,16 @@ void MixedFaceCoupling<dim>::balance(const FluidDiscretization<dim>& fluid,
 template <int dim>
 void MixedFaceCoupling<dim>::assemble_weights(const SolidSystem<dim>& solids) {
   weights_ = coupling_weights<dim>(volumes_, shares_, solids);
-  plain_weights_ = {};
-  if (!masses_are_plain())
+  weights_without_rotations_ = {};
+  if (!masses_without_rotations())
     return;
-  plain_weights_ = coupling_weights<dim>(volumes_, shares_, solids, false);
-  for (int& column : plain_weights_.columns) {
+  weights_without_rotations_ = coupling_weights<dim>(volumes_, shares_, solids, false);
+  for (int& column : weights_without_rotations_.columns) {
     const auto place =
-        std::lower_bound(weights_.dofs.begin(), weights_.dofs.end(), plain_weights_.dofs[column]);
+        std::lower_bound(weights_.dofs.begin(), weights_.dofs.end(), weights_without_rotations_.dofs[column]);
     column = static_cast<int>(place - weights_.dofs.begin());
   }
-  plain_weights_.dofs = weights_.dofs;
+  weights_without_rotations_.dofs = weights_.dofs;
 }
 
 template <int dim>

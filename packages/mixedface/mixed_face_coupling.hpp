@@ -58,11 +58,11 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
                  const SolidSystem<dim>& solids, EndVelocity<dim>& row) const;
   /// Diagonal masses need positive rows: W without rotations. Then momentum goes by those as well,
   /// from the mixed faces to the nodes and back; volume and pressure go by W.
-  bool masses_are_plain() const {
+  bool masses_without_rotations() const {
     return options_.carry_rotations && options_.lumping != Lumping::consistent;
   }
   const CouplingWeights& mass_weights() const {
-    return masses_are_plain() ? plain_weights_ : weights_;
+    return masses_without_rotations() ? weights_without_rotations_ : weights_;
   }
   void balance(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids);
   void find_prescribed(const SolidSystem<dim>& solids);
@@ -80,7 +80,7 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
 
   MixedFaceOptions options_;
   std::vector<std::vector<SurfaceShare<dim>>> shares_;
-  CouplingWeights plain_weights_;  ///< without rotations, if `masses_are_plain`; the same columns
+  CouplingWeights weights_without_rotations_;  ///< without rotations, if `masses_without_rotations`; the same columns
   std::vector<double> prescribed_share_;
 };
 

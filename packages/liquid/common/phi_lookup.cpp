@@ -65,7 +65,7 @@ Point<dim> PhiLookup<dim>::gradient(const Point<dim>& x) const {
     const double beyond = margin_ - 1;
     ahead[a] = std::min(x[a] + difference_step, tile_width<dim> + beyond);
     behind[a] = std::max(x[a] - difference_step, -beyond);
-    result[a] = (plain_value(ahead) - plain_value(behind)) / (ahead[a] - behind[a]);
+    result[a] = (unchecked_value(ahead) - unchecked_value(behind)) / (ahead[a] - behind[a]);
   }
   return result;
 }

@@ -29,7 +29,7 @@ class PhiLookup {
   std::optional<double> value(const Point<dim>& x) const {
     if (may_be_hidden(x) || !is_complete_)
       return visible_->scalar(place(x), phi_.data());
-    return plain_value(x);
+    return unchecked_value(x);
   }
   /// phi at a point for which `values` has already found `plain`, its value without surfaces.
   std::optional<double> value(const Point<dim>& x, double plain) const {
@@ -54,7 +54,7 @@ class PhiLookup {
 
  private:
   int stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? width_ : width_ * width_; }
-  double plain_value(const Point<dim>& x) const;
+  double unchecked_value(const Point<dim>& x) const;
   bool is_within_two_cells(const Point<dim>& x) const;
 
   const TiledGrid<dim>& grid_;
@@ -73,7 +73,7 @@ class PhiLookup {
 };
 
 template <int dim>
-double PhiLookup<dim>::plain_value(const Point<dim>& x) const {
+double PhiLookup<dim>::unchecked_value(const Point<dim>& x) const {
   int place = 0;
   std::array<double, dim> weight;
   for (int a = 0; a < dim; ++a) {

@@ -194,14 +194,14 @@ void VelocityExtension<dim>::find_sources_of(Face& face, int axis, const CellFie
 template <int dim>
 bool VelocityExtension<dim>::goes_on(int axis, int source, int side,
                                      const GridState<dim>& state) const {
-  const auto is_plain = [&](int face) {
+  const auto is_regular = [&](int face) {
     return face >= 0 && state.faces[axis][face] == FaceState::free &&
            (near_.empty() || !near_[face]);
   };
-  if (!is_plain(source))
+  if (!is_regular(source))
     return false;
   const int second = domain_.grid.neighbor(source, side / 2, side % 2);
-  return is_plain(second) && is_plain(domain_.grid.neighbor(second, side / 2, side % 2));
+  return is_regular(second) && is_regular(domain_.grid.neighbor(second, side / 2, side % 2));
 }
 
 template <int dim>

@@ -45,7 +45,7 @@ class ComponentFinder {
  private:
   /// All cells of the row are fluid and connected along it.
   bool is_one(int begin, int n) const {
-    if (geometry_.is_plain(begin))
+    if (geometry_.is_regular(begin))
       return true;
     return all_are(cells_, begin, n, CellState::fluid) &&
            all_are(geometry_.state.faces[0], begin + 1, n - 1, FaceState::free);
@@ -53,7 +53,7 @@ class ComponentFinder {
   void join_row(const CellStrip<dim>& row) {
     const bool one = is_one(row.begin, row.n);
     if (one) {
-      if (!geometry_.is_plain(row.begin))
+      if (!geometry_.is_regular(row.begin))
         sets.join_run(row.begin, row.n);
       else if (row.begin % tile_volume<dim> == 0)
         sets.join_run(row.begin, tile_volume<dim>);
@@ -74,7 +74,7 @@ class ComponentFinder {
   }
   void join_rows(const CellStrip<dim>& row, bool one, int axis, int end) {
     const int other = row.neighbors[2 * axis + end];
-    if (geometry_.is_plain(row.begin) && other >= 0 &&
+    if (geometry_.is_regular(row.begin) && other >= 0 &&
         TiledGrid<dim>::tile_of(other) == TiledGrid<dim>::tile_of(row.begin))
       return;
     if (one && other >= 0 && grid_.owned(other) && is_one(other, row.n)) {
@@ -110,7 +110,7 @@ class ComponentFinder {
 /// Calls f(first, n) for runs of fluid cells in a row that are known to be connected.
 template <int dim, typename Function>
 void for_each_run(const MacGeometry<dim>& geometry, const CellStrip<dim>& row, const Function& f) {
-  if (geometry.is_plain(row.begin))
+  if (geometry.is_regular(row.begin))
     return f(row.begin, row.n);
   for (int cell = row.begin; cell < row.begin + row.n; ++cell)
     if (geometry.state.cells[cell] == CellState::fluid)

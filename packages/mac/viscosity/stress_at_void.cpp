@@ -9,7 +9,7 @@ template <int dim>
 StressAtVoid<dim>::StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry)
     : domain_(domain), geometry_(geometry) {
   std::vector<char> plain(domain.grid.n_stored_cells(), 0);
-  domain.grid.for_each_stored_cell([&](int cell) { plain[cell] = is_plain(cell); });
+  domain.grid.for_each_stored_cell([&](int cell) { plain[cell] = is_regular(cell); });
   is_far_from_solids_ = with_marked_surroundings(std::move(plain));
 }
 
@@ -75,10 +75,10 @@ typename StressAtVoid<dim>::Edge StressAtVoid<dim>::edge(const FaceId& face, int
     return other < 0 || geometry_.state.cells[other] == CellState::outside ? cell : other;
   };
   const int lower = grid.neighbor(face.cell, face.axis, 0), upper = face.cell;
-  if (lower < 0 || !is_plain(lower) || !is_plain(upper))
+  if (lower < 0 || !is_regular(lower) || !is_regular(upper))
     return Edge::other;
   const int beside_lower = beside(lower), beside_upper = beside(upper);
-  if (!is_plain(beside_lower) || !is_plain(beside_upper))
+  if (!is_regular(beside_lower) || !is_regular(beside_upper))
     return Edge::other;
   const bool is_whole = (is_fluid(lower) || is_fluid(upper)) &&
                         (is_fluid(upper) || is_fluid(beside_upper)) &&

@@ -54,7 +54,7 @@ class StressAtVoid {
   enum class Edge { other, whole, parted };
   Edge edge(const FaceId& face, int across, int end) const;
   bool is_fluid(int cell) const { return geometry_.state.cells[cell] == CellState::fluid; }
-  bool is_plain(int cell) const {
+  bool is_regular(int cell) const {
     const CellState state = geometry_.state.cells[cell];
     return (state == CellState::fluid || state == CellState::empty) &&
            !geometry_.near_surface(cell);
