@@ -51,7 +51,7 @@ double wet_volume(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& 
       continue;
     const double height =
         liquid.surface_distance(sides[side].center) / volume.box.sizes().maxCoeff();
-    const double own = sides[1 - side].kind == SideKind::empty
+    const double own = sides[1 - side].kind == SideKind::air
                            ? part_beside_shells<dim>(volume, side, surface)
                            : 0.5;
     part += own * std::min(std::max(0.5 - height, 0.0), 1.0);

@@ -51,8 +51,8 @@ FaceState state_far_from_surfaces(const MacDomain<dim>& domain, const std::vecto
 }
 
 /// A free face between fluid and a cell whose pressure is known.
-bool leads_to_empty(const std::vector<CellState>& cells, const FaceCells& face) {
-  const auto empty = [&](int cell) { return cell >= 0 && cells[cell] == CellState::empty; };
+bool leads_to_air(const std::vector<CellState>& cells, const FaceCells& face) {
+  const auto empty = [&](int cell) { return cell >= 0 && cells[cell] == CellState::air; };
   return empty(face.lower) || empty(face.upper);
 }
 
@@ -259,7 +259,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
       }
       if (result == FaceState::prescribed)
         geometry.prescribed.push_back({axis, cell});
-      if (has_band_edge && result == FaceState::free && leads_to_empty(state.cells, face))
+      if (has_band_edge && result == FaceState::free && leads_to_air(state.cells, face))
         geometry.band_edge.push_back({axis, cell});
       if (result == FaceState::free && face.at_side())
         geometry.face_table.set_distance_factor(axis, cell, 2);

@@ -17,7 +17,7 @@ namespace lockstep {
 enum class SideKind : char {
   unknown,  ///< a pressure that is solved for
   solid,    ///< the inside of a closed solid
-  empty,    ///< air, p = 0
+  air,      ///< air, p = 0
   open,     ///< an open side of the domain, p = 0
   closed    ///< a wall or an inflow, which takes any pressure
 };
@@ -30,7 +30,7 @@ struct PressureSide {
   Point<dim> center = Point<dim>::Zero();  ///< where the pressure lives [m]
   int solid = -1;                          ///< index in the snapshot if the kind is `solid`, or -1
   int bubble =
-      -1;  ///< gas bubble (interfaces/gas.hpp) if the kind is `empty` and it is in one, or -1
+      -1;  ///< gas bubble (interfaces/gas.hpp) if the kind is `air` and it is in one, or -1
 };
 
 /// The control volume of one staggered velocity (a dual cell). Its momentum balance is

@@ -47,7 +47,7 @@ class Rules(unittest.TestCase):
     def test_words(self):
         table = {"void": ("air", ["src/old"])}
         self.assertEqual(len(self.found("/// Pressure in the voids [Pa].\n", words=table)), 1)
-        self.assertEqual(self.found("/// Pressure in `void` and voids.hpp [Pa].\nvoid f();\n", words=table), [])
+        self.assertEqual(self.found("/// Pressure in `void` and cavities.hpp [Pa].\nvoid f();\n", words=table), [])
         self.assertEqual(list(words.violations_of_file("src/old/a.cpp", "/// The void.\n", "cpp", words=table)), [])
 
     def test_names(self):

@@ -132,7 +132,7 @@ class March {
     }
     stays_[place] = !grid.owned(cell);
     if (!grid.owned(cell) || std::abs(phi_[cell]) >= cut_off_ ||
-        !(is_near || is_beside_void_that_enters(cell)))
+        !(is_near || is_beside_air_that_enters(cell)))
       return;
     distance_.at_place(place) = is_near && near_cells == NearCells::scale
                                     ? scaled(grid, solids_, phi_, cell)
@@ -142,7 +142,7 @@ class March {
   }
 
   /// The interface lies between the cell and an open side, so that no neighbour shows it.
-  bool is_beside_void_that_enters(int cell) const {
+  bool is_beside_air_that_enters(int cell) const {
     return phi_[cell] < 0 && phi_[cell] > -0.5 * domain_.spacing() &&
            at_side(domain_, cell,
                    [](const BoundarySide<dim>& side) { return side.type == SideType::open; });

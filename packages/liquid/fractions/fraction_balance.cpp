@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "grid/flagged_tiles.hpp"
-#include "liquid/common/voids.hpp"
+#include "liquid/common/cavities.hpp"
 
 namespace lockstep {
 

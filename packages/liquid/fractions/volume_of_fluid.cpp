@@ -24,7 +24,7 @@ constexpr double largest_courant_number = 100;
 ParameterList volume_of_fluid_parameters() {
   ParameterList list;
   declare_choice(list, "Volume Correction", "component", {"component", "none"},
-                 "What becomes of liquid and void too thin for a pressure: cells less than half "
+                 "What becomes of liquid and air too thin for a pressure: cells less than half "
                  "full that touch no fuller one, and the reverse. component: it goes to the "
                  "surface of the nearest body; none: it goes on with the flow, where that is "
                  "given.");

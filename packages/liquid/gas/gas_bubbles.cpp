@@ -94,13 +94,13 @@ std::vector<int> GasBubbles<dim>::choose(const std::vector<char>& is_open,
 template <int dim>
 void GasBubbles<dim>::find(const SolidCells<dim>& voids, const CellField& phi) {
   const TiledGrid<dim>& grid = domain_.grid;
-  is_void_.assign(grid.n_stored_cells(), 0);
+  is_air_.assign(grid.n_stored_cells(), 0);
   CellField height = phi;
   for (std::size_t cell = 0; cell < phi.size(); ++cell) {
-    is_void_[cell] = phi[cell] >= 0;
+    is_air_[cell] = phi[cell] >= 0;
     height[cell] = phi[cell] > 0 ? -phi[cell] : phi[cell] < 0 ? -phi[cell] : -1e-300;
   }
-  const CellGroups groups = find_groups(domain_, voids, is_void_);
+  const CellGroups groups = find_groups(domain_, voids, is_air_);
   const std::vector<char> is_open = open_groups(groups, phi);
   std::vector<int> bubble_of_group(groups.n, -1);
   bubbles_.clear();
@@ -116,7 +116,7 @@ void GasBubbles<dim>::find(const SolidCells<dim>& voids, const CellField& phi) {
   of_cell_.assign(grid.n_stored_cells(), -1);
   for (int cell = 0; cell < grid.n_stored_cells(); ++cell) {
     const int group = groups.of_cell[cell];
-    is_void_[cell] = group >= 0;
+    is_air_[cell] = group >= 0;
     if (group >= 0)
       of_cell_[cell] = bubble_of_group[group];
   }
@@ -178,7 +178,7 @@ void GasBubbles<dim>::inherit(const CellField& phi) {
       before[2 * from] = amount_[cell];
       before[2 * from + 1] = last_pressure_[cell];
     }
-    if (from < 0 || !is_void_[cell])
+    if (from < 0 || !is_air_[cell])
       return;
     const int to = of_cell_[cell] < 0 ? n : of_cell_[cell];
     went[from * (n + 1) + to] += std::clamp(0.5 + phi[cell] / domain_.spacing(), 0.0, 1.0);
@@ -215,7 +215,7 @@ void GasBubbles<dim>::inherit(const CellField& phi) {
   }
   for (int cell = 0; cell < grid.n_stored_cells(); ++cell) {
     const int bubble = of_cell_[cell];
-    number_[cell] = bubble >= 0 ? bubble + 1 : is_void_[cell] ? -1 : 0;
+    number_[cell] = bubble >= 0 ? bubble + 1 : is_air_[cell] ? -1 : 0;
     amount_[cell] = bubble >= 0 ? amounts_[bubble] : 0;
     last_pressure_[cell] = bubble >= 0 ? last[bubble] : 0;
   }

@@ -37,7 +37,7 @@ class GasBubbles {
   GasBubbles(const MacDomain<dim>& domain, GasParameters<dim> parameters,
              const Point<dim>& gravity);
 
-  /// Finds the bubbles of an instant. `voids`: the cells that are not solid, and the surfaces
+  /// Finds the bubbles of an instant. `cavities`: the cells that are not solid, and the surfaces
   /// between them; `phi` on the halo of width 1. Collective.
   void find(const SolidCells<dim>& voids, const CellField& phi);
   /// Computes the volumes and pressures of the bubbles. A second call at the same instant changes
@@ -69,7 +69,7 @@ class GasBubbles {
   GasParameters<dim> parameters_;
   Point<dim> gravity_;
   LiquidVolume<dim> measure_;
-  std::vector<char> is_void_;  ///< stored cells that are air and not solid
+  std::vector<char> is_air_;  ///< stored cells that are air and not solid
   std::vector<int> of_cell_;
   std::vector<GasBubble> bubbles_;
   std::vector<double> amounts_;  ///< V_0 by bubble [m^dim]

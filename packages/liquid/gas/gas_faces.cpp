@@ -18,7 +18,7 @@ std::vector<GasFace> find_gas_faces(const MacDomain<dim>& domain,
     for (int axis = 0; axis < dim; ++axis)
       for (int end = 0; end < 2; ++end) {
         const int other = neighbors[2 * axis + end];
-        if (other < 0 || geometry.bubble[other] < 0 || cells[other] != CellState::empty)
+        if (other < 0 || geometry.bubble[other] < 0 || cells[other] != CellState::air)
           continue;
         const int face = end == 0 ? cell : other;
         const double open = geometry.open_fraction(axis, face);
@@ -38,7 +38,7 @@ bool only_gas_beside(const std::vector<CellState>& cells, const std::vector<int>
                      const FaceCells& face) {
   if (bubble.empty() || face.at_side())
     return false;
-  const auto gas = [&](int cell) { return cells[cell] == CellState::empty ? bubble[cell] : -1; };
+  const auto gas = [&](int cell) { return cells[cell] == CellState::air ? bubble[cell] : -1; };
   return cells[face.lower] != CellState::fluid && cells[face.upper] != CellState::fluid &&
          gas(face.lower) != gas(face.upper);
 }
@@ -50,7 +50,7 @@ void find_bubbles(const FreeSurface<dim>& free_surface, const SurfaceMarks<dim>&
   voids.state.surface = geometry.state.surface;
   voids.state.cells = geometry.state.cells;
   for (CellState& cell : voids.state.cells)
-    if (cell == CellState::empty)
+    if (cell == CellState::air)
       cell = CellState::fluid;
   voids.occluded = marks.occluded;
   voids.near = geometry.near;
@@ -72,7 +72,7 @@ Momentum<dim> push_of_sides(const MacDomain<dim>& domain, const MacGeometry<dim>
   const double area = geometry.face_table.area(), half = 0.5 * grid.spacing();
   Momentum<dim> impulse;
   grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
-    if (geometry.bubble[cell] < 0 || cells[cell] != CellState::empty)
+    if (geometry.bubble[cell] < 0 || cells[cell] != CellState::air)
       return;
     for (int axis = 0; axis < dim; ++axis)
       for (int end = 0; end < 2; ++end) {

@@ -6,7 +6,7 @@
 #include "base/errors.hpp"
 #include "liquid/common/band_tiles.hpp"
 #include "liquid/common/redistance.hpp"
-#include "liquid/common/voids.hpp"
+#include "liquid/common/cavities.hpp"
 #include "liquid/particles/drop_births.hpp"
 #include "liquid/particles/particle_correction.hpp"
 #include "liquid/particles/particle_motion.hpp"
@@ -28,7 +28,7 @@ constexpr double negligible_motion = 0.05;
 template <int dim>
 ParameterList level_set_parameters() {
   ParameterList list;
-  declare_at_least(list, "Smallest Void", dim == 2 ? 8 : 27, 0,
+  declare_at_least(list, "Smallest Air", dim == 2 ? 8 : 27, 0,
                    "Largest air bubble, in cells, that is filled if liquid touches it: it would "
                    "drain the liquid around it. 0: none is.");
   declare_volume_correction(list);
@@ -44,7 +44,7 @@ ParameterList particle_level_set_parameters() {
 
 LevelSetParameters read_level_set_parameters(const ParameterList& list) {
   LevelSetParameters parameters;
-  parameters.smallest_void = list.get<int>("Smallest Void");
+  parameters.smallest_cavity = list.get<int>("Smallest Air");
   parameters.volume = read_volume_correction(list);
   if (list.isParameter("Drops"))
     parameters.particles = read_particles(list);
@@ -154,7 +154,7 @@ void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<ch
   correct();
   redistance(domain_, solids_, tiles, cut_off(), phi_);
   correct();
-  fill_voids();
+  fill_small_cavities();
   moved_ = 0;
   ++n_restored_;
   if (!parameters_.particles)
@@ -165,8 +165,8 @@ void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<ch
 }
 
 template <int dim>
-void LevelSet<dim>::fill_voids() {
-  const std::vector<int> filled = close_voids(domain_, solids_, parameters_.smallest_void, phi_);
+void LevelSet<dim>::fill_small_cavities() {
+  const std::vector<int> filled = fill_cavities(domain_, solids_, parameters_.smallest_cavity, phi_);
   if (!parameters_.particles ||
       sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(filled.size())) == 0)
     return;

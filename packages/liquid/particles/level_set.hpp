@@ -18,7 +18,7 @@ struct LevelSetParameters {
   /// ask for two more than their own band.
   static constexpr int band = 6;
   static_assert(band >= ParticleParameters::band + 2);
-  int smallest_void = 0;  ///< cells of the largest void that is closed
+  int smallest_cavity = 0;  ///< cells of the largest void that is closed
   VolumeParameters volume;
   std::optional<ParticleParameters> particles;  ///< none: phi alone
 };
@@ -71,7 +71,7 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   /// Redistances phi and corrects it by the particles. Sets the halo of width 1.
   void restore(const InterfaceStep<dim>& step, const std::vector<char>& tiles);
   /// Fills small air components and takes their particles out of them.
-  void fill_voids();
+  void fill_small_cavities();
   void seed(KeptSurface<dim>& kept, bool all);
   void add_sources(const InterfaceStep<dim>& step);
   /// Makes drops of particles that no cell shows.

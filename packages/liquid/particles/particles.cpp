@@ -25,7 +25,7 @@ Particle<dim> placed(const TiledGrid<dim>& grid, int cell, const Point<dim>& in_
 void declare_particles(ParameterList& list) {
   declare_choice(list, "Drops", "none", {"none", "ballistic"},
                  "Of particles of the liquid that no wet cell is around. none: they go with the "
-                 "velocity that is carried on into the void, and their volume is that of other "
+                 "velocity that is carried on into the air, and their volume is that of other "
                  "liquid. ballistic: they leave with h^dim / 16 and the velocity there, fly and "
                  "hit solids, and give volume and momentum back in the "
                  "first wet cell.");

@@ -13,7 +13,7 @@ void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_su
                      std::vector<CellState>& cells) {
   grid.for_each_stored_cell([&](int cell) {
     if (cells[cell] == CellState::fluid && !free_surface.wet(cell))
-      cells[cell] = CellState::empty;
+      cells[cell] = CellState::air;
   });
 }
 
@@ -23,7 +23,7 @@ void set_distance_factor_to_air(const MacDomain<dim>& domain, const FreeSurface<
   const TiledGrid<dim>& grid = domain.grid;
   const auto& cells = geometry.state.cells;
   const auto set = [&](int axis, int face, int wet, int dry) {
-    if (cells[wet] == CellState::fluid && cells[dry] == CellState::empty &&
+    if (cells[wet] == CellState::fluid && cells[dry] == CellState::air &&
         geometry.state.faces[axis][face] == FaceState::free)
       geometry.face_table.set_distance_factor(
           axis, face,

@@ -169,9 +169,9 @@ Momentum<dim> push_surface(const MacDomain<dim>& domain, const MacGeometry<dim>&
         return;
       const auto [lower, upper] = cells_of_face(grid, cells, axis, face);
       if (lower < 0 || upper < 0 || cells[lower] == cells[upper] ||
-          (cells[lower] != CellState::empty && cells[upper] != CellState::empty))
+          (cells[lower] != CellState::air && cells[upper] != CellState::air))
         return;
-      const bool is_above = cells[upper] == CellState::empty;
+      const bool is_above = cells[upper] == CellState::air;
       const int wet = is_above ? lower : upper, dry = is_above ? upper : lower;
       const double place = surface.at_true_place ? surface.crossing(wet, dry) : 1;
       const double kappa = curvature(domain, phi, wet, axis, is_above ? 1 : 0, place);

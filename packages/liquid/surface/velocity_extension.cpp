@@ -35,7 +35,7 @@ void VelocityExtension<dim>::go_on(double known, double band, const GridState<di
   const double h = grid.spacing(), layer = h / std::sqrt(dim), unknown = band + 2 * h;
   std::vector<int> waiting, reached;
   grid.for_each_stored_cell([&](int cell) {
-    if (state.cells[cell] != CellState::empty || distance_[cell] < (1 - 1e-6) * known)
+    if (state.cells[cell] != CellState::air || distance_[cell] < (1 - 1e-6) * known)
       return;
     distance_[cell] = unknown;
     if (grid.owned(cell))
@@ -78,7 +78,7 @@ template <int dim>
 void VelocityExtension<dim>::find_faces(double band, GridState<dim>& state) {
   const TiledGrid<dim>& grid = domain_.grid;
   const auto in_band = [&](int cell) {
-    return cell >= 0 && state.cells[cell] == CellState::empty && distance_[cell] < band;
+    return cell >= 0 && state.cells[cell] == CellState::air && distance_[cell] < band;
   };
   for (int axis = 0; axis < dim; ++axis) {
     grid.for_each_owned_face(axis, [&](int cell) {

@@ -138,7 +138,7 @@ class WetBodyFinder {
     for (std::size_t s = 0; s < bodies_.size(); ++s)
       if (surface_.solids()[s].closed)
         for_each_cell_in(near_solid(static_cast<int>(s), reach_of_planes), [&](int cell) {
-          if (geometry_.state.cells[cell] == CellState::empty)
+          if (geometry_.state.cells[cell] == CellState::air)
             partly[s] = 1;
         });
     sum_all(grid_.comm(), partly.data(), static_cast<int>(partly.size()));
@@ -187,8 +187,8 @@ class WetBodyFinder {
           if (lower < 0)
             continue;
           const CellState other = geometry_.state.cells[lower];
-          if ((own != CellState::fluid || other != CellState::empty) &&
-              (own != CellState::empty || other != CellState::fluid))
+          if ((own != CellState::fluid || other != CellState::air) &&
+              (own != CellState::air || other != CellState::fluid))
             continue;
           const double part = distance_[cell] / (distance_[cell] - distance_[lower]);
           const Point<dim> place = grid_.center(cell) - part * h * Point<dim>::Unit(axis);

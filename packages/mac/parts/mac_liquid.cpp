@@ -53,7 +53,7 @@ void MacLiquid<dim>::bound_pressure(CellField& pressure) const {
     }
     return value;
   };
-  bound_beside_void<dim>(flow_.domain, flow_.geometry, at_surface, pressure);
+  bound_beside_air<dim>(flow_.domain, flow_.geometry, at_surface, pressure);
 }
 
 template <int dim>

@@ -202,7 +202,7 @@ void MacTiles<dim>::regrid(const TileOwners& owners) {
     std::vector<char> cells(flow_.accepted_cells.size());
     std::transform(flow_.accepted_cells.begin(), flow_.accepted_cells.end(), cells.begin(),
                    [](CellState state) { return static_cast<char>(state); });
-    migration.move(cells, static_cast<char>(CellState::empty));
+    migration.move(cells, static_cast<char>(CellState::air));
     flow_.accepted_cells.resize(cells.size());
     std::transform(cells.begin(), cells.end(), flow_.accepted_cells.begin(),
                    [](char state) { return static_cast<CellState>(state); });
@@ -265,7 +265,7 @@ Momentum<dim> MacTiles<dim>::push_at_band_edge(const Point<dim>& force, double d
   const TiledGrid<dim>& grid = flow_.domain.grid;
   const Point<dim> origin = origin_of_pressure(flow_.domain, flow_.domain.bounds());
   for (const auto& [axis, cell] : flow_.geometry.band_edge) {
-    const bool is_above = flow_.geometry.state.cells[cell] == CellState::empty;
+    const bool is_above = flow_.geometry.state.cells[cell] == CellState::air;
     const Point<dim> face = grid.face_center(axis, cell);
     const Point<dim> beyond =
         face + (is_above ? 0.5 : -0.5) * grid.spacing() * Point<dim>::Unit(axis);

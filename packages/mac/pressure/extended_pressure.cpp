@@ -58,7 +58,7 @@ CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<Cell
 }
 
 template <int dim>
-void bound_beside_void(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+void bound_beside_air(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                        const std::function<double(int wet, int dry, int axis, int end)>& at_surface,
                        CellField& pressure) {
   constexpr double near = 10;
@@ -71,7 +71,7 @@ void bound_beside_void(const MacDomain<dim>& domain, const MacGeometry<dim>& geo
     double value = 0;
     for (int side = 0; side < 2 * dim; ++side) {
       const int other = neighbors[side];
-      if (other < 0 || cells[other] != CellState::empty)
+      if (other < 0 || cells[other] != CellState::air)
         continue;
       const int axis = side / 2, face = side % 2 == 0 ? cell : other;
       if (geometry.state.faces[axis][face] != FaceState::free)
@@ -97,9 +97,9 @@ template CellField extended_pressure<2>(const MacDomain<2>&, const std::vector<C
                                         const std::vector<CellState>&, CellField, const Point<2>&);
 template CellField extended_pressure<3>(const MacDomain<3>&, const std::vector<CellState>&,
                                         const std::vector<CellState>&, CellField, const Point<3>&);
-template void bound_beside_void<2>(const MacDomain<2>&, const MacGeometry<2>&,
+template void bound_beside_air<2>(const MacDomain<2>&, const MacGeometry<2>&,
                                    const std::function<double(int, int, int, int)>&, CellField&);
-template void bound_beside_void<3>(const MacDomain<3>&, const MacGeometry<3>&,
+template void bound_beside_air<3>(const MacDomain<3>&, const MacGeometry<3>&,
                                    const std::function<double(int, int, int, int)>&, CellField&);
 
 }  // namespace lockstep

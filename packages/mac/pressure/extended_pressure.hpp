@@ -20,7 +20,7 @@ CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<Cell
 /// pressure there, of a wet cell and its dry neighbour at the end of an axis. Ghost values must be
 /// valid, and are set. Collective.
 template <int dim>
-void bound_beside_void(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+void bound_beside_air(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                        const std::function<double(int wet, int dry, int axis, int end)>& at_surface,
                        CellField& pressure);
 

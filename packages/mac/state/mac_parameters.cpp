@@ -67,7 +67,7 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   parameters.density = fluid.get<double>("Density");
   parameters.viscosity.viscosity = fluid.get<double>("Viscosity");
   parameters.viscosity.smallest_coupling_fraction = fluid.get<double>("Smallest Link");
-  parameters.viscosity.has_void = fluid.isSublist("Free Surface");
+  parameters.viscosity.has_air = fluid.isSublist("Free Surface");
   parameters.forces.gravity = point_value<dim>(fluid, "Gravity");
   parameters.forces.body = point_value<dim>(fluid, "Body Force");
   parameters.forces.expansion = fluid.get<double>("Thermal Expansion");

@@ -256,7 +256,7 @@ void clear_band_edge(const MacDomain<dim>& domain, std::vector<CellState>& cells
   const std::vector<char> rim = find_band_edge(domain);
   for (std::size_t cell = 0; cell < rim.size(); ++cell)
     if (rim[cell] && cells[cell] == CellState::fluid)
-      cells[cell] = CellState::empty;
+      cells[cell] = CellState::air;
 }
 
 template class MovingTiles<2>;

@@ -11,7 +11,7 @@ namespace lockstep {
 ///
 /// A wall pulls from h/2 (its tangential velocities) or from the next face (its normal ones); slip
 /// walls and open sides do not pull. A neighbour behind a surface, or inside a solid, is replaced
-/// by the point where the link meets the surface. Beside air see StressAtVoid.
+/// by the point where the link meets the surface. Beside air see StressAtAir.
 template <int dim>
 class Viscosity {
  public:

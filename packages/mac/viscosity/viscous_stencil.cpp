@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "linear/row_builder.hpp"
-#include "mac/viscosity/stress_at_void.hpp"
+#include "mac/viscosity/stress_at_air.hpp"
 #include "mac/viscosity/surface_laplacian.hpp"
 
 namespace lockstep {
@@ -59,10 +59,10 @@ class Builder {
         grid_(domain.grid),
         parameters_(parameters),
         tension_(tension.strength) {
-    if (parameters.viscosity > 0 && parameters.has_void) {
-      at_void_.emplace(domain, geometry);
-      if (!at_void_->is_definite())
-        at_void_.reset();
+    if (parameters.viscosity > 0 && parameters.has_air) {
+      at_air_.emplace(domain, geometry);
+      if (!at_air_->is_definite())
+        at_air_.reset();
     }
     if (tension.strength > 0)
       along_surface_.emplace(domain, geometry, *tension.distance);
@@ -71,7 +71,7 @@ class Builder {
   ViscousStencil<dim> build() {
     number_faces();
     index_coupled_volumes();
-    const int n_partners = at_void_ && dim == 3 ? 4 * (dim - 1) : 0;
+    const int n_partners = at_air_ && dim == 3 ? 4 * (dim - 1) : 0;
     RowBuilder rows(result_.map, 2 * dim + 1 + n_partners);
     const int n = static_cast<int>(result_.faces.size());
     for (row_ = 0; row_ < n; ++row_) {
@@ -85,7 +85,7 @@ class Builder {
       rows.set(middle, diagonal_);
       if (along_surface_)
         add_tension(rows);
-      if (at_void_)
+      if (at_air_)
         add_partners(rows);
       rows.end_row();
       for (int across = 0; across < dim; ++across)
@@ -156,7 +156,7 @@ class Builder {
 
   void add_partners(RowBuilder& rows) {
     const double unit = parameters_.viscosity * geometry_.face_table.area() / domain_.spacing();
-    at_void_->for_each_partner(face_, [&](const auto& partner) {
+    at_air_->for_each_partner(face_, [&](const auto& partner) {
       const double coefficient = unit * partner.coefficient;
       const double from_outside = unit * partner.from_outside;
       const GlobalIndex id = ids_[partner.face.axis][partner.face.cell];
@@ -178,8 +178,8 @@ class Builder {
       // Beyond an open side, and in air, nothing pulls.
       if (between < 0 || geometry_.state.cells[between] != CellState::fluid)
         return;
-      if (at_void_)
-        coefficient *= 1 + at_void_->extra_weight(between);
+      if (at_air_)
+        coefficient *= 1 + at_air_->extra_weight(between);
     }
     const int other = grid_.neighbor(face_.cell, across, end);
     const FaceState state =
@@ -196,7 +196,7 @@ class Builder {
     }
     switch (state) {
       case FaceState::free:
-        if (at_void_ && across != face_.axis && at_void_->parts(face_, across, end))
+        if (at_air_ && across != face_.axis && at_air_->parts(face_, across, end))
           return;
         rows.add(ids_[face_.axis][other], -coefficient);
         diagonal_ += coefficient;
@@ -305,7 +305,7 @@ class Builder {
   const MacGeometry<dim>& geometry_;
   const TiledGrid<dim>& grid_;
   ViscosityParameters parameters_;
-  std::optional<StressAtVoid<dim>> at_void_;
+  std::optional<StressAtAir<dim>> at_air_;
   double tension_ = 0;  ///< sigma dt
   std::optional<SurfaceLaplacian<dim>> along_surface_;
   ViscousStencil<dim> result_;

@@ -8,7 +8,7 @@ struct ViscosityParameters {
   double viscosity = 0;  ///< dynamic, mu [Pa s]
   double smallest_coupling_fraction =
       0.2;                ///< part of h [1]: a link to a surface is never taken shorter
-  bool has_void = false;  ///< above a free surface: the form is that of the symmetric stress there
+  bool has_air = false;  ///< above a free surface: the form is that of the symmetric stress there
 };
 
 /// Implicit surface tension: sigma dt times the surface Laplacian.

@@ -15,8 +15,8 @@ PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
   if (geometry.state.cells[cell] == CellState::solid) {
     side.kind = SideKind::solid;
     side.solid = geometry.state.surface->inside(center);
-  } else if (geometry.state.cells[cell] == CellState::empty) {
-    side.kind = SideKind::empty;
+  } else if (geometry.state.cells[cell] == CellState::air) {
+    side.kind = SideKind::air;
     side.pocket = geometry.pocket.empty() ? -1 : geometry.pocket[cell];
   }
   return side;

@@ -190,7 +190,7 @@ void add_liquid(Columns<HistoryRow<dim>>& columns, const LiquidColumns& liquid) 
   for (std::size_t w = 0; w < liquid.watches.size(); ++w)
     add_watch(columns, liquid.watches[w], w);
   if (liquid.gas)
-    append<Row>(columns, {{{"gas_bubbles", "1", "of void that the atmosphere does not reach"},
+    append<Row>(columns, {{{"gas_bubbles", "1", "of air that the atmosphere does not reach"},
                            [](const Row& row) { return told(liquid_in(row).gas).n_bubbles; }},
                           {{"gas_volume", unit, "of them all"},
                            [](const Row& row) { return told(liquid_in(row).gas).volume; }},

@@ -4,7 +4,7 @@
 
 #include "bath.hpp"
 #include "geometry/generators.hpp"
-#include "liquid/common/voids.hpp"
+#include "liquid/common/cavities.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -86,7 +86,7 @@ TEST(Voids, SmallOnesUnderWaterAreFilled) {
         (at[0] == 0 && at[1] == 5))
       phi[c] = 0.5;
   });
-  const auto filled = close_voids(bath.domain, solids, 8, phi);
+  const auto filled = fill_cavities(bath.domain, solids, 8, phi);
   EXPECT_EQ(sum_all(world(), static_cast<double>(filled.size())), 8);
   const double n_left = [&] {
     double n = 0;
@@ -110,7 +110,7 @@ TEST(Voids, TheLastOfAClosedTankStay) {
       if (is_small || (has_more && at[0] == 20 && at[1] > 3 && at[1] < 13))
         phi[c] = 0.5 * bath.domain.spacing();
     });
-    const auto filled = close_voids(bath.domain, solids, 8, phi);
+    const auto filled = fill_cavities(bath.domain, solids, 8, phi);
     EXPECT_EQ(sum_all(world(), static_cast<double>(filled.size())), has_more ? 8 : 0);
   }
 }

@@ -295,11 +295,11 @@ void expect_trapped_air_goes() {
   remove_trapped_air(bath.domain, solids, bath.kept, phi, tiles);
   EXPECT_EQ(count(), 3U);
   // Not the one of the liquid: it would have no company but those of the air.
-  int n_of_void = 0;
+  int n_of_air = 0;
   for (const auto& tile : tiles)
     for (const Particle<dim>& particle : tile)
-      n_of_void += particle.side() > 0;
-  EXPECT_EQ(n_of_void, 2);
+      n_of_air += particle.side() > 0;
+  EXPECT_EQ(n_of_air, 2);
 }
 
 TEST(Particles, AirThatASolidAndLiquidEncloseGoes) {

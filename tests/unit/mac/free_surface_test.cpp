@@ -70,7 +70,7 @@ TEST(FreeSurface, FacesOfAColumnByHand) {
   if (dry < 0 || !grid.owned(dry))
     return;
   EXPECT_EQ(geometry.state.cells[wet], CellState::fluid);
-  EXPECT_EQ(geometry.state.cells[dry], CellState::empty);
+  EXPECT_EQ(geometry.state.cells[dry], CellState::air);
   EXPECT_EQ(geometry.state.faces[1][dry], FaceState::free);
   EXPECT_EQ(geometry.state.faces[0][dry], FaceState::inactive);
   // theta = 0.4: two and a half times as near, and so much less mass.

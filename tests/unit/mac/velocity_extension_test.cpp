@@ -225,7 +225,7 @@ TEST(VelocityExtension, VelocitiesAreNotCarriedThroughAShell) {
   // Faces along the plate beyond it see no fluid; the shut ones move with it.
   for (const ControlVolume<2>& volume : fluid->coupled_volumes()) {
     EXPECT_EQ(volume.sides[0].kind, SideKind::unknown);
-    EXPECT_EQ(volume.sides[1].kind, SideKind::empty);
+    EXPECT_EQ(volume.sides[1].kind, SideKind::air);
   }
   EXPECT_EQ(sum_all(world(), static_cast<GlobalIndex>(fluid->coupled_volumes().size())), 20);
   grid.for_each_owned_face(0, [&](int cell) {

@@ -55,10 +55,10 @@ void expect_stress_of_a_blob() {
   EXPECT_LT(impulse.linear.norm(), 1e-12);
   EXPECT_LT(impulse.angular.norm(), 1e-12);
 }
-TEST(StressAtVoid, NothingHoldsABlob2D) {
+TEST(StressAtAir, NothingHoldsABlob2D) {
   expect_stress_of_a_blob<2>();
 }
-TEST(StressAtVoid, NothingHoldsABlob3D) {
+TEST(StressAtAir, NothingHoldsABlob3D) {
   expect_stress_of_a_blob<3>();
 }
 
@@ -103,10 +103,10 @@ void expect_definite_at_walls() {
 }
 // At walls, too, the form is that of the symmetric stress: what it lacked in 3D had an eigenvalue
 // of -0.07 of the largest one.
-TEST(StressAtVoid, NothingGainsEnergyAtWalls2D) {
+TEST(StressAtAir, NothingGainsEnergyAtWalls2D) {
   expect_definite_at_walls<2>();
 }
-TEST(StressAtVoid, NothingGainsEnergyAtWalls3D) {
+TEST(StressAtAir, NothingGainsEnergyAtWalls3D) {
   expect_definite_at_walls<3>();
 }
 
@@ -130,10 +130,10 @@ void expect_definite_near_bodies() {
     EXPECT_GT(smallest_of_largest(*fluid->viscosity()->viscous_system()), -1e-14) << distance;
   }
 }
-TEST(StressAtVoid, NothingGainsEnergyNearBodies2D) {
+TEST(StressAtAir, NothingGainsEnergyNearBodies2D) {
   expect_definite_near_bodies<2>();
 }
-TEST(StressAtVoid, NothingGainsEnergyNearBodies3D) {
+TEST(StressAtAir, NothingGainsEnergyNearBodies3D) {
   expect_definite_near_bodies<3>();
 }
 
@@ -176,10 +176,10 @@ void expect_jet_to_fly_on() {
   EXPECT_LT((gained.linear - impulse.linear).norm(), 1e-12);
   EXPECT_LT((gained.angular - impulse.angular).norm(), 1e-12);
 }
-TEST(StressAtVoid, AJetFliesOn2D) {
+TEST(StressAtAir, AJetFliesOn2D) {
   expect_jet_to_fly_on<2>();
 }
-TEST(StressAtVoid, AJetFliesOn3D) {
+TEST(StressAtAir, AJetFliesOn3D) {
   expect_jet_to_fly_on<3>();
 }
 

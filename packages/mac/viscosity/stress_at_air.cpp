@@ -1,4 +1,4 @@
-#include "mac/viscosity/stress_at_void.hpp"
+#include "mac/viscosity/stress_at_air.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -6,7 +6,7 @@
 namespace lockstep {
 
 template <int dim>
-StressAtVoid<dim>::StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry)
+StressAtAir<dim>::StressAtAir(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry)
     : domain_(domain), geometry_(geometry) {
   std::vector<char> plain(domain.grid.n_stored_cells(), 0);
   domain.grid.for_each_stored_cell([&](int cell) { plain[cell] = is_regular(cell); });
@@ -14,7 +14,7 @@ StressAtVoid<dim>::StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<
 }
 
 template <int dim>
-std::vector<char> StressAtVoid<dim>::with_marked_surroundings(std::vector<char> marked) const {
+std::vector<char> StressAtAir<dim>::with_marked_surroundings(std::vector<char> marked) const {
   const TiledGrid<dim>& grid = domain_.grid;
   const auto is_marked = [&](int cell) {
     return cell < 0 || geometry_.state.cells[cell] == CellState::outside || marked[cell] != 0;
@@ -31,15 +31,15 @@ std::vector<char> StressAtVoid<dim>::with_marked_surroundings(std::vector<char> 
 }
 
 template <int dim>
-bool StressAtVoid<dim>::is_definite() const {
+bool StressAtAir<dim>::is_definite() const {
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<char> full(grid.n_stored_cells(), 0);
   grid.for_each_stored_cell(
-      [&](int cell) { full[cell] = geometry_.state.cells[cell] != CellState::empty; });
-  const std::vector<char> far_from_void = with_marked_surroundings(std::move(full));
+      [&](int cell) { full[cell] = geometry_.state.cells[cell] != CellState::air; });
+  const std::vector<char> far_from_air = with_marked_surroundings(std::move(full));
   GlobalIndex found = fluid_at_open_side() ? 1 : 0;
   grid.for_each_owned_cell([&](int cell) {
-    if (is_fluid(cell) && far_from_void[cell] == 0 && is_far_from_solids_[cell] == 0)
+    if (is_fluid(cell) && far_from_air[cell] == 0 && is_far_from_solids_[cell] == 0)
       found = 1;
   });
   return max_all(grid.comm(), found) == 0;
@@ -47,7 +47,7 @@ bool StressAtVoid<dim>::is_definite() const {
 
 /// True if fluid is at an open side on this rank.
 template <int dim>
-bool StressAtVoid<dim>::fluid_at_open_side() const {
+bool StressAtAir<dim>::fluid_at_open_side() const {
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<std::pair<int, int>> open_layers;  // axis, place along it
   for (int axis = 0; axis < dim; ++axis)
@@ -67,7 +67,7 @@ bool StressAtVoid<dim>::fluid_at_open_side() const {
 
 /// Fluid continues beyond a side as before it.
 template <int dim>
-typename StressAtVoid<dim>::Edge StressAtVoid<dim>::edge(const FaceId& face, int across,
+typename StressAtAir<dim>::Edge StressAtAir<dim>::edge(const FaceId& face, int across,
                                                          int end) const {
   const TiledGrid<dim>& grid = domain_.grid;
   const auto beside = [&](int cell) {
@@ -88,12 +88,12 @@ typename StressAtVoid<dim>::Edge StressAtVoid<dim>::edge(const FaceId& face, int
 }
 
 template <int dim>
-bool StressAtVoid<dim>::parts(const FaceId& face, int across, int end) const {
+bool StressAtAir<dim>::parts(const FaceId& face, int across, int end) const {
   return edge(face, across, end) == Edge::parted;
 }
 
 template <int dim>
-bool StressAtVoid<dim>::has_velocity(int axis, int face) const {
+bool StressAtAir<dim>::has_velocity(int axis, int face) const {
   const FaceState state = geometry_.state.faces[axis][face];
   if (state != FaceState::prescribed)
     return state == FaceState::free;
@@ -101,7 +101,7 @@ bool StressAtVoid<dim>::has_velocity(int axis, int face) const {
   return domain_.boundary.side(axis, end).type == SideType::inflow;
 }
 
-template class StressAtVoid<2>;
-template class StressAtVoid<3>;
+template class StressAtAir<2>;
+template class StressAtAir<3>;
 
 }  // namespace lockstep

@@ -13,7 +13,7 @@ bool at_open_side(const MacDomain<dim>& domain, int cell);
 /// the liquid leaves, and without them it would have no surface to give its volume back. `phi` on
 /// the halo of width 1, which is set on return. Returns the owned cells filled. Collective.
 template <int dim>
-std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+std::vector<int> fill_cavities(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                              int most_cells, CellField& phi);
 
 }  // namespace lockstep

@@ -17,7 +17,7 @@ namespace lockstep {
 /// middle leave one of either sign where that ends: they may be used only where `is_definite` says
 /// so.
 template <int dim>
-class StressAtVoid {
+class StressAtAir {
  public:
   /// A part of the form: 2 coefficient u_own u_other, in units of that of a coupling.
   struct Partner {
@@ -29,7 +29,7 @@ class StressAtVoid {
   };
 
   /// Makes the terms of a fluid with a free surface. References must outlive this. Collective.
-  StressAtVoid(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
+  StressAtAir(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
 
   /// True if the form is positive. It might not be if fluid beside the air has a solid near it, or
   /// fluid stands at an open side, on any rank: then the form is to be that of the couplings
@@ -56,7 +56,7 @@ class StressAtVoid {
   bool is_fluid(int cell) const { return geometry_.state.cells[cell] == CellState::fluid; }
   bool is_regular(int cell) const {
     const CellState state = geometry_.state.cells[cell];
-    return (state == CellState::fluid || state == CellState::empty) &&
+    return (state == CellState::fluid || state == CellState::air) &&
            !geometry_.near_surface(cell);
   }
   /// Stored cells all of whose neighbours in the domain, those at edges and corners too, are
@@ -82,11 +82,11 @@ class StressAtVoid {
       const int other = end == 0 ? cell : domain_.grid.neighbor(cell, across, 1);
       if (other < 0 || !has_velocity(across, other))
         continue;
-      const double beside_void = (kind == Edge::whole ? 1 : 0) - (is_fluid(cell) ? 1 : 0);
-      const double weight = beside_void + extra_weight(cell);
+      const double beside_air = (kind == Edge::whole ? 1 : 0) - (is_fluid(cell) ? 1 : 0);
+      const double weight = beside_air + extra_weight(cell);
       // The face is the cell's upper one if the cell is on its lower side.
       const double sign = (side == 0) == (end == 1) ? 1 : -1;
-      const double from_outside = is_free(face.axis, cell, side) ? beside_void : weight;
+      const double from_outside = is_free(face.axis, cell, side) ? beside_air : weight;
       if (weight != 0 || from_outside != 0)
         f(Partner{{across, other}, sign * weight, sign * from_outside});
     }

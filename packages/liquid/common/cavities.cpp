@@ -1,4 +1,4 @@
-#include "liquid/common/voids.hpp"
+#include "liquid/common/cavities.hpp"
 
 #include <algorithm>
 
@@ -22,17 +22,17 @@ bool at_open_side(const MacDomain<dim>& domain, int cell) {
 }
 
 template <int dim>
-std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+std::vector<int> fill_cavities(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                              int most_cells, CellField& phi) {
   std::vector<int> filled;
   if (most_cells == 0)
     return filled;
   const TiledGrid<dim>& grid = domain.grid;
   const double h = domain.spacing();
-  std::vector<char> is_void(phi.size());
+  std::vector<char> is_air(phi.size());
   for (std::size_t cell = 0; cell < phi.size(); ++cell)
-    is_void[cell] = phi[cell] >= 0 && phi[cell] < deep * h;
-  const CellGroups voids = find_groups(domain, solids, is_void);
+    is_air[cell] = phi[cell] >= 0 && phi[cell] < deep * h;
+  const CellGroups voids = find_groups(domain, solids, is_air);
 
   // Cells of each, whether liquid touches it, and whether it is to stay.
   std::vector<double> sums(3 * voids.n, 0.0);
@@ -80,9 +80,9 @@ std::vector<int> close_voids(const MacDomain<dim>& domain, const SolidCells<dim>
 
 template bool at_open_side<2>(const MacDomain<2>&, int);
 template bool at_open_side<3>(const MacDomain<3>&, int);
-template std::vector<int> close_voids<2>(const MacDomain<2>&, const SolidCells<2>&, int,
+template std::vector<int> fill_cavities<2>(const MacDomain<2>&, const SolidCells<2>&, int,
                                          CellField&);
-template std::vector<int> close_voids<3>(const MacDomain<3>&, const SolidCells<3>&, int,
+template std::vector<int> fill_cavities<3>(const MacDomain<3>&, const SolidCells<3>&, int,
                                          CellField&);
 
 }  // namespace lockstep
