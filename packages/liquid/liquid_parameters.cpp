@@ -104,7 +104,7 @@ std::vector<TypedSchema> liquid_schemas() {
 }
 
 void declare_trapped_air(ParameterList& list) {
-  declare_choice(list, "Trapped Air", "void", {"void", "ideal gas", "constant volume"},
+  declare_choice(list, "Trapped Air", "massless", {"massless", "ideal gas", "constant volume"},
                  "Content of closed air bubbles above the liquid: \"void\", p = 0, as in the "
                  "atmosphere; \"ideal gas\", whose pressure follows from its volume; \"constant "
                  "volume\", a gas that cannot be compressed. Of more than 8 bubbles the largest "
@@ -229,7 +229,7 @@ GasParameters<dim> read_gas(const ParameterList& fluid) {
   const ParameterList& list = fluid.sublist("Free Surface");
   const auto kind = list.get<std::string>("Trapped Air");
   GasParameters<dim> gas;
-  if (kind == "void")
+  if (kind == "massless")
     return gas;
   check_input(!fluid.isSublist("Moving Tiles"),
               "\"Trapped Air\" is \"{}\", but with \"Moving Tiles\" not all of the air is there "

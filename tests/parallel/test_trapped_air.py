@@ -89,7 +89,7 @@ class TrappedAir(unittest.TestCase):
     def test_air_carries_the_cup(self):
         """It weighs 60 kg; the walls alone, which have no volume, would carry nothing."""
         _, with_air = self.run_scene("ideal gas")
-        _, without = self.run_scene("void")
+        _, without = self.run_scene("massless")
         self.assertGreater(with_air[-1] - without[-1], 0.05)
 
     def test_two_ranks(self):
