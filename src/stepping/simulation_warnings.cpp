@@ -19,7 +19,7 @@ void Simulation<dim>::warn_of_watches() {
     log_.warning(
         "Step {}: the point of the watch \"{}\" sees the centre of no cell, and no cell is left of "
         "the place that it was in. While that is so it is not watched, and its columns are nan. "
-        "Later steps like this one are not told.",
+        "Later steps like this one are not reported.",
         step_, components_.fluid->liquid()->watch_names()[w]);
   }
 }
@@ -40,7 +40,7 @@ void Simulation<dim>::warn() {
     log_.warning(
         "Step {}: where cloth is to move next, it is {:.2g} times as long as its \"Stretch Limit\" "
         "allows; no more than that was reached by the sweeps over its edges. Shorter steps help, "
-        "unless what holds it pulls it apart. Later steps like this one are not told.",
+        "unless what holds it pulls it apart. Later steps like this one are not reported.",
         step_, 1 + report.stretch_beyond_limit);
   }
   if (!report.is_settled && !warned_of_unsettled_) {
@@ -48,7 +48,7 @@ void Simulation<dim>::warn() {
     log_.warning(
         "Step {}: soft solids move so far that the search for where their implicit forces hold "
         "them ended before they agreed; momentum is kept, the shape is not that of these forces. "
-        "Shorter steps help. Later steps like this one are not told.",
+        "Shorter steps help. Later steps like this one are not reported.",
         step_);
   }
   // Up to here the drag of a disc two cells above a wall is right to 0.1 %.

@@ -15,8 +15,8 @@ namespace lockstep {
 namespace {
 constexpr int most_watches = 30;
 /// Reported value of a place of which no cell is left.
-constexpr double not_told = std::numeric_limits<double>::quiet_NaN();
-constexpr WatchedLiquid not_watched{not_told, not_told, not_told};
+constexpr double not_reported = std::numeric_limits<double>::quiet_NaN();
+constexpr WatchedLiquid not_watched{not_reported, not_reported, not_reported};
 
 bool is_watched(const WatchedLiquid& liquid) {
   return !std::isnan(liquid.volume);

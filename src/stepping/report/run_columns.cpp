@@ -146,14 +146,14 @@ void check_told(bool is_told) {
 }
 
 template <typename Part>
-const Part& told(const std::optional<Part>& part) {
+const Part& reported(const std::optional<Part>& part) {
   check_told(part.has_value());
   return *part;
 }
 
 template <int dim>
 const LiquidReport& liquid_in(const HistoryRow<dim>& row) {
-  return told(row.report.liquid);
+  return reported(row.report.liquid);
 }
 
 template <int dim>
@@ -191,16 +191,16 @@ void add_liquid(Columns<HistoryRow<dim>>& columns, const LiquidColumns& liquid) 
     add_watch(columns, liquid.watches[w], w);
   if (liquid.gas)
     append<Row>(columns, {{{"gas_bubbles", "1", "of air that the atmosphere does not reach"},
-                           [](const Row& row) { return told(liquid_in(row).gas).n_bubbles; }},
+                           [](const Row& row) { return reported(liquid_in(row).gas).n_bubbles; }},
                           {{"gas_volume", unit, "of them all"},
-                           [](const Row& row) { return told(liquid_in(row).gas).volume; }},
+                           [](const Row& row) { return reported(liquid_in(row).gas).volume; }},
                           {{"gas_pressure", "Pa", "in the largest, above the atmosphere's"},
-                           [](const Row& row) { return told(liquid_in(row).gas).pressure; }}});
+                           [](const Row& row) { return reported(liquid_in(row).gas).pressure; }}});
   if (liquid.drops)
     append<Row>(columns, {{{"drops", "1", "of liquid, which fly beside it"},
-                           [](const Row& row) { return told(liquid_in(row).drops).n; }},
+                           [](const Row& row) { return reported(liquid_in(row).drops).n; }},
                           {{"drops_volume", unit, "of them all; no part of the liquid's"},
-                           [](const Row& row) { return told(liquid_in(row).drops).volume; }}});
+                           [](const Row& row) { return reported(liquid_in(row).drops).volume; }}});
 }
 
 }  // namespace
