@@ -8,7 +8,7 @@
 | finite | every number of history.csv, bodies.csv and of all frames |
 | scalar | smoke and temperature between their least and most initial, inflowing and held values |
 | energy | kinetic and elastic, at most GROWTH times the start's and gravity's work, where nothing else does work |
-| image | bodies and energies equal, as ranks', of the scene with its axes turned (images.py) |
+| rotated copy | bodies and energies equal, as ranks', of the scene with its axes turned (rotated_copies.py) |
 | ranks | bodies and energies equal on 1, 2 and 3 ranks to RANKS of their scale, once contact decides by inequalities to RANKS_IN_CONTACT, or to CHAOS times what another tolerance, or a density by 1e-12 of itself, changes on one rank |
 | restart | tables and last frame bit for bit |
 """
@@ -209,7 +209,7 @@ def check_same(scene, one, other, kind, twin=None):
     for c in "xyz":
         compared += [("bodies", c, h), ("bodies", "v" + c, speed), ("bodies", "w" + c, speed / h)]
     bound = RANKS_IN_CONTACT if touched(one, other) else RANKS
-    if kind == "image" and scene.content["Fluid"]["Advection"] == "cubic":
+    if kind == "rotated copy" and scene.content["Fluid"]["Advection"] == "cubic":
         bound = max(bound, CUBIC_IMAGES)
     for table, column, scale in compared:
         mine, theirs = getattr(one, table), getattr(other, table)

@@ -22,7 +22,7 @@ import tempfile
 import time
 from pathlib import Path
 
-import images
+import rotated_copies
 import known_failures
 import report
 from invariants import (Tables, check_energy, check_frames, check_restart, check_same, check_tables,
@@ -81,7 +81,7 @@ class Seed:
         for n, other in others.items():
             if other:
                 self.failures += [*self.check_same(one, other, f"ranks, {n}"), *check_tables(self.scene, other)]
-        self.check_image(one)
+        self.check_rotated_copy(one)
         self.check_restart(others)
 
     def check_same(self, one, other, kind):
@@ -95,16 +95,16 @@ class Seed:
             failures = list(check_same(self.scene, one, other, kind, twin)) if twin else failures
         return failures
 
-    def check_image(self, one):
+    def check_rotated_copy(self, one):
         """A liquid's volume is measured on triangles, whose diagonals do not turn: without its correction."""
-        if not images.has_image(self.scene):
+        if not rotated_copies.has_rotated_copy(self.scene):
             return
-        (self.folder / "image.xml").write_text(to_xml("Scene", images.image(self.scene.content)))
+        (self.folder / "rotated-copy.xml").write_text(to_xml("Scene", rotated_copies.rotated_copy(self.scene.content)))
         settings = ["--set", "Fluid/Free Surface/Interface/Volume Correction=none"] if self.scene.facts.liquid else []
         straight = self.simulate("uncorrected", *settings) if settings else one
-        turned = self.simulate("image", *settings, scene="image.xml")
+        turned = self.simulate("rotated copy", *settings, scene="rotated-copy.xml")
         if straight and turned:
-            self.failures += self.check_same(straight, images.turned_back(turned), "image")
+            self.failures += self.check_same(straight, rotated_copies.turned_back(turned), "rotated copy")
 
     def check_restart(self, others):
         """From a random checkpoint, on a random one of the numbers of ranks."""

@@ -81,14 +81,14 @@ def turn_list(content, name, dimension):
         content["Lower"], content["Upper"] = turn_box(content["Lower"], content["Upper"])
 
 
-def has_image(scene):
+def has_rotated_copy(scene):
     """Not where directions or numbers of cells are built in (gas has its pressure of a volume of triangles), not where contact decides by inequalities, and not where a
     body may stick through a periodic side: it is not repeated at the other."""
     return (not any(word in scene.xml for word in NOT_TURNED) and scene.content["Contact"]["Type"] == "none" and
             not (scene.facts.periodic and scene.content["Solids"]))
 
 
-def image(content):
+def rotated_copy(content):
     """The content of a scene, turned; observers are left out."""
     content = copy.deepcopy(content)
     dimension = content["Dimension"]
