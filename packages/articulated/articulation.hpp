@@ -85,8 +85,8 @@ class JointConstraints : public ConstraintModel,
   std::string name() const override { return "joints"; }
   std::vector<Combination> combinations() const override;
   ClosedMotion close(double time, double dt, Vector& velocity) override;
-  ClosedFreeMotion close_free_motion(double time, double dt, const Vector& correction, const Vector& solved,
-                            Vector& velocity) override;
+  ClosedFreeMotion close_free_motion(double time, double dt, const Vector& correction,
+                                     const Vector& solved, Vector& velocity) override;
   std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const override;
   std::vector<GivenMotion> given_motions() const override;
   std::string limited() const override;
@@ -116,18 +116,19 @@ class JointConstraints : public ConstraintModel,
   void set_rates(const Mechanism& mechanism, const std::vector<Eigen::VectorXd>& coordinates,
                  double dt, Vector& velocity) const;
   std::optional<FreeMotionSteps> free_motion_steps(const Mechanism& mechanism, double turn,
-                                          bool touched) const;
+                                                   bool touched) const;
   std::optional<FoundFreeMotions> free_motions(const Mechanism& mechanism,
-                                      const ClosingProblem<dim>& problem,
-                                      const std::vector<BodyMotion<dim>>& solved,
-                                      const std::vector<BodyMotion<dim>>& motions) const;
+                                               const ClosingProblem<dim>& problem,
+                                               const std::vector<BodyMotion<dim>>& solved,
+                                               const std::vector<BodyMotion<dim>>& motions) const;
   StepMotions motions_of(const Vector& correction, const Vector& solved,
                          const Vector& velocity) const;
   void take(const Mechanism& mechanism, const FoundFreeMotions& found, StepMotions& step) const;
   RCP<Vector> marks_at_end(const RCP<const Map>& map) const;
   void follow(const ClosingProblem<dim>& problem, const Eigen::VectorXd& change,
               std::vector<BodyMotion<dim>>& motions) const;
-  RCP<Vector> constraint_error(const std::vector<TwistVector<dim>>& change, const RCP<const Map>& map) const;
+  RCP<Vector> constraint_error(const std::vector<TwistVector<dim>>& change,
+                               const RCP<const Map>& map) const;
 
   std::shared_ptr<Articulation<dim>> articulation_;
   Communicator comm_;

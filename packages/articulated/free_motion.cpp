@@ -33,7 +33,8 @@ class Flyer {
     std::vector<double> energies, turns;
     double sum = 0;
     for (const int body : problem_.mechanism.bodies) {
-      const TwistVector<dim> velocity = masses_[body].inverse * motions_[body].momentum - constraint_error;
+      const TwistVector<dim> velocity =
+          masses_[body].inverse * motions_[body].momentum - constraint_error;
       energies.push_back(velocity.dot(masses_[body].matrix * velocity));
       turns.push_back(time * velocity.template tail<n_rotations<dim>>().norm());
       sum += energies.back();
@@ -74,9 +75,9 @@ class Flyer {
   const std::vector<BodyMotion<dim>>& motions() const { return motions_; }
 
   FreeMotion<dim> free_motion(const std::vector<BodyMotion<dim>>& start,
-                     const std::vector<BodyMotion<dim>>& first) const {
-    FreeMotion<dim> result{first, std::vector<TwistVector<dim>>(first.size(), TwistVector<dim>::Zero()),
-                       coordinates_};
+                              const std::vector<BodyMotion<dim>>& first) const {
+    FreeMotion<dim> result{
+        first, std::vector<TwistVector<dim>>(first.size(), TwistVector<dim>::Zero()), coordinates_};
     for (const int body : problem_.mechanism.bodies) {
       const Axes<dim> turn = poses_[body].rotation * problem_.poses[body].rotation.transpose();
       const AngularVector<dim> vector =
@@ -126,7 +127,7 @@ class Flyer {
 
 template <int dim>
 std::optional<FreeMotion<dim>> fly(const ClosingProblem<dim>& problem, const FreeMotionSteps& steps,
-                               const std::vector<BodyMotion<dim>>& motions) {
+                                   const std::vector<BodyMotion<dim>>& motions) {
   constexpr int most = 2000;
   constexpr double negligible = 1e-12, shortest = 1e-6;  // parts of the step [1]
   Flyer<dim> flyer(problem, motions);
@@ -151,8 +152,8 @@ std::optional<FreeMotion<dim>> fly(const ClosingProblem<dim>& problem, const Fre
 }
 
 template std::optional<FreeMotion<2>> fly(const ClosingProblem<2>&, const FreeMotionSteps&,
-                                      const std::vector<BodyMotion<2>>&);
+                                          const std::vector<BodyMotion<2>>&);
 template std::optional<FreeMotion<3>> fly(const ClosingProblem<3>&, const FreeMotionSteps&,
-                                      const std::vector<BodyMotion<3>>&);
+                                          const std::vector<BodyMotion<3>>&);
 
 }  // namespace lockstep

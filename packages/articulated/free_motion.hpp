@@ -30,6 +30,6 @@ struct FreeMotionSteps {
 /// motors and prescribed bodies may act. Local.
 template <int dim>
 std::optional<FreeMotion<dim>> fly(const ClosingProblem<dim>& problem, const FreeMotionSteps& steps,
-                               const std::vector<BodyMotion<dim>>& motions);
+                                   const std::vector<BodyMotion<dim>>& motions);
 
 }  // namespace lockstep

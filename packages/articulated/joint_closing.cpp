@@ -84,7 +84,8 @@ bool differ(const ClosingProblem<dim>& problem, const std::vector<BodyMotion<dim
 /// Nothing: bodies had better follow the rates of their joints.
 template <int dim>
 std::optional<FreeMotionSteps> JointConstraints<dim>::free_motion_steps(const Mechanism& mechanism,
-                                                               double turn, bool touched) const {
+                                                                        double turn,
+                                                                        bool touched) const {
   constexpr double farthest_turn = 0.5;  // rad, where joints are closed in one part
   constexpr double finest_turn =
       0.1;  // largest turn of a part where nothing else is in the way [rad]
@@ -111,8 +112,8 @@ std::optional<FreeMotionSteps> JointConstraints<dim>::free_motion_steps(const Me
   return std::nullopt;
 }
 
-/// Finds the free_motions of a mechanism; empty if joints could not be closed about the motions as they
-/// were found, before contact and after it. `problem`: that of the mechanism alone.
+/// Finds the free_motions of a mechanism; empty if joints could not be closed about the motions as
+/// they were found, before contact and after it. `problem`: that of the mechanism alone.
 template <int dim>
 std::optional<typename JointConstraints<dim>::FoundFreeMotions> JointConstraints<dim>::free_motions(
     const Mechanism& mechanism, const ClosingProblem<dim>& problem,
@@ -148,7 +149,7 @@ void JointConstraints<dim>::follow(const ClosingProblem<dim>& problem,
 /// carries along.
 template <int dim>
 RCP<Vector> JointConstraints<dim>::constraint_error(const std::vector<TwistVector<dim>>& change,
-                                         const RCP<const Map>& map) const {
+                                                    const RCP<const Map>& map) const {
   const RCP<Vector> result = make_vector(map);
   std::vector<TwistVector<dim>> own = change;
   const std::vector<MotionBasis<dim>> bases = articulation_->motion_bases();
@@ -239,8 +240,9 @@ ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& veloci
 }
 
 template <int dim>
-ClosedFreeMotion JointConstraints<dim>::close_free_motion(double time, double dt, const Vector& correction,
-                                                 const Vector& solved, Vector& velocity) {
+ClosedFreeMotion JointConstraints<dim>::close_free_motion(double time, double dt,
+                                                          const Vector& correction,
+                                                          const Vector& solved, Vector& velocity) {
   const Eigen::VectorXd change = dt * gather_rates(velocity);
   const std::vector<BodyPose<dim>> poses = articulation_->poses();
   const std::vector<BodyPose<dim>> ends = articulation_->prescribed_poses(time + dt);
@@ -285,9 +287,9 @@ ClosedFreeMotion JointConstraints<dim>::close_free_motion(double time, double dt
 
 template ClosedMotion JointConstraints<2>::close(double, double, Vector&);
 template ClosedFreeMotion JointConstraints<2>::close_free_motion(double, double, const Vector&,
-                                                        const Vector&, Vector&);
+                                                                 const Vector&, Vector&);
 template ClosedMotion JointConstraints<3>::close(double, double, Vector&);
 template ClosedFreeMotion JointConstraints<3>::close_free_motion(double, double, const Vector&,
-                                                        const Vector&, Vector&);
+                                                                 const Vector&, Vector&);
 
 }  // namespace lockstep

@@ -77,7 +77,7 @@ void check_fluid_alone(SolverStrategy& strategy, const SaddleProblem& problem,
 
 /// A second system of the same name: the strategy must see by the versions that C is another.
 void check_versions(SolverStrategy& strategy, SaddleProblem& problem, const std::string& where,
-                  Violations& found) {
+                    Violations& found) {
   SaddleOptions heavier = problem.options();
   heavier.plate_mass *= 100;
   const SaddleProblem other(problem.comm(), heavier);

@@ -196,11 +196,10 @@ void FluxCoupling<dim>::add_thin_impulses(std::size_t f, double velocity_before,
 // The fluid gives to the closed part of a face at its centroid, and what is lumped on thin parts at
 // the centre; nodes take both where the surface is.
 template <int dim>
-AngularVector<dim> FluxCoupling<dim>::lumping_torque_error(const SolidSystem<dim>& solids,
-                                                    const std::vector<double>& velocity_before,
-                                                    const std::vector<double>& velocity_after,
-                                                    const BlockVector& solution,
-                                                    const std::vector<double>& gas_pressure) const {
+AngularVector<dim> FluxCoupling<dim>::lumping_torque_error(
+    const SolidSystem<dim>& solids, const std::vector<double>& velocity_before,
+    const std::vector<double>& velocity_after, const BlockVector& solution,
+    const std::vector<double>& gas_pressure) const {
   const auto is_soft = [](const SolidDescription& solid) {
     return !solid.rigid && !solid.prescribed;
   };
@@ -247,8 +246,8 @@ void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, in
 }
 
 template <int dim>
-void FluxCoupling<dim>::link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
-                                 EndVelocity<dim>& row) const {
+void FluxCoupling<dim>::link_row(const ViscousCouplingTerm<dim>& link,
+                                 const SolidSystem<dim>& solids, EndVelocity<dim>& row) const {
   row = {};
   if (link.coupled_volume >= 0) {
     row.position = volumes_[link.coupled_volume].center;

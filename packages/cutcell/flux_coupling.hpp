@@ -43,10 +43,10 @@ class FluxCoupling : public FaceCoupling<dim> {
       const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
       const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const override;
   AngularVector<dim> lumping_torque_error(const SolidSystem<dim>& solids,
-                                   const std::vector<double>& velocity_before,
-                                   const std::vector<double>& velocity_after,
-                                   const BlockVector& solution,
-                                   const std::vector<double>& gas_pressure) const override;
+                                          const std::vector<double>& velocity_before,
+                                          const std::vector<double>& velocity_after,
+                                          const BlockVector& solution,
+                                          const std::vector<double>& gas_pressure) const override;
   void link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
                 EndVelocity<dim>& row) const override;
 

@@ -17,8 +17,8 @@ bool DeformableSolids<dim>::has_implicit_forces() const {
 /// V. The model is -dt f.V + s dt^2/2 V.K V, with the f that `linearise` leaves. Elements' energies
 /// are differences of numbers as large as they are at a strain of one.
 template <int dim>
-std::vector<ComputedEnergy> DeformableSolids<dim>::nonlinear_energies(double dt,
-                                                                     const Vector& velocity) const {
+std::vector<ComputedEnergy> DeformableSolids<dim>::nonlinear_energies(
+    double dt, const Vector& velocity) const {
   const auto share = [this](int node) { return elastic_share(bodies_[body_of_node_[node]]); };
   const Nodes v = space_.with_ghosts(velocity);
   Nodes x = before_ ? *before_ : x_;
@@ -161,8 +161,8 @@ template void DeformableSolids<3>::add_midpoint_correction(double, Vector&) cons
 template bool DeformableSolids<2>::has_implicit_forces() const;
 template bool DeformableSolids<3>::has_implicit_forces() const;
 template std::vector<ComputedEnergy> DeformableSolids<2>::nonlinear_energies(double,
-                                                                            const Vector&) const;
+                                                                             const Vector&) const;
 template std::vector<ComputedEnergy> DeformableSolids<3>::nonlinear_energies(double,
-                                                                            const Vector&) const;
+                                                                             const Vector&) const;
 
 }  // namespace lockstep

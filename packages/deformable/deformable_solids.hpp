@@ -177,7 +177,7 @@ class DeformableSolids : public SolidModel<dim>,
   std::vector<int> own_surface_vertices_;       ///< local nodes, in the order of gathering
   std::vector<int> gathered_surface_vertices_;  ///< the vertex of each gathered value
   Nodes surface_velocity_;                      ///< velocity of the last move [m/s]
-  std::vector<int> boundary_nodes_;                  ///< owned ones, where shells end
+  std::vector<int> boundary_nodes_;             ///< owned ones, where shells end
 
   StrainLimit<dim> strain_limit_;
   double stretch_beyond_limit_ = 0;

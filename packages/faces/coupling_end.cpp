@@ -4,7 +4,7 @@ namespace lockstep {
 
 template <int dim>
 bool CouplingEnd<dim>::add(double weight, const SurfacePoint<dim>& point, int solid,
-                       const Point<dim>& x, const Point<dim>& pulled) {
+                           const Point<dim>& x, const Point<dim>& pulled) {
   if (weight > largest_share_) {
     largest_share_ = weight;
     row_.solid = solid;

@@ -122,8 +122,8 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
     stop_beyond<dim>(geometry.state, velocity);
   }
   if (acceleration_ > 0)
-    filter_shift_ = short_wave_filter<dim>(domain_, geometry, interface_->distance(), advection_velocity,
-                                     acceleration_, step.dt);
+    filter_shift_ = short_wave_filter<dim>(domain_, geometry, interface_->distance(),
+                                           advection_velocity, acceleration_, step.dt);
   if (audit_)
     audit_->open(step, *interface_);
   if (gas_)

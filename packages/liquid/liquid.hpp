@@ -63,8 +63,8 @@ class Liquid {
   FreeSurfaceParameters parameters_;
   double acceleration_ = 0;  ///< by gravity and body force [m/s^2]
   bool starts_empty_ = false;
-  CellField
-      filter_shift_;  ///< interface filter: distance of the pressure's phi ahead of the interface's [m]
+  CellField filter_shift_;  ///< interface filter: distance of the pressure's phi ahead of the
+                            ///< interface's [m]
   std::optional<SampleLattice<dim>> lattice_;  ///< lattice of the tiles since the last `begin`
   std::vector<SignedDistance<dim>> sinks_;
   std::vector<Point<dim>> dry_points_;

@@ -333,10 +333,10 @@ void MacFluid<dim>::populate_uncovered(const MovingSurface<dim>& surface) {
   if (state.surface) {
     const MacDomain<dim>& domain = flow_.domain;
     populate_uncovered_faces<dim>(domain.grid, domain.halo, state, surface, flow_.nearby, invalid_,
-                          flow_.prediction);
+                                  flow_.prediction);
     for (Scalar& scalar : flow_.scalars.all())
       populate_uncovered_scalar(domain.grid, domain.halo, state, surface, flow_.nearby, invalid_,
-                        scalar.ambient, scalar.values);
+                                scalar.ambient, scalar.values);
     invalid_ = {};
   }
   if (flow_.has_drops())

@@ -83,8 +83,8 @@ void MixedFaceCoupling<dim>::assemble_weights(const SolidSystem<dim>& solids) {
     return;
   weights_without_rotations_ = coupling_weights<dim>(volumes_, shares_, solids, false);
   for (int& column : weights_without_rotations_.columns) {
-    const auto place =
-        std::lower_bound(weights_.dofs.begin(), weights_.dofs.end(), weights_without_rotations_.dofs[column]);
+    const auto place = std::lower_bound(weights_.dofs.begin(), weights_.dofs.end(),
+                                        weights_without_rotations_.dofs[column]);
     column = static_cast<int>(place - weights_.dofs.begin());
   }
   weights_without_rotations_.dofs = weights_.dofs;
@@ -202,7 +202,8 @@ AngularVector<dim> MixedFaceCoupling<dim>::lumping_torque_error(
 template <int dim>
 void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& shares,
                                        const Point<dim>& x, int direction,
-                                       const SolidSystem<dim>& solids, EndVelocity<dim>& row) const {
+                                       const SolidSystem<dim>& solids,
+                                       EndVelocity<dim>& row) const {
   CouplingEnd<dim> end(solids, direction, row);
   for (const SurfaceShare<dim>& share : shares) {
     const bool at_x = solids.solids()[share.solid].rigid || share.rotation;
@@ -218,8 +219,8 @@ void MixedFaceCoupling<dim>::share_row(const std::vector<SurfaceShare<dim>>& sha
 }
 
 template <int dim>
-void MixedFaceCoupling<dim>::link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
-                                      EndVelocity<dim>& row) const {
+void MixedFaceCoupling<dim>::link_row(const ViscousCouplingTerm<dim>& link,
+                                      const SolidSystem<dim>& solids, EndVelocity<dim>& row) const {
   row = {};
   if (link.coupled_volume >= 0) {
     row.position = volumes_[link.coupled_volume].center;

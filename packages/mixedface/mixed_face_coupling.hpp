@@ -44,10 +44,10 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
       const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
       const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const override;
   AngularVector<dim> lumping_torque_error(const SolidSystem<dim>& solids,
-                                   const std::vector<double>& velocity_before,
-                                   const std::vector<double>& velocity_after,
-                                   const BlockVector& solution,
-                                   const std::vector<double>& gas_pressure) const override;
+                                          const std::vector<double>& velocity_before,
+                                          const std::vector<double>& velocity_after,
+                                          const BlockVector& solution,
+                                          const std::vector<double>& gas_pressure) const override;
   void link_row(const ViscousCouplingTerm<dim>& link, const SolidSystem<dim>& solids,
                 EndVelocity<dim>& row) const override;
 
@@ -80,7 +80,8 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
 
   MixedFaceOptions options_;
   std::vector<std::vector<SurfaceShare<dim>>> shares_;
-  CouplingWeights weights_without_rotations_;  ///< without rotations, if `masses_without_rotations`; the same columns
+  CouplingWeights weights_without_rotations_;  ///< without rotations, if
+                                               ///< `masses_without_rotations`; the same columns
   std::vector<double> prescribed_share_;
 };
 

@@ -10,8 +10,8 @@
 #include <optional>
 
 #include "linear/matrix_rows.hpp"
-#include "linear/overlap.hpp"
 #include "linear/near_null_space.hpp"
+#include "linear/overlap.hpp"
 #include "multigrid/lattice_layout.hpp"
 
 namespace lockstep {
@@ -195,7 +195,8 @@ MultiVector conductances(const BlockSystem& system, const Vector& numbers,
 
 std::optional<FaceCoefficients> conducting_through_sheets(const BlockSystem& system,
                                                           const std::vector<int>& empty_rows) {
-  if (!system.has_solid() || system.near_null_space.empty() || assembled(system.solid_block()).is_null())
+  if (!system.has_solid() || system.near_null_space.empty() ||
+      assembled(system.solid_block()).is_null())
     return {};
   const FaceCoefficients& a = *stencil_of(system.pressure_block());
   const CrsMatrix& coupling = *system.coupling_transposed();

@@ -16,7 +16,8 @@ struct BudgetColumn {
 /// Columns in the order of the table and of checkpoints.
 std::vector<BudgetColumn> book_columns() {
   return {
-      {{"joints", "J", "work of what controls joints, as joints.csv has it"}, &EnergyBudget::joints},
+      {{"joints", "J", "work of what controls joints, as joints.csv has it"},
+       &EnergyBudget::joints},
       {{"loads", "J", "work of gravity, loads, contact and drops, on fluid and solids"},
        &EnergyBudget::loads},
       {{"kinetic_change", "J", "of the energy of motion of fluid and solids"},

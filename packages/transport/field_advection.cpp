@@ -9,7 +9,8 @@ namespace {
 
 /// Calls f(row within the tile, id of its first sample) for the rows of a tile that have samples.
 template <int dim, typename Function>
-void for_each_strip(const TransportFrame<dim>& frame, SampleKind kind, int tile, const Function& f) {
+void for_each_strip(const TransportFrame<dim>& frame, SampleKind kind, int tile,
+                    const Function& f) {
   constexpr int width = tile_width<dim>;
   const Index<dim>& tile_begin = frame.setting.grid.tile_begin(tile);
   for (int first = 0; first < tile_volume<dim>; first += width) {
@@ -81,7 +82,7 @@ void FieldAdvection<dim>::keep(AdvectedField<dim>& advected, int id, bool has_va
 
 template <int dim>
 void FieldAdvection<dim>::advect(std::vector<AdvectedField<dim>>& fields,
-                              const std::vector<char>* tiles) {
+                                 const std::vector<char>* tiles) {
   for (AdvectedField<dim>& advected : fields)
     begin(advected);
   if (fields.front().field.kind != cell_centers)
@@ -135,7 +136,8 @@ bool FieldAdvection<dim>::advect_strips(std::vector<AdvectedField<dim>>& fields,
       const StripRays<dim> rays = block.trace(row, -1, advected.cubic());
       if (advected.corrects()) {
         block.look_up(rays.end, values, low, high);
-        const StripValues<dim> none_low = StripValues<dim>::Ones(), none_high = StripValues<dim>::Zero();
+        const StripValues<dim> none_low = StripValues<dim>::Ones(),
+                               none_high = StripValues<dim>::Zero();
         row_of<dim>(advected.low, first) = chosen(rays.clipped, none_low, low);
         row_of<dim>(advected.high.get(), first) = chosen(rays.clipped, none_high, high);
       } else if (advected.cubic()) {
@@ -170,7 +172,7 @@ void FieldAdvection<dim>::advect_samples(AdvectedField<dim>& advected, int tile)
 
 template <int dim>
 void FieldAdvection<dim>::advect_sample(AdvectedField<dim>& advected, int id, const Point<dim>& x,
-                                     bool wide) {
+                                        bool wide) {
   const SampleKind kind = advected.field.kind;
   bool has_value;
   if (!is_carried(kind, id, has_value)) {
@@ -216,7 +218,8 @@ void FieldAdvection<dim>::advect_sample(AdvectedField<dim>& advected, int id, co
 }
 
 template <int dim>
-void FieldAdvection<dim>::advect_near_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x) {
+void FieldAdvection<dim>::advect_near_solid(AdvectedField<dim>& advected, int id,
+                                            const Point<dim>& x) {
   advected.forbid_correction(id);
   if (const auto value = frame_.near_surface->advect(advected.field, x))
     advected.carried()[id] = *value;
@@ -225,8 +228,8 @@ void FieldAdvection<dim>::advect_near_solid(AdvectedField<dim>& advected, int id
 }
 
 template <int dim>
-void FieldAdvection<dim>::advect_beside_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x,
-                                        bool by_strips) {
+void FieldAdvection<dim>::advect_beside_solid(AdvectedField<dim>& advected, int id,
+                                              const Point<dim>& x, bool by_strips) {
   SurfaceTransport<dim>& near_surface = *frame_.near_surface;
   const SampleKind kind = advected.field.kind;
   bool has_value;
@@ -272,7 +275,7 @@ void FieldAdvection<dim>::advect_beside_solid(AdvectedField<dim>& advected, int 
 
 template <int dim>
 Ray<dim> FieldAdvection<dim>::trace(const AdvectedField<dim>& advected, int id, const Point<dim>& x,
-                                  double direction, bool cubic, bool by_strips) const {
+                                    double direction, bool cubic, bool by_strips) const {
   if (!by_strips || cubic != advected.cubic())
     return frame_.tracer->trace(x, direction, cubic);
   const auto& rows = direction < 0 ? advected.back : advected.forth;
@@ -285,7 +288,8 @@ Ray<dim> FieldAdvection<dim>::trace(const AdvectedField<dim>& advected, int id, 
 }
 
 template <int dim>
-bool FieldAdvection<dim>::is_far(const AdvectedField<dim>& advected, int id, const Point<dim>& x) const {
+bool FieldAdvection<dim>::is_far(const AdvectedField<dim>& advected, int id,
+                                 const Point<dim>& x) const {
   const Ray<dim> back = trace(advected, id, x, -1, advected.cubic(), true);
   Box<dim> points = Box<dim>(x).extend(back.middle).extend(back.end);
   if (advected.corrects()) {
@@ -296,7 +300,8 @@ bool FieldAdvection<dim>::is_far(const AdvectedField<dim>& advected, int id, con
 }
 
 template <int dim>
-bool FieldAdvection<dim>::advect_open_part(AdvectedField<dim>& advected, int id, const Point<dim>& x) {
+bool FieldAdvection<dim>::advect_open_part(AdvectedField<dim>& advected, int id,
+                                           const Point<dim>& x) {
   const SampleKind kind = advected.field.kind;
   SurfaceTransport<dim>& near_surface = *frame_.near_surface;
   if (kind == cell_centers || !near_surface.may_be_swept(x))
@@ -316,7 +321,7 @@ bool FieldAdvection<dim>::advect_open_part(AdvectedField<dim>& advected, int id,
 
 template <int dim>
 void FieldAdvection<dim>::advect_near_surfaces(std::vector<AdvectedField<dim>>& fields, int tile,
-                                            bool by_strips) {
+                                               bool by_strips) {
   for (AdvectedField<dim>& advected : fields)
     frame_.for_each_sample(advected.field.kind, tile, [&](int id, const Point<dim>& x) {
       const bool near = frame_.near_surface->is_near(x);
@@ -345,7 +350,7 @@ void FieldAdvection<dim>::correct(std::vector<AdvectedField<dim>>& fields) {
 
 template <int dim>
 bool FieldAdvection<dim>::correct_rows(std::vector<AdvectedField<dim>>& fields,
-                                     const std::vector<const double*>& carried, int tile) {
+                                       const std::vector<const double*>& carried, int tile) {
   TileBlock<dim>& block = *frame_.block;
   if (!block.enter(frame_.setting.grid.tile_begin(tile)))
     return false;
@@ -369,8 +374,8 @@ bool FieldAdvection<dim>::correct_rows(std::vector<AdvectedField<dim>>& fields,
 }
 
 template <int dim>
-void FieldAdvection<dim>::correct_single(AdvectedField<dim>& advected, const double* carried, int id,
-                                       const Point<dim>& x) const {
+void FieldAdvection<dim>::correct_single(AdvectedField<dim>& advected, const double* carried,
+                                         int id, const Point<dim>& x) const {
   const bool may_correct = advected.may_correct(id);
   const double low = advected.low[id];  // where the result goes
   double& result = (*advected.result)[id];

@@ -60,7 +60,8 @@ class FieldAdvection {
   bool is_far(const AdvectedField<dim>& advected, int id, const Point<dim>& x) const;
   /// Advects one sample; `wide`: by cubics.
   void advect_sample(AdvectedField<dim>& advected, int id, const Point<dim>& x, bool wide);
-  void advect_beside_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x, bool by_strips);
+  void advect_beside_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x,
+                           bool by_strips);
   void advect_near_solid(AdvectedField<dim>& advected, int id, const Point<dim>& x);
   /// Advects a partly open face whose centre a solid holds or passes: it keeps its own value and
   /// takes the change where its fluid is. Returns false if it is no such face.

@@ -12,7 +12,8 @@ namespace lockstep {
 /// not exist: they count for nothing, and points are moved between those that do.
 template <int dim>
 struct StripCubicSplit {
-  void set(const StripValues<dim>& x, int axis, double offset, const std::array<double, 2>& limits) {
+  void set(const StripValues<dim>& x, int axis, double offset,
+           const std::array<double, 2>& limits) {
     const auto [first, last] = limits;
     split.set(x.max(first + offset).min(last + offset), axis, offset);
     const StripValues<dim>& f = split.weight;
@@ -30,7 +31,7 @@ template <int dim>
 class StripCubic {
  public:
   StripCubic(const std::array<const StripCubicSplit<dim>*, dim>& splits,
-           const std::array<int, dim>& stride)
+             const std::array<int, dim>& stride)
       : splits_(splits), stride_(stride) {}
 
   void interpolate(const double* block, StripValues<dim>& values) const {
@@ -38,9 +39,9 @@ class StripCubic {
     for (int a = 0; a < dim; ++a)
       along[a] = &splits_[a]->split;
     if (are_in_step(along))
-      values = sum<StripValues<dim>>(block + first_at(0), [&](int a, int k) -> const StripValues<dim>& {
-        return splits_[a]->weights[k];
-      });
+      values = sum<StripValues<dim>>(
+          block + first_at(0),
+          [&](int a, int k) -> const StripValues<dim>& { return splits_[a]->weights[k]; });
     else
       for (int i = 0; i < tile_width<dim>; ++i)
         values[i] = sum<double>(block + first_at(i),

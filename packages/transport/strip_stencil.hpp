@@ -27,9 +27,9 @@ struct StripSplit {
   }
 
   StripValues<dim> below, weight;
-  int first;      ///< sample of the first point, or one less if that is ahead of others
-  bool is_mixed;  ///< not all points keep step
-  bool by_strips;   ///< true for a point by rows; others are one sample ahead
+  int first;       ///< sample of the first point, or one less if that is ahead of others
+  bool is_mixed;   ///< not all points keep step
+  bool by_strips;  ///< true for a point by rows; others are one sample ahead
   /// Where mixed: 1 or 0, and the weight of the first or third of three samples.
   StripValues<dim> is_ahead, weight_of_other;
 
@@ -59,7 +59,7 @@ class StripStencil {
  public:
   /// The points split along each axis, and the strides of the block; both must live on.
   StripStencil(const std::array<const StripSplit<dim>*, dim>& splits,
-             const std::array<int, dim>& stride)
+               const std::array<int, dim>& stride)
       : splits_(splits), stride_(stride) {
     for (int a = 0; a < dim; ++a) {
       first_ += (a == 0 ? 1 : stride[a]) * splits[a]->first;
@@ -162,7 +162,7 @@ class StripStencil {
         return blend<StripValues<dim>>(lower, upper, splits_[axis]->weight);
       const StripValues<dim> last = between<axis - 1, mixed>(c + 2 * step);
       return blend<StripValues<dim>>(upper, chosen(splits_[axis]->is_ahead, last, lower),
-                                   splits_[axis]->weight_of_other);
+                                     splits_[axis]->weight_of_other);
     }
   }
   /// Computes the range of the samples, likewise.
@@ -193,8 +193,8 @@ class StripStencil {
 
   const std::array<const StripSplit<dim>*, dim>& splits_;
   const std::array<int, dim>& stride_;
-  int first_ = 0;        ///< place of the lowest sample of a point that is not ahead of others
-  int mixed_ = 0;        ///< a bit for each axis
+  int first_ = 0;          ///< place of the lowest sample of a point that is not ahead of others
+  int mixed_ = 0;          ///< a bit for each axis
   bool by_strips_ = true;  ///< no: point by point
 };
 

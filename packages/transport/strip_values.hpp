@@ -129,8 +129,8 @@ template <int n>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> chosen(
     const Eigen::Array<double, n, 1>& flag, const Eigen::Array<double, n, 1>& first,
     const Eigen::Array<double, n, 1>& second) {
-  return by_parts([](StripPart f, StripPart a, StripPart b) -> StripPart { return f != 0 ? a : b; }, flag,
-                  first, second);
+  return by_parts([](StripPart f, StripPart a, StripPart b) -> StripPart { return f != 0 ? a : b; },
+                  flag, first, second);
 }
 template <int n>
 [[gnu::always_inline]] inline Eigen::Array<double, n, 1> least(

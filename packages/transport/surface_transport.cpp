@@ -171,7 +171,7 @@ std::optional<double> SurfaceTransport<dim>::look_up(const CarriedField<dim>& fi
 
 template <int dim>
 std::optional<double> SurfaceTransport<dim>::advect(const CarriedField<dim>& field,
-                                                   const Point<dim>& x) {
+                                                    const Point<dim>& x) {
   std::optional<SurfacePoint<dim>> hit;
   const Ray<dim> ray = trace(x, hit);
   return fetch(field, x, ray, hit);
@@ -207,7 +207,7 @@ std::optional<double> SurfaceTransport<dim>::fetch(const CarriedField<dim>& fiel
 
 template <int dim>
 double SurfaceTransport<dim>::advect_beside(const CarriedField<dim>& field, const Point<dim>& x,
-                                           double own) {
+                                            double own) {
   std::optional<SurfacePoint<dim>> hit;
   const Ray<dim> ray = trace(x, hit);
   const auto carried = fetch(field, x, ray, hit);

@@ -153,7 +153,8 @@ StripPoints<dim> TileBlock<dim>::velocity_at(const StripPoints<dim>& points, boo
 }
 
 template <int dim>
-StripRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction, bool cubic) const {
+StripRays<dim> TileBlock<dim>::trace(const Index<dim>& in_tile, double direction,
+                                     bool cubic) const {
   const double factor = direction * tracer_.cells_per_velocity();
   int place = 0;
   StripPoints<dim> start;
@@ -181,8 +182,9 @@ StripRays<dim> TileBlock<dim>::follow(const StripPoints<dim>& start, double dire
 }
 
 template <int dim>
-StripRays<dim> TileBlock<dim>::rays_from(const StripPoints<dim>& start, const StripPoints<dim>& velocity,
-                                       double factor, int n_in_row, bool cubic) const {
+StripRays<dim> TileBlock<dim>::rays_from(const StripPoints<dim>& start,
+                                         const StripPoints<dim>& velocity, double factor,
+                                         int n_in_row, bool cubic) const {
   StripRays<dim> rays;
   for (int a = 0; a < dim; ++a)
     rays.middle[a] =

@@ -67,8 +67,8 @@ class TileBlock {
   StripValues<dim> velocity_at_samples(int axis, int place) const;
   /// The midpoint rule, given the velocity at the start; displacements are `factor` times velocity.
   /// The first `n_in_row` points count.
-  StripRays<dim> rays_from(const StripPoints<dim>& start, const StripPoints<dim>& velocity, double factor,
-                         int n_in_row, bool cubic) const;
+  StripRays<dim> rays_from(const StripPoints<dim>& start, const StripPoints<dim>& velocity,
+                           double factor, int n_in_row, bool cubic) const;
 
   using Runs = std::vector<typename SampleLattice<dim>::Run>;
   using Values = std::vector<double, Eigen::aligned_allocator<double>>;

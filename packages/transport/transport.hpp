@@ -50,8 +50,8 @@ struct TransportSetting {
 };
 
 /// Samples without a meaningful value after transport, by cell id (1: invalid): inactive or inside
-/// a solid at t^n, on a surface, or passed by one. `populate_uncovered_*` populates those that hold fluid
-/// at t^{n+1}. Owned samples only; ghost entries are 0. Empty vectors: all are valid.
+/// a solid at t^n, on a surface, or passed by one. `populate_uncovered_*` populates those that hold
+/// fluid at t^{n+1}. Owned samples only; ghost entries are 0. Empty vectors: all are valid.
 template <int dim>
 struct InvalidSamples {
   std::array<std::vector<char>, dim> faces;

@@ -198,9 +198,9 @@ class Fronts {
 
 template <int dim>
 UncoveredReport populate_uncovered_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
-                                    const GridState<dim>& after, const MovingSurface<dim>& surface,
-                                    KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
-                                    FaceField<dim>& u) {
+                                         const GridState<dim>& after,
+                                         const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
+                                         const InvalidSamples<dim>& invalid, FaceField<dim>& u) {
   UncoveredReport total;
   const auto nearby = kept.of(after.surface, grid, sight);
   for (int a = 0; a < dim; ++a) {
@@ -219,9 +219,10 @@ UncoveredReport populate_uncovered_faces(const TiledGrid<dim>& grid, const HaloE
 
 template <int dim>
 UncoveredReport populate_uncovered_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
-                                     const GridState<dim>& after, const MovingSurface<dim>& surface,
-                                     KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
-                                     double ambient, CellField& s) {
+                                          const GridState<dim>& after,
+                                          const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
+                                          const InvalidSamples<dim>& invalid, double ambient,
+                                          CellField& s) {
   const auto nearby = kept.of(after.surface, grid, sight);
   Fronts<dim> fronts(grid, halo, after, surface, *nearby, cell_centers, invalid.cells);
   const UncoveredReport report = fronts.fill(s);
@@ -233,20 +234,20 @@ UncoveredReport populate_uncovered_scalar(const TiledGrid<dim>& grid, const Halo
 }
 
 template UncoveredReport populate_uncovered_faces<2>(const TiledGrid<2>&, const HaloExchange<2>&,
-                                                const GridState<2>&, const MovingSurface<2>&,
-                                                KeptSurface<2>&, const InvalidSamples<2>&,
-                                                FaceField<2>&);
+                                                     const GridState<2>&, const MovingSurface<2>&,
+                                                     KeptSurface<2>&, const InvalidSamples<2>&,
+                                                     FaceField<2>&);
 template UncoveredReport populate_uncovered_faces<3>(const TiledGrid<3>&, const HaloExchange<3>&,
-                                                const GridState<3>&, const MovingSurface<3>&,
-                                                KeptSurface<3>&, const InvalidSamples<3>&,
-                                                FaceField<3>&);
+                                                     const GridState<3>&, const MovingSurface<3>&,
+                                                     KeptSurface<3>&, const InvalidSamples<3>&,
+                                                     FaceField<3>&);
 template UncoveredReport populate_uncovered_scalar<2>(const TiledGrid<2>&, const HaloExchange<2>&,
-                                                 const GridState<2>&, const MovingSurface<2>&,
-                                                 KeptSurface<2>&, const InvalidSamples<2>&, double,
-                                                 CellField&);
+                                                      const GridState<2>&, const MovingSurface<2>&,
+                                                      KeptSurface<2>&, const InvalidSamples<2>&,
+                                                      double, CellField&);
 template UncoveredReport populate_uncovered_scalar<3>(const TiledGrid<3>&, const HaloExchange<3>&,
-                                                 const GridState<3>&, const MovingSurface<3>&,
-                                                 KeptSurface<3>&, const InvalidSamples<3>&, double,
-                                                 CellField&);
+                                                      const GridState<3>&, const MovingSurface<3>&,
+                                                      KeptSurface<3>&, const InvalidSamples<3>&,
+                                                      double, CellField&);
 
 }  // namespace lockstep

@@ -20,14 +20,15 @@ struct UncoveredReport {
 /// Collective.
 template <int dim>
 UncoveredReport populate_uncovered_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
-                                    const GridState<dim>& after, const MovingSurface<dim>& surface,
-                                    KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
-                                    FaceField<dim>& u);
+                                         const GridState<dim>& after,
+                                         const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
+                                         const InvalidSamples<dim>& invalid, FaceField<dim>& u);
 /// Populates the invalid cells of a scalar; those left over get `ambient`.
 template <int dim>
 UncoveredReport populate_uncovered_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
-                                     const GridState<dim>& after, const MovingSurface<dim>& surface,
-                                     KeptSurface<dim>& kept, const InvalidSamples<dim>& invalid,
-                                     double ambient, CellField& s);
+                                          const GridState<dim>& after,
+                                          const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
+                                          const InvalidSamples<dim>& invalid, double ambient,
+                                          CellField& s);
 
 }  // namespace lockstep

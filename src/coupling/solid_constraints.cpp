@@ -48,8 +48,9 @@ Reduction SolidSystem<dim>::constraints(double begin, double end,
                                         const RCP<const Vector>& constraint_error) const {
   if (!reduction_.has_given() && constraint_error.is_null())
     return reduction_;
-  const auto velocity =
-      constraint_error.is_null() ? make_vector(map_) : rcp(new Vector(*constraint_error, Teuchos::Copy));
+  const auto velocity = constraint_error.is_null()
+                            ? make_vector(map_)
+                            : rcp(new Vector(*constraint_error, Teuchos::Copy));
   for (int m = 0; m < n_models(); ++m) {
     const std::vector<GlobalIndex> dofs = model(m).locked_dofs();
     const std::vector<double> values = model(m).locked_velocities(begin, end);

@@ -284,7 +284,7 @@ RCP<const Vector> SolidSystem<dim>::linearisation() const {
 
 template <int dim>
 std::vector<ComputedEnergy> SolidSystem<dim>::nonlinear_energies(double dt,
-                                                                const Vector& velocity) const {
+                                                                 const Vector& velocity) const {
   std::vector<ComputedEnergy> all;
   for (int m = 0; m < n_models(); ++m) {
     const auto* forces = nonlinear(m);

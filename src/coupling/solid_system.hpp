@@ -89,8 +89,10 @@ class SolidSystem {
   /// P at the present positions, locked dofs at rest.
   const Reduction& reduction() const { return reduction_; }
   /// P at the present positions with the mean velocities of locked dofs between two times
-  /// (`SolidModel::locked_velocities`), and with `ClosedMotion::constraint_error`; null: none. Collective.
-  Reduction constraints(double begin, double end, const RCP<const Vector>& constraint_error = {}) const;
+  /// (`SolidModel::locked_velocities`), and with `ClosedMotion::constraint_error`; null: none.
+  /// Collective.
+  Reduction constraints(double begin, double end,
+                        const RCP<const Vector>& constraint_error = {}) const;
   ConstraintModel* joints() { return joints_.get(); }  ///< null: there are none
   const ConstraintModel* joints() const { return joints_.get(); }
 

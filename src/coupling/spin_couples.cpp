@@ -70,7 +70,8 @@ void SpinCouples<dim>::place_centers(const std::vector<ViscousCouplingTerm<dim>>
 
 template <int dim>
 std::vector<typename SpinCouples<dim>::Fit> SpinCouples<dim>::fit(
-    const std::vector<ViscousCouplingTerm<dim>>& links, const std::vector<EndVelocity<dim>>& ends) const {
+    const std::vector<ViscousCouplingTerm<dim>>& links,
+    const std::vector<EndVelocity<dim>>& ends) const {
   constexpr int n_normal = n_motions<dim> * n_motions<dim>;
   constexpr int n_each = n_normal + n_rotations<dim>;
   std::vector<double> sums(n_each * center_.size(), 0);

@@ -18,7 +18,8 @@ template <int dim>
 class SpinCouples {
  public:
   /// `ends`: of the links. Collective.
-  SpinCouples(const std::vector<ViscousCouplingTerm<dim>>& links, const std::vector<EndVelocity<dim>>& ends,
+  SpinCouples(const std::vector<ViscousCouplingTerm<dim>>& links,
+              const std::vector<EndVelocity<dim>>& ends,
               const std::vector<SolidDescription>& solids, const Communicator& comm);
   /// True if no solid is turned by them. The same on all ranks.
   bool empty() const { return empty_; }
@@ -28,7 +29,8 @@ class SpinCouples {
 
  private:
   struct Fit;
-  void keep_turning(const std::vector<Fit>& fits, const std::vector<ViscousCouplingTerm<dim>>& links,
+  void keep_turning(const std::vector<Fit>& fits,
+                    const std::vector<ViscousCouplingTerm<dim>>& links,
                     const std::vector<EndVelocity<dim>>& ends,
                     const std::vector<AngularVector<dim>>& strength);
   void place_centers(const std::vector<ViscousCouplingTerm<dim>>& links,

@@ -9,8 +9,8 @@ namespace lockstep {
 
 template <int dim>
 std::vector<EndVelocity<dim>> ViscousCouplings<dim>::ends_of(const ViscousSystem<dim>& system,
-                                                     const SolidSystem<dim>& solids,
-                                                     const ViscousCoupling<dim>& coupling) {
+                                                             const SolidSystem<dim>& solids,
+                                                             const ViscousCoupling<dim>& coupling) {
   std::vector<EndVelocity<dim>> ends(system.links.size());
   for (std::size_t l = 0; l < system.links.size(); ++l)
     coupling.link_row(system.links[l], solids, ends[l]);
@@ -18,8 +18,9 @@ std::vector<EndVelocity<dim>> ViscousCouplings<dim>::ends_of(const ViscousSystem
 }
 
 template <int dim>
-ViscousCouplings<dim>::ViscousCouplings(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
-                                const ViscousCoupling<dim>& coupling)
+ViscousCouplings<dim>::ViscousCouplings(const ViscousSystem<dim>& system,
+                                        const SolidSystem<dim>& solids,
+                                        const ViscousCoupling<dim>& coupling)
     : list_(system.links),
       ends_(ends_of(system, solids, coupling)),
       couples_(system.links, ends_, solids.solids(), solids.comm()),
@@ -42,7 +43,8 @@ ViscousCouplings<dim>::ViscousCouplings(const ViscousSystem<dim>& system, const 
 }
 
 template <int dim>
-RCP<Vector> ViscousCouplings<dim>::end_velocity(const RCP<const Vector>& solid, bool prescribed) const {
+RCP<Vector> ViscousCouplings<dim>::end_velocity(const RCP<const Vector>& solid,
+                                                bool prescribed) const {
   const auto result = make_vector(map_);
   if (!rows_.is_null() && !solid.is_null())
     rows_->apply(*solid, *result);
@@ -78,7 +80,7 @@ void ViscousCouplings<dim>::add_couples(const Vector& end_velocity, Vector& pull
 
 template <int dim>
 void ViscousCouplings<dim>::take_from_fluid(double dt, const Vector& values, bool weighted,
-                                        Vector& fluid) const {
+                                            Vector& fluid) const {
   const auto value = values.getData();
   const auto result = fluid.getDataNonConst();
   for (std::size_t l = 0; l < list_.size(); ++l)
@@ -87,13 +89,13 @@ void ViscousCouplings<dim>::take_from_fluid(double dt, const Vector& values, boo
 
 template <int dim>
 void ViscousCouplings<dim>::pull_on_solids(double alpha, const Vector& pull, double beta,
-                                       Vector& drag) const {
+                                           Vector& drag) const {
   rows_->apply(pull, drag, Teuchos::TRANS, alpha, beta);
 }
 
 template <int dim>
 double ViscousCouplings<dim>::dissipation(const Vector& u, const Vector& end_velocity,
-                                      const Vector& couple_pull) const {
+                                          const Vector& couple_pull) const {
   double power = 0;
   const auto velocity = u.getData(), end = end_velocity.getData(), couples = couple_pull.getData();
   for (std::size_t l = 0; l < list_.size(); ++l) {
@@ -114,8 +116,9 @@ RCP<Vector> ViscousCouplings<dim>::strength_on_solids() const {
 }
 
 template <int dim>
-Momentum<dim> ViscousCouplings<dim>::impulse(const Vector& pull, const Vector& couple_pull, double dt,
-                                         std::vector<Momentum<dim>>& of_prescribed) const {
+Momentum<dim> ViscousCouplings<dim>::impulse(const Vector& pull, const Vector& couple_pull,
+                                             double dt,
+                                             std::vector<Momentum<dim>>& of_prescribed) const {
   Momentum<dim> couple;
   const auto values = pull.getData(), couples = couple_pull.getData();
   for (std::size_t l = 0; l < list_.size(); ++l) {

@@ -14,7 +14,7 @@ class ViscousCouplings {
  public:
   /// `system` must outlive it. Collective.
   ViscousCouplings(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
-               const ViscousCoupling<dim>& coupling);
+                   const ViscousCoupling<dim>& coupling);
 
   /// Velocities of the ends [m/s] for solid velocities V (null: none), prescribed velocities in or
   /// out. Collective.
@@ -46,8 +46,8 @@ class ViscousCouplings {
 
  private:
   static std::vector<EndVelocity<dim>> ends_of(const ViscousSystem<dim>& system,
-                                           const SolidSystem<dim>& solids,
-                                           const ViscousCoupling<dim>& coupling);
+                                               const SolidSystem<dim>& solids,
+                                               const ViscousCoupling<dim>& coupling);
 
   const std::vector<ViscousCouplingTerm<dim>>& list_;
   std::vector<EndVelocity<dim>> ends_;  ///< dofs and weights emptied once assembled

@@ -271,8 +271,8 @@ ViscousResult<dim> solve_viscous(
     op.rows.solid_of(x)->update(1, *guess, 0);
   }
   ViscousResult<dim> result;
-  result.iterations =
-      solve_from_guess<dim>(op, make_preconditioner<dim>(op, near_null_space, options), rhs, x, options);
+  result.iterations = solve_from_guess<dim>(
+      op, make_preconditioner<dim>(op, near_null_space, options), rhs, x, options);
 
   const RCP<const Vector> fluid_velocity = op.rows.fluid_of(std::as_const(x));
   if (with_solids) {

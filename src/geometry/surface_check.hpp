@@ -12,8 +12,8 @@ struct SurfaceDemand {
 };
 
 /// `check_surface` of a mesh that may come from a file: throws InputError that says how many
-/// simplices, facets or parts are wrong, where the first of them is, what the file calls it, and what
-/// parameter helps. Of a file it also refuses closed surfaces that cross themselves, and those
+/// simplices, facets or parts are wrong, where the first of them is, what the file calls it, and
+/// what parameter helps. Of a file it also refuses closed surfaces that cross themselves, and those
 /// whose parts face different ways (of nested parts the inner one bounds a hole and must face into
 /// it); if all face wrong, all are turned around.
 template <int dim>

@@ -97,8 +97,8 @@ class SurfaceSnapshot {
   SurfaceMesh<dim> mesh_of_solid(int solid) const;
 
   /// First simplex that the segment a -> b meets (within `tolerance` [m] of its ends and of the
-  /// simplex' facet), or none. Touching counts as meeting, and so does running inside the plane of a
-  /// simplex. No segment slips through between two neighbouring simplices.
+  /// simplex' facet), or none. Touching counts as meeting, and so does running inside the plane of
+  /// a simplex. No segment slips through between two neighbouring simplices.
   std::optional<SurfacePoint<dim>> first_hit(const Point<dim>& a, const Point<dim>& b,
                                              double tolerance = 0) const;
   /// Closest surface point within `radius`, or none.

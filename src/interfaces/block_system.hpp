@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "linear/null_space.hpp"
 #include "linear/near_null_space.hpp"
+#include "linear/null_space.hpp"
 
 namespace Thyra {
 template <typename Scalar>
@@ -23,7 +23,7 @@ struct Block {
 /// Blocks of the same kind, which follow one another in one vector and are solved for as one.
 struct BlockGroup {
   std::vector<Block> blocks = {};  ///< by name; empty: the group has no names within
-  long version = 0;                  ///< changes whenever the group's operator changes
+  long version = 0;                ///< changes whenever the group's operator changes
 };
 
 /// The coupled system, Eq. 16, as one Thyra operator of blocks in two groups:
@@ -51,7 +51,7 @@ class BlockSystem {
   const RCP<const LinearOperator>& solid_block() const { return solid_block_; }             ///< C
   bool has_solid() const { return !solid_block_.is_null(); }
 
-  BlockGroup solids;     ///< the unknowns of C
+  BlockGroup solids;              ///< the unknowns of C
   NearNullSpace near_null_space;  ///< in the rows of C; empty without soft solids
   /// Orthonormal basis of the null space over (p̂, V_S = 0); empty for a regular system.
   NullSpace null_space;

@@ -24,11 +24,10 @@ class AuditedCoupling {
   /// volumes' centres: taken minus given [kg m^2/s]. Zero (to round-off) where W reproduces rigid
   /// motions and the lumping is consistent, as for rigid bodies. Named in the ledger. Global.
   /// Collective.
-  virtual AngularVector<dim> lumping_torque_error(const SolidSystem<dim>&,
-                                           const std::vector<double>& /*velocity_before*/,
-                                           const std::vector<double>& /*velocity_after*/,
-                                           const BlockVector& /*solution*/,
-                                           const std::vector<double>& /*gas_pressure*/) const {
+  virtual AngularVector<dim> lumping_torque_error(
+      const SolidSystem<dim>&, const std::vector<double>& /*velocity_before*/,
+      const std::vector<double>& /*velocity_after*/, const BlockVector& /*solution*/,
+      const std::vector<double>& /*gas_pressure*/) const {
     return AngularVector<dim>::Zero();
   }
 };

@@ -160,8 +160,8 @@ class FluidDiscretization : public PlugIn {
 
   // The stages of a step.
 
-  /// Begins a step from `time` to time + dt: tiles may be made where things will move. Returns true if
-  /// u^n lives on other cells than when it was accepted, without being free of divergence there:
+  /// Begins a step from `time` to time + dt: tiles may be made where things will move. Returns true
+  /// if u^n lives on other cells than when it was accepted, without being free of divergence there:
   /// then the geometry is to be frozen anew. `solid_speed`: that of the fastest solid [m/s];
   /// collective, for those who want it. Default: the fluid always has room.
   virtual bool begin_step(double /*time*/, double /*dt*/,

@@ -52,7 +52,7 @@ class NonlinearSolids {
   /// dt, less the quadratic model whose gradient `explicit_momentum` and D are, up to a constant.
   /// Global, collective.
   virtual std::vector<ComputedEnergy> nonlinear_energies(double dt,
-                                                        const Vector& velocity) const = 0;
+                                                         const Vector& velocity) const = 0;
   /// The solid of each local row of `dof_map`. Rows are velocities of nodes, along all axes of one
   /// after those of another. Local.
   virtual std::vector<int> solid_of_row() const = 0;

@@ -43,8 +43,8 @@ struct SolveReport {
 class SolverStrategy : public PlugIn {
  public:
   /// Builds or reuses what depends on the operators (preconditioners, factorisations), judged by
-  /// the versions. Throws SolveError with a sentence if the system is outside the strategy's domain.
-  /// Collective.
+  /// the versions. Throws SolveError with a sentence if the system is outside the strategy's
+  /// domain. Collective.
   virtual void prepare(const BlockSystem& system) = 0;
   /// Solves for `solution`, whose content is the initial guess (an exact one is fine). Throws
   /// SolveError with the numbers if the request is not reached. Systems without solid take a

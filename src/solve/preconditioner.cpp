@@ -85,7 +85,8 @@ RCP<const LinearOperator> inner_iteration(const RCP<const LinearOperator>& op,
   const int most = value_or(list, "Maximum Iterations", 1000);
   if (!list.isSublist("Preconditioner"))
     return conjugate_gradient_inverse(op, tolerance, most, name);
-  const auto inner = preconditioner_from_list(op, list.sublist("Preconditioner"), name, near_null_space);
+  const auto inner =
+      preconditioner_from_list(op, list.sublist("Preconditioner"), name, near_null_space);
   return conjugate_gradient_inverse(op, {inner, Teuchos::null, tolerance, most, name, nullptr});
 }
 
@@ -217,7 +218,8 @@ ParameterList inverse_list(const ParameterList& list, const std::string& name,
 }
 
 RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
-                                           const NearNullSpace& near_null_space, const std::string& name) {
+                                           const NearNullSpace& near_null_space,
+                                           const std::string& name) {
   const auto matrix = assembled(op);
   if (matrix.is_null() || !is_stiff(stiffness_number(*matrix, near_null_space)))
     return Teuchos::null;

@@ -33,7 +33,8 @@ RCP<const LinearOperator> preconditioner_from_list(const RCP<const LinearOperato
 /// For a soft solid's C in a larger system: an approximate inverse, direct or "MueLu", if dt D
 /// outweighs its mass (is_stiff), else null, and the diagonal will do. Collective.
 RCP<const LinearOperator> inverse_if_stiff(const RCP<const LinearOperator>& op,
-                                           const NearNullSpace& near_null_space, const std::string& name);
+                                           const NearNullSpace& near_null_space,
+                                           const std::string& name);
 
 /// Throws InputError unless the list is one that preconditioner_from_list takes. `where` is for
 /// messages, and so are the types that the caller takes besides.

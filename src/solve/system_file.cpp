@@ -282,7 +282,7 @@ RCP<const Map> map_of_whole_nodes(const std::vector<long long>& bodies, int n_ax
 }
 
 NearNullSpace read_near_null_space(const Hdf5File& file, const std::vector<long long>& bodies,
-                          const RCP<const Map>& map) {
+                                   const RCP<const Map>& map) {
   NearNullSpace nodes;
   const std::string path = soft_group;
   const auto values = file.read_all<double>(path + "/motions");

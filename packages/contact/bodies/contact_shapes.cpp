@@ -254,7 +254,8 @@ std::vector<GlobalIndex> ContactShapes<dim>::leading_dofs() const {
 }
 
 template <int dim>
-Point<dim> ContactShapes<dim>::constraint_error(const SurfacePoint<dim>& point, const Point<dim>& x) const {
+Point<dim> ContactShapes<dim>::constraint_error(const SurfacePoint<dim>& point,
+                                                const Point<dim>& x) const {
   if (constraint_error_.empty())
     return Point<dim>::Zero();
   VelocityRow<dim> row;

@@ -90,8 +90,11 @@ class ContactShapes {
       const std::vector<std::pair<GlobalIndex, double>>& terms) const;
   /// Returns the dofs that others are combinations of.
   std::vector<GlobalIndex> leading_dofs() const;
-  /// Sets the velocities that combinations have beside their terms (`ClosedMotion::constraint_error`), by id.
-  void set_constraint_error(std::vector<double> constraint_error) { constraint_error_ = std::move(constraint_error); }
+  /// Sets the velocities that combinations have beside their terms
+  /// (`ClosedMotion::constraint_error`), by id.
+  void set_constraint_error(std::vector<double> constraint_error) {
+    constraint_error_ = std::move(constraint_error);
+  }
   /// Returns the part of a point's velocity that is due to `set_constraint_error`.
   Point<dim> constraint_error(const SurfacePoint<dim>& point, const Point<dim>& x) const;
   Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const {
@@ -128,7 +131,7 @@ class ContactShapes {
   std::vector<Box<dim>> bounds_, solid_bounds_;
   std::unordered_map<GlobalIndex, std::vector<std::pair<GlobalIndex, double>>> combinations_;
   std::vector<double> constraint_error_;  ///< empty: none
-  std::vector<int> carriers_;  ///< carrier of each vertex; empty: no node is attached
+  std::vector<int> carriers_;             ///< carrier of each vertex; empty: no node is attached
   std::vector<bool> held_;
 };
 

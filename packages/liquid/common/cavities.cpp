@@ -23,7 +23,7 @@ bool at_open_side(const MacDomain<dim>& domain, int cell) {
 
 template <int dim>
 std::vector<int> fill_cavities(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                             int most_cells, CellField& phi) {
+                               int most_cells, CellField& phi) {
   std::vector<int> filled;
   if (most_cells == 0)
     return filled;
@@ -81,8 +81,8 @@ std::vector<int> fill_cavities(const MacDomain<dim>& domain, const SolidCells<di
 template bool at_open_side<2>(const MacDomain<2>&, int);
 template bool at_open_side<3>(const MacDomain<3>&, int);
 template std::vector<int> fill_cavities<2>(const MacDomain<2>&, const SolidCells<2>&, int,
-                                         CellField&);
+                                           CellField&);
 template std::vector<int> fill_cavities<3>(const MacDomain<3>&, const SolidCells<3>&, int,
-                                         CellField&);
+                                           CellField&);
 
 }  // namespace lockstep

@@ -14,6 +14,6 @@ bool at_open_side(const MacDomain<dim>& domain, int cell);
 /// the halo of width 1, which is set on return. Returns the owned cells filled. Collective.
 template <int dim>
 std::vector<int> fill_cavities(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                             int most_cells, CellField& phi);
+                               int most_cells, CellField& phi);
 
 }  // namespace lockstep

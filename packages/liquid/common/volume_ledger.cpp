@@ -268,7 +268,8 @@ std::vector<int> VolumeLedger<dim>::places_among(const CellGroups& spaces,
 
 template <int dim>
 void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
-                                  const std::vector<int>& places, const std::vector<char>& unassigned,
+                                  const std::vector<int>& places,
+                                  const std::vector<char>& unassigned,
                                   std::vector<double>& target) {
   const CellGroups& spaces = find_closed_spaces(domain_, solids);
   Overlaps of_old;

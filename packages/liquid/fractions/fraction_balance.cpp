@@ -115,7 +115,8 @@ class Books {
       if (!solids_.is_fluid(cell))
         return;
       for (const int takes : {0, 1})
-        sums[(1 + takes) * n_ + body] += redistribution_weight(cell, takes) * fractions_.open_part(cell);
+        sums[(1 + takes) * n_ + body] +=
+            redistribution_weight(cell, takes) * fractions_.open_part(cell);
     });
     sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
     defect_.assign(sums.begin(), sums.begin() + n_);
@@ -220,11 +221,11 @@ class Books {
   const CellField& phi_;
   Fractions& fractions_;
   int n_ = 0;
-  std::vector<int> body_;             ///< component beside each stored cell, or -1
+  std::vector<int> body_;               ///< component beside each stored cell, or -1
   std::vector<double> defect_, share_;  ///< defect beside each component, and its share from afar
-  std::vector<double> ratio_;         ///< shift of its surface [cells]
+  std::vector<double> ratio_;           ///< shift of its surface [cells]
   std::array<std::vector<double>, 2> rooms_;  ///< for giving and for taking
-  double unassigned_ = 0;                       ///< defects beside no component
+  double unassigned_ = 0;                     ///< defects beside no component
   CellGroups spaces_;
   std::vector<double> defect_in_space_;
   std::vector<int> space_of_body_;
@@ -233,7 +234,7 @@ class Books {
 
 template <int dim>
 void remove_fragments(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                   const std::vector<char>& tiles, Fractions& fractions) {
+                      const std::vector<char>& tiles, Fractions& fractions) {
   std::vector<int> fragments;
   for_each_owned_cell_of(domain.grid, tiles, [&](int cell) {
     if (const double liquid = fractions.liquid[cell];
@@ -296,10 +297,10 @@ double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   return lost;
 }
 
-template void remove_fragments<2>(const MacDomain<2>&, const SolidCells<2>&, const std::vector<char>&,
-                               Fractions&);
-template void remove_fragments<3>(const MacDomain<3>&, const SolidCells<3>&, const std::vector<char>&,
-                               Fractions&);
+template void remove_fragments<2>(const MacDomain<2>&, const SolidCells<2>&,
+                                  const std::vector<char>&, Fractions&);
+template void remove_fragments<3>(const MacDomain<3>&, const SolidCells<3>&,
+                                  const std::vector<char>&, Fractions&);
 template Repayment pay_back<2>(const MacDomain<2>&, const SolidCells<2>&, const CellField&, double,
                                Fractions&);
 template Repayment pay_back<3>(const MacDomain<3>&, const SolidCells<3>&, const CellField&, double,

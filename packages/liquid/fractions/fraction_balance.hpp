@@ -10,7 +10,7 @@ namespace lockstep {
 /// fractions. Collective.
 template <int dim>
 void remove_fragments(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                   const std::vector<char>& tiles, Fractions& fractions);
+                      const std::vector<char>& tiles, Fractions& fractions);
 
 /// Result of a redistribution of volume defects.
 struct Repayment {

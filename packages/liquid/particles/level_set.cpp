@@ -5,8 +5,8 @@
 
 #include "base/errors.hpp"
 #include "liquid/common/band_tiles.hpp"
-#include "liquid/common/redistance.hpp"
 #include "liquid/common/cavities.hpp"
+#include "liquid/common/redistance.hpp"
 #include "liquid/particles/drop_births.hpp"
 #include "liquid/particles/particle_correction.hpp"
 #include "liquid/particles/particle_motion.hpp"
@@ -14,8 +14,8 @@
 #include "liquid/particles/particle_storage.hpp"
 #include "output/checkpoint.hpp"
 #include "staggered/state/stored_fields.hpp"
-#include "transport/uncovered_samples.hpp"
 #include "transport/transport.hpp"
+#include "transport/uncovered_samples.hpp"
 
 namespace lockstep {
 
@@ -133,7 +133,7 @@ double LevelSet<dim>::advect(const InterfaceStep<dim>& step) {
   const auto replaced = find_solids(step.surface.after);
   if (had_solids || solids_.state.surface)
     populate_uncovered_scalar(grid, domain_.halo, solids_.state, step.surface, step.kept,
-                      transport.invalid(), grid.spacing(), phi_);
+                              transport.invalid(), grid.spacing(), phi_);
   domain_.halo.fill(phi_);
   if (moved_ >= negligible_motion)
     restore(step, tiles);
@@ -166,7 +166,8 @@ void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<ch
 
 template <int dim>
 void LevelSet<dim>::fill_small_cavities() {
-  const std::vector<int> filled = fill_cavities(domain_, solids_, parameters_.smallest_cavity, phi_);
+  const std::vector<int> filled =
+      fill_cavities(domain_, solids_, parameters_.smallest_cavity, phi_);
   if (!parameters_.particles ||
       sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(filled.size())) == 0)
     return;

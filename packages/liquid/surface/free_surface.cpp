@@ -19,7 +19,7 @@ void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_su
 
 template <int dim>
 void set_distance_factor_to_air(const MacDomain<dim>& domain, const FreeSurface<dim>& free_surface,
-                           MacGeometry<dim>& geometry) {
+                                MacGeometry<dim>& geometry) {
   const TiledGrid<dim>& grid = domain.grid;
   const auto& cells = geometry.state.cells;
   const auto set = [&](int axis, int face, int wet, int dry) {
@@ -27,7 +27,8 @@ void set_distance_factor_to_air(const MacDomain<dim>& domain, const FreeSurface<
         geometry.state.faces[axis][face] == FaceState::free)
       geometry.face_table.set_distance_factor(
           axis, face,
-          free_surface.distance_factor(wet, dry, geometry.in_bubble(dry) ? least_distance_from_gas : 0));
+          free_surface.distance_factor(wet, dry,
+                                       geometry.in_bubble(dry) ? least_distance_from_gas : 0));
   };
   grid.for_each_owned_cell_with_neighbors([&](int cell, const auto& neighbors) {
     for (int axis = 0; axis < dim; ++axis) {
@@ -47,7 +48,9 @@ template void empty_dry_cells<2>(const TiledGrid<2>&, const FreeSurface<2>&,
                                  std::vector<CellState>&);
 template void empty_dry_cells<3>(const TiledGrid<3>&, const FreeSurface<3>&,
                                  std::vector<CellState>&);
-template void set_distance_factor_to_air<2>(const MacDomain<2>&, const FreeSurface<2>&, MacGeometry<2>&);
-template void set_distance_factor_to_air<3>(const MacDomain<3>&, const FreeSurface<3>&, MacGeometry<3>&);
+template void set_distance_factor_to_air<2>(const MacDomain<2>&, const FreeSurface<2>&,
+                                            MacGeometry<2>&);
+template void set_distance_factor_to_air<3>(const MacDomain<3>&, const FreeSurface<3>&,
+                                            MacGeometry<3>&);
 
 }  // namespace lockstep

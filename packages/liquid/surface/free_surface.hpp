@@ -40,6 +40,6 @@ void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_su
 /// for owned faces and the upper ones of owned cells. Local.
 template <int dim>
 void set_distance_factor_to_air(const MacDomain<dim>& domain, const FreeSurface<dim>& free_surface,
-                           MacGeometry<dim>& geometry);
+                                MacGeometry<dim>& geometry);
 
 }  // namespace lockstep

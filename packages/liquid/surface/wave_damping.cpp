@@ -117,8 +117,8 @@ NearSurface<dim> normal_speed(const MacDomain<dim>& domain, const std::vector<ch
 
 template <int dim>
 CellField short_wave_filter(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                              const CellField& distance, const FaceField<dim>& velocity,
-                              double gravity, double dt) {
+                            const CellField& distance, const FaceField<dim>& velocity,
+                            double gravity, double dt) {
   const TiledGrid<dim>& grid = domain.grid;
   const double h = grid.spacing();
   const std::vector<char> tiles = tiles_within<dim>(grid, distance, reach_of_motion * h);
@@ -143,8 +143,8 @@ CellField short_wave_filter(const MacDomain<dim>& domain, const MacGeometry<dim>
 }
 
 template CellField short_wave_filter<2>(const MacDomain<2>&, const MacGeometry<2>&,
-                                          const CellField&, const FaceField<2>&, double, double);
+                                        const CellField&, const FaceField<2>&, double, double);
 template CellField short_wave_filter<3>(const MacDomain<3>&, const MacGeometry<3>&,
-                                          const CellField&, const FaceField<3>&, double, double);
+                                        const CellField&, const FaceField<3>&, double, double);
 
 }  // namespace lockstep

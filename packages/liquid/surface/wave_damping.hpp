@@ -14,7 +14,7 @@ namespace lockstep {
 /// air, as marked in `geometry`; both with valid halos. `gravity` [m/s^2], not 0. Collective.
 template <int dim>
 CellField short_wave_filter(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                              const CellField& distance, const FaceField<dim>& velocity,
-                              double gravity, double dt);
+                            const CellField& distance, const FaceField<dim>& velocity,
+                            double gravity, double dt);
 
 }  // namespace lockstep

@@ -49,7 +49,7 @@ class LeakAudit {
   struct Look {
     Surface surface;               ///< null: none; the same is not looked at twice
     std::vector<CellState> cells;  ///< `fluid` outside solids
-    std::vector<char> occluded;     ///< as in SurfaceMarks; empty without a surface
+    std::vector<char> occluded;    ///< as in SurfaceMarks; empty without a surface
     std::vector<char> liquid;      ///< holds liquid or sees some
     std::vector<char> hidden;      ///< see LiquidCells
     std::vector<int> watched;      ///< a bit for each watch

@@ -59,8 +59,8 @@ CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<Cell
 
 template <int dim>
 void bound_beside_air(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                       const std::function<double(int wet, int dry, int axis, int end)>& at_surface,
-                       CellField& pressure) {
+                      const std::function<double(int wet, int dry, int axis, int end)>& at_surface,
+                      CellField& pressure) {
   constexpr double near = 10;
   const auto& cells = geometry.state.cells;
   std::vector<std::pair<int, double>> bounded;
@@ -98,8 +98,8 @@ template CellField extended_pressure<2>(const MacDomain<2>&, const std::vector<C
 template CellField extended_pressure<3>(const MacDomain<3>&, const std::vector<CellState>&,
                                         const std::vector<CellState>&, CellField, const Point<3>&);
 template void bound_beside_air<2>(const MacDomain<2>&, const MacGeometry<2>&,
-                                   const std::function<double(int, int, int, int)>&, CellField&);
+                                  const std::function<double(int, int, int, int)>&, CellField&);
 template void bound_beside_air<3>(const MacDomain<3>&, const MacGeometry<3>&,
-                                   const std::function<double(int, int, int, int)>&, CellField&);
+                                  const std::function<double(int, int, int, int)>&, CellField&);
 
 }  // namespace lockstep

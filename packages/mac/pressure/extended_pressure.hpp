@@ -21,7 +21,7 @@ CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<Cell
 /// valid, and are set. Collective.
 template <int dim>
 void bound_beside_air(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                       const std::function<double(int wet, int dry, int axis, int end)>& at_surface,
-                       CellField& pressure);
+                      const std::function<double(int wet, int dry, int axis, int end)>& at_surface,
+                      CellField& pressure);
 
 }  // namespace lockstep

@@ -159,7 +159,8 @@ StripValues<dim> MacPressureOperator<dim>::product(const CellStrip<dim>& cells) 
   using Faces = Eigen::Map<const Eigen::Array<float, width, 1>>;
   const double* x = field_.data();
   const StripValues<dim> own = row_of<dim>(x, cells.begin);
-  StripValues<dim> sum = Faces(coefficients_.dirichlet.data() + cells.begin).template cast<double>();
+  StripValues<dim> sum =
+      Faces(coefficients_.dirichlet.data() + cells.begin).template cast<double>();
   sum *= own;
   // Over the faces along the row, the two at its ends too.
   const float* along = coefficients_.lower[0].data() + cells.begin;

@@ -68,7 +68,7 @@ bool StressAtAir<dim>::fluid_at_open_side() const {
 /// Fluid continues beyond a side as before it.
 template <int dim>
 typename StressAtAir<dim>::Edge StressAtAir<dim>::edge(const FaceId& face, int across,
-                                                         int end) const {
+                                                       int end) const {
   const TiledGrid<dim>& grid = domain_.grid;
   const auto beside = [&](int cell) {
     const int other = grid.neighbor(cell, across, end);

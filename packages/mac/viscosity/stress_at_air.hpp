@@ -56,8 +56,7 @@ class StressAtAir {
   bool is_fluid(int cell) const { return geometry_.state.cells[cell] == CellState::fluid; }
   bool is_regular(int cell) const {
     const CellState state = geometry_.state.cells[cell];
-    return (state == CellState::fluid || state == CellState::air) &&
-           !geometry_.near_surface(cell);
+    return (state == CellState::fluid || state == CellState::air) && !geometry_.near_surface(cell);
   }
   /// Stored cells all of whose neighbours in the domain, those at edges and corners too, are
   /// marked, as they are.

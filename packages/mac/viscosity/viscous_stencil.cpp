@@ -236,7 +236,7 @@ class Builder {
 
   /// `coefficient` is that of a neighbour, which the link is to reach by `fraction`.
   ViscousCouplingTerm<dim> new_link(const FaceId& face, int across, int end, double coefficient,
-                            double fraction) {
+                                    double fraction) {
     coefficient /= fraction;
     diagonal_ += coefficient;
     ViscousCouplingTerm<dim> link;
@@ -322,15 +322,18 @@ class Builder {
 }  // namespace
 
 template <int dim>
-ViscousStencil<dim> find_viscous_stencil(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     const ViscosityParameters& parameters,
-                                     const ImplicitTension& tension) {
+ViscousStencil<dim> find_viscous_stencil(const MacDomain<dim>& domain,
+                                         const MacGeometry<dim>& geometry,
+                                         const ViscosityParameters& parameters,
+                                         const ImplicitTension& tension) {
   return Builder<dim>(domain, geometry, parameters, tension).build();
 }
 
 template ViscousStencil<2> find_viscous_stencil<2>(const MacDomain<2>&, const MacGeometry<2>&,
-                                               const ViscosityParameters&, const ImplicitTension&);
+                                                   const ViscosityParameters&,
+                                                   const ImplicitTension&);
 template ViscousStencil<3> find_viscous_stencil<3>(const MacDomain<3>&, const MacGeometry<3>&,
-                                               const ViscosityParameters&, const ImplicitTension&);
+                                                   const ViscosityParameters&,
+                                                   const ImplicitTension&);
 
 }  // namespace lockstep

@@ -7,7 +7,7 @@ namespace lockstep {
 struct ViscosityParameters {
   double viscosity = 0;  ///< dynamic, mu [Pa s]
   double smallest_coupling_fraction =
-      0.2;                ///< part of h [1]: a link to a surface is never taken shorter
+      0.2;               ///< part of h [1]: a link to a surface is never taken shorter
   bool has_air = false;  ///< above a free surface: the form is that of the symmetric stress there
 };
 
@@ -63,8 +63,9 @@ struct ViscousStencil {
 
 /// Collective.
 template <int dim>
-ViscousStencil<dim> find_viscous_stencil(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     const ViscosityParameters& parameters,
-                                     const ImplicitTension& tension = {});
+ViscousStencil<dim> find_viscous_stencil(const MacDomain<dim>& domain,
+                                         const MacGeometry<dim>& geometry,
+                                         const ViscosityParameters& parameters,
+                                         const ImplicitTension& tension = {});
 
 }  // namespace lockstep

@@ -58,7 +58,7 @@ class FaceTable {
 
   double area_ = 0, volume_ = 0, spacing_ = 0;
   FaceProperties regular_;
-  std::array<std::vector<int>, dim> block_of_tile_;  ///< -1: all its faces are regular
+  std::array<std::vector<int>, dim> block_of_tile_;       ///< -1: all its faces are regular
   std::array<std::vector<FaceProperties>, dim> special_;  ///< block after block
 };
 

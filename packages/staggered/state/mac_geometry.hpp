@@ -27,7 +27,7 @@ struct MacGeometry : FluidGeometry<dim> {
   /// Owned faces with open fraction < 1 and fluid on at least one side.
   std::vector<FaceId> coupled;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows beside fluid
-  std::vector<FaceId> band_edge;         ///< owned free faces to fluid at rest beyond the stored tiles
+  std::vector<FaceId> band_edge;   ///< owned free faces to fluid at rest beyond the stored tiles
   std::vector<int> pocket;         ///< gas bubble of stored cells, or -1; empty: gas is not trapped
 
   /// The part of a face through which free fluid flows.

@@ -223,7 +223,8 @@ void RefinedStrategy::relay(const BlockSystem& system) {
     return;
   }
   // Another C on the same geometry.
-  permuted.set_blocks(permuted.pressure_block(), permuted.coupling_transposed(), system.solid_block());
+  permuted.set_blocks(permuted.pressure_block(), permuted.coupling_transposed(),
+                      system.solid_block());
   permuted.solids = system.solids;
   permuted.near_null_space = system.near_null_space;
 }

@@ -102,8 +102,9 @@ class SolidType : public InverseType {
       const std::string name = (is_own ? "solid block of the " : "solid Schur complement of the ") +
                                inverses.system().name;
       if (list().isSublist("Inverse"))
-        return preconditioner_from_list(block.op, list().sublist("Inverse"), name,
-                                        is_own ? inverses.system().near_null_space : NearNullSpace());
+        return preconditioner_from_list(
+            block.op, list().sublist("Inverse"), name,
+            is_own ? inverses.system().near_null_space : NearNullSpace());
       if (!is_own)
         return exact_inverse(block.op, name);
       return is_exact ? inverses.solid().exact() : inverses.solid().approximate();

@@ -14,6 +14,7 @@ struct RowComponent {
 /// The components of a matrix of symmetric pattern that stores its diagonal, by local row, wherever
 /// their rows live. The rows of a node of `space` count as connected: in a flat cloth nothing else
 /// ties what moves in its plane to what moves out of it. Collective.
-std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix, const NearNullSpace& space = {});
+std::vector<RowComponent> components_of_rows(const CrsMatrix& matrix,
+                                             const NearNullSpace& space = {});
 
 }  // namespace lockstep

@@ -106,7 +106,8 @@ NearNullSpace restricted(const NearNullSpace& all, const MatrixPart& part) {
   return result;
 }
 
-InverseByCost::Rest rest_of(const std::shared_ptr<const MatrixPart>& part, const NearNullSpace& space) {
+InverseByCost::Rest rest_of(const std::shared_ptr<const MatrixPart>& part,
+                            const NearNullSpace& space) {
   const NearNullSpace motions = restricted(space, *part);
   return {as_operator(RCP<const CrsMatrix>(part->matrix())), motions,
           stiffness_number(*part->matrix(), motions), part};

@@ -22,7 +22,7 @@ class InverseByCost {
   /// Rows left to an iteration.
   struct Rest {
     RCP<const LinearOperator> op;            ///< C on them, numbered anew
-    NearNullSpace motions;                       ///< the rigid motions of bodies in them
+    NearNullSpace motions;                   ///< the rigid motions of bodies in them
     double stiffness = 1;                    ///< stiffness_number; 1 where C is matrix-free
     std::shared_ptr<const MatrixPart> part;  ///< null: all rows
   };
@@ -45,12 +45,13 @@ class InverseByCost {
   RCP<const LinearOperator> with(const InverseOfRest& inverse_of_rest) const;
 
  private:
-  void split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space, const std::string& name);
+  void split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space,
+             const std::string& name);
   void take_small(const CrsMatrix& matrix, const NearNullSpace& space,
                   const std::vector<RowComponent>& components, std::vector<bool> is_small,
                   const std::string& name);
-  void take_large(const CrsMatrix& matrix, const NearNullSpace& space, const std::vector<bool>& rows,
-                  const std::string& name);
+  void take_large(const CrsMatrix& matrix, const NearNullSpace& space,
+                  const std::vector<bool>& rows, const std::string& name);
 
   RCP<const Map> map_;
   RCP<const LinearOperator> whole_;  ///< C^-1, if one method serves all of it

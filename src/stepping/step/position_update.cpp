@@ -32,8 +32,8 @@ void drop_with_followers(const Reduction& reduction, const Vector& marks, Vector
 }
 
 /// Closes the joints of a motion that was found with `correction`, by changing its velocity.
-ClosedFreeMotion closed_flight(ConstraintModel& joints, const StepTime& step, const Vector& correction,
-                           const Vector& solved, Vector& velocity) {
+ClosedFreeMotion closed_flight(ConstraintModel& joints, const StepTime& step,
+                               const Vector& correction, const Vector& solved, Vector& velocity) {
   if (auto* const free_motions = side_of<FreeRigidMotion>(joints))
     return free_motions->close_free_motion(step.begin, step.dt, correction, solved, velocity);
   ClosedFreeMotion motion;

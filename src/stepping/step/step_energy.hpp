@@ -40,7 +40,7 @@ class StepEnergy {
   const CoupledSystem<dim>& system_;
   EnergyFluid<dim>* fluid_;             ///< null: it cannot tell
   const AuditedFluid<dim>* audited_;    ///< likewise
-  EnergyBudget book_;                     ///< of this step, as far as it is known
+  EnergyBudget book_;                   ///< of this step, as far as it is known
   RCP<const Vector> velocity_;          ///< V^n
   std::vector<double> coupled_before_;  ///< u*_F before forces
   double fluid_energy_ = 0, elastic_energy_ = 0, kinetic_energy_ = 0;  ///< at the begin

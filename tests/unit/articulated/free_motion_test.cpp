@@ -135,8 +135,8 @@ TEST(FreeMotion, IsOfSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / half), 2, 0.15);
 }
 
-/// A free_motion is reversible, so that no energy can drift: with momenta turned round it goes back the
-/// way it came.
+/// A free_motion is reversible, so that no energy can drift: with momenta turned round it goes back
+/// the way it came.
 TEST(FreeMotion, GoesBackTheWayItCame) {
   Chain chain;
   const std::vector<BodyPose<3>> start = chain.poses();

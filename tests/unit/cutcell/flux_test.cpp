@@ -265,7 +265,8 @@ TEST(Flux, NamesTheLeversOfNodes) {
   Momentum<2> total = c.fluid->audit()->momentum() + c.system->lumped_fluid_momentum(before);
   total += c.solids->momentum(*momentum) +
            c.fluid->audit()->boundary_pressure_impulse(*solution.pressure);
-  const AngularVector<2> levers = c.coupling.lumping_torque_error(*c.solids, before, after, solution, {});
+  const AngularVector<2> levers =
+      c.coupling.lumping_torque_error(*c.solids, before, after, solution, {});
   c.fluid->project(*solution.pressure);
   c.fluid->set_coupled_velocity(after);
   const auto gained = make_vector(c.solids->map());

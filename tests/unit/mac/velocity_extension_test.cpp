@@ -188,7 +188,7 @@ TEST(VelocityExtension, ShortWavesAloneAreDamped) {
     MacGeometry<2> geometry = fluid->geometry();
     geometry.state = result.state;
     const CellField found = short_wave_filter<2>(fluid->domain(), geometry, distance,
-                                                   result.velocity, gravity.norm(), dt);
+                                                 result.velocity, gravity.norm(), dt);
     grid.for_each_owned_cell([&](int cell) {
       const Point<2> x = grid.center(cell);
       if ((x.array() > 0.2).all() && (x.array() < 0.8).all() && std::abs(distance[cell]) < 1.5 * h)

@@ -47,7 +47,9 @@ class RecordingFluid : public FakeFluid<2> {
     calls_.push_back(fmt::format("fluid: advect over {}", dt));
     FakeFluid<2>::advect(time, dt, surface);
   }
-  void populate_uncovered(const MovingSurface<2>&) override { calls_.push_back("fluid: populate_uncovered"); }
+  void populate_uncovered(const MovingSurface<2>&) override {
+    calls_.push_back("fluid: populate_uncovered");
+  }
   void accept() override {
     calls_.push_back("fluid: u = u*");
     FakeFluid<2>::accept();

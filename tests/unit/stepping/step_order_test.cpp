@@ -72,17 +72,18 @@ TEST(StepOrder, IsThatOfSection7) {
   for (int i = 0; i < 2; ++i) {
     const std::string begin = fmt::format("solids: step from {} over 0.5", 3 + 0.5 * i);
     const std::string contact = fmt::format("contact: step from {}", 3 + 0.5 * i);
-    EXPECT_THAT(recorded.step(),
-                ElementsAre(begin, contact, "fluid: u* = u", "fluid: forces over 0.25",  // F1
-                            "solids: forces over 0.25", "solids: midpoint of 0.25", "solve: S1",
-                            "solids: limit over 0.5", "contact: positions over 0.5",
-                            "solids: move over 0.5",                                        // S1
-                            "fluid: u* to advect over 0.5", "solve: F2", "fluid: project",  // F2
-                            "fluid: advect over 0.5", "fluid: geometry", "fluid: populate_uncovered",
-                            "fluid: forces over 0.5",  // F3
-                            "solids: forces over 0.5", "contact: velocities over 0.5",
-                            "solve: S2",                                       // S2
-                            "fluid: project", "fluid: u = u*", "solids: V"));  // F4
+    EXPECT_THAT(
+        recorded.step(),
+        ElementsAre(begin, contact, "fluid: u* = u", "fluid: forces over 0.25",  // F1
+                    "solids: forces over 0.25", "solids: midpoint of 0.25", "solve: S1",
+                    "solids: limit over 0.5", "contact: positions over 0.5",
+                    "solids: move over 0.5",                                        // S1
+                    "fluid: u* to advect over 0.5", "solve: F2", "fluid: project",  // F2
+                    "fluid: advect over 0.5", "fluid: geometry", "fluid: populate_uncovered",
+                    "fluid: forces over 0.5",  // F3
+                    "solids: forces over 0.5", "contact: velocities over 0.5",
+                    "solve: S2",                                       // S2
+                    "fluid: project", "fluid: u = u*", "solids: V"));  // F4
   }
   EXPECT_EQ(recorded.scheme->time(), 4);
 }
@@ -90,10 +91,10 @@ TEST(StepOrder, IsThatOfSection7) {
 TEST(StepOrder, FluidAloneTakesOneSolve) {
   Recorded recorded(tank(), {});
   EXPECT_EQ(count(recorded.step(), "solve: F2"), 1);  // u^0 may have a divergence
-  EXPECT_THAT(recorded.step(),
-              ElementsAre("contact: step from 3.5", "fluid: u* to advect over 0.5",
-                          "fluid: advect over 0.5", "fluid: populate_uncovered", "fluid: forces over 0.5",
-                          "solve: S2", "fluid: project", "fluid: u = u*"));
+  EXPECT_THAT(recorded.step(), ElementsAre("contact: step from 3.5", "fluid: u* to advect over 0.5",
+                                           "fluid: advect over 0.5", "fluid: populate_uncovered",
+                                           "fluid: forces over 0.5", "solve: S2", "fluid: project",
+                                           "fluid: u = u*"));
 }
 
 TEST(StepOrder, PrescribedSolidsNeedNoFirstSolve) {

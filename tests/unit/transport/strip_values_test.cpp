@@ -26,7 +26,8 @@ void check_each_value() {
   flag[1] = -2;
   flag[tile_width<dim> - 1] = 1e-300;
   const StripValues<dim> either = chosen(flag, a, b), between = within(a, low, high, b);
-  const StripValues<dim> nothing_between = within(a, high, low, b), one_value = within(b, a, a, flag);
+  const StripValues<dim> nothing_between = within(a, high, low, b),
+                         one_value = within(b, a, a, flag);
   for (int i = 0; i < tile_width<dim>; ++i) {
     EXPECT_EQ(ahead[i], i + 1 < tile_width<dim> ? a[i + 1] : 100);
     EXPECT_EQ(behind[i], i > 0 ? a[i - 1] : -100);

@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "support/world.hpp"
-#include "transport/uncovered_samples.hpp"
 #include "transport/transport.hpp"
+#include "transport/uncovered_samples.hpp"
 
 namespace lockstep::test {
 
