@@ -69,7 +69,8 @@ double largest_turn(const ClosingProblem<dim>& problem,
 template <int dim>
 bool differ(const ClosingProblem<dim>& problem, const std::vector<BodyMotion<dim>>& motions,
             const std::vector<BodyMotion<dim>>& others) {
-  constexpr double negligible = rounding::differences;  // of the mechanism's reach, rad
+  constexpr double negligible =
+      rounding::differences;  // part of the mechanism's reach [1]; angle [rad]
   const double unit = reach(problem.mechanism, problem.joints);
   return std::any_of(
       problem.mechanism.bodies.begin(), problem.mechanism.bodies.end(), [&](int body) {

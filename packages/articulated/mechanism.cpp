@@ -186,7 +186,7 @@ MotionBasis<dim> motion_basis(const Mechanism& mechanism,
                               const std::vector<Joint<dim>>& joints,
                               const std::vector<BodyPose<dim>>& poses, const RateDofs& dofs,
                               const std::vector<char>& given) {
-  constexpr double dependent = rounding::differences;  // of the motions that are compared
+  constexpr double dependent = rounding::differences;  // part of the motions that are compared [1]
   TreeMotion<dim> tree(mechanism, bodies, joints, poses, dofs);
   MotionBasis<dim>& basis = tree.basis();
   if (mechanism.loops.empty())

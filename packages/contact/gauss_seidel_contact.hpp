@@ -18,9 +18,9 @@ namespace lockstep {
 using SolidPairs = std::set<std::pair<int, int>>;
 
 struct GaussSeidelOptions {
-  int sweeps = 200;         ///< of projected Gauss-Seidel over the final set of contacts
+  int sweeps = 200;         ///< sweeps of projected Gauss-Seidel over the final set of contacts
   double tolerance = 1e-4;  ///< change of velocities over the largest one wanted [1]
-  double thickness = 0.1;   ///< of shells and of the skins of deformable bodies [h]
+  double thickness = 0.1;   ///< thickness of shells and of the skins of deformable bodies [h]
   std::map<std::string, double> thickness_of;              ///< instead, by name of the solid [m]
   std::vector<std::pair<std::string, std::string>> apart;  ///< pairs that do not touch, by name
   std::optional<double> wall_friction, wall_restitution;   ///< default: those of the solid

@@ -22,7 +22,7 @@ struct SplitPoints {
   std::array<const StripSplit<dim>*, dim> splits;
 };
 
-/// What is beyond the last sample of a row moves as the first does. What is stored there depends on
+/// Places beyond the last sample of a strip move as the first does. Values stored there depend on
 /// how far the halo reaches, and points in step and others are summed in ways that differ by
 /// round-off: a restarted run, whose halos know no earlier steps, must sum as the straight one.
 template <int dim>
@@ -54,7 +54,7 @@ template <int dim>
 bool TileBlock<dim>::enter(const Index<dim>& tile_begin) {
   for (int a = 0; a < dim; ++a) {
     begin_[a] = tile_begin[a] - margin_[a];
-    // What is beyond the domain asks for no samples: they might be stored or not.
+    // Places beyond the domain ask for no samples: they might be stored or not.
     const int samples_end = lattice_.n_cells()[a] + (lattice_.periodic(a) ? 0 : 1);
     const int n_samples = std::min(tile_width<dim>, samples_end - tile_begin[a]);
     if (a == 0)

@@ -67,7 +67,7 @@ class CoupledSystem {
   RCP<const CrsMatrix> coupling_transposed_;  ///< P^T B^T of the geometry; null without solids
   BlockSystem blocks_, pressure_only_;
   double block_dt_ = 0;               ///< the dt of C in `blocks_`
-  unsigned block_linearisation_ = 0;  ///< that of D in `blocks_`, see SolidSystem
+  unsigned block_linearisation_ = 0;  ///< linearisation number of D in `blocks_`, see SolidSystem
   bool solid_depends_on_dt_ = false;
 };
 

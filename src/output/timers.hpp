@@ -63,9 +63,9 @@ class ScopedStage {
 /// A table for the end of a run: one line a stage.
 std::string timing_table(const std::vector<StageTime>& stages);
 
-/// That this process, with all its threads, has used so far: user and system time [s]. Other than
-/// wall time it does not grow while the process waits for a core. A rank that waits for others
-/// inside MPI does use it. Local.
+/// CPU seconds that this process, with all its threads, has used so far: user and system time [s].
+/// Other than wall time it does not grow while the process waits for a core. A rank that waits for
+/// others inside MPI does use it. Local.
 double cpu_seconds();
 
 /// Largest resident memory so far [MB of 10^6 bytes].

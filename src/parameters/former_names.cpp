@@ -61,7 +61,7 @@ const std::vector<FormerName>& former_names() {
       {"Fluid", "Particles per Cell", "is always 16 now: leave it out"},
       {"Fluid", "Reseed Interval", "is always 20 steps now: leave it out"},
       {"Fluid", "Largest Shift", "is a constant now: leave it out"},
-      {"Fluid", "Fragments",
+      {"Fluid", "Crumbs",
        "is called \"Volume Correction\" now: \"component\" in place of \"return\", \"none\" in "
        "place of \"keep\""},
       {"Wave", "Period", "is \"Frequency\" now, one over it"},
@@ -77,7 +77,7 @@ const std::vector<FormerName>& former_names() {
       {"", "Krylov Solver", "is gone: viscosity is solved for by conjugate gradients"},
       {"", "Largest Solid", "is always 18 now: leave it out"},
       {"", "Maximum Unknowns", "is always 300000 now: leave it out"},
-      // What scenes say beside, and studies.
+      // Scenes and studies.
       {"View", "Centre", "is called \"Center\" now"},
       {"Copies", "Number", "is called \"Count\" now"},
       {"Copies", "Positions", "is called \"Points\" now"},

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// What became of a parameter that is no more, as the end of a sentence that begins with its name:
+/// Fate of a parameter that is no more, as the end of a sentence that begins with its name:
 /// "is called \"Thickness\" now". `path` is the list that it was found in. Empty for a name that
 /// never was one there. All such names stand in this room, whatever plug-in had them, so that an
 /// old file is refused by one sentence.

@@ -19,7 +19,8 @@ struct RunResults {
   double spacing = 0;    ///< h, the smallest length that the fluid resolves [m]
   double n_cells = 0;    ///< cells of the boxes in frames
   double mean_step = 0;  ///< [s]
-  double wall_seconds = 0, cpu_seconds = 0;  ///< of the run; CPU seconds: of all ranks together
+  double wall_seconds = 0,
+         cpu_seconds = 0;  ///< seconds of the run; CPU seconds of all ranks together
 };
 
 /// Reads the folder of a run. Throws OutputError for files that are missing or torn.

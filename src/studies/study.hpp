@@ -20,7 +20,7 @@ struct Series {
   std::string scene_file;
   Formulas constants;
   std::vector<std::string> assignments;  ///< "Path=value" with [formulas]
-  std::vector<double> values;            ///< of this series' own ladder; empty: the study's
+  std::vector<double> values;            ///< values of this series' own ladder; empty: the study's
 };
 
 /// One column of results, and what it is compared with.
@@ -69,7 +69,7 @@ struct Study {
   std::vector<Curve> curves;
 };
 
-/// Whether finer rungs resolve more, so that errors have orders: the abscissa is h, dt or a formula
+/// True if finer rungs resolve more, so that errors have orders: the abscissa is h, dt or a formula
 /// such as 1/n. One that is the ladder's own constant (a density ratio, the ranks) is none.
 bool is_resolution(const Study& study);
 

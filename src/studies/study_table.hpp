@@ -16,12 +16,13 @@ struct StudyRow {
   double ladder = 0, abscissa = 0;
   double value = 0;
   std::optional<double> reference, error, order;
-  double wall_seconds = 0;       ///< mean of a run
-  double core_seconds = 0;       ///< CPU seconds of all ranks, those that wait too; mean of a run
-  double iterations_median = 0;  ///< of the coupled solves, the larger of S1's and S2's; mean
-  double iterations_max = 0;     ///< largest of all
-  double peak_memory_mb = 0;     ///< largest, all ranks of a run together
-  double spread = 0;             ///< standard deviation over the samples
+  double wall_seconds = 0;  ///< mean of a run
+  double core_seconds = 0;  ///< CPU seconds of all ranks, those that wait too; mean of a run
+  double iterations_median =
+      0;                      ///< iterations of coupled solves, the larger of S1's and S2's; mean
+  double iterations_max = 0;  ///< largest of all
+  double peak_memory_mb = 0;  ///< largest, all ranks of a run together
+  double spread = 0;          ///< standard deviation over the samples
   int n_samples = 1;
   int n_at_a_time = 1;  ///< runs of the study while one of these went: more take longer
 };

@@ -57,7 +57,7 @@ Outcome lockstep_multigrid(const Problem& problem, double tolerance) {
   const auto strategy = strategies.create("schur-cg", strategies.valid_parameters("schur-cg"));
   // Parts that depend on the grid alone are kept from one geometry to the next.
   strategy->prepare(system);
-  ++system.geometry_stamp;
+  ++system.geometry_version;
   Outcome outcome;
   const double start = seconds();
   strategy->prepare(system);

@@ -47,7 +47,7 @@ def squeezed(text):
 
 
 def defines(file, name):
-    """Whether a .cpp file has the body of a function, a class, or a constant of this name; of others whether the word occurs."""
+    """True if a .cpp file has the body of a function, a class, or a constant of this name; of others whether the word occurs."""
     text = file.read_text()
     if file.suffix != ".cpp":
         return bool(re.search(rf"\b{re.escape(name)}\b", text))

@@ -36,7 +36,7 @@ def wave(*sets, **scene):
 
 
 def gauge(ends):
-    """What puts one into a scene."""
+    """XML that puts one into a scene."""
     time = '<ParameterList name="Time">'
     return time, ('<ParameterList name="Observers"> <ParameterList name="G">' + value("Type", "string", "gauge") +
                   value("Points", "Array(double)", ends) +

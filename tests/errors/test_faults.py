@@ -20,7 +20,7 @@ SOFT = """<Parameter name="Density" type="double" value="500"/>
         <Parameter name="Young's Modulus" type="double" value="1e5"/>
       </ParameterList>
       <Parameter name="Time Integration" type="string" value="fully-implicit"/>"""
-N_STEPS = 50  # of the whole run
+N_STEPS = 50  # steps of the whole run
 CHECKPOINTS = ["--set", "Output/Checkpoints/Interval=0.1"]
 
 

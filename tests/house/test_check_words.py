@@ -47,15 +47,15 @@ class Rules(unittest.TestCase):
     def test_words(self):
         table = {"void": ("air", ["src/old"])}
         self.assertEqual(len(self.found("/// Pressure in the voids [Pa].\n", words=table)), 1)
-        self.assertEqual(self.found("/// Pressure in `void` and cavities.hpp [Pa].\nvoid f();\n", words=table), [])
+        self.assertEqual(self.found("/// Pressure in `void` and voids.hpp [Pa].\nvoid f();\n", words=table), [])
         self.assertEqual(list(words.violations_of_file("src/old/a.cpp", "/// The void.\n", "cpp", words=table)), [])
 
     def test_names(self):
-        table = {"nonlinear": ("nonlinear", []), "FaceProperties": ("FaceCoefficients", [])}
-        for text in ("int nonlinear_bodies = 0;", "class NonlinearSolids;", "FaceProperties worth;", "bool isNonlinear();"):
+        table = {"unlinear": ("nonlinear", []), "FaceWorth": ("FaceCoefficients", [])}
+        for text in ("int unlinear_bodies = 0;", "class UnlinearSolids;", "FaceWorth worth;", "bool isUnlinear();"):
             with self.subTest(text=text):
                 self.assertEqual(len(self.found(text + "\n", names=table)), 1)
-        self.assertEqual(self.found("int nonlinear = 0;  // nonlinear\nint FacePropertiess;\n", words={}, names=table), [])
+        self.assertEqual(self.found("int nonlinear = 0;  // unlinear\nint FaceWorths;\n", words={}, names=table), [])
 
     def test_the_list_of_folders_shrinks_only(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -20,7 +20,7 @@ def names_of(page):
 
 
 def is_used(name, text):
-    """Whether a file gives a parameter of this name a value: in XML, as "List/Name=value", or as a quoted name."""
+    """True if a file gives a parameter of this name a value: in XML, as "List/Name=value", or as a quoted name."""
     quoted = re.escape(name)
     return bool(re.search(rf"""["']{quoted}\\?["']|/{quoted}(?:\[\d\])?=""", text))
 

@@ -301,7 +301,7 @@ def contact(world, solid_lists):
     if rng.random() < 0.3:
         rng.uniform(0.05, 0.3)  # drawn once for a parameter that is no more: seeds keep their scenes
         chosen["Thickness"] = rng.uniform(0.05, 0.2)
-        rng.random()  # the same
+        rng.random()  # keeps the draws of the scenes that follow
     if rng.random() < 0.2:
         chosen["Walls"] = {"Friction": rng.uniform(0, 1), "Restitution": rng.uniform(0, 1)}
     if solid_lists and rng.random() < 0.2:

@@ -64,7 +64,7 @@ std::vector<FoundImpact<dim>> find_impacts(const ContactShapes<dim>& shapes,
   const PrimitivePair<dim>* current = nullptr;
   const SideAtStart<dim> side = [&](const PrimitiveWeights<dim>& weights,
                                     const Point<dim>& normal) -> Point<dim> {
-    constexpr double negligible = rounding::differences;  // of an edge
+    constexpr double negligible = rounding::differences;  // part of an edge [1]
     const auto start = points_of(*current, path.before);
     const Point<dim> motion =
         weighted<dim>(weights, points_of(*current, unheld)) - weighted<dim>(weights, start);

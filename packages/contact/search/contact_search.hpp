@@ -35,10 +35,10 @@ struct HalfSpace {
 struct ContactReach {
   double near = 0;                     ///< gaps up to this are contacts whatever the motion [m]
   double depth = 0;                    ///< deepest overlap that is recognised [m]
-  std::vector<double> half_thickness;  ///< of the skin of each solid [m]
-  double dt = 0;                       ///< of the motion that is followed [s]
-  bool swept = true;                   ///< also what the motion over dt meets beyond `near`
-  bool unheld = true;                  ///< nothing has acted on the motion: see `touching_side`
+  std::vector<double> half_thickness;  ///< half thickness of each solid's skin [m]
+  double dt = 0;                       ///< duration of the motion that is followed [s]
+  bool swept = true;   ///< surfaces that the motion over dt meets beyond `near` count too
+  bool unheld = true;  ///< nothing has acted on the motion: see `touching_side`
   /// Of a solid against itself, leave out what may neither overlap nor be violated by the motion:
   /// most of a sheet that is flat, whose parts lie side by side.
   bool violated_only = false;

@@ -200,7 +200,7 @@ std::optional<Impact<dim>> first_impact(PrimitiveKind kind, const PrimitivePoint
     const Point<dim> motion = weighted<dim>(impact->weights, after) - start;
     const double approach = impact->normal.dot(motion);
     const double negligible = rounding::few * (before[1] - before[2]).norm();
-    double out = -approach;  // what slides does not cross
+    double out = -approach;  // sliding surfaces do not cross
     if (start.norm() <= negligible) {
       constexpr double steep = 0.5;
       if (!side || std::abs(approach) <= negligible)

@@ -12,7 +12,7 @@ namespace lockstep {
 struct VolumeOfFluidParameters {
   /// Cells around the surface in which phi is known: as many as a level set has.
   static constexpr int band = 6;
-  bool removes_fragments = true;  ///< what is too thin for the grid goes back to its body
+  bool removes_fragments = true;  ///< liquid too thin for the grid goes back to its component
   /// Most that the surface shifts in a step, to take up what fragments and moving solids have
   /// displaced: half of VolumeParameters::largest_shift [cells]. Chosen, not varied by a page.
   static constexpr double largest_shift = 0.1;

@@ -18,7 +18,7 @@ struct LevelSetParameters {
   /// ask for two more than their own band.
   static constexpr int band = 6;
   static_assert(band >= ParticleParameters::band + 2);
-  int smallest_cavity = 0;  ///< cells of the largest void that is closed
+  int smallest_cavity = 0;  ///< cells of the largest cavity that is filled
   VolumeParameters volume;
   std::optional<ParticleParameters> particles;  ///< none: phi alone
 };

@@ -17,7 +17,7 @@ struct ParticleParameters {
   static constexpr int band = 3;
   /// Steps between two reseedings: chosen, not varied by a page.
   static constexpr int interval = 20;
-  bool drops = false;  ///< those of the liquid that no cell shows fly as drops
+  bool drops = false;  ///< true: particles of the liquid that no cell shows fly as drops
 };
 
 /// Declares "Drops".

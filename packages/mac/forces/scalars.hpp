@@ -15,7 +15,7 @@ template <int dim>
 struct ScalarSource {
   struct Feed {
     std::string scalar;
-    double value = 0;  ///< that the scalar has inside
+    double value = 0;  ///< value of the scalar inside
   };
   RegionShape<dim> shape;
   std::vector<Feed> feeds;
@@ -48,7 +48,7 @@ class Scalars {
   const Scalar* find(const std::string& name) const;
   /// Feeds the fluid cells inside the sources that are active at `time`. Sets owned cells. Local.
   void feed(const MacGeometry<dim>& geometry, double time);
-  /// Of the shapes that are filled with liquid at `time`, the distance from each [m].
+  /// Distance functions [m] of the shapes that are filled with liquid at `time`.
   std::vector<std::function<double(const Point<dim>&)>> liquid_sources(double time) const;
   /// True if a source that is active at `time` sets the velocity.
   bool sources_push(double time) const;

@@ -58,7 +58,7 @@ TEST(Validate, MisspeltNameGetsPlacePathAndSuggestion) {
 TEST(Validate, WhatBecameOfAFormerNameIsTold) {
   EXPECT_EQ(in_fluid(R"xml(<Parameter name="Crest" type="double" value="1"/>)xml"),
             "case.xml, line 3: in \"Fluid\", \"Crest\" is always 0 now: leave it out.");
-  // Of another list than the one that had it, a name was never known.
+  // A list other than the one that had it never knew the name.
   EXPECT_EQ(in_fluid(R"xml(<Parameter name="Margin" type="double" value="1"/>)xml"),
             "case.xml, line 3: in \"Fluid\", \"Margin\" is not a parameter.\nValid here: "
             "\"Density\", \"Viscosity\", \"Gravity\", \"Steps\", \"Fixed step\".");

@@ -302,7 +302,7 @@ TEST_F(Includes, WhatTheCommandLineIncludesWinsOverTheFile) {
     const ParameterList& fluid = document.list.sublist("Fluid");
     EXPECT_EQ(fluid.get<std::string>("Advection"), "cubic");
     EXPECT_EQ(fluid.get<double>("Viscosity"), 7);
-    EXPECT_EQ(fluid.get<double>("Density"), 1);  // of what the scene itself includes
+    EXPECT_EQ(fluid.get<double>("Density"), 1);  // from the scene's own include
     EXPECT_EQ(document.list.sublist("Solids").sublist("A").get<std::string>("File"), "parts/a.obj");
   }
   try {
